@@ -81,8 +81,10 @@ def test_a_scene_is_drawn_in_its_plane(name, axes):
         if len(axes) == 2:
             columns = ["xyz".index(axis) for axis in axes]
             points = getattr(result, "points", None)
-            points = result.energy_points if points is None else points
-            numpy.testing.assert_array_equal(ax.lines[0].get_xydata(), points[:, columns])
+            points = result.force_points if points is None else points
+            drawn = [line.get_xydata() for line in ax.lines]
+            assert any(numpy.array_equal(line, points[:, columns]) for line in drawn)
+            assert ax.get_aspect() == 1
 
 
 @pytest.mark.parametrize("name", [*SCENES, "twisted", "moving"])
@@ -100,13 +102,29 @@ def test_no_legend_lies_on_a_plot(name, root, tmp_path):
         renderer = figure.canvas.get_renderer()
         legend = ax.get_legend().get_window_extent(renderer)
         plot = ax.get_window_extent(renderer)
-        assert legend.y0 >= plot.y1 - 1 or ax.name == "3d"
+        assert legend.y1 <= plot.y0 + 1
+        label = ax.xaxis.get_label().get_window_extent(renderer)
+        assert not legend.overlaps(label) or ax.name == "3d"
         for line in ax.lines if ax.name != "3d" else []:
             drawn = ax.transData.transform(line.get_xydata())
             assert not numpy.any(legend.count_contains(drawn))
         # All of it is in the picture, and what is flat has room for its numbers.
-        assert figure.bbox.y1 >= legend.y1 and figure.bbox.x1 >= legend.x1 >= legend.x0 >= 0
+        assert legend.y0 >= -1 and figure.bbox.x1 >= legend.x1 >= legend.x0 >= 0
         assert plot.height > 60 and plot.width > 60
+
+
+def test_a_picture_is_the_librarys():
+    """Titles, limits and points are those of the library's description, which gnuplot draws, too."""
+    result = dlo.solve(SCENES["tall"](), samples=41)
+    panel = result._panel(None)
+    ax = result.plot()
+    titles = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert titles == [curve["title"] for curve in panel["curves"] if curve["title"]] and "gripper" in titles
+    assert (ax.get_xlim(), ax.get_ylim()) == tuple(axis["limits"] for axis in panel["axes"])
+    assert len(ax.lines) == len(panel["curves"])
+    for line, curve in zip(ax.lines, panel["curves"]):
+        numpy.testing.assert_array_equal(line.get_xydata().T, curve["points"])
+        assert line.get_color() == curve["colour"]
 
 
 def test_results_show_themselves(cable, root):

@@ -137,6 +137,7 @@ def looks(browser, page, screenshots):
     size = page.stat().st_size
     problems = [f"the page has {size} bytes"] if size >= LARGEST else []
     browser.execute_cdp_cmd("Network.enable", {})
+    list(requests_of(browser))  # those of another page
     for width in WIDTHS:
         for scheme in SCHEMES:
             set_view(browser, width, scheme)
@@ -159,7 +160,7 @@ def first_screen(browser, page):
     for width in (1280, 1920):
         set_view(browser, width, "light")
         browser.get(page.as_uri())
-        for what in (".badge", ".three", "figure svg", "h1"):
+        for what in (".badge", ".three", "figure:first-of-type svg", "h1"):
             below = browser.execute_script(
                 "return [...document.querySelectorAll(arguments[0])].map("
                 "e => e.getBoundingClientRect().bottom)", what)

@@ -8,6 +8,7 @@
 #include "command/commands.hpp"
 #include "dlo/compare/check.hpp"
 #include "dlo/compare/error.hpp"
+#include "figure/gnuplot.hpp"
 #include "format/json.hpp"
 #include "format/shape_check_output.hpp"
 #include "option/exit_status.hpp"
@@ -44,11 +45,19 @@ compare::Picture picture_of(const compare::CheckResult& report) {
 void write_page(const CheckOptions& options, const compare::CheckResult& result,
                 const std::string& text) {
   compare::CheckPageParts parts{.text = text, .version = DLO_VERSION};
-  try {
-    const std::string option = "--report " + options.report;
-    parts.svg = drawn_picture(picture_of(result), compare::PictureFormat::svg, option);
-  } catch (const compare::OutputError& error) {
-    parts.why_no_picture = error.what();
+  for (const compare::PictureRow& row : picture_of(result).rows) {
+    for (const std::vector<compare::Figure>& column : row) {
+      for (const compare::Figure& figure : column) {
+        compare::PageFigure& drawn = parts.figures.emplace_back(figure);
+        try {
+          const std::string svg = drawn_picture({{{{figure}}}}, compare::PictureFormat::svg,
+                                                "--report " + options.report);
+          drawn.svg = compare::inline_svg(svg, figure);
+        } catch (const compare::OutputError& error) {
+          drawn.failure = error.what();
+        }
+      }
+    }
   }
   compare::write_file(options.report, compare::check_page(result, parts));
 }

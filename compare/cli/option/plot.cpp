@@ -11,7 +11,7 @@
 #include "base/temporary_path.hpp"
 #include "dlo/compare/error.hpp"
 #include "figure/gnuplot.hpp"
-#include "figure/layout.hpp"
+#include "figure/gnuplot_script.hpp"
 #include "option/terminal.hpp"
 
 namespace dlo::cli {
@@ -77,13 +77,6 @@ std::string drawn_picture(const compare::Picture& picture, compare::PictureForma
     throw compare::OutputError(option + ": there is nothing to draw");
   }
   const compare::TemporaryFolder folder = drawing_folder(option);
-  for (const compare::PictureRow& row : picture.rows) {
-    for (const std::vector<compare::Figure>& column : row) {
-      for (const compare::Figure& figure : column) {
-        if (!figure.csv.empty()) compare::write_file(folder.path() / figure.csv_file, figure.csv);
-      }
-    }
-  }
   constexpr const char* outputs[] = {"plot.svg", "plot.png", "plot.pdf"};
   const std::string output = outputs[static_cast<std::size_t>(format)];
   compare::write_file(folder.path() / "plot.gp", compare::picture_script(picture, format, output));

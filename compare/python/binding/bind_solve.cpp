@@ -197,7 +197,7 @@ void bind_solve(py::module_& module) {
   bind_arrays(solution);
   bind_result(solution);
   bind_picture(solution, [](const SolvedScene& solved) {
-    return compare::views_of(solved.scene->scene, solved.solution.shape.points);
+    return compare::solution_drawing(solved.scene->scene, {solved.solution});
   });
   const auto of = [](const SolvedScene& solved) {
     return compare::SolvedShape{solved.scene->scene, solved.solution};
@@ -213,7 +213,7 @@ void bind_solve(py::module_& module) {
       "Every equilibrium that was found: a sequence of Solution, stable ones first, by energy.");
   bind_result(equilibria);
   bind_picture(equilibria, [](const SolvedStates& solved) {
-    return compare::views_of(solved.scene->scene, all_points(solved.all.solutions));
+    return compare::solution_drawing(solved.scene->scene, solved.all.solutions);
   });
   equilibria.def("__len__", [](const SolvedStates& solved) { return solved.all.solutions.size(); })
       .def(

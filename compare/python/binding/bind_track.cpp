@@ -12,6 +12,7 @@
 #include "module.hpp"
 #include "motion/dynamic_track.hpp"
 #include "picture.hpp"
+#include "picture/track_figure.hpp"
 #include "series/dynamic_track_series.hpp"
 #include "series/track_series.hpp"
 #include "solve_options.hpp"
@@ -44,7 +45,8 @@ py::object track(const SharedScene& shared, const std::vector<std::optional<doub
   if (dynamic != nullptr) text += cli::dynamic_text(*dynamic);
   py::object result = make_result(text, cli::track_json(found.track, scene, found.options,
                                                         {.every = 1, .points = true}, dynamic));
-  result.attr("_views") = view_list(compare::views_of(scene, all_points(found.track.frames)));
+  result.attr("_strip") = panel_dict(
+      compare::track_figures(scene, {found.track, dynamic}, found.options, 1).strip.panels.front());
   const std::optional<compare::TrackStop>& stopped =
       dynamic != nullptr ? dynamic->stopped : found.track.stopped;
   if (stopped) {

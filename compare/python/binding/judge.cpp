@@ -26,6 +26,8 @@
 #include "module.hpp"
 #include "option/share.hpp"
 #include "picture.hpp"
+#include "picture/check_figure.hpp"
+#include "picture/comparison_figure.hpp"
 #include "record/solution_fields.hpp"
 #include "result.hpp"
 #include "solve_options.hpp"
@@ -164,9 +166,7 @@ void bind_check(py::module_& module) {
   bind_array(
       bound, "reference", [](const Report& r) -> const auto& { return r.check.reference.points; },
       "The energy model there [m], shape (M, 3), read only.");
-  bind_picture(bound, [](const Report& r) {
-    return compare::views_of(r.scene, r.check.alignment.shape.points);
-  });
+  bind_picture(bound, of([](const Report& r) { return compare::check_drawing(r.scene, r.check); }));
   bound
       .def_property_readonly(
           "passed", of([](const Report& r) { return r.judgement.pass; }),
@@ -215,9 +215,8 @@ void bind_comparison(py::module_& module) {
   bind_array(
       bound, "energy_points", [](const Comparison& r) -> const auto& { return r.reference.points; },
       "The energy model there [m], shape (N, 3), read only.");
-  bind_picture(bound, [](const Comparison& c) {
-    return compare::views_of(c.of->scene, c.force.shape.points);
-  });
+  bind_picture(bound,
+               [](const Comparison& c) { return compare::comparison_drawing(c.of->scene, {c}); });
   bound
       .def_property_readonly(
           "deviation",

@@ -78,11 +78,14 @@ class Modes(Document):
 class Track(Document):
     """A rod while its grippers move, frame by frame; of track()."""
 
-    _views: list[tuple[int, int]] = []
+    _strip: dict[str, Any]
+
+    def _panel(self, in_space: Optional[bool]) -> dict[str, Any]:
+        return self._strip
 
     def plot(self, ax: Any = None) -> Any:
-        """Draws some of the frames with matplotlib, at equal aspect. ax: the axes to draw into, new
-        ones for None; returned."""
+        """Draws nine of the frames with matplotlib, row by row, at equal aspect. ax: the axes to
+        draw into, new ones for None; returned."""
         return _plot.plot(self, ax)
 
     def _repr_svg_(self) -> Optional[str]:

@@ -1,95 +1,82 @@
-"""Pictures with matplotlib, which is imported only here."""
+"""Pictures with matplotlib, which is imported only here. What is drawn, and how, the library says."""
 
 from __future__ import annotations
 
 import io
 from typing import Any, Optional
 
-import numpy
-
-from . import _dlo
-
-_NAMES = "xyz"
-
-
-def _lines(result: Any) -> list[tuple[Any, dict[str, Any]]]:
-    """Points, each with how it is drawn."""
-    if isinstance(result, _dlo.Solution):
-        return [(result.points, {"label": result.model})]
-    if isinstance(result, _dlo.Equilibria):
-        return [
-            (
-                state.points,
-                {
-                    "linestyle": "-" if state.stable else "--",
-                    "label": f"{number + 1}: {state.energy['total']:.4g} J",
-                },
-            )
-            for number, state in enumerate(result)
-        ]
-    if isinstance(result, _dlo.Check):
-        whiskers = [
-            (numpy.array(pair), {"color": "0.6", "linewidth": 0.8, "zorder": 0})
-            for pair in zip(result.points, result.reference)
-        ]
-        return [
-            (result.reference, {"label": "energy"}),
-            (result.points, {"linestyle": "none", "marker": ".", "label": "points"}),
-            *whiskers,
-        ]
-    if isinstance(result, _dlo.Comparison):
-        return [
-            (result.energy_points, {"label": "energy"}),
-            (result.force_points, {"marker": ".", "label": "force"}),
-        ]
-    return _frames(result.time, result.points)
+# In the order of the library's Dashes and Mark.
+_DASHES = ("-", "--", ":", "-.", (0, (6, 2, 1, 2, 1, 2)))
+_MARKS = ("", "x", "s", "s", "o", "o", "^", "v", "D")
+_FULL = (1, 3, 5)
 
 
-def _frames(time: Any, points: Any) -> list[tuple[Any, dict[str, Any]]]:
-    """Some of many, the later the darker."""
-    shown = numpy.unique(numpy.linspace(0, len(time) - 1, 9).round().astype(int))
-    return [
-        (
-            points[frame],
-            {
-                "color": str(0.8 * (1 - place / max(1, len(shown) - 1))),
-                "label": f"{time[frame]:.4g} s" if place in (0, len(shown) - 1) else None,
-            },
+def _draw_curve(ax: Any, curve: dict[str, Any]) -> None:
+    label = curve["title"] or None
+    if curve["fill"]:
+        ax.fill(*curve["points"], facecolor=curve["fill"], edgecolor=curve["colour"], label=label, zorder=2)
+        return
+    ax.plot(
+        *curve["points"],
+        color=curve["colour"],
+        linewidth=0.8 * curve["width"],
+        linestyle=_DASHES[curve["dashes"]] if curve["width"] else "none",
+        marker=_MARKS[curve["mark"]] or None,
+        markersize=6 * curve["mark_size"],
+        markerfacecolor=curve["colour"] if curve["mark"] in _FULL else "none",
+        label=label,
+    )
+
+
+def _draw(ax: Any, panel: dict[str, Any]) -> None:
+    for curve in panel["curves"]:
+        _draw_curve(ax, curve)
+    for words, x, y, right, up in panel["texts"]:
+        ax.annotate(words, (x, y), (0.9 * right, 0.9 * up), textcoords="offset points", va="center", fontsize="small")
+    label_pad = 9 if ax.name == "3d" else None  # else it is on the numbers
+    for name, axis in zip("xyz", panel["axes"]):
+        getattr(ax, f"set_{name}lim")(*axis["limits"])
+        getattr(ax, f"set_{name}label")(axis["label"], labelpad=label_pad)
+        if axis["log"]:
+            getattr(ax, f"set_{name}scale")("log")
+        if axis["tics"] is not None:
+            getattr(ax, f"set_{name}ticks")([at for at, _ in axis["tics"]], [label for _, label in axis["tics"]])
+    if ax.name == "3d":
+        # Smaller than its place, where its axes' names have no room.
+        ax.set_box_aspect([high - low for low, high in (axis["limits"] for axis in panel["axes"])], zoom=0.8)
+        ax.locator_params(nbins=5)
+    elif panel["equal"]:
+        ax.set_aspect("equal")
+    ax.grid(True, color="0.9")
+    if any(curve["title"] for curve in panel["curves"]):
+        # Below the numbers and the name of the axis, which in space are inside: nothing is drawn there.
+        ax.legend(
+            loc="upper left", bbox_to_anchor=(0, 0), borderaxespad=1 if ax.name == "3d" else 4, frameon=False
         )
-        for place, frame in enumerate(shown)
-    ]
-
-
-def _fill(ax: Any, result: Any) -> None:
-    views = result._views
-    axes = (0, 1, 2) if ax.name == "3d" else views[0]
-    for points, style in _lines(result):
-        ax.plot(*points.T[list(axes)], **style)
-    flattest = 0.3  # of the longest side: what is flatter has no room for the numbers at its axis
-    names = _NAMES[: len(axes)]
-    limits = {name: getattr(ax, f"get_{name}lim")() for name in names}
-    least = flattest * max(high - low for low, high in limits.values())
-    for axis, (name, (low, high)) in zip(axes, limits.items()):
-        half, middle = max(high - low, least) / 2, (low + high) / 2
-        getattr(ax, f"set_{name}lim")(middle - half, middle + half)
-        getattr(ax, f"set_{name}label")(f"{_NAMES[axis]} [m]")
-    ax.set_aspect("equal")
-    # Above the axes: whatever their shape, nothing is drawn there.
-    ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3, frameon=False)
 
 
 def plot(result: Any, ax: Any = None) -> Any:
     """Draws what has a shape at equal aspect: in the plane that it lies in, else in space."""
+    panel = result._panel(None if ax is None else ax.name == "3d")
     if ax is None:
         import matplotlib.pyplot
 
-        ax = _new_axes(matplotlib.pyplot.figure(layout="constrained"), result)
-    _fill(ax, result)
+        ax = _new_axes(matplotlib.pyplot.figure, panel)
+    _draw(ax, panel)
     return ax
 
 
-def _new_axes(figure: Any, result: Any) -> Any:
-    return figure.add_subplot(projection="3d" if len(result._views) > 1 else None)
+def _new_axes(figure: Any, panel: dict[str, Any]) -> Any:
+    pixels = 80  # of the library's an inch: letters are as large in its pictures
+    width, height = panel["size"]
+    made = figure(figsize=(width / pixels, height / pixels), layout="constrained")
+    made.get_layout_engine().set(h_pad=0.2)  # in space it leaves less [inches]
+    if len(panel["axes"]) == 2:
+        return made.add_subplot()
+    ax = made.add_subplot(projection="3d")
+    # x, or else y, goes to the right.
+    ax.view_init(azim=(-60, 30, -60)[panel["upright"]], vertical_axis="xyz"[panel["upright"]])
+    return ax
 
 
 def svg(result: Any) -> Optional[str]:
@@ -98,8 +85,9 @@ def svg(result: Any) -> Optional[str]:
         from matplotlib.figure import Figure
     except ImportError:
         return None
-    figure = Figure()
-    _fill(_new_axes(figure, result), result)
+    panel = result._panel(None)
+    ax = _new_axes(Figure, panel)
+    _draw(ax, panel)
     file = io.StringIO()
-    figure.savefig(file, format="svg", bbox_inches="tight")
+    ax.figure.savefig(file, format="svg", bbox_inches="tight")
     return file.getvalue()

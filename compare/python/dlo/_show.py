@@ -28,7 +28,7 @@ def line(result: Any) -> str:
 
 def svg(result: Any) -> Optional[str]:
     """The picture of what has a shape; None without matplotlib."""
-    return _plot.svg(result) if hasattr(result, "_views") else None
+    return _plot.svg(result) if hasattr(result, "_panel") else None
 
 
 def html(result: Any) -> str:

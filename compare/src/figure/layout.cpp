@@ -3,231 +3,251 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
-
-#include "base/quote.hpp"
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <utility>
 
 namespace dlo::compare {
 namespace {
 
-constexpr const char* zero_width_space = "\xe2\x80\x8b";
-
-// Pixels of a plot's surroundings in its figure.
-constexpr int left_margin = 76;
-constexpr int top_margin = 38;
-constexpr int axis_pixels = 78;  // numbers and name of the horizontal axis
-constexpr int key_row_pixels = 24;
-constexpr int title_line_pixels = 22;
-constexpr int title_margin = 14;
+constexpr int right_margin = figure_width - 76 - plot_width;  // [pixels]
 
 /// Colours after Okabe and Ito, darker, so that they stand out inverted as well, each with its own
-/// dashes and points, so that none is told by colour alone.
-struct Look {
+/// dashes and marks, so that none is told by colour alone.
+struct CurveLook {
   const char* colour;
-  int points;
-  int dashes;
+  Mark mark;
+  Dashes dashes;
 };
-constexpr Look looks[curve_colours] = {{"#0059A8", 6, 1},  {"#B34700", 4, 2},  {"#00704F", 8, 3},
-                                       {"#8A2F85", 12, 4}, {"#7A5600", 10, 5}, {"#404040", 2, 2}};
+constexpr CurveLook looks[curve_colours] = {
+    {"#0059A8", Mark::circle, Dashes::solid},
+    {"#B34700", Mark::open_square, Dashes::dashed},
+    {"#00704F", Mark::triangle, Dashes::dotted},
+    {"#8A2F85", Mark::diamond, Dashes::dash_dotted},
+    {"#7A5600", Mark::down_triangle, Dashes::dash_dot_dotted},
+    {"#404040", Mark::cross, Dashes::dashed}};
 
-int height_of(const Panel& panel) {
-  return top_margin + panel.height + axis_pixels + panel.key_rows * key_row_pixels;
-}
+using Range = std::array<double, 2>;
+constexpr Range nothing = {HUGE_VAL, -HUGE_VAL};
 
-int height_of(const Figure& figure) {
-  int height = 0;
-  for (const Panel& panel : figure.panels) height += height_of(panel);
-  return height;
-}
-
-/// A title in lines that fit above a figure.
-std::vector<std::string> title_lines(const std::string& title) {
-  constexpr std::size_t most = 50;
-  std::vector<std::string> lines = {""};
-  for (std::size_t at = 0; at < title.size();) {
-    const std::size_t end = std::min(title.find(' ', at), title.size());
-    const std::string word = title.substr(at, end - at);
-    at = end + 1;
-    if (!lines.back().empty() && lines.back().size() + 1 + word.size() > most) lines.emplace_back();
-    if (!lines.back().empty()) lines.back() += ' ';
-    lines.back() += word;
-  }
-  return lines;
-}
-
-int titled_height(const Figure& figure) {
-  return title_margin + title_line_pixels * static_cast<int>(title_lines(figure.title).size()) +
-         height_of(figure);
-}
-
-int height_of(const std::vector<Figure>& column) {
-  int height = 0;
-  for (const Figure& figure : column) height += titled_height(figure);
-  return height;
-}
-
-int height_of(const PictureRow& row) {
-  int height = 0;
-  for (const std::vector<Figure>& column : row) height = std::max(height, height_of(column));
-  return height;
-}
-
-/// Places on a canvas, from its top left corner [pixels], as gnuplot counts them.
-struct Canvas {
-  int width = figure_width;
-  int height = 0;
-
-  [[nodiscard]] double x(double pixels) const { return pixels / width; }
-  [[nodiscard]] double y(double pixels) const { return 1 - pixels / height; }
-};
-
-void add_panel(std::string& out, const Panel& panel, const Canvas& canvas, double left,
-               double top) {
-  constexpr double from_the_left = 8;
-  constexpr double above = 20;
-  const double plot_top = top + top_margin;
-  const double plot_bottom = plot_top + panel.height;
-  fmt::format_to(std::back_inserter(out),
-                 "reset\n"
-                 "set datafile separator comma\n"
-                 "set grid linecolor rgb '#808080'\n"
-                 "set lmargin at screen {:.6f}\n"
-                 "set rmargin at screen {:.6f}\n"
-                 "set tmargin at screen {:.6f}\n"
-                 "set bmargin at screen {:.6f}\n",
-                 canvas.x(left + left_margin), canvas.x(left + left_margin + plot_width),
-                 canvas.y(plot_top), canvas.y(plot_bottom));
-  if (panel.key_rows > 0) {
-    fmt::format_to(std::back_inserter(out),
-                   "set key at screen {:.6f},{:.6f} left top vertical maxcols 1 Left reverse "
-                   "samplen 2.5\n",
-                   canvas.x(left + 0.02 * figure_width), canvas.y(plot_bottom + axis_pixels));
-  } else {
-    out += "set key off\n";
-  }
-  // The upright axis's name stands level above it, where no number is in its way.
-  fmt::format_to(std::back_inserter(out),
-                 "set xlabel {}\nset label 1 {} at screen {:.6f},{:.6f} left\n",
-                 gnuplot_string(panel.x_label), gnuplot_string(panel.y_label),
-                 canvas.x(left + from_the_left), canvas.y(plot_top - above));
-  out += panel.script;
-}
-
-void add_panels(std::string& out, const Figure& figure, const Canvas& canvas, double left,
-                double top) {
-  for (const Panel& panel : figure.panels) {
-    add_panel(out, panel, canvas, left, top);
-    top += height_of(panel);
+void widen(Range& range, const std::vector<double>& values) {
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    range = {std::min(range[0], value), std::max(range[1], value)};
   }
 }
 
-void add_title(std::string& out, const Figure& figure, const Canvas& canvas, double left,
-               double top) {
-  constexpr double from_the_left = 8;
-  // In a multiplot a label is drawn with the plot after it.
-  int number = 10;
-  double base = top + title_margin;
-  for (const std::string& line : title_lines(figure.title)) {
-    base += title_line_pixels;
-    fmt::format_to(std::back_inserter(out), "set label {} {} at screen {:.6f},{:.6f} left\n",
-                   number++, gnuplot_string(line), canvas.x(left + from_the_left),
-                   canvas.y(base - title_line_pixels / 2.0));
+/// A number at an axis, with as many digits as its neighbours a step away differ in.
+std::string number_at(double at, double step) {
+  constexpr int usual = 6;
+  if (std::abs(at) < step / 2) return "0";
+  const int needed = static_cast<int>(std::ceil(std::log10(std::abs(at) / step) - 1e-9)) + 1;
+  return fmt::format("{:.{}g}", at, std::max(usual, needed));
+}
+
+std::vector<Tic> linear_tics(const PlotAxis& axis, double step) {
+  std::vector<Tic> tics;
+  constexpr double round = 1e-9;
+  for (double k = std::ceil(*axis.from / step - round); k * step <= *axis.to + round * step; ++k) {
+    tics.push_back({k * step, number_at(k * step, step)});
+  }
+  return tics;
+}
+
+/// Powers of ten, every so many, or with twice and five times as much between.
+std::vector<Tic> logarithmic_tics(const PlotAxis& axis, int every) {
+  std::vector<Tic> tics;
+  constexpr double round = 1e-9;
+  const int first = static_cast<int>(std::floor(std::log10(*axis.from)));
+  for (int k = first; std::pow(10, k) <= *axis.to * (1 + round); ++k) {
+    if (every > 1 && k % every != 0) continue;
+    for (const int factor : {1, 2, 5}) {
+      if (factor > 1 && every > 0) break;
+      const double at = factor * std::pow(10, k);
+      if (at < *axis.from * (1 - round) || at > *axis.to * (1 + round)) continue;
+      tics.push_back({at, fmt::format("{:.6g}", at)});
+    }
+  }
+  // All in one way.
+  const bool is_any_long = std::any_of(
+      tics.begin(), tics.end(), [](const Tic& tic) { return tic.at >= 1e5 || tic.at < 1e-4; });
+  for (Tic& tic : tics) {
+    if (is_any_long) tic.label = fmt::format("{:.0e}", tic.at);
+  }
+  return tics;
+}
+
+double scaled(const PlotAxis& axis, double value) {
+  return axis.logarithmic ? std::log10(value) : value;
+}
+
+/// Of an axis that is so many pixels long.
+double pixels_between(const PlotAxis& axis, double from, double to, double pixels) {
+  return (scaled(axis, to) - scaled(axis, from)) /
+         (scaled(axis, *axis.to) - scaled(axis, *axis.from)) * pixels;
+}
+
+enum class Direction { level, upright };
+
+bool have_room(const std::vector<Tic>& tics, const PlotAxis& axis, double pixels,
+               Direction direction) {
+  constexpr double gap = 8;
+  constexpr double line = 24;
+  for (std::size_t i = 1; i < tics.size(); ++i) {
+    const double needed =
+        direction == Direction::upright
+            ? line
+            : (text_width(tics[i - 1].label) + text_width(tics[i].label)) / 2 + gap;
+    if (pixels_between(axis, tics[i - 1].at, tics[i].at, pixels) < needed) return false;
+  }
+  return true;
+}
+
+std::vector<Tic> tics_with_room(const PlotAxis& axis, double pixels, Direction direction) {
+  constexpr int longest = 64;  // of the ranges and numbers of decades that doubles have
+  std::vector<Tic> tics;
+  for (int k = 1; k <= longest; k *= 2) {
+    tics = axis.logarithmic ? logarithmic_tics(axis, k / 2)
+                            : linear_tics(axis, tic_step((*axis.to - *axis.from) * k));
+    if (tics.size() < 2 && axis.logarithmic)
+      tics = linear_tics(axis, tic_step(*axis.to - *axis.from));
+    if (have_room(tics, axis, pixels, direction)) break;
+  }
+  return tics;
+}
+
+/// What is drawn, and a little more.
+void set_limits(PlotAxis& axis, const Range& drawn) {
+  Range range = drawn[0] <= drawn[1] ? drawn : axis.logarithmic ? Range{1, 10} : Range{0, 1};
+  if (axis.logarithmic) range = {std::log10(range[0]), std::log10(range[1])};
+  constexpr double margin = 0.05;
+  double more = margin * (range[1] - range[0]);
+  // Of one value: what surrounds it.
+  if (!(more > 1e-12 * std::abs(range[1]))) {
+    more = axis.logarithmic ? 0.5 : range[1] == 0 ? 1 : 0.1 * std::abs(range[1]);
+  }
+  const auto limit = [&axis](double value) {
+    return axis.logarithmic ? std::pow(10, value) : value;
+  };
+  if (!axis.from) axis.from = limit(range[0] - more);
+  if (!axis.to) axis.to = limit(range[1] + more);
+  if (!(*axis.to > *axis.from)) axis.to = *axis.from + 1;
+}
+
+void put_at_edge(double& value, const PlotAxis& axis) {
+  if (std::isinf(value)) value = value > 0 ? *axis.to : *axis.from;
+}
+
+void lay_out(PlotAxis& axis, std::vector<Curve>& curves, std::vector<double> Curve::*values) {
+  Range drawn = nothing;
+  for (Curve& curve : curves) {
+    for (double& value : curve.*values) {
+      // What a logarithmic axis has no place for.
+      if (axis.logarithmic && std::isfinite(value) && value <= 0) value = NAN;
+    }
+    widen(drawn, curve.*values);
+  }
+  set_limits(axis, drawn);
+  for (Curve& curve : curves) {
+    for (double& value : curve.*values) put_at_edge(value, axis);
   }
 }
 
-/// The same picture in every format, as the SVG has it: in PDF a pixel is 0.75 points, and a line
-/// of width 1 half a point; cairo's symbols are half as large.
-std::string terminal(PictureFormat format, const Canvas& canvas) {
-  switch (format) {
-    case PictureFormat::svg:
-      return fmt::format(
-          "set terminal svg size {},{} noenhanced font 'sans-serif,16' linewidth 1.3 background "
-          "'#ffffff'\n",
-          canvas.width, canvas.height);
-    case PictureFormat::png:  // twice as fine, for screens and print
-      return fmt::format(
-          "set terminal pngcairo size {},{} noenhanced font 'sans-serif,12' fontscale 2 linewidth "
-          "2.6 pointscale 4 background '#ffffff'\n",
-          2 * canvas.width, 2 * canvas.height);
-    case PictureFormat::pdf:  // 96 pixels an inch
-      return fmt::format(
-          "set terminal pdfcairo size {:.4f}in,{:.4f}in noenhanced font 'sans-serif,12' fontscale "
-          "0.75 linewidth 1.95 pointscale 1.5 background '#ffffff'\n",
-          canvas.width / 96.0, canvas.height / 96.0);
+bool shows_something(const Curve& curve) {
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    if (!std::isnan(curve.x[i]) && !std::isnan(curve.y[i])) return true;
   }
-  return {};
+  return false;
 }
 
 }  // namespace
 
-std::string gnuplot_string(const std::string& text) {
-  // gnuplot writes texts into an SVG's CDATA sections, which "]]>" would end.
-  std::string shown = xml_text(text);
-  for (std::size_t at = 0; (at = shown.find("]]>", at)) != std::string::npos;) {
-    shown.insert(at + 2, zero_width_space);
-  }
-  // In single quotes an apostrophe is doubled, which gnuplot mistakes at the beginning; and a
-  // backtick runs a command. As octal numbers in double quotes neither is seen before it is drawn.
-  if (shown.find_first_of("'`") == std::string::npos) return "'" + shown + "'";
-  std::string result = "\"";
-  for (const char c : shown) {
-    const bool special = c == '\'' || c == '`' || c == '"' || c == '\\';
-    result += special ? fmt::format("\\{:03o}", static_cast<unsigned>(c)) : std::string(1, c);
-  }
-  return result + "\"";
+Look curve_look(std::size_t i) {
+  const CurveLook& look = looks[i % curve_colours];
+  return {.colour = look.colour, .dashes = look.dashes, .mark = look.mark, .mark_size = 0.8};
 }
 
-std::string curve_style(std::size_t i, const char* with) {
-  const Look& look = looks[i % std::size(looks)];
-  return fmt::format("with {} linecolor rgb '{}' dashtype {} pointtype {} pointsize 0.8", with,
-                     look.colour, look.dashes, look.points);
+Look curve_line(std::size_t i) {
+  Look look = curve_look(i);
+  look.mark = Mark::none;
+  return look;
 }
 
-const char* curve_colour(std::size_t i) { return looks[i % std::size(looks)].colour; }
-
-std::string figure_script(const Figure& figure) {
-  const Canvas canvas{.height = height_of(figure)};
-  std::string out = fmt::format(
-      "# gnuplot {0}.gp draws {0}.svg from {1}\n"
-      "set terminal svg size {2},{3} dynamic noenhanced font 'sans-serif,16' linewidth 1.3\n"
-      "set encoding utf8\n"
-      "set output '{0}.svg'\n",
-      figure.name, figure.csv_file, canvas.width, canvas.height);
-  const bool several = figure.panels.size() > 1;
-  if (several) out += "set multiplot\n";
-  add_panels(out, figure, canvas, 0, 0);
-  if (several) out += "unset multiplot\n";
-  return out;
+Look curve_marks(std::size_t i) {
+  Look look = curve_look(i);
+  look.width = 0;
+  return look;
 }
 
-std::string picture_script(const Picture& picture, PictureFormat format,
-                           const std::string& output) {
-  Canvas canvas;
-  for (const PictureRow& row : picture.rows) {
-    canvas.width = std::max(canvas.width, figure_width * static_cast<int>(row.size()));
-    canvas.height += height_of(row);
+std::pair<double, double> Cells::range() const {
+  Range range = nothing;
+  widen(range, values);
+  return {range[0], range[1]};
+}
+
+std::vector<std::string> Panel::titles() const {
+  std::vector<std::string> titles;
+  for (const Curve& curve : curves) {
+    if (has_legend && !curve.title.empty()) titles.push_back(curve.title);
   }
-  std::string out = terminal(format, canvas) + "set encoding utf8\nset output " +
-                    gnuplot_string(output) + "\nset multiplot\n";
-  double top = 0;
-  for (const PictureRow& row : picture.rows) {
-    double left = 0;
-    for (const std::vector<Figure>& column : row) {
-      double below = top;
-      for (const Figure& figure : column) {
-        Figure titled = figure;
-        std::string title;
-        add_title(title, figure, canvas, left, below);
-        if (!titled.panels.empty()) titled.panels.front().script.insert(0, title);
-        const int height = titled_height(figure);
-        add_panels(out, titled, canvas, left, below + height - height_of(figure));
-        below += height;
-      }
-      left += figure_width;
+  return titles;
+}
+
+int Panel::width() const { return figure_width - right_margin - left; }
+
+int Panel::legend_top() const {
+  constexpr int scale = 48;  // of cells' colours, with their numbers
+  return top_margin + height + axis_pixels + (cells ? scale : 0);
+}
+
+int Panel::full_height() const {
+  return legend_top() + static_cast<int>(titles().size()) * key_row_pixels;
+}
+
+Panel laid_out(Panel panel) {
+  lay_out(panel.x, panel.curves, &Curve::x);
+  lay_out(panel.y, panel.curves, &Curve::y);
+  if (panel.z) lay_out(*panel.z, panel.curves, &Curve::z);
+  panel.curves.erase(std::remove_if(panel.curves.begin(), panel.curves.end(),
+                                    [](const Curve& curve) { return !shows_something(curve); }),
+                     panel.curves.end());
+  for (Text& text : panel.texts) {
+    put_at_edge(text.x, panel.x);
+    put_at_edge(text.y, panel.y);
+  }
+  if (!panel.y.tics) panel.y.tics = tics_with_room(panel.y, panel.height, Direction::upright);
+  if (!panel.equal_aspect) {  // whose limits fit its width
+    constexpr int beside = 16;
+    for (const Tic& tic : *panel.y.tics) {
+      panel.left =
+          std::max(panel.left, beside + static_cast<int>(std::ceil(text_width(tic.label))));
     }
-    top += height_of(row);
   }
-  return out + "unset multiplot\n";
+  if (!panel.x.tics) panel.x.tics = tics_with_room(panel.x, panel.width(), Direction::level);
+  // A number half of which would be outside of the picture.
+  for (Tic& tic : *panel.x.tics) {
+    const double right = pixels_between(panel.x, tic.at, *panel.x.to, panel.width()) + right_margin;
+    if (text_width(tic.label) / 2 > right) tic.label.clear();
+  }
+  return panel;
+}
+
+double tic_step(double range) {
+  const double power = std::pow(10, std::floor(std::log10(range)));
+  const double leading = range / power;
+  return power * (leading >= 5 ? 1 : leading >= 2 ? 0.5 : 0.2);
+}
+
+double text_width(const std::string& text) {
+  constexpr double letter = 10.2;
+  constexpr double narrow = 5.8;
+  constexpr std::string_view narrow_ones = " .,:;-'|()[]fijlrt";
+  double width = 0;
+  for (const char c : text) {
+    width += narrow_ones.find(c) == std::string_view::npos ? letter : narrow;
+  }
+  return width;
 }
 
 }  // namespace dlo::compare

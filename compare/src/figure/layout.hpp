@@ -1,21 +1,110 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace dlo::compare {
 
-/// A plot of a figure.
-struct Panel {
-  int height = 330;     ///< of the plot itself [pixels]
-  std::string x_label;  ///< name of the horizontal axis
-  std::string y_label;  ///< name of the upright one
-  int key_rows = 0;     ///< lines of key below
-  std::string script;   ///< ranges, tics and the plot command, for gnuplot
+/// What a point of a curve looks like.
+enum class Mark { none, cross, open_square, square, circle, dot, triangle, down_triangle, diamond };
+
+/// How a line is broken.
+enum class Dashes { solid, dashed, dotted, dash_dotted, dash_dot_dotted };
+
+/// How a curve is drawn.
+struct Look {
+  std::string colour = "#000000";  ///< "#RRGGBB"
+  double width = 1;                ///< of its line; 0: none
+  Dashes dashes = Dashes::solid;
+  Mark mark = Mark::none;
+  double mark_size = 1;
+  std::string fill;  ///< colour of what the line surrounds; empty: nothing
 };
 
-/// A figure that gnuplot draws from a CSV file: plots below each other.
+/// How many colours curves have.
+inline constexpr std::size_t curve_colours = 6;
+
+/// The look of the i-th curve, line and marks, in a colour that colour-blind readers tell apart,
+/// with dashes and marks of its own; they come again.
+[[nodiscard]] Look curve_look(std::size_t i);
+/// The same without marks.
+[[nodiscard]] Look curve_line(std::size_t i);
+/// The same without a line.
+[[nodiscard]] Look curve_marks(std::size_t i);
+
+/// What is drawn in one look. Coordinates that are infinite are at the plot's edge; at NaN a line
+/// ends, and the next begins after it.
+struct Curve {
+  std::string id;     ///< its name in the CSV file, where there is one
+  std::string title;  ///< in the legend; empty: not there
+  Look look;
+  std::vector<double> x, y;
+  std::vector<double> z;  ///< in a plot in space
+};
+
+/// Words in a plot.
+struct Text {
+  double x, y;
+  std::string words;
+  double dx = 0, dy = 0;  ///< of their left end's middle, from there [pixels]
+};
+
+/// Values on a grid, as colours from light to dark: rectangles that meet.
+struct Cells {
+  std::vector<double> x, y;    ///< their edges, rising
+  std::vector<double> values;  ///< row by row from the lowest; NaN: none
+
+  /// Least and largest value.
+  [[nodiscard]] std::pair<double, double> range() const;
+};
+
+/// The colours of cells, from the least value to the largest.
+inline constexpr const char* cell_colours[] = {"#F2F0E6", "#5B9BC8", "#0B2D5B"};
+
+/// A number or word at an axis.
+struct Tic {
+  double at;
+  std::string label;
+};
+
+/// An axis of a plot.
+struct PlotAxis {
+  std::string label;
+  std::optional<double> from, to;  ///< none: what is drawn needs it
+  bool logarithmic = false;
+  std::optional<std::vector<Tic>> tics;  ///< none: as many as have room
+};
+
+/// A plot of a figure. Its legend is below it.
+struct Panel {
+  int height = 330;  ///< of the plot itself [pixels]
+  PlotAxis x, y;
+  std::optional<PlotAxis> z;  ///< of a plot in space
+  int upright = 2;            ///< the axis that is upright in space
+  std::vector<Curve> curves;
+  std::vector<Text> texts;
+  std::optional<Cells> cells;
+  bool equal_aspect = false;  ///< as many pixels a metre on all axes, by its limits
+  bool has_legend = true;     ///< or its curves' titles are in another one's
+  int left = 76;              ///< from the figure's edge to the plot [pixels]
+
+  /// Titles in the legend.
+  [[nodiscard]] std::vector<std::string> titles() const;
+  /// Of the plot itself [pixels].
+  [[nodiscard]] int width() const;
+  /// Where the legend begins, from the upright axis's name down [pixels].
+  [[nodiscard]] int legend_top() const;
+  /// With the axes' names and the legend [pixels].
+  [[nodiscard]] int full_height() const;
+};
+
+/// A panel as it is drawn: with limits, tics and room for these, without infinite coordinates and
+/// curves of nothing.
+[[nodiscard]] Panel laid_out(Panel panel);
+
+/// A figure: plots below each other.
 struct Figure {
   std::string name;         ///< stem of its files
   std::string section;      ///< of the page
@@ -23,8 +112,8 @@ struct Figure {
   std::string description;  ///< what it shows, for those who do not see it
   std::string command;      ///< of a shell in the report's folder, gives the numbers
   std::string given;        ///< which of the numbers, if not all
-  std::string csv_file;
-  std::string csv;  ///< what is in it; empty if another figure has the same file
+  std::string csv_file;     ///< beside it in a report
+  std::string csv;          ///< what is in it; empty if another figure has the same file
   std::vector<Panel> panels;
 };
 
@@ -36,32 +125,22 @@ struct Picture {
   std::vector<PictureRow> rows;
 };
 
-/// The endings of files that a picture can be drawn into.
-enum class PictureFormat { svg, png, pdf };
-
 /// Of every figure [pixels], small enough for its text to be read on a page of 375.
 inline constexpr int figure_width = 460;
-/// Of a plot in its figure [pixels].
+/// Of a plot in its figure [pixels], unless its numbers need more room.
 inline constexpr int plot_width = 358;
 
-/// A text as a gnuplot string that nothing in it can end or run.
-[[nodiscard]] std::string gnuplot_string(const std::string& text);
+/// Of a panel, above its plot [pixels].
+inline constexpr int top_margin = 38;
+/// The numbers and the name of its level axis [pixels].
+inline constexpr int axis_pixels = 78;
+/// A line of its legend [pixels].
+inline constexpr int key_row_pixels = 24;
 
-/// How the i-th curve is drawn "with lines", "points" or "linespoints": in a colour that
-/// colour-blind readers tell apart, with dashes and points of its own.
-[[nodiscard]] std::string curve_style(std::size_t i, const char* with);
+/// 1, 2 or 5 times a power of ten, such that five to ten fit into a range > 0.
+[[nodiscard]] double tic_step(double range);
 
-/// How many colours curves have.
-inline constexpr std::size_t curve_colours = 6;
-
-/// The colour of the i-th curve, as "#RRGGBB"; they come again.
-[[nodiscard]] const char* curve_colour(std::size_t i);
-
-/// The script that draws NAME.svg, run in the folder of its CSV file.
-[[nodiscard]] std::string figure_script(const Figure& figure);
-
-/// The script that draws a picture with its figures' titles, run in the folder of their CSV files.
-[[nodiscard]] std::string picture_script(const Picture& picture, PictureFormat format,
-                                         const std::string& output);
+/// Width of a text of letters 16 pixels high [pixels], about.
+[[nodiscard]] double text_width(const std::string& text);
 
 }  // namespace dlo::compare

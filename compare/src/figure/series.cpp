@@ -51,6 +51,15 @@ std::optional<Eigen::Vector3d> normal_to_reader(const Scene& scene, const View& 
 
 }  // namespace
 
+Eigen::Matrix3Xd side_by_side(const std::vector<const Eigen::Matrix3Xd*>& parts) {
+  Eigen::Matrix3Xd all(3, 0);
+  for (const Eigen::Matrix3Xd* part : parts) {
+    all.conservativeResize(3, all.cols() + part->cols());
+    all.rightCols(part->cols()) = *part;
+  }
+  return all;
+}
+
 bool stays_in_plane(const Scene& scene, const Eigen::Matrix3Xd& points) {
   return plane_through(scene, points).has_value();
 }
@@ -80,9 +89,7 @@ std::vector<double> drawn_arc_lengths(double length) {
 }
 
 Series rod_series(const Reference& rod, const Scene& scene, const View& view) {
-  Series series{.id = "energy",
-                .title = "energy model (the rod itself)",
-                .style = "with lines linecolor rgb 'black' linewidth 2 dashtype 1"};
+  Series series{.id = "energy", .title = "energy model (the rod itself)", .look = {.width = 2}};
   series.arc_length = drawn_arc_lengths(scene.length);
   const energy_model::Samples samples = rod(series.arc_length);
   series.points = samples.points;
@@ -110,7 +117,7 @@ std::optional<Series> unbent_series(const Scene& scene) {
   if (!straight) return std::nullopt;
   return Series{.id = "unbent",
                 .title = "the unbent rod",
-                .style = "with lines linecolor rgb '#808080' linewidth 1 dashtype 4",
+                .look = {.colour = "#808080", .dashes = Dashes::dash_dotted},
                 .points = *straight,
                 .arc_length = {0, scene.length}};
 }
@@ -120,15 +127,14 @@ std::vector<Series> gripper_series(const Scene& scene) {
   std::vector<Series> all;
   Series grips{.id = "gripper",
                .title = scene.grippers.size() == 1 ? "gripper" : "grippers",
-               .style = "with points linecolor rgb 'black' pointtype 2 pointsize 1.2"};
+               .look = {.width = 0, .mark = Mark::cross, .mark_size = 1.2}};
   grips.points.resize(3, static_cast<Eigen::Index>(scene.grippers.size()));
   for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
     const Gripper& gripper = scene.grippers[i];
     grips.points.col(static_cast<Eigen::Index>(i)) = gripper.position;
     grips.arc_length.push_back(gripper.at);
     if (!gripper.direction) continue;
-    Series clamp{.id = fmt::format("clamp_{}", i + 1),
-                 .style = "with lines linecolor rgb '#909090' linewidth 6 dashtype 1"};
+    Series clamp{.id = fmt::format("clamp_{}", i + 1), .look = {.colour = "#909090", .width = 6}};
     const Eigen::Vector3d along = stub * scene.length * *gripper.direction;
     clamp.points.resize(3, 2);
     clamp.points << gripper.position - along, gripper.position + along;
@@ -144,7 +150,7 @@ std::optional<Series> contact_series(const std::vector<energy_model::ContactPart
   constexpr double between = 1.0 / 150;  // of the length
   Series series{.id = "contact",
                 .title = "where the rod itself touches",
-                .style = "with points linecolor rgb '#207A34' pointtype 7 pointsize 0.45"};
+                .look = {.colour = "#207A34", .width = 0, .mark = Mark::dot, .mark_size = 0.45}};
   for (const energy_model::ContactPart& contact : contacts) {
     const double lies = contact.end - contact.begin;
     const int steps = static_cast<int>(std::ceil(lies / (between * length)));
@@ -174,9 +180,7 @@ std::vector<Series> obstacle_series(const Scene& scene, const std::vector<View>&
       Series series{.id = fmt::format("obstacle_{}_{}{}", i + 1, axis_names[views[v].right],
                                       axis_names[views[v].up]),
                     .title = titled ? "" : "obstacles, where the rod's axis cannot be",
-                    .style =
-                        "with filledcurves closed fillstyle solid 1 border linecolor rgb "
-                        "'#8A8A8A' fillcolor rgb '#E4E4E4'",
+                    .look = {.colour = "#8A8A8A", .fill = "#E4E4E4"},
                     .view = static_cast<int>(v)};
       titled = true;
       series.points = right * seen.row(0) + up * seen.row(1);
@@ -195,7 +199,7 @@ std::string series_csv(const std::vector<Series>& all) {
     for (std::size_t i = 0; i < series.arc_length.size(); ++i) {
       const Eigen::Vector3d point = series.points.col(static_cast<Eigen::Index>(i));
       if (point.hasNaN()) {
-        csv += '\n';  // where gnuplot ends a line
+        csv += '\n';  // as where a line ends
         continue;
       }
       csv += fmt::format("{},{},{},{},{},{}\n", series.id, csv_number(series.arc_length[i]),

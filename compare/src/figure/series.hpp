@@ -10,6 +10,7 @@
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
+#include "figure/layout.hpp"
 
 namespace dlo::compare {
 
@@ -18,9 +19,9 @@ inline constexpr const char* axis_names = "xyz";
 
 /// One shape of a figure.
 struct Series {
-  std::string id;           ///< in the CSV
-  std::string title;        ///< in the key; empty: not there
-  std::string style;        ///< gnuplot's
+  std::string id;     ///< in the CSV
+  std::string title;  ///< in the key; empty: not there
+  Look look;
   Eigen::Matrix3Xd points;  ///< [m]; a column of NaN: a line ends before it, the next begins after
   std::vector<double> arc_length;
   std::vector<double> curvature;  ///< empty: none to show; NaN at the ends of polygons
@@ -32,6 +33,15 @@ struct View {
   int right = 0;
   int up = 1;
 };
+
+/// Shapes, and from where they are seen.
+struct Drawing {
+  std::vector<View> views;
+  std::vector<Series> series;  ///< those behind first
+};
+
+/// The points of all of them.
+[[nodiscard]] Eigen::Matrix3Xd side_by_side(const std::vector<const Eigen::Matrix3Xd*>& parts);
 
 /// Whether points lie in a plane that the scene has: rods leave it where they buckle out of it.
 /// @param points  of the rod [m]

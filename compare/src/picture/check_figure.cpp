@@ -4,23 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
-#include "base/quote.hpp"
-#include "figure/series.hpp"
 #include "figure/shape_panels.hpp"
 
 namespace dlo::compare {
 namespace {
 
 constexpr const char* file_colour = "#B34700";
+constexpr const char* blue = "#0059A8";
+constexpr const char* red = "#A00000";
+
+Look worst_look() { return {.colour = red, .width = 0, .mark = Mark::circle, .mark_size = 1.8}; }
 
 /// From each point of the rod to the file's.
 Series whiskers(const Shape& file, const Shape& rod) {
-  Series series{.id = "whisker",
-                .title = "distances of the file's points",
-                .style = "with lines linecolor rgb '#0059A8' linewidth 1 dashtype 1"};
+  Series series{
+      .id = "whisker", .title = "distances of the file's points", .look = {.colour = blue}};
   const Eigen::Index count = file.points.cols();
   series.points.resize(3, 3 * count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -37,64 +37,57 @@ Series worst_point(const ShapeCheck& check) {
   return {.id = "worst",
           .title = fmt::format("worst: point {}, {:.4g} mm", check.worst_point,
                                check.deviation.max_m * 1e3),
-          .style = "with points linecolor rgb '#A00000' linewidth 2 pointtype 6 pointsize 1.8",
+          .look = worst_look(),
           .points = check.worst_position,
           .arc_length = {check.deviation.max_at_m}};
 }
 
 Figure distance_figure(const Scene& scene, const ShapeCheck& check,
                        std::optional<double> allowed_m) {
-  Figure figure{.name = "distance",
-                .title = "Distance along the rod",
-                .csv_file = "distance.csv",
-                .csv = "series,s_m,distance_m\n"};
   const Shape& file = check.alignment.shape;
+  Curve impulses{
+      .id = "distance", .title = "points of the file", .look = {.colour = blue, .width = 1.5}};
+  Curve points{.look = {.colour = file_colour, .width = 0, .mark = Mark::dot, .mark_size = 0.5}};
   for (Eigen::Index i = 0; i < file.points.cols(); ++i) {
-    fmt::format_to(std::back_inserter(figure.csv), "distance,{},{}\n",
-                   csv_number(check.reference.arc_length[static_cast<std::size_t>(i)]),
-                   csv_number((file.points.col(i) - check.reference.points.col(i)).norm()));
+    const double s = check.reference.arc_length[static_cast<std::size_t>(i)];
+    const double mm = (file.points.col(i) - check.reference.points.col(i)).norm() * 1e3;
+    impulses.x.insert(impulses.x.end(), {s, s, NAN});
+    impulses.y.insert(impulses.y.end(), {0, mm, NAN});
+    points.x.push_back(s);
+    points.y.push_back(mm);
   }
-  fmt::format_to(std::back_inserter(figure.csv), "worst,{},{}\n",
-                 csv_number(check.deviation.max_at_m), csv_number(check.deviation.max_m));
+  const auto level = [](double m, const char* what, const Look& look) -> Curve {
+    return {.title = fmt::format("{} {:.4g} mm", what, m * 1e3),
+            .look = look,
+            .x = {-HUGE_VAL, HUGE_VAL},
+            .y = {m * 1e3, m * 1e3}};
+  };
   // A tolerance far above all distances would flatten them: it is then in words only.
   constexpr double far = 5;
   const double largest = check.deviation.max_m;
-  const bool level = allowed_m && *allowed_m < far * largest;
-  const double top = 1.1 * std::max({largest, level ? *allowed_m : 0, 1e-9 * scene.length});
+  const bool has_room = allowed_m && *allowed_m < far * largest;
+  const double top = 1.1 * std::max({largest, has_room ? *allowed_m : 0, 1e-9 * scene.length});
   Panel panel{.height = 280,
-              .x_label = "arc length s [m]",
-              .y_label = "distance from the rod [mm]",
-              .key_rows = 3};
-  panel.script = fmt::format(
-      "set xrange [0:{:.6g}]\nset yrange [0:{:.6g}]\nplot {} title "
-      "'points of the file' with impulses linecolor rgb '#0059A8' linewidth "
-      "1.5",
-      scene.length, top * 1e3, series_data(figure.csv_file, "distance", "$2", "($3*1e3)"));
-  fmt::format_to(std::back_inserter(panel.script),
-                 ", \\\n  {} notitle with points linecolor rgb '{}' pointtype 7 pointsize 0.5"
-                 ", \\\n  {} title 'the worst' with points linecolor rgb '#A00000' linewidth 2 "
-                 "pointtype 6 pointsize 1.8"
-                 ", \\\n  {:.6g} title 'RMS {:.4g} mm' with lines linecolor rgb '#404040' "
-                 "dashtype 3 linewidth 1.5",
-                 series_data(figure.csv_file, "distance", "$2", "($3*1e3)"), file_colour,
-                 series_data(figure.csv_file, "worst", "$2", "($3*1e3)"),
-                 check.deviation.rms_m * 1e3, check.deviation.rms_m * 1e3);
+              .x = {.label = "arc length s [m]", .from = 0, .to = scene.length},
+              .y = {.label = "distance from the rod [mm]", .from = 0, .to = top * 1e3}};
+  panel.curves = {std::move(impulses),
+                  std::move(points),
+                  {.title = "the worst",
+                   .look = worst_look(),
+                   .x = {check.deviation.max_at_m},
+                   .y = {check.deviation.max_m * 1e3}},
+                  level(check.deviation.rms_m, "RMS",
+                        {.colour = "#404040", .width = 1.5, .dashes = Dashes::dotted})};
   if (allowed_m) {
-    ++panel.key_rows;
-    fmt::format_to(std::back_inserter(panel.script),
-                   ", \\\n  {0:.6g} title 'tolerance {0:.4g} mm' with lines linecolor rgb "
-                   "'#A00000' dashtype 2 linewidth 1.5",
-                   *allowed_m * 1e3);
+    panel.curves.push_back(
+        level(*allowed_m, "tolerance", {.colour = red, .width = 1.5, .dashes = Dashes::dashed}));
   }
-  panel.script += "\n";
-  figure.panels = {panel};
-  return figure;
+  return {.name = "distance", .title = "Distance along the rod", .panels = {std::move(panel)}};
 }
 
 }  // namespace
 
-Picture check_picture(const Scene& scene, const ShapeCheck& check,
-                      std::optional<double> allowed_m) {
+Drawing check_drawing(const Scene& scene, const ShapeCheck& check) {
   const std::vector<View> views = views_of(scene, check.reference.points);
   const Shape& file = check.alignment.shape;
   const Series rod = rod_series(check.rod.sample, scene, views.front());
@@ -103,16 +96,21 @@ Picture check_picture(const Scene& scene, const ShapeCheck& check,
   all.push_back(rod);
   all.push_back({.id = "file",
                  .title = "points of the file",
-                 .style = fmt::format("with linespoints linecolor rgb '{}' dashtype 2 pointtype 7 "
-                                      "pointsize 0.5",
-                                      file_colour),
+                 .look = {.colour = file_colour,
+                          .dashes = Dashes::dashed,
+                          .mark = Mark::dot,
+                          .mark_size = 0.5},
                  .points = file.points,
                  .arc_length = file.arc_length});
   for (Series& gripper : gripper_series(scene)) all.push_back(std::move(gripper));
   all.push_back(worst_point(check));
+  return {views, std::move(all)};
+}
+
+Picture check_picture(const Scene& scene, const ShapeCheck& check,
+                      std::optional<double> allowed_m) {
   Figure shapes{
-      .name = "shapes", .title = scene.name, .csv_file = "shapes.csv", .csv = series_csv(all)};
-  shapes.panels = shape_panels(shapes.csv_file, all, views);
+      .name = "shapes", .title = scene.name, .panels = shape_panels(check_drawing(scene, check))};
   return {{{{shapes}, {distance_figure(scene, check, allowed_m)}}}};
 }
 

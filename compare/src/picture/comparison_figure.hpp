@@ -6,11 +6,16 @@
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/scene.hpp"
 #include "figure/layout.hpp"
+#include "figure/series.hpp"
 
 namespace dlo::compare {
 
 /// "law paper, bookkeeping paper, N = 16".
 [[nodiscard]] std::string setting_name(const ForceModelSettings& settings);
+
+/// What a picture shows of a scene's shapes.
+[[nodiscard]] Drawing comparison_drawing(const Scene& scene,
+                                         const std::vector<Comparison>& comparisons);
 
 /// What figures show of a scene's comparisons.
 struct ComparisonFigures {

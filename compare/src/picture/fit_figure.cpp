@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <iterator>
+#include <cmath>
 #include <utility>
 
-#include "base/quote.hpp"
 #include "figure/series.hpp"
 #include "figure/shape_panels.hpp"
 
@@ -18,70 +16,60 @@ Figure shape_figure(const Scene& scene, const FittedShape& shape, std::size_t nu
   std::vector<Series> all = obstacle_series(scene, views, shape.rod.points);
   all.push_back({.id = "rod",
                  .title = "the fitted rod",
-                 .style = "with lines linecolor rgb 'black' linewidth 2 dashtype 1",
+                 .look = {.width = 2},
                  .points = shape.rod.points,
                  .arc_length = shape.rod.arc_length});
   all.push_back({.id = "file",
                  .title = fmt::format("points of shape {}, RMS {:.4g} mm", number,
                                       shape.alignment.rms_m * 1e3),
-                 .style = "with points linecolor rgb '#B34700' pointtype 7 pointsize 0.6",
+                 .look = {.colour = "#B34700", .width = 0, .mark = Mark::dot, .mark_size = 0.6},
                  .points = shape.alignment.shape.points,
                  .arc_length = shape.alignment.shape.arc_length});
   for (Series& gripper : gripper_series(scene)) all.push_back(std::move(gripper));
-  Figure figure{.name = fmt::format("shape_{}", number),
-                .title = shape.scene,
-                .csv_file = fmt::format("shape_{}.csv", number),
-                .csv = series_csv(all)};
-  figure.panels = shape_panels(figure.csv_file, all, views);
-  return figure;
+  return {.name = fmt::format("shape_{}", number),
+          .title = shape.scene,
+          .panels = shape_panels({views, std::move(all)})};
 }
 
 Figure profile_figure(const NamedValue& stiffness, const MaterialFit& fit) {
-  Figure figure{.name = "profile",
-                .title = fmt::format("Profile likelihood of {}", stiffness.name),
-                .csv_file = "profile.csv",
-                .csv = "stiffness,excess_over_limit\n"};
-  for (const ProfilePoint& point : fit.profile) {
-    fmt::format_to(std::back_inserter(figure.csv), "{},{}\n", csv_number(point.stiffness),
-                   csv_number(point.excess_over_limit));
-  }
-  Panel panel{.height = 300,
-              .x_label = fmt::format("{} [{}]", stiffness.name, stiffness.unit),
-              .y_label = "excess of squares over that at the 95 % limit",
-              .key_rows = 3};
-  const double from = fit.profile.front().stiffness;
-  const double to = fit.profile.back().stiffness;
-  panel.script = fmt::format(
-      "set xrange [{:.10g}:{:.10g}]\nset yrange [0:4]\nset xtics {:g}\nset format x '%.3g'\n", from,
-      to, tic_step(2.5 * (to - from)));  // numbers as wide as a fifth of the plot
   const FittedValue& value = fit.youngs_modulus;
-  // Behind the curve: the interval, open sides to the plot's edge.
-  const auto edge = [](const std::optional<double>& end, const char* open) {
-    return end ? fmt::format("first {:.10g}", *end) : std::string("graph ") + open;
-  };
-  fmt::format_to(std::back_inserter(panel.script),
-                 "set object 1 rectangle from {}, graph 0 to {}, graph 1 behind fillcolor rgb "
-                 "'#DCE9F5' fillstyle solid noborder\n",
-                 edge(value.low, "0"), edge(value.high, "1"));
-  const std::string interval = fmt::format(
-      "95 % interval: {} to {} {}", value.low ? fmt::format("{:.4g}", *value.low) : "open",
-      value.high ? fmt::format("{:.4g}", *value.high) : "open", stiffness.unit);
-  fmt::format_to(std::back_inserter(panel.script),
-                 "plot '{}' skip 1 using 1:2 title 'profile' with lines linecolor rgb 'black' "
-                 "linewidth 2, \\\n  1 title 'limit of the interval' with lines linecolor rgb "
-                 "'#A00000' dashtype 2, \\\n  NaN title {} with boxes fillstyle solid noborder "
-                 "linecolor rgb '#B5CFE8'",
-                 figure.csv_file, gnuplot_string(interval));
-  if (value.value) {
-    ++panel.key_rows;
-    fmt::format_to(std::back_inserter(panel.script),
-                   ", \\\n  '+' using ($0 == 0 ? {:.10g} : NaN):(0) title '{} = {:.4g} {}' with "
-                   "points linecolor rgb '#0059A8' pointtype 7 pointsize 1",
-                   *value.value, stiffness.name, *value.value, stiffness.unit);
+  // Open sides reach to the plot's edge.
+  const double low = value.low.value_or(-HUGE_VAL);
+  const double high = value.high.value_or(HUGE_VAL);
+  Curve interval{.title = fmt::format(
+                     "95 % interval: {} to {} {}", value.low ? fmt::format("{:.4g}", low) : "open",
+                     value.high ? fmt::format("{:.4g}", high) : "open", stiffness.unit),
+                 .look = {.width = 0, .fill = "#DCE9F5"},
+                 .x = {low, high, high, low},
+                 .y = {-HUGE_VAL, -HUGE_VAL, HUGE_VAL, HUGE_VAL}};
+  Curve profile{.id = "profile", .title = "profile", .look = {.width = 2}};
+  for (const ProfilePoint& point : fit.profile) {
+    profile.x.push_back(point.stiffness);
+    profile.y.push_back(point.excess_over_limit);
   }
-  panel.script += "\n";
-  figure.panels = {panel};
-  return figure;
+  constexpr double top = 4;  // of the excess at the interval's ends
+  Panel panel{
+      .height = 300,
+      .x = {.label = fmt::format("{} [{}]", stiffness.name, stiffness.unit),
+            .from = profile.x.front(),
+            .to = profile.x.back()},
+      .y = {.label = "excess of squares over that at the 95 % limit", .from = 0, .to = top}};
+  panel.curves = {std::move(interval),
+                  std::move(profile),
+                  {.title = "limit of the interval",
+                   .look = {.colour = "#A00000", .dashes = Dashes::dashed},
+                   .x = {-HUGE_VAL, HUGE_VAL},
+                   .y = {1, 1}}};
+  if (value.value) {
+    panel.curves.push_back(
+        {.title = fmt::format("{} = {:.4g} {}", stiffness.name, *value.value, stiffness.unit),
+         .look = {.colour = "#0059A8", .width = 0, .mark = Mark::dot},
+         .x = {*value.value},
+         .y = {0}});
+  }
+  return {.name = "profile",
+          .title = fmt::format("Profile likelihood of {}", stiffness.name),
+          .panels = {std::move(panel)}};
 }
 
 }  // namespace

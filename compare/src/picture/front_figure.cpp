@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "base/quote.hpp"
@@ -31,7 +33,8 @@ Figure front_figure(const SceneBenchmark& scene, std::size_t number) {
       .title = fmt::format("{}, Gamma = {:.4g}: error against time", scene.scene, scene.gamma),
       .description =
           "Error (RMS over the length) against the time to it from straight, both "
-          "logarithmic; a line joins the runs that no other run beats in both.",
+          "logarithmic; a line joins the runs that no other run beats in both, each with its N or "
+          "K.",
       .csv_file = fmt::format("front_{}.csv", number)};
   const FrontCurve curves[] = {
       {"exact", [](const BenchmarkRun& run) { return run.model == Model::exact; }},
@@ -45,43 +48,46 @@ Figure front_figure(const SceneBenchmark& scene, std::size_t number) {
       {"force, N points, other law or bookkeeping",
        [](const BenchmarkRun& run) { return run.model == Model::force && !is_best_polygon(run); }}};
   figure.csv = "curve,model,size,setting,time_s,rms_over_length,front\n";
-  std::string plots;
-  int rows = 1;
+  const auto add_row = [&figure](const std::string& curve, const BenchmarkRun& run) {
+    fmt::format_to(std::back_inserter(figure.csv), "{},{},{},{},{},{},{}\n", curve,
+                   to_string(run.model), run.size, csv_field(setting_of(run)),
+                   csv_number(run.time.median_s), csv_number(run.rms_over_length),
+                   run.front ? 1 : 0);
+  };
+  const auto add_point = [](const BenchmarkRun& run, Curve& curve) {
+    curve.x.push_back(run.time.median_s * 1e3);
+    curve.y.push_back(run.rms_over_length);
+  };
+  Panel panel{.x = {.label = "time [ms]", .logarithmic = true},
+              .y = {.label = "error, RMS over the length", .logarithmic = true}};
+  Curve line{.id = "front", .title = "the front", .look = {.dashes = Dashes::dashed}};
+  panel.curves.emplace_back();
   std::vector<const BenchmarkRun*> front;
   for (std::size_t k = 0; k < std::size(curves); ++k) {
-    std::size_t points = 0;
+    Curve points{.id = std::to_string(k + 1), .title = curves[k].title, .look = curve_marks(k)};
     for (const BenchmarkRun& run : scene.runs) {
       if (!curves[k].holds(run)) continue;
-      ++points;
       if (run.front) front.push_back(&run);
-      figure.csv += fmt::format("{},{},{},{},{},{},{}\n", k + 1, to_string(run.model), run.size,
-                                csv_field(setting_of(run)), csv_number(run.time.median_s),
-                                csv_number(run.rms_over_length), run.front ? 1 : 0);
+      add_row(points.id, run);
+      add_point(run, points);
     }
-    if (points == 0) continue;
-    ++rows;
-    fmt::format_to(std::back_inserter(plots),
-                   ", \\\n  '{}' using ($1 == {} ? $5*1e3 : NaN):6 title {} {}", figure.csv_file,
-                   k + 1, gnuplot_string(curves[k].title), curve_style(k, "points"));
+    panel.curves.push_back(std::move(points));
   }
   std::sort(front.begin(), front.end(), [](const BenchmarkRun* a, const BenchmarkRun* b) {
     return a->time.median_s < b->time.median_s;
   });
   for (const BenchmarkRun* run : front) {
-    figure.csv += fmt::format("front,{},{},{},{},{},1\n", to_string(run->model), run->size,
-                              csv_field(setting_of(*run)), csv_number(run->time.median_s),
-                              csv_number(run->rms_over_length));
+    add_row(line.id, *run);
+    add_point(*run, line);
+    if (run->size == 0) continue;
+    panel.texts.push_back({.x = line.x.back(),
+                           .y = line.y.back(),
+                           .words = std::to_string(run->size),
+                           .dx = 8,
+                           .dy = 5});
   }
-  Panel panel{.x_label = "time [ms]", .y_label = "error, RMS over the length", .key_rows = rows};
-  panel.script =
-      "set logscale xy\n"
-      "set format x '%g'\nset format y '%.0e'\n"
-      "plot '" +
-      figure.csv_file +
-      "' using (strcol(1) eq 'front' ? $5*1e3 : NaN):6 title 'the front' with lines linecolor rgb "
-      "'black' dashtype 2" +
-      plots + "\n";
-  figure.panels = {panel};
+  panel.curves.front() = std::move(line);
+  figure.panels = {std::move(panel)};
   return figure;
 }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <iterator>
 #include <string>
 #include <utility>
 
@@ -24,51 +23,51 @@ Figure map_figure(const StabilityMap& map) {
                                    : "shares c_h of the last step, c_F logarithmic"),
       .csv_file = "stability_map.csv"};
   figure.csv = "kind,c_c_N,c_h,c_F_m_per_N\n";
+  const bool over_c_c = map.axis == MapAxis::c_c;
+  Panel panel{.x = {.label = over_c_c ? "c_c [N]" : "c_h", .logarithmic = over_c_c},
+              .y = {.label = "c_F [m/N]", .logarithmic = true}};
+  const auto add = [&](const auto& at, double c_F, Curve& curve) {
+    figure.csv += fmt::format("{},{},{},{}\n", curve.id, csv_number(at.c_c), csv_number(at.c_h),
+                              csv_number(c_F));
+    curve.x.push_back(over_c_c ? at.c_c : at.c_h);
+    curve.y.push_back(c_F);
+  };
+  std::pair<Outcome, Curve> outcomes[] = {
+      {Outcome::pass,
+       {.title = "stable",
+        .look = {.colour = "#0059A8", .width = 0, .mark = Mark::dot, .mark_size = 0.25}}},
+      {Outcome::oscillates,
+       {.title = "grows, within bounds",
+        .look = {.colour = "#8A2F85", .width = 0, .mark = Mark::triangle, .mark_size = 0.6}}},
+      {Outcome::diverges,
+       {.title = "diverges",
+        .look = {.colour = "#B34700", .width = 0, .mark = Mark::cross, .mark_size = 0.7}}}};
+  for (auto& [outcome, curve] : outcomes) curve.id = to_string(outcome);
   for (const MapPoint& point : map.points) {
-    figure.csv += fmt::format("{},{},{},{}\n", to_string(point.outcome), csv_number(point.c_c),
-                              csv_number(point.c_h), csv_number(point.c_F));
-  }
-  const std::pair<const char*, double MapColumn::*> limits[] = {
-      {"predicted", &MapColumn::predicted},
-      {"measured", &MapColumn::measured},
-      {"table_1", &MapColumn::table_1}};
-  for (const auto& [kind, limit] : limits) {
-    for (const MapColumn& column : map.columns) {
-      figure.csv += fmt::format("{},{},{},{}\n", kind, csv_number(column.c_c),
-                                csv_number(column.c_h), csv_number(column.*limit));
+    for (auto& [outcome, curve] : outcomes) {
+      if (point.outcome == outcome) add(point, point.c_F, curve);
     }
   }
-  struct Curve {
-    const char* kind;
-    std::string title;
-    const char* style;
-  };
-  const Curve curves[] = {
-      {"pass", "stable", "with points linecolor rgb '#0059A8' pointtype 7 pointsize 0.25"},
-      {"oscillates", "grows, within bounds",
-       "with points linecolor rgb '#8A2F85' pointtype 8 pointsize 0.6"},
-      {"diverges", "diverges", "with points linecolor rgb '#B34700' pointtype 2 pointsize 0.7"},
-      {"predicted", "predicted limit", "with lines linecolor rgb 'black' dashtype 1 linewidth 2"},
-      {"measured", "measured limit",
-       "with linespoints linecolor rgb '#00704F' dashtype 2 pointtype 4 pointsize 0.7"},
-      {"table_1", fmt::format("Table 1: {}", table_1_step_formula),
-       "with lines linecolor rgb '#606060' dashtype 3 linewidth 2"}};
-  const bool over_c_c = map.axis == MapAxis::c_c;
-  Panel panel{.x_label = over_c_c ? "c_c [N]" : "c_h",
-              .y_label = "c_F [m/N]",
-              .key_rows = static_cast<int>(std::size(curves))};
-  panel.script =
-      over_c_c ? "set logscale xy\nset format x '%.0e'\nset xtics 100\n" : "set logscale y\n";
-  panel.script += "set format y '%.0e'\nplot";
-  std::string separator = " ";
-  for (const Curve& curve : curves) {
-    panel.script +=
-        fmt::format("{}'{}' using (strcol(1) eq '{}' ? ${} : NaN):4 title '{}' {}", separator,
-                    figure.csv_file, curve.kind, over_c_c ? 2 : 3, curve.title, curve.style);
-    separator = ", \\\n  ";
+  for (auto& [outcome, curve] : outcomes) panel.curves.push_back(std::move(curve));
+  const std::pair<double MapColumn::*, Curve> limits[] = {
+      {&MapColumn::predicted,
+       {.id = "predicted", .title = "predicted limit", .look = {.width = 2}}},
+      {&MapColumn::measured,
+       {.id = "measured",
+        .title = "measured limit",
+        .look = {.colour = "#00704F",
+                 .dashes = Dashes::dashed,
+                 .mark = Mark::open_square,
+                 .mark_size = 0.7}}},
+      {&MapColumn::table_1,
+       {.id = "table_1",
+        .title = fmt::format("Table 1: {}", table_1_step_formula),
+        .look = {.colour = "#606060", .width = 2, .dashes = Dashes::dotted}}}};
+  for (auto [limit, curve] : limits) {
+    for (const MapColumn& column : map.columns) add(column, column.*limit, curve);
+    panel.curves.push_back(std::move(curve));
   }
-  panel.script += "\n";
-  figure.panels = {panel};
+  figure.panels = {std::move(panel)};
   return figure;
 }
 

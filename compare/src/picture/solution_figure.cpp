@@ -7,7 +7,6 @@
 #include <cmath>
 #include <utility>
 
-#include "figure/series.hpp"
 #include "figure/shape_panels.hpp"
 #include "record/solution_fields.hpp"
 
@@ -32,32 +31,40 @@ std::string title_of(const Solution& solution, std::size_t number, std::size_t c
                      solution.energy.total());
 }
 
-std::string style_of(const Solution& solution, std::size_t i, std::size_t count) {
+Look look_of(const Solution& solution, std::size_t i, std::size_t count) {
   const bool polygon = solution.model == Model::chain || solution.model == Model::force;
-  const char* colour = count == 1 ? "black" : curve_colour(i);
+  const bool stable = is_stable(solution);
   // Where the colours come again there are dots between the dashes.
-  const int dashes = i < curve_colours ? 2 : 4;
-  return fmt::format("with {} linecolor rgb '{}' linewidth {} dashtype {}",
-                     polygon ? "linespoints pointtype 7 pointsize 0.5" : "lines", colour,
-                     is_stable(solution) ? 2 : 1.5, is_stable(solution) ? 1 : dashes);
+  const Dashes dashes = i < curve_colours ? Dashes::dashed : Dashes::dash_dotted;
+  return {.colour = count == 1 ? Look().colour : curve_look(i).colour,
+          .width = stable ? 2 : 1.5,
+          .dashes = stable ? Dashes::solid : dashes,
+          .mark = polygon ? Mark::dot : Mark::none,
+          .mark_size = 0.5};
+}
+
+bool are_planar(const Scene& scene, const std::vector<Solution>& solutions) {
+  return std::all_of(solutions.begin(), solutions.end(), [&scene](const Solution& solution) {
+    return stays_in_plane(scene, solution.shape.points);
+  });
 }
 
 }  // namespace
 
-Picture solution_picture(const Scene& scene, const std::vector<Solution>& solutions) {
-  const std::vector<View> views = views_of(scene, solutions.front().shape.points);
-  std::vector<Series> all = obstacle_series(scene, views, solutions.front().shape.points);
+Drawing solution_drawing(const Scene& scene, const std::vector<Solution>& solutions) {
+  std::vector<const Eigen::Matrix3Xd*> points;
+  for (const Solution& solution : solutions) points.push_back(&solution.shape.points);
+  const std::vector<View> views = views_of(scene, side_by_side(points));
+  std::vector<Series> all = obstacle_series(scene, views, *points.front());
   if (auto unbent = unbent_series(scene)) all.push_back(std::move(*unbent));
-  const bool planar = std::all_of(
-      solutions.begin(), solutions.end(),
-      [&scene](const Solution& solution) { return stays_in_plane(scene, solution.shape.points); });
+  const bool planar = are_planar(scene, solutions);
   // The stable ones, which come first, on top.
   for (std::size_t k = solutions.size(); k-- > 0;) {
     const Solution& solution = solutions[k];
     Series series = polygon_series(solution.shape, scene, views.front());
     series.id = fmt::format("solution_{}", k + 1);
     series.title = title_of(solution, k + 1, solutions.size());
-    series.style = style_of(solution, k, solutions.size());
+    series.look = look_of(solution, k, solutions.size());
     series.curvature = planar ? signed_as_points(solution, series) : solution.curvature;
     all.push_back(std::move(series));
   }
@@ -73,14 +80,17 @@ Picture solution_picture(const Scene& scene, const std::vector<Solution>& soluti
     }
   }
   for (Series& gripper : gripper_series(scene)) all.push_back(std::move(gripper));
+  return {views, std::move(all)};
+}
+
+Picture solution_picture(const Scene& scene, const std::vector<Solution>& solutions) {
+  const Drawing drawing = solution_drawing(scene, solutions);
   Figure shapes{.name = "shapes",
                 .title = solutions.size() == 1 ? scene.name : scene.name + ": all equilibria found",
-                .csv_file = "shapes.csv",
-                .csv = series_csv(all)};
-  shapes.panels = shape_panels(shapes.csv_file, all, views);
-  Figure curvature{
-      .name = "curvature", .title = "Curvature along the rod", .csv_file = shapes.csv_file};
-  curvature.panels = {curvature_panel(shapes.csv_file, all, planar)};
+                .panels = shape_panels(drawing)};
+  Figure curvature{.name = "curvature",
+                   .title = "Curvature along the rod",
+                   .panels = {curvature_panel(drawing.series, are_planar(scene, solutions))}};
   return {{{{shapes}, {curvature}}}};
 }
 

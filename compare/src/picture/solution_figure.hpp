@@ -5,8 +5,12 @@
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/solution.hpp"
 #include "figure/layout.hpp"
+#include "figure/series.hpp"
 
 namespace dlo::compare {
+
+/// What a picture shows of their shapes.
+[[nodiscard]] Drawing solution_drawing(const Scene& scene, const std::vector<Solution>& solutions);
 
 /// Solutions of one scene: shapes at equal aspect with grippers, obstacles and contact, beside
 /// their curvature. Unstable ones are dashed.

@@ -3,12 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <iterator>
+#include <numeric>
+#include <utility>
 
 #include "base/number.hpp"
-#include "base/quote.hpp"
 #include "dlo/compare/error.hpp"
 
 namespace dlo::compare {
@@ -21,81 +20,101 @@ bool is_numeric(const SweptField& field) {
                      [](const std::string& value) { return as_number<double>(value).has_value(); });
 }
 
-/// Columns of the header, counted from 1 as gnuplot does; names have no commas.
-int column_of(const std::string& header, const std::string& name) {
-  int column = 1;
-  for (std::size_t at = 0; at < header.size(); ++column) {
-    const std::size_t end = std::min(header.find_first_of(",\n", at), header.size());
-    if (header.substr(at, end - at) == name) return column;
-    at = end + 1;
+double number_of(const std::string& text) { return as_number<double>(text).value_or(NAN); }
+
+/// Fields of a line of CSV; in quotes a comma is none.
+std::vector<std::string> fields_of(const std::string& line) {
+  std::vector<std::string> fields(1);
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"') quoted = !quoted;
+    if (c == ',' && !quoted) {
+      fields.emplace_back();
+    } else if (c != '\n') {
+      fields.back() += c;
+    }
   }
-  throw InputError(fmt::format("--plot: the sweep has no column {}", name));
+  return fields;
 }
 
-/// Data of one value of the second field, whose rows are every `count`-th.
-std::string line_of(const std::string& file, std::size_t index, std::size_t count, int x, int y) {
-  return fmt::format("'{}' skip 1 every {}::{} using {}:{}", file, count, index, x, y);
+/// A column of the table.
+std::vector<double> column_of(const std::string& header, const std::vector<std::string>& rows,
+                              const std::string& name) {
+  const std::vector<std::string> names = fields_of(header);
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    throw InputError(fmt::format("--plot: the sweep has no column {}", name));
+  }
+  const auto column = static_cast<std::size_t>(found - names.begin());
+  std::vector<double> values;
+  values.reserve(rows.size());
+  for (const std::string& row : rows) values.push_back(number_of(fields_of(row).at(column)));
+  return values;
 }
 
-Panel lines_panel(const std::vector<SweptField>& fields, const std::string& file, int y) {
-  Panel panel;
-  panel.script = fields.front().logarithmic ? "set logscale x\nset format x '%g'\n" : "";
-  panel.script += "plot ";
-  const std::size_t lines = fields.size() > 1 ? fields[1].values.size() : 1;
-  // Behind the number of the row.
-  constexpr int x = 2;
-  for (std::size_t i = 0; i < lines; ++i) {
-    fmt::format_to(std::back_inserter(panel.script), "{}{} {} {}", i == 0 ? "" : ", \\\n  ",
-                   line_of(file, i, lines, x, y),
-                   lines > 1
-                       ? "title " + gnuplot_string(fields[1].column + " = " + fields[1].values[i])
-                       : std::string("notitle"),
-                   curve_style(i, "linespoints"));
+/// Lines for each value of the second field, whose rows are every `count`-th.
+Panel lines_panel(const std::vector<SweptField>& fields, const std::string& result,
+                  const std::vector<double>& values) {
+  Panel panel{.x = {.label = fields[0].column, .logarithmic = fields[0].logarithmic},
+              .y = {.label = result}};
+  const std::size_t count = fields.size() > 1 ? fields[1].values.size() : 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    Curve line{.look = curve_look(i)};
+    if (count > 1) line.title = fields[1].column + " = " + fields[1].values[i];
+    for (std::size_t k = 0; k * count + i < values.size(); ++k) {
+      line.x.push_back(number_of(fields[0].values[k]));
+      line.y.push_back(values[k * count + i]);
+    }
+    panel.curves.push_back(std::move(line));
   }
-  panel.key_rows = lines > 1 ? static_cast<int>(lines) : 0;
-  panel.script += "\n";
   return panel;
 }
 
-/// Least and largest number of a column; fields before it have no commas in a map.
-std::array<double, 2> range_of(const std::vector<std::string>& rows, int column) {
-  std::array<double, 2> range = {HUGE_VAL, -HUGE_VAL};
-  for (const std::string& row : rows) {
-    std::size_t at = 0;
-    for (int i = 1; i < column && at != std::string::npos; ++i) at = row.find(',', at) + 1;
-    const auto value = as_number<double>(row.substr(at, row.find(',', at) - at));
-    if (!value) continue;
-    range[0] = std::min(range[0], *value);
-    range[1] = std::max(range[1], *value);
+/// Where a field's values stand on an axis, rising, with edges half way between them.
+struct CellAxis {
+  explicit CellAxis(const SweptField& field) : order(field.values.size()) {
+    std::vector<double> at;
+    for (const std::string& value : field.values) {
+      at.push_back(field.logarithmic ? std::log(number_of(value)) : number_of(value));
+    }
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(),
+              [&](std::size_t a, std::size_t b) { return at[a] < at[b]; });
+    std::sort(at.begin(), at.end());
+    const double alone = at.front() == 0 || field.logarithmic ? 1 : 0.1 * std::abs(at.front());
+    const std::size_t last = at.size() - 1;
+    const double before = last > 0 ? at[1] - at[0] : alone;
+    const double after = last > 0 ? at[last] - at[last - 1] : alone;
+    edges.push_back(at[0] - before / 2);
+    for (std::size_t i = 0; i < last; ++i) edges.push_back((at[i] + at[i + 1]) / 2);
+    edges.push_back(at[last] + after / 2);
+    for (double& edge : edges) edge = field.logarithmic ? std::exp(edge) : edge;
   }
-  return range;
+
+  std::vector<std::size_t> order;  ///< the values' numbers
+  std::vector<double> edges;
+};
+
+PlotAxis axis_of(const SweptField& field, const std::vector<double>& edges) {
+  return {.label = field.column,
+          .from = edges.front(),
+          .to = edges.back(),
+          .logarithmic = field.logarithmic};
 }
 
-Panel map_panel(const std::vector<SweptField>& fields, const std::string& file, int z,
-                const std::vector<std::string>& rows) {
-  Panel panel;
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (!fields[i].logarithmic) continue;
-    fmt::format_to(std::back_inserter(panel.script), "set logscale {0}\nset format {0} '%g'\n",
-                   i == 0 ? 'x' : 'y');
+Panel map_panel(const std::vector<SweptField>& fields, const std::vector<double>& values) {
+  const CellAxis x(fields[0]);
+  const CellAxis y(fields[1]);
+  Cells cells{.x = x.edges, .y = y.edges};
+  for (const std::size_t row : y.order) {
+    for (const std::size_t column : x.order) {
+      const std::size_t at = column * y.order.size() + row;
+      cells.values.push_back(at < values.size() ? values[at] : NAN);
+    }
   }
-  const std::array<double, 2> range = range_of(rows, z);
-  if (range[0] < range[1]) {
-    fmt::format_to(std::back_inserter(panel.script),
-                   "set cbrange [{0:.10g}:{1:.10g}]\n"
-                   "set cbtics ('{0:.3g}' {0:.10g}, '{2:.3g}' {2:.10g}, '{1:.3g}' {1:.10g})\n",
-                   range[0], range[1], (range[0] + range[1]) / 2);
-  }
-  // Light to dark: told without colours too.
-  fmt::format_to(std::back_inserter(panel.script),
-                 "set palette defined (0 '#F2F0E6', 0.5 '#5B9BC8', 1 '#0B2D5B')\n"
-                 "set colorbox user horizontal origin graph 0.06,-0.28 size graph 0.88,0.04\n"
-                 "set offsets graph 0.04, graph 0.04, graph 0.04, graph 0.04\n"
-                 "plot '{}' skip 1 using 2:3:{} notitle with points pointtype 5 pointsize 2 "
-                 "linecolor palette\n",
-                 file, z);
-  panel.key_rows = 2;  // the colours' scale
-  return panel;
+  return {.x = axis_of(fields[0], x.edges),
+          .y = axis_of(fields[1], y.edges),
+          .cells = std::move(cells)};
 }
 
 }  // namespace
@@ -116,23 +135,16 @@ Picture sweep_picture(const std::vector<SweptField>& fields, const std::string& 
                       const std::vector<std::string>& rows,
                       const std::vector<std::string>& results) {
   require_drawable(fields);
-  std::string csv = header;
-  for (const std::string& row : rows) csv += row;
   const bool lines =
       fields.size() < 2 || fields[1].values.size() <= most_lines || !is_numeric(fields[1]);
   PictureRow columns;
   for (const std::string& result : results) {
-    const int column = column_of(header, result);
-    Panel panel = lines ? lines_panel(fields, "sweep.csv", column)
-                        : map_panel(fields, "sweep.csv", column, rows);
-    panel.x_label = fields.front().column;
-    panel.y_label = lines ? result : fields[1].column;
-    columns.push_back({{.name = result,
-                        .title = result + " against " + fields.front().column +
-                                 (fields.size() > 1 ? " and " + fields[1].column : ""),
-                        .csv_file = "sweep.csv",
-                        .csv = columns.empty() ? csv : "",
-                        .panels = {panel}}});
+    const std::vector<double> values = column_of(header, rows, result);
+    columns.push_back(
+        {{.name = result,
+          .title = result + " against " + fields.front().column +
+                   (fields.size() > 1 ? " and " + fields[1].column : ""),
+          .panels = {lines ? lines_panel(fields, result, values) : map_panel(fields, values)}}});
   }
   return {{columns}};
 }

@@ -12,7 +12,6 @@
 
 #include "base/quote.hpp"
 #include "figure/series.hpp"
-#include "figure/shape_panels.hpp"
 #include "motion/frame_clock.hpp"
 
 namespace dlo::compare {
@@ -44,15 +43,7 @@ Eigen::Matrix3Xd points_of(const TrackShapes& shapes, const std::vector<std::siz
     if (frame.force) parts.push_back(&frame.force->shape.points);
     if (shapes.has_moving(i)) parts.push_back(&shapes.moving->frames[i].points);
   }
-  Eigen::Index count = 0;
-  for (const Eigen::Matrix3Xd* part : parts) count += part->cols();
-  Eigen::Matrix3Xd all(3, count);
-  count = 0;
-  for (const Eigen::Matrix3Xd* part : parts) {
-    all.middleCols(count, part->cols()) = *part;
-    count += part->cols();
-  }
-  return all;
+  return side_by_side(parts);
 }
 
 /// Cells of one size, row by row, each with one shape at one scale.
@@ -66,6 +57,13 @@ struct Cells {
   [[nodiscard]] std::array<double, 2> shift(int cell) const {
     const int row_above_lowest = rows - 1 - cell / columns;
     return {cell % columns * size[0] - least[0], row_above_lowest * size[1] - least[1]};
+  }
+  /// With lines between the cells, but no numbers.
+  [[nodiscard]] PlotAxis axis(std::size_t i, std::string label) const {
+    const int count = i == 0 ? columns : rows;
+    PlotAxis axis{.label = std::move(label), .from = 0, .to = count * size[i], .tics = {{}}};
+    for (int k = 0; k <= count; ++k) axis.tics->push_back({k * size[i], ""});
+    return axis;
   }
 };
 
@@ -141,20 +139,20 @@ std::vector<Series> series_of(const Scene& now, const TrackShapes& shapes, std::
   if (frame.force) {
     all.push_back({.id = "force",
                    .title = "force model, on the way",
-                   .style = "with lines linecolor rgb '#B34700' linewidth 1.5 dashtype (5,3)",
+                   .look = {.colour = "#B34700", .width = 1.5, .dashes = Dashes::dashed},
                    .points = frame.force->shape.points,
                    .arc_length = frame.force->shape.arc_length});
   }
   if (shapes.has_moving(index)) {
     all.push_back({.id = "moving",
                    .title = "the rod with inertia",
-                   .style = "with lines linecolor rgb '#0059A8' linewidth 1.5 dashtype 1",
+                   .look = {.colour = "#0059A8", .width = 1.5},
                    .points = shapes.moving->frames[index].points,
                    .arc_length = arc_length});
   }
   all.push_back({.id = "energy",
                  .title = "energy model (the rod itself), at rest",
-                 .style = "with lines linecolor rgb 'black' linewidth 2 dashtype 1",
+                 .look = {.width = 2},
                  .points = frame.shape.points,
                  .arc_length = arc_length});
   const Shape& shape = frame.shape;
@@ -164,9 +162,8 @@ std::vector<Series> series_of(const Scene& now, const TrackShapes& shapes, std::
   }
   for (Series& gripper : gripper_series(now)) {
     // Thinner than in a plot of one shape.
-    gripper.style = gripper.title.empty()
-                        ? "with lines linecolor rgb '#909090' linewidth 3 dashtype 1"
-                        : "with points linecolor rgb 'black' pointtype 2 pointsize 0.7";
+    if (gripper.look.width > 0) gripper.look.width = 3;
+    gripper.look.mark_size = 0.7;
     all.push_back(std::move(gripper));
   }
   return all;
@@ -186,41 +183,33 @@ Figure strip_figure(const Scene& scene, const TrackShapes& shapes, const TrackOp
   const Cells cells = cells_for(points, view, static_cast<int>(frames.size()));
   Panel panel{
       .height = static_cast<int>(std::lround(cells.rows * cells.size[1] * cells.pixels_per_metre)),
-      .x_label =
-          fmt::format("{} [m]; a cell is {:.3g} m wide", axis_names[view.right], cells.size[0]),
-      .y_label = fmt::format("{} [m]", axis_names[view.up])};
-  panel.script = fmt::format(
-      "# equal aspect: {:.6g} pixels a metre on both axes\n"
-      "set xrange [0:{:.6g}]\nset yrange [0:{:.6g}]\nset xtics 0,{:.6g} scale 0\n"
-      "set ytics 0,{:.6g} scale 0\nset format ''\n",
-      cells.pixels_per_metre, cells.columns * cells.size[0], cells.rows * cells.size[1],
-      cells.size[0], cells.size[1]);
+      .x = cells.axis(
+          0, fmt::format("{} [m]; a cell is {:.3g} m wide", axis_names[view.right], cells.size[0])),
+      .y = cells.axis(1, fmt::format("{} [m]", axis_names[view.up])),
+      .equal_aspect = true};
   std::vector<Series> written;
   std::set<std::string> titles;
-  std::string plots;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const TrackFrame& frame = track.frames[frames[i]];
     const std::array<double, 2> shift = cells.shift(static_cast<int>(i));
-    fmt::format_to(
-        std::back_inserter(panel.script),
-        "set label {} 't = {:.4g} s' at {:.6g},{:.6g} left front\n", i + 100, frame.time,
-        cells.least[0] + shift[0] + 4 / cells.pixels_per_metre,
-        cells.least[1] + shift[1] + cells.size[1] - label_pixels / 2 / cells.pixels_per_metre);
+    panel.texts.push_back({.x = cells.least[0] + shift[0],
+                           .y = cells.least[1] + shift[1] + cells.size[1],
+                           .words = fmt::format("t = {:.4g} s", frame.time),
+                           .dx = 4,
+                           .dy = -label_pixels / 2});
     for (Series& series :
          series_of(clock.scene(scene, frames[i]), shapes, frames[i], view, cells)) {
       series.id += fmt::format("_{}", i + 1);
-      const bool titled = !series.title.empty() && titles.insert(series.title).second;
-      if (titled) ++panel.key_rows;
-      fmt::format_to(std::back_inserter(plots), "{}{} {} {}", plots.empty() ? "plot " : ", \\\n  ",
-                     series_data(figure.csv_file, series.id,
-                                 fmt::format("${}{:+.8g}", view.right + 3, shift[0]),
-                                 fmt::format("(${}{:+.8g})", view.up + 3, shift[1])),
-                     titled ? "title " + gnuplot_string(series.title) : std::string("notitle"),
-                     series.style);
+      Curve curve{.id = series.id, .look = series.look};
+      if (titles.insert(series.title).second) curve.title = series.title;
+      for (const auto& point : series.points.colwise()) {
+        curve.x.push_back(point[view.right] + shift[0]);
+        curve.y.push_back(point[view.up] + shift[1]);
+      }
+      panel.curves.push_back(std::move(curve));
       written.push_back(std::move(series));
     }
   }
-  panel.script += plots + "\n";
   figure.csv = series_csv(written);
   figure.description = fmt::format(
       "{} shapes of {}, from {:.4g} to {:.4g} s, row by row, all at one scale and at equal aspect.",
@@ -250,47 +239,46 @@ std::string force_csv(const Scene& scene, const TrackShapes& shapes) {
   return csv;
 }
 
-enum class KeyEntries { shown, hidden };
-
-/// Of all grippers against time, a column of the CSV.
-Panel load_panel(const Scene& scene, const TrackShapes& shapes, const std::string& csv_file,
-                 int column, KeyEntries entries) {
-  Panel panel{.height = load_plot, .x_label = "time [s]"};
-  std::string plots;
-  const auto add = [&](const std::string& data, const std::string& title, const char* style) {
-    const bool shown = entries == KeyEntries::shown;
-    fmt::format_to(std::back_inserter(plots), "{}{} {} {}", plots.empty() ? "plot " : ", \\\n  ",
-                   data, shown ? "title " + gnuplot_string(title) : std::string("notitle"), style);
-    if (shown) ++panel.key_rows;
+/// Of all grippers against time.
+/// @param load  of a gripper
+Panel load_panel(const Scene& scene, const TrackShapes& shapes, const char* label,
+                 Eigen::Vector3d GripperLoad::*load) {
+  Panel panel{.height = load_plot,
+              .x = {.label = "time [s]",
+                    .from = shapes.track.frames.front().time,
+                    .to = shapes.track.frames.back().time},
+              .y = {.label = label, .from = 0}};
+  const auto add = [&](const auto& frames, std::size_t gripper, const char* rod, std::size_t look) {
+    Curve curve{.title = fmt::format("gripper {} at s = {:.4g} m{}", gripper + 1,
+                                     scene.grippers[gripper].at, rod),
+                .look = curve_line(look)};
+    for (const auto& frame : frames) {
+      curve.x.push_back(frame.time);
+      curve.y.push_back((frame.grippers[gripper].*load).norm());
+    }
+    panel.curves.push_back(std::move(curve));
   };
   for (std::size_t i = 0; i < scene.grippers.size() && i < most_grippers; ++i) {
-    const auto data = [&](const char* rod) {
-      return fmt::format("'{}' skip 1 using (strcol(1) eq '{}' && $3 == {} ? $2 : NaN):{}",
-                         csv_file, rod, i + 1, column);
-    };
-    const std::string name = fmt::format("gripper {} at s = {:.4g} m", i + 1, scene.grippers[i].at);
-    add(data("at_rest"), name, curve_style(2 * i, "lines").c_str());
+    add(shapes.track.frames, i, "", 2 * i);
     if (shapes.moving == nullptr) continue;
-    add(data("moving"), name + ", the rod with inertia", curve_style(2 * i + 1, "lines").c_str());
+    add(shapes.moving->frames, i, ", the rod with inertia", 2 * i + 1);
   }
-  const auto mark = [&](TrackEvent::Kind kind, const char* title, const char* line) {
-    bool any = false;
+  const auto mark = [&](TrackEvent::Kind kind, const char* title, const Look& look) {
+    Curve uprights{.title = title, .look = look};
     for (const TrackEvent& event : shapes.track.events) {
       if (event.kind != kind) continue;
-      any = true;
-      fmt::format_to(std::back_inserter(panel.script),
-                     "set arrow from {0:.8g}, graph 0 to {0:.8g}, graph 1 nohead back {1}\n",
-                     shapes.track.frames[event.frame].time, line);
+      const double time = shapes.track.frames[event.frame].time;
+      uprights.x.insert(uprights.x.end(), {time, time, NAN});
+      uprights.y.insert(uprights.y.end(), {-HUGE_VAL, HUGE_VAL, NAN});
     }
-    if (any) add("NaN", title, (std::string("with lines ") + line).c_str());
+    panel.curves.push_back(std::move(uprights));
   };
   mark(TrackEvent::Kind::contact, "begins to touch, or to lie",
-       "linecolor rgb '#207A34' linewidth 1 dashtype 2");
-  mark(TrackEvent::Kind::release, "ends to", "linecolor rgb '#707070' linewidth 1 dashtype 3");
-  mark(TrackEvent::Kind::snap, "snaps", "linecolor rgb '#C00000' linewidth 1.5 dashtype 1");
+       {.colour = "#207A34", .dashes = Dashes::dashed});
+  mark(TrackEvent::Kind::release, "ends to", {.colour = "#707070", .dashes = Dashes::dotted});
+  mark(TrackEvent::Kind::snap, "snaps", {.colour = "#C00000", .width = 1.5});
   mark(TrackEvent::Kind::lost, "may have been lost",
-       "linecolor rgb '#C00000' linewidth 1.5 dashtype 3");
-  panel.script += "set yrange [0:*]\n" + plots + "\n";
+       {.colour = "#C00000", .width = 1.5, .dashes = Dashes::dotted});
   return panel;
 }
 
@@ -304,11 +292,9 @@ Figure force_figure(const Scene& scene, const TrackShapes& shapes, std::size_t n
                     "touch, and where the rod snaps.",
                 .csv_file = fmt::format("forces_{}.csv", number),
                 .csv = force_csv(scene, shapes)};
-  constexpr int force_column = 4;
-  Panel force = load_panel(scene, shapes, figure.csv_file, force_column, KeyEntries::hidden);
-  force.y_label = "force [N]";
-  Panel torque = load_panel(scene, shapes, figure.csv_file, force_column + 1, KeyEntries::shown);
-  torque.y_label = "torque [N m]";
+  Panel force = load_panel(scene, shapes, "force [N]", &GripperLoad::force);
+  force.has_legend = false;
+  Panel torque = load_panel(scene, shapes, "torque [N m]", &GripperLoad::torque);
   figure.panels = {std::move(force), std::move(torque)};
   return figure;
 }

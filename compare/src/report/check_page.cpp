@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "base/quote.hpp"
-#include "figure/gnuplot.hpp"
 #include "report/html.hpp"
 #include "report/style.hpp"
 
@@ -58,19 +57,17 @@ HtmlTable causes(const CheckResult& result) {
   return table;
 }
 
-std::string figure_of(const CheckResult& result, const CheckPageParts& parts) {
-  if (parts.svg.empty()) {
-    return fmt::format("<p class=\"missing\">There is no picture: {}.</p>\n",
-                       escape_markup(parts.why_no_picture));
+std::string figures_of(const CheckPageParts& parts) {
+  std::string out = "<div class=\"figures\">\n";
+  for (const PageFigure& entry : parts.figures) {
+    if (!entry.svg.empty()) {
+      out += "<figure>\n" + entry.svg + "</figure>\n";
+    } else {
+      out += fmt::format("<p class=\"missing\">A figure is missing: {}.</p>\n",
+                         escape_markup(entry.failure));
+    }
   }
-  Figure drawn;
-  drawn.name = "check";
-  drawn.title = fmt::format("{}, and the rod of {}", result.check.file, result.check.scene);
-  drawn.description = fmt::format(
-      "The points of the shape beside the energy model's rod, and their distances along it: RMS "
-      "{}, largest {}.",
-      millimetres(result.check.deviation.rms_m), millimetres(result.check.deviation.max_m));
-  return "<figure>\n" + inline_svg(parts.svg, drawn) + "</figure>\n";
+  return out + "</div>\n";
 }
 
 constexpr const char* page_style = R"~~~(
@@ -84,7 +81,7 @@ constexpr const char* page_style = R"~~~(
 .three { display: flex; flex-wrap: wrap; gap: 0.6rem 2rem; }
 .three strong { display: block; font-size: 1.4rem; font-variant-numeric: tabular-nums; }
 .three span, .three dt { color: var(--faint); font-size: 0.9rem; }
-figure svg { max-width: 60rem; }
+.figures { grid-template-columns: repeat(auto-fit, minmax(min(100%, 20rem), 1fr)); align-content: start; }
 pre { overflow-x: auto; font: 0.8rem/1.4 ui-monospace, monospace; background: var(--card); padding: 0.8rem; }
 )~~~";
 
@@ -111,7 +108,7 @@ std::string check_page(const CheckResult& result, const CheckPageParts& parts) {
   if (!cause.empty()) out += "<p><strong>" + escape_markup(cause) + "</strong></p>\n";
   const std::string both = other_stiffness_within(result);
   if (!both.empty()) out += "<p>" + escape_markup(both) + ".</p>\n";
-  out += three_numbers(result) + "</div>\n" + figure_of(result, parts) + "</div>\n";
+  out += three_numbers(result) + "</div>\n" + figures_of(parts) + "</div>\n";
   out += "<details><summary>Reason and causes</summary>\n<p>" +
          escape_markup(result.judgement.reason) + ".</p>\n";
   if (!result.explanations.empty()) out += to_html(causes(result));

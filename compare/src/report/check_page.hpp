@@ -1,17 +1,18 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "dlo/compare/check.hpp"
+#include "report/page.hpp"
 
 namespace dlo::compare {
 
 /// What a page has beside the result.
 struct CheckPageParts {
-  std::string svg = {};             ///< file of check_picture(), drawn; empty: there is none
-  std::string why_no_picture = {};  ///< then
-  std::string text = {};            ///< all that `dlo check` says
-  std::string version = {};         ///< of dlo
+  std::vector<PageFigure> figures = {};  ///< of check_picture()
+  std::string text = {};                 ///< all that `dlo check` says
+  std::string version = {};              ///< of dlo
 };
 
 /// A judged shape as a page of one screen: verdict, cause, the three numbers and the picture;

@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <utility>
 
 #include "base/quote.hpp"
 #include "paper/printed_tables.hpp"
@@ -30,33 +29,38 @@ Figure history_figure(const std::string& name, const std::vector<const SceneHist
       "on the right at rest. The paper's simulations took 28 s.";
   figure.csv = "curve,scene_file,time_s,steps,effective_modulus_ratio,rms_at_effective_modulus_m\n";
   constexpr double place_of_rest = 600;  // on the axis of time
-  std::string plots;
+  Panel panel{.x = {.label = "simulated time [s], 4000 steps/s",
+                    .from = 0.8,
+                    .to = 1.4 * place_of_rest,
+                    .logarithmic = true,
+                    .tics = {{{1, "1"},
+                              {3, "3"},
+                              {10, "10"},
+                              {28, "28"},
+                              {100, "100"},
+                              {place_of_rest, "rest"}}}},
+              .y = {.label = "E*/E", .logarithmic = true}};
+  panel.curves.push_back({.title = "what the paper says: 1/3",
+                          .look = {.width = 1.5, .dashes = Dashes::dashed},
+                          .x = {-HUGE_VAL, HUGE_VAL},
+                          .y = {1 / 3.0, 1 / 3.0}});
   for (std::size_t i = 0; i < histories.size(); ++i) {
     const SceneHistory& history = *histories[i];
+    Curve curve{.title = history.scene, .look = curve_look(i)};
     for (const ModulusAtTime& at : history.history.times) {
       figure.csv +=
           fmt::format("{},{},{},{},{},{}\n", i + 1, history.file, csv_number(at.time_s), at.steps,
                       csv_number(at.modulus.ratio), csv_number(at.modulus.rms_m));
+      curve.x.push_back(at.time_s);
+      curve.y.push_back(at.modulus.ratio);
     }
     figure.csv += fmt::format("{},{},rest,,{},{}\n", i + 1, history.file,
                               csv_number(history.rest.ratio), csv_number(history.rest.rms_m));
-    fmt::format_to(
-        std::back_inserter(plots),
-        ", \\\n  '{0}' using ($1 == {1} ? $3 : NaN):5 title {2} {3}"
-        ", \\\n  '{0}' using ($1 == {1} && strcol(3) eq 'rest' ? {4:g} : NaN):5 notitle {5}",
-        figure.csv_file, i + 1, gnuplot_string(history.scene), curve_style(i, "linespoints"),
-        place_of_rest, curve_style(i, "points"));
+    panel.curves.push_back(std::move(curve));
+    panel.curves.push_back(
+        {.look = curve_marks(i), .x = {place_of_rest}, .y = {history.rest.ratio}});
   }
-  const int rows = static_cast<int>(histories.size()) + 1;
-  Panel panel{.x_label = "simulated time [s], 4000 steps/s", .y_label = "E*/E", .key_rows = rows};
-  panel.script = fmt::format(
-      "set logscale xy\nset xrange [0.8:{:g}]\n"
-      "set xtics (1, 3, 10, 28, 100, 'rest' {:g})\nset format y '%g'\n"
-      "plot 1/3. title 'what the paper says: 1/3' with lines linecolor rgb 'black' dashtype 2 "
-      "linewidth 1.5",
-      place_of_rest * 1.4, place_of_rest);
-  panel.script += plots + "\n";
-  figure.panels = {panel};
+  figure.panels = {std::move(panel)};
   return figure;
 }
 

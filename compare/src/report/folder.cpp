@@ -17,6 +17,7 @@
 #include "base/temporary_path.hpp"
 #include "dlo/compare/error.hpp"
 #include "figure/gnuplot.hpp"
+#include "figure/gnuplot_script.hpp"
 #include "report/figures.hpp"
 #include "report/page.hpp"
 #include "trajectory/trajectory_files.hpp"

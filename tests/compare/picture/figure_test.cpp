@@ -14,6 +14,7 @@
 #include "dlo/compare/shape_check.hpp"
 #include "dlo/compare/solve.hpp"
 #include "figure/gnuplot.hpp"
+#include "figure/gnuplot_script.hpp"
 #include "figure/series.hpp"
 #include "figure/shape_panels.hpp"
 #include "judge/budget_parts.hpp"
@@ -21,6 +22,7 @@
 #include "picture/check_figure.hpp"
 #include "picture/comparison_figure.hpp"
 #include "picture/fit_figure.hpp"
+#include "picture/front_figure.hpp"
 #include "picture/map_figure.hpp"
 #include "picture/solution_figure.hpp"
 #include "picture/sweep_figure.hpp"
@@ -33,13 +35,19 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// The line of a plot command that draws a series.
-std::string line_of(const Figure& figure, const std::string& series) {
+/// A curve of a figure; an empty one if it has none of that name.
+Curve curve_of(const Figure& figure, const std::string& id) {
   for (const Panel& panel : figure.panels) {
-    std::istringstream script(panel.script);
-    for (std::string line; std::getline(script, line);) {
-      if (line.find("'" + series + "'") != std::string::npos) return line;
+    for (const Curve& curve : panel.curves) {
+      if (curve.id == id) return curve;
     }
+  }
+  return {};
+}
+
+Curve titled(const Panel& panel, const std::string& title) {
+  for (const Curve& curve : panel.curves) {
+    if (curve.title.find(title) != std::string::npos) return curve;
   }
   return {};
 }
@@ -59,17 +67,33 @@ std::vector<std::vector<double>> rows_of(const Figure& figure, const std::string
   return rows;
 }
 
+double extent(const PlotAxis& axis) { return axis.to.value() - axis.from.value(); }
+
+/// A rod that lies on a table, as a cable does: as flat as a scene is.
+Scene flat_scene() {
+  Scene scene = test::heavy_scene(20, 0);
+  const Eigen::Vector3d under(0, -0.04 * scene.length, 0);
+  scene.obstacles = {{.body = obstacle::Body::half_space(under, Eigen::Vector3d::UnitY())}};
+  return scene;
+}
+
+/// Each point of a rod, one of them moved.
+MeasuredShape measured(const Scene& scene, int points, double off) {
+  MeasuredShape shape{.file = "mine.csv"};
+  const Solution rod = solve(scene, Model::energy, {}, equal_arc_lengths(scene.length, points));
+  shape.points = rod.shape.points;
+  shape.arc_length = rod.shape.arc_length;
+  shape.points(1, 5) += off;
+  return shape;
+}
+
 TEST(ShapePanels, HaveAsManyPixelsAMetreOnBothAxes) {
   const Scene scene = test::heavy_scene(5, -30);
   const Solution solution = solve(scene, Model::energy);
   const Series series{.id = "rod", .points = solution.shape.points};
-  const Panel panel = shape_panels("a.csv", {series}, {{0, 1}}).front();
-  const auto range = [&](const std::string& axis) {
-    const std::size_t at = panel.script.find("set " + axis + "range [") + 12;
-    const double from = std::stod(panel.script.substr(at));
-    return std::stod(panel.script.substr(panel.script.find(':', at) + 1)) - from;
-  };
-  EXPECT_NEAR(plot_width / range("x"), panel.height / range("y"), 1e-4 * plot_width / range("x"));
+  const Panel panel = shape_panels({{{0, 1}}, {series}}).front();
+  EXPECT_NEAR(plot_width / extent(panel.x), panel.height / extent(panel.y),
+              1e-9 * plot_width / extent(panel.x));
 }
 
 // A digit is 10 pixels wide, a point or a minus 5 to 6.
@@ -79,18 +103,90 @@ TEST(ShapePanels, HaveNumbersBelowThatDoNotTouch) {
     series.points = Eigen::Matrix3Xd::Zero(3, 2);
     series.points(0, 0) = -0.4 * reach;
     series.points(0, 1) = 0.6 * reach;
-    const std::string script = shape_panels("a.csv", {series}, {{0, 1}}).front().script;
-    const auto number_after = [&script](const std::string& words) {
-      return std::stod(script.substr(script.find(words) + words.size()));
-    };
-    const double step = number_after("set xtics ");
-    const double spacing = step * number_after("aspect: ");
-    EXPECT_LT(spacing, plot_width / 2.0) << reach;
-    // The second one to the left of the middle: minus, zero, point and its digits.
-    const int digits = static_cast<int>(std::ceil(-std::log10(step) - 1e-9));
-    const double width = step < 1 ? 6 + 10 + 5 + 10 * digits : 6 + 10;
-    EXPECT_GT(spacing, width) << reach << ": " << step;
+    const Panel panel = laid_out(shape_panels({{{0, 1}}, {series}}).front());
+    const std::vector<Tic>& tics = *panel.x.tics;
+    ASSERT_GE(tics.size(), 3U) << reach;
+    for (std::size_t i = 1; i < tics.size(); ++i) {
+      const double spacing = (tics[i].at - tics[i - 1].at) / extent(panel.x) * plot_width;
+      EXPECT_LT(spacing, plot_width / 2.0) << reach;
+      EXPECT_GT(spacing, text_width(tics[i].label) / 2 + text_width(tics[i - 1].label) / 2)
+          << reach << ": " << tics[i].label;
+    }
   }
+}
+
+// Small numbers, large ones, of one sign or two, of every number of digits.
+TEST(Panel, HasAllOfItsNumbersInsideThePicture) {
+  for (const double middle : {0.0, 1.0, -123456.0}) {
+    for (double spread = 1e-7; spread < 1e7; spread *= 7.3) {
+      for (const bool logarithmic : {false, true}) {
+        Panel panel{.x = {.logarithmic = logarithmic}, .y = {.logarithmic = logarithmic}};
+        const double from = logarithmic ? spread : middle - 0.3 * spread;
+        const double to = logarithmic ? 1e3 * spread * spread + 2 * spread : middle + spread;
+        panel.curves = {{.x = {from, to}, .y = {from, to}}};
+        panel = laid_out(panel);
+        ASSERT_GE(panel.y.tics->size(), 2U) << middle << " " << spread;
+        std::set<std::string> labels;
+        for (const Tic& tic : *panel.y.tics) {
+          EXPECT_LT(text_width(tic.label) + 8, panel.left) << tic.label;
+          EXPECT_TRUE(labels.insert(tic.label).second) << "twice: " << tic.label;
+        }
+        const auto scaled = [&](double value) { return logarithmic ? std::log(value) : value; };
+        for (const Tic& tic : *panel.x.tics) {
+          const double share = (scaled(tic.at) - scaled(*panel.x.from)) /
+                               (scaled(*panel.x.to) - scaled(*panel.x.from));
+          const double place = panel.left + share * panel.width();
+          EXPECT_LE(place + text_width(tic.label) / 2, figure_width) << tic.label;
+          EXPECT_GE(place - text_width(tic.label) / 2, 0) << tic.label;
+        }
+      }
+    }
+  }
+}
+
+TEST(Panel, PutsWhatIsInfiniteAtItsEdgeAndDropsCurvesOfNothing) {
+  Panel panel{.x = {.from = 0, .to = 2}, .y = {.logarithmic = true}};
+  panel.curves = {{.title = "level", .x = {-HUGE_VAL, HUGE_VAL}, .y = {3, 3}},
+                  {.title = "none", .x = {1}, .y = {NAN}},
+                  {.title = "on no logarithmic axis", .x = {1}, .y = {0}}};
+  panel = laid_out(panel);
+  EXPECT_THAT(panel.titles(), testing::ElementsAre("level"));
+  EXPECT_THAT(panel.curves.front().x, testing::ElementsAre(0, 2));
+  EXPECT_LT(*panel.y.from, 3);
+  EXPECT_GT(*panel.y.to, 3);
+}
+
+// gnuplot's own key went on beside a flat plot, on top of the next one.
+TEST(PictureScript, HasEveryLegendBelowItsPlotInItsColumn) {
+  const Scene scene = flat_scene();
+  const ShapeCheck check =
+      check_shape(scene, measured(scene, 9, 0.03), {.modulus = ModulusSearch::no});
+  const Picture picture = check_picture(scene, check, 0.02);
+  const std::string script = picture_script(picture, PictureFormat::svg, "a.svg");
+  EXPECT_THAT(script, Not(HasSubstr("set key at")));
+  const double height = std::stod(script.substr(script.find("size 920,") + 9));
+  std::size_t titles = 0;
+  std::size_t panel_begins = 0;
+  for (std::size_t column = 0; column < 2; ++column) {
+    const Figure& figure = picture.rows.at(0).at(column).at(0);
+    panel_begins = script.find("set bmargin at screen ", panel_begins + 1);
+    const double bottom = std::stod(script.substr(panel_begins + 22));
+    double above = bottom - 72 / height;  // the numbers and the name of the axis
+    for (const std::string& title : laid_out(figure.panels.at(0)).titles()) {
+      const std::size_t label = script.find(gnuplot_string(title) + " at screen ", panel_begins);
+      ASSERT_NE(label, std::string::npos) << title;
+      const std::string place = script.substr(script.find(" at screen ", label) + 11);
+      const double x = std::stod(place) * 920 - 460.0 * static_cast<double>(column);
+      const double y = std::stod(place.substr(place.find(',') + 1));
+      EXPECT_GT(x, 0) << title;
+      EXPECT_LT(x + text_width(title), 460) << title;
+      EXPECT_LT(y, above - 15 / height) << title;
+      EXPECT_GT(y, 0) << title;
+      above = y;
+      ++titles;
+    }
+  }
+  EXPECT_EQ(titles, 10U);
 }
 
 TEST(SolutionPicture, DashesWhatIsUnstable) {
@@ -100,16 +196,16 @@ TEST(SolutionPicture, DashesWhatIsUnstable) {
   const Figure& shapes = picture.rows.at(0).at(0).at(0);
   std::size_t unstable = 0;
   for (std::size_t i = 0; i < all.solutions.size(); ++i) {
-    const std::string line = line_of(shapes, "solution_" + std::to_string(i + 1));
+    const Curve line = curve_of(shapes, "solution_" + std::to_string(i + 1));
     const bool dashed = all.solutions[i].smallest_eigenvalue < 0;
     unstable += dashed ? 1 : 0;
-    EXPECT_THAT(line, HasSubstr(dashed ? "dashtype 2" : "dashtype 1"));
-    EXPECT_THAT(line, HasSubstr(dashed ? ": unstable" : ": stable"));
+    EXPECT_EQ(line.look.dashes, dashed ? Dashes::dashed : Dashes::solid);
+    EXPECT_THAT(line.title, HasSubstr(dashed ? ": unstable" : ": stable"));
   }
   EXPECT_GT(unstable, 0U);
   EXPECT_LT(unstable, all.solutions.size());
-  EXPECT_FALSE(line_of(shapes, "gripper").empty());
-  EXPECT_FALSE(line_of(shapes, "clamp_1").empty());
+  EXPECT_FALSE(curve_of(shapes, "gripper").x.empty());
+  EXPECT_FALSE(curve_of(shapes, "clamp_1").x.empty());
 }
 
 TEST(SolutionPicture, TellsElevenUnstableShapesApart) {
@@ -118,11 +214,11 @@ TEST(SolutionPicture, TellsElevenUnstableShapesApart) {
   for (std::size_t i = 1; i < all.size(); ++i)
     all[i].status = dlo::energy_model::SolveStatus::saddle;
   const Picture picture = solution_picture(scene, all);
-  std::set<std::string> looks;
+  std::set<std::pair<std::string, Dashes>> looks;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const std::string line =
-        line_of(picture.rows.at(0).at(0).at(0), "solution_" + std::to_string(i + 1));
-    looks.insert(line.substr(line.find(" with lines ")));
+    const Curve line =
+        curve_of(picture.rows.at(0).at(0).at(0), "solution_" + std::to_string(i + 1));
+    looks.insert({line.look.colour, line.look.dashes});
   }
   EXPECT_EQ(looks.size(), all.size());
 }
@@ -130,12 +226,12 @@ TEST(SolutionPicture, TellsElevenUnstableShapesApart) {
 TEST(SolutionPicture, ShowsCurvatureWithTheSenseOfTurning) {
   const Scene scene = test::heavy_scene(2, 0);
   const Solution solution = solve(scene, Model::energy, {}, equal_arc_lengths(scene.length, 101));
-  const Figure shapes = solution_picture(scene, {solution}).rows.at(0).at(0).at(0);
-  const auto rows = rows_of(shapes, "solution_1");
-  ASSERT_EQ(rows.size(), 101U);
+  const Figure drawn = solution_picture(scene, {solution}).rows.at(0).at(1).at(0);
+  const std::vector<double> curvature = curve_of(drawn, "solution_1").y;
+  ASSERT_EQ(curvature.size(), 101U);
   for (std::size_t i = 0; i < 90; ++i) {
     // It sinks to the right, so it turns to the right.
-    EXPECT_NEAR(rows[i].at(4), -solution.curvature[i], 1e-8 * solution.curvature[0]) << i;
+    EXPECT_NEAR(curvature[i], -solution.curvature[i], 1e-8 * solution.curvature[0]) << i;
   }
 }
 
@@ -148,11 +244,11 @@ TEST(SolutionPicture, ShowsARodThatLeavesItsPlaneFromTwoSidesAndItsCurvatureWith
   const Solution solution = solve(scene, Model::energy);
   ASSERT_GT(solution.shape.points.row(2).cwiseAbs().maxCoeff(), 0.01);
   EXPECT_FALSE(stays_in_plane(scene, solution.shape.points));
-  const Figure shapes = solution_picture(scene, {solution}).rows.at(0).at(0).at(0);
-  EXPECT_EQ(shapes.panels.size(), 2U);
-  const auto rows = rows_of(shapes, "solution_1");
-  EXPECT_FALSE(rows.empty());
-  for (const std::vector<double>& row : rows) EXPECT_GE(row.at(4), 0);
+  const Picture picture = solution_picture(scene, {solution});
+  EXPECT_EQ(picture.rows.at(0).at(0).at(0).panels.size(), 2U);
+  const std::vector<double> curvature = curve_of(picture.rows.at(0).at(1).at(0), "solution_1").y;
+  EXPECT_FALSE(curvature.empty());
+  EXPECT_THAT(curvature, testing::Each(testing::Ge(0)));
 }
 
 // The key is below the second projection, whose own outlines it names.
@@ -164,38 +260,30 @@ TEST(SolutionPicture, NamesObstaclesInTheKeyOfBothKindsOfPicture) {
     const Picture picture = solution_picture(scene, {solve(scene, Model::energy)});
     const Panel& last = picture.rows.front().front().front().panels.back();
     EXPECT_EQ(picture.rows.front().front().front().panels.size(), sideways == 0 ? 1U : 2U);
-    EXPECT_THAT(last.script, HasSubstr("title \"obstacles"));
-    std::size_t titles = 0;
-    for (std::size_t at = last.script.find(" title "); at != std::string::npos;
-         at = last.script.find(" title ", at + 1)) {
-      ++titles;
-    }
-    EXPECT_EQ(titles, static_cast<std::size_t>(last.key_rows));
+    EXPECT_THAT(last.titles(), testing::Contains(HasSubstr("obstacles")));
+    EXPECT_TRUE(picture.rows.front().front().front().panels.front().titles().empty() ||
+                sideways == 0);
   }
 }
 
 TEST(CheckPicture, MarksTheWorstPointAndJoinsEachPointWithItsPlaceOnTheRod) {
   const Scene scene = test::heavy_scene(2, -30);
-  MeasuredShape shape{.file = "mine.csv"};
-  const Solution rod = solve(scene, Model::energy, {}, equal_arc_lengths(scene.length, 9));
-  shape.points = rod.shape.points;
-  shape.arc_length = rod.shape.arc_length;
   constexpr double off = 0.03;
-  shape.points(1, 5) += off;
+  const MeasuredShape shape = measured(scene, 9, off);
   const ShapeCheck check = check_shape(scene, shape, {.modulus = ModulusSearch::no});
   const Picture picture = check_picture(scene, check, 0.02);
   const Figure& shapes = picture.rows.at(0).at(0).at(0);
-  const auto worst = rows_of(shapes, "worst");
-  ASSERT_EQ(worst.size(), 1U);
-  for (int axis = 0; axis < 3; ++axis) {
-    EXPECT_NEAR(worst[0].at(static_cast<std::size_t>(axis) + 1), shape.points(axis, 5), 1e-9);
-  }
-  const auto whiskers = rows_of(shapes, "whisker");
-  ASSERT_EQ(whiskers.size(), 18U);
-  EXPECT_NEAR(whiskers[11].at(2) - whiskers[10].at(2), off, 1e-6);
+  const Curve worst = curve_of(shapes, "worst");
+  ASSERT_EQ(worst.x.size(), 1U);
+  EXPECT_NEAR(worst.x[0], shape.points(0, 5), 1e-9);
+  EXPECT_NEAR(worst.y[0], shape.points(1, 5), 1e-9);
+  const Curve whiskers = curve_of(shapes, "whisker");
+  ASSERT_EQ(whiskers.x.size(), 27U);
+  EXPECT_NEAR(whiskers.y[16] - whiskers.y[15], off, 1e-6);
+  EXPECT_TRUE(std::isnan(whiskers.y[17]));
   const Figure& distance = picture.rows.at(0).at(1).at(0);
-  EXPECT_NEAR(rows_of(distance, "distance").at(5).at(1), off, 1e-6);
-  EXPECT_THAT(distance.panels.front().script, HasSubstr("tolerance 20 mm"));
+  EXPECT_NEAR(curve_of(distance, "distance").y.at(3 * 5 + 1), off * 1e3, 1e-3);
+  EXPECT_EQ(titled(distance.panels.front(), "tolerance 20 mm").y.at(0), 20);
 }
 
 TEST(ComparisonFigures, ShowTheDeviationThatIsTold) {
@@ -209,8 +297,8 @@ TEST(ComparisonFigures, ShowTheDeviationThatIsTold) {
   const auto marked = rows_of(figures.deviation, "force_largest");
   ASSERT_EQ(marked.size(), 1U);
   EXPECT_NEAR(marked[0].at(0), comparison.deviation.max_at_m, 1e-9);
-  EXPECT_FALSE(line_of(figures.shapes, "force").empty());
-  EXPECT_FALSE(line_of(figures.shapes, "energy").empty());
+  EXPECT_FALSE(curve_of(figures.shapes, "force").x.empty());
+  EXPECT_FALSE(curve_of(figures.shapes, "energy").x.empty());
 }
 
 TEST(BudgetFigure, HasBarsThatAddUpToTheTotal) {
@@ -227,38 +315,104 @@ TEST(BudgetFigure, HasBarsThatAddUpToTheTotal) {
   EXPECT_THAT(figure.csv, AllOf(HasSubstr("law: "), Not(HasSubstr("twist"))));
 }
 
+TEST(BudgetFigure, HasNoRowForAShareOfZero) {
+  Comparison comparison;
+  comparison.budget.law = {.rms_m = 1, .share = 0.7};
+  comparison.budget.bookkeeping = {.rms_m = 1, .share = 0.3};
+  comparison.budget.stretch = {.rms_m = 1e-5, .share = 4e-5};
+  comparison.budget.discretisation = {.rms_m = 1e-5, .share = -4e-5};
+  const Panel panel = budget_figure({comparison}, 1).panels.at(0);
+  std::vector<std::string> words;
+  for (const Text& text : panel.texts) words.push_back(text.words);
+  EXPECT_THAT(words, testing::ElementsAre(HasSubstr("70.00 %"), HasSubstr("30.00 %")));
+  EXPECT_EQ(panel.curves.back().x.size(), 2 * 5U);
+}
+
+BenchmarkRun run(int size, double seconds, double rms, bool front) {
+  BenchmarkRun run{.model = Model::chain, .size = size};
+  run.variant.emplace();
+  run.time.median_s = seconds;
+  run.rms_over_length = rms;
+  run.front = front;
+  return run;
+}
+
+TEST(FrontFigure, TellsNAtThePointsOfTheFront) {
+  SceneBenchmark scene;
+  scene.runs = {run(64, 4e-3, 1e-5, true), run(8, 1e-3, 1e-2, true), run(16, 5e-3, 1e-3, false)};
+  const Panel panel = front_figure(scene, 1).panels.at(0);
+  ASSERT_EQ(panel.texts.size(), 2U);
+  EXPECT_EQ(panel.texts[0].words, "8");
+  EXPECT_EQ(panel.texts[1].words, "64");
+  const Curve front = titled(panel, "the front");
+  EXPECT_THAT(front.x, testing::ElementsAre(1, 4));
+  EXPECT_EQ(panel.texts[1].x, front.x[1]);
+  EXPECT_EQ(panel.texts[1].y, front.y[1]);
+}
+
 TEST(SweepPicture, DrawsLinesForAFewValuesOfTheSecondFieldAndElseAMap) {
   SweptField x{.column = "gamma", .values = {"1", "10"}, .logarithmic = true};
   SweptField y{.column = "rod.length [m]", .values = {"1", "2"}};
   const std::string header = "row,gamma,rod.length [m],energy_J,status\n";
   const std::vector<std::string> rows = {"0,1,1,5,ok\n", "1,1,2,6,ok\n", "2,10,1,7,ok\n",
                                          "3,10,2,8,ok\n"};
-  const auto script = [&] {
-    return sweep_picture({x, y}, header, rows, {"energy_J"})
-        .rows.at(0)
-        .at(0)
-        .at(0)
-        .panels.at(0)
-        .script;
+  const auto panel = [&] {
+    return sweep_picture({x, y}, header, rows, {"energy_J"}).rows.at(0).at(0).at(0).panels.at(0);
   };
-  EXPECT_THAT(script(),
-              AllOf(HasSubstr("set logscale x"), HasSubstr("every 2::0 using 2:4"),
-                    HasSubstr("every 2::1 using 2:4"), HasSubstr("'rod.length [m] = 2'")));
+  const Panel lines = panel();
+  EXPECT_TRUE(lines.x.logarithmic);
+  ASSERT_EQ(lines.curves.size(), 2U);
+  EXPECT_THAT(lines.curves[0].y, testing::ElementsAre(5, 7));
+  EXPECT_THAT(lines.curves[1].x, testing::ElementsAre(1, 10));
+  EXPECT_THAT(lines.curves[1].y, testing::ElementsAre(6, 8));
+  EXPECT_EQ(lines.curves[1].title, "rod.length [m] = 2");
   y.values = {"1", "2", "3", "4", "5", "6", "7"};
-  EXPECT_THAT(script(), AllOf(HasSubstr("palette"), HasSubstr("using 2:3:4")));
+  EXPECT_TRUE(panel().cells);
   y.values.back() = "steel";
-  EXPECT_THAT(script(), Not(HasSubstr("palette")));
+  EXPECT_FALSE(panel().cells);
   x.values.back() = "steel";
-  EXPECT_THROW((void)script(), InputError);
+  EXPECT_THROW((void)panel(), InputError);
+}
+
+// Also of fields whose values fall: cells meet, and none is between them.
+TEST(SweepPicture, HasAMapWhoseCellsMeet) {
+  const SweptField x{.column = "gamma", .values = {"1", "10", "100"}, .logarithmic = true};
+  const SweptField y{.column = "length", .values = {"7", "6", "5", "4", "3", "2", "1"}};
+  std::vector<std::string> rows;
+  for (const std::string& gamma : x.values) {
+    for (const std::string& length : y.values) {
+      rows.push_back("0," + gamma + ",\"a, b\"," +
+                     std::to_string(std::stod(gamma) + std::stod(length)) + "\n");
+    }
+  }
+  const Panel panel =
+      sweep_picture({x, y}, "row,gamma,length,sum\n", rows, {"sum"}).rows[0][0][0].panels[0];
+  const Cells& cells = panel.cells.value();
+  ASSERT_EQ(cells.x.size(), 4U);
+  EXPECT_THAT(cells.y, testing::ElementsAre(0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5));
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(std::log10(cells.x[i]), double(i) - 0.5, 1e-12);
+  EXPECT_EQ(panel.x.from, cells.x.front());
+  EXPECT_EQ(panel.x.to, cells.x.back());
+  EXPECT_THAT(cells.range(), testing::Pair(2, 107));
+  EXPECT_EQ(cells.values.front(), 2);
+  EXPECT_EQ(cells.values[2], 101);
+  EXPECT_EQ(cells.values.back(), 107);
+  EXPECT_THAT(picture_script({{{{Figure{.panels = {panel}}}}}}, PictureFormat::svg, "a.svg"),
+              HasSubstr("with boxxyerror"));
 }
 
 TEST(MapFigure, HasTheAxisThatVaries) {
   StabilityMap map{.scene = "a", .axis = MapAxis::c_h};
-  EXPECT_THAT(map_figure(map).panels.at(0).script,
-              AllOf(HasSubstr("set logscale y"), HasSubstr("? $3 : NaN):4")));
-  map.axis = MapAxis::c_c;
-  EXPECT_THAT(map_figure(map).panels.at(0).script,
-              AllOf(HasSubstr("set logscale xy"), HasSubstr("? $2 : NaN):4")));
+  map.points = {{.c_c = 2, .c_h = 0.5, .c_F = 3, .outcome = Outcome::diverges}};
+  for (const MapAxis axis : {MapAxis::c_h, MapAxis::c_c}) {
+    map.axis = axis;
+    const Panel panel = map_figure(map).panels.at(0);
+    EXPECT_TRUE(panel.y.logarithmic);
+    EXPECT_EQ(panel.x.logarithmic, axis == MapAxis::c_c);
+    const Curve diverges = titled(panel, "diverges");
+    EXPECT_THAT(diverges.x, testing::ElementsAre(axis == MapAxis::c_c ? 2 : 0.5));
+    EXPECT_THAT(diverges.y, testing::ElementsAre(3));
+  }
 }
 
 TEST(FitPicture, HasAProfileThatReachesItsLimitAtTheEndsOfTheInterval) {
@@ -281,12 +435,12 @@ TEST(FitPicture, HasAProfileThatReachesItsLimitAtTheEndsOfTheInterval) {
   const Picture picture = fit_picture({scene}, fit);
   ASSERT_EQ(picture.rows.at(0).size(), 2U);
   const Figure& drawn = picture.rows[0][1].at(0);
-  EXPECT_EQ(rows_of(drawn, "rod").size(), 201U);
-  EXPECT_EQ(rows_of(drawn, "file").size(), 12U);
+  EXPECT_EQ(curve_of(drawn, "rod").x.size(), 201U);
+  EXPECT_EQ(curve_of(drawn, "file").x.size(), 12U);
 }
 
 TEST(PictureScript, NamesItsTerminal) {
-  const Figure figure{.name = "a", .title = "it's `a` title", .csv_file = "a.csv", .panels = {{}}};
+  const Figure figure{.name = "a", .title = "it's `a` title", .panels = {{}}};
   const Picture picture{{{{figure}, {figure}}, {{figure, figure}}}};
   EXPECT_THAT(picture_script(picture, PictureFormat::svg, "plot.svg"),
               AllOf(HasSubstr("set terminal svg size 920,"),
@@ -299,7 +453,8 @@ TEST(PictureScript, NamesItsTerminal) {
 
 /// Width of a letter over that of a picture, as gnuplot has it once it has drawn one.
 double letter_share(PictureFormat format, const std::filesystem::path& folder) {
-  const Figure figure{.name = "a", .title = "a", .panels = {{.script = "plot x\n"}}};
+  const Figure figure{
+      .name = "a", .title = "a", .panels = {{.curves = {{.x = {0, 1}, .y = {0, 1}}}}}};
   std::ofstream(folder / "a.gp") << picture_script({{{{figure}}}}, format, "a.out")
                                  << "set print 'share'\n"
                                     "print real(GPVAL_TERM_HCHAR) / GPVAL_TERM_XSIZE\n";

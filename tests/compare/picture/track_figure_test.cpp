@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "report/report.hpp"
@@ -47,15 +48,6 @@ Rows rows_of(const std::string& csv) {
   return rows;
 }
 
-/// Two numbers between a word of a script and the end of its line, such as a range.
-std::array<double, 2> numbers_after(const std::string& script, const std::string& word) {
-  std::istringstream line(script.substr(script.find(word) + word.size()));
-  std::array<double, 2> numbers{};
-  char between = 0;
-  line >> numbers[0] >> between >> numbers[1];
-  return numbers;
-}
-
 TEST(TrackFigures, StripHasTheShapesOfItsFrames) {
   const Motion motion(corner_routing, 20);
   const Figure strip = motion.figures().strip;
@@ -73,7 +65,7 @@ TEST(TrackFigures, StripHasTheShapesOfItsFrames) {
     EXPECT_NEAR(std::stod(row[3]), middle.shape.points(1, point), 1e-9);
     ++point;
   }
-  EXPECT_THAT(strip.panels.front().script, testing::HasSubstr("'t = 1 s'"));
+  EXPECT_EQ(strip.panels.front().texts.at(4).words, "t = 1 s");
 }
 
 // A wall goes on without end, and the cells beside it are not its place.
@@ -81,37 +73,30 @@ TEST(TrackFigures, NothingOfAStripLeavesItsCell) {
   const Motion motion(buckling_wire, 20);
   const Figure strip = motion.figures().strip;
   const Panel& panel = strip.panels.front();
-  const std::array<double, 2> right = numbers_after(panel.script, "set xrange [");
-  const std::array<double, 2> up = numbers_after(panel.script, "set yrange [");
-  const double wide = numbers_after(panel.script, "set xtics ")[1];
-  const double high = numbers_after(panel.script, "set ytics ")[1];
-  EXPECT_NEAR(plot_width / right[1], panel.height / up[1], 0.01 * plot_width / right[1]);
-  std::map<std::string, std::array<double, 2>> shifts;
-  std::istringstream script(panel.script);
-  for (std::string line; std::getline(script, line);) {
-    const std::size_t name = line.find("eq '");
-    if (name == std::string::npos) continue;
-    const std::string id = line.substr(name + 4, line.find('\'', name + 4) - name - 4);
-    shifts[id] = {std::stod(line.substr(line.find("? $3") + 4)),
-                  std::stod(line.substr(line.find("($4") + 3))};
-  }
+  const double right = panel.x.to.value();
+  const double up = panel.y.to.value();
+  const double wide = panel.x.tics->at(1).at;
+  const double high = panel.y.tics->at(1).at;
+  EXPECT_NEAR(plot_width / right, panel.height / up, 0.01 * plot_width / right);
+  const int columns = static_cast<int>(std::lround(right / wide));
+  const int rows = static_cast<int>(std::lround(up / high));
   int obstacles = 0;
-  for (const auto& row : rows_of(strip.csv)) {
-    const std::string& id = row.front();
-    ASSERT_EQ(shifts.count(id), 1U) << id;
+  for (const Curve& curve : panel.curves) {
+    const std::string& id = curve.id;
     if (id.rfind("clamp", 0) == 0 || id.rfind("gripper", 0) == 0) continue;
     if (id.rfind("obstacle", 0) == 0) ++obstacles;
     const int cell = std::stoi(id.substr(id.rfind('_') + 1)) - 1;
-    const int columns = static_cast<int>(std::lround(right[1] / wide));
-    const int rows = static_cast<int>(std::lround(up[1] / high));
-    const double x = std::stod(row[2]) + shifts[id][0] - wide * (cell % columns);
-    const int above = rows - 1 - cell / columns;
-    const double y = std::stod(row[3]) + shifts[id][1] - high * above;
+    const double left = wide * (cell % columns);
+    const double below = high * (rows - 1 - cell / columns);
     const double round = 1e-4 * wide;
-    EXPECT_GE(x, -round) << id;
-    EXPECT_LE(x, wide + round) << id;
-    EXPECT_GE(y, -round) << id;
-    EXPECT_LE(y, high + round) << id;
+    for (const double x : curve.x) {
+      EXPECT_GE(x, left - round) << id;
+      EXPECT_LE(x, left + wide + round) << id;
+    }
+    for (const double y : curve.y) {
+      EXPECT_GE(y, below - round) << id;
+      EXPECT_LE(y, below + high + round) << id;
+    }
   }
   EXPECT_GT(obstacles, 0);
 }
@@ -130,16 +115,17 @@ TEST(TrackFigures, ForcesAreThoseOfTheFrames) {
     EXPECT_NEAR(std::stod(rows[i][4]), load.torque.norm(), 1e-9 * load.torque.norm());
   }
   ASSERT_FALSE(motion.followed.events.empty());
-  std::size_t lines = 0;
-  const std::string& script = forces.panels.front().script;
-  for (std::size_t at = script.find("set arrow"); at != std::string::npos;
-       at = script.find("set arrow", at + 1)) {
-    const double time = std::stod(script.substr(at + 15));
-    const TrackEvent& event = motion.followed.events.at(lines);
-    EXPECT_NEAR(time, motion.followed.frames[event.frame].time, 1e-7);
-    ++lines;
+  std::multiset<double> drawn;
+  for (const Curve& curve : forces.panels.front().curves) {
+    for (std::size_t i = 0; i < curve.y.size(); ++i) {
+      if (curve.y[i] == HUGE_VAL) drawn.insert(curve.x[i]);
+    }
   }
-  EXPECT_EQ(lines, motion.followed.events.size());
+  std::multiset<double> times;
+  for (const TrackEvent& event : motion.followed.events) {
+    times.insert(motion.followed.frames[event.frame].time);
+  }
+  EXPECT_EQ(drawn, times);
 }
 
 }  // namespace

@@ -197,7 +197,7 @@ TEST_F(ReportFolder, DrawsTheObstaclesInReachAndWhatTouches) {
   ASSERT_FALSE(heights["contact"].empty());
   for (const double height : heights["contact"]) EXPECT_NEAR(height, floor, 1e-6 * l);
   const std::string script = text_of(place() / "report" / "shapes_1.gp");
-  EXPECT_THAT(script, AllOf(HasSubstr("'obstacle_1_xy'"), HasSubstr("'contact'")));
+  EXPECT_THAT(script, AllOf(HasSubstr("# obstacle_1_xy\n"), HasSubstr("# contact\n")));
   const std::size_t range = script.find("set yrange [") + 12;
   EXPECT_GT(std::stod(script.substr(range)), floor - 2 * l);
 }
