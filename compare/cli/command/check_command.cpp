@@ -48,7 +48,8 @@ void write_page(const CheckOptions& options, const compare::CheckResult& result,
   for (const compare::PictureRow& row : picture_of(result).rows) {
     for (const std::vector<compare::Figure>& column : row) {
       for (const compare::Figure& figure : column) {
-        compare::PageFigure& drawn = parts.figures.emplace_back(figure);
+        parts.figures.push_back({.figure = figure});
+        compare::PageFigure& drawn = parts.figures.back();
         try {
           const std::string svg = drawn_picture({{{{figure}}}}, compare::PictureFormat::svg,
                                                 "--report " + options.report);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dlo/compare/scene.hpp"
+#include "figure/gnuplot_script.hpp"
 #include "figure/layout.hpp"
 #include "figure/sketch.hpp"
 #include "option/output.hpp"

@@ -21,24 +21,17 @@ std::string cause_of(const CheckResult& result) {
                      best.kind == ExplanationKind::discretisation ? "it were " : "", best.cause);
 }
 
-std::string number(const std::string& name, const std::string& value, const std::string& beside) {
-  return fmt::format("<div><dt>{}</dt><dd><strong>{}</strong> <span>{}</span></dd></div>\n",
-                     escape_markup(name), escape_markup(value), escape_markup(beside));
-}
-
 std::string three_numbers(const CheckResult& result) {
   const ShapeCheck& check = result.check;
   const Deviation& d = check.deviation;
   const EffectiveModulus& modulus = check.effective_modulus;
   const bool told = is_identified(modulus.optimum);
   const std::string why_not = modulus.why_none.empty() ? "not identified" : modulus.why_none;
-  return "<dl class=\"three\">\n" +
-         number("RMS distance", millimetres(d.rms_m),
-                page_percent(d.rms_over_length) + " of the length") +
-         number("largest", millimetres(d.max_m), fmt::format("at s = {:.4g} m", d.max_at_m)) +
-         number("E*/E", told ? page_number(modulus.ratio) : "\u2013",
-                told ? millimetres(modulus.rms_m) + " away with it" : why_not) +
-         "</dl>\n";
+  return to_html(std::vector<HtmlNumber>{
+      {"RMS distance", millimetres(d.rms_m), page_percent(d.rms_over_length) + " of the length"},
+      {"largest", millimetres(d.max_m), fmt::format("at s = {:.4g} m", d.max_at_m)},
+      {"E*/E", told ? page_number(modulus.ratio) : "\u2013",
+       told ? millimetres(modulus.rms_m) + " away with it" : why_not}});
 }
 
 /// escape_markup() of lines, which stay lines.
@@ -70,21 +63,6 @@ std::string figures_of(const CheckPageParts& parts) {
   return out + "</div>\n";
 }
 
-constexpr const char* page_style = R"~~~(
-.screen { display: grid; grid-template-columns: 1fr; gap: 1rem 2rem; }
-@media (min-width: 70rem) { .screen { grid-template-columns: 2fr 3fr; } }
-.badge { display: inline-block; margin: 0.4rem 0; padding: 0.2rem 1rem; border-radius: 6px; font-size: 1.6rem;
-  font-weight: 700; color: #ffffff; background: #1a7f37; }
-.badge.fail { background: #b3261e; }
-.screen p { margin: 0.5rem 0; font-size: 1.05rem; }
-.screen .badge { font-size: 1.6rem; }
-.three { display: flex; flex-wrap: wrap; gap: 0.6rem 2rem; }
-.three strong { display: block; font-size: 1.4rem; font-variant-numeric: tabular-nums; }
-.three span, .three dt { color: var(--faint); font-size: 0.9rem; }
-.figures { grid-template-columns: repeat(auto-fit, minmax(min(100%, 20rem), 1fr)); align-content: start; }
-pre { overflow-x: auto; font: 0.8rem/1.4 ui-monospace, monospace; background: var(--card); padding: 0.8rem; }
-)~~~";
-
 }  // namespace
 
 std::string check_page(const CheckResult& result, const CheckPageParts& parts) {
@@ -94,11 +72,10 @@ std::string check_page(const CheckResult& result, const CheckPageParts& parts) {
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta name=\"generator\" content=\"dlo check\">\n<link rel=\"icon\" href=\"data:,\">\n"
-      "<title>{0}: {1}</title>\n<style>{2}{3}</style>\n</head>\n<body>\n<main>\n"
+      "<title>{0}: {1}</title>\n<style>{2}</style>\n</head>\n<body>\n<main>\n"
       "<h1>{0}</h1>\n<div class=\"screen\">\n<div>\n",
-      escape_markup(result.check.scene), word, report_style, page_style);
-  out += fmt::format("<p class=\"badge {0}\">{1} {0}</p>\n", word,
-                     result.passes() ? "\u2713" : "\u2717");
+      escape_markup(result.check.scene), word, report_style);
+  out += html_badge(result.passes(), word);
   out +=
       fmt::format("<p>{} is {} away from the rod ({}). Allowed: {}{}.</p>\n",
                   escape_markup(result.check.file), millimetres(result.judgement.judged_m),

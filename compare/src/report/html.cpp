@@ -49,4 +49,19 @@ std::string to_html(const HtmlTable& table) {
   return out + "</tbody>\n</table>\n</div>\n";
 }
 
+std::string to_html(const std::vector<HtmlNumber>& numbers) {
+  std::string out = "<dl class=\"three\">\n";
+  for (const HtmlNumber& number : numbers) {
+    out += fmt::format("<div><dt>{}</dt><dd><strong>{}</strong> <span>{}</span></dd></div>\n",
+                       escape_markup(number.name), escape_markup(number.value),
+                       escape_markup(number.beside));
+  }
+  return out + "</dl>\n";
+}
+
+std::string html_badge(bool pass, const std::string& words) {
+  return fmt::format("<p class=\"badge {}\">{} {}</p>\n", pass ? "pass" : "fail",
+                     pass ? "\u2713" : "\u2717", escape_markup(words));
+}
+
 }  // namespace dlo::compare

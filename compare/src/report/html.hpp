@@ -34,4 +34,14 @@ struct HtmlTable {
 /// The first cell of a row is its head. A table too wide for the page scrolls by itself.
 [[nodiscard]] std::string to_html(const HtmlTable& table);
 
+/// A number that is shown large.
+struct HtmlNumber {
+  std::string name, value, beside;
+};
+
+[[nodiscard]] std::string to_html(const std::vector<HtmlNumber>& numbers);
+
+/// A verdict in colour, with a mark and in words.
+[[nodiscard]] std::string html_badge(bool pass, const std::string& words);
+
 }  // namespace dlo::compare

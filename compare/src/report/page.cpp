@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include "base/quote.hpp"
@@ -58,6 +59,7 @@ class Page {
   }
   /// @param bold  how many of the first ones
   void list(const std::vector<std::string>& items, std::size_t bold = 0) {
+    if (items.empty()) return;
     out_ += "<ul>\n";
     for (std::size_t i = 0; i < items.size(); ++i) {
       const std::string text = escape_markup(items[i]);
@@ -65,10 +67,18 @@ class Page {
     }
     out_ += "</ul>\n";
   }
-  void open_box() { out_ += "<div class=\"verdict\">\n"; }
-  void close_box() { out_ += "</div>\n"; }
+  /// Its first part is a verdict, with numbers; beside it a figure, which no section shows again.
+  void screen(const std::string& verdict, const std::string& figure) {
+    out_ += "<div class=\"screen\">\n<div>\n" + verdict + "</div>\n<div class=\"figures\">\n";
+    for (const PageFigure& entry : figures_) {
+      if (entry.figure.name != figure) continue;
+      add_figure(entry);
+      shown_ = figure;
+    }
+    out_ += "</div>\n</div>\n";
+  }
   void folded_list(const std::string& summary, const std::vector<std::string>& items) {
-    out_ += "<details open><summary>" + escape_markup(summary) + "</summary>\n";
+    out_ += "<details><summary>" + escape_markup(summary) + "</summary>\n";
     list(items);
     out_ += "</details>\n";
   }
@@ -95,7 +105,7 @@ class Page {
     }
     out_ += "<div class=\"figures\">\n";
     for (const PageFigure& entry : figures_) {
-      if (entry.figure.section == section) add_figure(entry);
+      if (entry.figure.section == section && entry.figure.name != shown_) add_figure(entry);
     }
     out_ += "</div>\n";
   }
@@ -106,14 +116,15 @@ class Page {
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
         "<meta name=\"generator\" content=\"dlo report\">\n<link rel=\"icon\" href=\"data:,\">\n"
-        "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<header>\n<h1>{0}</h1>\n",
+        "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<header>\n<h1>{0}</h1>\n</"
+        "header>\n",
         escape_markup(title), report_style);
     page += "<nav aria-label=\"Sections\"><ul>\n";
     for (const auto& [id, heading, seen] : sections_) {
       page += fmt::format("<li{}><a href=\"#{}\">{}</a></li>\n", hidden(seen), id,
                           escape_markup(heading));
     }
-    page += "</ul></nav>\n</header>\n<main>\n" + out_ + (open_ ? "</section>\n" : "") + "</main>\n";
+    page += "</ul></nav>\n<main>\n" + out_ + (open_ ? "</section>\n" : "") + "</main>\n";
     page += "<script type=\"application/json\" id=\"page-data\">" + data + "</script>\n";
     return page + "<script>\n" + std::string(builtin::interactive_js) +
            "</script>\n</body>\n</html>\n";
@@ -149,19 +160,44 @@ class Page {
   const std::vector<PageFigure>& figures_;
   std::string out_;
   std::vector<Section> sections_;
+  std::string shown_;  // the figure of the first screen
   bool open_ = false;
 };
 
+/// The first screen: what has to be seen by somebody who sees nothing else.
+void add_first_screen(const Report& report, Page& page) {
+  const std::optional<ReportSummary> summary = report_summary(report);
+  if (!summary) return;
+  const Comparison& worst = report.scenes[summary->worst].comparisons.front();
+  const EffectiveModulus& modulus = worst.effective_modulus;
+  const bool told = is_identified(modulus.optimum);
+  const bool pass = summary->right == summary->count && report.failures.empty();
+  std::string out = html_badge(pass, fmt::format("{} of {} right", summary->right, summary->count));
+  out += fmt::format(
+      "<p>The scenes' own force model is right within {} of the length (RMS) in {} of {}. Worst is "
+      "{}.</p>\n<p><strong>The main reason there is {}.</strong></p>\n",
+      page_percent(report.options.tolerance), summary->right, summary->count,
+      escape_markup(worst.scene), escape_markup(summary->main_reason));
+  out += to_html(std::vector<HtmlNumber>{
+      {"RMS distance", page_percent(worst.deviation.rms_over_length), "of the length"},
+      {"largest", page_number(worst.deviation.max_m * 1e3) + "\u00a0mm",
+       fmt::format("at s = {:.4g} m", worst.deviation.max_at_m)},
+      {"E*/E", told ? page_number(modulus.ratio) : "\u2013", told ? "at rest" : "not identified"}});
+  page.screen(out, fmt::format("shapes_{}", summary->worst + 1));
+}
+
 void add_verdict(const Report& report, Page& page) {
   page.section("verdict", "Verdict");
+  const std::vector<std::string> verdict = report_verdict(report);
+  const auto failures = static_cast<std::ptrdiff_t>(report.failures.size());
   if (report.options.quick) {
     page.paragraph(
         "A quick report (--quick): a short benchmark, a coarse map, no hard cases. Without it the "
         "times and limits are surer.");
   }
-  page.open_box();
-  page.list(report_verdict(report), report.failures.size());
-  page.close_box();
+  page.list(std::vector(verdict.begin(), verdict.begin() + failures), report.failures.size());
+  add_first_screen(report, page);
+  page.folded_list("All findings", std::vector(verdict.begin() + failures, verdict.end()));
   page.paragraph(fmt::format(
       "Every number names its law (how a joint's moment grows with its angle: paper, cubic; hooke, "
       "linear) and its bookkeeping (where the grip and the weights are: paper, first order; "
@@ -193,7 +229,8 @@ std::string rows_without_command(const Report& report) {
 }
 
 void add_shapes(const Report& report, Page& page) {
-  page.section("shapes", "Shapes and curvature");
+  page.section("shapes", report.paper ? "Shapes and curvature: the paper's Figs. 12 and 13"
+                                      : "Shapes and curvature");
   page.paragraph(
       "Both models at rest, drawn with one scale for both axes. Besides the force model as the "
       "scene "
@@ -363,8 +400,8 @@ std::string report_page(const Report& report, const std::vector<PageFigure>& fig
                         const ReportMaker& maker, const std::string& drawn_by) {
   Page page(figures);
   add_verdict(report, page);
-  add_shapes(report, page);
   add_interactive(page);
+  add_shapes(report, page);
   add_motion(report, page);
   add_modulus(report, page);
   add_speed(report, page);

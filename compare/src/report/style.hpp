@@ -20,13 +20,22 @@ h1 { font-size: 1.6rem; line-height: 1.25; margin: 0.5rem 0; }
 h2 { font-size: 1.25rem; margin: 2.2rem 0 0.6rem; padding-top: 0.6rem; border-top: 1px solid var(--line); }
 h3 { font-size: 1.05rem; margin: 1.4rem 0 0.4rem; }
 a { color: var(--accent); }
-nav ul { list-style: none; margin: 0.8rem 0 0; padding: 0; display: flex; flex-wrap: wrap; gap: 0.2rem 1rem; }
+nav { position: sticky; top: 0; z-index: 2; background: var(--back); border-bottom: 1px solid var(--line); }
+nav ul { list-style: none; margin: 0; padding: 0; display: flex; overflow-x: auto; white-space: nowrap; gap: 0.2rem 1rem; }
+section { scroll-margin-top: 3rem; }
 nav a { display: inline-block; padding: 0.3rem 0; }
 .faint, figcaption, caption { color: var(--faint); font-size: 0.9rem; }
-.verdict { background: var(--card); border-left: 4px solid var(--accent); padding: 0.4rem 1rem; }
-.verdict ul { padding-left: 1.1rem; }
-.verdict li { margin: 0.5rem 0; }
-.verdict li:first-child { font-weight: 600; }
+.screen { display: grid; grid-template-columns: 1fr; gap: 1rem 2rem; }
+@media (min-width: 70rem) { .screen { grid-template-columns: 2fr 3fr; } }
+.screen .figures { grid-template-columns: repeat(auto-fit, minmax(min(100%, 20rem), 1fr)); align-content: start; }
+.screen p { margin: 0.5rem 0; font-size: 1.05rem; }
+p.badge { display: inline-block; margin: 0.4rem 0; padding: 0.2rem 1rem; border-radius: 6px;
+  font-size: 1.6rem; font-weight: 700; color: #ffffff; background: #1a7f37; }
+p.badge.fail { background: #b3261e; }
+dl.three { display: flex; flex-wrap: wrap; gap: 0.6rem 2rem; }
+.three strong { display: block; font-size: 1.4rem; font-variant-numeric: tabular-nums; }
+.three span, .three dt { color: var(--faint); font-size: 0.9rem; }
+pre { overflow-x: auto; font: 0.8rem/1.4 ui-monospace, monospace; background: var(--card); padding: 0.8rem; }
 .figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 28rem), 1fr)); gap: 1.2rem; }
 figure { margin: 0; min-width: 0; }
 figure svg { display: block; width: 100%; max-width: 32rem; height: auto; }
@@ -86,7 +95,7 @@ details summary { cursor: pointer; padding: 0.3rem 0; }
   body { padding: 0; max-width: none; font-size: 10pt; }
   nav, #interactive { display: none; }
   figure svg { filter: none; max-width: 11cm; }
-  figure, tr, .verdict { break-inside: avoid; }
+  figure, tr, .screen { break-inside: avoid; }
   h2, h3, caption { break-after: avoid; }
   .table { overflow: visible; }
   table { font-size: 7.5pt; }

@@ -185,6 +185,23 @@ void say_stability(const Report& report, std::vector<std::string>& verdict) {
 
 }  // namespace
 
+std::optional<ReportSummary> report_summary(const Report& report) {
+  ReportSummary result;
+  double worst = -1;
+  for (std::size_t i = 0; i < report.scenes.size(); ++i) {
+    if (report.scenes[i].comparisons.empty()) continue;
+    const Comparison& own = report.scenes[i].comparisons.front();
+    const double off = own.deviation.rms_over_length;
+    ++result.count;
+    if (off <= report.options.tolerance) ++result.right;
+    if (!(off > worst)) continue;
+    worst = off;
+    result.worst = i;
+    result.main_reason = largest_part(own.budget);
+  }
+  return result.count > 0 ? std::optional(result) : std::nullopt;
+}
+
 std::vector<std::string> report_verdict(const Report& report) {
   std::vector<std::string> verdict;
   for (const std::string& failure : report.failures) {

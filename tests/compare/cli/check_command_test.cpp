@@ -2,13 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "base/quote.hpp"
+#include "batch/read_sweep.hpp"
 #include "command_fixture.hpp"
 
 namespace {
 
+namespace compare = dlo::compare;
 using dlo::test::Command;
 using dlo::test::Outcome;
 using nlohmann::json;
@@ -60,6 +64,84 @@ TEST_F(CheckCommand, ExitStatusIsTheVerdict) {
             std::string::npos);
 }
 
+TEST_F(CheckCommand, WithoutAToleranceTheVerdictIsOfOnePercent) {
+  const std::string file = path("chain.csv");
+  ASSERT_EQ(run("solve " + steel() + " --model chain --format csv -o " + file).status, 0);
+  const std::string check = "check " + steel() + " --shape " + file;
+  const json by_default = json::parse(run(check + " --format json").out);
+  const json asked = json::parse(run(check + " --tolerance 1% --format json").out);
+  EXPECT_EQ(by_default.at("verdict"), "fail");
+  EXPECT_EQ(by_default.at("tolerance").at("default"), true);
+  EXPECT_EQ(asked.at("tolerance").at("default"), false);
+  EXPECT_EQ(by_default.at("tolerance").at("allowed_m"), asked.at("tolerance").at("allowed_m"));
+  EXPECT_EQ(by_default.at("explanations"), asked.at("explanations"));
+  EXPECT_NE(run(check).out.find("allowed 5 mm = 1 % of l, the default"), std::string::npos);
+}
+
+TEST_F(CheckCommand, APassBesideAnotherStiffnessSaysWhyBothHold) {
+  const std::string file = path("stiffer.csv");
+  const std::string rod = R"(
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = "0 deg"
+[rod]
+length = 1
+mass_per_length = 0.1
+bending_stiffness = )";
+  const std::string stiff = scene(rod + "0.6\n");
+  ASSERT_EQ(run("solve " + stiff + " --samples 21 --format csv -o " + file).status, 0);
+  const std::string soft = scene(rod + "0.5\n");
+  const std::string words = "E*/E = 1.2 is no contradiction: ";
+  const std::string wide = run("check " + soft + " --tolerance 10% --shape " + file).out;
+  EXPECT_NE(wide.find(words), std::string::npos) << wide;
+  EXPECT_NE(wide.find("verdict         pass"), std::string::npos) << wide;
+  // Where it fails, E* is the explanation.
+  const std::string narrow = run("check " + soft + " --tolerance 0.1% --shape " + file).out;
+  EXPECT_EQ(narrow.find(words), std::string::npos) << narrow;
+}
+
+TEST_F(CheckCommand, TheReportIsOnePage) {
+  const std::string file = shape("x,y\n0,0\n0.3,<b>\n");
+  const std::string page = path("page.html");
+  const std::string check = "check " + steel() + " --report " + page + " --shape ";
+  EXPECT_EQ(run(check + file).status, 2);
+  EXPECT_FALSE(std::filesystem::exists(page)) << "nothing is written of what could not be read";
+  const std::string solved = path("a<b>&.csv");
+  ASSERT_EQ(
+      run("solve " + steel() + " --model chain --format csv -o " + compare::shell_word(solved))
+          .status,
+      0);
+  ASSERT_EQ(run(check + compare::shell_word(solved)).status, 0);
+  const std::string html = read(page);
+  EXPECT_NE(html.find("<p class=\"badge fail\">"), std::string::npos);
+  EXPECT_NE(html.find("a&lt;b&gt;&amp;.csv is 106.2"), std::string::npos);
+  EXPECT_EQ(html.find("a<b>"), std::string::npos);
+  EXPECT_NE(html.find("It would be "), std::string::npos) << "the cause";
+  for (const char* network : {"src=\"http", "href=\"http", "@import", "url("}) {
+    EXPECT_EQ(html.find(network), std::string::npos) << network;
+  }
+  ASSERT_EQ(run(check + compare::shell_word(solved) + " --tolerance 30%").status, 0);
+  EXPECT_NE(read(page).find("<p class=\"badge pass\">"), std::string::npos);
+  // Over one of its inputs it is not written.
+  EXPECT_EQ(run("check " + steel() + " --shape " + compare::shell_word(solved) + " --report " +
+                compare::shell_word(solved))
+                .status,
+            2);
+}
+
+TEST_F(CheckCommand, MarkdownIsASummary) {
+  const std::string file = path("a|b*.csv");
+  const std::string quoted = compare::shell_word(file);
+  ASSERT_EQ(run("solve " + steel() + " --model chain --format csv -o " + quoted).status, 0);
+  const std::string check = "check " + steel() + " --format markdown --shape " + quoted;
+  const std::string summary = run(check + " --tolerance 1%").out;
+  EXPECT_TRUE(summary.starts_with("### \u274c fail: ")) << summary;
+  EXPECT_NE(summary.find("RMS 106.2 mm, allowed 5 mm = 1 % of l"), std::string::npos) << summary;
+  EXPECT_NE(summary.find("a\\|b\\*.csv |\n"), std::string::npos) << summary;
+  EXPECT_TRUE(run(check + " --tolerance 30%").out.starts_with("### \u2705 pass: "));
+}
+
 TEST_F(CheckCommand, EveryFormatHasTheSameDeviation) {
   const std::string file = path("chain.csv");
   ASSERT_EQ(run("solve " + steel() + " --model chain --format csv -o " + file).status, 0);
@@ -68,8 +150,7 @@ TEST_F(CheckCommand, EveryFormatHasTheSameDeviation) {
   EXPECT_EQ(std::count(csv.out.begin(), csv.out.end(), '\n'), 2);
   const std::string header = csv.out.substr(0, csv.out.find('\n'));
   const std::string row = csv.out.substr(csv.out.find('\n') + 1);
-  EXPECT_EQ(std::count(header.begin(), header.end(), ','),
-            std::count(row.begin(), row.end(), ',') - 1);  // the scene's name has one
+  EXPECT_EQ(compare::fields_of(header), compare::fields_of(row));
   EXPECT_NE(run(check).out.find("RMS 106.2 mm = 21.23 % of l"), std::string::npos);
 }
 

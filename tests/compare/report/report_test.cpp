@@ -400,6 +400,21 @@ TEST_F(ReportFolder, SaysThatNothingWasRun) {
                             HasSubstr("(no time left)"), Not(HasSubstr("<tbody>\n</tbody>"))));
 }
 
+TEST(Report, SummarisesTheScenesOwnForceModelAndItsWorst) {
+  ReportOptions options = small_report();
+  options.tolerance = 0.02;
+  const Report report = make_report({heavy_file()}, options);
+  const std::optional<ReportSummary> summary = report_summary(report);
+  ASSERT_TRUE(summary);
+  EXPECT_EQ(summary->count, 1U);
+  EXPECT_EQ(summary->right, 0U) << "law paper, as the scene says, not hooke";
+  EXPECT_EQ(summary->worst, 0U);
+  EXPECT_THAT(summary->main_reason, HasSubstr("of the deviation"));
+  options.tolerance = 0.5;
+  EXPECT_EQ(report_summary(make_report({heavy_file()}, options))->right, 1U);
+  EXPECT_FALSE(report_summary(Report{}));
+}
+
 TEST(Report, PutsTheVerdictInNumbers) {
   ReportOptions options = small_report();
   const std::vector<std::string> verdict = report_verdict(make_report({heavy_file()}, options));
