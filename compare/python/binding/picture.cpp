@@ -3,34 +3,29 @@
 namespace dlo::python {
 namespace {
 
+using namespace py::literals;
+
 /// Tics that the figure asks for; None: those that the axes choose.
 py::dict axis_dict(const compare::PlotAxis& laid_out, const compare::PlotAxis& described) {
-  py::dict dict;
-  dict["label"] = laid_out.label;
-  dict["limits"] = py::make_tuple(*laid_out.from, *laid_out.to);
-  dict["log"] = laid_out.logarithmic;
-  dict["tics"] = py::none();
+  py::object tics = py::none();
   if (described.tics) {
-    py::list tics;
-    for (const compare::Tic& tic : *described.tics) tics.append(py::make_tuple(tic.at, tic.label));
-    dict["tics"] = tics;
+    py::list list;
+    for (const compare::Tic& tic : *described.tics) list.append(py::make_tuple(tic.at, tic.label));
+    tics = list;
   }
-  return dict;
+  return py::dict("label"_a = laid_out.label,
+                  "limits"_a = py::make_tuple(*laid_out.from, *laid_out.to),
+                  "log"_a = laid_out.logarithmic, "tics"_a = tics);
 }
 
 py::dict curve_dict(const compare::Curve& curve) {
-  py::dict dict;
-  dict["title"] = curve.title;
-  dict["points"] = curve.z.empty() ? py::make_tuple(curve.x, curve.y)
-                                   : py::make_tuple(curve.x, curve.y, curve.z);
   const compare::Look& look = curve.look;
-  dict["colour"] = look.colour;
-  dict["width"] = look.width;
-  dict["dashes"] = static_cast<int>(look.dashes);
-  dict["mark"] = static_cast<int>(look.mark);
-  dict["mark_size"] = look.mark_size;
-  dict["fill"] = look.fill;
-  return dict;
+  return py::dict(
+      "title"_a = curve.title,
+      "points"_a = curve.z.empty() ? py::make_tuple(curve.x, curve.y)
+                                   : py::make_tuple(curve.x, curve.y, curve.z),
+      "colour"_a = look.colour, "width"_a = look.width, "dashes"_a = static_cast<int>(look.dashes),
+      "mark"_a = static_cast<int>(look.mark), "mark_size"_a = look.mark_size, "fill"_a = look.fill);
 }
 
 }  // namespace
@@ -47,14 +42,9 @@ py::dict panel_dict(const compare::Panel& described) {
   for (const compare::Text& text : panel.texts) {
     texts.append(py::make_tuple(text.words, text.x, text.y, text.dx, text.dy));
   }
-  py::dict dict;
-  dict["size"] = py::make_tuple(compare::figure_width, panel.full_height());
-  dict["upright"] = panel.upright;
-  dict["equal"] = panel.equal_aspect;
-  dict["axes"] = axes;
-  dict["curves"] = curves;
-  dict["texts"] = texts;
-  return dict;
+  return py::dict("size"_a = py::make_tuple(compare::figure_width, panel.full_height()),
+                  "upright"_a = panel.upright, "equal"_a = panel.equal_aspect, "axes"_a = axes,
+                  "curves"_a = curves, "texts"_a = texts);
 }
 
 }  // namespace dlo::python

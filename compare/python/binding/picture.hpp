@@ -14,7 +14,7 @@ namespace dlo::python {
 namespace py = pybind11;
 
 /// What _plot.py draws of a panel.
-[[nodiscard]] py::dict panel_dict(const compare::Panel& panel);
+[[nodiscard]] py::dict panel_dict(const compare::Panel& described);
 
 /// How results with a shape show themselves.
 /// @param drawing  of a result, as the command has it

@@ -213,7 +213,7 @@ class Script {
 
   /// A block of numbers. @return its name
   std::string add_numbers(const Curve& curve) {
-    const std::string name = fmt::format("$numbers_{}", ++blocks_);
+    std::string name = fmt::format("$numbers_{}", ++blocks_);
     if (!curve.id.empty()) add("# {}\n", curve.id);
     add("{} << EOD\n", name);
     for (std::size_t i = 0; i < curve.x.size(); ++i) {

@@ -202,7 +202,8 @@ int Panel::legend_top() const {
 }
 
 int Panel::full_height() const {
-  return legend_top() + static_cast<int>(titles().size()) * key_row_pixels;
+  constexpr int below = 8;  // as far as the largest mark reaches
+  return legend_top() + static_cast<int>(titles().size()) * key_row_pixels + below;
 }
 
 Panel laid_out(Panel panel) {

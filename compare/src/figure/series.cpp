@@ -49,7 +49,35 @@ std::optional<Eigen::Vector3d> normal_to_reader(const Scene& scene, const View& 
   return normal;
 }
 
+/// The part of a convex outline within limits of one of its coordinates (Sutherland and Hodgman).
+Eigen::Matrix3Xd clipped(const Eigen::Matrix3Xd& outline, int axis, double limit, double sign) {
+  std::vector<Eigen::Vector3d> kept;
+  const Eigen::Index count = outline.cols();
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Vector3d a = outline.col(i);
+    const Eigen::Vector3d b = outline.col((i + 1) % count);
+    const double before = sign * (limit - a[axis]);
+    const double after = sign * (limit - b[axis]);
+    if (before >= 0) kept.push_back(a);
+    if ((before >= 0) != (after >= 0)) kept.emplace_back(a + (b - a) * (before / (before - after)));
+  }
+  Eigen::Matrix3Xd result(3, static_cast<Eigen::Index>(kept.size()));
+  for (std::size_t i = 0; i < kept.size(); ++i) result.col(static_cast<Eigen::Index>(i)) = kept[i];
+  return result;
+}
+
 }  // namespace
+
+Series within(Series outline, const View& view, const std::array<double, 2>& low,
+              const std::array<double, 2>& high) {
+  const std::array<int, 2> axes = {view.right, view.up};
+  for (std::size_t i = 0; i < 2; ++i) {
+    outline.points = clipped(outline.points, axes[i], low[i], -1);
+    outline.points = clipped(outline.points, axes[i], high[i], 1);
+  }
+  outline.arc_length.assign(static_cast<std::size_t>(outline.points.cols()), NAN);
+  return outline;
+}
 
 Eigen::Matrix3Xd side_by_side(const std::vector<const Eigen::Matrix3Xd*>& parts) {
   Eigen::Matrix3Xd all(3, 0);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
@@ -39,6 +40,11 @@ struct Drawing {
   std::vector<View> views;
   std::vector<Series> series;  ///< those behind first
 };
+
+/// The part of a convex outline that is in a rectangle of a view: of one that goes on past a plot,
+/// gnuplot draws no border.
+[[nodiscard]] Series within(Series outline, const View& view, const std::array<double, 2>& low,
+                            const std::array<double, 2>& high);
 
 /// The points of all of them.
 [[nodiscard]] Eigen::Matrix3Xd side_by_side(const std::vector<const Eigen::Matrix3Xd*>& parts);

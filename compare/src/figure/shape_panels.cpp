@@ -72,8 +72,10 @@ std::vector<Panel> shape_panels(const Drawing& drawing) {
                 .y = axis_of(view.up, up),
                 .equal_aspect = true,
                 .has_legend = i + 1 == views.size()};
-    for (const Series& series : all) {
-      if (!is_shown(series, static_cast<int>(i))) continue;
+    for (const Series& drawn : all) {
+      if (!is_shown(drawn, static_cast<int>(i))) continue;
+      const Series series =
+          drawn.view < 0 ? drawn : within(drawn, view, {x[0], up[0]}, {x[1], up[1]});
       panel.curves.push_back({.id = series.id,
                               .title = series.title,
                               .look = series.look,

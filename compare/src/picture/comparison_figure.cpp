@@ -15,18 +15,7 @@ namespace {
 
 constexpr double same_curve = 1e-6;  // of the length
 
-Look force_look(std::size_t i) {
-  if (i == 0) {
-    return {.colour = curve_look(1).colour,
-            .dashes = Dashes::dashed,
-            .mark = Mark::square,
-            .mark_size = 0.6};
-  }
-  return {.colour = curve_look(0).colour,
-          .dashes = Dashes::dotted,
-          .mark = Mark::circle,
-          .mark_size = 0.9};
-}
+Look force_look(std::size_t i) { return curve_look(i == 0 ? 1 : 0); }
 
 const char* force_id(std::size_t i) { return i == 0 ? "force" : "force_hooke_consistent"; }
 

@@ -53,6 +53,7 @@ bool are_planar(const Scene& scene, const std::vector<Solution>& solutions) {
 
 Drawing solution_drawing(const Scene& scene, const std::vector<Solution>& solutions) {
   std::vector<const Eigen::Matrix3Xd*> points;
+  points.reserve(solutions.size());
   for (const Solution& solution : solutions) points.push_back(&solution.shape.points);
   const std::vector<View> views = views_of(scene, side_by_side(points));
   std::vector<Series> all = obstacle_series(scene, views, *points.front());

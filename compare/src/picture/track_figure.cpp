@@ -99,33 +99,6 @@ Cells cells_for(const Eigen::Matrix3Xd& points, const View& view, int count) {
   return best;
 }
 
-/// The part of a convex outline within limits of one of its coordinates (Sutherland and Hodgman).
-Eigen::Matrix3Xd clipped(const Eigen::Matrix3Xd& outline, int axis, double limit, double sign) {
-  std::vector<Eigen::Vector3d> kept;
-  const Eigen::Index count = outline.cols();
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::Vector3d a = outline.col(i);
-    const Eigen::Vector3d b = outline.col((i + 1) % count);
-    const double before = sign * (limit - a[axis]);
-    const double after = sign * (limit - b[axis]);
-    if (before >= 0) kept.push_back(a);
-    if ((before >= 0) != (after >= 0)) kept.emplace_back(a + (b - a) * (before / (before - after)));
-  }
-  Eigen::Matrix3Xd result(3, static_cast<Eigen::Index>(kept.size()));
-  for (std::size_t i = 0; i < kept.size(); ++i) result.col(static_cast<Eigen::Index>(i)) = kept[i];
-  return result;
-}
-
-Series within_cell(Series series, const View& view, const Cells& cells) {
-  const std::array<int, 2> axes = {view.right, view.up};
-  for (std::size_t i = 0; i < 2; ++i) {
-    series.points = clipped(series.points, axes[i], cells.least[i], -1);
-    series.points = clipped(series.points, axes[i], cells.least[i] + cells.size[i], 1);
-  }
-  series.arc_length.assign(static_cast<std::size_t>(series.points.cols()), NAN);
-  return series;
-}
-
 /// What a cell shows.
 std::vector<Series> series_of(const Scene& now, const TrackShapes& shapes, std::size_t index,
                               const View& view, const Cells& cells) {
@@ -133,7 +106,8 @@ std::vector<Series> series_of(const Scene& now, const TrackShapes& shapes, std::
   const TrackFrame& frame = shapes.track.frames[index];
   std::vector<Series> all;
   for (Series& outline : obstacle_series(now, {view}, frame.shape.points)) {
-    Series seen = within_cell(std::move(outline), view, cells);
+    Series seen = within(std::move(outline), view, cells.least,
+                         {cells.least[0] + cells.size[0], cells.least[1] + cells.size[1]});
     if (!seen.arc_length.empty()) all.push_back(std::move(seen));
   }
   if (frame.force) {
