@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "problem/split.hpp"
+#include "problems.hpp"
+#include "span/nearby_equilibria.hpp"
 #include "span/span_solver.hpp"
 
 namespace dlo::energy_model {
@@ -108,6 +111,49 @@ TEST(Certify, AFollowedShapeIsTheOneThatIsSearchedFor) {
   EXPECT_NEAR(followed.energy, searched.energy, 1e-9);
   EXPECT_NEAR(followed.smallest_eigenvalue, searched.smallest_eigenvalue,
               0.02 * searched.smallest_eigenvalue);
+}
+
+// Where a planar rod gives way out of its plane the second variation in space is negative along the
+// direction that is told, in which its constraints do not change.
+TEST(NegativeCurvature, IsThatOfTheRodInSpace) {
+  Problem problem = test::heavy_cantilever(200, 90);
+  problem.grips.push_back({1, {0.1, 0, 0}, Eigen::Vector3d(0, -1, 0)});
+  const Span span = split(problem).front().span;
+  ASSERT_TRUE(span.planar);
+  SpanWorkspace workspace;
+  SearchLog log;
+  SpanOptions options;
+  options.log = &log;
+  int out_of_plane = 0;
+  for (const SpanSolution& found : solve_span(span, options, workspace)) {
+    if (found.status != SolveStatus::saddle || !found.model->span().planar) continue;
+    const std::optional<NegativeCurvature> way = negative_curvature(found);
+    if (!way || way->span.planar) continue;
+    ++out_of_plane;
+    SpanEnergy model(way->span, found.terms);
+    const Eigen::VectorXd x = model.adopt(*found.model, found.x);
+    const auto lagrangian = [&](double step, const Eigen::VectorXd& multipliers) {
+      Eigen::VectorXd gradient(model.size());
+      const double energy = model.value(x + step * way->direction, gradient);
+      Eigen::VectorXd residual(model.constraints());
+      Eigen::MatrixXd jacobian(model.constraints(), model.size());
+      model.constraint(residual, jacobian);
+      EXPECT_NEAR((jacobian * way->direction).norm(), 0, step == 0 ? 1e-8 : 1) << step;
+      const Eigen::VectorXd own =
+          jacobian.transpose().completeOrthogonalDecomposition().solve(gradient);
+      return std::pair(energy - multipliers.dot(residual), own);
+    };
+    const Eigen::VectorXd none = Eigen::VectorXd::Zero(model.constraints());
+    const Eigen::VectorXd multipliers = lagrangian(0, none).second;
+    // d.H d by differences, of errors of 1e-7 by truncation and by rounding.
+    constexpr double step = 1e-3;
+    const double second =
+        (lagrangian(step, multipliers).first + lagrangian(-step, multipliers).first -
+         2 * lagrangian(0, multipliers).first) /
+        (step * step);
+    EXPECT_LT(second, -1e-6) << found.energy;
+  }
+  EXPECT_GE(out_of_plane, 1);
 }
 
 }  // namespace

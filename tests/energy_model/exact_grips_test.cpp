@@ -248,6 +248,28 @@ TEST(MultipleShooting, FindsTheArchThatLeansOutOfThePlane) {
   EXPECT_GT(found[2].energy.total(), found[0].energy.total() + 1);
 }
 
+TEST(MultipleShooting, FindsBothArchesBetweenClampsNearlyInLine) {
+  // Nothing but a small weight and the directions holds an arch from turning about the line of its
+  // clamps; one stable arch is on each side of the plane through it that the directions lean to.
+  for (const double distance : {0.3, 0.4, 0.5}) {
+    for (const double aside : {0.1, 0.2, 0.3}) {
+      Problem problem = two_clamps(1, distance);
+      problem.grips[1].direction = Eigen::Vector3d(1, aside, 0.1);
+      std::vector<double> stable;
+      for (const Equilibrium& e : all_exact(problem)) {
+        if (succeeded(e.status)) stable.push_back(e.energy.total());
+      }
+      std::vector<double> expected;
+      for (const Equilibrium& e : all_energy(problem)) {
+        if (succeeded(e.status)) expected.push_back(e.energy.total());
+      }
+      ASSERT_EQ(expected.size(), 2U) << distance << " " << aside;
+      ASSERT_EQ(stable.size(), 2U) << distance << " " << aside;
+      for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(stable[i], expected[i], 1e-8);
+    }
+  }
+}
+
 TEST(MultipleShooting, LeavesAShapeWithAZeroModeAlone) {
   // Two clamps on one line and no weight: the arch may turn about that line.
   const Problem problem = two_clamps(0, 0.8);

@@ -18,6 +18,7 @@
 #include "equilibrium_balance.hpp"
 #include "kirchhoff/rod_span.hpp"
 #include "problems.hpp"
+#include "random_problems.hpp"
 #include "rolled_clamps.hpp"
 #include "shooting/second_variation.hpp"
 
@@ -487,6 +488,13 @@ TEST(ExactTwist, SaysHowFarItCame) {
   const Equilibrium result = solve_exact(askew(1e7), {.time_limit = 1});
   EXPECT_EQ(result.status, SolveStatus::time_limit);
   EXPECT_NE(result.message.find("of 1000000"), std::string::npos) << result.message;
+}
+
+// A flow of tangents alone ended there: with any tangents held its roll has no equilibrium nearby.
+TEST(ExactTwist, FollowsAStripWhoseRollSnaps) {
+  const Problem problem = test::random_problem(500003, test::RandomSpace::strip);
+  const Equilibrium result = solve_exact(problem);
+  EXPECT_EQ(result.status, SolveStatus::converged) << result.message;
 }
 
 }  // namespace

@@ -23,6 +23,11 @@ TEST(Interruption, EndsASolveAsItsTimeLimitDoes) {
   EXPECT_EQ(solve_exact(heavy_cantilever(100, 0)).status, SolveStatus::time_limit);
 }
 
+TEST(Interruption, LeavesNoResidualThatNobodyHasLookedAt) {
+  const Interruption interruption(always_stop);
+  EXPECT_LT(solve_energy(heavy_cantilever(100, 0)).residual, 0);
+}
+
 TEST(Interruption, IsOfItsScopeAndOfItsThread) {
   EXPECT_FALSE(interrupted());
   {

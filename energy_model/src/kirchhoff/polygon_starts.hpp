@@ -14,8 +14,8 @@ namespace dlo::energy_model {
 ///     2 pi x (loop),
 /// where A fits the distance of the outermost grips. The line is theirs, or a clamp's direction. In
 /// the plane the normals are its two, in space six or four around the line. Of a rod that is not
-/// round also its natural shape from its first clamp on, and tangents against the force: from there
-/// L-BFGS goes elsewhere, sweeps over the tangents nowhere. What of these would lie in a plane is
+/// round also its natural shape from its first clamp on, and tangents against the force: what is
+/// round may be in equilibrium there, and stay. What of these would lie in a plane is
 /// tilted out of it in space.
 [[nodiscard]] std::vector<std::vector<Eigen::Quaterniond>> polygon_starts(const RodSpan& span,
                                                                           const RodMesh& mesh,

@@ -28,7 +28,7 @@ struct RelaxedPolygon {
 };
 
 /// Downhill from any shape, so that Newton's method starts near a minimum instead of near a saddle:
-/// NLopt's L-BFGS on the quaternions' components, of a round rod sweeps over its tangents
+/// NLopt's L-BFGS on the quaternions' components, of a round rod Newton's method on its tangents
 /// (relaxed_tangents.hpp), with an augmented Lagrangian that closes the gaps at the grips.
 /// @param start frames of the intervals
 /// @param motion in the plane: the start lies in it, and so does all that it is relaxed to

@@ -1,9 +1,13 @@
 #include "kirchhoff/relaxed_tangents.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
-#include <utility>
+#include <cmath>
+#include <limits>
+#include <optional>
 #include <vector>
 
 #include "kirchhoff/grip_gaps.hpp"
@@ -11,9 +15,21 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr int most_rounds = 200;  // of the augmented Lagrangian
-constexpr int sweeps = 20;        // over the rod in a round
-constexpr double at_rest = 1e-4;  // change of a tangent in a round
+/// Directions across a tangent in which it may turn; in the plane the second one is zero.
+using Across = Eigen::Matrix<double, 3, 2>;
+
+constexpr int most_steps = 200;           // of Newton's method, which takes some 30
+constexpr int most_shifts = 60;           // of a Hessian, each four times the last one
+constexpr int most_halvings = 30;         // of a step
+constexpr double at_rest = 1e-4;          // step of a tangent [rad]
+constexpr double nearly_at_rest = 0.05;   // step with which multipliers may change [rad]
+constexpr double least_shift = 1e-4;      // of unit: zero modes stay where they are
+constexpr double longest_turn = 0.5;      // of a tangent in a step [rad]
+constexpr double sufficient = 1e-4;       // share of the slope's promise (Armijo)
+constexpr double rounding = 1e-13;        // of an energy
+constexpr double closing = 0.25;          // of a gap in a round, or else its penalty grows
+constexpr double penalty_growth = 4;      // in a round
+constexpr double largest_penalty = 1e12;  // over the first one
 
 /// Tangents between those of clamps at the ends, and what joins them.
 class TangentChain {
@@ -40,38 +56,67 @@ class TangentChain {
       t_.col(count + 1) = clamp->direction;
       stiffness_[count] = 2 / compliance(count - 1);
     }
+    disturb();
     for (GripGap& of : gaps) fit_multiplier(of);
   }
 
   [[nodiscard]] Eigen::Index size() const { return h_.size(); }
+  [[nodiscard]] double width(Eigen::Index i) const { return h_[i]; }
+  [[nodiscard]] Eigen::Vector3d tangent(Eigen::Index i) const { return t_.col(i + 1); }
   [[nodiscard]] Eigen::Matrix3Xd tangents() const { return t_.middleCols(1, size()); }
+  /// Between an interval, or the end, and the one before it.
+  [[nodiscard]] double stiffness(Eigen::Index i) const { return stiffness_[i]; }
+
   [[nodiscard]] Eigen::Vector3d gap(const GripGap& of) const {
     const Eigen::Index count = of.end - of.first;
     return t_.middleCols(1 + of.first, count) * h_.segment(of.first, count) - of.chord;
   }
 
-  void sweep() {
-    Eigen::Index i = 0;
-    for (const GripGap& of : gaps) {
-      for (; i < of.first; ++i) lay(i, Eigen::Vector3d::Zero());
-      Eigen::Vector3d open = gap(of);
-      for (; i < of.end; ++i) {
-        open -= h_[i] * t_.col(i + 1);
-        lay(i, -h_[i] * (of.multiplier + of.penalty * open));
-        open += h_[i] * t_.col(i + 1);
-      }
+  [[nodiscard]] double energy() const {
+    double energy = 0;
+    for (Eigen::Index i = 0; i <= size(); ++i) {
+      energy += stiffness_[i] / 2 * (t_.col(i) - t_.col(i + 1)).squaredNorm();
+      if (i < size()) energy -= h_[i] * carried_.col(i).dot(t_.col(i + 1));
     }
-    for (; i < size(); ++i) lay(i, Eigen::Vector3d::Zero());
+    return energy;
+  }
+
+  [[nodiscard]] double augmented_energy() const {
+    double energy = this->energy();
+    for (const GripGap& of : gaps) {
+      const Eigen::Vector3d open = gap(of);
+      energy += of.multiplier.dot(open) + of.penalty / 2 * open.squaredNorm();
+    }
+    return energy;
+  }
+
+  /// Of the augmented energy minus the derivatives by t_i: what pulls each tangent.
+  [[nodiscard]] Eigen::Matrix3Xd pulls() const {
+    Eigen::Matrix3Xd pulls(3, size());
+    for (Eigen::Index i = 0; i < size(); ++i) pulls.col(i) = pull_without_grips(i);
+    for (const GripGap& of : gaps) {
+      const Eigen::Vector3d force = of.multiplier + of.penalty * gap(of);
+      for (Eigen::Index i = of.first; i < of.end; ++i) pulls.col(i) -= h_[i] * force;
+    }
+    return pulls;
+  }
+
+  [[nodiscard]] Across across(Eigen::Index i) const {
+    const Eigen::Vector3d t = tangent(i);
+    Across across = Across::Zero();
+    across.col(0) = normal_.isZero() ? t.unitOrthogonal().eval() : normal_.cross(t).eval();
+    if (normal_.isZero()) across.col(1) = t.cross(across.col(0));
+    return across;
+  }
+
+  void turn(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& step) {
+    t_.middleCols(1, size()) = (from + step).colwise().normalized();
   }
 
   [[nodiscard]] RelaxedTangents result() const {
-    RelaxedTangents result{tangents(), carried_, 0};
+    RelaxedTangents result{tangents(), carried_, energy()};
     for (const GripGap& of : gaps) {
       result.force.middleCols(of.first, of.end - of.first).colwise() -= of.multiplier;
-    }
-    for (Eigen::Index i = 0; i <= size(); ++i) {
-      result.energy += stiffness_[i] * (1 - t_.col(i).dot(t_.col(i + 1)));
-      if (i < size()) result.energy -= h_[i] * carried_.col(i).dot(t_.col(i + 1));
     }
     return result;
   }
@@ -79,15 +124,19 @@ class TangentChain {
   std::vector<GripGap> gaps;
 
  private:
-  /// What neighbours and what the interval carries pull it along.
-  [[nodiscard]] Eigen::Vector3d pull_on(Eigen::Index i) const {
-    return stiffness_[i] * t_.col(i) + stiffness_[i + 1] * t_.col(i + 2) + h_[i] * carried_.col(i);
+  /// From a symmetric shape a symmetric step leads to a saddle: it takes the symmetry away.
+  void disturb() {
+    constexpr double amplitude = 1e-3;  // [rad]
+    for (Eigen::Index i = 0; i < size(); ++i) {
+      const double x = static_cast<double>(i) / static_cast<double>(size());
+      const Eigen::Vector2d turn(std::sin(3 * x + 1), std::cos(2 * x));
+      t_.col(i + 1) = (tangent(i) + amplitude * across(i) * turn).normalized();
+    }
   }
 
-  void lay(Eigen::Index i, const Eigen::Vector3d& of_grips) {
-    Eigen::Vector3d pull = pull_on(i) + of_grips;
-    pull -= pull.dot(normal_) * normal_;
-    if (pull.norm() > 0) t_.col(i + 1) = pull.normalized();
+  /// What neighbours and what the interval carries pull it along.
+  [[nodiscard]] Eigen::Vector3d pull_without_grips(Eigen::Index i) const {
+    return stiffness_[i] * t_.col(i) + stiffness_[i + 1] * t_.col(i + 2) + h_[i] * carried_.col(i);
   }
 
   /// The multiplier with which a shape is as near to equilibrium as it can be, by least squares. A
@@ -96,10 +145,10 @@ class TangentChain {
     Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
     for (Eigen::Index i = of.first; i < of.end; ++i) {
-      const Eigen::Vector3d t = t_.col(i + 1);
-      const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - t * t.transpose();
-      matrix += h_[i] * h_[i] * across;
-      right += h_[i] * across * pull_on(i);
+      const Eigen::Vector3d t = tangent(i);
+      const Eigen::Matrix3d projection = Eigen::Matrix3d::Identity() - t * t.transpose();
+      matrix += h_[i] * h_[i] * projection;
+      right += h_[i] * projection * pull_without_grips(i);
     }
     of.multiplier = matrix.completeOrthogonalDecomposition().solve(right);
   }
@@ -111,22 +160,166 @@ class TangentChain {
   Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();  // of the plane; zero: none
 };
 
+/// The Hessian of the energy with the gaps' forces as dead ones, in directions across the tangents:
+/// blocks p_i.t_i + shift h_i beside - stiffness of neighbours. Its factors L D L^T, blocks of two.
+class ChainFactor {
+ public:
+  ChainFactor(const TangentChain& chain, const std::vector<Across>& across,
+              const Eigen::Matrix3Xd& pulls, double shift) {
+    const Eigen::Index count = chain.size();
+    below_.resize(static_cast<std::size_t>(count), Eigen::Matrix2d::Zero());
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      Eigen::Matrix2d block = Eigen::Matrix2d::Identity();
+      const double own = pulls.col(i).dot(chain.tangent(i)) + shift * chain.width(i);
+      block(0, 0) = own;
+      if (!across[at].col(1).isZero()) block(1, 1) = own;
+      if (i > 0) {
+        below_[at] = -chain.stiffness(i) * across[at].transpose() * across[at - 1];
+        block -= below_[at] * inverse_[at - 1] * below_[at].transpose();
+      }
+      const double determinant = block.determinant();
+      negative_ += determinant < 0 ? 1 : block.trace() < 0 ? 2 : 0;
+      inverse_.emplace_back(block.inverse());
+    }
+  }
+
+  /// How many eigenvalues are negative.
+  [[nodiscard]] int negative() const { return negative_; }
+
+  [[nodiscard]] Eigen::MatrixXd solve(Eigen::MatrixXd x) const {
+    const auto count = static_cast<Eigen::Index>(inverse_.size());
+    for (Eigen::Index i = 1; i < count; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      x.middleRows<2>(2 * i) -= below_[at] * inverse_[at - 1] * x.middleRows<2>(2 * i - 2);
+    }
+    for (Eigen::Index i = count; i-- > 0;) {
+      const auto at = static_cast<std::size_t>(i);
+      Eigen::MatrixXd rows = x.middleRows<2>(2 * i);
+      if (i + 1 < count) rows -= below_[at + 1].transpose() * x.middleRows<2>(2 * i + 2);
+      x.middleRows<2>(2 * i) = inverse_[at] * rows;
+    }
+    return x;
+  }
+
+ private:
+  std::vector<Eigen::Matrix2d> inverse_;  // of D's blocks
+  std::vector<Eigen::Matrix2d> below_;    // the diagonal
+  int negative_ = 0;
+};
+
+struct ChainStep {
+  Eigen::Matrix3Xd turn;  ///< of the tangents
+  double largest = 0;     ///< of one [rad]
+  double slope = 0;       ///< of the augmented energy along it, not positive
+};
+
+/// Newton's step H x = -g of the augmented energy, H = T + J^T P J + shift, T of ChainFactor, J the
+/// gaps' derivatives, P their penalties: by Woodbury's formula with S = P^-1 + J T^-1 J^T. H is
+/// positive definite where T has as many negative eigenvalues as S (Haynsworth 1968).
+/// @return none: it is not, the shift is too small
+std::optional<ChainStep> newton_step(const TangentChain& chain, double shift) {
+  const Eigen::Index count = chain.size();
+  const auto gaps = static_cast<Eigen::Index>(chain.gaps.size());
+  const Eigen::Matrix3Xd pulls = chain.pulls();
+  std::vector<Across> across;
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(2 * count, 1 + 3 * gaps);  // -g, J^T
+  for (Eigen::Index i = 0; i < count; ++i) {
+    across.push_back(chain.across(i));
+    right.col(0).segment<2>(2 * i) = across.back().transpose() * pulls.col(i);
+  }
+  Eigen::VectorXd inverse_penalties(3 * gaps);
+  for (Eigen::Index k = 0; k < gaps; ++k) {
+    const GripGap& of = chain.gaps[static_cast<std::size_t>(k)];
+    inverse_penalties.segment<3>(3 * k).setConstant(1 / of.penalty);
+    for (Eigen::Index i = of.first; i < of.end; ++i) {
+      right.block<2, 3>(2 * i, 1 + 3 * k) =
+          chain.width(i) * across[static_cast<std::size_t>(i)].transpose();
+    }
+  }
+  const ChainFactor factor(chain, across, pulls, shift);
+  const Eigen::MatrixXd solved = factor.solve(right);
+  Eigen::VectorXd x = solved.col(0);
+  Eigen::Index negative = 0;
+  if (gaps > 0) {
+    Eigen::MatrixXd S = right.rightCols(3 * gaps).transpose() * solved.rightCols(3 * gaps);
+    S.diagonal() += inverse_penalties;
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> of_S(S);
+    negative = (of_S.eigenvalues().array() < 0).count();
+    const Eigen::VectorXd open =
+        of_S.eigenvectors().transpose() * (right.rightCols(3 * gaps).transpose() * x);
+    x -=
+        solved.rightCols(3 * gaps) * (of_S.eigenvectors() * open.cwiseQuotient(of_S.eigenvalues()));
+  }
+  ChainStep step;
+  step.slope = -right.col(0).dot(x);
+  if (negative != factor.negative() || !(step.slope <= 0)) return std::nullopt;
+  step.turn.resize(3, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    step.turn.col(i) = across[static_cast<std::size_t>(i)] * x.segment<2>(2 * i);
+  }
+  step.largest = step.turn.colwise().norm().maxCoeff();
+  return step;
+}
+
+/// One step of Newton's method downhill. @param shift  that the last one has taken, of this one
+/// after it
+std::optional<ChainStep> descend_once(TangentChain& chain, double unit, double& shift) {
+  std::optional<ChainStep> step = newton_step(chain, shift);
+  for (int k = 0; k < most_shifts && !step; ++k) {
+    shift = std::max(4 * shift, unit);
+    step = newton_step(chain, shift);
+  }
+  if (!step) return step;
+  const double before = chain.augmented_energy();
+  const Eigen::Matrix3Xd from = chain.tangents();
+  double share = std::min(1.0, longest_turn / std::max(step->largest, at_rest));
+  int halvings = 0;
+  for (; halvings < most_halvings; ++halvings, share /= 2) {
+    chain.turn(from, share * step->turn);
+    const double promised = before + sufficient * share * step->slope;
+    if (chain.augmented_energy() <= promised + rounding * (1 + std::abs(before))) break;
+  }
+  constexpr int usual_halvings = 2;
+  if (halvings > usual_halvings) {
+    shift = std::max(4 * shift, unit);
+  } else {
+    shift = std::max(shift / 4, least_shift * unit);
+  }
+  return step;
+}
+
 }  // namespace
 
 RelaxedTangents relax_tangents(const RodSpan& span, const RodMesh& mesh,
                                const Eigen::Matrix3Xd& tangents, Motion motion,
                                const Deadline& deadline) {
   TangentChain chain(span, mesh, tangents, motion);
-  for (int round = 0; round < most_rounds && !deadline.passed(); ++round) {
-    const Eigen::Matrix3Xd before = chain.tangents();
-    for (int sweep = 0; sweep < sweeps; ++sweep) chain.sweep();
+  const double unit = softest(span) / (span.length * span.length);
+  std::vector<double> last_open(chain.gaps.size(), std::numeric_limits<double>::infinity());
+  std::vector<double> largest;
+  for (const GripGap& of : chain.gaps) largest.push_back(largest_penalty * of.penalty);
+  double shift = least_shift * unit;
+  for (int k = 0; k < most_steps && !deadline.passed(); ++k) {
+    const std::optional<ChainStep> step = descend_once(chain, unit, shift);
+    if (!step) break;
+    // A shift makes steps short that are not near the end.
+    if (step->largest > nearly_at_rest || shift > unit) continue;
     bool closed = true;
-    for (GripGap& of : chain.gaps) {
+    for (std::size_t i = 0; i < chain.gaps.size(); ++i) {
+      GripGap& of = chain.gaps[i];
       const Eigen::Vector3d open = chain.gap(of);
-      of.multiplier += of.penalty * open;
       closed = closed && of.closed(open);
+      // The step's curvature is in the gap too.
+      const double bent = step->largest * step->largest * span.length;
+      if (step->largest > at_rest && open.norm() < bent) continue;
+      of.multiplier += of.penalty * open;
+      if (open.norm() > closing * last_open[i]) {
+        of.penalty = std::min(penalty_growth * of.penalty, largest[i]);
+      }
+      last_open[i] = open.norm();
     }
-    if (closed && (chain.tangents() - before).colwise().norm().maxCoeff() < at_rest) break;
+    if (closed && step->largest < at_rest) break;
   }
   return chain.result();
 }

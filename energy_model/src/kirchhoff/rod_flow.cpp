@@ -137,6 +137,12 @@ Eigen::Matrix3d transported(const Eigen::Matrix3d& frame, const Eigen::Vector3d&
   return frame_of(Eigen::Quaterniond::FromTwoVectors(t, tangent) * frame.col(0), tangent);
 }
 
+std::vector<Eigen::Matrix3d> frames_of(const std::vector<RodState>& states) {
+  std::vector<Eigen::Matrix3d> frames;
+  for (const RodState& state : states) frames.push_back(state.R);
+  return frames;
+}
+
 Eigen::Matrix3Xd tangents_of(const std::vector<RodState>& states) {
   Eigen::Matrix3Xd tangents(3, static_cast<Eigen::Index>(states.size()));
   for (Eigen::Index i = 0; i < tangents.cols(); ++i) {

@@ -39,6 +39,7 @@ using NaturalStrain = std::function<Eigen::Vector3d(double s)>;
 
 /// The tangents of states, 3 x states.
 [[nodiscard]] Eigen::Matrix3Xd tangents_of(const std::vector<RodState>& states);
+[[nodiscard]] std::vector<Eigen::Matrix3d> frames_of(const std::vector<RodState>& states);
 
 /// Derivatives of a RodState by some parameters, one a column.
 struct RodVariation {

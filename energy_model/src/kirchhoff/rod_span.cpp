@@ -275,6 +275,7 @@ RodMesh mesh_at(const RodSpan& span, const Eigen::VectorXd& nodes) {
   mesh.s = nodes;
   mesh.load = Eigen::Matrix3Xd::Zero(3, nodes.size());
   mesh.pull = mesh.load;
+  mesh.pull_d1 = mesh.load;
   mesh.hold.assign(static_cast<std::size_t>(nodes.size()), nullptr);
   for (const RodSpan::Load& load : span.loads) mesh.load.col(node_at(nodes, load.at)) += load.force;
   for (const RodSpan::Hold& hold : span.holds) {

@@ -124,9 +124,10 @@ struct RodContacts {
 /// The nodes of a span: its ends and those of its parts, grips and loads, and as many between them
 /// as are asked for.
 struct RodMesh {
-  Eigen::VectorXd s;      ///< growing, at least 2
-  Eigen::Matrix3Xd load;  ///< on each node
-  Eigen::Matrix3Xd pull;  ///< q on each node's tangent, of energy -q.t; zero at first
+  Eigen::VectorXd s;         ///< growing, at least 2
+  Eigen::Matrix3Xd load;     ///< on each node
+  Eigen::Matrix3Xd pull;     ///< q on each node's tangent, of energy -q.t; zero at first
+  Eigen::Matrix3Xd pull_d1;  ///< the same on its d1
   std::vector<const RodSpan::Hold*> hold;  ///< at each node, null for none; of the span
   std::vector<const RodSection*> section;  ///< of each interval; of the span
   RodContacts contacts;

@@ -86,7 +86,9 @@ Equilibrium assemble(const Problem& problem, const std::vector<PlacedSpan>& plac
     const SpanSolution& solution = *solutions[i];
     result.evaluations += solution.evaluations;
     result.terms = std::max(result.terms, solution.terms);
-    result.residual = std::max(result.residual, solution.residual);
+    // -1, where one is not known, stays.
+    const bool known = solution.residual >= 0 && result.residual >= 0;
+    result.residual = known ? std::max(result.residual, solution.residual) : -1;
     result.neutral_directions += solution.neutral_directions;
     rigid_body_modes += solution.rigid_body_modes;
     // NaN, where one is not known, stays.

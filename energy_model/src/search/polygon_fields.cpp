@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t most_fields = 12;
 
-/// Of a polygon that is relaxed once more; relaxing takes as many sweeps as it has intervals.
+/// Of a polygon that is relaxed once more.
 constexpr double most_field_intervals = 600;
 
 Eigen::VectorXd middles_of(const RodMesh& mesh) {

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
+
+#include "base/spin.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -20,16 +23,49 @@ constexpr double flow_departure = 0.1;    // from a saddle: largest change of a 
 constexpr int most_flow_departures = 6;
 constexpr int steps_after_failure = 3;  // of equal duration: a failure costs as much as ten of them
 
-double widest_turn(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
-  return (a - b).colwise().norm().maxCoeff();
+/// Of tangents, of a rod that is not round of d1 too.
+double widest_turn(const RodSpan& span, const std::vector<Eigen::Matrix3d>& a,
+                   const std::vector<Eigen::Matrix3d>& b) {
+  double widest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const Eigen::Matrix3d change = a[i] - b[i];
+    widest = std::max(widest, change.col(2).norm());
+    if (!span.round()) widest = std::max(widest, change.col(0).norm());
+  }
+  return widest;
+}
+
+/// The spins of the mode of smallest eigenvalue that turn what widest_turn() looks at by 1 at most.
+Eigen::Matrix3Xd unit_spins(const RodSpan& span, const SpanEquilibrium& equilibrium) {
+  const Eigen::Matrix3Xd spins = equilibrium.stability.spin_at(equilibrium.s);
+  double widest = 1e-300;
+  for (Eigen::Index i = 0; i < spins.cols(); ++i) {
+    const Eigen::Vector3d t = equilibrium.nodes[static_cast<std::size_t>(i)].t();
+    const Eigen::Vector3d spin = spins.col(i);
+    widest = std::max(widest, span.round() ? spin.cross(t).norm() : spin.norm());
+  }
+  return spins / widest;
+}
+
+std::vector<Eigen::Matrix3d> frames_beside(const RodSpan& span, const SpanEquilibrium& saddle,
+                                           double departure) {
+  const Eigen::Matrix3Xd spins = departure * unit_spins(span, saddle);
+  std::vector<Eigen::Matrix3d> frames = frames_of(saddle.nodes);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    frames[i] = from_rotation_vector(spins.col(static_cast<Eigen::Index>(i))) * frames[i];
+  }
+  return frames;
 }
 
 /// One step, from nodes near `aim` and to it.
 SpanEquilibrium step(const RodSpan& span, RodMesh mesh, const std::vector<RodState>& nodes,
-                     const Eigen::Matrix3Xd& aim, double duration, const ClampFrames& frames,
-                     ShootingOptions options) {
+                     const std::vector<Eigen::Matrix3d>& aim, double duration,
+                     const ClampFrames& frames, ShootingOptions options) {
   for (Eigen::Index i = 1; i < mesh.intervals(); ++i) {
-    mesh.pull.col(i) = (mesh.s[i + 1] - mesh.s[i - 1]) / (2 * duration) * aim.col(i);
+    const double pull = (mesh.s[i + 1] - mesh.s[i - 1]) / (2 * duration);
+    const Eigen::Matrix3d& R = aim[static_cast<std::size_t>(i)];
+    mesh.pull.col(i) = pull * R.col(2);
+    if (!span.round()) mesh.pull_d1.col(i) = pull * R.col(0);
   }
   options.max_iterations = flow_iterations;
   return close_span(span, mesh, nodes, frames, options);
@@ -38,7 +74,7 @@ SpanEquilibrium step(const RodSpan& span, RodMesh mesh, const std::vector<RodSta
 }  // namespace
 
 SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
-                                std::vector<RodState> start, Eigen::Matrix3Xd aim,
+                                std::vector<RodState> start, std::vector<Eigen::Matrix3d> aim,
                                 const ClampFrames& frames, const ShootingOptions& options) {
   SpanEquilibrium failed;
   failed.message = "the gradient flow did not converge";
@@ -52,8 +88,8 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
     }
     SpanEquilibrium result = step(span, mesh, start, aim, duration, frames, options);
     failed.shots += result.shots;
-    Eigen::Matrix3Xd reached = tangents_of(result.nodes);
-    const double turn = widest_turn(reached, aim);
+    std::vector<Eigen::Matrix3d> reached = frames_of(result.nodes);
+    const double turn = widest_turn(span, reached, aim);
     if (!result.converged || turn > most_flow_turn) {
       duration /= 4;
       wait = steps_after_failure;
@@ -67,12 +103,11 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
       equilibrium.shots += failed.shots;
       failed.shots = equilibrium.shots;
       const bool near = equilibrium.converged && equilibrium.s.size() == mesh.s.size() &&
-                        widest_turn(tangents_of(equilibrium.nodes), aim) < most_flow_turn;
+                        widest_turn(span, frames_of(equilibrium.nodes), aim) < most_flow_turn;
       if (near && equilibrium.stable()) return equilibrium;
       if (near && equilibrium.stability.s.size() > 0 && ++departures <= most_flow_departures) {
         start = equilibrium.nodes;
-        aim = tangents_of(start) + flow_departure * tangent_mode(span, equilibrium, mesh.s);
-        aim.colwise().normalize();
+        aim = frames_beside(span, equilibrium, flow_departure);
         duration = first_duration;
         continue;
       }
@@ -83,18 +118,6 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
   return failed;
 }
 
-Eigen::Matrix3Xd tangent_mode(const RodSpan& span, const SpanEquilibrium& equilibrium,
-                              const Eigen::VectorXd& s) {
-  constexpr double coarse = 1e-9;
-  const Eigen::Matrix3Xd spins = equilibrium.stability.spin_at(s);
-  const std::vector<RodState> states = states_at(equilibrium, span, {s.begin(), s.end()}, coarse);
-  Eigen::Matrix3Xd changes(3, s.size());
-  for (Eigen::Index i = 0; i < s.size(); ++i) {
-    changes.col(i) = spins.col(i).cross(states[static_cast<std::size_t>(i)].t());
-  }
-  return changes / std::max(changes.colwise().norm().maxCoeff(), 1e-300);
-}
-
 SpanEquilibrium leave_saddle(const RodSpan& span, const SpanEquilibrium& saddle,
                              const ShootingOptions& options) {
   SpanEquilibrium failed;
@@ -102,11 +125,9 @@ SpanEquilibrium leave_saddle(const RodSpan& span, const SpanEquilibrium& saddle,
   if (saddle.stability.s.size() == 0) return failed;
   const RodMesh mesh = mesh_at(span, saddle.s);
   for (const double side : {1.0, -1.0}) {
-    Eigen::Matrix3Xd aim =
-        tangents_of(saddle.nodes) + side * flow_departure * tangent_mode(span, saddle, mesh.s);
-    aim.colwise().normalize();
     SpanEquilibrium left =
-        follow_gradient(span, mesh, saddle.nodes, std::move(aim), saddle.frames, options);
+        follow_gradient(span, mesh, saddle.nodes,
+                        frames_beside(span, saddle, side * flow_departure), saddle.frames, options);
     if (left.converged || options.deadline.passed()) return left;
     failed = std::move(left);
   }

@@ -34,6 +34,17 @@ Eigen::Matrix<double, 3, 2> axes_across(const Eigen::Vector3d& direction) {
   return axes;
 }
 
+/// What pulls on the tangent and d1 of a node take from its moment, and its derivative by a spin.
+std::pair<Eigen::Vector3d, Eigen::Matrix3d> jump_of_moment(const RodState& node,
+                                                           const Eigen::Vector3d& on_tangent,
+                                                           const Eigen::Vector3d& on_d1) {
+  const Eigen::Vector3d t = node.t();
+  const Eigen::Vector3d d1 = node.R.col(0);
+  return {t.cross(on_tangent) + d1.cross(on_d1),
+          t * on_tangent.transpose() + d1 * on_d1.transpose() -
+              (t.dot(on_tangent) + d1.dot(on_d1)) * Eigen::Matrix3d::Identity()};
+}
+
 }  // namespace
 
 /// Equations as they come.
@@ -244,19 +255,18 @@ bool ShootingSystem::interval_equations(const ShootingPoint& point, Eigen::Index
   }
   const Eigen::Matrix3Xd free = frame_equations(next, i + 1, rows);
   if (free.cols() == turns) return true;
-  // What of the moment is continuous, but for what pulls the tangent: m = ... - t x q.
+  // What of the moment is continuous, but for what pulls the tangent and d1: m = ... - t x q.
   const Eigen::MatrixXd kept =
       free.cols() == 0
           ? Eigen::MatrixXd(turns_.transpose())
           : Eigen::MatrixXd(clamps_[static_cast<std::size_t>(i + 1)]->direction.transpose());
-  const Eigen::Vector3d q = mesh_.pull.col(i + 1);
-  const Eigen::Matrix3d by_spin =
-      next.t() * q.transpose() - next.t().dot(q) * Eigen::Matrix3d::Identity();
+  const auto [jump, by_spin] =
+      jump_of_moment(next, mesh_.pull.col(i + 1), mesh_.pull_d1.col(i + 1));
   std::vector<Block> bent = with_width(i, kept * by_width.m / rate_);
   bent.push_back({from, kept * change.m / rate_});
   bent.push_back({other + spin_at(), -kept * by_spin * turns_ / rate_});
   bent.push_back({other + m_at(), -kept * turns_});
-  rows.add(kept * (end.m - next.t().cross(q) - next.m) / rate_, bent);
+  rows.add(kept * (end.m - jump - next.m) / rate_, bent);
   return true;
 }
 

@@ -168,7 +168,7 @@ class Continuation {
   bool fall(double next) {
     const RodMesh mesh = mesh_at(span_, now_.s);
     SpanEquilibrium found =
-        follow_gradient(span_, mesh, now_.nodes, tangents_of(now_.nodes), frames(next), options());
+        follow_gradient(span_, mesh, now_.nodes, frames_of(now_.nodes), frames(next), options());
     shots_ += found.shots;
     problem_ = found.message;
     if (!found.converged) return false;

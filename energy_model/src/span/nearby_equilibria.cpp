@@ -48,14 +48,16 @@ std::optional<NegativeCurvature> negative_curvature(const SpanSolution& solution
     return NegativeCurvature{model.span(), std::move(*within)};
   }
   if (!model.span().planar) return std::nullopt;
-  model.sideways(solution.multipliers, at.hessian, at.jacobian);
-  reduced.compute(at.hessian, at.jacobian);
-  const std::optional<Eigen::VectorXd> out_of_plane = negative_curvature_direction(reduced);
-  if (!out_of_plane) return std::nullopt;
-  NegativeCurvature out{model.span(), Eigen::VectorXd::Zero(model.size() + out_of_plane->size())};
+  // Out of the plane u2 is not the rate of the tangent's tilt where the rod is bent: its frame
+  // rolls.
+  NegativeCurvature out{model.span(), {}};
   out.span.planar = false;
-  // Out of the plane a planar rod bends by u2, the rate of its tangent's tilt, and twists.
-  out.direction.tail(out_of_plane->size()) = *out_of_plane;
+  SpanEnergy in_space(out.span, solution.terms);
+  in_space.linearise_at(model, solution.x, at.hessian, at.jacobian);
+  reduced.compute(at.hessian, at.jacobian);
+  std::optional<Eigen::VectorXd> out_of_plane = negative_curvature_direction(reduced);
+  if (!out_of_plane) return std::nullopt;
+  out.direction = std::move(*out_of_plane);
   return out;
 }
 

@@ -472,24 +472,30 @@ void SpanEnergy::sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
   jacobian.bottomRows(held_angle_.rows()) = held_angle_;
 }
 
+void SpanEnergy::linearise_at(const SpanEnergy& other, const Eigen::VectorXd& x,
+                              Eigen::MatrixXd& hessian, Eigen::MatrixXd& jacobian) {
+  Eigen::VectorXd gradient(size());
+  (void)value(adopt(other, x), gradient);
+  Eigen::VectorXd residual(constraints());
+  jacobian.resize(constraints(), size());
+  constraint(residual, jacobian);
+  // The forces are the other one's, seen in these constraints.
+  const Eigen::VectorXd multipliers =
+      constraints() == 0
+          ? Eigen::VectorXd()
+          : Eigen::VectorXd(jacobian.transpose().completeOrthogonalDecomposition().solve(gradient));
+  this->hessian(multipliers, hessian);
+}
+
 /// A rod that is curved, or of another stiffness out of its plane, twists as it leaves it: what the
 /// same span in space says.
 void SpanEnergy::sideways_with_twist(Eigen::MatrixXd& hessian, Eigen::MatrixXd& jacobian) {
   Span space = span_;
   space.planar = false;
   SpanEnergy twin(space, terms_);
-  Eigen::VectorXd gradient(twin.size());
-  (void)twin.value(twin.adopt(*this, x_), gradient);
-  Eigen::VectorXd residual(twin.constraints());
-  Eigen::MatrixXd all(twin.constraints(), twin.size());
-  twin.constraint(residual, all);
-  // The forces are the plane's, seen in the twin's constraints.
-  const Eigen::VectorXd multipliers =
-      twin.constraints() == 0
-          ? Eigen::VectorXd()
-          : Eigen::VectorXd(all.transpose().completeOrthogonalDecomposition().solve(gradient));
   Eigen::MatrixXd curvature;
-  twin.hessian(multipliers, curvature);
+  Eigen::MatrixXd all;
+  twin.linearise_at(*this, x_, curvature, all);
   const Eigen::Index out = twin.size() - size();
   hessian = curvature.bottomRightCorner(out, out);
   // Of a position its z, of a direction what is across it along z.

@@ -47,9 +47,14 @@ class SpanEnergy {
   /// Second derivatives of E - mu . c at the point of the last value().
   void hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers, Eigen::MatrixXd& result);
   /// For a planar span: the same for bending (and twisting, with material directors) out of the
-  /// plane, with its constraints' Jacobian; the last unknowns of the same span in space.
+  /// plane, with its constraints' Jacobian. Unknowns of a round rod are the rates of the tangent's
+  /// tilt, with material directors the last unknowns of the same span in space.
   void sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers, Eigen::MatrixXd& hessian,
                 Eigen::MatrixXd& jacobian);
+  /// Second derivatives of E - mu . c and the constraints' Jacobian at the equilibrium x of another
+  /// model, of the same span in its plane; mu are the multipliers that balance it best.
+  void linearise_at(const SpanEnergy& other, const Eigen::VectorXd& x, Eigen::MatrixXd& hessian,
+                    Eigen::MatrixXd& jacobian);
   /// For a planar span held by one clamp and nothing else: whether bending out of the plane stores
   /// energy, at the point of the last value().
   [[nodiscard]] bool resists_sideways();

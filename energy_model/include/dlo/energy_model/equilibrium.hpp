@@ -63,7 +63,7 @@ struct [[nodiscard]] Equilibrium {
   /// forces' scale 1 + load + |mu| in EI/l^2. `exact`: the largest gap between shots, positions in
   /// l, rotations in rad, moments in f^(1/2) EI/l, forces in f EI/l^2, f of the start; of a rod
   /// shot from its tip the clamp's angle that is missed [rad]; with contact the norm of all over
-  /// the largest force.
+  /// the largest force. -1: not known, of a part that the time did not suffice for.
   double residual = -1;
   /// `energy`: what points may be away from those of an equilibrium, over the rod's length, by what
   /// the solver, rounding and the terms leave, divided by the eigenvalue nearest to zero (README,
