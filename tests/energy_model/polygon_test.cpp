@@ -149,7 +149,7 @@ TEST(Polygon, LeavesASaddle) {
 }
 
 Eigen::MatrixXd hessian_of(const PolygonProblem& problem, const Eigen::Matrix3Xd& points,
-                           SecondDerivatives which) {
+                           HessianTerms which) {
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(points.size(), points.size());
   polygon_hessian(problem, points, which,
                   [&](Eigen::Index row, Eigen::Index column, const Eigen::Matrix3d& block) {
@@ -177,8 +177,8 @@ TEST_P(PolygonOfBothLaws, StiffeningSecondDerivativesAreNeverNegative) {
   for (int draw = 0; draw < 20; ++draw) {
     Eigen::Matrix3Xd points = arch(problem, 0.8, 0.3);
     for (double& x : points.reshaped()) x += uniform(engine);
-    const Eigen::MatrixXd all = hessian_of(problem, points, SecondDerivatives::all);
-    const Eigen::MatrixXd stiffening = hessian_of(problem, points, SecondDerivatives::stiffening);
+    const Eigen::MatrixXd all = hessian_of(problem, points, HessianTerms::all);
+    const Eigen::MatrixXd stiffening = hessian_of(problem, points, HessianTerms::stiffening);
     const double largest = stiffening.cwiseAbs().maxCoeff();
     EXPECT_LT(smallest_eigenvalue(all), 0);
     EXPECT_GT(smallest_eigenvalue(stiffening), -1e-13 * largest);
@@ -189,8 +189,8 @@ TEST_P(PolygonOfBothLaws, StiffeningSecondDerivativesAreNeverNegative) {
   straight.row(2).setConstant(9);
   problem.obstacles.resize(1);
   problem.obstacles[0].body = obstacle::Body::half_space({0, -9, 0}, Eigen::Vector3d::UnitY());
-  const Eigen::MatrixXd all = hessian_of(problem, straight, SecondDerivatives::all);
-  const Eigen::MatrixXd stiffening = hessian_of(problem, straight, SecondDerivatives::stiffening);
+  const Eigen::MatrixXd all = hessian_of(problem, straight, HessianTerms::all);
+  const Eigen::MatrixXd stiffening = hessian_of(problem, straight, HessianTerms::stiffening);
   EXPECT_LT((all - stiffening).cwiseAbs().maxCoeff(), 1e-12 * all.cwiseAbs().maxCoeff());
 }
 

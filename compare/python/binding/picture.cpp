@@ -18,7 +18,7 @@ py::dict axis_dict(const compare::PlotAxis& laid_out, const compare::PlotAxis& d
                   "log"_a = laid_out.logarithmic, "tics"_a = tics);
 }
 
-py::dict curve_dict(const compare::Curve& curve) {
+py::dict curve_dict(const compare::PlottedCurve& curve) {
   const compare::Look& look = curve.look;
   return py::dict(
       "title"_a = curve.title,
@@ -37,7 +37,7 @@ py::dict panel_dict(const compare::Panel& described) {
   axes.append(axis_dict(panel.y, described.y));
   if (panel.z) axes.append(axis_dict(*panel.z, *described.z));
   py::list curves;
-  for (const compare::Curve& curve : panel.curves) curves.append(curve_dict(curve));
+  for (const compare::PlottedCurve& curve : panel.curves) curves.append(curve_dict(curve));
   py::list texts;
   for (const compare::Text& text : panel.texts) {
     texts.append(py::make_tuple(text.words, text.x, text.y, text.dx, text.dy));

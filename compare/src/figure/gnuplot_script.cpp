@@ -166,7 +166,7 @@ class Script {
     int number = 1000;
     const double from = left + from_the_left;
     double at = top + key_row_pixels / 2.0;
-    for (const Curve& curve : panel.curves) {
+    for (const PlottedCurve& curve : panel.curves) {
       if (!panel.has_legend || curve.title.empty()) continue;
       const Look& look = curve.look;
       const auto place = [&](double right, double down) {
@@ -212,7 +212,7 @@ class Script {
   }
 
   /// A block of numbers. @return its name
-  std::string add_numbers(const Curve& curve) {
+  std::string add_numbers(const PlottedCurve& curve) {
     std::string name = fmt::format("$numbers_{}", ++blocks_);
     if (!curve.id.empty()) add("# {}\n", curve.id);
     add("{} << EOD\n", name);
@@ -261,7 +261,7 @@ class Script {
     if (panel.cells && panel.cells->range().first <= panel.cells->range().second) {
       plots.push_back(add_cells(*panel.cells, panel, left, top));
     }
-    for (const Curve& curve : panel.curves) {
+    for (const PlottedCurve& curve : panel.curves) {
       const std::string numbers = add_numbers(curve);
       plots.push_back(numbers + " notitle " + style_of(curve.look));
     }

@@ -139,9 +139,10 @@ void put_at_edge(double& value, const PlotAxis& axis) {
   if (std::isinf(value)) value = value > 0 ? *axis.to : *axis.from;
 }
 
-void lay_out(PlotAxis& axis, std::vector<Curve>& curves, std::vector<double> Curve::*values) {
+void lay_out(PlotAxis& axis, std::vector<PlottedCurve>& curves,
+             std::vector<double> PlottedCurve::*values) {
   Range drawn = nothing;
-  for (Curve& curve : curves) {
+  for (PlottedCurve& curve : curves) {
     for (double& value : curve.*values) {
       // What a logarithmic axis has no place for.
       if (axis.logarithmic && std::isfinite(value) && value <= 0) value = NAN;
@@ -149,12 +150,12 @@ void lay_out(PlotAxis& axis, std::vector<Curve>& curves, std::vector<double> Cur
     widen(drawn, curve.*values);
   }
   set_limits(axis, drawn);
-  for (Curve& curve : curves) {
+  for (PlottedCurve& curve : curves) {
     for (double& value : curve.*values) put_at_edge(value, axis);
   }
 }
 
-bool shows_something(const Curve& curve) {
+bool shows_something(const PlottedCurve& curve) {
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
     if (!std::isnan(curve.x[i]) && !std::isnan(curve.y[i])) return true;
   }
@@ -188,7 +189,7 @@ std::pair<double, double> Cells::range() const {
 
 std::vector<std::string> Panel::titles() const {
   std::vector<std::string> titles;
-  for (const Curve& curve : curves) {
+  for (const PlottedCurve& curve : curves) {
     if (has_legend && !curve.title.empty()) titles.push_back(curve.title);
   }
   return titles;
@@ -207,12 +208,13 @@ int Panel::full_height() const {
 }
 
 Panel laid_out(Panel panel) {
-  lay_out(panel.x, panel.curves, &Curve::x);
-  lay_out(panel.y, panel.curves, &Curve::y);
-  if (panel.z) lay_out(*panel.z, panel.curves, &Curve::z);
-  panel.curves.erase(std::remove_if(panel.curves.begin(), panel.curves.end(),
-                                    [](const Curve& curve) { return !shows_something(curve); }),
-                     panel.curves.end());
+  lay_out(panel.x, panel.curves, &PlottedCurve::x);
+  lay_out(panel.y, panel.curves, &PlottedCurve::y);
+  if (panel.z) lay_out(*panel.z, panel.curves, &PlottedCurve::z);
+  panel.curves.erase(
+      std::remove_if(panel.curves.begin(), panel.curves.end(),
+                     [](const PlottedCurve& curve) { return !shows_something(curve); }),
+      panel.curves.end());
   for (Text& text : panel.texts) {
     put_at_edge(text.x, panel.x);
     put_at_edge(text.y, panel.y);

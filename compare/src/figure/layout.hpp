@@ -36,7 +36,7 @@ inline constexpr std::size_t curve_colours = 6;
 
 /// What is drawn in one look. Coordinates that are infinite are at the plot's edge; at NaN a line
 /// ends, and the next begins after it.
-struct Curve {
+struct PlottedCurve {
   std::string id;     ///< its name in the CSV file, where there is one
   std::string title;  ///< in the legend; empty: not there
   Look look;
@@ -83,7 +83,7 @@ struct Panel {
   PlotAxis x, y;
   std::optional<PlotAxis> z;  ///< of a plot in space
   int upright = 2;            ///< the axis that is upright in space
-  std::vector<Curve> curves;
+  std::vector<PlottedCurve> curves;
   std::vector<Text> texts;
   std::optional<Cells> cells;
   bool equal_aspect = false;  ///< as many pixels a metre on all axes, by its limits

@@ -37,10 +37,10 @@ Figure budget_figure(const std::vector<Comparison>& comparisons, std::size_t num
   int bar = 0;
   for (std::size_t i = 0; i < comparisons.size(); ++i) {
     const Comparison& c = comparisons[i];
-    Curve bars{.id = fmt::format("setting_{}", i + 1),
-               .title = setting_name(c.settings),
-               .look = {.colour = curve_look(i == 0 ? 1 : 0).colour,
-                        .fill = i == 0 ? "#C26C33" : "#A6C5E1"}};
+    PlottedCurve bars{.id = fmt::format("setting_{}", i + 1),
+                      .title = setting_name(c.settings),
+                      .look = {.colour = curve_look(i == 0 ? 1 : 0).colour,
+                               .fill = i == 0 ? "#C26C33" : "#A6C5E1"}};
     for (const auto& [name, part] : shown_parts(c)) {
       const double percent = part->share * 100 + 0.0;
       const std::string share = fmt::format("{:.2f} %", percent);

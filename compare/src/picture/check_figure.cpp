@@ -45,9 +45,10 @@ Series worst_point(const ShapeCheck& check) {
 Figure distance_figure(const Scene& scene, const ShapeCheck& check,
                        std::optional<double> allowed_m) {
   const Shape& file = check.alignment.shape;
-  Curve impulses{
+  PlottedCurve impulses{
       .id = "distance", .title = "points of the file", .look = {.colour = blue, .width = 1.5}};
-  Curve points{.look = {.colour = file_colour, .width = 0, .mark = Mark::dot, .mark_size = 0.5}};
+  PlottedCurve points{
+      .look = {.colour = file_colour, .width = 0, .mark = Mark::dot, .mark_size = 0.5}};
   for (Eigen::Index i = 0; i < file.points.cols(); ++i) {
     const double s = check.reference.arc_length[static_cast<std::size_t>(i)];
     const double mm = (file.points.col(i) - check.reference.points.col(i)).norm() * 1e3;
@@ -56,7 +57,7 @@ Figure distance_figure(const Scene& scene, const ShapeCheck& check,
     points.x.push_back(s);
     points.y.push_back(mm);
   }
-  const auto level = [](double m, const char* what, const Look& look) -> Curve {
+  const auto level = [](double m, const char* what, const Look& look) -> PlottedCurve {
     return {.title = fmt::format("{} {:.4g} mm", what, m * 1e3),
             .look = look,
             .x = {-HUGE_VAL, HUGE_VAL},

@@ -53,10 +53,10 @@ Figure deviation_figure(const Scene& scene, const std::vector<Comparison>& compa
   for (std::size_t i = 0; i < comparisons.size(); ++i) {
     const Comparison& c = comparisons[i];
     const Shape& shape = c.force.shape;
-    Curve distances{.id = force_id(i),
-                    .title = setting_name(c.settings),
-                    .look = force_look(i),
-                    .x = shape.arc_length};
+    PlottedCurve distances{.id = force_id(i),
+                           .title = setting_name(c.settings),
+                           .look = force_look(i),
+                           .x = shape.arc_length};
     for (Eigen::Index k = 0; k < shape.points.cols(); ++k) {
       const double distance = (shape.points.col(k) - c.reference.points.col(k)).norm();
       distances.y.push_back(distance * 1e3);
@@ -67,13 +67,15 @@ Figure deviation_figure(const Scene& scene, const std::vector<Comparison>& compa
     fmt::format_to(std::back_inserter(figure.csv), "{0}_largest,{1},{2}\n\n", distances.id,
                    csv_number(c.deviation.max_at_m), csv_number(c.deviation.max_m));
     const std::string& colour = distances.look.colour;
-    Curve largest{.look = {.colour = colour, .width = 0, .mark = Mark::circle, .mark_size = 1.8},
-                  .x = {c.deviation.max_at_m},
-                  .y = {c.deviation.max_m * 1e3}};
-    Curve rms{.look = {.colour = colour, .dashes = Dashes::dotted},
-              .x = {-HUGE_VAL, HUGE_VAL},
-              .y = {c.deviation.rms_m * 1e3, c.deviation.rms_m * 1e3}};
-    for (Curve* curve : {&distances, &largest, &rms}) panel.curves.push_back(std::move(*curve));
+    PlottedCurve largest{
+        .look = {.colour = colour, .width = 0, .mark = Mark::circle, .mark_size = 1.8},
+        .x = {c.deviation.max_at_m},
+        .y = {c.deviation.max_m * 1e3}};
+    PlottedCurve rms{.look = {.colour = colour, .dashes = Dashes::dotted},
+                     .x = {-HUGE_VAL, HUGE_VAL},
+                     .y = {c.deviation.rms_m * 1e3, c.deviation.rms_m * 1e3}};
+    for (PlottedCurve* curve : {&distances, &largest, &rms})
+      panel.curves.push_back(std::move(*curve));
   }
   figure.panels = {std::move(panel)};
   return figure;

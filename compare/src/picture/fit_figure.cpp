@@ -36,13 +36,14 @@ Figure profile_figure(const NamedValue& stiffness, const MaterialFit& fit) {
   // Open sides reach to the plot's edge.
   const double low = value.low.value_or(-HUGE_VAL);
   const double high = value.high.value_or(HUGE_VAL);
-  Curve interval{.title = fmt::format(
-                     "95 % interval: {} to {} {}", value.low ? fmt::format("{:.4g}", low) : "open",
-                     value.high ? fmt::format("{:.4g}", high) : "open", stiffness.unit),
-                 .look = {.width = 0, .fill = "#DCE9F5"},
-                 .x = {low, high, high, low},
-                 .y = {-HUGE_VAL, -HUGE_VAL, HUGE_VAL, HUGE_VAL}};
-  Curve profile{.id = "profile", .title = "profile", .look = {.width = 2}};
+  PlottedCurve interval{
+      .title =
+          fmt::format("95 % interval: {} to {} {}", value.low ? fmt::format("{:.4g}", low) : "open",
+                      value.high ? fmt::format("{:.4g}", high) : "open", stiffness.unit),
+      .look = {.width = 0, .fill = "#DCE9F5"},
+      .x = {low, high, high, low},
+      .y = {-HUGE_VAL, -HUGE_VAL, HUGE_VAL, HUGE_VAL}};
+  PlottedCurve profile{.id = "profile", .title = "profile", .look = {.width = 2}};
   for (const ProfilePoint& point : fit.profile) {
     profile.x.push_back(point.stiffness);
     profile.y.push_back(point.excess_over_limit);

@@ -54,17 +54,18 @@ Figure front_figure(const SceneBenchmark& scene, std::size_t number) {
                    csv_number(run.time.median_s), csv_number(run.rms_over_length),
                    run.front ? 1 : 0);
   };
-  const auto add_point = [](const BenchmarkRun& run, Curve& curve) {
+  const auto add_point = [](const BenchmarkRun& run, PlottedCurve& curve) {
     curve.x.push_back(run.time.median_s * 1e3);
     curve.y.push_back(run.rms_over_length);
   };
   Panel panel{.x = {.label = "time [ms]", .logarithmic = true},
               .y = {.label = "error, RMS over the length", .logarithmic = true}};
-  Curve line{.id = "front", .title = "the front", .look = {.dashes = Dashes::dashed}};
+  PlottedCurve line{.id = "front", .title = "the front", .look = {.dashes = Dashes::dashed}};
   panel.curves.emplace_back();
   std::vector<const BenchmarkRun*> front;
   for (std::size_t k = 0; k < std::size(curves); ++k) {
-    Curve points{.id = std::to_string(k + 1), .title = curves[k].title, .look = curve_marks(k)};
+    PlottedCurve points{
+        .id = std::to_string(k + 1), .title = curves[k].title, .look = curve_marks(k)};
     for (const BenchmarkRun& run : scene.runs) {
       if (!curves[k].holds(run)) continue;
       if (run.front) front.push_back(&run);

@@ -26,13 +26,13 @@ Figure map_figure(const StabilityMap& map) {
   const bool over_c_c = map.axis == MapAxis::c_c;
   Panel panel{.x = {.label = over_c_c ? "c_c [N]" : "c_h", .logarithmic = over_c_c},
               .y = {.label = "c_F [m/N]", .logarithmic = true}};
-  const auto add = [&](const auto& at, double c_F, Curve& curve) {
+  const auto add = [&](const auto& at, double c_F, PlottedCurve& curve) {
     figure.csv += fmt::format("{},{},{},{}\n", curve.id, csv_number(at.c_c), csv_number(at.c_h),
                               csv_number(c_F));
     curve.x.push_back(over_c_c ? at.c_c : at.c_h);
     curve.y.push_back(c_F);
   };
-  std::pair<Outcome, Curve> outcomes[] = {
+  std::pair<Outcome, PlottedCurve> outcomes[] = {
       {Outcome::pass,
        {.title = "stable",
         .look = {.colour = "#0059A8", .width = 0, .mark = Mark::dot, .mark_size = 0.25}}},
@@ -49,7 +49,7 @@ Figure map_figure(const StabilityMap& map) {
     }
   }
   for (auto& [outcome, curve] : outcomes) panel.curves.push_back(std::move(curve));
-  const std::pair<double MapColumn::*, Curve> limits[] = {
+  const std::pair<double MapColumn::*, PlottedCurve> limits[] = {
       {&MapColumn::predicted,
        {.id = "predicted", .title = "predicted limit", .look = {.width = 2}}},
       {&MapColumn::measured,

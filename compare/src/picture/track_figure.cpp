@@ -174,7 +174,7 @@ Figure strip_figure(const Scene& scene, const TrackShapes& shapes, const TrackOp
     for (Series& series :
          series_of(clock.scene(scene, frames[i]), shapes, frames[i], view, cells)) {
       series.id += fmt::format("_{}", i + 1);
-      Curve curve{.id = series.id, .look = series.look};
+      PlottedCurve curve{.id = series.id, .look = series.look};
       if (titles.insert(series.title).second) curve.title = series.title;
       for (const auto& point : series.points.colwise()) {
         curve.x.push_back(point[view.right] + shift[0]);
@@ -223,9 +223,9 @@ Panel load_panel(const Scene& scene, const TrackShapes& shapes, const char* labe
                     .to = shapes.track.frames.back().time},
               .y = {.label = label, .from = 0}};
   const auto add = [&](const auto& frames, std::size_t gripper, const char* rod, std::size_t look) {
-    Curve curve{.title = fmt::format("gripper {} at s = {:.4g} m{}", gripper + 1,
-                                     scene.grippers[gripper].at, rod),
-                .look = curve_line(look)};
+    PlottedCurve curve{.title = fmt::format("gripper {} at s = {:.4g} m{}", gripper + 1,
+                                            scene.grippers[gripper].at, rod),
+                       .look = curve_line(look)};
     for (const auto& frame : frames) {
       curve.x.push_back(frame.time);
       curve.y.push_back((frame.grippers[gripper].*load).norm());
@@ -238,7 +238,7 @@ Panel load_panel(const Scene& scene, const TrackShapes& shapes, const char* labe
     add(shapes.moving->frames, i, ", the rod with inertia", 2 * i + 1);
   }
   const auto mark = [&](TrackEvent::Kind kind, const char* title, const Look& look) {
-    Curve uprights{.title = title, .look = look};
+    PlottedCurve uprights{.title = title, .look = look};
     for (const TrackEvent& event : shapes.track.events) {
       if (event.kind != kind) continue;
       const double time = shapes.track.frames[event.frame].time;

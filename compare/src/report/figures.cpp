@@ -46,7 +46,7 @@ Figure history_figure(const std::string& name, const std::vector<const SceneHist
                           .y = {1 / 3.0, 1 / 3.0}});
   for (std::size_t i = 0; i < histories.size(); ++i) {
     const SceneHistory& history = *histories[i];
-    Curve curve{.title = history.scene, .look = curve_look(i)};
+    PlottedCurve curve{.title = history.scene, .look = curve_look(i)};
     for (const ModulusAtTime& at : history.history.times) {
       figure.csv +=
           fmt::format("{},{},{},{},{},{}\n", i + 1, history.file, csv_number(at.time_s), at.steps,

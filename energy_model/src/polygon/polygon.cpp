@@ -70,13 +70,13 @@ class PolygonDescent {
     double beside_saddle = first_beside_saddle;
     double last_stiffening = 0;
     int slows = 0;  // steps in a row without all second derivatives that became shorter
-    assemble(SecondDerivatives::all);
+    assemble(HessianTerms::all);
     while (result_.evaluations < options_.max_evaluations) {
       if (deadline_.passed()) return SolveStatus::time_limit;
-      const bool exact = which_ == SecondDerivatives::all;
+      const bool exact = which_ == HessianTerms::all;
       if (!factor(damping)) {
         if (exact && options_.to_any_minimum) {
-          assemble(SecondDerivatives::stiffening);
+          assemble(HessianTerms::stiffening);
         } else {
           damping = std::max(4 * damping, first_damping);
           if (damping > most_damping) return SolveStatus::failed;
@@ -98,7 +98,7 @@ class PolygonDescent {
         // slow way there.
         beside_saddle = size / 4;
         slows = 0;
-        assemble(SecondDerivatives::all);
+        assemble(HessianTerms::all);
         if (at_rest && factor(0)) {
           damping = 0;
           continue;
@@ -108,7 +108,7 @@ class PolygonDescent {
           if (damping > most_damping) return SolveStatus::failed;
         }
         escape();
-        assemble(SecondDerivatives::all);
+        assemble(HessianTerms::all);
         continue;
       }
       step *= std::min(1.0, largest_step * length_ / step.cwiseAbs().maxCoeff());
@@ -121,11 +121,11 @@ class PolygonDescent {
         count_twists();
         gradient_ = trial_gradient_;
         energy_ = trial_energy;
-        assemble(SecondDerivatives::all);
+        assemble(HessianTerms::all);
         damping = damping < 4 * first_damping ? 0 : damping / 8;
         slows = !exact && size < std::exchange(last_stiffening, size) ? slows + 1 : 0;
       } else if (exact && damping == 0 && options_.to_any_minimum) {
-        assemble(SecondDerivatives::stiffening);
+        assemble(HessianTerms::stiffening);
       } else {
         damping = std::max(4 * damping, first_damping);
         if (damping > most_damping) return SolveStatus::failed;
@@ -143,7 +143,7 @@ class PolygonDescent {
     for (int taken = 0;; ++taken) {
       const double acting = evaluate();
       if (!succeeded(result_.status) || free_ == 0) return;
-      assemble(SecondDerivatives::all);
+      assemble(HessianTerms::all);
       if (!factor(0)) return refuse("the second derivative is not positive");
       const Eigen::VectorXd step = solver_.solve(free_part(-gradient_));
       const double size = step.norm() / std::sqrt(static_cast<double>(free_)) / length_;
@@ -201,7 +201,7 @@ class PolygonDescent {
     }
   }
 
-  void assemble(SecondDerivatives which) {
+  void assemble(HessianTerms which) {
     which_ = which;
     // A joint couples three points.
     constexpr Eigen::Index coupled = 3;
@@ -286,9 +286,9 @@ class PolygonDescent {
   double largest_ = 0;
   Eigen::Matrix3Xd gradient_;
   Eigen::Matrix3Xd trial_gradient_;
-  SecondDerivatives which_ = SecondDerivatives::all;  // are in hessian_
-  Eigen::MatrixXd hessian_;  // of the free points, banded: see PolygonFactor
-  Eigen::MatrixXd columns_;  // of the same
+  HessianTerms which_ = HessianTerms::all;  // are in hessian_
+  Eigen::MatrixXd hessian_;                 // of the free points, banded: see PolygonFactor
+  Eigen::MatrixXd columns_;                 // of the same
   PolygonFactor solver_;
 };
 

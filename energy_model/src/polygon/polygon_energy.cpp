@@ -174,9 +174,9 @@ double polygon_energy(const PolygonProblem& problem, const Points& points,
   return energy;
 }
 
-void polygon_hessian(const PolygonProblem& problem, const Points& points, SecondDerivatives which,
+void polygon_hessian(const PolygonProblem& problem, const Points& points, HessianTerms which,
                      const AddBlock& add) {
-  const bool all = which == SecondDerivatives::all;
+  const bool all = which == HessianTerms::all;
   const Eigen::Index n = problem.rest_lengths.size();
   const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
   for (Eigen::Index i = 0; i < n; ++i) {

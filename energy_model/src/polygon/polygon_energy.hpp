@@ -16,8 +16,8 @@ using AddBlock =
 void add_difference_block(Eigen::Index p, Eigen::Index q, const Eigen::Matrix3d& H,
                           const AddBlock& add);
 
-/// Which second derivatives are told.
-enum class SecondDerivatives {
+/// Which terms of the Hessian are wanted.
+enum class HessianTerms {
   all,
   /// Without what makes them negative: forces of compressed segments, couples of joints and pushes
   /// of round obstacles turn as the points move aside. Far from rest these terms are the largest
@@ -27,7 +27,7 @@ enum class SecondDerivatives {
 
 /// Hessian of polygon_energy, but for twist_columns.
 void polygon_hessian(const PolygonProblem& problem,
-                     const Eigen::Ref<const Eigen::Matrix3Xd>& points, SecondDerivatives which,
+                     const Eigen::Ref<const Eigen::Matrix3Xd>& points, HessianTerms which,
                      const AddBlock& add);
 
 }  // namespace dlo::energy_model

@@ -36,17 +36,17 @@ using testing::HasSubstr;
 using testing::Not;
 
 /// A curve of a figure; an empty one if it has none of that name.
-Curve curve_of(const Figure& figure, const std::string& id) {
+PlottedCurve curve_of(const Figure& figure, const std::string& id) {
   for (const Panel& panel : figure.panels) {
-    for (const Curve& curve : panel.curves) {
+    for (const PlottedCurve& curve : panel.curves) {
       if (curve.id == id) return curve;
     }
   }
   return {};
 }
 
-Curve titled(const Panel& panel, const std::string& title) {
-  for (const Curve& curve : panel.curves) {
+PlottedCurve titled(const Panel& panel, const std::string& title) {
+  for (const PlottedCurve& curve : panel.curves) {
     if (curve.title.find(title) != std::string::npos) return curve;
   }
   return {};
@@ -196,7 +196,7 @@ TEST(SolutionPicture, DashesWhatIsUnstable) {
   const Figure& shapes = picture.rows.at(0).at(0).at(0);
   std::size_t unstable = 0;
   for (std::size_t i = 0; i < all.solutions.size(); ++i) {
-    const Curve line = curve_of(shapes, "solution_" + std::to_string(i + 1));
+    const PlottedCurve line = curve_of(shapes, "solution_" + std::to_string(i + 1));
     const bool dashed = all.solutions[i].smallest_eigenvalue < 0;
     unstable += dashed ? 1 : 0;
     EXPECT_EQ(line.look.dashes, dashed ? Dashes::dashed : Dashes::solid);
@@ -216,7 +216,7 @@ TEST(SolutionPicture, TellsElevenUnstableShapesApart) {
   const Picture picture = solution_picture(scene, all);
   std::set<std::pair<std::string, Dashes>> looks;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const Curve line =
+    const PlottedCurve line =
         curve_of(picture.rows.at(0).at(0).at(0), "solution_" + std::to_string(i + 1));
     looks.insert({line.look.colour, line.look.dashes});
   }
@@ -273,11 +273,11 @@ TEST(CheckPicture, MarksTheWorstPointAndJoinsEachPointWithItsPlaceOnTheRod) {
   const ShapeCheck check = check_shape(scene, shape, {.modulus = ModulusSearch::no});
   const Picture picture = check_picture(scene, check, 0.02);
   const Figure& shapes = picture.rows.at(0).at(0).at(0);
-  const Curve worst = curve_of(shapes, "worst");
+  const PlottedCurve worst = curve_of(shapes, "worst");
   ASSERT_EQ(worst.x.size(), 1U);
   EXPECT_NEAR(worst.x[0], shape.points(0, 5), 1e-9);
   EXPECT_NEAR(worst.y[0], shape.points(1, 5), 1e-9);
-  const Curve whiskers = curve_of(shapes, "whisker");
+  const PlottedCurve whiskers = curve_of(shapes, "whisker");
   ASSERT_EQ(whiskers.x.size(), 27U);
   EXPECT_NEAR(whiskers.y[16] - whiskers.y[15], off, 1e-6);
   EXPECT_TRUE(std::isnan(whiskers.y[17]));
@@ -344,7 +344,7 @@ TEST(FrontFigure, TellsNAtThePointsOfTheFront) {
   ASSERT_EQ(panel.texts.size(), 2U);
   EXPECT_EQ(panel.texts[0].words, "8");
   EXPECT_EQ(panel.texts[1].words, "64");
-  const Curve front = titled(panel, "the front");
+  const PlottedCurve front = titled(panel, "the front");
   EXPECT_THAT(front.x, testing::ElementsAre(1, 4));
   EXPECT_EQ(panel.texts[1].x, front.x[1]);
   EXPECT_EQ(panel.texts[1].y, front.y[1]);
@@ -409,7 +409,7 @@ TEST(MapFigure, HasTheAxisThatVaries) {
     const Panel panel = map_figure(map).panels.at(0);
     EXPECT_TRUE(panel.y.logarithmic);
     EXPECT_EQ(panel.x.logarithmic, axis == MapAxis::c_c);
-    const Curve diverges = titled(panel, "diverges");
+    const PlottedCurve diverges = titled(panel, "diverges");
     EXPECT_THAT(diverges.x, testing::ElementsAre(axis == MapAxis::c_c ? 2 : 0.5));
     EXPECT_THAT(diverges.y, testing::ElementsAre(3));
   }

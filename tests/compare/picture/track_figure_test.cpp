@@ -81,7 +81,7 @@ TEST(TrackFigures, NothingOfAStripLeavesItsCell) {
   const int columns = static_cast<int>(std::lround(right / wide));
   const int rows = static_cast<int>(std::lround(up / high));
   int obstacles = 0;
-  for (const Curve& curve : panel.curves) {
+  for (const PlottedCurve& curve : panel.curves) {
     const std::string& id = curve.id;
     if (id.rfind("clamp", 0) == 0 || id.rfind("gripper", 0) == 0) continue;
     if (id.rfind("obstacle", 0) == 0) ++obstacles;
@@ -116,7 +116,7 @@ TEST(TrackFigures, ForcesAreThoseOfTheFrames) {
   }
   ASSERT_FALSE(motion.followed.events.empty());
   std::multiset<double> drawn;
-  for (const Curve& curve : forces.panels.front().curves) {
+  for (const PlottedCurve& curve : forces.panels.front().curves) {
     for (std::size_t i = 0; i < curve.y.size(); ++i) {
       if (curve.y[i] == HUGE_VAL) drawn.insert(curve.x[i]);
     }
