@@ -106,7 +106,7 @@ TEST(PolygonTwist, GradientAndHessianAreDifferences) {
   const PolygonProblem problem = random_problem(points);
   const Eigen::Index size = points.size();
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(size, size);
-  polygon_hessian(problem, points, SecondDerivatives::all,
+  polygon_hessian(problem, points, HessianTerms::all,
                   [&](Eigen::Index row, Eigen::Index column, const Eigen::Matrix3d& block) {
                     hessian.block<3, 3>(3 * row, 3 * column) += block;
                   });
