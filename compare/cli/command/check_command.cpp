@@ -121,15 +121,16 @@ void add_check(CLI::App& app) {
       "the deviation allowed, 1% or 0.01 of the length or \"2 mm\"; exit status 1 beyond it. "
       "Without it the verdict is that of 1%, and the exit status 0");
   command
-      ->add_option("--measure", options->tolerance.measure, "what is held against it: rms or max")
+      ->add_option("--measure", options->tolerance.measure,
+                   "the deviation that is held against the tolerance")
       ->check(CLI::IsMember({"rms", "max"}))
       ->capture_default_str();
   command
       ->add_option(
           "--min-seen", options->tolerance.min_seen,
-          "the file is a part of the rod: what it does not have is not judged, but less "
-          "than this share such as 10% never passes. Without it the file is the whole rod, "
-          "what is missing counts, and less than half never passes")
+          "the file is a part of the rod, and only that part is judged; it fails if it is less "
+          "than "
+          "this share such as 10%. Without it the whole rod is judged, and half of it is needed")
       ->transform(share_of_length());
   command->add_flag("--no-modulus", options->no_modulus, "leave E*/E out");
   command->add_flag("--no-explanation", options->no_explanation,

@@ -86,7 +86,7 @@ void add_regress(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--relative", options->tolerance.relative,
-                   "how much an error may change, as a share of it such as 1%")
+                   "how much an error may grow, as a share of it such as 1%")
       ->transform(share_up_to(1e3))
       ->capture_default_str();
   command

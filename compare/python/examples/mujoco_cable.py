@@ -2,7 +2,8 @@
 # # Is my MuJoCo cable right?
 #
 # A cable of MuJoCo's plugin `mujoco.elasticity.cable` is a chain of bodies. What it needs is an
-# array of their positions: `data.xpos[first:last]`, shape (M, 3), in metres. Here a chain of 30
+# array of shape (M, 3) in metres: `data.xpos` of all its bodies, the last included, and behind them
+# the end of the last body. Here a chain of 30
 # points stands in for it, with a Young's modulus of which somebody has mistyped the exponent.
 
 # %%

@@ -28,7 +28,8 @@ for law, bookkeeping in (("paper", "paper"), ("hooke", "consistent")):
         assert abs(result.modulus_ratio - 1) < 0.01
 
 # %% [markdown]
-# The wait for rest is what hides it: steps that the paper's constants make are slow on a soft rod.
+# Stopping before rest hides it. With the paper's constants a soft rod creeps for minutes of
+# simulated time, so a shape on the way looks stiffer than it ends.
 
 # %%
 creeping = rod.replace(

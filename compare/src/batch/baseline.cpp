@@ -81,6 +81,10 @@ std::vector<BaselineCase> read_baseline(const std::string& text, const std::stri
 }
 
 std::vector<BaselineCase> load_baseline(const std::string& path) {
+  std::error_code unknown;
+  if (!path.empty() && !std::filesystem::exists(path, unknown)) {
+    throw InputError(path + ": no baseline yet (allowed: --update, which writes it)");
+  }
   return read_baseline(read_file(path), path);
 }
 

@@ -65,14 +65,16 @@ ShapeNear near_by(const Shape& shape, const Scene& scene, double tolerance, bool
 std::string other_stiffness_within(const CheckResult& result) {
   const EffectiveModulus& modulus = result.check.effective_modulus;
   constexpr double hardly_another = 0.05;
-  if (!result.passes() || !is_identified(modulus.optimum) ||
-      std::abs(modulus.ratio - 1) < hardly_another) {
+  const bool is_near = judge(result.check, result.tolerance).pass;  // not only as a chain
+  if (!is_near || !is_identified(modulus.optimum) || std::abs(modulus.ratio - 1) < hardly_another) {
     return {};
   }
+  const double at_E =
+      result.tolerance.part ? result.check.deviation.rms_m : result.check.whole_rms_m;
   return fmt::format(
       "E*/E = {:.3g} is no contradiction: {:.3g} mm away at E* and {:.3g} mm at E, both are within "
       "the tolerance",
-      modulus.ratio, modulus.rms_m * 1e3, result.check.whole_rms_m * 1e3);
+      modulus.ratio, modulus.rms_m * 1e3, at_E * 1e3);
 }
 
 CheckResult check(const Scene& scene, const MeasuredShape& shape, const CheckRequest& request) {

@@ -13,7 +13,6 @@
 #include "report/again.hpp"
 #include "report/html.hpp"
 #include "report/page_data.hpp"
-#include "report/page_script.hpp"
 #include "report/provenance.hpp"
 #include "report/style.hpp"
 #include "report/tables.hpp"

@@ -1,5 +1,14 @@
 #pragma once
 
+#include <string_view>
+
+namespace dlo::compare::builtin {
+
+/// The script of a report's page; its data stands before it, see page_data.
+extern const std::string_view interactive_js;
+
+}  // namespace dlo::compare::builtin
+
 namespace dlo::compare {
 
 /// Style sheet of a report's page. Figures are drawn for a light page; in the dark they are

@@ -28,8 +28,8 @@ int main() {
   rod.loads.setZero(3, points);
   rod.loads.row(1).tail(points - 1).setConstant(-weight * segment);
   rod.loads(1, points - 1) /= 2;
-  // A hand's gripper yields: at rest the tip hangs 0.89 mm lower than a clamped rod's, with
-  // GripHold::rigid, which a hand cannot hold but a robot can, it is 0.06 mm off.
+  // A hand's gripper yields: with this spring the tip hangs 0.89 mm too low. With
+  // GripHold::rigid, as for a robot, it is 0.06 mm off.
   rod.grips = {{.first_point = 0,
                 .targets = hold_at(0),
                 .hold = GripHold::spring,
