@@ -55,9 +55,18 @@ std::optional<NegativeCurvature> negative_curvature(const SpanSolution& solution
   SpanEnergy in_space(out.span, solution.terms);
   in_space.linearise_at(model, solution.x, at.hessian, at.jacobian);
   reduced.compute(at.hessian, at.jacobian);
-  std::optional<Eigen::VectorXd> out_of_plane = negative_curvature_direction(reduced);
-  if (!out_of_plane) return std::nullopt;
-  out.direction = std::move(*out_of_plane);
+  if (std::optional<Eigen::VectorXd> way = negative_curvature_direction(reduced)) {
+    out.direction = std::move(*way);
+    return out;
+  }
+  // Deep within a box, in the middle between two faces, the energy has a ridge: the span in space
+  // has one of its slopes there, and only the planar one's tilts see both.
+  model.sideways(solution.multipliers, at.hessian, at.jacobian);
+  reduced.compute(at.hessian, at.jacobian);
+  const std::optional<Eigen::VectorXd> tilts = negative_curvature_direction(reduced);
+  if (!tilts) return std::nullopt;
+  out.direction = Eigen::VectorXd::Zero(model.size() + tilts->size());
+  out.direction.tail(tilts->size()) = *tilts;
   return out;
 }
 
