@@ -3,8 +3,6 @@
 namespace dlo::python {
 namespace {
 
-using namespace py::literals;
-
 /// Tics that the figure asks for; None: those that the axes choose.
 py::dict axis_dict(const compare::PlotAxis& laid_out, const compare::PlotAxis& described) {
   py::object tics = py::none();
@@ -13,19 +11,27 @@ py::dict axis_dict(const compare::PlotAxis& laid_out, const compare::PlotAxis& d
     for (const compare::Tic& tic : *described.tics) list.append(py::make_tuple(tic.at, tic.label));
     tics = list;
   }
-  return py::dict("label"_a = laid_out.label,
-                  "limits"_a = py::make_tuple(*laid_out.from, *laid_out.to),
-                  "log"_a = laid_out.logarithmic, "tics"_a = tics);
+  py::dict result;
+  result["label"] = laid_out.label;
+  result["limits"] = py::make_tuple(*laid_out.from, *laid_out.to);
+  result["log"] = laid_out.logarithmic;
+  result["tics"] = tics;
+  return result;
 }
 
 py::dict curve_dict(const compare::PlottedCurve& curve) {
   const compare::Look& look = curve.look;
-  return py::dict(
-      "title"_a = curve.title,
-      "points"_a = curve.z.empty() ? py::make_tuple(curve.x, curve.y)
-                                   : py::make_tuple(curve.x, curve.y, curve.z),
-      "colour"_a = look.colour, "width"_a = look.width, "dashes"_a = static_cast<int>(look.dashes),
-      "mark"_a = static_cast<int>(look.mark), "mark_size"_a = look.mark_size, "fill"_a = look.fill);
+  py::dict result;
+  result["title"] = curve.title;
+  result["points"] = curve.z.empty() ? py::make_tuple(curve.x, curve.y)
+                                     : py::make_tuple(curve.x, curve.y, curve.z);
+  result["colour"] = look.colour;
+  result["width"] = look.width;
+  result["dashes"] = static_cast<int>(look.dashes);
+  result["mark"] = static_cast<int>(look.mark);
+  result["mark_size"] = look.mark_size;
+  result["fill"] = look.fill;
+  return result;
 }
 
 }  // namespace
@@ -42,9 +48,14 @@ py::dict panel_dict(const compare::Panel& described) {
   for (const compare::Text& text : panel.texts) {
     texts.append(py::make_tuple(text.words, text.x, text.y, text.dx, text.dy));
   }
-  return py::dict("size"_a = py::make_tuple(compare::figure_width, panel.full_height()),
-                  "upright"_a = panel.upright, "equal"_a = panel.equal_aspect, "axes"_a = axes,
-                  "curves"_a = curves, "texts"_a = texts);
+  py::dict result;
+  result["size"] = py::make_tuple(compare::figure_width, panel.full_height());
+  result["upright"] = panel.upright;
+  result["equal"] = panel.equal_aspect;
+  result["axes"] = axes;
+  result["curves"] = curves;
+  result["texts"] = texts;
+  return result;
 }
 
 }  // namespace dlo::python

@@ -255,6 +255,7 @@ TemporaryFile::~TemporaryFile() { ::unlink(path_.c_str()); }
 
 TemporaryFolder::TemporaryFolder(const std::string& failure, const std::filesystem::path& folder) {
   const SignalsHeld held;
+  // cppcheck-suppress useInitializationList ; no signal may come between its making and its noting
   path_ = made_in(folder, [](const char* path) { return ::mkdir(path, S_IRWXU) == 0; });
   if (path_.empty()) throw OutputError(fmt::format("{} ({})", failure, std::strerror(errno)));
   at_signals_.emplace(path_.string());

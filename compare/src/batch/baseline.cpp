@@ -12,6 +12,7 @@
 #include "base/quote.hpp"
 #include "batch/locked_file.hpp"
 #include "dlo/compare/deviation.hpp"
+#include "dlo/compare/error.hpp"
 #include "dlo/compare/solution.hpp"
 #include "toml/strict_table.hpp"
 

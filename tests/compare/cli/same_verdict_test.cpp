@@ -78,8 +78,7 @@ TEST_F(SameVerdict, OfFiftyShapesFromCommandLibraryAndMatchers) {
         EXPECT_EQ(document["verdict"] == "pass", result.passes());
         EXPECT_EQ(document["reason"], result.judgement.reason);
         EXPECT_EQ(near.near, result.passes());
-        EXPECT_EQ(near.explanation.substr(0, near.explanation.find('\n')),
-                  result.judgement.reason);
+        EXPECT_EQ(near.explanation.substr(0, near.explanation.find('\n')), result.judgement.reason);
         ++shapes;
         passes += result.passes() ? 1 : 0;
       }
