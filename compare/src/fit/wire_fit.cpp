@@ -71,6 +71,7 @@ FittedRods::SceneAt scene_at(std::vector<Scene> scenes, std::vector<WireNumber> 
 
 std::vector<Unknown> unknowns_of(const std::vector<WireNumber>& numbers) {
   std::vector<Unknown> result;
+  result.reserve(numbers.size());
   for (const WireNumber& number : numbers) {
     result.push_back({.stride = number.stride,
                       .shape = number.described.shape,
