@@ -18,18 +18,18 @@ namespace {
 /// Directions across a tangent in which it may turn; in the plane the second one is zero.
 using Across = Eigen::Matrix<double, 3, 2>;
 
-constexpr int most_steps = 200;           // of Newton's method, which takes some 30
-constexpr int most_shifts = 60;           // of a Hessian, each four times the last one
-constexpr int most_halvings = 30;         // of a step
-constexpr double at_rest = 1e-4;          // step of a tangent [rad]
-constexpr double nearly_at_rest = 0.05;   // step with which multipliers may change [rad]
-constexpr double least_shift = 1e-4;      // of unit: zero modes stay where they are
-constexpr double longest_turn = 0.5;      // of a tangent in a step [rad]
-constexpr double sufficient = 1e-4;       // share of the slope's promise (Armijo)
-constexpr double rounding = 1e-13;        // of an energy
-constexpr double closing = 0.25;          // of a gap in a round, or else its penalty grows
-constexpr double penalty_growth = 4;      // in a round
-constexpr double largest_penalty = 1e12;  // over the first one
+constexpr int most_steps = 200;            // of Newton's method, which takes some 30
+constexpr int most_shifts = 60;            // of a Hessian, each four times the last one
+constexpr int most_halvings = 30;          // of a step
+constexpr double at_rest = 1e-4;           // step of a tangent [rad]
+constexpr double nearly_at_rest = 0.05;    // step with which multipliers may change [rad]
+constexpr double least_shift = 1e-4;       // of unit: zero modes stay where they are
+constexpr double longest_turn = 0.5;       // of a tangent in a step [rad]
+constexpr double sufficient = 1e-4;        // share of the slope's promise (Armijo)
+constexpr double energy_rounding = 1e-13;  // of an energy
+constexpr double closing = 0.25;           // of a gap in a round, or else its penalty grows
+constexpr double penalty_growth = 4;       // in a round
+constexpr double largest_penalty = 1e12;   // over the first one
 
 /// Tangents between those of clamps at the ends, and what joins them.
 class TangentChain {
@@ -278,7 +278,7 @@ std::optional<ChainStep> descend_once(TangentChain& chain, double unit, double& 
   for (; halvings < most_halvings; ++halvings, share /= 2) {
     chain.turn(from, share * step->turn);
     const double promised = before + sufficient * share * step->slope;
-    if (chain.augmented_energy() <= promised + rounding * (1 + std::abs(before))) break;
+    if (chain.augmented_energy() <= promised + energy_rounding * (1 + std::abs(before))) break;
   }
   constexpr int usual_halvings = 2;
   if (halvings > usual_halvings) {
