@@ -28,10 +28,10 @@ constexpr CurveLook looks[curve_colours] = {
     {"#7A5600", Mark::down_triangle, Dashes::dash_dot_dotted},
     {"#404040", Mark::cross, Dashes::dashed}};
 
-using Range = std::array<double, 2>;
-constexpr Range nothing = {HUGE_VAL, -HUGE_VAL};
+using PlotRange = std::array<double, 2>;
+constexpr PlotRange nothing = {HUGE_VAL, -HUGE_VAL};
 
-void widen(Range& range, const std::vector<double>& values) {
+void widen(PlotRange& range, const std::vector<double>& values) {
   for (const double value : values) {
     if (!std::isfinite(value)) continue;
     range = {std::min(range[0], value), std::max(range[1], value)};
@@ -118,8 +118,10 @@ std::vector<Tic> tics_with_room(const PlotAxis& axis, double pixels, Direction d
 }
 
 /// What is drawn, and a little more.
-void set_limits(PlotAxis& axis, const Range& drawn) {
-  Range range = drawn[0] <= drawn[1] ? drawn : axis.logarithmic ? Range{1, 10} : Range{0, 1};
+void set_limits(PlotAxis& axis, const PlotRange& drawn) {
+  PlotRange range = drawn[0] <= drawn[1] ? drawn
+                    : axis.logarithmic   ? PlotRange{1, 10}
+                                         : PlotRange{0, 1};
   if (axis.logarithmic) range = {std::log10(range[0]), std::log10(range[1])};
   constexpr double margin = 0.05;
   double more = margin * (range[1] - range[0]);
@@ -141,7 +143,7 @@ void put_at_edge(double& value, const PlotAxis& axis) {
 
 void lay_out(PlotAxis& axis, std::vector<PlottedCurve>& curves,
              std::vector<double> PlottedCurve::*values) {
-  Range drawn = nothing;
+  PlotRange drawn = nothing;
   for (PlottedCurve& curve : curves) {
     for (double& value : curve.*values) {
       // What a logarithmic axis has no place for.
@@ -182,7 +184,7 @@ Look curve_marks(std::size_t i) {
 }
 
 std::pair<double, double> Cells::range() const {
-  Range range = nothing;
+  PlotRange range = nothing;
   widen(range, values);
   return {range[0], range[1]};
 }
