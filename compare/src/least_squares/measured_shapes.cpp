@@ -90,9 +90,10 @@ bool lies_in_a_plane(const Eigen::Matrix3Xd& points) {
 }
 
 MeasuredShapes::MeasuredShapes(const std::vector<Scene>& scenes,
-                               const std::vector<MeasuredShape>& shapes, MeasuredOptions options,
+                               const std::vector<MeasuredShape>& shapes,
+                               const MeasuredOptions& options,
                                std::chrono::steady_clock::time_point begin)
-    : options_(std::move(options)), begin_(begin) {
+    : options_(options), begin_(begin) {
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const Eigen::Vector3d up = up_of(scenes[i], options_.pose);
     Aligner aligner(shapes[i], scenes[i].length,

@@ -44,7 +44,7 @@ class MeasuredShapes {
   /// @param begin  from when on the time limit is
   /// @throws InputError as align()
   MeasuredShapes(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-                 MeasuredOptions options, std::chrono::steady_clock::time_point begin);
+                 const MeasuredOptions& options, std::chrono::steady_clock::time_point begin);
 
   [[nodiscard]] std::size_t size() const { return shapes_.size(); }
   /// A shape of which only two coordinates are measured.

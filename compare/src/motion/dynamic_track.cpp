@@ -221,7 +221,7 @@ TrackResult follow(const Scene& scene, const TrackRequest& request, const Progre
     throw InputError("track: out of range (allowed: rates > 0, up to 1e9 Hz, samples >= 2)");
   }
   if (request.damping) require_dynamic(scene, options);
-  TrackResult result{std::move(options), {}, {}};
+  TrackResult result{options, {}, {}};
   result.track = track(scene, result.options, progress);
   if (request.damping) {
     result.dynamic = dynamic_track(scene, result.track, result.options, *request.damping);
