@@ -115,6 +115,14 @@ std::string hint_of(const ShapeCheck& check, const Measured& measured) {
   }
   const double missing = check.length_m - (s.back() - s.front());
   if (missing > least * check.length_m) {
+    // The way along the points tells a file that is cut off from the shape of another rod.
+    if (check.polyline_length_m > (1 - least) * check.length_m) {
+      return fmt::format(
+          "as long as the rod, but {:.4g} mm of the rod are nearest to none of the points: the "
+          "shape "
+          "is another one",
+          missing * 1e3);
+    }
     return fmt::format(
         "shorter than the rod by {:.4g} mm: compressed, cut off, or only a part seen",
         missing * 1e3);

@@ -195,6 +195,14 @@ TEST_F(CheckCommand, AStretchedOrCutRopeFailsAndIsNamed) {
   EXPECT_NE(part.out.find("not judged: s = 0.8 to 1 m"), std::string::npos) << part.out;
 }
 
+TEST_F(CheckCommand, AShapeAsLongAsTheRodIsNotCalledShorter) {
+  // Straight down, half a metre as the rod that is held level.
+  const std::string file = shape("x,y\n0,0\n0,-0.125\n0,-0.25\n0,-0.375\n0,-0.5\n");
+  const std::string text = run("check " + steel() + " --no-modulus --shape " + file).out;
+  EXPECT_EQ(text.find("shorter than the rod"), std::string::npos) << text;
+  EXPECT_NE(text.find("(as long as the rod, but "), std::string::npos) << text;
+}
+
 TEST_F(CheckCommand, WhatIsNotThereIsEmptyOrNull) {
   // The tip is not seen, and the rod does not move.
   const std::string check = "check " + std::string(DLO_DATA) +
