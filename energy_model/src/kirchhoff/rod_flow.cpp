@@ -139,6 +139,7 @@ Eigen::Matrix3d transported(const Eigen::Matrix3d& frame, const Eigen::Vector3d&
 
 std::vector<Eigen::Matrix3d> frames_of(const std::vector<RodState>& states) {
   std::vector<Eigen::Matrix3d> frames;
+  frames.reserve(states.size());
   for (const RodState& state : states) frames.push_back(state.R);
   return frames;
 }
