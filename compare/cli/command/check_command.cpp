@@ -128,9 +128,9 @@ void add_check(CLI::App& app) {
   command
       ->add_option(
           "--min-seen", options->tolerance.min_seen,
-          "the file is a part of the rod, and only that part is judged; it fails if it is less "
-          "than "
-          "this share such as 10%. Without it the whole rod is judged, and half of it is needed")
+          "the file is a part of the rod, and only that part is judged; it fails if less than "
+          "this share of the rod is seen, such as 10%. Without it the whole rod is judged, and "
+          "half of it is needed")
       ->transform(share_of_length());
   command->add_flag("--no-modulus", options->no_modulus, "leave E*/E out");
   command->add_flag("--no-explanation", options->no_explanation,

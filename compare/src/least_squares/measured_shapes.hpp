@@ -86,8 +86,6 @@ class MeasuredShapes {
                                                       const std::vector<Movement>& movements,
                                                       Eigen::Index numbers) const;
 
-  /// When the time limit began.
-  [[nodiscard]] std::chrono::steady_clock::time_point begin() const { return begin_; }
   /// Equilibria solved so far.
   [[nodiscard]] long solves() const { return solves_; }
   /// Of the energy model's objective, for these.

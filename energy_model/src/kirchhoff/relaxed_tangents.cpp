@@ -193,11 +193,12 @@ class ChainFactor {
       const auto at = static_cast<std::size_t>(i);
       x.middleRows<2>(2 * i) -= below_[at] * inverse_[at - 1] * x.middleRows<2>(2 * i - 2);
     }
+    Eigen::MatrixXd rows;
     for (Eigen::Index i = count; i-- > 0;) {
       const auto at = static_cast<std::size_t>(i);
-      Eigen::MatrixXd rows = x.middleRows<2>(2 * i);
+      rows = x.middleRows<2>(2 * i);
       if (i + 1 < count) rows -= below_[at + 1].transpose() * x.middleRows<2>(2 * i + 2);
-      x.middleRows<2>(2 * i) = inverse_[at] * rows;
+      x.middleRows<2>(2 * i).noalias() = inverse_[at] * rows;
     }
     return x;
   }
