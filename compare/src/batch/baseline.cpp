@@ -82,11 +82,16 @@ std::vector<BaselineCase> read_baseline(const std::string& text, const std::stri
 }
 
 std::vector<BaselineCase> load_baseline(const std::string& path) {
-  std::error_code unknown;
-  if (!path.empty() && !std::filesystem::exists(path, unknown)) {
-    throw InputError(path + ": no baseline yet (allowed: --update, which writes it)");
+  std::string text;
+  try {
+    text = read_file(path);
+  } catch (const InputError& error) {
+    std::error_code unknown;
+    const auto type = std::filesystem::status(path, unknown).type();
+    if (type != std::filesystem::file_type::not_found) throw;
+    throw InputError(fmt::format("{}; --update writes a first baseline", error.what()));
   }
-  return read_baseline(read_file(path), path);
+  return read_baseline(text, path);
 }
 
 std::vector<BaselineCase> present_baseline(const std::string& path) {
