@@ -237,6 +237,18 @@ TEST(Polygon, StopsAtItsTimeLimit) {
                std::invalid_argument);
 }
 
+// A short step in a stiff segment is a large force: what is returned is judged by forces, too.
+TEST(Polygon, AToleranceOfLengthsLeavesNoForce) {
+  for (const double gamma : {17.0, 19.0, 21.0, 23.0}) {
+    PolygonProblem problem = two_clamps(JointLaw::hooke, 17, 0.8, gamma);
+    problem.stretch_stiffness = 4e8;
+    const PolygonResult result = solve_polygon(problem, arch(problem, 0.8, 0), {.tolerance = 5e-8});
+    ASSERT_TRUE(succeeded(result.status)) << result.message;
+    const double acting = result.grip_forces.colwise().norm().maxCoeff();
+    EXPECT_LT(result.residual, 1e-6 * acting) << gamma;
+  }
+}
+
 TEST(Polygon, ReturnsTheResidualOfThePointsThatItReturns) {
   for (const int most : {2, 5, 10, 20000}) {
     const PolygonProblem problem = two_clamps(JointLaw::hooke, 20, 0.8, 5);
