@@ -14,6 +14,7 @@
 
 #include "base/output_file.hpp"
 #include "command/commands.hpp"
+#include "completion/completion.hpp"
 #include "dlo/compare/error.hpp"
 #include "option/help.hpp"
 #include "option/manual.hpp"
@@ -39,6 +40,14 @@ void build(CLI::App& app) {
   app.add_flag_callback(
          "--bash-completion", [=] { print(bash_completion); },
          "print completion for bash: source <(dlo --bash-completion)")
+      ->group(setup);
+  app.add_flag_callback(
+         "--zsh-completion", [=] { print(zsh_completion); },
+         "print completion for zsh: source <(dlo --zsh-completion)")
+      ->group(setup);
+  app.add_flag_callback(
+         "--fish-completion", [=] { print(fish_completion); },
+         "print completion for fish: dlo --fish-completion | source")
       ->group(setup);
   for (const Task& task : tasks()) {
     for (const auto add : task.commands) {

@@ -40,6 +40,14 @@ def test_solve_is_the_commands(root, command):
     assert "energy, converged" in str(solution)
 
 
+def test_a_frame_is_found_by_the_commands_word(cable):
+    points = numpy.array(dlo.solve(cable, samples=15).points) @ numpy.diag((-1, 1, -1)) + (1, 2, 3)
+    assert dlo.check(cable, points, tolerance="1%").passed is False
+    found = dlo.check(cable, points, tolerance="1%", register="upright")
+    assert found.passed
+    assert dlo.check(cable, points, tolerance="1%", pose="upright").reason == found.reason
+
+
 def test_check_is_the_commands(root, command):
     scene = root / "data/scenes/cable.toml"
     shape = root / "data/shapes/cable.csv"

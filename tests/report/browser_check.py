@@ -7,8 +7,9 @@
 Makes a quick report of the scenes with the command DLO (or takes a finished one) and checks at 375,
 400, 800, 1280 and 1920 pixels, in light and in dark: no console message, no request but for the
 page itself, every figure there, of some size and within the page, nothing that makes the page
-scroll sideways, text that stands out from its ground, less than 3 MB. Then it uses what the page's
-script offers (interaction.py), at 400 and 1280 pixels. With --screenshots it leaves pictures of all
+scroll sideways, text that stands out from its ground, less than 3 MB, all with every section
+open. Sections have to be folded at first, opened by the contents, and all open on paper. Then it uses
+what the page's script offers (interaction.py), at 400 and 1280 pixels. With --screenshots it leaves pictures of all
 of them, and of the page as it is printed.
 """
 import argparse
@@ -37,6 +38,7 @@ LARGEST = 3_000_000  # bytes
 
 # Every figure's box, what is wider than the page, and the contrast of texts on their ground.
 MEASURE = """
+for (const fold of document.querySelectorAll('details')) fold.open = true;
 const box = e => e.getBoundingClientRect();
 const rgb = c => (c.match(/[0-9.]+/g) || []).map(Number);
 const luminance = c => {
@@ -195,12 +197,50 @@ def check_shape_pages(dlo, folder, chromedriver, screenshots):
     return problems
 
 
+def folds(browser, page):
+    """Sections below the first screen wait until they are asked for, by the contents or by paper."""
+    def closed():
+        return browser.execute_script(
+            "return [...document.querySelectorAll('details.section:not([open])')]"
+            ".map(fold => fold.parentElement.id)")
+
+    browser.get(page.as_uri())
+    sections = closed()
+    if "shapes" not in sections or "provenance" not in sections or "verdict" in sections:
+        yield f"folded at first are {sections}"
+    for section in sections:
+        browser.get("about:blank")
+        browser.get(page.as_uri())
+        browser.execute_script(
+            "document.querySelector(`nav a[href='#${arguments[0]}']`).click()", section)
+        if closed() != [other for other in sections if other != section]:
+            yield f"the contents' {section} leave closed {closed()}"
+        top = browser.execute_script(
+            "return document.getElementById(arguments[0]).getBoundingClientRect().top", section)
+        if not -1 <= top <= HEIGHT:
+            yield f"the contents' {section} lead to {top}"
+    browser.get("about:blank")
+    browser.get(page.as_uri() + "#budget")
+    if "budget" in closed():
+        yield "an address with #budget does not open it"
+    browser.execute_script(
+        "addEventListener('beforeprint', () => { window.closedOnPaper ="
+        " document.querySelectorAll('details:not([open])').length; })")
+    browser.execute_cdp_cmd("Page.printToPDF", {})
+    on_paper = browser.execute_script("return window.closedOnPaper")
+    if on_paper != 0:
+        yield f"closed on paper: {on_paper}"
+    if len(closed()) != len(sections) - 1:
+        yield f"after printing closed are {closed()}"
+
+
 def check(page, chromedriver, screenshots):
     browser = open_browser(chromedriver)
     try:
         problems = looks(browser, page, screenshots)
         for width in USED_AT:
             set_view(browser, width, "light")
+            problems += [f"{width} folded: {problem}" for problem in folds(browser, page)]
             problems += [f"{width} used: {problem}"
                          for problem in interactions(browser, page.as_uri())]
             problems += [f"{width} used: console: {entry['message']}"

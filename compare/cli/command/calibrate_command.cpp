@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -80,8 +81,10 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
   std::vector<compare::Scene> scenes = load_all(options.scenes, options.overrides);
   std::vector<compare::MeasuredShape> shapes;
   shapes.reserve(options.shapes.size());
-  for (const std::string& path : options.shapes) {
-    shapes.push_back(options.shape_options.load(path));
+  for (std::size_t i = 0; i < options.shapes.size(); ++i) {
+    shapes.push_back(options.shape_options.load(options.shapes[i]));
+    const std::size_t of = std::min(i, scenes.size() - 1);
+    options.shape_options.require_likely_unit(shapes.back(), scenes[of].length);
   }
   for (const compare::Scene& scene : scenes) warn_of_friction(scene);
   using compare::Dimension;

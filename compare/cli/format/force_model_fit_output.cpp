@@ -50,8 +50,13 @@ std::string force_model_text(const ForceModelFit& fit, bool target_was_given) {
   } else {
     append(out, "  EI    {:.6g} N m^2   physical, in place of c_b\n", fit.bending_stiffness);
   }
-  append(out, "  c_c   {:.6g} N   {}\n  c_F   {:.6g} m/N\n  c_h   {:.8f}\n  l_s   {:.6g} m\n\n",
-         *s.c_c, c_c_origin(fit), *s.c_F, *s.c_h, *s.l_s);
+  append(out, "  c_c   {:.6g} N   {}\n", *s.c_c, c_c_origin(fit));
+  if (s.c_F) {
+    append(out, "  c_F   {:.6g} m/N   with stepper {}\n  c_h   {:.8f}\n  l_s   {:.6g} m\n\n",
+           *s.c_F, compare::to_string(s.stepper), *s.c_h, *s.l_s);
+  } else {
+    append(out, "  stepper {}, which has no parameters\n\n", compare::to_string(s.stepper));
+  }
   append(out, "RMS deviation from the energy model, share of l\n");
   append(out, "  {:<28} {:>8}", "", "Gamma");
   for (const RuleDeviations& rule : fit.rules) {
@@ -121,9 +126,9 @@ Json force_model_json(const ForceModelFit& fit) {
             {"segment_length_m", fit.segment_length},
             {"c_c", *s.c_c},
             {"stepper", compare::to_string(s.stepper)},
-            {"c_F", *s.c_F},
-            {"c_h", *s.c_h},
-            {"l_s", *s.l_s}}},
+            {"c_F", s.c_F ? Json(*s.c_F) : Json(nullptr)},
+            {"c_h", s.c_h ? Json(*s.c_h) : Json(nullptr)},
+            {"l_s", s.l_s ? Json(*s.l_s) : Json(nullptr)}}},
           {"order_of_convergence", fit.order > 0 ? Json(fit.order) : Json(nullptr)},
           {"target", fit.target},
           {"reached", fit.reached()},
@@ -157,10 +162,13 @@ std::string force_model_toml(const ForceModelFit& fit) {
            fit.c_b_was_given ? "as given" : "fitted to the scenes' energy shapes");
   }
   append(out, "c_c = {:.9e}  # N, stretch stiffness: {}\n", *s.c_c, c_c_origin(fit));
-  append(out, "stepper = \"dynamic\"  # Formulas 19 and 20\n");
-  append(out, "c_F = {:.9e}  # m/N, heavy ball of the stiffest and slowest modes\n", *s.c_F);
-  append(out, "c_h = {:.9f}  # share of the last movement that is kept, likewise\n", *s.c_h);
-  append(out, "l_s = {:.9e}  # m, largest relative movement per step: L/4\n", *s.l_s);
+  append(out, "stepper = \"{}\"{}\n", compare::to_string(s.stepper),
+         s.c_F ? "  # Formulas 19 and 20" : "");
+  if (s.c_F) {
+    append(out, "c_F = {:.9e}  # m/N, heavy ball of the stiffest and slowest modes\n", *s.c_F);
+    append(out, "c_h = {:.9f}  # share of the last movement that is kept, likewise\n", *s.c_h);
+    append(out, "l_s = {:.9e}  # m, largest relative movement per step: L/4\n", *s.l_s);
+  }
   append(out, "\n[derived]  # for programs of your own, of the first scene\n");
   append(out, "segment_length = {:.9e}  # m, L\n", fit.segment_length);
   append(out, "bending_stiffness = {:.9e}  # N m^2, EI{}\n", fit.bending_stiffness,

@@ -27,7 +27,8 @@ void add_tables(std::string& out, const PaperReport& report) {
          "printed", "computed");
   for (const compare::TableRow& row : report.tables) {
     append(out, "  {:<7}{:<12}{:>14}{:>16.8g}  {:<4} {}  {}\n", row.table, row.quantity,
-           row.printed, row.computed, row.unit, row.agrees ? "same " : "other", row.explanation);
+           row.printed, row.computed, row.unit, row.agrees ? "agrees " : "differs",
+           row.explanation);
   }
 }
 

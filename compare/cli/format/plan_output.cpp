@@ -63,6 +63,14 @@ std::string neglected_text(const compare::Neglected& item, double length) {
   return out;
 }
 
+/// Why no N is known to meet the target.
+std::string why_no_points(const compare::Plan& plan) {
+  for (const compare::Neglected& item : plan.neglected) {
+    if (item.what == "polygon" && !std::isfinite(item.bound_m)) return item.why;
+  }
+  return fmt::format("none up to {} was found in time", compare::most_planned_points);
+}
+
 }  // namespace
 
 std::string assumption_text(const compare::Scene& scene) {
@@ -79,7 +87,14 @@ std::string plan_text(const compare::Plan& plan, const compare::Scene& scene) {
   std::string out;
   append(out, "plan of {}   Gamma = {:.4g}\n", compare::display(scene.name), plan.gamma);
   append(out, "  geometry        {}\n", plan.planar ? "planar" : "spatial");
-  append(out, "  time            {}\n", plan.moving ? "moving" : "static");
+  if (const auto motion = compare::motion_of(scene)) {
+    append(out,
+           "  time            static: the scene as it is at {:g} s; it moves from {:g} to {:g} s "
+           "(--time, dlo track)\n",
+           motion->begin, motion->begin, motion->end);
+  } else {
+    append(out, "  time            {}\n", plan.moving ? "moving" : "static");
+  }
   for (std::size_t i = 0; i < plan.spans.size(); ++i) {
     append(out, "  {:<15} {}\n", i == 0 ? "spans" : "", span_text(plan.spans[i]));
   }
@@ -99,8 +114,8 @@ std::string plan_text(const compare::Plan& plan, const compare::Scene& scene) {
     append(out, "{} for {:g} % of l with the hooke law; the scene has {}\n", plan.points,
            plan.target * 100, plan.scene_points);
   } else {
-    append(out, "unknown for {:g} % of l; the scene has {}\n", plan.target * 100,
-           plan.scene_points);
+    append(out, "not determined for {:g} % of l: {}; the scene has {}\n", plan.target * 100,
+           why_no_points(plan), plan.scene_points);
   }
   append(out, "  neglected, and what it could change (RMS of the shape)\n");
   for (const compare::Neglected& item : plan.neglected) {

@@ -132,7 +132,14 @@ std::string shape_check_text(const CheckPage& page) {
     append(out, "  movement        the rod is {:.4g} mm = {:.4g} % of l away from straight (RMS)\n",
            c.movement_m * 1e3, c.movement_m / scene.length * 100);
   }
-  add_modulus(out, c.effective_modulus, NAN, c.stiffness, c.modulus);
+  if (report.supersedes_modulus) {
+    append(out,
+           "  {:<15} no measure of the material: what explains the shape comes nearer than any "
+           "stiffness, which leaves {:.4g} mm (RMS)\n",
+           fmt::format("{0}*/{0}", c.stiffness.name), c.effective_modulus.rms_m * 1e3);
+  } else {
+    add_modulus(out, c.effective_modulus, NAN, c.stiffness, c.modulus);
+  }
   add_state(out, c.state, scene.length, "the shape");
   if (report.friction) add_friction(out, *report.friction);
   constexpr std::size_t most_explanations = 3;
@@ -142,10 +149,6 @@ std::string shape_check_text(const CheckPage& page) {
            explanation.rms_m * 1e3,
            explanation.kind == compare::ExplanationKind::discretisation ? "it is " : "",
            explanation.cause);
-  }
-  if (report.supersedes_modulus) {
-    append(out,
-           "                  (better than any stiffness: E* is no measure of the material)\n");
   }
   append(out, "  verdict         {}: {}\n",
          page.verdict.empty() ? verdict_of(report.judgement) : page.verdict,
@@ -223,7 +226,7 @@ std::string shape_check_markdown(const compare::CheckResult& report) {
          c.deviation.rms_over_length * 100);
   append(out, "| largest | {:.4g} mm at s = {:.4g} m |\n", c.deviation.max_m * 1e3,
          c.deviation.max_at_m);
-  if (compare::is_identified(c.effective_modulus.optimum)) {
+  if (compare::is_identified(c.effective_modulus.optimum) && !report.supersedes_modulus) {
     append(out, "| E\\*/E | {:.4g} |\n", c.effective_modulus.ratio);
   }
   for (const compare::Explanation& explanation : report.explanations) {

@@ -130,6 +130,9 @@ void add_init(CLI::App& app) {
                    "vector such as \"[1, 0, 0]\"")
       ->type_name("ANGLE")
       ->capture_default_str();
+  command->add_option("--up", choices.up, "the axis against gravity, y or z")
+      ->check(CLI::IsMember({"y", "z"}))
+      ->capture_default_str();
   command
       ->add_option("--materials", options->materials, "materials file instead of the built-in one")
       ->type_name("FILE");
@@ -138,7 +141,7 @@ void add_init(CLI::App& app) {
       "Examples:\n"
       "  dlo init cable.toml --length \"2 m\" --diameter \"6 mm\" --material silicone\n"
       "  dlo init hose --youngs-modulus \"5 MPa\" --density \"1100 kg/m^3\" --direction \"30 "
-      "deg\"");
+      "deg\" --up z");
   command->callback([options] { run(*options); });
 }
 

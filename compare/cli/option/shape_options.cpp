@@ -1,5 +1,8 @@
 #include "option/shape_options.hpp"
 
+#include <fmt/format.h>
+
+#include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
 #include "option/output.hpp"
 #include "toml/quantity.hpp"
@@ -56,6 +59,18 @@ std::string ShapeOptions::unit_hint(double polyline_m, double length) const {
     if (unit != unit_ && share > 0.2 && share < 2) return hint + fmt::format("--unit {}?", unit);
   }
   return hint + (short_one ? "a small piece, or --unit?" : "noise between points, or --unit?");
+}
+
+void ShapeOptions::require_likely_unit(const compare::MeasuredShape& shape, double length) const {
+  constexpr double another_unit = 5;
+  const Eigen::Index segments = shape.points.cols() - 1;
+  const double polyline_m =
+      (shape.points.rightCols(segments) - shape.points.leftCols(segments)).colwise().norm().sum();
+  const std::string hint = unit_hint(polyline_m, length);
+  const bool is_other = polyline_m > another_unit * length || polyline_m < length / 50;
+  if (!hint.empty() && is_other) {
+    throw compare::InputError(fmt::format("{}: {}", shape.file, hint));
+  }
 }
 
 }  // namespace dlo::cli

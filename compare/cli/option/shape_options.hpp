@@ -20,6 +20,8 @@ class ShapeOptions {
   [[nodiscard]] compare::MeasuredShape load(const std::string& path) const;
   /// "polyline is 1/998 of the rod: --unit m?", or nothing if the unit may be right.
   [[nodiscard]] std::string unit_hint(double polyline_m, double length) const;
+  /// @throws compare::InputError with the hint if another unit is as good as certain
+  void require_likely_unit(const compare::MeasuredShape& shape, double length) const;
   [[nodiscard]] compare::PoseFreedom pose() const {
     return compare::from_name<compare::PoseFreedom>(pose_);
   }

@@ -90,7 +90,9 @@ std::string dynamic_text(const DynamicTrack& dynamic) {
   if (dynamic.force) {
     append(out, "force model off the moving rod by {}\n", errors_text(*dynamic.force));
     if (std::isfinite(dynamic.force_lag)) {
-      append(out, "            lag {:.4g} ms; shifted by that, {:.4g} % of l (RMS) are left\n",
+      append(out,
+             "            it lags by {:.4g} ms: from where the rod was then it is {:.4g} % of l "
+             "(RMS) off\n",
              dynamic.force_lag * 1e3, dynamic.force_error_without_lag * 100);
     }
   }

@@ -96,7 +96,9 @@ std::string force_text(const Track& track, const compare::Scene& scene,
            "at {:.6g} s\n",
            force.rest_error * 100, force.mean * 100, force.largest * 100, force.largest_time);
     if (std::isfinite(force.lag)) {
-      append(out, "            lag {:.4g} ms; shifted by that, {:.4g} % of l (RMS) are left\n",
+      append(out,
+             "            it lags by {:.4g} ms: from where the rod was then it is {:.4g} % of l "
+             "(RMS) off\n",
              force.lag * 1e3, force.error_without_lag * 100);
     }
     const double spare = 1 / options.rates.frames;

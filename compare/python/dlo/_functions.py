@@ -94,6 +94,7 @@ def solve_all(
     tolerance=QUANTITY,
     measure=TEXT,
     min_seen=NUMBER,
+    register=TEXT,
     pose=TEXT,
     arc_lengths=TEXT,
     modulus=TRUTH,
@@ -107,7 +108,8 @@ def check(
     tolerance: Optional[Quantity] = None,
     measure: str = "rms",
     min_seen: Optional[float] = None,
-    pose: str = "known",
+    register: str = "known",
+    pose: Optional[str] = None,
     arc_lengths: str = "auto",
     modulus: bool = True,
     explain: bool = True,
@@ -120,15 +122,16 @@ def check(
     may be missing; or the name of a file that `dlo check --shape` reads, in metres. arc_length: where along the rod they are [m], shape (M,), if that is known.
     tolerance: "1%" or 0.01 of the rod's length, or "2 mm"; the Check then passes or fails.
     measure: "rms" or "max", what is held against it. min_seen: the points are a part of the rod, and
-    of less than this share no verdict passes; None: they are all of it. pose: what is unknown of
-    the points' frame, "known" (nothing), "translation", "upright" or "rigid". arc_lengths: "auto",
+    of less than this share no verdict passes; None: they are all of it. register: what is unknown of
+    the points' frame, "known" (nothing), "translation", "upright" or "rigid"; pose: its name before
+    0.2. arc_lengths: "auto",
     "file" (those given), "nearest" or "chord". modulus: look for E*/E. explain: of a shape that
     fails look for candidate causes, which takes longer than all else. materials: as of solve().
     """
     asked = (None if tolerance is None else str(tolerance), measure, min_seen, bool(explain))
     data = data_of(scene, materials)
     taken: Any = file_name(points, "points") if is_file(points) else points
-    return _dlo.check(data, taken, arc_length, asked, pose, arc_lengths, bool(modulus), limits)
+    return _dlo.check(data, taken, arc_length, asked, pose or register, arc_lengths, bool(modulus), limits)
 
 
 @checked(modulus=TRUTH, plan=TRUTH, time=NUMBER)
@@ -172,6 +175,7 @@ def plan(
     holdout=LIST,
     target=NUMBER,
     points=INTEGER,
+    register=TEXT,
     pose=TEXT,
     arc_lengths=TEXT,
     density=TRUTH,
@@ -190,7 +194,8 @@ def calibrate(
     holdout: Iterable[SceneLike] = (),
     target: Optional[float] = None,
     points: Optional[int] = None,
-    pose: str = "known",
+    register: str = "known",
+    pose: Optional[str] = None,
     arc_lengths: str = "auto",
     density: bool = False,
     torsional_stiffness: bool = False,
@@ -210,7 +215,7 @@ def calibrate(
     natural_curvature: so many terms of it. clamp_angles, clamp_positions: how well the clamps are
     known (standard deviations, "5 deg", "2 mm"); each shape's own are then fitted. noise: standard
     deviation of one coordinate; None: estimated. segments: of your simulator's chain, whose springs are
-    then found too ("chains" of the document). pose, arc_lengths: as of check(). time, materials: as of
+    then found too ("chains" of the document). register, arc_lengths: as of check(). time, materials: as of
     solve(), of all scenes.
 
     Without: a ForceModelFit of the scenes. holdout: scenes that only judge. target: RMS deviation
@@ -221,7 +226,7 @@ def calibrate(
         held_out = [data_of(scene, materials, time) for scene in holdout]
         return ForceModelFit(*_dlo.calibrate_force_model(data, held_out, points, target, limits))
     what = {
-        "pose": pose,
+        "pose": pose or register,
         "arc_lengths": arc_lengths,
         "density": bool(density),
         "torsional_stiffness": bool(torsional_stiffness),

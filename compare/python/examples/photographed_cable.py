@@ -33,7 +33,7 @@ assert low < 20e6 < high
 # %%
 turn = numpy.radians(4)
 rotation = numpy.array([[numpy.cos(turn), -numpy.sin(turn)], [numpy.sin(turn), numpy.cos(turn)]])
-oblique = dlo.calibrate(scene, [picture @ rotation.T + [0.1, 0.2]], pose="rigid")
+oblique = dlo.calibrate(scene, [picture @ rotation.T + [0.1, 0.2]], register="rigid")
 low_oblique, high_oblique = oblique.interval
 print(f"E = {oblique.youngs_modulus / 1e6:.3g} MPa, {low_oblique / 1e6:.3g} to {high_oblique / 1e6:.3g} MPa")
 assert low_oblique < 20e6 < high_oblique

@@ -262,7 +262,13 @@ std::vector<RegressionResult> judge_regression(const std::vector<BaselineCase>& 
     RegressionResult& result = results[name];
     result.expected = entry.errors;
     result.verdict = RegressionVerdict::not_measured;
-    result.message = "in the baseline, but no scene given is this case";
+    const bool is_run = std::ranges::any_of(measured, [&](const MeasuredCase& measurement) {
+      return measurement.entry.program == entry.program;
+    });
+    result.message = entry.program.empty() || is_run
+                         ? "in the baseline, but no scene given is this case"
+                         : fmt::format("in the baseline, of a program: --with {}='COMMAND' runs it",
+                                       entry.program);
   }
   std::map<std::string, int> seen;
   for (const MeasuredCase& measurement : measured) {

@@ -87,7 +87,7 @@ CheckResult check(const Scene& scene, const MeasuredShape& shape, const CheckReq
   const bool is_near = judge(result.check, result.tolerance).pass;
   if (is_near || request.explaining == Explaining::no) return result;
   result.explanations = explain_shape(scene, shape, result.check, request.shape);
-  result.judgement = with_explanation(result.judgement, result.explanations);
+  result.judgement = with_explanation(result.judgement, result.explanations, result.tolerance);
   result.supersedes_modulus = better_than_stiffness(result.check, result.explanations);
   return result;
 }

@@ -32,6 +32,8 @@ constexpr double same_length = 1e-5;
 constexpr double least_gain = 0.1;
 /// Deviation beyond which a shape is just another one, in lengths.
 constexpr double another_shape = 0.05;
+/// Of a tolerance: how far a file is that is so far off because of how it was read, says nothing.
+constexpr double far_beyond = 10;
 /// By how much a rod that has left its plane is out of it, in lengths.
 constexpr double another_shape_out = 1e-3;
 
@@ -104,7 +106,7 @@ class Search {
       if (springs == Springs::as_the_rod) {
         add({words, chain.rms_m, 0, ExplanationKind::discretisation, chain.max_m}, words);
       } else {
-        add({fmt::format("it is {} whose springs are {:.3g} times EI/h", words, chain.stiffness),
+        add({fmt::format("it is {}, with springs of {:.3g} times EI/h", words, chain.stiffness),
              chain.rms_m, 1, ExplanationKind::scene},
             words);
       }
@@ -338,9 +340,16 @@ ShapeJudgement judge_with_chains(const Scene& scene, const ShapeCheck& check,
 }
 
 ShapeJudgement with_explanation(ShapeJudgement judgement,
-                                const std::vector<Explanation>& explanations) {
+                                const std::vector<Explanation>& explanations,
+                                const ShapeTolerance& tolerance) {
   if (judgement.pass || explanations.empty()) return judgement;
   const Explanation& best = explanations.front();
+  const bool is_misread = judgement.judged_m > far_beyond * tolerance.allowed_m;
+  if (best.kind == ExplanationKind::file && is_misread && best.rms_m <= tolerance.allowed_m) {
+    judgement.reason = fmt::format("RMS {:.4g} mm if {}; as it was read: {}", best.rms_m * 1e3,
+                                   best.cause, judgement.reason);
+    return judgement;
+  }
   judgement.reason += fmt::format(
       "; it would be {:.4g} mm (RMS) if {}", best.rms_m * 1e3,
       best.kind == ExplanationKind::discretisation ? "it were " + best.cause : best.cause);

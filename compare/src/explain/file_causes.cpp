@@ -5,7 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
+#include <vector>
+
+#include "shape/arc_lengths.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -88,8 +92,7 @@ std::vector<Eigen::Matrix3d> other_axes() {
   return all;
 }
 
-void add_units(const MeasuredShape& shape, const ShapeCheck& check,
-               std::vector<FileCause>& causes) {
+void add_units(const MeasuredShape& shape, std::vector<FileCause>& causes) {
   struct Unit {
     const char* name;
     double metres;
@@ -100,22 +103,90 @@ void add_units(const MeasuredShape& shape, const ShapeCheck& check,
     causes.push_back(
         {fmt::format("the file is in {}, not in metres", unit.name), scaled(shape, unit.metres)});
   }
-  // A picture: of any scale, and it counts from a corner, often downwards.
-  const double per_unit = check.length_m / check.polyline_length_m;
+}
+
+/// The scene's axes as those of a picture, in which y is up or down.
+Eigen::Matrix3d picture_axes(const Eigen::Vector3d& gravity, double up) {
+  Eigen::Index vertical = 1;
+  if (gravity.norm() > 0) gravity.cwiseAbs().maxCoeff(&vertical);
+  const double against = gravity[vertical] > 0 ? -up : up;
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
+  axes(vertical, 1) = against;
+  axes(vertical == 0 ? 1 : 0, 0) = 1;
+  axes(vertical == 2 ? 1 : 2, 2) = 1;
+  return axes;
+}
+
+/// A picture: of any scale, and it counts from a corner, often downwards.
+void add_pixels(const Scene& scene, const MeasuredShape& shape, std::vector<FileCause>& causes) {
+  const double per_unit = scene.length / lengths_along(shape.points).back();
   const bool other_scale = std::abs(std::log(per_unit)) > 0.1;
-  for (const bool down : {true, false}) {
-    if (!down && !other_scale) continue;
-    Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
-    if (down) axes(1, 1) = -1;
+  for (const double up : {-1.0, 1.0}) {
+    const Eigen::Matrix3d axes = picture_axes(scene.gravity, up);
+    if (!other_scale && axes.isIdentity()) continue;
+    const char* const direction = up < 0 ? "down" : "up";
     FileCause cause;
     cause.words =
-        fmt::format("the file is in units of {:.4g} mm{} and has another origin, as pixels have",
-                    per_unit * 1e3, down ? " with y down" : "");
-    cause.shape = turned(scaled(shape, per_unit), axes);
+        other_scale
+            ? fmt::format("the file is in pixels of {:.4g} mm, y {}, with an origin of its own",
+                          per_unit * 1e3, direction)
+            : fmt::format("y is {} in the file, which has another origin", direction);
+    cause.shape = turned(other_scale ? scaled(shape, per_unit) : shape, axes);
     cause.pose = PoseFreedom::translation;
-    cause.numbers = 2;
+    cause.numbers = other_scale ? 2 : 1;
+    cause.same_as = other_scale ? "pixels" : "axes";
     causes.push_back(std::move(cause));
   }
+}
+
+/// From a point on, each the nearest of those that are left, and how long that way is.
+std::pair<double, std::vector<Eigen::Index>> way_from(Eigen::Index start,
+                                                      const Eigen::Matrix3Xd& points) {
+  std::vector<Eigen::Index> left(static_cast<std::size_t>(points.cols()));
+  std::iota(left.begin(), left.end(), Eigen::Index{0});
+  std::vector<Eigen::Index> order;
+  double length = 0;
+  std::swap(left[static_cast<std::size_t>(start)], left.back());
+  while (true) {
+    const Eigen::Index last = left.back();
+    left.pop_back();
+    order.push_back(last);
+    if (left.empty()) return {length, std::move(order)};
+    const auto distance = [&](Eigen::Index i) { return (points.col(i) - points.col(last)).norm(); };
+    const auto next = std::ranges::min_element(left, {}, distance);
+    length += distance(*next);
+    std::swap(*next, left.back());
+  }
+}
+
+/// Points whose shortest way past all of them is another one than the file's.
+void add_order(const MeasuredShape& shape, const ShapeCheck& check,
+               std::vector<FileCause>& causes) {
+  constexpr Eigen::Index most_points = 300;
+  constexpr double clearly_shorter = 0.95;
+  const Eigen::Index count = shape.points.cols();
+  if (!shape.arc_length.empty() || count > most_points) return;
+  std::pair<double, std::vector<Eigen::Index>> shortest{clearly_shorter * check.polyline_length_m,
+                                                        {}};
+  for (Eigen::Index start = 0; start < count; ++start) {
+    auto way = way_from(start, shape.points);
+    if (way.first < shortest.first) shortest = std::move(way);
+  }
+  std::vector<Eigen::Index>& order = shortest.second;
+  if (order.empty()) return;
+  if (order.front() > order.back()) std::ranges::reverse(order);
+  MeasuredShape sorted = shape;
+  std::string numbers;
+  constexpr Eigen::Index most_told = 6;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index from = order[static_cast<std::size_t>(i)];
+    sorted.points.col(i) = shape.points.col(from);
+    if (i < most_told) numbers += fmt::format("{}{}", i == 0 ? "" : ", ", from + 1);
+  }
+  if (count > most_told) numbers += ", ..";
+  causes.push_back(
+      {fmt::format("the file's points are out of order: along the rod they are {}", numbers),
+       std::move(sorted)});
 }
 
 /// Points at an end that lead away from the rod, and a rod that is stretched as a whole.
@@ -125,9 +196,12 @@ void add_lengths(const MeasuredShape& shape, const ShapeCheck& check,
   constexpr double short_of = 0.99;
   if (s.back() - s.front() < short_of * check.length_m &&
       check.polyline_length_m < short_of * check.length_m) {
-    causes.push_back({fmt::format("the file is a part of the rod, s = {:.4g} to {:.4g} m: cut off",
-                                  s.front(), s.back()),
-                      shape, PoseFreedom::known, 0, true});
+    const std::string part = fmt::format("s = {:.4g} to {:.4g} m", s.front(), s.back());
+    causes.push_back(
+        {lacks_one_segment(shape.points, check.length_m)
+             ? fmt::format("an end point is missing, as in MuJoCo's xpos: the file has {}", part)
+             : fmt::format("the file is a part of the rod, {}: cut off", part),
+         shape, PoseFreedom::known, 0, true});
   }
   const Eigen::Index count = shape.points.cols();
   const Eigen::Index most = std::min<Eigen::Index>(3, count - 3);
@@ -171,7 +245,9 @@ std::vector<FileCause> file_causes(const Scene& scene, const MeasuredShape& shap
                         ? "the file has another origin, or the gripper is elsewhere"
                         : "the file has another origin",
                     shape, PoseFreedom::translation, 1});
-  add_units(shape, check, causes);
+  add_units(shape, causes);
+  add_pixels(scene, shape, causes);
+  add_order(shape, check, causes);
   add_lengths(shape, check, causes);
   return causes;
 }

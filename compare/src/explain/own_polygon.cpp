@@ -185,7 +185,7 @@ std::string words_of(ChainClamp clamp, Eigen::Index segments) {
     case ChainClamp::hinge:
       return fmt::format("a chain of {} segments with a hinge at the clamp", segments);
     case ChainClamp::welded:
-      return fmt::format("a chain of {} segments, those at clamps welded to them", segments);
+      return fmt::format("a chain of {} segments, welded to its clamps", segments);
     case ChainClamp::middle:
       break;
   }

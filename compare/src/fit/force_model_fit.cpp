@@ -61,6 +61,11 @@ struct FittedCase {
   }
 };
 
+/// Velocity Verlet and implicit Euler find their step size by themselves.
+bool has_step_parameters(Stepper stepper) {
+  return stepper != Stepper::verlet && stepper != Stepper::implicit;
+}
+
 class ForceModelFitter {
  public:
   ForceModelFitter(const std::vector<Scene>& scenes, const std::vector<Scene>& holdouts,
@@ -79,7 +84,7 @@ class ForceModelFitter {
     result_.target = options.target;
     result_.points_were_given = options.points.has_value();
     settings_ = scenes.front().force_model;
-    settings_.stepper = Stepper::dynamic;
+    if (has_step_parameters(settings_.stepper)) settings_.stepper = Stepper::dynamic;
   }
 
   [[nodiscard]] ForceModelFit run() {
@@ -274,6 +279,10 @@ class ForceModelFitter {
   }
 
   void step_to_rest() {
+    settings_.c_F.reset();
+    settings_.c_h.reset();
+    settings_.l_s.reset();
+    if (!has_step_parameters(settings_.stepper)) return step_all();
     force_model::ModeBounds bounds = modes();
     bounds.fastest *= mode_margin;
     settings_.l_s = segment_length(settings_.points) / 4;
@@ -282,23 +291,26 @@ class ForceModelFitter {
       const force_model::HeavyBall ball = force_model::heavy_ball(bounds);
       settings_.c_F = ball.c_F;
       settings_.c_h = ball.c_h;
-      result_.steps.clear();
-      result_.stepped_rms_over_length.clear();
-      result_.stretch_rms_over_length.clear();
       try {
-        for (const FittedCase& entry : cases_) {
-          const Solution force = solve_force(entry.scene, settings_, options_.solve);
-          result_.steps.push_back(force.steps);
-          result_.stepped_rms_over_length.push_back(entry.rms_over_length(force.shape));
-          const Shape rigid = solve_chain(entry.scene, settings_, options_.solve).shape;
-          result_.stretch_rms_over_length.push_back(
-              rms(rigid.arc_length, force.shape.points - rigid.points) / entry.scene.length);
-        }
-        return;
+        return step_all();
       } catch (const ConvergenceError&) {
         if (attempt == attempts) throw;
         bounds.fastest *= 2;
       }
+    }
+  }
+
+  void step_all() {
+    result_.steps.clear();
+    result_.stepped_rms_over_length.clear();
+    result_.stretch_rms_over_length.clear();
+    for (const FittedCase& entry : cases_) {
+      const Solution force = solve_force(entry.scene, settings_, options_.solve);
+      result_.steps.push_back(force.steps);
+      result_.stepped_rms_over_length.push_back(entry.rms_over_length(force.shape));
+      const Shape rigid = solve_chain(entry.scene, settings_, options_.solve).shape;
+      result_.stretch_rms_over_length.push_back(
+          rms(rigid.arc_length, force.shape.points - rigid.points) / entry.scene.length);
     }
   }
 

@@ -11,6 +11,7 @@
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"
 #include "shape/aligner.hpp"
+#include "shape/arc_lengths.hpp"
 #include "shape/shape_measure.hpp"
 #include "solve/states.hpp"
 
@@ -122,6 +123,14 @@ std::string hint_of(const ShapeCheck& check, const Measured& measured) {
           "shape "
           "is another one",
           missing * 1e3);
+    }
+    if (lacks_one_segment(points, check.length_m)) {
+      const bool at_end = check.length_m - s.back() > s.front();
+      return fmt::format(
+          "shorter than the rod by {:.4g} mm, one segment: the {} point is missing, as in MuJoCo's "
+          "xpos",
+          (check.length_m - check.polyline_length_m) * 1e3,
+          at_end != alignment.reversed ? "last" : "first");
     }
     return fmt::format(
         "shorter than the rod by {:.4g} mm: compressed, cut off, or only a part seen",

@@ -25,8 +25,10 @@ std::string three_numbers(const CheckResult& result) {
   const ShapeCheck& check = result.check;
   const Deviation& d = check.deviation;
   const EffectiveModulus& modulus = check.effective_modulus;
-  const bool told = is_identified(modulus.optimum);
-  const std::string why_not = modulus.why_none.empty() ? "not identified" : modulus.why_none;
+  const bool told = is_identified(modulus.optimum) && !result.supersedes_modulus;
+  const std::string why_not = result.supersedes_modulus  ? "no measure of the material"
+                              : modulus.why_none.empty() ? "not identified"
+                                                         : modulus.why_none;
   return to_html(std::vector<HtmlNumber>{
       {"RMS distance", millimetres(d.rms_m), page_percent(d.rms_over_length) + " of the length"},
       {"largest", millimetres(d.max_m), fmt::format("at s = {:.4g} m", d.max_at_m)},

@@ -25,8 +25,8 @@ Figure history_figure(const std::string& name, const std::vector<const SceneHist
                 .command = command,
                 .csv_file = name + ".csv"};
   figure.description =
-      "E*/E against simulated time, both logarithmic, beside the paper's 1/3 (a dashed level), and "
-      "on the right at rest. The paper's simulations took 28 s.";
+      "E*/E against simulated time, both logarithmic, and on the right at rest. Dashed: 1/3, which "
+      "the paper says of its rod, whose simulations took 28 s.";
   figure.csv = "curve,scene_file,time_s,steps,effective_modulus_ratio,rms_at_effective_modulus_m\n";
   constexpr double place_of_rest = 600;  // on the axis of time
   Panel panel{.x = {.label = "simulated time [s], 4000 steps/s",
@@ -40,7 +40,7 @@ Figure history_figure(const std::string& name, const std::vector<const SceneHist
                               {100, "100"},
                               {place_of_rest, "rest"}}}},
               .y = {.label = "E*/E", .logarithmic = true}};
-  panel.curves.push_back({.title = "what the paper says: 1/3",
+  panel.curves.push_back({.title = "1/3, said of the paper's rod",
                           .look = {.width = 1.5, .dashes = Dashes::dashed},
                           .x = {-HUGE_VAL, HUGE_VAL},
                           .y = {1 / 3.0, 1 / 3.0}});

@@ -13,158 +13,16 @@
 #include "report/again.hpp"
 #include "report/html.hpp"
 #include "report/page_data.hpp"
+#include "report/page_writer.hpp"
 #include "report/provenance.hpp"
-#include "report/style.hpp"
 #include "report/tables.hpp"
 #include "report/verdict.hpp"
 
 namespace dlo::compare {
 namespace {
 
-/// Of a section: also, or only, where the page's script runs.
-enum class Seen { always, with_scripts };
-
-/// A page while it is written.
-class Page {
- public:
-  explicit Page(const std::vector<PageFigure>& figures) : figures_(figures) {}
-
-  /// A section with a heading; what is added next is in it.
-  void section(const std::string& id, const std::string& heading, Seen seen = Seen::always) {
-    if (open_) out_ += "</section>\n";
-    open_ = true;
-    out_ += fmt::format("<section id=\"{}\"{}>\n<h2>{}</h2>\n", id, hidden(seen),
-                        escape_markup(heading));
-    sections_.push_back({id, heading, seen});
-  }
-  /// What the script finds by its name and fills.
-  void filled_by_script(const std::string& id, const std::string& heading) {
-    out_ +=
-        fmt::format("<div id=\"{}\" hidden>\n<h3>{}</h3>\n</div>\n", id, escape_markup(heading));
-  }
-  void heading(const std::string& text) { out_ += "<h3>" + escape_markup(text) + "</h3>\n"; }
-  void paragraph(const std::string& text) { out_ += "<p>" + escape_markup(text) + "</p>\n"; }
-  void command(const std::string& what, const std::string& line) {
-    out_ += fmt::format("<p class=\"faint\">{} <code>{}</code></p>\n", escape_markup(what),
-                        escape_markup(line));
-  }
-  void commands(const std::string& summary, const std::vector<std::string>& lines) {
-    if (lines.empty()) return;
-    out_ += "<details open><summary>" + escape_markup(summary) + "</summary>\n<ul>\n";
-    for (const std::string& line : lines) {
-      out_ += "<li><code>" + escape_markup(line) + "</code></li>\n";
-    }
-    out_ += "</ul>\n</details>\n";
-  }
-  /// @param bold  how many of the first ones
-  void list(const std::vector<std::string>& items, std::size_t bold = 0) {
-    if (items.empty()) return;
-    out_ += "<ul>\n";
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      const std::string text = escape_markup(items[i]);
-      out_ += "<li>" + (i < bold ? "<strong>" + text + "</strong>" : text) + "</li>\n";
-    }
-    out_ += "</ul>\n";
-  }
-  /// Its first part is a verdict, with numbers; beside it a figure, which no section shows again.
-  void screen(const std::string& verdict, const std::string& figure) {
-    out_ += "<div class=\"screen\">\n<div>\n" + verdict + "</div>\n<div class=\"figures\">\n";
-    for (const PageFigure& entry : figures_) {
-      if (entry.figure.name != figure) continue;
-      add_figure(entry);
-      shown_ = figure;
-    }
-    out_ += "</div>\n</div>\n";
-  }
-  void folded_list(const std::string& summary, const std::vector<std::string>& items) {
-    out_ += "<details><summary>" + escape_markup(summary) + "</summary>\n";
-    list(items);
-    out_ += "</details>\n";
-  }
-  /// A table, or a sentence if nothing is in it.
-  void table(const HtmlTable& table) {
-    if (!table.rows.empty()) {
-      out_ += to_html(table);
-    } else {
-      paragraph(table.caption + ": none. What failed is named at the top of the page.");
-    }
-  }
-  void facts(const std::vector<std::pair<std::string, std::string>>& facts) {
-    out_ += "<dl>\n";
-    for (const auto& [name, value] : facts) {
-      out_ += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape_markup(name), escape_markup(value));
-    }
-    out_ += "</dl>\n";
-  }
-  /// Figures of a section whose names begin with a text.
-  void figures(const std::string& section) {
-    if (std::none_of(figures_.begin(), figures_.end(),
-                     [&](const PageFigure& entry) { return entry.figure.section == section; })) {
-      return;
-    }
-    out_ += "<div class=\"figures\">\n";
-    for (const PageFigure& entry : figures_) {
-      if (entry.figure.section == section && entry.figure.name != shown_) add_figure(entry);
-    }
-    out_ += "</div>\n";
-  }
-
-  /// @param data  of its script
-  [[nodiscard]] std::string finished(const std::string& title, const std::string& data) const {
-    std::string page = fmt::format(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-        "<meta name=\"generator\" content=\"dlo report\">\n<link rel=\"icon\" href=\"data:,\">\n"
-        "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<header>\n<h1>{0}</h1>\n</"
-        "header>\n",
-        escape_markup(title), report_style);
-    page += "<nav aria-label=\"Sections\"><ul>\n";
-    for (const auto& [id, heading, seen] : sections_) {
-      page += fmt::format("<li{}><a href=\"#{}\">{}</a></li>\n", hidden(seen), id,
-                          escape_markup(heading));
-    }
-    page += "</ul></nav>\n<main>\n" + out_ + (open_ ? "</section>\n" : "") + "</main>\n";
-    page += "<script type=\"application/json\" id=\"page-data\">" + data + "</script>\n";
-    return page + "<script>\n" + std::string(builtin::interactive_js) +
-           "</script>\n</body>\n</html>\n";
-  }
-
- private:
-  struct Section {
-    std::string id, heading;
-    Seen seen = Seen::always;
-  };
-
-  static const char* hidden(Seen seen) {
-    return seen == Seen::with_scripts ? " data-needs-script hidden" : "";
-  }
-
-  void add_figure(const PageFigure& entry) {
-    const Figure& figure = entry.figure;
-    out_ += fmt::format("<figure id=\"figure-{}\">\n", figure.name);
-    out_ += entry.failure.empty()
-                ? entry.svg
-                : fmt::format(
-                      "<p class=\"missing\">This figure is missing: {}. Its numbers are in "
-                      "the tables and in {}.</p>\n",
-                      escape_markup(entry.failure), figure.csv_file);
-    out_ += fmt::format(
-        "<figcaption><strong>{0}</strong><br>{1}<br>Numbers: <a href=\"{2}\">{2}</a>{3} again by "
-        "<code>{4}</code>; picture: <code>gnuplot {5}.gp</code></figcaption>\n</figure>\n",
-        escape_markup(figure.title), escape_markup(figure.description), figure.csv_file,
-        figure.given.empty() ? "," : "; " + escape_markup(figure.given),
-        escape_markup(figure.command), figure.name);
-  }
-
-  const std::vector<PageFigure>& figures_;
-  std::string out_;
-  std::vector<Section> sections_;
-  std::string shown_;  // the figure of the first screen
-  bool open_ = false;
-};
-
 /// The first screen: what has to be seen by somebody who sees nothing else.
-void add_first_screen(const Report& report, Page& page) {
+void add_first_screen(const Report& report, PageWriter& page) {
   const std::optional<ReportSummary> summary = report_summary(report);
   if (!summary) return;
   const Comparison& worst = report.scenes[summary->worst].comparisons.front();
@@ -185,8 +43,8 @@ void add_first_screen(const Report& report, Page& page) {
   page.screen(out, fmt::format("shapes_{}", summary->worst + 1));
 }
 
-void add_verdict(const Report& report, Page& page) {
-  page.section("verdict", "Verdict");
+void add_verdict(const Report& report, PageWriter& page) {
+  page.section("verdict", "Verdict", PageSection::open);
   const std::vector<std::string> verdict = report_verdict(report);
   const auto failures = static_cast<std::ptrdiff_t>(report.failures.size());
   if (report.options.quick) {
@@ -227,7 +85,7 @@ std::string rows_without_command(const Report& report) {
   return names;
 }
 
-void add_shapes(const Report& report, Page& page) {
+void add_shapes(const Report& report, PageWriter& page) {
   page.section("shapes", report.paper ? "Shapes and curvature: the paper's Figs. 12 and 13"
                                       : "Shapes and curvature");
   page.paragraph(
@@ -263,7 +121,7 @@ void add_shapes(const Report& report, Page& page) {
   page.table(budget_table(report));
 }
 
-void add_motion(const Report& report, Page& page) {
+void add_motion(const Report& report, PageWriter& page) {
   if (report.motions.empty()) return;
   page.section("motion", "What moves");
   page.paragraph(fmt::format(
@@ -280,23 +138,23 @@ void add_motion(const Report& report, Page& page) {
 }
 
 /// Empty but for its headings: the script fills it from the page's data.
-void add_interactive(Page& page) {
-  page.section("interactive", "Turn, look along, compare", Seen::with_scripts);
+void add_interactive(PageWriter& page) {
+  page.section("interactive", "Turn, look along, compare", PageSection::by_script);
   page.filled_by_script("viewer", "The scenes' shapes");
   page.filled_by_script("grid", "A grid of shapes");
 }
 
-void add_modulus(const Report& report, Page& page) {
-  page.section("modulus", "E*/E, and the paper's 1/3");
+void add_modulus(const Report& report, PageWriter& page) {
+  page.section("modulus", report.paper ? "E*/E, and the paper's 1/3" : "E*/E");
   page.paragraph(
       "E* is the modulus at which the energy model comes nearest to the force model's shape (RMS). "
       "A law that is not Hookean leaves a residual even there.");
   page.table(modulus_table(report));
   if (!report.options.history) return page.paragraph("E*/E against time was left out.");
   page.paragraph(fmt::format(
-      "On the way from straight to rest E*/E changes. Stepper basic, no dynamics, {}, as in Table "
-      "1's proportion, and c_c = AE/1000, as the paper used, unless the scene names them; 4000 "
-      "steps are a simulated second (Table 2). Rods with one clamp only.",
+      "On the way from straight to rest E*/E changes. These are steps as the paper made them: "
+      "stepper basic, no dynamics, {}, as in Table 1's proportion, and c_c = AE/1000, unless the "
+      "scene names them. 4000 steps are a simulated second (Table 2). Rods with one clamp only.",
       table_1_step_formula));
   page.figures("modulus");
   page.table(history_table(report));
@@ -307,7 +165,7 @@ void add_modulus(const Report& report, Page& page) {
   }
 }
 
-void add_speed(const Report& report, Page& page) {
+void add_speed(const Report& report, PageWriter& page) {
   page.section("speed", "Speed against error");
   if (!report.benchmark) return page.paragraph("The benchmark was left out, or not computed.");
   const BenchmarkReport& benchmark = *report.benchmark;
@@ -326,7 +184,7 @@ void add_speed(const Report& report, Page& page) {
   page.command("Again, as long as nothing else runs:", benchmark_command(report));
 }
 
-void add_stability(const Report& report, Page& page) {
+void add_stability(const Report& report, PageWriter& page) {
   page.section("stability", "Where the steps stop being stable");
   if (report.map) {
     page.paragraph(
@@ -367,7 +225,7 @@ void add_stability(const Report& report, Page& page) {
 }
 
 void add_provenance(const Report& report, const std::vector<PageFigure>& figures,
-                    const ReportMaker& maker, const std::string& drawn_by, Page& page) {
+                    const ReportMaker& maker, const std::string& drawn_by, PageWriter& page) {
   page.section("provenance", "Provenance");
   std::vector<std::pair<std::string, std::string>> facts = {{"dlo", maker.version},
                                                             {"command", maker.command}};
@@ -397,7 +255,7 @@ void add_provenance(const Report& report, const std::vector<PageFigure>& figures
 
 std::string report_page(const Report& report, const std::vector<PageFigure>& figures,
                         const ReportMaker& maker, const std::string& drawn_by) {
-  Page page(figures);
+  PageWriter page(figures);
   add_verdict(report, page);
   add_interactive(page);
   add_shapes(report, page);

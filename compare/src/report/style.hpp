@@ -92,6 +92,8 @@ code { font: 0.85em ui-monospace, monospace; background: var(--card); padding: 0
 dl { display: grid; grid-template-columns: max-content 1fr; gap: 0.3rem 1rem; }
 dt { font-weight: 600; } dd { margin: 0; min-width: 0; overflow-wrap: anywhere; }
 details summary { cursor: pointer; padding: 0.3rem 0; }
+summary h2 { display: inline-block; width: calc(100% - 2rem); margin: 0; border: 0; padding: 0; }
+details.section { border-top: 1px solid var(--line); margin-top: 0.6rem; padding: 0.3rem 0; }
 @media (max-width: 30rem) {
   dl { grid-template-columns: 1fr; } dd { margin-bottom: 0.5rem; }
   .sliders { grid-template-columns: 1fr 7rem; } .sliders label { grid-column: 1 / -1; }

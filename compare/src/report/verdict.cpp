@@ -85,7 +85,7 @@ void say_shapes(const Report& report, std::vector<std::string>& verdict) {
         });
     // Where the fit is flat or at its range's end, E* says nothing.
     const std::string modulus =
-        ratio.empty() ? "nowhere to be told" : ratio.text() + " where it can be told";
+        ratio.empty() ? "not identified in any" : ratio.text() + " where it is identified";
     verdict.push_back(
         fmt::format("Law {}, bookkeeping {}: {} of {} shapes are right within {} of the length. "
                     "RMS {} % of the "

@@ -24,6 +24,37 @@ std::string toml_value(const std::string& value) {
   }
 }
 
+bool is_z_up(const SceneChoices& choices) { return choices.up == "z"; }
+
+/// A vector of this length upwards.
+std::string upwards(const SceneChoices& choices, double length) {
+  const std::string text = fmt::format("{:.4g}", length);
+  return is_z_up(choices) ? "[0, 0, " + text + "]" : "[0, " + text + ", 0]";
+}
+
+/// In a scene file angles are in the x-y plane, which is level if z is up.
+std::string direction_value(const SceneChoices& choices) {
+  if (!is_z_up(choices) || choices.direction.starts_with('[')) {
+    return toml_value(choices.direction);
+  }
+  try {
+    const double angle = parse_quantity(choices.direction, Dimension::angle);
+    const auto rounded = [](double value) { return std::abs(value) < 1e-15 ? 0 : value; };
+    return fmt::format("[{}, 0, {}]", rounded(std::cos(angle)), rounded(std::sin(angle)));
+  } catch (const InputError&) {
+    return toml_value(choices.direction);  // reading the scene tells what is wrong
+  }
+}
+
+std::string direction_words(const SceneChoices& choices) {
+  return is_z_up(choices)
+             ? "# Of the rod there, along growing arc length: a vector; [0, 0, -1] hangs down, [1, "
+               "0, 0] is\n# level. A pin has none."
+             : "# Of the rod there, along growing arc length: an angle in the x-y plane from +x "
+               "(\"-90 deg\" hangs\n# down; without unit: rad), or a vector such as [1, 0, 0]. A "
+               "pin has none.";
+}
+
 std::string material_lines(const SceneChoices& choices, const std::vector<Material>& known) {
   std::string names;
   for (const Material& material : known) {
@@ -51,7 +82,7 @@ std::string required_part(const SceneChoices& choices, const std::vector<Materia
 # Lines that begin with # and no blank are optional: take the # away to use them.
 
 name = {name}
-gravity = [0, -9.81, 0]  # m/s^2; y points up
+gravity = {gravity}  # m/s^2; {up} points up
 
 [rod]
 length = {length}  # {units}
@@ -71,8 +102,7 @@ at = 0  # arc length that is held, from 0 to the rod's length
 position = [0, 0, 0]  # of the rod's axis there [x, y, z]
 # "clamp" holds position and direction, "pin" the position only
 hold = "clamp"
-# Of the rod there, along growing arc length: an angle in the x-y plane from +x ("-90 deg" hangs
-# down; without unit: rad), or a vector such as [1, 0, 0]. A pin has none.
+{direction_words}
 direction = {direction}
 )",
       fmt::arg("name", toml_string(choices.name)),
@@ -80,7 +110,9 @@ direction = {direction}
       fmt::arg("length", toml_value(choices.length)),
       fmt::arg("diameter", toml_value(choices.diameter)),
       fmt::arg("material", material_lines(choices, known)),
-      fmt::arg("direction", toml_value(choices.direction)));
+      fmt::arg("gravity", upwards(choices, -9.81)), fmt::arg("up", choices.up),
+      fmt::arg("direction_words", direction_words(choices)),
+      fmt::arg("direction", direction_value(choices)));
 }
 
 enum class Meaning { said, omitted };
@@ -137,13 +169,13 @@ std::string optional_part(const SceneChoices& choices, const Scene& scene) {
 # A force at a point of the rod, one [[load]] for each; of a weight that hangs there mass = "10 g".
 #[[load]]
 #at = {middle:.4g}  # arc length
-#force = [0, {force:.3g}, 0]  # N, mN, kN
+#force = {force}  # N, mN, kN
 
 # What the rod cannot pass; one [[obstacle]] for each. Grippers are outside of it.
 #[[obstacle]]
 #shape = "plane"
-#point = [0, {floor:.4g}, 0]  # any point of the plane
-#normal = [0, 1, 0]  # to the free side
+#point = {floor}  # any point of the plane
+#normal = {normal}  # to the free side
 # Other shapes: point is the middle of
 #   "sphere"    with radius
 #   "cylinder"  with axis and radius, without ends
@@ -183,11 +215,13 @@ std::string optional_part(const SceneChoices& choices, const Scene& scene) {
       fmt::arg("section_EI", 10 * scene.bending_stiffness()),
       fmt::arg("section_mass", 2 * scene.mass_per_length()), fmt::arg("x", pin.x()),
       fmt::arg("y", pin.y()), fmt::arg("z", pin.z()), fmt::arg("middle", l / 2),
-      fmt::arg("force", -0.1 * force), fmt::arg("floor", std::min(pin.y(), 0.0) - 0.1 * l),
-      fmt::arg("stiffness", 1e3 * force / (l * l)), fmt::arg("c_c", scene.axial_stiffness()),
-      fmt::arg("direction", toml_value(choices.direction)), fmt::arg("frames", scene.track.frames),
-      fmt::arg("steps", scene.track.steps), fmt::arg("points", defaults.points),
-      fmt::arg("law", to_string(defaults.law)),
+      fmt::arg("force", upwards(choices, -0.1 * force)),
+      fmt::arg("floor",
+               upwards(choices, std::min(is_z_up(choices) ? pin.z() : pin.y(), 0.0) - 0.1 * l)),
+      fmt::arg("normal", upwards(choices, 1)), fmt::arg("stiffness", 1e3 * force / (l * l)),
+      fmt::arg("c_c", scene.axial_stiffness()), fmt::arg("direction", direction_value(choices)),
+      fmt::arg("frames", scene.track.frames), fmt::arg("steps", scene.track.steps),
+      fmt::arg("points", defaults.points), fmt::arg("law", to_string(defaults.law)),
       fmt::arg("laws", toml_choices<BendingLaw>(Meaning::said)),
       fmt::arg("bookkeeping", to_string(defaults.bookkeeping)),
       fmt::arg("bookkeepings", toml_choices<Bookkeeping>(Meaning::said)),

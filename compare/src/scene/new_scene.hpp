@@ -16,7 +16,9 @@ struct SceneChoices {
   std::string material = "silicone";  ///< a name; not looked at if a modulus is given
   std::string youngs_modulus;         ///< with density: a material of one's own
   std::string density;                ///< with youngs_modulus
-  std::string direction = "0 deg";    ///< of the clamp at arc length 0
+  /// Of the clamp at arc length 0; an angle is one from +x to the upward axis.
+  std::string direction = "0 deg";
+  std::string up = "y";  ///< the axis against gravity, or "z"
 };
 
 /// A scene file of one clamp at the origin, with comments that explain every key, its unit and what

@@ -8,9 +8,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "dlo/compare/error.hpp"
+#include "dlo/energy_model/problem.hpp"
 #include "shape/arc_lengths.hpp"
 #include "shape/shape_measure.hpp"
 
@@ -23,6 +25,8 @@ constexpr Eigen::Index most_coarse_points = 200;
 constexpr double least_gain = 1e-9;
 /// Of a mean square: more than noise makes of the points that are left out.
 constexpr double clearly_worse = 4;
+/// Share of the rod by which a file may be shorter and is taken for all of it.
+constexpr double whole_slack = 0.03;
 /// Places along the rod at which a part of it may lie.
 constexpr int coarse_places_along = 5;
 
@@ -57,12 +61,19 @@ Aligner::Aligner(const MeasuredShape& shape, double length, const AlignOptions& 
   } else {
     along.arc_length = lengths_along(along.points);
     const double total = along.arc_length.back();
-    const bool scaled = rule_ == ArcLengths::chord || total > length;
-    for (double& s : along.arc_length) s *= scaled ? length / total : 1;
+    is_whole_ = total >= (1 - whole_slack) * length;
+    if (rule_ == ArcLengths::chord || total > length) along = stretched_to_rod(std::move(along));
   }
   ways_[1].points = along.points.rowwise().reverse();
   const double end = rule_ == ArcLengths::nearest ? along.arc_length.back() : length;
   ways_[1].arc_length = mirrored(along.arc_length, end);
+}
+
+Aligner::Way Aligner::stretched_to_rod(Way way) const {
+  const double first = way.arc_length.front();
+  const double total = way.arc_length.back() - first;
+  for (double& s : way.arc_length) s = std::min((s - first) / total * length_, length_);
+  return way;
 }
 
 bool Aligner::is_dense() const { return points() > most_coarse_points; }
@@ -131,7 +142,7 @@ std::vector<Aligner::Placed> Aligner::coarse_places(const Way& way, const Curve&
   const Way few = thinned(way);
   const Eigen::Matrix3Xd& points = few.points;
   const double slack = length_ - way.arc_length.back();
-  const int places = slack > 0.03 * length_ ? coarse_places_along : 1;
+  const int places = slack > whole_slack * length_ ? coarse_places_along : 1;
   std::vector<Placed> result;
   for (int place = 0; place < places; ++place) {
     Placed placed;
@@ -277,6 +288,52 @@ Alignment Aligner::finished(const Placed& placed, bool reversed, const Curve& cu
   return result;
 }
 
+double Aligner::told_distance(const Alignment& laid, const Curve& curve, Measured& measured) const {
+  const Reference reference = [&curve](std::span<const double> s) {
+    energy_model::Samples samples;
+    samples.points = curve.points({s.begin(), s.end()});
+    return samples;
+  };
+  measured = measure(laid, reference, length_);
+  return is_whole_ ? whole_of(measured, laid, reference, length_).rms_m : measured.rms_m;
+}
+
+Alignment Aligner::spread(const Way& way, RigidMotion pose, const Curve& curve) const {
+  constexpr int most_rounds = 50;
+  Alignment best;
+  best.rms_m = INFINITY;
+  for (int round = 0; round < most_rounds; ++round) {
+    Alignment next;
+    next.pose = pose;
+    next.shape.points = pose.applied(way.points);
+    next.shape.arc_length = curve.nearest_in_order(next.shape.points);
+    Measured measured;
+    next.rms_m = told_distance(next, curve, measured);
+    if (!(next.rms_m < (1 - 1e-6) * best.rms_m)) break;
+    best = std::move(next);
+    pose = closest_pose(way.points, measured.reference,
+                        weights(measured.arc_length, best.shape.points));
+  }
+  return best;
+}
+
+Alignment Aligner::laid(std::size_t way, const Placed& nearest, const Curve& curve) const {
+  Alignment result = finished(nearest, way == 1, curve);
+  const bool is_told = options_.weights == PointWeights::by_length;
+  if (!has_free_arc_lengths() || free_coordinates() == 0 || !is_told) return result;
+  RigidMotion pose = nearest.pose;
+  if (is_dense()) pose = spread(thinned(ways_[way]), pose, curve).pose;
+  Placed placed{.pose = spread(ways_[way], pose, curve).pose};
+  placed.arc_length = curve.nearest_in_order(placed.pose.applied(ways_[way].points));
+  result = finished(placed, way == 1, curve);
+  Measured measured;
+  result.rms_m = told_distance(result, curve, measured);
+  if (!is_whole_) return result;
+  Alignment whole = finished(place_given(stretched_to_rod(ways_[way]), curve), way == 1, curve);
+  whole.arc_lengths = ArcLengths::chord;
+  return whole.rms_m < result.rms_m ? whole : result;
+}
+
 Alignment Aligner::align(const Curve& curve) const {
   if (is_dense() && has_free_arc_lengths() && free_coordinates() > 0) {
     // That a way is wrong, a part of the points tells.
@@ -284,14 +341,14 @@ Alignment Aligner::align(const Curve& curve) const {
     for (const std::size_t way : {0, 1}) {
       const Placed& other = few[1 - way];
       if (!(other.mean_square > clearly_worse * few[way].mean_square)) continue;
-      Alignment result = finished(refine_all(ways_[way], curve, few[way].pose), way == 1, curve);
+      Alignment result = laid(way, refine_all(ways_[way], curve, few[way].pose), curve);
       result.other_rms_m = std::sqrt(other.mean_square);
       return result;
     }
   }
   // With arc lengths in order, which points that run the other way find only out of order.
-  Alignment along = finished(best_place(ways_[0], curve), false, curve);
-  Alignment against = finished(best_place(ways_[1], curve), true, curve);
+  Alignment along = laid(0, best_place(ways_[0], curve), curve);
+  Alignment against = laid(1, best_place(ways_[1], curve), curve);
   // Of two ways that are as good, along.
   const double rounding = 1e-12 * length_;
   if (against.rms_m + rounding < (1 - 1e-9) * along.rms_m) std::swap(along, against);

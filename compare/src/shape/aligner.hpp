@@ -6,6 +6,7 @@
 
 #include "dlo/compare/alignment.hpp"
 #include "shape/curve.hpp"
+#include "shape/shape_measure.hpp"
 
 namespace dlo::compare {
 
@@ -49,6 +50,15 @@ class Aligner {
   /// The same by way of fewer points, so that many need few steps.
   [[nodiscard]] Placed refine(const Way& way, const Curve& curve, const RigidMotion& start) const;
   void gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve, Placed& placed) const;
+  [[nodiscard]] Way stretched_to_rod(Way way) const;
+  /// What check tells of a laid shape: of a file that is as long as the rod as the whole rod.
+  [[nodiscard]] double told_distance(const Alignment& laid, const Curve& curve,
+                                     Measured& measured) const;
+  /// Goes on from a pose as long as told_distance() falls: what measure() does with points past an
+  /// end is no part of the distances across the curve, which refine() makes least.
+  [[nodiscard]] Alignment spread(const Way& way, RigidMotion pose, const Curve& curve) const;
+  /// Nearest points, unless lengths along a whole file lay it nearer.
+  [[nodiscard]] Alignment laid(std::size_t way, const Placed& nearest, const Curve& curve) const;
   /// Of the thinned points.
   [[nodiscard]] Placed best_of_few(const Way& way, const Curve& curve) const;
   [[nodiscard]] Placed best_place(const Way& way, const Curve& curve) const;
@@ -57,6 +67,7 @@ class Aligner {
   double length_;
   AlignOptions options_;
   ArcLengths rule_ = ArcLengths::nearest;
+  bool is_whole_ = false;    // as long as the rod
   std::array<Way, 2> ways_;  // along, against
 };
 

@@ -64,4 +64,15 @@ std::vector<double> lengths_along(const Eigen::Matrix3Xd& points) {
   return result;
 }
 
+bool lacks_one_segment(const Eigen::Matrix3Xd& points, double length) {
+  constexpr double alike = 0.1;
+  const Eigen::Index segments = points.cols() - 1;
+  const Eigen::VectorXd lengths =
+      (points.rightCols(segments) - points.leftCols(segments)).colwise().norm().transpose();
+  const double whole = lengths_along(points).back();
+  const double segment = whole / static_cast<double>(segments);
+  return segments > 2 && lengths.maxCoeff() < (1 + alike) * lengths.minCoeff() &&
+         std::abs(length - whole - segment) < alike * segment;
+}
+
 }  // namespace dlo::compare

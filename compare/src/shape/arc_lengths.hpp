@@ -18,4 +18,8 @@ namespace dlo::compare {
 /// is an arc of d (1 + (k d)^2 / 24).
 [[nodiscard]] std::vector<double> lengths_along(const Eigen::Matrix3Xd& points);
 
+/// Whether points at equal distances are shorter than a rod by one of their segments, to a tenth of
+/// it: where each body of a chain begins, without the end of the last.
+[[nodiscard]] bool lacks_one_segment(const Eigen::Matrix3Xd& points, double length);
+
 }  // namespace dlo::compare

@@ -21,7 +21,10 @@ struct Columns {
 
 constexpr const char* column_names[] = {"x", "y", "z", "s"};
 constexpr const char* columns_allowed =
-    "(allowed: x,y or x,y,z or x,y,z,s, or a header with these names in any order)";
+    "(allowed: x,y or x,y,z or x,y,z,s, or a header with these names in any order, besides node, "
+    "id, index or point)";
+/// Of a number that a row is known by. Points are in the order of their rows.
+constexpr const char* label_names[] = {"node", "id", "index", "point"};
 
 std::string_view trimmed_field(std::string_view text) {
   const std::size_t start = text.find_first_not_of(" \t\r\"");
@@ -65,6 +68,7 @@ Columns columns_of_header(const std::vector<std::string_view>& fields, const std
     std::string name(fields[i]);
     std::transform(name.begin(), name.end(), name.begin(),
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+    if (std::ranges::find(label_names, name) != std::end(label_names)) continue;
     const auto* found = std::find(std::begin(column_names), std::end(column_names), name);
     if (found == std::end(column_names)) {
       throw InputError(

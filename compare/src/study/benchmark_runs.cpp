@@ -38,9 +38,12 @@ bool Stopwatch::fits(const std::string& name, double predicted_s) {
   constexpr double largest_share = 0.25;
   const double now_left = left();
   if (now_left > 0 && predicted_s <= largest_share * now_left) return true;
-  skipped_.push_back(now_left > 0 ? fmt::format("{} (predicted {:.2g} s, {:.2g} s left)", name,
-                                                predicted_s, now_left)
-                                  : fmt::format("{} (no time left)", name));
+  skipped_.push_back(
+      now_left > 0
+          ? fmt::format("{}: it takes about {:.2g} s, and one run gets a quarter of the {:.2g} s "
+                        "that are left (--seconds)",
+                        name, predicted_s, now_left)
+          : fmt::format("{}: no time is left (--seconds)", name));
   return false;
 }
 
@@ -48,7 +51,7 @@ bool Stopwatch::done(const std::string& name, const std::function<void()>& work)
   try {
     work();
   } catch (const std::exception& error) {
-    skipped_.push_back(fmt::format("{} ({})", name, error.what()));
+    skipped_.push_back(fmt::format("{}: {}", name, error.what()));
     return false;
   }
   return true;

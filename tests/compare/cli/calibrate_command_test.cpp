@@ -436,4 +436,47 @@ TEST_F(CalibrateCommand, HelpHasExamples) {
   EXPECT_NE(help.out.find("dlo calibrate data/scenes"), std::string::npos);
 }
 
+TEST_F(CalibrateCommand, KeepsAStepperThatHasNoParameters) {
+  const std::string scene = scene_of("wire.toml", "5 MPa", 20);
+  const std::string file = path("parameters.toml");
+  for (const std::string stepper : {"implicit", "verlet"}) {
+    const Outcome result =
+        run("calibrate " + scene + " --points 12 --stepper " + stepper + " -o " + file);
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.out.find("stepper " + stepper + ", which has no parameters"),
+              std::string::npos)
+        << result.out;
+    const std::string text = read(file);
+    EXPECT_NE(text.find("stepper = \"" + stepper + "\"\n"), std::string::npos) << text;
+    EXPECT_EQ(text.find("c_F"), std::string::npos) << text;
+    EXPECT_EQ(run("solve " + scene + " --model force --parameters " + file).status, 0);
+  }
+  const json document =
+      json::parse(run("calibrate " + scene + " --points 12 --stepper implicit --format json").out);
+  EXPECT_EQ(document.at("parameters").at("stepper"), "implicit");
+  EXPECT_TRUE(document.at("parameters").at("c_F").is_null());
+}
+
+// No modulus makes a rod a thousand times as long.
+TEST_F(CalibrateCommand, AShapeInAnotherUnitIsRefusedWithTheLikelyOne) {
+  const std::string scene = scene_of("wire.toml", "5 MPa", 20);
+  const std::string metres = seen(scene, "metres.csv");
+  std::ifstream stream(metres);
+  std::string line;
+  std::getline(stream, line);
+  std::ofstream millimetres(path("mm.csv"));
+  millimetres << line << "\n";
+  while (std::getline(stream, line)) {
+    double x = 0;
+    double y = 0;
+    double z = 0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf", &x, &y, &z), 3) << line;
+    millimetres << fmt::format("{},{},{}\n", 1e3 * x, 1e3 * y, 1e3 * z);
+  }
+  millimetres.close();
+  const std::string calibrate = "calibrate " + scene + " --shape " + path("mm.csv");
+  expect_error(calibrate, 2, {"mm.csv: polyline is", "times the rod: --unit mm?"});
+  EXPECT_EQ(run(calibrate + " --unit mm").status, 0);
+}
+
 }  // namespace

@@ -78,6 +78,18 @@ TEST_F(CheckCommand, WithoutAToleranceTheVerdictIsOfOnePercent) {
   EXPECT_NE(run(check).out.find("allowed 5 mm = 1 % of l, the default"), std::string::npos);
 }
 
+// A chain's points are explained by its springs, not by another material: one line says so.
+TEST_F(CheckCommand, AModulusThatIsSupersededIsNoOptimum) {
+  const std::string file = path("chain.csv");
+  ASSERT_EQ(run("solve " + steel() + " --model chain --format csv -o " + file).status, 0);
+  const std::string check = "check " + steel() + " --tolerance 1% --shape " + file;
+  const json document = json::parse(run(check + " --format json").out);
+  ASSERT_FALSE(document.at("superseded_by").is_null()) << document.dump();
+  const std::string text = run(check).out;
+  EXPECT_NE(text.find("  E*/E            no measure of the material: "), std::string::npos) << text;
+  EXPECT_EQ(text.find("optimum"), std::string::npos) << text;
+}
+
 TEST_F(CheckCommand, APassBesideAnotherStiffnessSaysWhyBothHold) {
   const std::string file = path("stiffer.csv");
   const std::string rod = R"(
@@ -314,7 +326,7 @@ TEST_F(CheckCommand, AWrongUnitIsNoPass) {
   const std::string check = "check " + steel() + " --shape " + shape(points);
   const Outcome wrong = run(check + " --unit mm --tolerance 1%");
   EXPECT_EQ(wrong.status, 1);
-  EXPECT_NE(wrong.out.find("fail: only 0."), std::string::npos) << wrong.out;
+  EXPECT_NE(wrong.out.find("as it was read: only 0."), std::string::npos) << wrong.out;
   EXPECT_NE(wrong.out.find("of the rod: --unit m?"), std::string::npos) << wrong.out;
   EXPECT_EQ(wrong.out.find("from arc length 0 to l"), std::string::npos) << wrong.out;
   const json document = json::parse(run(check + " --unit mm --tolerance 1% --format json").out);

@@ -271,6 +271,26 @@ TEST_F(Command, CompareWritesTheContractsJson) {
   EXPECT_NEAR(hooke.at("effective_modulus_ratio").get<double>(), 1, 0.01);
 }
 
+TEST_F(Command, ExplainSaysWhenTheSceneMovesAndWhyThereIsNoN) {
+  const std::string moving = scene(std::string(good) + R"([[obstacle]]
+normal = [0, 1, 0]
+[[obstacle.pose]]
+time = 0
+point = [0, -0.03, 0]
+[[obstacle.pose]]
+time = 2
+point = [0, -0.2, 0]
+)");
+  const Outcome text = run("solve " + moving + " --explain");
+  ASSERT_EQ(text.status, 0) << text.err;
+  EXPECT_NE(text.out.find("static: the scene as it is at 0 s; it moves from 0 to 2 s"),
+            std::string::npos)
+      << text.out;
+  EXPECT_NE(text.out.find("not determined for 0.1 % of l: the rod touches an obstacle"),
+            std::string::npos)
+      << text.out;
+}
+
 TEST_F(Command, ExplainShowsThePlanThatJsonAlwaysHas) {
   const std::string far = scene(std::string(good) + R"([[obstacle]]
 point = [0, -0.6, 0]

@@ -34,10 +34,42 @@ class Reference : public Command {
              ")\nCOMP_CWORD=$((${#COMP_WORDS[@]} - 1))\n_dlo\nprintf '%s\\n' \"${COMPREPLY[@]}\"");
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(result.err, "") << words;
-    std::vector<std::string> offered;
-    std::istringstream lines(result.out);
-    for (std::string line; std::getline(lines, line);) offered.push_back(line);
+    return lines_of(result.out);
+  }
+
+  [[nodiscard]] static std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> all;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) all.push_back(line);
+    return all;
+  }
+
+  /// What fish offers for the last word of a line, without descriptions.
+  [[nodiscard]] std::vector<std::string> fish_completions(const std::string& line) const {
+    std::ofstream(path("line.fish"))
+        << "dlo --fish-completion | source\ncomplete -C '" << line << "'\n";
+    const Outcome result = bash("fish --no-config line.fish");
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.err, "") << line;
+    std::vector<std::string> offered = lines_of(result.out);
+    for (std::string& word : offered) word.resize(std::min(word.size(), word.find('\t')));
     return offered;
+  }
+
+  /// The words of a line in which zsh has completed what is before each tab.
+  [[nodiscard]] std::string zsh_completed(const std::string& line) const {
+    std::ofstream(path("line.zsh"))
+        << "zmodload zsh/zpty\nexport TERM=vt100\nzpty shell zsh -f -i\n"
+           "zpty -w shell 'PS1=; autoload -U compinit; compinit -u -D'\n"
+           "zpty -w shell 'source <(command dlo --zsh-completion)'\n"
+           "zpty -w shell 'dlo() { print -r -- \"comp\"\"leted[$*]\" }; print -r -- re\"\"ady'\n"
+           "zpty -r shell out '*ready*'\n"
+           "zpty -w -n shell $'"
+        << line << "\\n'\nzpty -r shell out '*completed\\[*\\]*'\nprint -r -- $out\n";
+    const Outcome result = bash("timeout 60 zsh -f line.zsh");
+    EXPECT_EQ(result.status, 0) << result.err;
+    const std::vector<std::string> found = matches(result.out, "completed\\[([^\\]]*)\\]");
+    return found.empty() ? "nothing in " + result.out : found.front();
   }
 
   [[nodiscard]] static bool contains(const std::vector<std::string>& words,
@@ -134,6 +166,52 @@ TEST_F(Reference, BashCompletesSceneFiles) {
   EXPECT_EQ(completions("dlo check a.toml --shape mi"), Words{"mine.csv"});
   EXPECT_EQ(completions("dlo compare data/scenes/ca"), Words{"data/scenes/cable.toml"});
   EXPECT_EQ(completions("dlo solve --points ''"), Words{""});
+}
+
+TEST_F(Reference, FishCompletesCommandsOptionsChoicesAndFiles) {
+  if (bash("command -v fish").status != 0) GTEST_SKIP() << "no fish";
+  std::ofstream(path("my_cable.toml")) << "";
+  std::ofstream(path("mine.csv")) << "";
+  const std::vector<std::string> offered = fish_completions("dlo ");
+  for (const std::string& command : commands()) {
+    EXPECT_TRUE(contains(offered, command)) << command;
+    const std::vector<std::string> options = fish_completions("dlo " + command + " --");
+    for (const std::string& option : options_of(command)) {
+      EXPECT_TRUE(contains(options, option)) << command << " " << option;
+    }
+  }
+  const auto sorted = [this](const std::string& line) {
+    std::vector<std::string> words = fish_completions(line);
+    std::sort(words.begin(), words.end());
+    return words;
+  };
+  using Words = std::vector<std::string>;
+  EXPECT_EQ(sorted("dlo solve --model "), (Words{"chain", "energy", "exact", "force"}));
+  EXPECT_EQ(sorted("dlo check a.toml --register=u"), Words{"--register=upright"});
+  EXPECT_EQ(sorted("dlo solve --points "), Words{});
+  EXPECT_EQ(fish_completions("dlo solve my").front(), "my_cable.toml");  // before other files
+  EXPECT_EQ(sorted("dlo check a.toml --shape mi"), Words{"mine.csv"});
+}
+
+TEST_F(Reference, ZshCompletesCommandsOptionsChoicesAndFiles) {
+  if (bash("command -v zsh").status != 0) GTEST_SKIP() << "no zsh";
+  std::ofstream(path("my_cable.toml")) << "";
+  std::ofstream(path("my_points.csv")) << "";
+  EXPECT_EQ(zsh_completed("dlo mat\\t"), "materials");
+  EXPECT_EQ(zsh_completed("dlo solve --max-e\\t"), "solve --max-evaluations");
+  EXPECT_EQ(zsh_completed("dlo solve --model=ch\\t"), "solve --model=chain");
+  EXPECT_EQ(zsh_completed("dlo check --register=u\\t"), "check --register=upright");
+  EXPECT_EQ(zsh_completed("dlo solve my\\t"), "solve my_cable.toml");
+  EXPECT_EQ(zsh_completed("dlo check --shape=my_p\\t"), "check --shape=my_points.csv");
+  const std::string text = run("--zsh-completion").out;
+  for (const std::string& command : commands()) {
+    const std::size_t begin = text.find("    " + command + ")\n");
+    ASSERT_NE(begin, std::string::npos) << command;
+    const std::string its = text.substr(begin, text.find(";;", begin) - begin);
+    for (const std::string& option : options_of(command)) {
+      EXPECT_NE(its.find(option), std::string::npos) << command << " " << option;
+    }
+  }
 }
 
 }  // namespace

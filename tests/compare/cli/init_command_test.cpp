@@ -24,6 +24,7 @@ using dlo::compare::scene_text;
 using dlo::compare::SceneChoices;
 using dlo::test::Command;
 using dlo::test::Outcome;
+using nlohmann::json;
 
 /// The optional paragraphs of a scene file, without the # of their lines.
 std::vector<std::string> optional_paragraphs(const std::string& text) {
@@ -86,6 +87,34 @@ TEST_F(Command, InitTakesANameAndAMaterialOfOnesOwn) {
   expect_error("init " + path("a") + " --youngs-modulus '5 MPa'", 2, {"--density"});
   expect_error("init " + path("a") + " --density 1000", 2, {"--youngs-modulus"});
   expect_error("init " + path("a") + " --material copper " + arguments, 2, {"--material"});
+}
+
+// The same rod in a world whose z is up, with every optional part that it may have.
+TEST_F(Command, InitWritesASceneWithZUp) {
+  const std::string rod = " --direction '-30 deg' --length '0.5 m' --up ";
+  ASSERT_EQ(run("init " + path("y.toml") + rod + "y").status, 0);
+  ASSERT_EQ(run("init " + path("z.toml") + rod + "z").status, 0);
+  const Scene y = dlo::compare::load_scene(path("y.toml"));
+  const Scene z = dlo::compare::load_scene(path("z.toml"));
+  EXPECT_EQ(z.gravity, Eigen::Vector3d(0, 0, -9.81));
+  const Eigen::Vector3d direction = *y.grippers.front().direction;
+  EXPECT_TRUE(z.grippers.front().direction->isApprox(
+      Eigen::Vector3d(direction.x(), 0, direction.y()), 1e-12));
+  const json at_y = json::parse(run("solve " + path("y.toml") + " --format json").out);
+  const json at_z = json::parse(run("solve " + path("z.toml") + " --format json").out);
+  const auto tip = [](const json& shape, int axis) {
+    return shape.at("points_m").back().at(static_cast<std::size_t>(axis)).get<double>();
+  };
+  EXPECT_NEAR(tip(at_z, 0), tip(at_y, 0), 1e-9);
+  EXPECT_NEAR(tip(at_z, 2), tip(at_y, 1), 1e-9);
+  const std::string text = read(path("z.toml"));
+  std::string all = text;
+  for (const std::string& paragraph : optional_paragraphs(text)) {
+    all += paragraph;
+    EXPECT_NO_THROW((void)parse_scene(text + paragraph, "z.toml")) << paragraph;
+  }
+  EXPECT_NE(all.find("normal = [0, 0, 1]"), std::string::npos) << all;
+  expect_error("init " + path("x.toml") + " --up x", 2, {"--up", "y", "z"});
 }
 
 TEST_F(Command, InitNeverOverwritesUnasked) {

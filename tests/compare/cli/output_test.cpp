@@ -93,8 +93,9 @@ class Output : public dlo::test::Command {
 
 TEST_F(Output, ThatIsLostOnStandardOutputIsAnError) {
   for (const std::string arguments :
-       {"", "--help", "--version", "--man-page", "--bash-completion", "solve --help", "materials",
-        "solve cable.toml", "solve cable.toml --format json", "sweep cable.toml --vary gamma=1,2",
+       {"", "--help", "--version", "--man-page", "--bash-completion", "--fish-completion",
+        "--zsh-completion", "solve --help", "materials", "solve cable.toml",
+        "solve cable.toml --format json", "sweep cable.toml --vary gamma=1,2",
         "init mine.toml --force"}) {
     write_scene("cable.toml");
     for (const std::string lost : {">/dev/full", ">&-"}) {

@@ -83,7 +83,7 @@ TEST(PaperOutput, TextJsonAndCsvTellTheSameNumbers) {
   const PaperReport report = hand_made_report();
   const std::string text = paper_text(report);
   for (const char* expected :
-       {"3776.21457", "0.00892", "other  rho A g l / 16", "c_c = 659.734 N", "passes 1/3 at",
+       {"3776.21457", "0.00892", "differs  rho A g l / 16", "c_c = 659.734 N", "passes 1/3 at",
         "30.0 s", "\n       10     40000", "\n      270   1080000", "load, 10 times", "0.0625",
         "(flat)", "  - c_F is in centimetres\n"}) {
     EXPECT_THAT(text, HasSubstr(expected));

@@ -65,6 +65,18 @@ TEST_F(RegressCommand, UpdateLeavesABaselineThatHasChangedSinceItWasRead) {
   EXPECT_FALSE(std::filesystem::exists(path("b.toml.lock")));
 }
 
+TEST_F(RegressCommand, AProgramThatIsNotGivenIsAskedFor) {
+  const std::string with = " --with mine='" + std::string(DLO_COMMAND) + " solve " + steel() +
+                           " --format csv -o {shape}'";
+  ASSERT_EQ(run(arguments_ + steel() + with + " --update").status, 0);
+  const dlo::test::Outcome result = run(arguments_ + steel());
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.out.find("in the baseline, of a program: --with mine='COMMAND' runs it"),
+            std::string::npos)
+      << result.out;
+  EXPECT_EQ(run(arguments_ + steel() + with).status, 0);
+}
+
 TEST_F(RegressCommand, UpdateSaysWhatItDid) {
   const std::string other = std::string(DLO_DATA) + "/scenes/spring_steel_135.toml";
   EXPECT_EQ(run(arguments_ + steel() + " --update").out.substr(0, 5), "same ");

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <random>
 #include <string>
@@ -72,7 +73,7 @@ Outcome judged(const Scene& scene, const MeasuredShape& shape, double share = 0.
     outcome.explanations = explain_shape(scene, shape, check, options);
   }
   outcome.judgement =
-      with_explanation(judge_with_chains(scene, check, tolerance), outcome.explanations);
+      with_explanation(judge_with_chains(scene, check, tolerance), outcome.explanations, tolerance);
   return outcome;
 }
 
@@ -119,6 +120,22 @@ TEST(Explanation, NamesWhatIsWrongWithAFile) {
   pixels.row(1) *= -1;
   pixels.colwise() += Vector3d(320, 240, 0);
   expect_named("pixels", scene, made(pixels), {"1.25 mm", "y down", "pixels"});
+  // A picture's vertical is the scene's, whichever that is.
+  Scene z_up = scene;
+  z_up.gravity = {0, 0, -9.81};
+  z_up.grippers[0].direction = {std::cos(20 * degree), 0, std::sin(20 * degree)};
+  expect_named("pixels, z up", z_up, made(pixels), {"1.25 mm", "y down", "pixels"});
+  expect_named("y down from a corner", scene, made(pixels / 800), {"y is down", "another origin"});
+  std::vector<Eigen::Index> rows(41);
+  std::iota(rows.begin(), rows.end(), Eigen::Index{0});
+  std::swap(rows[3], rows[30]);
+  std::swap(rows[11], rows[20]);
+  expect_named("out of order", scene, made(right(Eigen::all, rows)),
+               {"out of order", "1, 2, 3, 31, 5, 6, .."});
+  // Bodies of a chain begin at their joints: the last one's end is no body's begin.
+  const Matrix3Xd joints = shape_of(scene, 7).points;
+  expect_named("no last point", scene, made(joints.leftCols(6)),
+               {"an end point is missing", "xpos"}, 2e-3);
   expect_named("moved", scene, made(right.colwise() + Vector3d(0, 0.015, 0)),
                {"another origin", "gripper is elsewhere", "-15"});
   std::mt19937 random(1);
@@ -128,6 +145,22 @@ TEST(Explanation, NamesWhatIsWrongWithAFile) {
   MeasuredShape against = made(right);
   against.arc_length = equal_arc_lengths(1, 41);
   EXPECT_TRUE(judged(scene, against).judgement.pass);
+}
+
+// How far a file is that was read in a wrong way says nothing: what is wrong with it comes first.
+TEST(Explanation, AFileThatIsReadWronglyIsNamedFirst) {
+  const Scene scene = clamped();
+  const Outcome wrong = judged(scene, made(1000 * shape_of(scene).points));
+  EXPECT_NE(wrong.judgement.reason.find("mm if the file is in mm, not in metres; as it was read: "),
+            std::string::npos)
+      << wrong.judgement.reason;
+  EXPECT_EQ(wrong.judgement.reason.find("RMS"), 0U) << wrong.judgement.reason;
+  // Here the scene is wrong as well.
+  Scene softer = scene;
+  softer.scale_modulus(0.3);
+  const Outcome other = judged(scene, shape_of(softer));
+  EXPECT_NE(other.judgement.reason.find("; it would be "), std::string::npos)
+      << other.judgement.reason;
 }
 
 TEST(Explanation, NamesWhatIsAnotherScene) {
@@ -369,7 +402,7 @@ TEST(Explanation, AChainOfHingesIsRightInItsOwnWay) {
     EXPECT_TRUE(middle.judgement.pass) << middle.judgement.reason;
     EXPECT_TRUE(middle.explanations.empty());  // near the rod itself
     expect_named("half as stiff", scene, made(HingedChain(whole, h, 0.5, false).points()),
-                 {"with a hinge at the clamp", "springs are 0.", "times EI/h"});
+                 {"with a hinge at the clamp", "springs of 0.", "times EI/h"});
   }
 }
 
@@ -384,12 +417,14 @@ TEST(Explanation, TheVerdictKnowsChainsWithoutAnyExplanation) {
     EXPECT_FALSE(judge(check, tolerance).pass);
     const ShapeJudgement alone = judge_with_chains(scene, check, tolerance);
     EXPECT_TRUE(alone.pass) << alone.reason;
-    EXPECT_EQ(with_explanation(alone, explain_shape(scene, right, check, {})).reason, alone.reason);
+    EXPECT_EQ(with_explanation(alone, explain_shape(scene, right, check, {}), tolerance).reason,
+              alone.reason);
   }
   const ShapeTolerance narrow{.allowed_m = 1e-5};
   const ShapeJudgement alone = judge_with_chains(scene, check, narrow);
   EXPECT_FALSE(alone.pass);
-  const ShapeJudgement explained = with_explanation(alone, explain_shape(scene, right, check, {}));
+  const ShapeJudgement explained =
+      with_explanation(alone, explain_shape(scene, right, check, {}), narrow);
   EXPECT_FALSE(explained.pass);
   EXPECT_EQ(explained.reason.find(alone.reason), 0);
 }

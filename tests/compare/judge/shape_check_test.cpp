@@ -57,6 +57,59 @@ TEST(ShapeCheck, FindsTheModulusInAnyFrameFromEitherEnd) {
   }
 }
 
+// A frame is the better, the nearer the shape is in it. Nearest points see nothing of differences
+// along the rod: a wrong shape could be moved along it until its points lie past an end.
+TEST(ShapeCheck, AFrameByNearestPointsIsNeverWorseThanByLengthsAlongThePoints) {
+  std::mt19937 random(20);
+  for (const double direction : {0.0, 60.0, -80.0}) {
+    const Scene scene = heavy_scene(140, direction);
+    for (const double stiffer : {0.5, 1.5, 3.0}) {
+      Scene other = scene;
+      other.material.youngs_modulus *= stiffer;
+      for (const int count : {9, 40}) {
+        const Eigen::Matrix3Xd points = exact_shape(other, equal_arc_lengths(1, count)).points;
+        for (const double noise : {0.0, 5e-3}) {
+          for (const double stretch : {0.98, 1.0, 1.03}) {
+            const RigidMotion turned{
+                Eigen::AngleAxisd(random() % 6, Eigen::Vector3d::UnitY()).toRotationMatrix(),
+                Eigen::Vector3d(0.3, -0.2, 1)};
+            const MeasuredShape seen{
+                "seen", test::with_noise(turned.applied(stretch * points), noise, random), {}};
+            const auto distance = [&](PoseFreedom pose, ArcLengths rule) {
+              return check_shape(scene, seen,
+                                 {.pose = pose, .arc_lengths = rule, .modulus = ModulusSearch::no})
+                  .whole_rms_m;
+            };
+            for (const PoseFreedom pose : {PoseFreedom::upright, PoseFreedom::rigid}) {
+              EXPECT_LE(distance(pose, ArcLengths::nearest),
+                        (1 + 1e-9) * distance(pose, ArcLengths::chord))
+                  << direction << ", " << stiffer << ", " << count << ", " << noise << ", "
+                  << stretch << ", " << to_string(pose);
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+// Of a file that is cut off, nothing of that: where its points are the rod's, so is its frame.
+TEST(ShapeCheck, AFileThatIsCutOffKeepsItsFrame) {
+  const Scene scene = heavy_scene(140, 0);
+  for (const double seen : {0.99, 0.975, 0.9, 0.5}) {
+    std::vector<double> s = equal_arc_lengths(1, 41);
+    for (double& at : s) at *= seen;
+    const RigidMotion turned{Eigen::AngleAxisd(2, Eigen::Vector3d::UnitY()).toRotationMatrix(),
+                             Eigen::Vector3d(0.3, -0.2, 1)};
+    const MeasuredShape cut{"cut", turned.applied(exact_shape(scene, s).points), {}};
+    const ShapeCheck check =
+        check_shape(scene, cut, {.pose = PoseFreedom::upright, .modulus = ModulusSearch::no});
+    EXPECT_EQ(check.alignment.arc_lengths, ArcLengths::nearest) << seen;
+    EXPECT_LT(check.deviation.rms_m, 1e-6) << seen;
+    EXPECT_NEAR(check.seen_share, seen, 1e-4) << seen;
+  }
+}
+
 // Between clamps that lean up a heavy rod hangs out of its plane, to either side. Neither side is
 // wrong, and the modulus is the one of the shape's own side.
 TEST(ShapeCheck, ComparesWithTheStateThatTheShapeIsIn) {

@@ -72,6 +72,15 @@ TEST(ShapeFile, NumbersAreInTheGivenUnit) {
   EXPECT_DOUBLE_EQ(parse_shape(R"({"points": [[0,0],[7,0]]})", "f", 0.01).points(0, 1), 0.07);
 }
 
+TEST(ShapeFile, ANumberOfTheNodeIsNoPoint) {
+  for (const std::string name : {"node", "id", "Index", "point"}) {
+    const MeasuredShape shape = parse_shape(name + ",x,y,z\n7,0,0,0\n3,0.1,-0.2,0.5\n", "f", 1);
+    EXPECT_EQ(shape.points.col(1), Eigen::Vector3d(0.1, -0.2, 0.5)) << name;
+    EXPECT_TRUE(shape.arc_length.empty()) << name;
+  }
+  EXPECT_EQ(parse_shape("x;id;y\n0;a7;0\n0.1;a8;-0.2\n", "f", 1).points(1, 1), -0.2);
+}
+
 struct Malformed {
   std::string text;
   std::vector<std::string> message;  ///< pieces of it
@@ -108,6 +117,7 @@ TEST(ShapeFile, RefusesMalformedCsvWithFileAndLine) {
       {"7\n8\n", {"mine:1: 1 column ", "x,y,z"}},
       {"1,2,3,4,5\n", {"mine:1: 5 columns"}},
       {"x,y,time\n1,2,3\n", {"mine:1: unknown column \"time\"", "allowed: x,y"}},
+      {"node,x,y,z\n1,2,3\n", {"mine:2: 3 columns", "allowed: 4"}},
       {"x,z\n1,2\n", {"mine:1: column y is missing"}},
       {"x,y,x\n1,2,3\n", {"mine:1: column x given twice"}},
       {"0,0\n0.5,abc\n", {"mine:2: y = \"abc\" is not a number"}},

@@ -109,7 +109,7 @@ TEST(Benchmark, SaysWhatItSkipped) {
   }
   ASSERT_FALSE(report.skipped.empty());
   for (const std::string& skipped : report.skipped) {
-    EXPECT_THAT(skipped, testing::EndsWith("(no time left)"));
+    EXPECT_THAT(skipped, testing::EndsWith(": no time is left (--seconds)"));
   }
 }
 

@@ -87,7 +87,8 @@ struct AlignOptions {
 struct Alignment {
   RigidMotion pose;       ///< from the file's frame to the scene's
   bool reversed = false;  ///< the file runs (its s counts) from arc length l to 0
-  ArcLengths arc_lengths = ArcLengths::nearest;  ///< which rule was used
+  ArcLengths arc_lengths = ArcLengths::nearest;  ///< which rule was used; of a whole file whose
+                                                 ///< frame is found `nearest` may become `chord`
   Shape shape;             ///< the points in the scene's frame, by growing arc length
   double rms_m = 0;        ///< distance with the given weights
   double other_rms_m = 0;  ///< the same the other way round
@@ -108,7 +109,9 @@ struct RodPart {
 /// Given arc lengths: in closed form (Kabsch for a rigid motion). `nearest`: starts from lengths
 /// along the polyline, at several places along the rod and in both directions; the points are
 /// assigned in order (dynamic programming), the motion then follows by Gauss-Newton steps on the
-/// distances across the curve (along it too where a point is past an end).
+/// distances across the curve (along it too where a point is past an end). With weights by length
+/// and a frame to be found, the frame is then the one in which the distances that ShapeCheck tells
+/// are least, and a file as long as the rod (to 3 %) is laid by `chord` where that is nearer.
 /// @throws InputError if the options ask for a column s that the file lacks, if the arc lengths in
 /// the file are not on the rod, or if a motion is asked of too few points (3)
 [[nodiscard]] Alignment align(const MeasuredShape& shape, const Reference& reference, double length,

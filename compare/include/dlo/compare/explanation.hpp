@@ -70,8 +70,11 @@ inline constexpr double right_chain = 0.25;
                                                const ShapeTolerance& tolerance);
 
 /// With the best explanation named where the shape fails; whether it does is no matter of these.
+/// What is wrong with the file comes first if nothing else is wrong and the shape is more than ten
+/// tolerances away.
 /// @param explanations  of explain_shape(), for the same check
 [[nodiscard]] ShapeJudgement with_explanation(ShapeJudgement judgement,
-                                              const std::vector<Explanation>& explanations);
+                                              const std::vector<Explanation>& explanations,
+                                              const ShapeTolerance& tolerance);
 
 }  // namespace dlo::compare

@@ -54,7 +54,7 @@ struct RuleDeviations {
 /// Parameters of the force model for one material, and what they give.
 struct ForceModelFit {
   /// To be used: N, law, bookkeeping, c_b (law paper), c_c, and stepper dynamic with its c_F, c_h
-  /// and l_s.
+  /// and l_s; or the first scene's verlet or implicit, which have none of these.
   ForceModelSettings settings;
   bool c_b_was_given = false;  ///< `fitted` is then the given one
   bool c_c_was_given = false;  ///< by the scene or an option
@@ -94,9 +94,10 @@ struct ForceModelFit {
 /// tried and raised until it does. c_b of the paper's law: Formula 21, moment-matched, and by
 /// GSL's Brent minimiser over log c_b, on the chain, whose rest shape is the force model's.
 /// c_c: as low as a stretch of a tenth of the target allows, for steps grow with its root; no more
-/// than AE. c_F and c_h: Polyak's heavy ball for the stiffest and slowest modes at the start and at
-/// rest in any of the scenes; l_s: a quarter of a segment. Given numbers in the first scene's
-/// settings (c_b, c_c) are kept. The stepped force model then has the last word.
+/// than AE. Steppers verlet and implicit are kept, for any other c_F and c_h: Polyak's heavy ball
+/// for the stiffest and slowest modes at the start and at rest in any of the scenes; l_s: a quarter
+/// of a segment. Given numbers in the first scene's settings (c_b, c_c) are kept. The stepped force
+/// model then has the last word.
 /// @param holdouts  scenes that only judge
 /// @throws InputError if scenes differ in law or bookkeeping; ConvergenceError
 [[nodiscard]] ForceModelFit fit_force_model(const std::vector<Scene>& scenes,

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
-#include "dlo/compare/material.hpp"
-#include "option/help.hpp"
-#include "option/manual.hpp"
+#include "completion/completion.hpp"
 #include "option/output.hpp"
 
 namespace dlo::cli {
@@ -20,29 +18,35 @@ std::string names_of(const std::vector<const CLI::Option*>& options) {
 
 /// What sets `values`, `files` or `folders` for a word that follows an option or stands alone;
 /// empty for a flag.
-std::string completion_of(const OptionText& text) {
-  if (!text.choices.empty()) return fmt::format("values='{}'", fmt::join(text.choices, " "));
-  if (text.value == "MATERIAL") {
-    std::string names;
-    for (const compare::Material& material : compare::materials()) names += material.name + " ";
-    return fmt::format("values='{}'", names);
+std::string offered(const OptionText& text) {
+  const Completion completion = completion_of(text);
+  switch (completion.offer) {
+    case Offer::words:
+      return fmt::format("values='{}'", fmt::join(completion.words, " "));
+    case Offer::scenes:
+      return "files='*.toml'";
+    case Offer::files:
+      return "files='*'";
+    case Offer::folders:
+      return "folders=1";
+    case Offer::own:
+      return "values=' '";
+    case Offer::nothing:
+      break;
   }
-  if (text.value.starts_with("SCENE") || text.names.front() == "SCENE") return "files='*.toml'";
-  if (text.value.starts_with("FILE") || text.names.front() == "FILE") return "files='*'";
-  if (text.value == "DIR") return "folders=1";
-  return text.value.empty() ? "" : "values=' '";
+  return {};
 }
 
 std::string command_case(const CLI::App& command) {
   std::string out;
   append(out, "    {})\n      options='{}'\n", command.get_name(), names_of(options_of(command)));
   for (const CLI::Option* argument : arguments_of(command)) {
-    append(out, "      {}\n", completion_of(option_text(*argument)));
+    append(out, "      {}\n", offered(option_text(*argument)));
   }
   append(out, "      case $prev in\n");
   for (const CLI::Option* option : options_of(command)) {
     const OptionText text = option_text(*option);
-    const std::string completion = completion_of(text);
+    const std::string completion = offered(text);
     if (completion.empty() || text.optional_value) continue;
     append(out, "        {}) values= files= folders= options= {} ;;\n", fmt::join(text.names, "|"),
            completion);
