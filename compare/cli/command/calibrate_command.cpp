@@ -35,6 +35,8 @@ struct CalibrateOptions {
   int segments = 0;
   std::string clamp_angles;
   std::string clamp_positions;
+  bool same_clamps = false;
+  bool predict = false;
   std::vector<std::string> holdouts;
   std::optional<double> target;
   ShapeOptions shape_options;
@@ -98,6 +100,8 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
           quantity_of("--clamp-angles", options.clamp_angles, Dimension::angle).value_or(0),
       .position_tolerance =
           quantity_of("--clamp-positions", options.clamp_positions, Dimension::length).value_or(0),
+      .shared_clamps = options.same_clamps,
+      .predict = options.predict,
       .chain_segments = options.segments,
       .profile_points = options.plot.draws() ? profile_points : 0,
       .noise = quantity_of("--noise", options.noise, Dimension::length),
@@ -221,6 +225,18 @@ void add_calibrate(CLI::App& app) {
   command
       ->add_option("--clamp-positions", options->clamp_positions,
                    "the same of the grippers' positions, such as \"2 mm\"")
+      ->needs(shape)
+      ->group(measured);
+  command
+      ->add_flag("--same-clamps", options->same_clamps,
+                 "clamps are off alike in all shapes, as those of one fixture: what is found of "
+                 "them is shared, and -o writes it; with --clamp-angles or --clamp-positions")
+      ->needs(shape)
+      ->group(measured);
+  command
+      ->add_flag("--predict", options->predict,
+                 "leave out each shape in turn and predict it by the fit to the others: says which "
+                 "options predict best (three shapes or more)")
       ->needs(shape)
       ->group(measured);
   command

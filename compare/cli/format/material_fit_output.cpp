@@ -8,6 +8,7 @@
 #include "base/display.hpp"
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/error.hpp"
+#include "fit/fitted_scene.hpp"
 #include "format/alignment_output.hpp"
 #include "format/comparison_output.hpp"
 #include "record/csv_table.hpp"
@@ -103,6 +104,19 @@ std::string alternatives_text(const compare::Calibration& report) {
   return out;
 }
 
+std::string prediction_text(const compare::Prediction& prediction) {
+  std::string out = fmt::format(
+      "prediction  {:.4g} mm between each shape and the rod fitted to the others (RMS)\n",
+      prediction.rms_m * 1e3);
+  if (prediction.repeatability_m) {
+    append(out,
+           "            {:.4g} mm between each shape and the mean of the others: no rod predicts "
+           "better than they repeat\n",
+           *prediction.repeatability_m * 1e3);
+  }
+  return out;
+}
+
 const char* text_of(compare::ChainClamp clamp) {
   switch (clamp) {
     case compare::ChainClamp::hinge:
@@ -167,6 +181,11 @@ Json numbers_json(const compare::MaterialFit& fit) {
             {"seen", number.is_seen()},
             {"shape", number.shape ? Json(*number.shape) : Json(nullptr)}};
   });
+}
+
+/// As a scene file has it.
+std::string vector_text(const Eigen::Vector3d& v) {
+  return fmt::format("[{:.6e}, {:.6e}, {:.6e}]", v.x(), v.y(), v.z());
 }
 
 /// As a scene file has it [1/m].
@@ -274,6 +293,7 @@ std::string material_text(const compare::Calibration& report) {
     }
   }
   append(out, "residual    {:.4g} mm between points and rod (RMS)\n", fit.rms_m * 1e3);
+  if (fit.prediction) out += prediction_text(*fit.prediction);
   append(out, "{}", alternatives_text(report));
   for (std::size_t i = 0; i < fit.shapes.size(); ++i) {
     const compare::Alignment& a = fit.shapes[i].alignment;
@@ -337,6 +357,16 @@ Json material_json(const compare::Calibration& report) {
   result["alternatives"] = alternatives_json(report);
   result["others"] = numbers_json(fit);
   result["chains"] = chains_json(fit.chains);
+  result["clamps"] = json_list(fit.clamps, [](const compare::ClampCorrection& one) -> Json {
+    return {{"gripper", one.gripper},
+            {"rotation_rad", compare::to_json(one.rotation)},
+            {"displacement_m", compare::to_json(one.displacement)}};
+  });
+  result["prediction"] = json_or_null(fit.prediction, [](const auto& found) -> Json {
+    return {{"rms_m", found.rms_m},
+            {"repeatability_m", json_of(found.repeatability_m)},
+            {"shapes_m", found.shapes_m}};
+  });
   result["scatter_between_shapes"] = json_or_null(fit.scatter, scatter_json);
   result["rms_m"] = fit.rms_m;
   Json shapes = Json::array();
@@ -395,6 +425,14 @@ std::string material_toml(const compare::Calibration& report) {
     // Of a material no shape is known: it is a line for the scene.
     append(out, "{}natural_curvature = {}\n",
            given ? "" : "# of the rod: ", natural_curvature_text(fit));
+  }
+  const std::vector<compare::Gripper> held = compare::fitted_scene(scene, fit, scene).grippers;
+  for (const compare::ClampCorrection& correction : fit.clamps) {
+    const compare::Gripper& gripper = held[correction.gripper];
+    append(out, "# of the scene's gripper {}: position = {}", correction.gripper + 1,
+           vector_text(gripper.position));
+    if (gripper.direction) append(out, ", direction = {}", vector_text(*gripper.direction));
+    out += "\n";
   }
   append(out, "{}least squares of {} measured shape{}, noise {:.3g} m{}{}\n",
          given ? "# " : "source = \"", fit.shapes.size(), fit.shapes.size() == 1 ? "" : "s",

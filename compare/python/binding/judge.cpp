@@ -121,6 +121,8 @@ FitDocuments calibrate_material(const std::vector<SharedScene>& scenes, const py
       .natural_curvature_terms = what["natural_curvature_terms"].cast<int>(),
       .direction_tolerance = what["clamp_angles"].cast<double>(),
       .position_tolerance = what["clamp_positions"].cast<double>(),
+      .shared_clamps = what["same_clamps"].cast<bool>(),
+      .predict = what["predict"].cast<bool>(),
       .chain_segments = what["segments"].cast<int>(),
       .noise = what["noise"].cast<std::optional<double>>(),
       .solve = solve};

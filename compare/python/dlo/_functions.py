@@ -183,6 +183,8 @@ def plan(
     natural_curvature=INTEGER,
     clamp_angles=QUANTITY,
     clamp_positions=QUANTITY,
+    same_clamps=TRUTH,
+    predict=TRUTH,
     noise=QUANTITY,
     segments=INTEGER,
     time=NUMBER,
@@ -202,6 +204,8 @@ def calibrate(
     natural_curvature: int = 0,
     clamp_angles: Quantity = 0.0,
     clamp_positions: Quantity = 0.0,
+    same_clamps: bool = False,
+    predict: bool = False,
     noise: Optional[Quantity] = None,
     segments: int = 0,
     time: Optional[float] = None,
@@ -213,7 +217,8 @@ def calibrate(
     With shapes, one of each scene or several of one: a MaterialFit. A shape is an array of points
     [m], a tuple of points and their arc lengths, or the name of a file in metres. density, torsional_stiffness: fit these as well;
     natural_curvature: so many terms of it. clamp_angles, clamp_positions: how well the clamps are
-    known (standard deviations, "5 deg", "2 mm"); each shape's own are then fitted. noise: standard
+    known (standard deviations, "5 deg", "2 mm"); each shape's own are then fitted,
+    with same_clamps what all share. predict: each shape is left out in turn, and predicted. noise: standard
     deviation of one coordinate; None: estimated. segments: of your simulator's chain, whose springs are
     then found too ("chains" of the document). register, arc_lengths: as of check(). time, materials: as of
     solve(), of all scenes.
@@ -233,6 +238,8 @@ def calibrate(
         "natural_curvature_terms": natural_curvature,
         "clamp_angles": _si(clamp_angles, "angle"),
         "clamp_positions": _si(clamp_positions, "length"),
+        "same_clamps": bool(same_clamps),
+        "predict": bool(predict),
         "segments": segments,
         "noise": None if noise is None else _si(noise, "length"),
     }

@@ -60,6 +60,32 @@ double interpolated(const std::vector<double>& s, const std::vector<double>& val
   return (1 - share) * value[i - 1] + share * value[i];
 }
 
+/// Places along the rod at which shapes are compared.
+constexpr int places = 21;
+
+/// Of arc lengths that all shapes have.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] double at(int place) const { return low + (high - low) * place / (places - 1); }
+};
+
+/// None of fewer than two shapes, or if it is less than half of the longest.
+std::optional<Range> common_range(const std::vector<std::vector<double>>& arc_lengths) {
+  if (arc_lengths.size() < 2) return std::nullopt;
+  Range range;
+  double longest = 0;
+  for (const std::vector<double>& s : arc_lengths) {
+    if (s.size() < 2) return std::nullopt;
+    range.low = std::max(range.low, s.front());
+    range.high = std::min(range.high, s.back());
+    longest = std::max(longest, s.back() - s.front());
+  }
+  if (!(range.high - range.low > longest / 2)) return std::nullopt;
+  return range;
+}
+
 }  // namespace
 
 AcrossRod across_rod(const Shape& shape, const Shape& rod, const Eigen::Vector3d& normal) {
@@ -79,25 +105,16 @@ AcrossRod across_rod(const Shape& shape, const Shape& rod, const Eigen::Vector3d
 }
 
 std::optional<double> common_share(const std::vector<AcrossRod>& shapes) {
-  if (shapes.size() < 2) return std::nullopt;
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-  double longest = 0;
-  for (const AcrossRod& one : shapes) {
-    if (one.arc_length.size() < 2) return std::nullopt;
-    low = std::max(low, one.arc_length.front());
-    high = std::min(high, one.arc_length.back());
-    longest = std::max(longest, one.arc_length.back() - one.arc_length.front());
-  }
-  if (!(high - low > longest / 2)) return std::nullopt;
-  constexpr int places = 21;
+  std::vector<std::vector<double>> arc_lengths;
+  for (const AcrossRod& one : shapes) arc_lengths.push_back(one.arc_length);
+  const std::optional<Range> range = common_range(arc_lengths);
+  if (!range) return std::nullopt;
   double common = 0;
   double all = 0;
   for (int k = 0; k < places; ++k) {
-    const double at = low + (high - low) * k / (places - 1);
     double sum = 0;
     for (const AcrossRod& one : shapes) {
-      const double gap = interpolated(one.arc_length, one.gap, at);
+      const double gap = interpolated(one.arc_length, one.gap, range->at(k));
       sum += gap;
       all += gap * gap;
     }
@@ -105,6 +122,29 @@ std::optional<double> common_share(const std::vector<AcrossRod>& shapes) {
   }
   if (!(all > 0)) return std::nullopt;
   return common / all;
+}
+
+std::optional<double> repeatability(const std::vector<Shape>& shapes) {
+  std::vector<std::vector<double>> arc_lengths;
+  for (const Shape& one : shapes) arc_lengths.push_back(one.arc_length);
+  const std::optional<Range> range = common_range(arc_lengths);
+  if (!range) return std::nullopt;
+  const auto count = static_cast<double>(shapes.size());
+  double squares = 0;
+  for (int k = 0; k < places; ++k) {
+    Eigen::Matrix3Xd points(3, std::ssize(shapes));
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      const Shape& shape = shapes[static_cast<std::size_t>(i)];
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        const Eigen::VectorXd row = shape.points.row(axis);
+        points(axis, i) =
+            interpolated(shape.arc_length, {row.data(), row.data() + row.size()}, range->at(k));
+      }
+    }
+    // To the mean of the others it is farther than to that of all by N / (N - 1).
+    squares += (points.colwise() - points.rowwise().mean()).squaredNorm();
+  }
+  return count / (count - 1) * std::sqrt(squares / (places * count));
 }
 
 double beyond_chance(double share, std::size_t shapes) {

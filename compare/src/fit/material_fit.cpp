@@ -14,6 +14,8 @@
 #include "dlo/compare/error.hpp"
 #include "fit/between_shapes.hpp"
 #include "fit/chain_springs.hpp"
+#include "fit/fitted_scene.hpp"
+#include "fit/leave_one_out.hpp"
 #include "fit/log_profile.hpp"
 #include "fit/shape_misfit.hpp"
 #include "fit/wire_fit.hpp"
@@ -67,6 +69,7 @@ Finding finding(LogProfile& profile, double level, double rival_level) {
 FittedValue fitted(const Finding& found, double unit, double identified_within) {
   const LogProfile::Interval& interval = found.interval;
   FittedValue result;
+  result.estimate = unit * std::exp(found.best.x);
   if (interval.low) result.low = unit * std::exp(*interval.low);
   if (interval.high) result.high = unit * std::exp(*interval.high);
   const bool closed = result.low && result.high;
@@ -138,6 +141,18 @@ void require_pairs(const std::vector<Scene>& scenes, const std::vector<MeasuredS
     throw InputError(
         "calibrate: arc lengths by chord are not exact enough (allowed: auto, file, nearest)");
   }
+  if (options.shared_clamps &&
+      !(options.direction_tolerance > 0 || options.position_tolerance > 0)) {
+    throw InputError(
+        "calibrate: clamps that are alike in all shapes, but nothing says how well they are known "
+        "(allowed: with clamp angles or clamp positions)");
+  }
+  constexpr std::size_t fewest_predicted = 3;
+  if (options.predict && shapes.size() < fewest_predicted) {
+    throw InputError(
+        fmt::format("calibrate: prediction of {} shapes, each by the others (allowed: {} or more)",
+                    shapes.size(), fewest_predicted));
+  }
   if (options.noise && !(*options.noise > 0)) {
     throw InputError(fmt::format("calibrate: noise = {:g} m (allowed: > 0)", *options.noise));
   }
@@ -148,19 +163,7 @@ void add_chains(const std::vector<Scene>& scenes, const MaterialFitOptions& opti
                 MaterialFit& fit) {
   for (auto scene = scenes.begin(); scene != scenes.end(); ++scene) {
     if (std::find(scenes.begin(), scene, *scene) != scene) continue;
-    Scene fitted = *scene;
-    fitted.scale_modulus(*fit.youngs_modulus.value / scenes.front().stiffness().value);
-    if (fit.density && fit.density->value) {
-      fitted.scale_density(*fit.density->value / scenes.front().heaviness().value);
-    }
-    if (fit.torsional_stiffness && fit.torsional_stiffness->value) {
-      fitted.scale_torsion(*fit.torsional_stiffness->value / fitted.twisting_stiffness());
-    }
-    if (!fit.natural_curvature.empty()) {
-      fitted.natural_strain.head<2>() = fit.natural_curvature.front();
-      fitted.natural_variation.assign(fit.natural_curvature.begin() + 1,
-                                      fit.natural_curvature.end());
-    }
+    const Scene fitted = fitted_scene(*scene, fit, scenes.front());
     for (ChainSprings& chain : chain_springs(fitted, options.chain_segments, options.solve)) {
       fit.chains.push_back(std::move(chain));
     }
@@ -544,6 +547,7 @@ MaterialFit fit_material(const std::vector<Scene>& scenes, const std::vector<Mea
                          const MaterialFitOptions& options) {
   require_pairs(scenes, shapes, options);
   MaterialFit fit = MaterialFitter(scenes, shapes, options).run();
+  if (options.predict) fit.prediction = leave_one_out(scenes, shapes, options, fit);
   if (options.chain_segments > 0 && fit.youngs_modulus.value) add_chains(scenes, options, fit);
   return fit;
 }

@@ -74,7 +74,8 @@ void add_torsion(std::vector<WireNumber>& numbers, const std::vector<Scene>& sce
        [](Scene& scene, double value) { scene.scale_torsion(std::exp(value)); }});
 }
 
-void add_directions(std::vector<WireNumber>& numbers, const Scene& scene, std::size_t shape,
+void add_directions(std::vector<WireNumber>& numbers, const Scene& scene,
+                    const std::optional<std::size_t>& shape,
                     const std::optional<Eigen::Vector3d>& normal, double tolerance) {
   for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
     if (!scene.grippers[i].direction) continue;
@@ -95,7 +96,8 @@ void add_directions(std::vector<WireNumber>& numbers, const Scene& scene, std::s
   }
 }
 
-void add_positions(std::vector<WireNumber>& numbers, const Scene& scene, std::size_t shape,
+void add_positions(std::vector<WireNumber>& numbers, const Scene& scene,
+                   const std::optional<std::size_t>& shape,
                    const std::optional<Eigen::Vector3d>& normal, double tolerance) {
   const Eigen::Matrix3Xd ways = ways_of_place(normal);
   for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
@@ -112,6 +114,23 @@ void add_positions(std::vector<WireNumber>& numbers, const Scene& scene, std::si
                            changed.grippers[i].position += value * axis;
                          }});
     }
+  }
+}
+
+/// What is wrong with clamps is the same in all scenes only if they are the same.
+void require_like_clamps(const std::vector<Scene>& scenes) {
+  const std::vector<Gripper>& first = scenes.front().grippers;
+  for (const Scene& scene : scenes) {
+    const bool alike =
+        std::equal(first.begin(), first.end(), scene.grippers.begin(), scene.grippers.end(),
+                   [](const Gripper& a, const Gripper& b) {
+                     return a.at == b.at && a.direction.has_value() == b.direction.has_value();
+                   });
+    if (alike) continue;
+    throw InputError(fmt::format(
+        "{}: its grippers are not those of {}, so they are not off alike (allowed: as many "
+        "grippers, at the same arc lengths, clamps or pins)",
+        scene.file, scenes.front().file));
   }
 }
 
@@ -155,13 +174,16 @@ std::vector<WireNumber> wire_numbers(const std::vector<Scene>& scenes,
   if (options.natural_curvature_terms > 0) {
     add_natural_curvature(numbers, scenes, options.natural_curvature_terms);
   }
-  for (std::size_t i = 0; i < scenes.size(); ++i) {
+  const std::size_t sets = options.shared_clamps ? 1 : scenes.size();
+  if (options.shared_clamps) require_like_clamps(scenes);
+  for (std::size_t i = 0; i < sets; ++i) {
     const std::optional<Eigen::Vector3d> normal = plane_of(scenes[i], shapes[i]);
+    const std::optional<std::size_t> own = options.shared_clamps ? std::nullopt : std::optional(i);
     if (options.direction_tolerance > 0) {
-      add_directions(numbers, scenes[i], i, normal, options.direction_tolerance);
+      add_directions(numbers, scenes[i], own, normal, options.direction_tolerance);
     }
     if (options.position_tolerance > 0) {
-      add_positions(numbers, scenes[i], i, normal, options.position_tolerance);
+      add_positions(numbers, scenes[i], own, normal, options.position_tolerance);
     }
   }
   return numbers;

@@ -30,6 +30,11 @@ struct MaterialFitOptions {
   double direction_tolerance = 0;
   /// The same of the grippers' positions along each axis [m].
   double position_tolerance = 0;
+  /// Clamps are off alike in all shapes, as those of one fixture are: the numbers of their
+  /// directions and positions are shared (MaterialFit::clamps). Else each shape has its own.
+  bool shared_clamps = false;
+  /// Each shape in turn is left out of the fit, and predicted (MaterialFit::prediction).
+  bool predict = false;
   /// Where residuals are systematic, and none of the above is fitted, it is tried what would remove
   /// them (MaterialFit::alternatives).
   bool alternatives = false;
@@ -48,8 +53,9 @@ struct MaterialFitOptions {
 struct FittedValue {
   /// Only if the interval is closed and no wider than MaterialFitOptions::identified_within.
   std::optional<double> value;
-  std::optional<double> low;   ///< lower end of the interval
-  std::optional<double> high;  ///< upper end of the interval
+  std::optional<double> estimate;  ///< the best one, identified or not; none: not looked for
+  std::optional<double> low;       ///< lower end of the interval
+  std::optional<double> high;      ///< upper end of the interval
 };
 
 /// A number that was fitted beside E and the density.
@@ -114,6 +120,22 @@ struct SimulatorParameter {
 /// modulus only if the diameter is known.
 [[nodiscard]] std::vector<SimulatorParameter> simulator_parameters(const ChainSprings& chain);
 
+/// How a gripper of all scenes is held beside what they say.
+struct ClampCorrection {
+  std::size_t gripper = 0;                                 ///< in the scene's order
+  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();      ///< of its direction, a vector [rad]
+  Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< of its position [m]
+};
+
+/// How far shapes are from the rod that was fitted without them (RMS) [m].
+struct Prediction {
+  std::vector<double> shapes_m;  ///< of each shape, by the best fit to the others
+  double rms_m = 0;              ///< of all points
+  /// Of each shape from the mean of the others at equal arc lengths, as near as any rod could
+  /// predict it; none of scenes whose grippers differ by more than 2 % of the length.
+  std::optional<double> repeatability_m;
+};
+
 /// How one shape was laid on the rod of the fitted modulus.
 struct FittedShape {
   std::string scene;    ///< its name
@@ -176,6 +198,8 @@ struct MaterialFit {
   /// Of the first scene with what was fitted of it: coefficients of P_0, P_1, .. about d1 and d2
   /// [1/m]; empty if it was not asked for.
   std::vector<Eigen::Vector2d> natural_curvature;
+  std::vector<ClampCorrection> clamps;          ///< with `shared_clamps`
+  std::optional<Prediction> prediction;         ///< if it was asked for
   std::optional<ScatterBetweenShapes> scatter;  ///< if there is one
   /// Of chains with as many segments as were asked for, in each different scene; none where E is
   /// not identified, or the scene has what a plain chain has not (twist, sections, natural
@@ -221,7 +245,9 @@ struct MaterialFit {
 ///
 /// With torsional stiffness, natural curvature, directions or positions to be fitted too, all
 /// numbers are found together by Gauss-Newton steps from that E, in generalised least squares under
-/// the errors' covariance; what is known before (the tolerances; of each term of natural curvature
+/// the errors' covariance, unless that leaves residuals more than 5 % larger than least squares do:
+/// then the numbers are those of least squares, and their intervals those under the errors'
+/// covariance. What is known before (the tolerances; of each term of natural curvature
 /// a standard deviation of 10 / l; of GJ / EI, where the scene's is a guess, a factor of ten)
 /// counts as measured. The interval of E then is that of the profile likelihood in which the
 /// others' effect is linear about the optimum, that of GJ is linear altogether.

@@ -1,0 +1,81 @@
+#include "fit/leave_one_out.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "fit/between_shapes.hpp"
+#include "fit/fitted_scene.hpp"
+#include "least_squares/measured_shapes.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Of grippers that hold a rod alike, in lengths.
+constexpr double alike = 0.02;
+
+/// Whether two scenes would have the same shape but for how well grippers come back to their
+/// places.
+bool are_alike(const Scene& a, const Scene& b) {
+  return a.length == b.length &&
+         std::equal(
+             a.grippers.begin(), a.grippers.end(), b.grippers.begin(), b.grippers.end(),
+             [&](const Gripper& one, const Gripper& other) {
+               return one.at == other.at &&
+                      one.direction.has_value() == other.direction.has_value() &&
+                      (!one.direction || (*one.direction - *other.direction).norm() <= alike) &&
+                      (one.position - other.position).norm() <= alike * a.length;
+             });
+}
+
+/// Distance of a shape from the rod of its scene (RMS) [m].
+double distance_from_rod(const Scene& scene, const MeasuredShape& shape,
+                         const MaterialFitOptions& options) {
+  MeasuredShapes measured(
+      {scene}, {shape},
+      {.pose = options.pose, .arc_lengths = options.arc_lengths, .solve = options.solve},
+      std::chrono::steady_clock::now());
+  return std::sqrt(measured.alignment(0, measured.solve(scene, nullptr)).mean_square);
+}
+
+std::optional<double> repeatability_of(const std::vector<Scene>& scenes, const MaterialFit& fit) {
+  if (!std::all_of(scenes.begin(), scenes.end(),
+                   [&](const Scene& scene) { return are_alike(scene, scenes.front()); })) {
+    return std::nullopt;
+  }
+  std::vector<Shape> shapes;
+  shapes.reserve(fit.shapes.size());
+  for (const FittedShape& shape : fit.shapes) shapes.push_back(shape.alignment.shape);
+  return repeatability(shapes);
+}
+
+}  // namespace
+
+Prediction leave_one_out(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
+                         const MaterialFitOptions& options, const MaterialFit& fit) {
+  MaterialFitOptions same = options;
+  same.alternatives = same.predict = false;
+  same.chain_segments = same.profile_points = 0;
+  Prediction result{.repeatability_m = repeatability_of(scenes, fit)};
+  double squares = 0;
+  double points = 0;
+  for (std::size_t left = 0; left < scenes.size(); ++left) {
+    std::vector<Scene> other_scenes = scenes;
+    std::vector<MeasuredShape> other_shapes = shapes;
+    const auto at = static_cast<std::ptrdiff_t>(left);
+    other_scenes.erase(other_scenes.begin() + at);
+    other_shapes.erase(other_shapes.begin() + at);
+    const MaterialFit others = fit_material(other_scenes, other_shapes, same);
+    const Scene scene = fitted_scene(scenes[left], others, other_scenes.front());
+    const double rms = distance_from_rod(scene, shapes[left], options);
+    result.shapes_m.push_back(rms);
+    const auto count = static_cast<double>(shapes[left].points.cols());
+    squares += rms * rms * count;
+    points += count;
+  }
+  result.rms_m = std::sqrt(squares / points);
+  return result;
+}
+
+}  // namespace dlo::compare

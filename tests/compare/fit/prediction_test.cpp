@@ -1,0 +1,146 @@
+// What a fit to some shapes says of another one.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/material_fit.hpp"
+#include "dlo/compare/reference.hpp"
+#include "fit/between_shapes.hpp"
+#include "measured_shapes.hpp"
+#include "scenes.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr double deg = std::numbers::pi / 180;
+
+struct Hangings {
+  std::vector<Scene> scenes;
+  std::vector<MeasuredShape> shapes;
+
+  void add(const Scene& said, const Scene& truth, double noise, std::mt19937& random) {
+    const std::vector<double> s = equal_arc_lengths(1, 40);
+    Eigen::Matrix3Xd errors = test::correlated_noise(s, noise, 0.2, random);
+    errors.row(2).setZero();
+    scenes.push_back(said);
+    shapes.push_back({"seen", solve_reference(truth, Model::energy).sample(s).points + errors, s});
+  }
+};
+
+Scene turned(Scene scene, std::size_t gripper, double angle) {
+  Gripper& clamp = scene.grippers[gripper];
+  clamp.direction = Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * *clamp.direction;
+  return scene;
+}
+
+/// A wire in a fixture of which the clamp is off by 6 degrees, at four known angles.
+Hangings in_a_fixture() {
+  std::mt19937 random(3);
+  Hangings result;
+  for (const double angle : {-40.0, -10.0, 20.0, 45.0}) {
+    const Scene said = test::heavy_scene(20, angle);
+    Scene truth = turned(said, 0, 6 * deg);
+    truth.natural_strain.y() = 0.8;
+    result.add(said, truth, 0, random);
+  }
+  return result;
+}
+
+TEST(Prediction, WhatAFixtureHasWrongIsFoundOnceAndPredictsTheShapeLeftOut) {
+  const Hangings seen = in_a_fixture();
+  const MaterialFitOptions options{.natural_curvature_terms = 1,
+                                   .direction_tolerance = 20 * deg,
+                                   .shared_clamps = true,
+                                   .predict = true};
+  const MaterialFit found = fit_material(seen.scenes, seen.shapes, options);
+  ASSERT_EQ(found.others.size(), 2);
+  EXPECT_NEAR(found.others[0].value, 0.8, 1e-4);
+  EXPECT_NEAR(found.others[1].value, 6 * deg, 1e-4);
+  EXPECT_FALSE(found.others[1].shape.has_value());
+  ASSERT_EQ(found.clamps.size(), 1);
+  EXPECT_NEAR(found.clamps[0].rotation.z(), 6 * deg, 1e-4);
+  ASSERT_TRUE(found.prediction.has_value());
+  EXPECT_EQ(found.prediction->shapes_m.size(), 4);
+  EXPECT_LT(found.prediction->rms_m, 1e-4);
+  // Four scenes at four angles are no repetitions.
+  EXPECT_FALSE(found.prediction->repeatability_m.has_value());
+}
+
+TEST(Prediction, WhatEachShapeHasOfItsOwnPredictsNoOther) {
+  const Hangings seen = in_a_fixture();
+  const MaterialFit own = fit_material(
+      seen.scenes, seen.shapes,
+      {.natural_curvature_terms = 1, .direction_tolerance = 20 * deg, .predict = true});
+  ASSERT_TRUE(own.prediction.has_value());
+  EXPECT_LT(own.rms_m, 1e-4);
+  EXPECT_TRUE(own.clamps.empty());
+  // A rod that is bent from the clamp on is moved by nearly the angle times half its length.
+  EXPECT_GT(own.prediction->rms_m, 0.02);
+}
+
+TEST(Prediction, RepeatabilityIsTheDistanceToTheMeanOfTheOthers) {
+  const std::vector<double> s = equal_arc_lengths(1, 30);
+  std::vector<Shape> shapes;
+  for (const double height : {0.0, 0.01, -0.01}) {
+    Shape shape{.arc_length = s, .points = Eigen::Matrix3Xd::Zero(3, 30)};
+    shape.points.row(0) = Eigen::Map<const Eigen::RowVectorXd>(s.data(), 30);
+    shape.points.row(1).setConstant(height);
+    shapes.push_back(shape);
+  }
+  // Of three at 0, d and -d: 0, 3/2 d and 3/2 d.
+  EXPECT_NEAR(repeatability(shapes).value_or(0), 0.01 * std::sqrt(4.5 / 3), 1e-12);
+  EXPECT_FALSE(repeatability({shapes.front()}).has_value());
+}
+
+// Clamps that are off in the same way, of which the fit knows nothing, and errors that repeat.
+TEST(Prediction, MoreTermsNeverLeaveMuchMore) {
+  std::mt19937 random(8);
+  Scene said = test::heavy_scene(200, 0);
+  said.grippers.push_back(
+      {.at = 1, .position = {-0.08, 0, 0}, .direction = Eigen::Vector3d::UnitX()});
+  const Scene truth = turned(turned(said, 0, -15 * deg), 1, 25 * deg);
+  Hangings seen;
+  for (int i = 0; i < 3; ++i) seen.add(said, truth, 0.006, random);
+  double before = INFINITY;
+  for (const int terms : {0, 2, 3}) {
+    const MaterialFit found =
+        fit_material(seen.scenes, seen.shapes, {.natural_curvature_terms = terms});
+    EXPECT_LT(found.rms_m, 1.05 * before) << terms;
+    before = found.rms_m;
+  }
+}
+
+TEST(Prediction, RefusesWhatItCannotDo) {
+  const Hangings seen = in_a_fixture();
+  const auto refused = [&](const Hangings& with, const MaterialFitOptions& options) {
+    try {
+      (void)fit_material(with.scenes, with.shapes, options);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(refused(seen, {.shared_clamps = true}),
+            "calibrate: clamps that are alike in all shapes, but nothing says how well they are "
+            "known (allowed: with clamp angles or clamp positions)");
+  Hangings two = seen;
+  two.scenes.resize(2);
+  two.shapes.resize(2);
+  EXPECT_EQ(refused(two, {.predict = true}),
+            "calibrate: prediction of 2 shapes, each by the others (allowed: 3 or more)");
+  Hangings other = seen;
+  other.scenes[2].grippers[0].at = 0.1;
+  EXPECT_NE(refused(other, {.direction_tolerance = 0.1, .shared_clamps = true})
+                .find("its grippers are not those of heavy.toml"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace dlo::compare
