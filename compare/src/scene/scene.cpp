@@ -1,15 +1,14 @@
 #include "dlo/compare/scene.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "dlo/compare/error.hpp"
 #include "dlo/energy_model/natural_frame.hpp"
+#include "scene/first_clamp.hpp"
 #include "scene/reach.hpp"
+#include "scene/rectangle_torsion.hpp"
 #include "scene/scene_problem.hpp"
 
 namespace dlo::compare {
@@ -62,32 +61,37 @@ std::optional<Eigen::Vector3d> scene_normal(const Scene& scene) {
 /// Of two numbers; of two equal ones to the last digit that number.
 double harmonic_mean(double a, double b) { return a / ((1 + a / b) / 2); }
 
-/// Index of the first clamp along the rod.
-std::optional<std::size_t> first_clamp_of(const Scene& scene) {
-  std::optional<std::size_t> first;
-  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
-    const Gripper& gripper = scene.grippers[i];
-    if (gripper.direction && (!first || gripper.at < scene.grippers[*first].at)) first = i;
-  }
-  return first;
-}
-
 }  // namespace
 
-double Scene::cross_section() const { return std::numbers::pi * diameter * diameter / 4; }
+double Scene::cross_section() const {
+  if (width > 0) return width * thickness;
+  const double hollow = std::numbers::pi * inner_diameter * inner_diameter / 4;
+  return std::numbers::pi * diameter * diameter / 4 - hollow;
+}
+
+Eigen::Vector2d Scene::squared_gyration() const {
+  if (width > 0) return Eigen::Vector2d(thickness * thickness, width * width) / 12;
+  const double outer = diameter * diameter;
+  return Eigen::Vector2d::Constant((outer + inner_diameter * inner_diameter) / 16);
+}
 
 double Scene::bending_stiffness() const {
-  return given_bending_stiffness.value_or(material.youngs_modulus * cross_section() * diameter *
-                                          diameter / 16);
+  return given_bending_stiffness.value_or(material.youngs_modulus * cross_section() *
+                                          squared_gyration().x());
+}
+
+std::optional<double> Scene::bending_stiffness_2() const {
+  if (given_bending_stiffness) return given_bending_stiffness_2;
+  if (width == thickness) return std::nullopt;
+  return material.youngs_modulus * cross_section() * squared_gyration().y();
 }
 
 double Scene::softer_bending_stiffness() const {
-  return std::min(bending_stiffness(), given_bending_stiffness_2.value_or(bending_stiffness()));
+  return std::min(bending_stiffness(), bending_stiffness_2().value_or(bending_stiffness()));
 }
 
 double Scene::mean_bending_stiffness() const {
-  return harmonic_mean(bending_stiffness(),
-                       given_bending_stiffness_2.value_or(bending_stiffness()));
+  return harmonic_mean(bending_stiffness(), bending_stiffness_2().value_or(bending_stiffness()));
 }
 
 double Section::mean_bending_stiffness() const {
@@ -95,7 +99,7 @@ double Section::mean_bending_stiffness() const {
 }
 
 bool Scene::has_two_stiffnesses() const {
-  return given_bending_stiffness_2 ||
+  return bending_stiffness_2() ||
          std::any_of(sections.begin(), sections.end(),
                      [](const Section& section) { return section.bending_stiffness_2; });
 }
@@ -106,7 +110,15 @@ double Scene::mass_per_length() const {
 
 double Scene::twisting_stiffness() const {
   if (torsional_stiffness) return *torsional_stiffness;
-  return has_material_directors() ? mean_bending_stiffness() / (1 + assumed_poisson_ratio) : 0;
+  return has_material_directors() ? assumed_torsional_stiffness() : 0;
+}
+
+double Scene::assumed_torsional_stiffness() const {
+  if (width > 0 && !given_bending_stiffness) {
+    return material.youngs_modulus / (2 * (1 + assumed_poisson_ratio)) *
+           rectangle_torsion_constant(width, thickness);
+  }
+  return mean_bending_stiffness() / (1 + assumed_poisson_ratio);
 }
 
 bool Scene::assumes_torsion() const { return has_material_directors() && !torsional_stiffness; }
@@ -114,7 +126,7 @@ bool Scene::assumes_torsion() const { return has_material_directors() && !torsio
 double Scene::axial_stiffness() const {
   const double EA = material.youngs_modulus * cross_section();
   if (EA > 0) return EA;
-  if (diameter > 0) return 16 * bending_stiffness() / (diameter * diameter);
+  if (cross_section() > 0) return bending_stiffness() / squared_gyration().x();
   return 1e6 * bending_stiffness() / (length * length);
 }
 
@@ -168,59 +180,6 @@ double Scene::twisting_compliance(double begin, double end) const {
 
 double Scene::gamma() const {
   return weight_per_length().norm() * length * length * length / softer_bending_stiffness();
-}
-
-Scene Scene::without_natural_strain() const {
-  Scene scene = *this;
-  scene.natural_strain.setZero();
-  scene.natural_variation.clear();
-  return scene;
-}
-
-Eigen::Matrix3d Scene::first_frame() const {
-  const char* const key = naturally_bent() ? "natural_curvature" : "bending_stiffness";
-  const std::optional<std::size_t> clamp = first_clamp_of(*this);
-  if (!clamp) {
-    throw InputError(fmt::format(
-        "{}: rod.{}: no gripper says about which axis (allowed: a gripper with hold = \"clamp\")",
-        file, key));
-  }
-  const energy_model::Problem problem = scene_problem(*this);
-  const Gripper& gripper = grippers[*clamp];
-  const bool has_d1 = gripper.frame && gripper.frame->d1;
-  if (!has_d1 && !energy_model::natural_normal(problem)) {
-    throw InputError(fmt::format(
-        "{}: rod.{}: the scene lies in no plane, and the first clamp does not say where d1 is "
-        "(allowed: frame or quaternion there)",
-        gripper.where.empty() ? file : gripper.where, key));
-  }
-  return energy_model::first_frame(problem);
-}
-
-bool Scene::naturally_curved() const {
-  return !natural_strain.head<2>().isZero(0) ||
-         std::any_of(natural_variation.begin(), natural_variation.end(),
-                     [](const Eigen::Vector2d& strain) { return !strain.isZero(0); });
-}
-
-Eigen::Vector3d Scene::natural_curvature() const { return natural_curvature(0, length); }
-
-Eigen::Vector3d Scene::natural_curvature(double begin, double end) const {
-  if (!naturally_curved()) return Eigen::Vector3d::Zero();
-  Eigen::Vector2d mean = natural_strain.head<2>();
-  const double from = 2 * begin / length - 1;
-  const double to = 2 * end / length - 1;
-  for (std::size_t k = 0; k < natural_variation.size(); ++k) {
-    // int P_j = (P_(j+1) - P_(j-1)) / (2 j + 1)
-    const auto j = static_cast<unsigned>(k + 1);
-    const auto integral = [j](double x) {
-      return (std::legendre(j + 1, x) - std::legendre(j - 1, x)) / (2.0 * j + 1);
-    };
-    const double of_part =
-        to > from ? (integral(to) - integral(from)) / (to - from) : std::legendre(j, from);
-    mean += of_part * natural_variation[k];
-  }
-  return first_frame().leftCols<2>() * mean;
 }
 
 bool Scene::holds_twist() const {
@@ -280,15 +239,18 @@ std::optional<Eigen::Vector3d> Scene::plane_normal() const {
     const Eigen::Matrix3d frame = first_frame();
     const bool oblique =
         std::abs(frame.col(0).dot(*normal)) > noise && std::abs(frame.col(1).dot(*normal)) > noise;
-    if (oblique || natural_strain.z() != 0) return std::nullopt;
+    if (oblique || naturally_twisted()) return std::nullopt;
     if (!curved) return normal;
   }
   const Eigen::Matrix3d frame = first_frame();
   const auto about_normal = [&](const Eigen::Vector2d& strain) {
     return normal->cross(frame.leftCols<2>() * strain).norm() <= noise * strain.norm();
   };
-  const bool flat = about_normal(natural_strain.head<2>()) && natural_strain.z() == 0 &&
-                    std::all_of(natural_variation.begin(), natural_variation.end(), about_normal);
+  const bool flat = about_normal(natural_strain.head<2>()) && !naturally_twisted() &&
+                    std::all_of(natural_variation.begin(), natural_variation.end(), about_normal) &&
+                    std::all_of(sections.begin(), sections.end(), [&](const Section& section) {
+                      return !section.natural_curvature || about_normal(*section.natural_curvature);
+                    });
   return flat ? normal : std::nullopt;
 }
 

@@ -10,7 +10,7 @@ energy_model::Problem scene_problem(const Scene& scene) {
   energy_model::Problem problem;
   problem.length = scene.length;
   problem.bending_stiffness = scene.bending_stiffness();
-  problem.bending_stiffness_2 = scene.given_bending_stiffness_2;
+  problem.bending_stiffness_2 = scene.bending_stiffness_2();
   problem.torsional_stiffness = scene.twisting_stiffness();
   problem.weight_per_length = scene.mass_per_length() * scene.gravity;
   for (const Section& section : scene.sections) {
@@ -22,7 +22,9 @@ energy_model::Problem scene_problem(const Scene& scene) {
                                 .torsional_stiffness = section.torsional_stiffness.value_or(
                                     like_the_rod * problem.torsional_stiffness),
                                 .weight_per_length = section.mass_per_length * scene.gravity,
-                                .bending_stiffness_2 = section.bending_stiffness_2});
+                                .bending_stiffness_2 = section.bending_stiffness_2,
+                                .natural_curvature = section.natural_curvature,
+                                .natural_twist = section.natural_twist});
   }
   if (scene.naturally_bent()) problem.natural_strains = {scene.natural_strain};
   for (const Eigen::Vector2d& strain : scene.natural_variation) {
