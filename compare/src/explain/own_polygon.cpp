@@ -32,7 +32,7 @@ constexpr double showing = 2;
 constexpr double another_chain = 0.05;
 
 /// Of what is below, as a share of the length, the chain's own stretch is a part: no law shows.
-constexpr double stretch_share = 1e-5;
+constexpr double least_showing = 1e-5;
 
 /// Lengths of the segments as shares of the rod.
 Eigen::VectorXd rest_lengths(const Eigen::Matrix3Xd& points, double length) {
@@ -223,7 +223,7 @@ std::optional<OwnPolygon> with_best_law(const Chain& chain, ChainClamp clamp, Sp
   }
   if (!best) return std::nullopt;
   best->law_shows =
-      std::isfinite(next) && next > showing * best->rms_m && next > stretch_share * length;
+      std::isfinite(next) && next > showing * best->rms_m && next > least_showing * length;
   return best->law_shows ? best : first;
 }
 
