@@ -13,7 +13,6 @@
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "foreign/scene_document.hpp"
-#include "scene/rectangle_torsion.hpp"
 #include "scene/scene_problem.hpp"
 
 namespace dlo::compare {
