@@ -6,8 +6,8 @@
 
 namespace dlo::energy_model {
 
-/// Strains of a free rod along it, as series in Legendre's polynomials P_j(from + rate s), but for
-/// parts that have their own.
+/// Strains of the stress-free shape along it, as series in Legendre's polynomials P_j(from + rate
+/// s), but for parts that have their own.
 struct NaturalStrains {
   /// Where curvature, twist or both are the same all along.
   struct Part {

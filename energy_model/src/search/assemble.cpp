@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "base/moves_for_nothing.hpp"
+#include "base/zero_modes_note.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/rod_law.hpp"
 #include "search/placed_shape.hpp"
@@ -153,7 +153,7 @@ Equilibrium assemble(const Problem& problem, const std::vector<PlacedSpan>& plac
     }
   }
   if (succeeded(result.status) || result.status == SolveStatus::saddle) {
-    result.message += moves_for_nothing(rigid_body_modes);
+    result.message += zero_modes_note(rigid_body_modes);
   }
   if (result.status == SolveStatus::near_singular && result.neutral_directions > 0) {
     result.message += ": " + std::to_string(result.neutral_directions) + " neutral direction" +

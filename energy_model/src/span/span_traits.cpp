@@ -49,7 +49,7 @@ SpanTraits::SpanTraits(const Span& span)
     longest_piece = std::max(longest_piece, piece.length);
   }
   if (!span.has_material_directors()) return;
-  // What the free rod turns by has to be resolved as well.
+  // The rotation of the stress-free shape has to be resolved as well.
   const double curvature = span.natural.largest();
   natural_terms = first_terms(curvature * curvature, longest_piece);
 }
