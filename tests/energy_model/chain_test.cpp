@@ -6,6 +6,8 @@
 #include <numbers>
 #include <random>
 
+#include "dlo/energy_model/exact.hpp"
+
 namespace dlo::energy_model {
 namespace {
 
@@ -19,13 +21,18 @@ ChainProblem heavy_chain(JointLaw law, int segments, double gamma) {
     problem.node_forces(1, i) = -gamma * L * (i == segments ? 0.5 : 1);
   }
   problem.law = law;
-  problem.stiffness = law == JointLaw::hooke ? 1 : 20;
+  problem.stiffness = law == JointLaw::paper ? 20 : 1;
   return problem;
 }
 
-class ChainOfBothLaws : public testing::TestWithParam<JointLaw> {};
+const char* chain_law_name(JointLaw law) {
+  constexpr const char* names[] = {"paper", "hooke", "linear", "binormal"};
+  return names[static_cast<std::size_t>(law)];
+}
 
-TEST_P(ChainOfBothLaws, GradientIsTheDifferenceOfTheEnergy) {
+class ChainOfEveryLaw : public testing::TestWithParam<JointLaw> {};
+
+TEST_P(ChainOfEveryLaw, GradientIsTheDifferenceOfTheEnergy) {
   const ChainProblem problem = heavy_chain(GetParam(), 9, 5);
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -48,7 +55,7 @@ TEST_P(ChainOfBothLaws, GradientIsTheDifferenceOfTheEnergy) {
   EXPECT_EQ(gradient[0], 0);
 }
 
-TEST_P(ChainOfBothLaws, EveryJointCarriesTheMomentOfWhatHangsBeyond) {
+TEST_P(ChainOfEveryLaw, EveryJointCarriesTheMomentOfWhatHangsBeyond) {
   const ChainProblem problem = heavy_chain(GetParam(), 15, 3);
   const ChainResult result = solve_chain(problem);
   ASSERT_TRUE(succeeded(result.status)) << result.message;
@@ -59,14 +66,36 @@ TEST_P(ChainOfBothLaws, EveryJointCarriesTheMomentOfWhatHangsBeyond) {
     }
     const double alpha = result.angles[i] - result.angles[i - 1];
     const double L = problem.segment_lengths[0];
-    const double law = GetParam() == JointLaw::hooke
-                           ? 2 * problem.stiffness / L * std::tan(alpha / 2)
-                           : 2 * problem.stiffness * L * std::pow(std::sin(alpha / 2), 3);
+    const double k = problem.stiffness / L;
+    const double t = std::tan(alpha / 2);
+    const double moments[] = {2 * problem.stiffness * L * std::pow(std::sin(alpha / 2), 3),
+                              2 * k * t, k * alpha, 2 * k * t * (1 + t * t)};
+    const double law = moments[static_cast<std::size_t>(GetParam())];
     EXPECT_NEAR(law, moment, 1e-11) << "joint " << i;
   }
 }
 
-TEST_P(ChainOfBothLaws, ConvergesForManyPointsAndSoftRods) {
+TEST(Chain, HookeanLawsApproachTheRodInSecondOrder) {
+  constexpr double gamma = 20;
+  Problem rod;
+  rod.length = 1;
+  rod.bending_stiffness = 1;
+  rod.weight_per_length = {0, -gamma, 0};
+  rod.grips = {{0, {0, 0, 0}, Eigen::Vector3d(1, 0, 0), std::nullopt}};
+  const Eigen::Vector3d tip = solve_exact(rod).sample(std::vector{1.0}).points.col(0);
+  for (const JointLaw law : {JointLaw::hooke, JointLaw::linear, JointLaw::binormal}) {
+    double before = 0;
+    for (const int segments : {20, 40, 80, 160}) {
+      const ChainResult chain = solve_chain(heavy_chain(law, segments, gamma));
+      ASSERT_TRUE(succeeded(chain.status)) << chain.message;
+      const double error = (chain.points.rightCols<1>() - tip.head<2>()).norm();
+      if (before > 0) EXPECT_NEAR(std::log2(before / error), 2, 0.15) << segments;
+      before = error;
+    }
+  }
+}
+
+TEST_P(ChainOfEveryLaw, ConvergesForManyPointsAndSoftRods) {
   for (const double gamma : {0.01, 1.0, 100.0, 1000.0}) {
     for (const int segments : {4, 31, 300}) {
       const ChainResult result = solve_chain(heavy_chain(GetParam(), segments, gamma));
@@ -75,10 +104,10 @@ TEST_P(ChainOfBothLaws, ConvergesForManyPointsAndSoftRods) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Laws, ChainOfBothLaws, testing::Values(JointLaw::paper, JointLaw::hooke),
-                         [](const auto& instance) {
-                           return instance.param == JointLaw::paper ? "paper" : "hooke";
-                         });
+INSTANTIATE_TEST_SUITE_P(Laws, ChainOfEveryLaw,
+                         testing::Values(JointLaw::paper, JointLaw::hooke, JointLaw::linear,
+                                         JointLaw::binormal),
+                         [](const auto& instance) { return chain_law_name(instance.param); });
 
 TEST(Chain, StopsAtItsTimeLimit) {
   ChainProblem problem;

@@ -49,14 +49,16 @@ Local local(const Problem& problem, double s) {
                     of.torsional_stiffness);
   };
   Local here{stiffness(problem), problem.weight_per_length, Vector3d::Zero()};
+  for (std::size_t j = 0; j < problem.natural_strains.size(); ++j) {
+    here.natural += std::legendre(static_cast<unsigned>(j), 2 * s / problem.length - 1) *
+                    problem.natural_strains[j];
+  }
   for (const Section& section : problem.sections) {
     if (s < section.begin || s > section.end) continue;
     here.stiffness = stiffness(section);
     here.weight = section.weight_per_length;
-  }
-  for (std::size_t j = 0; j < problem.natural_strains.size(); ++j) {
-    here.natural += std::legendre(static_cast<unsigned>(j), 2 * s / problem.length - 1) *
-                    problem.natural_strains[j];
+    if (section.natural_curvature) here.natural.head<2>() = *section.natural_curvature;
+    if (section.natural_twist) here.natural.z() = *section.natural_twist;
   }
   return here;
 }
@@ -436,6 +438,86 @@ TEST(NaturalRod, BehindItsFirstClampIsTheSameRod) {
   EXPECT_LT((point_at(one, 0.5) - point_at(both, 0)).norm(), 1e-9);
 }
 
+/// A straight shaft and two arcs, the second back to its direction.
+Problem guide_wire() {
+  Problem problem = clamped_rod();
+  problem.natural_strains = {Vector3d::Zero()};
+  for (const auto& [begin, end, curvature] :
+       {std::array{0.5, 0.7, 8.0}, std::array{0.7, 1.0, -4.0}}) {
+    Section section{begin, end, 1, 2.0 / 3, {0, 0, 0}};
+    section.natural_curvature = Eigen::Vector2d(0, curvature);
+    problem.sections.push_back(section);
+  }
+  return problem;
+}
+
+TEST(SectionsOfTheirOwnShape, AreArcsWithoutForces) {
+  const Vector3d first(0.5 + std::sin(1.6) / 8, (1 - std::cos(1.6)) / 8, 0);
+  const Vector3d second((std::sin(1.6) - std::sin(0.4)) / 4, (std::cos(0.4) - std::cos(1.6)) / 4,
+                        0);
+  for (const bool from_its_tip : {false, true}) {
+    SCOPED_TRACE(from_its_tip);
+    Problem problem = guide_wire();
+    if (from_its_tip) problem.grips[0].at = 1;
+    for (const Equilibrium& result : {solved_rod(problem), solve_exact(problem)}) {
+      ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+      EXPECT_NEAR(result.energy.total(), 0, 1e-18);
+      const Vector3d chord = point_at(result, 1) - point_at(result, 0);
+      // Held at its tip along x, its shaft is turned back by 0.4.
+      const Vector3d expected = first + second;
+      const Vector3d seen =
+          from_its_tip ? Vector3d(Eigen::AngleAxisd(0.4, Vector3d::UnitZ()) * chord) : chord;
+      EXPECT_LT((seen - expected).norm(), 1e-12);
+      const Samples samples = result.sample(std::vector<double>{0.3, 0.6, 0.8});
+      const Vector3d bends = samples.curvature.colwise().norm();
+      EXPECT_LT((bends - Vector3d(0, 8, 4)).norm(), 1e-10);
+    }
+  }
+}
+
+TEST(SectionsOfTheirOwnShape, ObeyKirchhoffsEquationsInBothModels) {
+  for (const bool spatial : {false, true}) {
+    for (const bool closed : {false, true}) {
+      SCOPED_TRACE(closed);
+      Problem problem = guide_wire();
+      problem.weight_per_length = {0, -6, spatial ? 3.0 : 0};
+      problem.sections[0].bending_stiffness = 0.5;
+      problem.sections[1].weight_per_length = {0, -2, spatial ? 1.0 : 0};
+      problem.grips[0].frame = FrameHold{Vector3d::UnitY(), 0};
+      if (spatial) {
+        // What the series has there is replaced, and what a section does not say is not.
+        problem.natural_strains = {{1, -0.5, 0.4}, {0.5, 0.3, -1}};
+        problem.sections[0].natural_twist = 2;
+        problem.sections[1].natural_curvature.reset();
+        problem.sections[1].natural_twist = -1;
+      }
+      if (closed) {
+        problem.grips.push_back({1, {0.6, 0.1, spatial ? 0.1 : 0}, Vector3d(1, 0.2, 0), {}});
+        if (spatial) problem.grips.back().frame = FrameHold{std::nullopt, 0.5};
+      }
+      const Equilibrium energy = solved_rod(problem);
+      expect_kirchhoff(problem, energy, along_x(), 1e-8);
+      const Equilibrium exact = solve_exact(problem);
+      ASSERT_EQ(exact.status, SolveStatus::converged) << exact.message;
+      expect_kirchhoff(problem, exact, along_x(), 1e-8);
+      EXPECT_NEAR(energy.energy.total(), exact.energy.total(), 1e-8);
+    }
+  }
+}
+
+TEST(SectionsOfTheirOwnShape, LikeTheRodsAreTheRod) {
+  Problem problem = clamped_rod();
+  problem.weight_per_length = {0, -5, 2};
+  problem.natural_strains = {{1, 2, 0.5}};
+  problem.grips[0].frame = FrameHold{Vector3d::UnitY(), 0};
+  const Vector3d plain = point_at(solved_rod(problem), 1);
+  Section section{0.25, 0.6, 1, 2.0 / 3, problem.weight_per_length};
+  section.natural_curvature = Eigen::Vector2d(1, 2);
+  section.natural_twist = 0.5;
+  problem.sections = {section};
+  EXPECT_LT((point_at(solved_rod(problem), 1) - plain).norm(), 1e-10);
+}
+
 TEST(NaturalRod, SaysWhatItNeeds) {
   Problem problem = clamped_rod();
   problem.natural_strains = {{0, 1, 0}};
@@ -449,6 +531,9 @@ TEST(NaturalRod, SaysWhatItNeeds) {
   EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
   problem = clamped_rod();
   problem.sections = {{0.2, 0.6, 1, 1, {}}, {0.5, 0.8, 1, 1, {}}};
+  EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
+  problem = guide_wire();
+  problem.natural_strains.clear();
   EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
   problem.sections = {{0.2, 0.6, 0, 1, {}}};
   EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);

@@ -24,7 +24,7 @@ PolygonProblem two_clamps(JointLaw law, Eigen::Index points, double span, double
   problem.node_forces.setZero(3, points);
   problem.node_forces.row(1).segment(1, points - 2).setConstant(-gamma * L);
   problem.law = law;
-  problem.stiffness = law == JointLaw::hooke ? 1 : 20;
+  problem.stiffness = law == JointLaw::paper ? 20 : 1;
   problem.held = {{0, {-L / 2, 0, 0}},
                   {1, {L / 2, 0, 0}},
                   {points - 2, {span - L / 2, 0, 0}},
@@ -45,9 +45,14 @@ Eigen::Matrix3Xd arch(const PolygonProblem& problem, double span, double turned)
   return points;
 }
 
-class PolygonOfBothLaws : public testing::TestWithParam<JointLaw> {};
+const char* polygon_law_name(JointLaw law) {
+  constexpr const char* names[] = {"paper", "hooke", "linear", "binormal"};
+  return names[static_cast<std::size_t>(law)];
+}
 
-TEST_P(PolygonOfBothLaws, GradientIsTheDifferenceOfTheEnergy) {
+class PolygonOfEveryLaw : public testing::TestWithParam<JointLaw> {};
+
+TEST_P(PolygonOfEveryLaw, GradientIsTheDifferenceOfTheEnergy) {
   PolygonProblem problem = two_clamps(GetParam(), 9, 0.8, 5);
   problem.stretch_stiffness = 50;
   problem.rest_lengths[3] *= 1.3;
@@ -74,7 +79,29 @@ TEST_P(PolygonOfBothLaws, GradientIsTheDifferenceOfTheEnergy) {
   }
 }
 
-TEST_P(PolygonOfBothLaws, RestsInFewStepsAndBalancesItsForces) {
+TEST(Polygon, LinearJointHasItsAngleForAMoment) {
+  // Two segments: E = k alpha^2 / 2 to rounding, at angles on both sides of where its series ends.
+  PolygonProblem problem;
+  problem.rest_lengths = Eigen::Vector2d(0.5, 0.25);
+  problem.stretch_stiffness = 1;
+  problem.node_forces.setZero(3, 3);
+  problem.law = JointLaw::linear;
+  problem.stiffness = 3;
+  Eigen::Matrix3Xd gradient(3, 3);
+  for (const double alpha : {1e-9, 1e-4, 0.1, 0.2837, 0.2838, 1.0, 2.5, 3.1}) {
+    Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, 3);
+    points(0, 1) = 0.5;
+    points.col(2) << 0.5 + 0.25 * std::cos(alpha), 0, 0.25 * std::sin(alpha);
+    const double k = 3 / 0.375;
+    const double energy = polygon_energy(problem, points, gradient);
+    EXPECT_NEAR(energy, k * alpha * alpha / 2, 1e-13 * k * alpha * alpha) << alpha;
+    // The force on the last point, across its segment: moment over length.
+    const Eigen::Vector3d across(-std::sin(alpha), 0, std::cos(alpha));
+    EXPECT_NEAR(gradient.col(2).dot(across), k * alpha / 0.25, 1e-9 * k * alpha) << alpha;
+  }
+}
+
+TEST_P(PolygonOfEveryLaw, RestsInFewStepsAndBalancesItsForces) {
   for (const double gamma : {0.0, 1.0, 100.0, 1000.0}) {
     for (const Eigen::Index points : {8, 33, 200}) {
       const PolygonProblem problem = two_clamps(GetParam(), points, 0.8, gamma);
@@ -90,13 +117,14 @@ TEST_P(PolygonOfBothLaws, RestsInFewStepsAndBalancesItsForces) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Laws, PolygonOfBothLaws, testing::Values(JointLaw::paper, JointLaw::hooke),
-                         [](const auto& instance) {
-                           return instance.param == JointLaw::paper ? "paper" : "hooke";
-                         });
+INSTANTIATE_TEST_SUITE_P(Laws, PolygonOfEveryLaw,
+                         testing::Values(JointLaw::paper, JointLaw::hooke, JointLaw::linear,
+                                         JointLaw::binormal),
+                         [](const auto& instance) { return polygon_law_name(instance.param); });
 
 TEST(Polygon, IsTheRigidChainWhenItHasOneClamp) {
-  for (const JointLaw law : {JointLaw::paper, JointLaw::hooke}) {
+  for (const JointLaw law :
+       {JointLaw::paper, JointLaw::hooke, JointLaw::linear, JointLaw::binormal}) {
     for (const double gamma : {0.1, 2.0, 30.0}) {
       ChainProblem chain;
       const Eigen::Index n = 20;
@@ -106,7 +134,7 @@ TEST(Polygon, IsTheRigidChainWhenItHasOneClamp) {
       chain.node_forces.setZero(2, n + 1);
       chain.node_forces.row(1).tail(n).setConstant(-gamma * L);
       chain.law = law;
-      chain.stiffness = law == JointLaw::hooke ? 1 : 20;
+      chain.stiffness = law == JointLaw::paper ? 20 : 1;
       const ChainResult rigid = solve_chain(chain);
       ASSERT_TRUE(succeeded(rigid.status));
       PolygonProblem problem;
@@ -166,7 +194,7 @@ double smallest_eigenvalue(const Eigen::MatrixXd& hessian) {
 
 // Crumpled polygons in a ball and a floor: all second derivatives have any sign, those that stiffen
 // none below zero. Straight and pulled, clear of obstacles, both are the same.
-TEST_P(PolygonOfBothLaws, StiffeningSecondDerivativesAreNeverNegative) {
+TEST_P(PolygonOfEveryLaw, StiffeningSecondDerivativesAreNeverNegative) {
   PolygonProblem problem = two_clamps(GetParam(), 12, 0.8, 5);
   problem.stretch_stiffness = 500;
   problem.obstacles = {

@@ -38,6 +38,100 @@ Span span_of(const Problem& problem) {
   return span;
 }
 
+/// Clamps exactly l apart along x.
+Problem taut_between_clamps() {
+  Problem problem;
+  problem.length = 2;
+  problem.bending_stiffness = 1;
+  problem.torsional_stiffness = 0.8;
+  problem.grips = {{0, {1, 2, 3}, Eigen::Vector3d::UnitX(), {}},
+                   {2, {3, 2, 3}, Eigen::Vector3d(5, 0, 0), {}}};
+  return problem;
+}
+
+TEST(TautLine, IsStraightAndTwistsAsTwoSpringsInBothModels) {
+  Problem problem = taut_between_clamps();
+  problem.sections = {{0.5, 1, 1, 0.2, {0, 0, 0}}};
+  problem.grips[0].frame = FrameHold{Eigen::Vector3d::UnitY(), 0.25};
+  problem.grips[1].frame = FrameHold{Eigen::Vector3d::UnitZ(), 7};  // d1 is a quarter turn ahead
+  const double angle = std::acos(-1.0) / 2 + 7 - 0.25;
+  const double torque = angle / (1.5 / 0.8 + 0.5 / 0.2);
+  for (const Equilibrium& solved : {solve_energy(problem), solve_exact(problem)}) {
+    ASSERT_EQ(solved.status, SolveStatus::converged) << solved.message;
+    const Samples samples = solved.sample(std::vector<double>{0, 0.5, 2});
+    EXPECT_LT((samples.points.col(1) - Eigen::Vector3d(1.5, 2, 3)).norm(), 1e-15);
+    EXPECT_TRUE(samples.curvature.isZero(0));
+    EXPECT_EQ(solved.energy.bending, 0);
+    EXPECT_NEAR(solved.energy.twisting, angle * torque / 2, 1e-12);
+    EXPECT_NEAR(solved.grips[1].torque.x(), torque, 1e-12);
+    EXPECT_NEAR(solved.grips[0].torque.x(), -torque, 1e-12);
+    ASSERT_EQ(solved.twists.size(), 1U);
+    EXPECT_NEAR(solved.twists[0].angle, angle, 1e-12);
+    const auto d1_at = [](double turned) {
+      return Eigen::Vector3d(0, std::cos(turned), std::sin(turned));
+    };
+    EXPECT_LT((samples.d1.col(0) - d1_at(0.25)).norm(), 1e-12);
+    EXPECT_LT((samples.d1.col(1) - d1_at(0.25 + torque * 0.5 / 0.8)).norm(), 1e-12);
+    EXPECT_LT((samples.d1.col(2) - d1_at(0.25 + angle)).norm(), 1e-12);
+  }
+}
+
+TEST(TautLine, IsWhereLessAndLessSlackLeads) {
+  Problem problem = taut_between_clamps();
+  problem.grips[0].frame = FrameHold{Eigen::Vector3d::UnitY(), 0};
+  problem.grips[1].frame = FrameHold{Eigen::Vector3d::UnitY(), 2};
+  const Equilibrium taut = solve_energy(problem);
+  double before = 0;
+  for (const double slack : {1e-4, 1e-6}) {
+    problem.grips[1].position.x() = 3 - 2 * slack;
+    const Equilibrium solved = solve_energy(problem);
+    ASSERT_TRUE(succeeded(solved.status)) << solved.message;
+    EXPECT_EQ(std::signbit(solved.twists[0].torque), std::signbit(taut.twists[0].torque));
+    const double away = std::abs(solved.grips[1].torque.x() - taut.grips[1].torque.x());
+    EXPECT_LT(away, 10 * std::sqrt(slack));
+    if (before > 0) EXPECT_LT(away, before);
+    before = away;
+    const std::vector<double> middle = {1.0};
+    EXPECT_LT((solved.sample(middle).points - taut.sample(middle).points).norm(),
+              2 * std::sqrt(slack));
+  }
+}
+
+TEST(TautLine, CarriesWhatActsAlongItAsAnUnstressedBar) {
+  Problem problem = taut_between_clamps();
+  problem.weight_per_length = {-3, 0, 0};
+  problem.loads = {{0.5, {8, 0, 0}}, {2, {1, 1, 1}}};  // across it at a grip alone
+  problem.grips.push_back({1.5, {2.5, 2, 3}, std::nullopt, std::nullopt});
+  const Equilibrium solved = solve_energy(problem);
+  ASSERT_EQ(solved.status, SolveStatus::converged) << solved.message;
+  EXPECT_NEAR(solved.grips[0].force.x(), 3 * 0.75 - 8 * 2.0 / 3, 1e-12);
+  EXPECT_NEAR(solved.grips[2].force.x(), 3 * 1.0 - 8 / 3.0, 1e-12);
+  EXPECT_LT((solved.grips[1].force - Eigen::Vector3d(3 * 0.25 - 1, -1, -1)).norm(), 1e-12);
+  EXPECT_NEAR(solved.energy.gravity, 3 * 2 * 1.0, 1e-12);
+  EXPECT_NEAR(solved.energy.load, -8 * 0.5 - 2, 1e-12);
+}
+
+TEST(TautLine, IsRefusedWhereNoTensionWouldDo) {
+  const auto refused = [](const Problem& problem) {
+    EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
+    EXPECT_THROW((void)solve_exact(problem), std::invalid_argument);
+  };
+  Problem problem = taut_between_clamps();
+  problem.weight_per_length = {0, -1, 0};
+  refused(problem);
+  problem = taut_between_clamps();
+  problem.loads = {{1, {0, 0, 1}}};
+  refused(problem);
+  problem = taut_between_clamps();
+  problem.grips[1].direction = Eigen::Vector3d(1, 1e-3, 0);
+  refused(problem);
+  problem.grips[1].direction = Eigen::Vector3d(-1, 0, 0);
+  refused(problem);
+  problem = taut_between_clamps();
+  problem.grips[1].position.x() += 1e-9;
+  refused(problem);
+}
+
 TEST(Taut, TensionIsWhatTheSlackAsksFor) {
   int taut = 0;
   for (const double slack : {1e-2, 1e-3}) {

@@ -95,10 +95,28 @@ def test_every_field_can_be_set_and_read(steel):
     numpy.testing.assert_array_equal(steel.loads[0].force, [0, 0, 1])
     steel.sections = [dlo.section("10 cm", "20 cm", bending_stiffness=2)]
     assert (steel.sections[0].start, steel.sections[0].end) == (0.1, 0.2)
+    steel.sections[0].natural_curvature = [0, "3 1/m"]
+    steel.sections[0].natural_twist = "90 deg/m"
+    numpy.testing.assert_array_equal(steel.sections[0].natural_curvature, [0, 3])
+    assert steel.sections[0].natural_twist == pytest.approx(math.pi / 2, rel=1e-14)
     steel.force_model.points = 32
     steel.force_model.law = "hooke"
     steel.force_model = {"points": 24}
     assert steel.force_model.points == 24
+
+
+def test_a_tube_and_a_flat_strip_have_what_follows_from_their_sections(steel):
+    E = steel.youngs_modulus
+    steel.diameter = "4 mm"
+    steel.inner_diameter = "3 mm"
+    assert steel.inner_diameter == 0.003
+    assert steel.bending_stiffness == pytest.approx(E * math.pi * (4e-3**4 - 3e-3**4) / 64)
+    strip = steel.replace(diameter=None, inner_diameter=None, width="8 mm", thickness="1 mm")
+    assert (strip.diameter, strip.width, strip.thickness) == (0, 0.008, 0.001)
+    assert strip.bending_stiffness == pytest.approx(E * 8e-3 * 1e-3**3 / 12)
+    assert strip.axial_stiffness == pytest.approx(E * 8e-6)
+    with pytest.raises(dlo.InputError, match="given besides width"):
+        strip.replace(diameter="1 mm")
 
 
 @pytest.mark.parametrize(

@@ -156,6 +156,7 @@ Json chains_json(const std::vector<compare::ChainSprings>& chains) {
                       {"segments", chain.segments},
                       {"segment_length_m", chain.segment_length},
                       {"joint_stiffness_Nm_per_rad", chain.stiffness},
+                      {"binormal_stiffness_Nm_per_rad", chain.binormal_stiffness},
                       {"over_bending_stiffness_per_length", chain.over_rod},
                       {"rms_m", chain.rms_m},
                       {"parameters", Json::array()}});

@@ -75,10 +75,13 @@ std::string why_no_points(const compare::Plan& plan) {
 
 std::string assumption_text(const compare::Scene& scene) {
   if (!scene.assumes_torsion()) return "";
+  const bool is_rectangle = scene.width > 0 && !scene.given_bending_stiffness;
   return fmt::format(
       "torsional stiffness GJ = {} / {:g} = {:.4g} N m^2 (Poisson's ratio {:g}), as "
       "rod.torsional_stiffness is not given",
-      scene.given_bending_stiffness_2 ? "2 EI_1 EI_2 / (EI_1 + EI_2)" : "EI",
+      is_rectangle                  ? "E J / 2"
+      : scene.bending_stiffness_2() ? "2 EI_1 EI_2 / (EI_1 + EI_2)"
+                                    : "EI",
       1 + compare::assumed_poisson_ratio, scene.twisting_stiffness(),
       compare::assumed_poisson_ratio);
 }

@@ -66,16 +66,26 @@ void add_rod(std::string& out, const Json& rod) {
   add_line(out, "rod",
            quantities_text(rod, {{"length", "length_m", "m"},
                                  {"diameter", "diameter_m", "m"},
+                                 {"inner diameter", "inner_diameter_m", "m"},
+                                 {"width", "width_m", "m"},
+                                 {"thickness", "thickness_m", "m"},
                                  {"mass", "mass_kg", "kg"}}));
   add_line(out, "material",
            quantities_text(rod, {{"", "material", ""},
                                  {"E", "youngs_modulus_Pa", "Pa"},
                                  {"density", "density_kg_per_m3", "kg/m^3"}}));
+  const bool of_no_effect = rod.at("torsional_stiffness_Nm2").is_null();
+  const char* const GJ =
+      of_no_effect ? "assumed_torsional_stiffness_Nm2" : "torsional_stiffness_Nm2";
+  const bool assumed = of_no_effect || rod.at("torsional_stiffness_is_assumed") == true;
   add_line(out, "stiffness",
            quantities_text(rod, {{"EI", "bending_stiffness_Nm2", "N m^2"},
-                                 {"GJ", "torsional_stiffness_Nm2", "N m^2"},
+                                 {"GJ", GJ, "N m^2"},
                                  {"EA", "axial_stiffness_N", "N"}}) +
-               (rod.at("torsional_stiffness_is_assumed") == true ? " (GJ is assumed)" : ""));
+               (assumed ? " (GJ is assumed, with Poisson's ratio 0.3" : "") +
+               (of_no_effect ? ", and of no effect here)"
+                : assumed    ? ")"
+                             : ""));
   add_line(out, "weight",
            quantities_text(rod, {{"mass per length", "mass_per_length_kg_per_m", "kg/m"},
                                  {"mean weight", "mean_weight_N_per_m", "N/m"}}));
@@ -88,7 +98,9 @@ void add_rod(std::string& out, const Json& rod) {
                {"to", "to_m", "m"},
                {"EI", "bending_stiffness_Nm2", "N m^2"},
                {"GJ", "torsional_stiffness_Nm2", "N m^2"},
-               {"mass per length", "mass_per_length_kg_per_m", "kg/m"}});
+               {"mass per length", "mass_per_length_kg_per_m", "kg/m"},
+               {"curvature", "natural_curvature_per_m", "1/m"},
+               {"twist", "natural_twist_rad_per_m", "rad/m"}});
 }
 
 void add_grippers(std::string& out, const Json& grippers) {

@@ -147,6 +147,9 @@ void bind_scene(py::module_& module) {
       .def_property_readonly("gravity", of([](const Scene& s) { return vector_copy(s.gravity); }))
       .def_property_readonly("length", of([](const Scene& s) { return s.length; }))
       .def_property_readonly("diameter", of([](const Scene& s) { return s.diameter; }))
+      .def_property_readonly("inner_diameter", of([](const Scene& s) { return s.inner_diameter; }))
+      .def_property_readonly("width", of([](const Scene& s) { return s.width; }))
+      .def_property_readonly("thickness", of([](const Scene& s) { return s.thickness; }))
       .def_property_readonly("youngs_modulus",
                              of([](const Scene& s) { return s.material.youngs_modulus; }))
       .def_property_readonly("density", of([](const Scene& s) { return s.material.density; }))

@@ -205,6 +205,10 @@ class Section(Part):
     bending_stiffness = _field("bending_stiffness", _of("section_stiffness"), "EI [N m^2].")
     mass_per_length = _field("mass_per_length", _of("mass_per_length"), "rho A [kg/m].")
     torsional_stiffness = _field("torsional_stiffness", _of("section_stiffness"), "GJ [N m^2].")
+    natural_curvature = _field(
+        "natural_curvature", _of("curvature"), "Of its stress-free shape [1/m]: k or [x, y]."
+    )
+    natural_twist = _field("natural_twist", _of("twist"), "Of its stress-free shape [rad/m].")
 
 
 def _setting(key: str, doc: str) -> property:
@@ -327,8 +331,10 @@ def section(
     bending_stiffness: Optional[Union[Quantity, Sequence[Quantity]]] = None,
     mass_per_length: Optional[Quantity] = None,
     torsional_stiffness: Optional[Quantity] = None,
+    natural_curvature: Optional[Union[Quantity, Sequence[Quantity]]] = None,
+    natural_twist: Optional[Quantity] = None,
 ) -> Section:
-    """A part of the rod, from an arc length to another [m], that is stiffer or heavier."""
+    """A part of the rod, from an arc length to another [m], that is another one or bent at rest."""
     return Section(
         **{
             "from": start,
@@ -336,5 +342,7 @@ def section(
             "bending_stiffness": bending_stiffness,
             "mass_per_length": mass_per_length,
             "torsional_stiffness": torsional_stiffness,
+            "natural_curvature": natural_curvature,
+            "natural_twist": natural_twist,
         }
     )

@@ -44,8 +44,8 @@ class Scene(Strict):
         dlo.Scene(length="2 m", diameter="6 mm", material="silicone",
                   grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction="30 deg")])
 
-    material is a name (dlo.materials()) or {"youngs_modulus": "3 MPa", "density": 1150}. A rod may be
-    given by bending_stiffness (EI [N m^2]; a pair about d1 and d2) and mass_per_length [kg/m]
+    material is a name (dlo.materials()) or {"youngs_modulus": "3 MPa", "density": 1150}. A tube has an
+    inner_diameter too, a flat rod width (along d1) and thickness (along d2) instead. A rod may be given by bending_stiffness (EI [N m^2]; a pair about d1 and d2) and mass_per_length [kg/m]
     instead. force_model, track: a dict, or ForceModelSettings and TrackRates. materials: a file that
     names are looked up in instead.
 
@@ -60,6 +60,9 @@ class Scene(Strict):
         length: Quantity,
         *,
         diameter: Optional[Quantity] = None,
+        inner_diameter: Optional[Quantity] = None,
+        width: Optional[Quantity] = None,
+        thickness: Optional[Quantity] = None,
         material: Optional[Union[str, dict[str, Any]]] = None,
         grippers: Iterable[Gripper] = (),
         loads: Iterable[Load] = (),
@@ -268,6 +271,9 @@ class Scene(Strict):
     gravity = _top_field("gravity", "[m/s^2], shape (3,).")
     length = _top_field("length", "Of the rod [m].")
     diameter = _top_field("diameter", "Of the rod [m]; 0: not known.")
+    inner_diameter = _top_field("inner_diameter", "Of a tube [m]; 0: solid.")
+    width = _top_field("width", "Of a rectangular section, along d1 [m]; 0: it is none.")
+    thickness = _top_field("thickness", "Of a rectangular section, along d2 [m]; 0: it is none.")
     bending_stiffness = _top_field(
         "bending_stiffness", "EI [N m^2], given or of the material; about d1 of two."
     )

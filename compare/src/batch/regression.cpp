@@ -83,6 +83,12 @@ std::string content_of(const Scene& scene) {
   add_named("EI ", scene.given_bending_stiffness);
   add_named("EI_2 ", scene.given_bending_stiffness_2);
   add_named("mass ", scene.given_mass_per_length);
+  const auto add_known = [&](const char* name, double value) {
+    if (value > 0) add_named(name, value);
+  };
+  add_known("inner ", scene.inner_diameter);
+  add_known("width ", scene.width);
+  add_known("thickness ", scene.thickness);
   if (scene.naturally_bent()) {
     text += "natural ";
     add_vector(scene.natural_strain);
@@ -99,6 +105,11 @@ std::string content_of(const Scene& scene) {
     }
     add_named("torsion ", section.torsional_stiffness);
     add_named("EI_2 ", section.bending_stiffness_2);
+    if (section.natural_curvature) {
+      text += "natural ";
+      add_vector({section.natural_curvature->x(), section.natural_curvature->y(), 0});
+    }
+    add_named("twist ", section.natural_twist);
   }
   for (const Gripper& gripper : scene.grippers) {
     text += "\ngripper ";

@@ -46,6 +46,12 @@ double price_of(double rms, int numbers, double before, double length) {
   return std::max(rms, same) * std::pow(1 / worth_of_a_number, std::max(0, numbers));
 }
 
+/// What a chain's springs are, if that shows.
+std::string and_springs(const OwnPolygon& chain) {
+  const std::string law = law_words(chain);
+  return law.empty() ? "" : ", its springs EI/h and " + law;
+}
+
 class Search {
  public:
   Search(const Scene& scene, const MeasuredShape& shape, const ShapeCheck& check,
@@ -104,9 +110,13 @@ class Search {
     for (const OwnPolygon& chain : own_polygons(scene_, shape, springs)) {
       const std::string words = words_of(chain.clamp, shape.points.cols() - 1);
       if (springs == Springs::as_the_rod) {
-        add({words, chain.rms_m, 0, ExplanationKind::discretisation, chain.max_m}, words);
+        add({words + and_springs(chain), chain.rms_m, 0, ExplanationKind::discretisation,
+             chain.max_m},
+            words);
       } else {
-        add({fmt::format("it is {}, with springs of {:.3g} times EI/h", words, chain.stiffness),
+        const std::string law = law_words(chain);
+        add({fmt::format("it is {}, with springs of {:.3g} times EI/h{}{}", words, chain.stiffness,
+                         law.empty() ? "" : ", ", law),
              chain.rms_m, 1, ExplanationKind::scene},
             words);
       }
@@ -328,8 +338,8 @@ ShapeJudgement judge_with_chains(const Scene& scene, const ShapeCheck& check,
     const double distance = tolerance.largest ? chain.max_m : chain.rms_m;
     if (!(distance <= right_chain * tolerance.allowed_m)) continue;
     result.reason = fmt::format("right for {}, {:.3g} mm away ({})",
-                                words_of(chain.clamp, shape.points.cols() - 1), distance * 1e3,
-                                tolerance.largest ? "largest" : "RMS") +
+                                words_of(chain.clamp, shape.points.cols() - 1) + and_springs(chain),
+                                distance * 1e3, tolerance.largest ? "largest" : "RMS") +
                     fmt::format("; the rod itself is {:.4g} mm = {:.3g} % of l away, all of it ",
                                 result.judged_m * 1e3, result.judged_m / check.length_m * 100) +
                     "discretisation";

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "dlo/compare/deviation.hpp"
@@ -18,6 +19,20 @@ constexpr Eigen::Index most_segments = 200;
 
 /// From a shape that is hardly that of the chain it would take more.
 constexpr int most_evaluations = 2000;
+
+using energy_model::JointLaw;
+
+/// Those that are Hookean for small angles, most simulators' first.
+constexpr JointLaw hookean_laws[] = {JointLaw::linear, JointLaw::hooke, JointLaw::binormal};
+
+/// How much farther from the points the other laws have to be for one to show.
+constexpr double showing = 2;
+
+/// What is farther away than this share of the length is another chain whatever its law.
+constexpr double another_chain = 0.05;
+
+/// Of what is below, as a share of the length, the chain's own stretch is a part: no law shows.
+constexpr double least_showing = 1e-5;
 
 /// Lengths of the segments as shares of the rod.
 Eigen::VectorXd rest_lengths(const Eigen::Matrix3Xd& points, double length) {
@@ -44,8 +59,9 @@ class Chain {
 
   /// The file's points less its own at rest; nothing if it does not come to rest.
   /// @param factor  of the springs
-  [[nodiscard]] std::optional<Eigen::Matrix3Xd> gaps(double factor) const {
+  [[nodiscard]] std::optional<Eigen::Matrix3Xd> gaps(double factor, JointLaw law) const {
     energy_model::PolygonProblem problem = problem_;
+    problem.law = law;
     problem.stiffness *= factor;
     problem.stiffnesses *= factor;
     energy_model::PolygonOptions options;
@@ -159,23 +175,56 @@ double largest(const Eigen::Matrix3Xd& gaps) {
 }
 
 /// The springs that fit best, by Gauss-Newton steps along the logarithm of their stiffness.
-std::optional<OwnPolygon> fitted(const Chain& chain, Eigen::Matrix3Xd gaps, ChainClamp clamp) {
+std::optional<OwnPolygon> fitted(const Chain& chain, Eigen::Matrix3Xd gaps, ChainClamp clamp,
+                                 JointLaw law) {
   constexpr int most_steps = 10;
   constexpr double stride = 0.01;
   constexpr double found = 1e-4;
   double log_factor = 0;
   for (int step = 0; step < most_steps; ++step) {
-    const std::optional<Eigen::Matrix3Xd> beside = chain.gaps(std::exp(log_factor + stride));
+    const std::optional<Eigen::Matrix3Xd> beside = chain.gaps(std::exp(log_factor + stride), law);
     if (!beside) return std::nullopt;
     const Eigen::Matrix3Xd slope = (*beside - gaps) / stride;
     const double way = std::clamp(-slope.cwiseProduct(gaps).sum() / slope.squaredNorm(), -1.0, 1.0);
-    std::optional<Eigen::Matrix3Xd> next = chain.gaps(std::exp(log_factor + way));
+    std::optional<Eigen::Matrix3Xd> next = chain.gaps(std::exp(log_factor + way), law);
     if (!next || !(chain.rms_of(*next) < chain.rms_of(gaps))) break;
     log_factor += way;
     gaps = std::move(*next);
     if (std::abs(way) < found) break;
   }
-  return OwnPolygon{clamp, chain.rms_of(gaps), largest(gaps), std::exp(log_factor)};
+  return OwnPolygon{clamp, chain.rms_of(gaps), largest(gaps), std::exp(log_factor), law};
+}
+
+std::optional<OwnPolygon> with_law(const Chain& chain, ChainClamp clamp, Springs springs,
+                                   JointLaw law) {
+  std::optional<Eigen::Matrix3Xd> gaps = chain.gaps(1, law);
+  if (!gaps) return std::nullopt;
+  if (springs == Springs::fitted) return fitted(chain, std::move(*gaps), clamp, law);
+  return OwnPolygon{clamp, chain.rms_of(*gaps), largest(*gaps), 1, law};
+}
+
+/// With the law that comes nearest, the first one if none shows.
+std::optional<OwnPolygon> with_best_law(const Chain& chain, ChainClamp clamp, Springs springs,
+                                        double length) {
+  std::optional<OwnPolygon> first;
+  std::optional<OwnPolygon> best;
+  double next = std::numeric_limits<double>::infinity();  // of the others, the nearest
+  for (const JointLaw law : hookean_laws) {
+    if (first && first->rms_m > another_chain * length) break;
+    const std::optional<OwnPolygon> one = with_law(chain, clamp, springs, law);
+    if (!one) continue;
+    if (!first) first = one;
+    if (!best || one->rms_m < best->rms_m) {
+      if (best) next = best->rms_m;
+      best = one;
+    } else {
+      next = std::min(next, one->rms_m);
+    }
+  }
+  if (!best) return std::nullopt;
+  best->law_shows =
+      std::isfinite(next) && next > showing * best->rms_m && next > least_showing * length;
+  return best->law_shows ? best : first;
 }
 
 }  // namespace
@@ -192,7 +241,23 @@ std::string words_of(ChainClamp clamp, Eigen::Index segments) {
   return fmt::format("a chain of {} segments, clamped in the middle of a segment", segments);
 }
 
-std::vector<OwnPolygon> own_polygons(const Scene& scene, const Shape& shape, Springs springs) {
+std::string law_words(const OwnPolygon& chain) {
+  if (!chain.law_shows) return "";
+  switch (chain.law) {
+    case JointLaw::linear:
+      return "linear in the angle";
+    case JointLaw::hooke:
+      return "linear in 2 tan(angle/2)";
+    case JointLaw::binormal:
+      return "those of discrete elastic rods";
+    case JointLaw::paper:
+      break;
+  }
+  return "";
+}
+
+std::vector<OwnPolygon> own_polygons(const Scene& scene, const Shape& shape, Springs springs,
+                                     std::optional<JointLaw> law) {
   const Eigen::Index segments = shape.points.cols() - 1;
   const bool plain = scene.sections.empty() && !scene.has_material_directors() &&
                      !scene.holds_twist() && obstacles_in_reach(scene).empty();
@@ -201,13 +266,9 @@ std::vector<OwnPolygon> own_polygons(const Scene& scene, const Shape& shape, Spr
   for (const ChainClamp clamp : {ChainClamp::hinge, ChainClamp::welded, ChainClamp::middle}) {
     Chain chain(scene, shape, clamp);
     if (!chain.exists()) continue;
-    std::optional<Eigen::Matrix3Xd> gaps = chain.gaps(1);
-    if (!gaps) continue;
-    if (springs == Springs::as_the_rod) {
-      found.push_back({clamp, chain.rms_of(*gaps), largest(*gaps)});
-    } else if (const auto other = fitted(chain, std::move(*gaps), clamp)) {
-      found.push_back(*other);
-    }
+    const std::optional<OwnPolygon> one = law ? with_law(chain, clamp, springs, *law)
+                                              : with_best_law(chain, clamp, springs, scene.length);
+    if (one) found.push_back(*one);
   }
   return found;
 }

@@ -8,6 +8,7 @@
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape.hpp"
+#include "dlo/energy_model/chain.hpp"
 
 namespace dlo::compare {
 
@@ -20,20 +21,29 @@ enum class Springs {
 /// A chain of hinges in a scene, whose points a file may have.
 struct OwnPolygon {
   ChainClamp clamp = ChainClamp::hinge;
-  double rms_m = 0;      ///< of the file's points from it
-  double max_m = 0;      ///< the largest of those
-  double stiffness = 1;  ///< of its springs, over EI/h
+  double rms_m = 0;                                             ///< of the file's points from it
+  double max_m = 0;                                             ///< the largest of those
+  double stiffness = 1;                                         ///< of its springs, over EI/h
+  energy_model::JointLaw law = energy_model::JointLaw::linear;  ///< of its springs
+  /// Whether with the other laws the file's points are twice as far from it or more.
+  bool law_shows = false;
 };
 
-/// The words for a chain.
+/// The words for a chain's clamps.
 [[nodiscard]] std::string words_of(ChainClamp clamp, Eigen::Index segments);
+
+/// The words for a chain's springs; empty if the law does not show.
+[[nodiscard]] std::string law_words(const OwnPolygon& chain);
 
 /// The chains that have as many hinges as a file has points, each at rest in the scene with a
 /// spring in each hinge: with a hinge at the clamp, with its first segment welded to it, and with
 /// the clamp in the middle of a segment, where the file's first segment is half a one. None where
 /// grippers are between the file's points or the scene has what a plain chain has not.
 /// @param shape  in the scene's frame, along the whole rod
-[[nodiscard]] std::vector<OwnPolygon> own_polygons(const Scene& scene, const Shape& shape,
-                                                   Springs springs);
+/// @param law  of the springs; none: of those that are Hookean for small angles that with which a
+///             chain comes nearest, springs linear in the angle if the law does not show
+[[nodiscard]] std::vector<OwnPolygon> own_polygons(
+    const Scene& scene, const Shape& shape, Springs springs,
+    std::optional<energy_model::JointLaw> law = std::nullopt);
 
 }  // namespace dlo::compare

@@ -55,7 +55,10 @@ std::vector<ChainSprings> chain_springs(const Scene& scene, int segments,
     const Eigen::VectorXd& shares = held_in_middle ? halved : whole;
     const double h = scene.length / shares.sum();
     const Shape joints = points_apart(rod, scene.length, shares);
-    for (const OwnPolygon& chain : own_polygons(scene, joints, Springs::fitted)) {
+    const std::vector<OwnPolygon> binormal =
+        own_polygons(scene, joints, Springs::fitted, energy_model::JointLaw::binormal);
+    for (const OwnPolygon& chain :
+         own_polygons(scene, joints, Springs::fitted, energy_model::JointLaw::linear)) {
       if ((chain.clamp == ChainClamp::middle) != held_in_middle) continue;
       found.push_back({.scene = scene.name,
                        .clamp = chain.clamp,
@@ -63,7 +66,13 @@ std::vector<ChainSprings> chain_springs(const Scene& scene, int segments,
                        .segment_length = h,
                        .stiffness = chain.stiffness * scene.bending_stiffness() / h,
                        .over_rod = chain.stiffness,
-                       .rms_m = chain.rms_m});
+                       .rms_m = chain.rms_m,
+                       .mass_per_length = scene.mass() / scene.length,
+                       .diameter = scene.diameter});
+      for (const OwnPolygon& other : binormal) {
+        if (other.clamp != chain.clamp) continue;
+        found.back().binormal_stiffness = other.stiffness * scene.bending_stiffness() / h;
+      }
       if (second_moment > 0) {
         found.back().equivalent_modulus = found.back().stiffness * h / second_moment;
       }
@@ -74,17 +83,31 @@ std::vector<ChainSprings> chain_springs(const Scene& scene, int segments,
 
 std::vector<SimulatorParameter> simulator_parameters(const ChainSprings& chain) {
   const double joint = chain.stiffness;
-  const double rod = chain.stiffness * chain.segment_length;
+  const double h = chain.segment_length;
   std::vector<SimulatorParameter> all = {
       {"MuJoCo", "joint stiffness", "N m/rad", joint},
       {"Bullet", "btGeneric6DofSpring2Constraint::setStiffness", "N m/rad", joint},
       // 1.2.0 stopped dividing it by the length of a segment.
-      {"Newton", "add_rod bend_stiffness before 1.2.0", "N m^2", rod},
-      {"Newton", "add_rod bend_stiffness since 1.2.0", "N m/rad", joint},
-      {"Newton", "add_joint_cable bend_stiffness", "N m/rad", joint},
+      {"Newton", "add_rod bend_stiffness before 1.2.0", "N m^2", joint * h},
+      {"Newton", "add_rod bend_stiffness 1.2.0 to 1.4", "N m/rad", joint},
+      {"Newton", "add_joint_cable bend_stiffness to 1.4", "N m/rad", joint},
+      {"Drake", "RevoluteSpring stiffness", "N m/rad", joint},
       {"PhysX", "PxD6JointDrive stiffness", "N m/rad", joint},
       // USD keeps angles in degrees.
       {"Isaac Sim", "PhysicsDriveAPI:rotX stiffness", "N m/deg", joint * std::numbers::pi / 180}};
+  if (chain.binormal_stiffness > 0) {
+    all.push_back(
+        {"Newton", "add_rod bend_stiffness since 1.5", "N m/rad", chain.binormal_stiffness});
+    all.push_back({"Newton", "Rod bend_rigidity since 1.6", "N m^2", chain.binormal_stiffness * h});
+  }
+  if (chain.diameter > 0 && chain.mass_per_length > 0) {
+    const double r = chain.diameter / 2;
+    const double capsule = std::numbers::pi * r * r * (h + 4 * r / 3);
+    for (const char* simulator : {"MuJoCo", "Newton"}) {
+      all.push_back(
+          {simulator, "density of a capsule", "kg/m^3", chain.mass_per_length * h / capsule});
+    }
+  }
   if (chain.equivalent_modulus > 0) {
     all.push_back({"MuJoCo", "cable plugin bend", "Pa", chain.equivalent_modulus});
     // Its first element is held whole, as that of a welded chain.

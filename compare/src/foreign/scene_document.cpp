@@ -46,7 +46,13 @@ Document sections_document(const Scene& scene) {
                       {"bending_stiffness_Nm2", stiffnesses_document(section.bending_stiffness,
                                                                      section.bending_stiffness_2)},
                       {"torsional_stiffness_Nm2", known(problem.sections[i].torsional_stiffness)},
-                      {"mass_per_length_kg_per_m", section.mass_per_length}});
+                      {"mass_per_length_kg_per_m", section.mass_per_length},
+                      {"natural_curvature_per_m", section.natural_curvature
+                                                      ? Document{section.natural_curvature->x(),
+                                                                 section.natural_curvature->y()}
+                                                      : Document()},
+                      {"natural_twist_rad_per_m",
+                       section.natural_twist ? Document(*section.natural_twist) : Document()}});
   }
   return result;
 }
@@ -61,14 +67,18 @@ Document rod_document(const Scene& scene) {
   }
   return {{"length_m", scene.length},
           {"diameter_m", known(scene.diameter)},
+          {"inner_diameter_m", known(scene.inner_diameter)},
+          {"width_m", known(scene.width)},
+          {"thickness_m", known(scene.thickness)},
           {"cross_section_m2", known(scene.cross_section())},
           {"material", scene.material.name.empty() ? Document() : Document(scene.material.name)},
           {"youngs_modulus_Pa", known(scene.material.youngs_modulus)},
           {"density_kg_per_m3", known(scene.material.density)},
           {"bending_stiffness_Nm2",
-           stiffnesses_document(scene.bending_stiffness(), scene.given_bending_stiffness_2)},
+           stiffnesses_document(scene.bending_stiffness(), scene.bending_stiffness_2())},
           {"torsional_stiffness_Nm2", known(scene.twisting_stiffness())},
           {"torsional_stiffness_is_assumed", scene.assumes_torsion()},
+          {"assumed_torsional_stiffness_Nm2", scene.assumed_torsional_stiffness()},
           {"axial_stiffness_N", scene.axial_stiffness()},
           {"mass_per_length_kg_per_m", scene.mass_per_length()},
           {"mass_kg", scene.mass()},

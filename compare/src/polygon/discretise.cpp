@@ -298,7 +298,7 @@ void require_fit(const Scene& scene, const ForceModelSettings& settings, const L
 /// A joint turns alike about every axis.
 void require_round(const Scene& scene) {
   if (!scene.has_two_stiffnesses()) return;
-  const bool of_rod = scene.given_bending_stiffness_2.has_value();
+  const bool of_rod = scene.bending_stiffness_2().has_value();
   throw InputError(fmt::format(
       "{}: {}.bending_stiffness: two values, about d1 and d2, which the polygons of models force "
       "and chain have no axes for (allowed here: one value; of two: --model energy or exact)",

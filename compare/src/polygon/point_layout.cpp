@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "dlo/compare/error.hpp"
+#include "dlo/energy_model/taut_line.hpp"
+#include "scene/scene_problem.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -103,6 +106,17 @@ void share_segments(std::vector<Gap>& gaps, Eigen::Index segments, double L) {
   }
 }
 
+/// Whether the grips hold all of the rod on a line, and nothing acts across it.
+bool is_solved_taut(const Scene& scene) {
+  const energy_model::Problem problem = scene_problem(scene);
+  if (!energy_model::is_taut_line(problem)) return false;
+  try {
+    return energy_model::taut_line(problem).has_value();
+  } catch (const std::invalid_argument&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 std::vector<std::size_t> order_along(const Scene& scene) {
@@ -132,6 +146,7 @@ std::vector<std::size_t> order_along(const Scene& scene) {
 }
 
 void require_slack(const Scene& scene) {
+  if (is_solved_taut(scene)) return;
   const std::vector<std::size_t> along = order_along(scene);
   for (std::size_t i = 0; i + 1 < along.size(); ++i) {
     const Gripper& a = scene.grippers[along[i]];
@@ -140,7 +155,8 @@ void require_slack(const Scene& scene) {
     if (apart < b.at - a.at) continue;
     throw InputError(fmt::format(
         "{}: gripper.position: {} m from the gripper at = {} m (allowed: less than the {} m of rod "
-        "between them; models chain and force take a taut rod)",
+        "between them, or all of a round straight rod taut on a line, clamps and forces along it; "
+        "models chain and force take a taut rod)",
         where(scene, b), apart, a.at, b.at - a.at));
   }
 }

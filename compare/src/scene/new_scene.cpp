@@ -90,6 +90,7 @@ diameter = {diameter}  # round, solid; bending stiffness EI = E pi d^4 / 64
 {material}# Or what was measured, in place of diameter and material (they may stay, for the axial stiffness):
 #   bending_stiffness = "1.2e-3 N m^2", mass_per_length = "20 g/m"
 # EI of a chain of hinges: joint_stiffness = "0.03 N m/rad" and joint_spacing = "4 cm" instead.
+# A tube has an inner_diameter too; a flat rod has width (along d1) and thickness in place of diameter.
 # Of a flat cable bending_stiffness = ["1.2e-3 N m^2", "0.04 N m^2"], about d1 and about d2 of the
 # first clamp's frame: d2 is the normal of the scene's plane unless a frame or roll says otherwise.
 # The stress-free shape need not be straight: natural_curvature = "3 1/m" bends it to the left in its plane;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "base/words.hpp"
 #include "toml/scene_keys.hpp"
@@ -82,7 +83,41 @@ std::optional<GivenBending> read_bending(StrictTable& rod, double length) {
   return GivenBending{*joint * *spacing, std::nullopt};
 }
 
-/// Bending stiffness and mass, given as they are or by material and diameter.
+constexpr const char* section_keys[] = {"diameter", "inner_diameter", "width", "thickness"};
+
+/// A circle, a ring, or a rectangle.
+void read_cross_section(StrictTable& rod, Scene& scene) {
+  const Range size = Range::between(1e-9, 1e3, " m");
+  if (!rod.has("width") && !rod.has("thickness")) {
+    scene.diameter = rod.number("diameter", Dimension::length, size);
+    const std::optional<double> inner =
+        rod.optional_number("inner_diameter", Dimension::length, Range::not_negative());
+    if (!inner) return;
+    if (!(*inner < scene.diameter)) {
+      rod.fail("inner_diameter", fmt::format("out of range (allowed: 0 to less than diameter, {:g} "
+                                             "m)",
+                                             scene.diameter));
+    }
+    scene.inner_diameter = *inner;
+    return;
+  }
+  for (const char* key : {"diameter", "inner_diameter"}) {
+    if (!rod.has(key)) continue;
+    rod.fail(key, fmt::format("given besides {} (allowed: diameter, with inner_diameter of a tube; "
+                              "or width along d1 and thickness along d2)",
+                              rod.has("width") ? "width" : "thickness"));
+  }
+  for (const char* key : {"width", "thickness"}) {
+    if (rod.has(key)) continue;
+    rod.fail(key,
+             "missing, width along d1 and thickness along d2 are given together (allowed: "
+             "both, or a diameter)");
+  }
+  scene.width = rod.number("width", Dimension::length, size);
+  scene.thickness = rod.number("thickness", Dimension::length, size);
+}
+
+/// Bending stiffness and mass, given as they are or by material and section.
 void read_stiffness(StrictTable& rod, const std::vector<Material>& known_materials, Scene& scene) {
   if (const std::optional<GivenBending> given = read_bending(rod, scene.length)) {
     scene.given_bending_stiffness = given->about_d1;
@@ -101,14 +136,21 @@ void read_stiffness(StrictTable& rod, const std::vector<Material>& known_materia
                          has_bending ? bending : "mass_per_length"));
   }
   const bool complete = has_bending && has_mass && !has_material;
-  if (has_bending && has_mass && has_material && !rod.has("diameter")) {
+  const bool has_section = std::any_of(std::begin(section_keys), std::end(section_keys),
+                                       [&](const char* key) { return rod.has(key); });
+  if (has_bending && has_mass && has_material && !has_section) {
     rod.fail("diameter",
              "missing, the material says nothing without it (allowed: a diameter, or no material)");
   }
-  if (!complete || rod.has("diameter")) {
-    scene.diameter = rod.number("diameter", Dimension::length, Range::between(1e-9, 1e3, " m"));
-  }
+  if (!complete || has_section) read_cross_section(rod, scene);
   if (!complete) scene.material = read_material(rod, known_materials);
+}
+
+std::string section_text(const Scene& scene) {
+  if (scene.width > 0) {
+    return fmt::format("width = {:g} m, thickness = {:g} m", scene.width, scene.thickness);
+  }
+  return fmt::format("diameter = {:g} m", scene.diameter);
 }
 
 /// Of numbers that are in range each on its own.
@@ -118,14 +160,14 @@ void require_finite_rod(const Scene& scene, const StrictTable& rod) {
     if (rod.has("material")) {
       rod.fail("material",
                fmt::format("E I = {:g} N m^2, E A = {:g} N (allowed: numbers > 0 that are "
-                           "finite), with diameter = {:g} m and E = {:g} Pa",
-                           scene.bending_stiffness(), scene.axial_stiffness(), scene.diameter,
+                           "finite), with {} and E = {:g} Pa",
+                           scene.bending_stiffness(), scene.axial_stiffness(), section_text(scene),
                            scene.material.youngs_modulus));
     }
     rod.fail("bending_stiffness",
              fmt::format("E A = {:g} N of such a rod (allowed: a number > 0 that is finite), with "
-                         "diameter = {:g} m and length = {:g} m",
-                         scene.axial_stiffness(), scene.diameter, scene.length));
+                         "{} and length = {:g} m",
+                         scene.axial_stiffness(), section_text(scene), scene.length));
   }
   // The negation makes a NaN out of range.
   if (!(scene.gamma() <= largest_gamma)) {
@@ -146,14 +188,16 @@ Section read_section(StrictTable& table, const Scene& scene) {
     table.fail("to", fmt::format("not behind from = {:g} m (allowed: more, up to {:g} m)",
                                  section.from, scene.length));
   }
-  if (!table.has("bending_stiffness") && !table.has("mass_per_length") &&
-      !table.has("torsional_stiffness")) {
+  constexpr const char* own[] = {"bending_stiffness", "mass_per_length", "torsional_stiffness",
+                                 "natural_curvature", "natural_twist"};
+  if (std::none_of(std::begin(own), std::end(own),
+                   [&](const char* key) { return table.has(key); })) {
     table.fail("bending_stiffness",
-               "missing, and so are mass_per_length and torsional_stiffness (allowed: one of the "
-               "three or more; the others are the rod's own)");
+               "missing, and so are mass_per_length, torsional_stiffness, natural_curvature and "
+               "natural_twist (allowed: one of the five or more; the others are the rod's own)");
   }
   const GivenBending bending = read_bending_stiffness(table).value_or(
-      GivenBending{scene.bending_stiffness(), scene.given_bending_stiffness_2});
+      GivenBending{scene.bending_stiffness(), scene.bending_stiffness_2()});
   section.bending_stiffness = bending.about_d1;
   section.bending_stiffness_2 = bending.about_d2;
   section.mass_per_length =
@@ -165,6 +209,8 @@ Section read_section(StrictTable& table, const Scene& scene) {
     table.fail("torsional_stiffness",
                "the rod has none (allowed: rod.torsional_stiffness too, or none here)");
   }
+  section.natural_curvature = table.optional_pair("natural_curvature", Dimension::curvature);
+  section.natural_twist = table.optional_number("natural_twist", Dimension::twist, Range::any());
   table.finish();
   return section;
 }

@@ -166,15 +166,19 @@ void check_twist(const Scene& scene, const StrictTable& rod) {
   if (!scene.holds_twist()) return;
   if (!scene.torsional_stiffness && !scene.assumes_torsion()) {
     rod.fail("torsional_stiffness",
-             fmt::format("missing, it is required where two clamps hold the rod's frame (allowed: "
-                         "> 0; of a round rod EI / (1 + nu), here {:.3g} N m^2 with nu = 0.3)",
-                         scene.bending_stiffness() / (1 + assumed_poisson_ratio)));
+             fmt::format(
+                 "missing, it is required where two clamps hold the rod's frame (allowed: "
+                 "> 0; of {}, here {:.3g} N m^2 with nu = 0.3)",
+                 scene.width > 0 ? "a rectangle E J / (2 (1 + nu))" : "a round rod EI / (1 + nu)",
+                 scene.assumed_torsional_stiffness()));
   }
 }
 
 /// Which way a rod is intrinsically curved, and where its principal axes are, has to be said by a
 /// clamp.
-void check_material_directors(const Scene& scene, const StrictTable& rod) {
+/// @param sections  the tables of its sections
+void check_material_directors(const Scene& scene, const StrictTable& rod,
+                              const std::vector<StrictTable>& sections) {
   const bool clamped =
       std::any_of(scene.grippers.begin(), scene.grippers.end(),
                   [](const Gripper& gripper) { return gripper.direction.has_value(); });
@@ -182,8 +186,13 @@ void check_material_directors(const Scene& scene, const StrictTable& rod) {
       "no gripper holds the rod's frame (allowed: a gripper with hold = \"clamp\")";
   for (const char* key : {"natural_curvature", "natural_twist"}) {
     if (!clamped && rod.has(key)) rod.fail(key, unheld);
+    for (const StrictTable& section : sections) {
+      if (!clamped && section.has(key)) section.fail(key, unheld);
+    }
   }
-  if (!clamped && scene.has_two_stiffnesses()) rod.fail("bending_stiffness", unheld);
+  if (!clamped && scene.has_two_stiffnesses()) {
+    rod.fail(rod.has("width") ? "width" : "bending_stiffness", unheld);
+  }
   (void)scene.natural_curvature();
   if (scene.has_two_stiffnesses()) (void)scene.first_frame();
 }
@@ -229,8 +238,7 @@ obstacle::Body read_box(StrictTable& table, const Eigen::Vector3d& centre) {
   return obstacle::Body::box(centre, axes, size, radius);
 }
 
-/// @param radius  of the rod [m]
-Obstacle read_obstacle(StrictTable& table, double radius, const std::string& file) {
+Obstacle read_obstacle(StrictTable& table, const Scene& scene, const std::string& file) {
   Obstacle obstacle;
   table.only(scene_keys("obstacle"));
   obstacle.trajectory = read_trajectory(table, {.position = "point", .direction = nullptr}, file);
@@ -259,7 +267,12 @@ Obstacle read_obstacle(StrictTable& table, double radius, const std::string& fil
   obstacle.friction = table.optional_number("friction", Dimension::number, Range::not_negative())
                           .value_or(obstacle.friction);
   const bool axis = table.has("touches") && table.choice("touches", {"surface", "axis"}) == "axis";
-  if (!axis) obstacle.body = obstacle.body.grown(radius);
+  if (!axis && scene.width > 0) {
+    table.fail("touches",
+               "missing or \"surface\", which is not at one distance from the axis of a rod with "
+               "width and thickness (allowed: touches = \"axis\")");
+  }
+  if (!axis) obstacle.body = obstacle.body.grown(scene.diameter / 2);
   if (!(obstacle.body.smallest_radius() > 0)) {
     table.fail(axis ? "touches" : "size",
                "a box whose edges are sharp, over which the rod would bend without a radius "
@@ -325,7 +338,7 @@ Scene read_scene(const toml::table& root, const std::string& file,
   read_rod(rod, sections, known_materials, scene);
 
   for (StrictTable& entry : bounded_tables(table, "obstacle", most_obstacles)) {
-    scene.obstacles.push_back(read_obstacle(entry, scene.diameter / 2, file));
+    scene.obstacles.push_back(read_obstacle(entry, scene, file));
   }
   std::vector<StrictTable> grippers = bounded_tables(table, "gripper", most_grippers);
   for (StrictTable& entry : grippers) {
@@ -341,7 +354,7 @@ Scene read_scene(const toml::table& root, const std::string& file,
   for (StrictTable& entry : bounded_tables(table, "load", most_loads)) {
     scene.loads.push_back(read_load(entry, scene));
   }
-  check_material_directors(scene, rod);
+  check_material_directors(scene, rod, sections);
   check_rolls(scene, grippers);
   if (auto settings = table.optional_table("force_model")) {
     scene.force_model = read_force_model(*settings);

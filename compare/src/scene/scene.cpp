@@ -62,6 +62,24 @@ std::optional<Eigen::Vector3d> scene_normal(const Scene& scene) {
 /// Of two numbers; of two equal ones to the last digit that number.
 double harmonic_mean(double a, double b) { return a / ((1 + a / b) / 2); }
 
+/// Mean of the rod's own natural curvature between two arc lengths, as if there were no sections.
+Eigen::Vector2d series_curvature(const Scene& scene, double begin, double end) {
+  Eigen::Vector2d mean = scene.natural_strain.head<2>();
+  const double from = 2 * begin / scene.length - 1;
+  const double to = 2 * end / scene.length - 1;
+  for (std::size_t k = 0; k < scene.natural_variation.size(); ++k) {
+    // int P_j = (P_(j+1) - P_(j-1)) / (2 j + 1)
+    const auto j = static_cast<unsigned>(k + 1);
+    const auto integral = [j](double x) {
+      return (std::legendre(j + 1, x) - std::legendre(j - 1, x)) / (2.0 * j + 1);
+    };
+    const double of_part =
+        to > from ? (integral(to) - integral(from)) / (to - from) : std::legendre(j, from);
+    mean += of_part * scene.natural_variation[k];
+  }
+  return mean;
+}
+
 /// Index of the first clamp along the rod.
 std::optional<std::size_t> first_clamp_of(const Scene& scene) {
   std::optional<std::size_t> first;
@@ -74,20 +92,35 @@ std::optional<std::size_t> first_clamp_of(const Scene& scene) {
 
 }  // namespace
 
-double Scene::cross_section() const { return std::numbers::pi * diameter * diameter / 4; }
+double Scene::cross_section() const {
+  if (width > 0) return width * thickness;
+  const double hollow = std::numbers::pi * inner_diameter * inner_diameter / 4;
+  return std::numbers::pi * diameter * diameter / 4 - hollow;
+}
+
+Eigen::Vector2d Scene::squared_gyration() const {
+  if (width > 0) return Eigen::Vector2d(thickness * thickness, width * width) / 12;
+  const double outer = diameter * diameter;
+  return Eigen::Vector2d::Constant((outer + inner_diameter * inner_diameter) / 16);
+}
 
 double Scene::bending_stiffness() const {
-  return given_bending_stiffness.value_or(material.youngs_modulus * cross_section() * diameter *
-                                          diameter / 16);
+  return given_bending_stiffness.value_or(material.youngs_modulus * cross_section() *
+                                          squared_gyration().x());
+}
+
+std::optional<double> Scene::bending_stiffness_2() const {
+  if (given_bending_stiffness) return given_bending_stiffness_2;
+  if (width == thickness) return std::nullopt;
+  return material.youngs_modulus * cross_section() * squared_gyration().y();
 }
 
 double Scene::softer_bending_stiffness() const {
-  return std::min(bending_stiffness(), given_bending_stiffness_2.value_or(bending_stiffness()));
+  return std::min(bending_stiffness(), bending_stiffness_2().value_or(bending_stiffness()));
 }
 
 double Scene::mean_bending_stiffness() const {
-  return harmonic_mean(bending_stiffness(),
-                       given_bending_stiffness_2.value_or(bending_stiffness()));
+  return harmonic_mean(bending_stiffness(), bending_stiffness_2().value_or(bending_stiffness()));
 }
 
 double Section::mean_bending_stiffness() const {
@@ -95,7 +128,7 @@ double Section::mean_bending_stiffness() const {
 }
 
 bool Scene::has_two_stiffnesses() const {
-  return given_bending_stiffness_2 ||
+  return bending_stiffness_2() ||
          std::any_of(sections.begin(), sections.end(),
                      [](const Section& section) { return section.bending_stiffness_2; });
 }
@@ -106,7 +139,15 @@ double Scene::mass_per_length() const {
 
 double Scene::twisting_stiffness() const {
   if (torsional_stiffness) return *torsional_stiffness;
-  return has_material_directors() ? mean_bending_stiffness() / (1 + assumed_poisson_ratio) : 0;
+  return has_material_directors() ? assumed_torsional_stiffness() : 0;
+}
+
+double Scene::assumed_torsional_stiffness() const {
+  if (width > 0 && !given_bending_stiffness) {
+    return material.youngs_modulus / (2 * (1 + assumed_poisson_ratio)) *
+           rectangle_torsion_constant(width, thickness);
+  }
+  return mean_bending_stiffness() / (1 + assumed_poisson_ratio);
 }
 
 bool Scene::assumes_torsion() const { return has_material_directors() && !torsional_stiffness; }
@@ -114,7 +155,7 @@ bool Scene::assumes_torsion() const { return has_material_directors() && !torsio
 double Scene::axial_stiffness() const {
   const double EA = material.youngs_modulus * cross_section();
   if (EA > 0) return EA;
-  if (diameter > 0) return 16 * bending_stiffness() / (diameter * diameter);
+  if (cross_section() > 0) return bending_stiffness() / squared_gyration().x();
   return 1e6 * bending_stiffness() / (length * length);
 }
 
@@ -174,11 +215,18 @@ Scene Scene::without_natural_strain() const {
   Scene scene = *this;
   scene.natural_strain.setZero();
   scene.natural_variation.clear();
+  for (Section& section : scene.sections) {
+    section.natural_curvature.reset();
+    section.natural_twist.reset();
+  }
   return scene;
 }
 
 Eigen::Matrix3d Scene::first_frame() const {
-  const char* const key = naturally_bent() ? "natural_curvature" : "bending_stiffness";
+  const char* const key = naturally_bent()          ? "natural_curvature"
+                          : given_bending_stiffness ? "bending_stiffness"
+                          : width > 0               ? "width"
+                                                    : "bending_stiffness";
   const std::optional<std::size_t> clamp = first_clamp_of(*this);
   if (!clamp) {
     throw InputError(fmt::format(
@@ -197,28 +245,32 @@ Eigen::Matrix3d Scene::first_frame() const {
   return energy_model::first_frame(problem);
 }
 
+bool Scene::naturally_twisted() const {
+  return natural_strain.z() != 0 ||
+         std::any_of(sections.begin(), sections.end(),
+                     [](const Section& section) { return section.natural_twist.value_or(0) != 0; });
+}
+
 bool Scene::naturally_curved() const {
   return !natural_strain.head<2>().isZero(0) ||
          std::any_of(natural_variation.begin(), natural_variation.end(),
-                     [](const Eigen::Vector2d& strain) { return !strain.isZero(0); });
+                     [](const Eigen::Vector2d& strain) { return !strain.isZero(0); }) ||
+         std::any_of(sections.begin(), sections.end(), [](const Section& section) {
+           return section.natural_curvature && !section.natural_curvature->isZero(0);
+         });
 }
 
 Eigen::Vector3d Scene::natural_curvature() const { return natural_curvature(0, length); }
 
 Eigen::Vector3d Scene::natural_curvature(double begin, double end) const {
   if (!naturally_curved()) return Eigen::Vector3d::Zero();
-  Eigen::Vector2d mean = natural_strain.head<2>();
-  const double from = 2 * begin / length - 1;
-  const double to = 2 * end / length - 1;
-  for (std::size_t k = 0; k < natural_variation.size(); ++k) {
-    // int P_j = (P_(j+1) - P_(j-1)) / (2 j + 1)
-    const auto j = static_cast<unsigned>(k + 1);
-    const auto integral = [j](double x) {
-      return (std::legendre(j + 1, x) - std::legendre(j - 1, x)) / (2.0 * j + 1);
-    };
-    const double of_part =
-        to > from ? (integral(to) - integral(from)) / (to - from) : std::legendre(j, from);
-    mean += of_part * natural_variation[k];
+  Eigen::Vector2d mean = series_curvature(*this, begin, end);
+  for (const Section& section : sections) {
+    const double from = std::max(begin, section.from);
+    const double to = std::min(end, section.to);
+    if (!section.natural_curvature || !(to > from)) continue;
+    mean += (to - from) / (end - begin) *
+            (*section.natural_curvature - series_curvature(*this, from, to));
   }
   return first_frame().leftCols<2>() * mean;
 }
@@ -280,15 +332,18 @@ std::optional<Eigen::Vector3d> Scene::plane_normal() const {
     const Eigen::Matrix3d frame = first_frame();
     const bool oblique =
         std::abs(frame.col(0).dot(*normal)) > noise && std::abs(frame.col(1).dot(*normal)) > noise;
-    if (oblique || natural_strain.z() != 0) return std::nullopt;
+    if (oblique || naturally_twisted()) return std::nullopt;
     if (!curved) return normal;
   }
   const Eigen::Matrix3d frame = first_frame();
   const auto about_normal = [&](const Eigen::Vector2d& strain) {
     return normal->cross(frame.leftCols<2>() * strain).norm() <= noise * strain.norm();
   };
-  const bool flat = about_normal(natural_strain.head<2>()) && natural_strain.z() == 0 &&
-                    std::all_of(natural_variation.begin(), natural_variation.end(), about_normal);
+  const bool flat = about_normal(natural_strain.head<2>()) && !naturally_twisted() &&
+                    std::all_of(natural_variation.begin(), natural_variation.end(), about_normal) &&
+                    std::all_of(sections.begin(), sections.end(), [&](const Section& section) {
+                      return !section.natural_curvature || about_normal(*section.natural_curvature);
+                    });
   return flat ? normal : std::nullopt;
 }
 

@@ -69,7 +69,7 @@ int rod_rates(double at, const double* y, double* rate, void* data) {
   const Eigen::Vector3d own = R.transpose() * m;
   const Eigen::Vector3d stretch = compliance.cwiseProduct(own);
   Eigen::Vector3d u = stretch;
-  if (piece.rod->natural) u += piece.rod->natural(piece.rod->begin + at);
+  if (piece.rod->natural) u += section.natural(piece.rod->natural, piece.rod->begin + at);
   const Eigen::Vector3d omega = R * u;
   Rate(rate + 0) = t;
   for (Eigen::Index k = 0; k < 3; ++k) Rate(rate + 3 + 3 * k) = omega.cross(R.col(k));
@@ -101,7 +101,7 @@ int rod_rates(double at, const double* y, double* rate, void* data) {
 Eigen::Vector3d strain_of(const RodSection& section, const NaturalStrain& natural, double s,
                           const RodState& state) {
   const Eigen::Vector3d own = (state.R.transpose() * state.m).cwiseProduct(section.compliance());
-  return natural ? Eigen::Vector3d(natural(s) + own) : own;
+  return natural ? Eigen::Vector3d(section.natural(natural, s) + own) : own;
 }
 
 Eigen::Vector3d curvature_of(const RodSection& section, const NaturalStrain& natural, double s,

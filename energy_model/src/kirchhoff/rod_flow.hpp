@@ -1,16 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <vector>
 
 #include "kirchhoff/rod_state.hpp"
 #include "kirchhoff/surface.hpp"
 
 namespace dlo::energy_model {
-
-/// Natural strains at s, times l; none: a straight rod.
-using NaturalStrain = std::function<Eigen::Vector3d(double s)>;
 
 /// Strains of a cross-section at s,
 ///     u = u0(s) + K^-1 R^T m,   K = diag(b1, b2, c).

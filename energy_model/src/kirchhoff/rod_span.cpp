@@ -57,9 +57,7 @@ std::optional<Plane> plane_across_d2(const RodSpan& span) {
     if (std::abs(normal.dot(direction)) > rounding) return std::nullopt;
   }
   // A polynomial of the second strain alone has only zeros of the others.
-  constexpr int probes = 24;
-  for (int i = 0; i <= probes; ++i) {
-    const Eigen::Vector3d u = span.natural(static_cast<double>(i) / probes);
+  for (const Eigen::Vector3d& u : natural_probes(span, 24)) {
     if (u[0] != 0 || u[2] != 0) return std::nullopt;
   }
   return Plane{span.holds.front().position, span.first_frame.col(2), span.first_frame.col(0)};
@@ -84,6 +82,8 @@ std::vector<RodSpan::Part> parts_between(const Problem& problem, double begin, d
     if (directors == Directors::of_material && section.bending_stiffness_2) {
       own.bending_2 = *section.bending_stiffness_2 / unit;
     }
+    if (section.natural_curvature) own.natural_bend = l * *section.natural_curvature;
+    if (section.natural_twist) own.natural_twist = l * *section.natural_twist;
     parts.push_back({from - begin, to - begin, own});
   }
   for (std::size_t i = 0; i + 1 < parts.size(); ++i) parts[i].end = parts[i + 1].begin;
@@ -208,6 +208,16 @@ RodSpan whole(const Problem& problem) {
   RodSpan span = make_span(problem, ordered_grips(problem), 0, 1, directors);
   if (directors == Directors::of_material) span.first_frame = material_frame(problem);
   return span;
+}
+
+std::vector<Eigen::Vector3d> natural_probes(const RodSpan& span, int count) {
+  std::vector<Eigen::Vector3d> strains;
+  if (!span.natural) return strains;
+  for (int i = 0; i <= count; ++i) strains.push_back(span.natural(span.length * i / count));
+  for (const RodSpan::Part& part : span.parts) {
+    strains.push_back(part.section.natural(span.natural, (part.begin + part.end) / 2));
+  }
+  return strains;
 }
 
 RodSpan uncut(const Problem& problem) {

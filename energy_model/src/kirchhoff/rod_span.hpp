@@ -96,6 +96,10 @@ using ClampFrames = std::vector<std::optional<Eigen::Matrix3d>>;
 /// @throws std::invalid_argument as whole(), or if there are obstacles
 [[nodiscard]] RodSpan uncut(const Problem& problem);
 
+/// Natural strains at places that are `count` equal lengths apart, and in the middle of each part:
+/// none of a straight rod.
+[[nodiscard]] std::vector<Eigen::Vector3d> natural_probes(const RodSpan& span, int count);
+
 /// A node of a mesh at which contact with a rigid body begins, ends or is a point.
 struct RodContact {
   Eigen::Index node = 0;

@@ -1,16 +1,22 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 
 namespace dlo::energy_model {
+
+/// Natural strains at s, times l; none: a straight rod.
+using NaturalStrain = std::function<Eigen::Vector3d(double s)>;
 
 /// A section of the rod, in units of the rod.
 struct RodSection {
   double bending = 1;  ///< b, its EI over bending_unit(); about d1 where bending_2 is given
   double torsion = 0;  ///< c, its GJ over the same unit; 0: the twist is free and costs nothing
-  Eigen::Vector3d weight = Eigen::Vector3d::Zero();  ///< w
-  std::optional<double> bending_2 = std::nullopt;    ///< about d2; none: as about d1
+  Eigen::Vector3d weight = Eigen::Vector3d::Zero();            ///< w
+  std::optional<double> bending_2 = std::nullopt;              ///< about d2; none: as about d1
+  std::optional<Eigen::Vector2d> natural_bend = std::nullopt;  ///< its own; none: the rod's
+  std::optional<double> natural_twist = std::nullopt;          ///< as natural_bend
 
   /// About d1, d2 and the tangent.
   [[nodiscard]] Eigen::Vector3d stiffness() const {
@@ -19,6 +25,15 @@ struct RodSection {
   /// K^-1; of a twist that is free zero: no torque twists it.
   [[nodiscard]] Eigen::Vector3d compliance() const {
     return {1 / bending, 1 / bending_2.value_or(bending), torsion > 0 ? 1 / torsion : 0.0};
+  }
+  /// Natural strains at s, of which the section may have its own: at its ends too, where another
+  /// one begins.
+  /// @param of_rod  not none
+  [[nodiscard]] Eigen::Vector3d natural(const NaturalStrain& of_rod, double s) const {
+    Eigen::Vector3d u = of_rod(s);
+    if (natural_bend) u.head<2>() = *natural_bend;
+    if (natural_twist) u.z() = *natural_twist;
+    return u;
   }
 };
 

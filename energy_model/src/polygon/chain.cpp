@@ -30,9 +30,16 @@ AngleJoint joint_by_angle(JointLaw law, double stiffness, double L, double alpha
     return {scale * 4 * m * m * (1 - m / 3), scale * 2 * s * s * s, scale * 3 * s * s * c};
   }
   const double k = stiffness / L;
+  if (law == JointLaw::linear) return {k * alpha * alpha / 2, k * alpha, k};
   const double followed = std::clamp(alpha, -fold_angle, fold_angle);
   const double c = std::cos(followed / 2);
   const double quarter = std::sin(followed / 4);
+  if (law == JointLaw::binormal) {
+    const double t = std::tan(followed / 2);
+    const double moment = 2 * k * t * (1 + t * t);
+    return {2 * k * t * t + moment * (alpha - followed), moment,
+            followed == alpha ? k * (1 + t * t) * (1 + 3 * t * t) : 0};
+  }
   const double moment = 2 * k * std::tan(followed / 2);
   // ln cos(alpha/2) without cancellation for small angles
   return {-4 * k * std::log1p(-2 * quarter * quarter) + moment * (alpha - followed), moment,

@@ -18,6 +18,29 @@ struct Joint {
   double energy, first, second;
 };
 
+/// k alpha^2 / 2. Its slope is 2 k f(h) with f = asin(sqrt h) / sqrt(h (1 - h)), the series
+/// 1 + 2/3 h + 8/15 h^2 + .., each coefficient 2n / (2n + 1) of the one before, and
+/// 2 h (1 - h) f' = 1 - (1 - 2 h) f.
+Joint linear_joint(double k, double h) {
+  constexpr double small = 0.02;  // below it 1 - (1 - 2 h) f loses digits, and 10 terms are exact
+  constexpr int terms = 10;
+  const double half = std::atan2(std::sqrt(h), std::sqrt(1 - h));  // alpha / 2
+  const double energy = 2 * k * half * half;
+  if (h > small) {
+    const double f = half / std::sqrt(h * (1 - h));
+    return {energy, 2 * k * f, k * (1 - (1 - 2 * h) * f) / (h * (1 - h))};
+  }
+  double f = 1;
+  double slope = 0;
+  double term = 1;  // c_n h^(n - 1), but for the first
+  for (int n = 1; n <= terms; ++n) {
+    term *= 2.0 * n / (2 * n + 1) * (n > 1 ? h : 1.0);
+    f += term * h;
+    slope += n * term;
+  }
+  return {energy, 2 * k * f, 2 * k * slope};
+}
+
 Joint joint(JointLaw law, double stiffness, double L, double h) {
   const double rest = 1 - h;  // cos^2(alpha/2)
   if (law == JointLaw::paper) {
@@ -27,12 +50,18 @@ Joint joint(JointLaw law, double stiffness, double L, double h) {
     return {scale * 4 * m * m * (1 - m / 3), scale * 2 * h / q, scale * (2 / q + h / (rest * q))};
   }
   const double k = stiffness / L;
+  if (law == JointLaw::linear) return linear_joint(k, h);
+  const bool squared = law == JointLaw::binormal;
   static const double fold = std::pow(std::sin(fold_angle / 2), 2);
+  if (h <= fold && squared) {
+    return {2 * k * h / rest, 2 * k / (rest * rest), 4 * k / (rest * rest * rest)};
+  }
   if (h <= fold) return {-2 * k * std::log1p(-h), 2 * k / rest, 2 * k / (rest * rest)};
-  const double moment = 2 * k * std::tan(fold_angle / 2);
+  const double moment = 2 * k * std::tan(fold_angle / 2) / (squared ? 1 - fold : 1.0);
   const double root = std::sqrt(h * rest);  // d alpha / d h = 1 / root
   const double alpha = 2 * std::atan2(std::sqrt(h), std::sqrt(rest));
-  return {-2 * k * std::log1p(-fold) + moment * (alpha - fold_angle), moment / root,
+  const double at_fold = squared ? 2 * k * fold / (1 - fold) : -2 * k * std::log1p(-fold);
+  return {at_fold + moment * (alpha - fold_angle), moment / root,
           -moment * (1 - 2 * h) / (2 * root * root * root)};
 }
 
@@ -71,7 +100,11 @@ NaturalTurn natural_turn(const PolygonProblem& problem, Eigen::Index i) {
   const double stiffness = joint_stiffness(problem, i);
   const double s = std::sin(turn / 2);
   NaturalTurn result;
-  result.couple = 2 * stiffness / L * std::tan(turn / 2);
+  const double t = std::tan(turn / 2);
+  const double angle = problem.law == JointLaw::linear     ? turn
+                       : problem.law == JointLaw::binormal ? 2 * t * (1 + t * t)
+                                                           : 2 * t;
+  result.couple = stiffness / L * angle;
   result.constant = joint(problem.law, stiffness, L, s * s).energy - result.couple * turn;
   return result;
 }

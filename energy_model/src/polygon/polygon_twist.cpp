@@ -70,7 +70,7 @@ void require_twists(const PolygonProblem& problem) {
   constexpr const char* name = "PolygonProblem";
   const Eigen::Index n = problem.rest_lengths.size();
   const auto count = static_cast<double>(problem.twists.size());
-  require(problem.twists.empty() || problem.law == JointLaw::hooke, name, "number of twists", count,
+  require(problem.twists.empty() || problem.law != JointLaw::paper, name, "number of twists", count,
           "0 for the paper's law");
   require(problem.twists.empty() || problem.natural_turns.size() == 0, name, "number of twists",
           count, "0 with natural turns");

@@ -18,7 +18,7 @@ void require_unlike_joints(const char* problem, JointLaw law, const Eigen::Vecto
   for (const double stiffness : stiffnesses) {
     require_positive(problem, "stiffness of a joint", stiffness);
   }
-  require(natural_turns.size() == 0 || law == JointLaw::hooke, problem, "size of natural_turns",
+  require(natural_turns.size() == 0 || law != JointLaw::paper, problem, "size of natural_turns",
           static_cast<double>(natural_turns.size()), "0 for the paper's law");
   for (const double turn : natural_turns) {
     require(std::abs(turn) < fold_angle, problem, "natural turn", turn, "in (-3, 3) rad");

@@ -56,6 +56,13 @@ void check_sections(const Problem& problem) {
             "finite, and > 0 where the rod's is");
     require(section.weight_per_length.allFinite(), "Problem", "weight_per_length of a section",
             section.weight_per_length.norm(), "finite");
+    const Eigen::Vector2d bend = section.natural_curvature.value_or(Eigen::Vector2d::Zero());
+    const double twist = section.natural_twist.value_or(0);
+    require(bend.allFinite() && std::isfinite(twist), "Problem", "natural strain of a section",
+            bend.norm() + std::abs(twist), "finite");
+    require(
+        !(section.natural_curvature || section.natural_twist) || !problem.natural_strains.empty(),
+        "Problem", "number of natural_strains, of a rod whose sections have their own", 0, ">= 1");
   }
 }
 

@@ -48,7 +48,13 @@ Eigen::Vector3d principal_stiffness(const Section& section, double unit) {
 }
 
 Eigen::Vector3d natural_strain(const Problem& problem, double arc_length) {
-  return NaturalStrains{problem.natural_strains, -1, 2 / problem.length}.at(arc_length);
+  NaturalStrains strains{problem.natural_strains, -1, 2 / problem.length, {}};
+  for (const Section& section : problem.sections) {
+    if (!section.natural_curvature && !section.natural_twist) continue;
+    strains.parts.push_back(
+        {section.begin, section.end, section.natural_curvature, section.natural_twist});
+  }
+  return strains.at(arc_length);
 }
 
 std::optional<Eigen::Vector3d> natural_normal(const Problem& problem) {

@@ -156,6 +156,29 @@ void place_start_frame(const Eigen::Vector3d& along, const Eigen::Matrix3d& own,
   for (Span::Part& part : span.parts) std::swap(part.stiffness[0], part.stiffness[1]);
 }
 
+/// What sections have of natural strains of their own, about the same axes.
+void place_natural_parts(const Problem& problem, PlacedSpan& placed) {
+  const double l = problem.length;
+  Span& span = placed.span;
+  for (const Section& section : problem.sections) {
+    if (!section.natural_curvature && !section.natural_twist) continue;
+    const double a = placed.s_of(section.begin, l);
+    const double b = placed.s_of(section.end, l);
+    const double begin = std::max(std::min(a, b), 0.0);
+    const double end = std::min(std::max(a, b), span.length);
+    if (!(end > begin)) continue;
+    NaturalStrains::Part part{begin, end, std::nullopt, std::nullopt};
+    if (section.natural_curvature) {
+      Eigen::Vector2d bend = l * *section.natural_curvature;
+      if (placed.reversed) bend.x() *= -1;
+      part.bend = Eigen::Rotation2Dd(placed.ahead) * bend;
+    }
+    if (section.natural_twist) part.twist = l * *section.natural_twist;
+    span.natural.parts.push_back(part);
+  }
+  if (placed.reversed) std::reverse(span.natural.parts.begin(), span.natural.parts.end());
+}
+
 /// Stiffnesses and natural strains of a rod with material directors, about the axes of the frame
 /// that the span has at its start.
 void place_material_directors(const Problem& problem, PlacedSpan& placed,
@@ -174,6 +197,7 @@ void place_material_directors(const Problem& problem, PlacedSpan& placed,
     span.natural.coefficients.emplace_back(l * (to_own * strain));
   }
   if (span.natural.empty()) span.natural.coefficients = {Eigen::Vector3d::Zero()};
+  place_natural_parts(problem, placed);
   const double sense = placed.reversed ? -1 : 1;
   span.natural.rate = 2 * sense;
   span.natural.from = 2 * placed.start / l - 1;
@@ -185,6 +209,13 @@ void place_material_directors(const Problem& problem, PlacedSpan& placed,
     if (!span.planar) break;
     span.planar = strain.tail<2>().norm() <= rounding * largest;
     if (span.planar) strain.tail<2>().setZero();
+  }
+  for (NaturalStrains::Part& part : span.natural.parts) {
+    if (!span.planar) break;
+    const Eigen::Vector3d strain = part.over(Eigen::Vector3d::Zero());
+    span.planar = strain.tail<2>().norm() <= rounding * largest;
+    if (span.planar && part.bend) part.bend->y() = 0;
+    if (span.planar && part.twist) part.twist = 0;
   }
 }
 

@@ -46,10 +46,8 @@ double bending_force(const RodSpan& span, const std::vector<RodState>& states) {
   for (const RodState& state : states) {
     force = std::max({force, state.n.norm() / b, state.m.squaredNorm() / (b * b)});
   }
-  if (!span.natural) return force;
-  constexpr int probes = 16;
-  for (int i = 0; i <= probes; ++i) {
-    force = std::max(force, span.natural(span.length * i / probes).squaredNorm());
+  for (const Eigen::Vector3d& bend : natural_probes(span, 16)) {
+    force = std::max(force, bend.squaredNorm());
   }
   return force;
 }

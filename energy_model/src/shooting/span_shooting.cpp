@@ -188,11 +188,8 @@ void check_load(const RodSpan& span) {
 
 double resolving_interval(const RodSpan& span, double force) {
   double longest = longest_interval(span, force);
-  if (!span.natural) return longest;
-  constexpr int probes = 32;
-  for (int i = 0; i <= probes; ++i) {
-    const double bend = span.natural(span.length * i / probes).norm();
-    longest = std::min(longest, most_bend / std::max(bend, 1.0));
+  for (const Eigen::Vector3d& bend : natural_probes(span, 32)) {
+    longest = std::min(longest, most_bend / std::max(bend.norm(), 1.0));
   }
   return longest;
 }

@@ -133,7 +133,7 @@ TEST_F(CalibrateCommand, TellsTheJointsOfAChain) {
   EXPECT_EQ(chains[2].at("clamp"), "middle");
   EXPECT_NEAR(chains[2].at("over_bending_stiffness_per_length").get<double>(), 1, 0.02);
   EXPECT_EQ(chains[1].at("parameters")[2].at("name"), "add_rod bend_stiffness before 1.2.0");
-  EXPECT_EQ(chains[1].at("parameters")[3].at("name"), "add_rod bend_stiffness since 1.2.0");
+  EXPECT_EQ(chains[1].at("parameters")[3].at("name"), "add_rod bend_stiffness 1.2.0 to 1.4");
   const std::string text = run(chain).out;
   EXPECT_NE(text.find("12 segments of 0.08333 m, a hinge at the clamp"), std::string::npos);
   EXPECT_NE(text.find("PyElastica youngs_modulus = "), std::string::npos);

@@ -17,6 +17,7 @@
 
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/scene_file.hpp"
+#include "explain/own_polygon.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -420,17 +421,46 @@ TEST(Explanation, TheVerdictKnowsChainsWithoutAnyExplanation) {
     EXPECT_EQ(with_explanation(alone, explain_shape(scene, right, check, {}), tolerance).reason,
               alone.reason);
   }
-  const ShapeTolerance narrow{.allowed_m = 1e-5};
-  const ShapeJudgement alone = judge_with_chains(scene, check, narrow);
+  const MeasuredShape soft =
+      made(HingedChain(std::vector<double>(20, 0.05), 0.05, 0.8, false).points());
+  const ShapeCheck soft_check = check_shape(scene, soft, {.modulus = ModulusSearch::no});
+  const ShapeJudgement alone = judge_with_chains(scene, soft_check, {.allowed_m = 1e-3});
   EXPECT_FALSE(alone.pass);
   const ShapeJudgement explained =
-      with_explanation(alone, explain_shape(scene, right, check, {}), narrow);
+      with_explanation(alone, explain_shape(scene, soft, soft_check, {}), {.allowed_m = 1e-3});
   EXPECT_FALSE(explained.pass);
   EXPECT_EQ(explained.reason.find(alone.reason), 0);
 }
 
-// It is nearer to the rod than the others; a tolerance of 0.2 % tells them apart. Its springs are
-// linear in the angle, those of our chains in 2 tan(angle / 2), which is the rest.
+// Its springs are EI/h, and linear in the angle: so they are called, where the angles are large
+// enough for it to show.
+TEST(Explanation, AChainsSpringsAreCalledByTheirLaw) {
+  Scene rope = clamped();
+  rope.scale_modulus(0.2);
+  const HingedChain chain(std::vector<double>(20, 0.05), 0.05, 0.2, true);
+  const Outcome outcome = judged(rope, made(chain.points()));
+  EXPECT_TRUE(outcome.judgement.pass) << outcome.judgement.reason;
+  EXPECT_NE(outcome.judgement.reason.find("its springs EI/h and linear in the angle"),
+            std::string::npos)
+      << outcome.judgement.reason;
+  Shape shape;
+  shape.points = chain.points();
+  for (const OwnPolygon& one : own_polygons(rope, shape, Springs::fitted)) {
+    if (one.clamp != ChainClamp::welded) continue;
+    EXPECT_EQ(one.law, energy_model::JointLaw::linear);
+    EXPECT_TRUE(one.law_shows);
+    EXPECT_NEAR(one.stiffness, 1, 1e-3);
+    EXPECT_LT(one.rms_m, 1e-5);
+    for (const energy_model::JointLaw law :
+         {energy_model::JointLaw::hooke, energy_model::JointLaw::binormal}) {
+      for (const OwnPolygon& other : own_polygons(rope, shape, Springs::fitted, law)) {
+        if (other.clamp == ChainClamp::welded) EXPECT_LT(other.stiffness, 0.997);
+      }
+    }
+  }
+}
+
+// It is nearer to the rod than the others; a tolerance of 0.2 % tells them apart.
 TEST(Explanation, AChainClampedInTheMiddleOfASegmentIsKnown) {
   std::vector<double> lengths(11, 0.1);
   lengths.front() = lengths.back() = 0.05;

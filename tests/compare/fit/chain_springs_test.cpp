@@ -81,26 +81,34 @@ TEST(ChainSprings, BetweenTwoClampsBothEndsAreHeldAlike) {
 }
 
 // What each simulator makes of its number is the joint that was meant: MuJoCo's plugin takes
-// E pi r^4 / 4 / h, Newton's add_rod divided by h before 1.2.0, USD counts degrees.
+// E pi r^4 / 4 / h, Newton's add_rod divided by h before 1.2.0 and its Rod does, USD counts
+// degrees. A capsule, a cylinder and a ball, weighs what its segment does.
 TEST(ChainSprings, SimulatorsTakeTheSameJointEachByItsOwnNumber) {
   const Scene scene = test::heavy_scene(5, 0);
   for (const auto& [clamp, chain] : springs_of(scene, 24)) {
     std::map<std::string, double> joints;
+    const double r = scene.diameter / 2;
+    const double h = chain.segment_length;
     for (const SimulatorParameter& parameter : simulator_parameters(chain)) {
+      if (std::string_view(parameter.unit) == "kg/m^3") {
+        const double volume = std::numbers::pi * (r * r * h + 4 * r * r * r / 3);
+        EXPECT_NEAR(parameter.value * volume / (scene.mass_per_length() * h), 1, 1e-12);
+        continue;
+      }
       const double per_unit =
           std::string_view(parameter.unit) == "Pa"
               ? std::numbers::pi * std::pow(scene.diameter / 2, 4) / 4 / chain.segment_length
           : std::string_view(parameter.unit) == "N m^2"   ? 1 / chain.segment_length
           : std::string_view(parameter.unit) == "N m/deg" ? 180 / std::numbers::pi
                                                           : 1;
-      if (std::string_view(parameter.name) == "add_rod bend_stiffness since 1.2.0") {
-        EXPECT_STREQ(parameter.unit, "N m/rad");
-      }
-      joints[std::string(parameter.simulator) + parameter.name] = parameter.value * per_unit;
+      joints[std::string(parameter.simulator) + ' ' + parameter.name] = parameter.value * per_unit;
     }
-    EXPECT_EQ(joints.size(), clamp == ChainClamp::welded ? 9U : 8U);
+    EXPECT_EQ(joints.size(), clamp == ChainClamp::welded ? 12U : 11U);
     for (const auto& [name, joint] : joints) {
-      EXPECT_NEAR(joint / chain.stiffness, 1, 1e-12) << name << ' ' << to_string(clamp);
+      const bool is_binormal = name == "Newton add_rod bend_stiffness since 1.5" ||
+                               name == "Newton Rod bend_rigidity since 1.6";
+      EXPECT_NEAR(joint / (is_binormal ? chain.binormal_stiffness : chain.stiffness), 1, 1e-12)
+          << name << ' ' << to_string(clamp);
     }
     EXPECT_NEAR(chain.equivalent_modulus / scene.material.youngs_modulus, chain.over_rod, 1e-9);
   }
@@ -109,6 +117,20 @@ TEST(ChainSprings, SimulatorsTakeTheSameJointEachByItsOwnNumber) {
 TEST(ChainSprings, WithoutADiameterNoSimulatorTakesAModulus) {
   for (const SimulatorParameter& parameter : simulator_parameters({.stiffness = 1})) {
     EXPECT_STRNE(parameter.unit, "Pa");
+  }
+}
+
+// Of a rope that bends by large angles each law wants another stiffness: less the faster its moment
+// grows, a (1 + a^2/3) of discrete elastic rods beside a.
+TEST(ChainSprings, OfASoftRopeEachLawHasItsOwnStiffness) {
+  const Scene rope = test::heavy_scene(200, 0);
+  const auto chains = springs_of(rope, 20);
+  for (const auto& [clamp, chain] : chains) {
+    EXPECT_LT(chain.binormal_stiffness, 0.97 * chain.stiffness) << to_string(clamp);
+  }
+  const auto stiff = springs_of(test::heavy_scene(0.1, 0), 20);
+  for (const auto& [clamp, chain] : stiff) {
+    EXPECT_NEAR(chain.binormal_stiffness / chain.stiffness, 1, 1e-3) << to_string(clamp);
   }
 }
 

@@ -165,13 +165,14 @@ TEST(Scene, NamesAnUnknownKeyBeforeTheOneThatIsMissingForIt) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {held + "[[load]]\nat = 0.4\nmoment = [0, 0, 2]\n", "load.moment = [ 0, 0, 2 ]"},
       {held + "[[load]]\nto = 0.4\nper_length = [0, 2, 0]\n", "load.per_length = [ 0, 2, 0 ]"},
-      {held + section + "natural_curvature = 3\n", "section.natural_curvature = 3"},
+      {held + section + "curvature = 3\n", "section.curvature = 3"},
       {held + "[[obstacle]]\ncentre = [0, 1, 0]\nshape = \"sphere\"\n",
        "obstacle.centre = [ 0, 1, 0 ]"},
       {good_rod + "[[gripper]]\nat = 0\nplace = [0, 0, 0]\n", "gripper.place = [ 0, 0, 0 ]"},
       {good_rod + "[[gripper]]\nat = 0\n[[gripper.pose]]\ntime = 0\npoint = [0, 0, 0]\n",
        "gripper.pose.point = [ 0, 0, 0 ]"},
-      {"[rod]\nlength = 1\nwidth = 0.1\nmaterial = \"copper\"\n" + good_gripper, "rod.width = 0.1"},
+      {"[rod]\nlength = 1\nbreadth = 0.1\nmaterial = \"copper\"\n" + good_gripper,
+       "rod.breadth = 0.1"},
       {"[rod]\nlength = 1\ndiameter = 0.1\nmaterial = { modulus = 1, density = 1 }\n" +
            good_gripper,
        "rod.material.modulus = 1"},

@@ -96,12 +96,17 @@ struct ChainSprings {
   ChainClamp clamp = ChainClamp::hinge;  ///< how clamps hold it
   int segments = 0;                      ///< those at clamps held in their middle counted whole
   double segment_length = 0;             ///< h [m]
-  double stiffness = 0;                  ///< of one joint [N m/rad], its moment over 2 tan(angle/2)
+  double stiffness = 0;                  ///< of one joint [N m/rad], its moment over its angle
   double over_rod = 1;                   ///< that over EI / h
   double rms_m = 0;                      ///< of its points from the rod
+  /// The same of a chain whose joints have the energy of discrete elastic rods,
+  /// k (2 tan(angle/2))^2 / 2: their k [N m/rad].
+  double binormal_stiffness = 0;
   /// Young's modulus of a solid round rod of the scene's diameter with EI / h of one joint [Pa]; 0
   /// without a diameter.
   double equivalent_modulus = 0;
+  double mass_per_length = 0;  ///< of the scene's rod, in the mean [kg/m]
+  double diameter = 0;         ///< of the scene's rod [m]; 0: not known
 };
 
 /// One number of a simulator's chain, by the name that it has there.
@@ -112,12 +117,15 @@ struct SimulatorParameter {
   double value = 0;            ///< in that unit
 };
 
-/// The springs of a chain as the parameters of simulators that have such chains: MuJoCo 3 (joints,
-/// and its plugin `mujoco.elasticity.cable`, which divides E I by h itself), Bullet 3, PyElastica
-/// 0.3 (E of a rod whose first element is held), Newton (`ModelBuilder.add_rod`, which divided
-/// by h before version 1.2.0, and `add_joint_cable`, which does not), the angular drives of D6
-/// joints in PhysX 5, and in USD for Isaac Sim, which has them per degree. Those that take a
-/// modulus only if the diameter is known.
+/// A chain as the parameters of simulators that have such chains. Springs: MuJoCo 3 (joints, and
+/// its plugin `mujoco.elasticity.cable`, which divides E I by h itself), Bullet 3, Drake,
+/// PyElastica 0.3 (E of a rod whose first element is held), Newton (`ModelBuilder.add_rod`, which
+/// divided by h before version 1.2.0, has had the energy of discrete elastic rods since 1.5, and
+/// since 1.6 takes a `Rod` whose `bend_rigidity` it divides by h; `add_joint_cable`, which never
+/// divided), the angular drives of D6 joints in PhysX 5, and in USD for Isaac Sim, which has them
+/// per degree. Masses: the density of a capsule that weighs what its segment does, although its
+/// half-spheres reach over the segment's ends, rho = mass / (pi r^2 h + 4/3 pi r^3). Those that
+/// take a modulus or a density only if the diameter is known.
 [[nodiscard]] std::vector<SimulatorParameter> simulator_parameters(const ChainSprings& chain);
 
 /// How a gripper of all scenes is held beside what they say.

@@ -76,6 +76,11 @@ struct Section {
   std::optional<double> torsional_stiffness;
   /// EI about d2 [N m^2], > 0; none: the section is round.
   std::optional<double> bending_stiffness_2 = std::nullopt;
+  /// Curvature of the stress-free shape about d1 and d2 of the rod's frame, the same all along
+  /// [1/m]; none: the rod's own there.
+  std::optional<Eigen::Vector2d> natural_curvature = std::nullopt;
+  /// The same of its twist [rad/m].
+  std::optional<double> natural_twist = std::nullopt;
 
   /// As Scene's.
   [[nodiscard]] double mean_bending_stiffness() const;
@@ -93,8 +98,9 @@ struct NamedValue {
 };
 
 /// Poisson's ratio of a rod whose torsional stiffness is needed and not given: GJ = EI / (1 + nu),
-/// EI the harmonic mean of those about d1 and d2. So it is for a round section and every elliptic
-/// one (Saint-Venant), and for a rectangular one in the limit of a thin strip.
+/// EI the harmonic mean of those about d1 and d2. So it is for a round section, solid or hollow,
+/// and every elliptic one (Saint-Venant), and for a rectangular one in the limit of a thin strip.
+/// Of one whose width and thickness are given GJ is Saint-Venant's.
 inline constexpr double assumed_poisson_ratio = 0.3;
 
 /// How a scene that moves is looked at.
@@ -109,16 +115,20 @@ struct TrackRates {
   bool operator==(const TrackRates&) const = default;
 };
 
-/// A physical scene in SI units. A rod is round and of one material, or is given by its EI (about
-/// d1 and d2, if they differ) and its mass per length; where both are given, these count for
-/// bending and weight, and material and diameter for the axial stiffness only.
+/// A physical scene in SI units. A rod is of one material and round, a tube or a flat strip, or is
+/// given by its EI (about d1 and d2, if they differ) and its mass per length; where both are given,
+/// these count for bending and weight, and material and section for the axial stiffness only.
 struct Scene {
   std::string name;                         ///< for people; regression tests know the scene by it
   std::string file;                         ///< where it was read from, for messages
   Eigen::Vector3d gravity = {0, -9.81, 0};  ///< [m/s^2]
   double length = 0;                        ///< l [m]
-  double diameter = 0;                      ///< d [m]; 0: not known, then there is no material
-  Material material;                        ///< of a round rod; youngs_modulus 0: not known
+  /// d [m]; 0: not known, then there is no material but that of a rectangular section.
+  double diameter = 0;
+  double inner_diameter = 0;  ///< of a tube [m], < diameter; 0: solid
+  double width = 0;           ///< of a rectangular section, along d1 [m]; 0: it is none
+  double thickness = 0;       ///< of a rectangular section, along d2 [m]
+  Material material;          ///< youngs_modulus 0: not known
   std::optional<double> given_bending_stiffness;  ///< EI [N m^2], > 0; none: of the material
   std::optional<double> given_mass_per_length;    ///< rho A [kg/m], >= 0; none: of the material
   /// EI about d2 [N m^2], > 0, beside given_bending_stiffness, which then is about d1; none: round.
@@ -138,20 +148,29 @@ struct Scene {
   ForceModelSettings force_model;   ///< as the file has it
   TrackRates track;                 ///< as the file has it
 
-  [[nodiscard]] double cross_section() const;      ///< A [m^2]; 0 without a diameter
+  [[nodiscard]] double cross_section() const;  ///< A [m^2]; 0 if its sizes are not known
+  /// I / A of it about d1 and d2 [m^2]; 0 likewise.
+  [[nodiscard]] Eigen::Vector2d squared_gyration() const;
   [[nodiscard]] double bending_stiffness() const;  ///< EI [N m^2], outside sections; about d1
+  /// EI about d2 [N m^2], outside sections, where it is another one than that about d1: given, or
+  /// of the material and a rectangular section that is not square.
+  [[nodiscard]] std::optional<double> bending_stiffness_2() const;
   /// The smaller EI of those about d1 and d2 [N m^2], outside sections.
   [[nodiscard]] double softer_bending_stiffness() const;
   /// Their harmonic mean [N m^2], which GJ of one material goes with; EI of a round rod.
   [[nodiscard]] double mean_bending_stiffness() const;
   [[nodiscard]] double mass_per_length() const;  ///< rho A [kg/m], outside sections
   /// GJ [N m^2], outside sections: as given, of a rod with material directors
-  /// mean_bending_stiffness() / (1 + 0.3) if not given; else 0.
+  /// assumed_torsional_stiffness() if not given; else 0.
   [[nodiscard]] double twisting_stiffness() const;
+  /// GJ [N m^2] of one material with assumed_poisson_ratio, outside sections: of a rectangular
+  /// section E / (2 (1 + nu)) times its torsion constant, else mean_bending_stiffness() / (1 + nu).
+  [[nodiscard]] double assumed_torsional_stiffness() const;
   /// Whether that GJ is an assumption.
   [[nodiscard]] bool assumes_torsion() const;
-  /// EA [N], one for all of the rod: of the material; without one of a solid round rod of this EI
-  /// and diameter, 16 EI / d^2; without a diameter 1e6 EI / l^2, a rod 250 times as long as thick.
+  /// EA [N], one for all of the rod: of the material; without one of a rod of one material with
+  /// this EI and section (solid and round: 16 EI / d^2); without a section 1e6 EI / l^2, a rod 250
+  /// times as long as thick.
   [[nodiscard]] double axial_stiffness() const;
   /// The stiffness that a fit multiplies.
   [[nodiscard]] NamedValue stiffness() const;
@@ -169,11 +188,11 @@ struct Scene {
   /// w l^3 / (EI) [-], w the mean weight per length and EI the smaller one outside sections.
   [[nodiscard]] double gamma() const;
   /// Whether the stress-free shape is curved or twisted.
-  [[nodiscard]] bool naturally_bent() const {
-    return naturally_curved() || natural_strain.z() != 0;
-  }
+  [[nodiscard]] bool naturally_bent() const { return naturally_curved() || naturally_twisted(); }
   /// The same of the curvature alone.
   [[nodiscard]] bool naturally_curved() const;
+  /// The same of the twist alone.
+  [[nodiscard]] bool naturally_twisted() const;
   /// Whether the rod, or a section of it, has one EI about d1 and another about d2.
   [[nodiscard]] bool has_two_stiffnesses() const;
   /// Whether d1 and d2 are fixed to the rod's material (energy_model::has_material_directors).

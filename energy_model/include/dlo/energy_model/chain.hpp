@@ -10,8 +10,12 @@ namespace dlo::energy_model {
 
 /// The potential of a joint that bends by alpha; L is the mean length of its two segments.
 enum class JointLaw {
-  paper,  ///< c_b L (8/3 - 4 cos(alpha/2) + 4/3 cos^3(alpha/2))
-  hooke,  ///< -4 (EI/L) ln cos(alpha/2), up to 3 rad and with constant moment beyond
+  paper,   ///< c_b L (8/3 - 4 cos(alpha/2) + 4/3 cos^3(alpha/2))
+  hooke,   ///< -4 (EI/L) ln cos(alpha/2), up to 3 rad and with constant moment beyond
+  linear,  ///< EI/L alpha^2 / 2: springs in the angle, as most simulators' joints have them
+  /// EI/L (2 tan(alpha/2))^2 / 2, beyond 3 rad as hooke: discrete elastic rods (Bergou et al.,
+  /// SIGGRAPH 2008), whose curvature binormal is 2 tan(alpha/2) long.
+  binormal,
 };
 
 /// A polygon of rigid segments in a plane, its first segment held. It is the force model's rod
@@ -25,7 +29,7 @@ struct ChainProblem {
   double stiffness = 0;                             ///< c_b [N] or EI [N m^2], > 0
   /// Of each joint [N] or [N m^2], n-1, each > 0; empty: all have `stiffness`.
   Eigen::VectorXd stiffnesses = {};
-  /// Turn of each joint at rest, counter-clockwise [rad], n-1, |alpha_0| < 3, law hooke only: its
+  /// Turn of each joint at rest, counter-clockwise [rad], n-1, |alpha_0| < 3, not of law paper: its
   /// potential is P(alpha) - P(alpha_0) - P'(alpha_0) (alpha - alpha_0). Empty: straight.
   Eigen::VectorXd natural_turns = {};
 };

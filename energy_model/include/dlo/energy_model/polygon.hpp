@@ -64,7 +64,7 @@ struct PolygonProblem {
   Eigen::VectorXd natural_turns = {};    ///< as ChainProblem's, from x to y
   std::vector<HeldPoint> held;           ///< one or more, each point once
   std::vector<PointObstacle> obstacles;  ///< may be empty
-  std::vector<PolygonTwist> twists;      ///< law hooke, without natural turns; may be empty
+  std::vector<PolygonTwist> twists;      ///< not of law paper, nor with natural turns; may be empty
 };
 
 /// How far to minimise.

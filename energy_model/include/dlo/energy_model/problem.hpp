@@ -51,6 +51,10 @@ struct Section {
   Eigen::Vector3d weight_per_length = Eigen::Vector3d::Zero();  ///< rho A g [N/m]
   /// EI about d2 [N m^2], > 0; none: the section is round, EI is that about every axis across.
   std::optional<double> bending_stiffness_2 = std::nullopt;
+  /// Curvature of the stress-free shape about d1 and d2 [1/m], the same all along it; none: as
+  /// Problem::natural_strains say, which are not empty where a section has its own.
+  std::optional<Eigen::Vector2d> natural_curvature = std::nullopt;
+  std::optional<double> natural_twist = std::nullopt;  ///< the same of the twist [rad/m]
 };
 
 /// An inextensible rod, round or of two bending stiffnesses about the principal axes d1 and d2 of
@@ -74,7 +78,7 @@ struct Problem {
   std::vector<Section> sections;  ///< where it is another one, by arc length, none over another
   /// Strains u of the stress-free shape about d1, d2 and the tangent t, of which t' = u2 d1 - u1 d2
   /// and u3 turns d1 towards d2: coefficients of Legendre's polynomials P_j(2 s/l - 1) [1/m].
-  /// Empty: straight. Not empty: torsional_stiffness > 0.
+  /// Empty: straight, sections too. Not empty: torsional_stiffness > 0.
   std::vector<Eigen::Vector3d> natural_strains;
   /// EI about d2 [N m^2], > 0; none: round, EI is that about every axis across. Given:
   /// torsional_stiffness > 0.

@@ -1,0 +1,191 @@
+#include "dlo/energy_model/taut_line.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "base/require.hpp"
+#include "base/sized_samples.hpp"
+#include "dlo/energy_model/turns.hpp"
+#include "problem/rod_law.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// What lengths may differ by, and directions and forces leave the line by, in theirs.
+constexpr double length_rounding = 1e-12;
+constexpr double line_rounding = 1e-9;
+
+/// Indices of the grips by growing arc length.
+std::vector<std::size_t> grips_along(const Problem& problem) {
+  std::vector<std::size_t> along(problem.grips.size());
+  for (std::size_t i = 0; i < along.size(); ++i) along[i] = i;
+  std::stable_sort(along.begin(), along.end(), [&](std::size_t a, std::size_t b) {
+    return problem.grips[a].at < problem.grips[b].at;
+  });
+  return along;
+}
+
+/// int ds / GJ between two arc lengths.
+double twist_compliance(const Problem& problem, double begin, double end) {
+  double compliance = 0;
+  for (const Section& part : rod_parts(problem)) {
+    const double length = std::min(end, part.end) - std::max(begin, part.begin);
+    if (length > 0) compliance += length / part.torsional_stiffness;
+  }
+  return compliance;
+}
+
+class TautLine {
+ public:
+  explicit TautLine(const Problem& problem) : problem_(problem), along_(grips_along(problem)) {
+    line_ = (grip(along_.size() - 1).position - grip(0).position).normalized();
+    result_.grips.resize(problem.grips.size());
+    for (const Grip& held : problem.grips) {
+      if (!held.direction) continue;
+      require(held.direction->normalized().cross(line_).norm() <= line_rounding &&
+                  held.direction->dot(line_) > 0,
+              "Problem", "arc length of a clamp of a taut rod", held.at,
+              "that of one whose direction is along the line on which grips hold all of the rod");
+    }
+  }
+
+  Equilibrium solve() {
+    for (const Section& part : rod_parts(problem_)) add_weight(part);
+    for (const Load& load : problem_.loads) add_load(load);
+    add_twist();
+    result_.status = SolveStatus::converged;
+    result_.message =
+        "converged: the grips hold the rod taut on a line, its only shape; without stretch its "
+        "tension is undetermined, that of an unstressed rod is taken";
+    result_.residual = 0;
+    result_.error_estimate = 0;
+    result_.sample = sampler();
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] const Grip& grip(std::size_t i) const { return problem_.grips[along_[i]]; }
+  [[nodiscard]] Eigen::Vector3d point(double s) const {
+    return grip(0).position + (s - grip(0).at) * line_;
+  }
+
+  /// @param force  on the line at s, between grips i and i + 1
+  void carry(const Eigen::Vector3d& force, double s, std::size_t i) {
+    const double share = (s - grip(i).at) / (grip(i + 1).at - grip(i).at);
+    result_.grips[along_[i]].force -= (1 - share) * force;
+    result_.grips[along_[i + 1]].force -= share * force;
+  }
+
+  void require_along(const Eigen::Vector3d& force, double s) const {
+    require(
+        force.cross(line_).norm() <= line_rounding * force.norm(), "Problem",
+        "arc length where a force across a taut rod acts", s,
+        "none: nothing that does not stretch holds it on a line (grips nearer to each other, or "
+        "forces along the line)");
+  }
+
+  void add_weight(const Section& part) {
+    for (std::size_t i = 0; i + 1 < along_.size(); ++i) {
+      const double begin = std::max(part.begin, grip(i).at);
+      const double end = std::min(part.end, grip(i + 1).at);
+      if (!(end > begin)) continue;
+      const Eigen::Vector3d weight = (end - begin) * part.weight_per_length;
+      const double middle = (begin + end) / 2;
+      require_along(weight, middle);
+      carry(weight, middle, i);
+      result_.energy.gravity -= weight.dot(point(middle) - problem_.grips.front().position);
+    }
+  }
+
+  void add_load(const Load& load) {
+    result_.energy.load -= load.force.dot(point(load.at) - problem_.grips.front().position);
+    for (std::size_t i = 0; i < along_.size(); ++i) {
+      if (std::abs(load.at - grip(i).at) > line_rounding * problem_.length) continue;
+      result_.grips[along_[i]].force -= load.force;
+      return;
+    }
+    require_along(load.force, load.at);
+    std::size_t i = 0;
+    while (grip(i + 1).at < load.at) ++i;
+    carry(load.force, load.at, i);
+  }
+
+  void add_twist() {
+    std::optional<std::size_t> last;
+    for (const std::size_t g : along_) {
+      const Grip& held = problem_.grips[g];
+      if (!held.frame) continue;
+      if (last) {
+        const Grip& before = problem_.grips[*last];
+        // The writhe of a line is zero: what is held is twist.
+        const double angle = 2 * std::numbers::pi * held_turns(problem_, before, held).value_or(0);
+        const double torque = angle / twist_compliance(problem_, before.at, held.at);
+        result_.twists.push_back({before.at, held.at, angle, torque});
+        result_.energy.twisting += angle * torque / 2;
+        result_.grips[g].torque += torque * line_;
+        result_.grips[*last].torque -= torque * line_;
+      } else {
+        first_d1_ = Eigen::AngleAxisd(held.frame->roll, line_) * held_d1(problem_, held);
+      }
+      last = g;
+    }
+  }
+
+  [[nodiscard]] std::function<Samples(std::span<const double>)> sampler() const {
+    return [problem = problem_, start = point(0), line = line_, d1 = first_d1_,
+            twists = result_.twists](std::span<const double> arc_lengths) {
+      Samples samples = sized_samples(arc_lengths, problem.length);
+      samples.curvature.setZero();
+      samples.tangents.colwise() = line;
+      if (!twists.empty()) samples.d1.resize(3, samples.points.cols());
+      for (Eigen::Index i = 0; i < samples.points.cols(); ++i) {
+        const double s = arc_lengths[static_cast<std::size_t>(i)];
+        samples.points.col(i) = start + s * line;
+        if (twists.empty()) continue;
+        double angle = 0;
+        for (const TwistedPart& part : twists) {
+          if (!(s > part.begin)) continue;
+          angle += part.torque * twist_compliance(problem, part.begin, std::min(s, part.end));
+        }
+        samples.d1.col(i) = Eigen::AngleAxisd(angle, line) * d1;
+      }
+      return samples;
+    };
+  }
+
+  const Problem& problem_;
+  std::vector<std::size_t> along_;
+  Eigen::Vector3d line_;
+  Eigen::Vector3d first_d1_ = Eigen::Vector3d::Zero();  // where the first frame is held
+  Equilibrium result_;
+};
+
+}  // namespace
+
+bool is_taut_line(const Problem& problem) {
+  if (problem.grips.size() < 2 || !(problem.length > 0)) return false;
+  const std::vector<std::size_t> along = grips_along(problem);
+  const Grip& first = problem.grips[along.front()];
+  const double rounding = length_rounding * problem.length;
+  if (first.at > rounding || problem.grips[along.back()].at < problem.length - rounding) {
+    return false;
+  }
+  const Eigen::Vector3d way = problem.grips[along.back()].position - first.position;
+  if (!(std::abs(way.norm() - problem.length) <= rounding)) return false;
+  return std::all_of(problem.grips.begin(), problem.grips.end(), [&](const Grip& grip) {
+    const Eigen::Vector3d there = first.position + (grip.at - first.at) / problem.length * way;
+    return (grip.position - there).norm() <= line_rounding * problem.length;
+  });
+}
+
+std::optional<Equilibrium> taut_line(const Problem& problem) {
+  check(problem);
+  const bool plain = problem.obstacles.empty() && !has_material_directors(problem);
+  if (!plain || !is_taut_line(problem)) return std::nullopt;
+  return TautLine(problem).solve();
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,203 @@
+// Tubes and rectangles: what follows from their sizes, against closed forms, tables and another
+// series.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "foreign/scene_document.hpp"
+#include "scene/scene_problem.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using std::numbers::pi;
+
+const std::string flat_clamp = R"([[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = "0 deg"
+)";
+
+std::string material_rod(const std::string& section) {
+  return "[rod]\nlength = 1\nmaterial = { youngs_modulus = \"2 GPa\", density = 1200 }\n" +
+         section + "\n";
+}
+
+Scene sectioned_scene(const std::string& section) {
+  return parse_scene(material_rod(section) + flat_clamp, "my.toml");
+}
+
+void expect_section_refused(const std::string& text, const std::vector<std::string>& parts) {
+  try {
+    (void)parse_scene(text, "my.toml");
+    ADD_FAILURE() << "no error: " << text;
+  } catch (const InputError& error) {
+    const std::string said = error.what();
+    for (const std::string& part : parts) EXPECT_NE(said.find(part), std::string::npos) << said;
+  }
+}
+
+TEST(RectangleTorsion, IsThatOfTheTables) {
+  // J / (a b^3), Timoshenko and Goodier, Theory of Elasticity, table of art. 109.
+  constexpr double table[][2] = {{1, 0.1406}, {1.2, 0.1661}, {1.5, 0.1958},
+                                 {2, 0.2287}, {2.5, 0.2494}, {3, 0.2633},
+                                 {4, 0.2808}, {5, 0.2913},   {10, 0.3123}};
+  for (const auto& [ratio, beta] : table) {
+    EXPECT_NEAR(rectangle_torsion_constant(ratio, 1) / ratio, beta, 6e-5) << ratio;
+    EXPECT_EQ(rectangle_torsion_constant(1, ratio), rectangle_torsion_constant(ratio, 1));
+  }
+  EXPECT_NEAR(rectangle_torsion_constant(1e6, 1) / 1e6, 1.0 / 3, 1e-6);
+  EXPECT_NEAR(rectangle_torsion_constant(4e-3, 2e-3) / rectangle_torsion_constant(4, 2), 1e-12,
+              1e-25);
+}
+
+TEST(RectangleTorsion, IsTwiceTheIntegralOfPrandtlsStressFunction) {
+  // As a double sine series: 256 a b / pi^6 times the sum of 1 / (m^2 n^2 (m^2/a^2 + n^2/b^2)), odd
+  // m and n; beyond M it lacks some 1 / M^3.
+  constexpr int most = 1001;
+  for (const double a : {1.0, 1.7, 3.0}) {
+    double sum = 0;
+    for (int m = 1; m <= most; m += 2) {
+      for (int n = 1; n <= most; n += 2) {
+        const double mm = static_cast<double>(m) * m;
+        const double nn = static_cast<double>(n) * n;
+        sum += 1 / (mm * nn * (mm / (a * a) + nn));
+      }
+    }
+    const double J = 256 * a / std::pow(pi, 6) * sum;
+    EXPECT_NEAR(rectangle_torsion_constant(a, 1) / J, 1, 1e-8) << a;
+  }
+}
+
+TEST(CrossSection, OfATubeIsARing) {
+  const Scene tube = sectioned_scene("diameter = \"6 mm\"\ninner_diameter = \"4 mm\"");
+  const double D = 6e-3;
+  const double d = 4e-3;
+  const double I = pi * (std::pow(D, 4) - std::pow(d, 4)) / 64;
+  const double A = pi * (D * D - d * d) / 4;
+  EXPECT_NEAR(tube.bending_stiffness() / (2e9 * I), 1, 1e-14);
+  EXPECT_NEAR(tube.axial_stiffness() / (2e9 * A), 1, 1e-14);
+  EXPECT_NEAR(tube.mass_per_length() / (1200 * A), 1, 1e-14);
+  // G J = E / (2 (1 + nu)) 2 I
+  EXPECT_NEAR(tube.assumed_torsional_stiffness() / (2e9 * I / 1.3), 1, 1e-14);
+  EXPECT_FALSE(tube.has_material_directors());
+  const Scene solid = sectioned_scene("diameter = \"6 mm\"\ninner_diameter = 0");
+  EXPECT_EQ(solid.bending_stiffness(), sectioned_scene("diameter = \"6 mm\"").bending_stiffness());
+  // By EI and mass alone the section says the axial stiffness.
+  const Scene given = parse_scene(
+      "[rod]\nlength = 1\nbending_stiffness = 0.1\nmass_per_length = 0.01\n"
+      "diameter = \"6 mm\"\ninner_diameter = \"4 mm\"\n" +
+          flat_clamp,
+      "my.toml");
+  EXPECT_NEAR(given.axial_stiffness() / (0.1 * A / I), 1, 1e-14);
+}
+
+TEST(CrossSection, OfAFlatStripHasTwoBendingStiffnessesAndSaintVenantsTorsion) {
+  const Scene strip = sectioned_scene("width = \"10 mm\"\nthickness = \"2 mm\"");
+  const double w = 10e-3;
+  const double t = 2e-3;
+  // The width is along d1: about d1 the thickness counts cubed.
+  EXPECT_NEAR(strip.bending_stiffness() / (2e9 * w * t * t * t / 12), 1, 1e-14);
+  ASSERT_TRUE(strip.bending_stiffness_2());
+  EXPECT_NEAR(*strip.bending_stiffness_2() / (2e9 * t * w * w * w / 12), 1, 1e-14);
+  EXPECT_NEAR(strip.axial_stiffness() / (2e9 * w * t), 1, 1e-14);
+  EXPECT_NEAR(strip.mass_per_length() / (1200 * w * t), 1, 1e-14);
+  EXPECT_TRUE(strip.has_two_stiffnesses());
+  EXPECT_TRUE(strip.assumes_torsion());
+  EXPECT_NEAR(strip.twisting_stiffness() / (2e9 / 2.6 * 0.2913 * w * t * t * t), 1, 2e-4);
+  const energy_model::Problem problem = scene_problem(strip);
+  EXPECT_EQ(problem.bending_stiffness_2, strip.bending_stiffness_2());
+  EXPECT_EQ(problem.torsional_stiffness, strip.twisting_stiffness());
+  EXPECT_EQ(strip.stiffness().name, std::string("E"));
+  // Given stiffnesses count before those of the section, and GJ then goes with these.
+  Scene given = strip;
+  given.given_bending_stiffness = 0.1;
+  EXPECT_FALSE(given.bending_stiffness_2());
+  given.given_bending_stiffness_2 = 0.3;
+  EXPECT_NEAR(given.twisting_stiffness(), 0.15 / 1.3, 1e-15);
+}
+
+TEST(CrossSection, OfASquareIsRoundInBendingAndNotInTorsion) {
+  const Scene square = sectioned_scene("width = \"3 mm\"\nthickness = \"3 mm\"");
+  EXPECT_FALSE(square.has_two_stiffnesses());
+  EXPECT_TRUE(square.planar());
+  EXPECT_NEAR(square.bending_stiffness() / (2e9 * std::pow(3e-3, 4) / 12), 1, 1e-14);
+  EXPECT_NEAR(square.assumed_torsional_stiffness() / (2e9 / 2.6 * 0.140577 * std::pow(3e-3, 4)), 1,
+              1e-5);
+}
+
+TEST(CrossSection, OfAStripBendsByItsThicknessWhereItsClampSaysSo) {
+  // A weightless cantilever under a small load across its flat side: F l^3 / (3 EI).
+  const auto tip = [](const std::string& roll) {
+    const Scene scene = parse_scene(
+        "gravity = [0, 0, 0]\n" + material_rod("width = \"10 mm\"\nthickness = \"2 mm\"") +
+            flat_clamp + roll + "[[load]]\nat = 1\nforce = [0, 1e-6, 0]\n",
+        "my.toml");
+    return solve_reference(scene, Model::energy).sample(std::vector{1.0}).points(1, 0);
+  };
+  const double soft = 2e9 * 10e-3 * std::pow(2e-3, 3) / 12;
+  EXPECT_NEAR(tip("roll = \"90 deg\"\n") / (1e-6 / (3 * soft)), 1, 1e-6);
+  EXPECT_NEAR(tip("") / (1e-6 / (3 * soft * 25)), 1, 1e-6);
+}
+
+TEST(CrossSection, IsRefusedWhereItIsNone) {
+  expect_section_refused(
+      material_rod("diameter = \"4 mm\"\ninner_diameter = \"4 mm\"") + flat_clamp,
+      {"my.toml:5: rod.inner_diameter", "0 to less than diameter, 0.004 m"});
+  expect_section_refused(material_rod("diameter = \"4 mm\"\ninner_diameter = -1") + flat_clamp,
+                         {"rod.inner_diameter"});
+  expect_section_refused(material_rod("inner_diameter = \"1 mm\"") + flat_clamp,
+                         {"rod.diameter", "missing"});
+  expect_section_refused(
+      material_rod("diameter = \"4 mm\"\nwidth = \"8 mm\"\nthickness = \"1 mm\"") + flat_clamp,
+      {"rod.diameter", "given besides width", "width along d1 and thickness along d2"});
+  expect_section_refused(
+      material_rod("inner_diameter = \"4 mm\"\nthickness = \"1 mm\"") + flat_clamp,
+      {"rod.inner_diameter", "given besides thickness"});
+  expect_section_refused(material_rod("width = \"8 mm\"") + flat_clamp,
+                         {"rod.thickness", "missing", "allowed: both"});
+  expect_section_refused(material_rod("thickness = \"8 mm\"") + flat_clamp,
+                         {"rod.width", "missing"});
+  expect_section_refused(material_rod("width = 0\nthickness = \"1 mm\"") + flat_clamp,
+                         {"rod.width", "1e-09"});
+  expect_section_refused(material_rod("width = \"8 mm\"\nthickness = \"1 mm\"") + flat_clamp +
+                             "[[obstacle]]\npoint = [0, -0.2, 0]\nnormal = [0, 1, 0]\n",
+                         {"obstacle.touches", "touches = \"axis\""});
+  EXPECT_NO_THROW((void)parse_scene(material_rod("width = \"8 mm\"\nthickness = \"1 mm\"") +
+                                        flat_clamp +
+                                        "[[obstacle]]\npoint = [0, -0.2, 0]\nnormal = [0, 1, 0]\n"
+                                        "touches = \"axis\"\n",
+                                    "my.toml"));
+  // No clamp says where a strip's axes are.
+  expect_section_refused(material_rod("width = \"8 mm\"\nthickness = \"1 mm\"") +
+                             "[[gripper]]\nat = 0\nposition = [0, 0, 0]\nhold = \"pin\"\n",
+                         {"rod.width", "no gripper holds the rod's frame"});
+}
+
+TEST(CrossSection, IsInTheDocumentWithWhatFollows) {
+  const nlohmann::ordered_json tube =
+      scene_document(sectioned_scene("diameter = \"6 mm\"\ninner_diameter = \"4 mm\"")).at("rod");
+  EXPECT_DOUBLE_EQ(tube.at("inner_diameter_m"), 4e-3);
+  EXPECT_TRUE(tube.at("width_m").is_null());
+  EXPECT_TRUE(tube.at("torsional_stiffness_Nm2").is_null());
+  EXPECT_GT(tube.at("assumed_torsional_stiffness_Nm2"), 0.0);
+  const nlohmann::ordered_json strip =
+      scene_document(sectioned_scene("width = \"10 mm\"\nthickness = \"2 mm\"")).at("rod");
+  EXPECT_DOUBLE_EQ(strip.at("width_m"), 10e-3);
+  EXPECT_DOUBLE_EQ(strip.at("thickness_m"), 2e-3);
+  EXPECT_TRUE(strip.at("diameter_m").is_null());
+  EXPECT_NEAR(strip.at("bending_stiffness_Nm2")[1].get<double>() /
+                  strip.at("bending_stiffness_Nm2")[0].get<double>(),
+              25, 1e-12);
+}
+
+}  // namespace
+}  // namespace dlo::compare

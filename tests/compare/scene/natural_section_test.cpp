@@ -1,0 +1,126 @@
+// Sections that are bent by nature where the rod is not.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/discretise.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "dlo/compare/solve.hpp"
+
+namespace dlo::compare {
+namespace {
+
+const std::string wire_head = R"(gravity = [0, 0, 0]
+[rod]
+length = "240 mm"
+diameter = "0.89 mm"
+material = { youngs_modulus = "60 GPa", density = 6450 }
+)";
+const std::string wire_arcs = R"([[section]]
+from = "200 mm"
+to = "220 mm"
+natural_curvature = "80 1/m"
+[[section]]
+from = "220 mm"
+to = "240 mm"
+natural_curvature = "40 1/m"
+)";
+const std::string wire_clamp = R"([[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = "0 deg"
+)";
+
+Scene guide_wire() { return parse_scene(wire_head + wire_arcs + wire_clamp, "my.toml"); }
+
+/// Of a shaft of 0.2 m, an arc of 80 1/m and one of 40 1/m, 0.02 m each.
+Eigen::Vector3d tip_of_arcs() {
+  const double a = 80 * 0.02;
+  const double b = a + 40 * 0.02;
+  return {0.2 + std::sin(a) / 80 + (std::sin(b) - std::sin(a)) / 40,
+          (1 - std::cos(a)) / 80 + (std::cos(a) - std::cos(b)) / 40, 0};
+}
+
+TEST(NaturalSection, AGuideWiresTipIsTwoArcs) {
+  const Scene scene = guide_wire();
+  EXPECT_TRUE(scene.planar());
+  EXPECT_TRUE(scene.naturally_curved());
+  for (const Model model : {Model::energy, Model::exact}) {
+    const Eigen::Vector3d tip =
+        solve_reference(scene, model).sample(std::vector{scene.length}).points.col(0);
+    EXPECT_LT((tip - tip_of_arcs()).norm(), 1e-9) << to_string(model);
+  }
+  EXPECT_NEAR(tip_of_arcs().x(), 0.20439191, 1e-8);
+  EXPECT_NEAR(tip_of_arcs().y(), 0.03056985, 1e-8);
+}
+
+TEST(NaturalSection, TheMeanCurvatureOfAPartCountsItsSections) {
+  Scene scene = guide_wire();
+  EXPECT_NEAR(scene.natural_curvature().z(), (80 + 40) * 0.02 / 0.24, 1e-12);
+  EXPECT_NEAR(scene.natural_curvature(0.19, 0.21).z(), 40, 1e-10);
+  scene.natural_strain.y() = 10;
+  scene.natural_variation = {{0, 5}};
+  // In a section its own counts, and that alone.
+  EXPECT_NEAR(scene.natural_curvature(0.2, 0.22).z(), 80, 1e-10);
+  EXPECT_NEAR(scene.natural_curvature(0, 0.1).z(), 10 + 5 * (2 * 0.05 / 0.24 - 1), 1e-10);
+  EXPECT_FALSE(scene.without_natural_strain().naturally_bent());
+}
+
+TEST(NaturalSection, ThePolygonApproachesTheArcs) {
+  Scene scene = guide_wire();
+  scene.force_model.law = BendingLaw::hooke;
+  double before = 0;
+  for (const int points : {61, 121, 241}) {
+    scene.force_model.points = points;
+    const Solution chain = solve(scene, Model::chain);
+    const double error = (chain.shape.points.rightCols<1>() - tip_of_arcs()).norm();
+    // Of a joint that a boundary cuts the bend is in one place: first order at worst.
+    EXPECT_LT(error, 0.2 * 0.24 / points);
+    if (before > 0) EXPECT_LT(error, 0.6 * before);
+    before = error;
+  }
+}
+
+TEST(NaturalSection, MayBeTwistedOrBentAboutBothAxes) {
+  const std::string section = "[[section]]\nfrom = 0.1\nto = 0.2\nnatural_twist = \"90 deg/m\"\n";
+  const Scene twisted = parse_scene(wire_head + section + wire_clamp, "my.toml");
+  EXPECT_TRUE(twisted.naturally_bent());
+  EXPECT_FALSE(twisted.naturally_curved());
+  EXPECT_TRUE(twisted.assumes_torsion());
+  const Scene helix = parse_scene(
+      wire_head + section + "natural_curvature = [3, \"4 1/m\"]\n" + wire_clamp, "my.toml");
+  EXPECT_FALSE(helix.planar());
+  EXPECT_EQ(*helix.sections[0].natural_curvature, Eigen::Vector2d(3, 4));
+  EXPECT_DOUBLE_EQ(helix.sections[0].bending_stiffness, helix.bending_stiffness());
+}
+
+TEST(NaturalSection, SaysWhatIsWrong) {
+  const auto refusal = [](const std::string& text) -> std::string {
+    try {
+      (void)parse_scene(text, "my.toml");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  const std::string pin = "[[gripper]]\nat = 0\nposition = [0, 0, 0]\nhold = \"pin\"\n";
+  EXPECT_NE(refusal(wire_head + wire_arcs + pin).find("section.natural_curvature"),
+            std::string::npos);
+  EXPECT_NE(refusal(wire_head + wire_arcs + pin).find("no gripper holds the rod's frame"),
+            std::string::npos);
+  const std::string empty = refusal(wire_head + "[[section]]\nfrom = 0\nto = 0.1\n" + wire_clamp);
+  EXPECT_NE(empty.find("one of the five or more"), std::string::npos) << empty;
+  const std::string rows = refusal(
+      wire_head + "[[section]]\nfrom = 0\nto = 0.1\nnatural_curvature = [[0, 1], [0, 2]]\n" +
+      wire_clamp);
+  EXPECT_NE(rows.find("section.natural_curvature"), std::string::npos) << rows;
+}
+
+}  // namespace
+}  // namespace dlo::compare
