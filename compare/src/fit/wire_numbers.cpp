@@ -118,8 +118,7 @@ void add_positions(std::vector<WireNumber>& numbers, const Scene& scene, std::si
 }  // namespace
 
 bool has_forces_beside_weight(const Scene& scene) {
-  const bool loaded = std::any_of(scene.loads.begin(), scene.loads.end(),
-                                  [](const PointLoad& l) { return l.force.norm() > 0; });
+  const bool loaded = scene.total_of_loads() > 0;
   const std::vector<std::size_t> in_reach = obstacles_in_reach(scene);
   return loaded || std::any_of(in_reach.begin(), in_reach.end(), [&](std::size_t i) {
            return std::isfinite(scene.obstacles[i].stiffness);
