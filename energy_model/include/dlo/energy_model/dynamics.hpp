@@ -40,7 +40,7 @@ using StartingShape = std::function<Samples(std::span<const double>)>;
 struct EnergyBalance {
   double kinetic = 0;    ///< of the points' movement
   double bending = 0;    ///< int 1/2 EI kappa^2 ds
-  double gravity = 0;    ///< of the rod's weight; zero where points sit at the first grip at time 0
+  double gravity = 0;    ///< of weight and line loads; zero at the place of the first grip at time 0
   double load = 0;       ///< of dead loads, the same
   double obstacles = 0;  ///< of the springs of what yields, and of those that stand for rigid ones
   double dissipated = 0;  ///< since the begin, in the material and in the air
