@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "require.hpp"
-#include "solid_looks.hpp"
+#include "solid_samples.hpp"
 
 namespace dlo::force_model {
 namespace {
@@ -33,7 +33,7 @@ double wall_energy(const Wall& wall, const Eigen::Vector3d& position) {
 
 void check(const Solid& solid) {
   require_not_negative("Solid", "stiffness", solid.stiffness);
-  require(solid.looks >= 1, "Solid", "looks", solid.looks, ">= 1");
+  require(solid.samples >= 1, "Solid", "samples", solid.samples, ">= 1");
   require(solid.body.centre().allFinite() && solid.body.axes().allFinite(), "Solid", "centre",
           solid.body.centre().norm(), "finite, as its axes");
 }

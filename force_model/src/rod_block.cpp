@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "solid_looks.hpp"
+#include "solid_samples.hpp"
 #include "twisted_spans.hpp"
 
 namespace dlo::force_model {

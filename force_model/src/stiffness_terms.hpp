@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "dlo/force_model/rod.hpp"
-#include "solid_looks.hpp"
+#include "solid_samples.hpp"
 
 // Minus the derivatives of the forces by the points, term by term. `Stiffness` takes
 //     add(i, j, block)    -df_i/dx_j, i <= j, with its transpose when i != j
@@ -134,7 +134,7 @@ void add_springs(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& point
     for_each_push(solid, points.cols(), at, [&](const SolidPush& push) {
       const Eigen::Vector3d& normal = push.gap.gradient;
       const Eigen::Matrix3d block =
-          solid.stiffness / solid.looks *
+          solid.stiffness / solid.samples *
           (normal * normal.transpose() + push.gap.value * push.gap.hessian);
       const double own = 1 - push.share;
       stiffness.add(push.point, push.point, own * own * block);

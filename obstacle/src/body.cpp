@@ -184,7 +184,7 @@ bool Body::is_symmetric(const Eigen::Vector3d& point, const Eigen::Vector3d& nor
   return std::abs(normal.dot(point - centre_)) < rounding * unit;
 }
 
-int looks_per_segment(const Body& body, double length) {
+int samples_per_segment(const Body& body, double length) {
   constexpr double most = 16;
   return static_cast<int>(std::clamp(std::ceil(2 * length / body.smallest_radius()), 1.0, most));
 }

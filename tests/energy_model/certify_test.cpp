@@ -131,7 +131,7 @@ TEST(NegativeCurvature, IsThatOfTheRodInSpace) {
     if (!way || way->span.planar) continue;
     ++out_of_plane;
     SpanEnergy model(way->span, found.terms);
-    const Eigen::VectorXd x = model.adopt(*found.model, found.x);
+    const Eigen::VectorXd x = model.prolong(*found.model, found.x);
     const auto lagrangian = [&](double step, const Eigen::VectorXd& multipliers) {
       Eigen::VectorXd gradient(model.size());
       const double energy = model.value(x + step * way->direction, gradient);

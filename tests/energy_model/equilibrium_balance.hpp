@@ -54,7 +54,7 @@ inline energy_model::Section section_at(const energy_model::Problem& problem, do
           problem.bending_stiffness_2};
 }
 
-/// Strains of the free rod at an arc length.
+/// Strains of the stress-free shape at an arc length.
 inline Eigen::Vector3d natural_at(const energy_model::Problem& problem, double at) {
   Eigen::Vector3d natural = Eigen::Vector3d::Zero();
   for (std::size_t j = 0; j < problem.natural_strains.size(); ++j) {

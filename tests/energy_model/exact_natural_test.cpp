@@ -1,6 +1,6 @@
 // Rods that are curved by nature, in the plane and in space, against circles and helices, first
-// integrals, critical weights from elsewhere, the rod that is straight by nature, and Kirchhoff's
-// equations integrated along the rod from what its first clamp is said to exert.
+// integrals, critical weights from elsewhere, the rod that is intrinsically straight, and
+// Kirchhoff's equations integrated along the rod from what its first clamp is said to exert.
 
 #include <gtest/gtest.h>
 

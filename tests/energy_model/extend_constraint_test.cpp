@@ -10,7 +10,7 @@
 #include "linear/newton_system.hpp"
 #include "problem/split.hpp"
 #include "problems.hpp"
-#include "strain/node_reach.hpp"
+#include "strain/position_operator.hpp"
 #include "strain/span_energy.hpp"
 
 namespace dlo::energy_model {
@@ -64,7 +64,7 @@ void newton_step(const Slider& slider, SpanEnergy& model, NewtonSystem& system, 
 Slider slider_of(const SpanEnergy& model, const PlacedSpan& placed) {
   std::vector<Piece> pieces;
   for (Eigen::Index i = 0; i < model.pieces(); ++i) pieces.push_back(model.piece(i));
-  const NodeReach reach(placed.span, pieces, model.table());
+  const PositionOperator reach(placed.span, pieces, model.table());
   return {placed.frame * Eigen::Vector3d(0.6, 0.8, 0), Eigen::Vector3d(0.2, 0.1, 0),
           reach.begin(model.pieces())};
 }

@@ -9,7 +9,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "problem/split.hpp"
 #include "problems.hpp"
-#include "strain/node_reach.hpp"
+#include "strain/position_operator.hpp"
 #include "strain/span_energy.hpp"
 
 namespace dlo::energy_model {
@@ -61,7 +61,7 @@ struct TetheredRod {
       : placed(split(problem).front()), model(placed.span, 24) {
     std::vector<Piece> pieces;
     for (Eigen::Index i = 0; i < model.pieces(); ++i) pieces.push_back(model.piece(i));
-    const NodeReach reach(placed.span, pieces, model.table());
+    const PositionOperator reach(placed.span, pieces, model.table());
     tether = {3, placed.frame * Eigen::Vector3d(0.9, 0.4, 0), reach.begin(model.pieces())};
   }
 

@@ -47,11 +47,11 @@ double apart(const Equilibrium& a, const Equilibrium& b) {
 TEST(Keep, IsFollowAsLongAsTheBranchIsKept) {
   EnergySolver keeps;
   EnergySolver follows;
-  EXPECT_FALSE(keeps.keep(heavy_cantilever(10, 0)));
+  EXPECT_FALSE(keeps.try_follow(heavy_cantilever(10, 0)));
   ASSERT_TRUE(succeeded(keeps.solve(heavy_cantilever(10, 0)).status));
   ASSERT_TRUE(succeeded(follows.solve(heavy_cantilever(10, 0)).status));
   for (const double degrees : {1, 5, 9}) {
-    const std::optional<Equilibrium> kept = keeps.keep(heavy_cantilever(10, degrees));
+    const std::optional<Equilibrium> kept = keeps.try_follow(heavy_cantilever(10, degrees));
     ASSERT_TRUE(kept);
     EXPECT_EQ(kept->status, SolveStatus::converged);
     EXPECT_LT(apart(*kept, follows.follow(heavy_cantilever(10, degrees))), 1e-12);
@@ -59,16 +59,16 @@ TEST(Keep, IsFollowAsLongAsTheBranchIsKept) {
 }
 
 // A clamp that stands upright and has turned too far for the rod to lean on its side: a rod there
-// falls about the clamp's axis. What keep() does not reach it does not forget either.
+// falls about the clamp's axis. What try_follow() does not reach it does not forget either.
 TEST(Keep, StaysWhereItWasWhenTheBranchHasEnded) {
   EnergySolver solver;
   ASSERT_TRUE(succeeded(solver.solve(heavy_cantilever(10, 80)).status));
-  const std::optional<Equilibrium> last = solver.keep(heavy_cantilever(10, 85));
+  const std::optional<Equilibrium> last = solver.try_follow(heavy_cantilever(10, 85));
   ASSERT_TRUE(last);
   for (int time = 0; time < 2; ++time) {
-    EXPECT_FALSE(solver.keep(heavy_cantilever(10, 100)));
+    EXPECT_FALSE(solver.try_follow(heavy_cantilever(10, 100)));
     EXPECT_FALSE(solver.followed());
-    const std::optional<Equilibrium> again = solver.keep(heavy_cantilever(10, 85));
+    const std::optional<Equilibrium> again = solver.try_follow(heavy_cantilever(10, 85));
     ASSERT_TRUE(again);
     EXPECT_LE(again->evaluations, 3);
     EXPECT_LT(apart(*again, *last), 1e-9);
@@ -81,12 +81,12 @@ TEST(Keep, StaysWhereItWasWhenTheBranchHasEnded) {
 TEST(Keep, GoesBackToTheShapeBefore) {
   EnergySolver solver;
   ASSERT_TRUE(succeeded(solver.solve(heavy_cantilever(10, 80)).status));
-  const std::optional<Equilibrium> near = solver.keep(heavy_cantilever(10, 85));
+  const std::optional<Equilibrium> near = solver.try_follow(heavy_cantilever(10, 85));
   ASSERT_TRUE(near);
   const Equilibrium fallen = solver.follow(heavy_cantilever(10, 100));
   ASSERT_GT(apart(fallen, *near), 0.1);
-  solver.go_back();
-  const std::optional<Equilibrium> again = solver.keep(heavy_cantilever(10, 85));
+  solver.undo();
+  const std::optional<Equilibrium> again = solver.try_follow(heavy_cantilever(10, 85));
   ASSERT_TRUE(again);
   EXPECT_LT(apart(*again, *near), 1e-9);
 }
@@ -124,7 +124,7 @@ TEST(Keep, FollowsAPointUntilItLiesAndBack) {
   ASSERT_EQ(first.contacts[0].kind, ContactKind::touching);
   const auto kind_at = [&](double tension) {
     const Problem problem = drawn_over_peg(radius, tension);
-    const std::optional<Equilibrium> rod = solver.keep(problem);
+    const std::optional<Equilibrium> rod = solver.try_follow(problem);
     EXPECT_TRUE(rod) << tension;
     if (!rod) return ContactKind::tip;
     EXPECT_EQ(rod->status, SolveStatus::converged);
@@ -145,7 +145,7 @@ TEST(Keep, FollowsAPointUntilItLiesAndBack) {
   }
   // Both sides leave the peg at the same point there: at an angle phi each from the line of their
   // tension, sin(phi / 2) = (EI / T)^(1/2) / 2R.
-  const std::optional<Equilibrium> there = solver.keep(drawn_over_peg(radius, touches));
+  const std::optional<Equilibrium> there = solver.try_follow(drawn_over_peg(radius, touches));
   ASSERT_TRUE(there);
   const Eigen::Vector3d held = there->grips[0].force.normalized();
   const double phi = std::acos(held.y()) / 2;

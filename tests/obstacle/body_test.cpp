@@ -147,10 +147,10 @@ TEST(Body, RoundedIsWithinItself) {
 }
 
 TEST(Body, LooksFollowItsSmallestRadius) {
-  EXPECT_EQ(looks_per_segment(Body::half_space({0, 0, 0}, {0, 1, 0}), 1), 1);
-  EXPECT_EQ(looks_per_segment(Body::sphere({0, 0, 0}, 2), 1), 1);
-  EXPECT_EQ(looks_per_segment(Body::sphere({0, 0, 0}, 0.5), 1), 4);
-  EXPECT_EQ(looks_per_segment(Body::sphere({0, 0, 0}, 1e-6), 1), 16);
+  EXPECT_EQ(samples_per_segment(Body::half_space({0, 0, 0}, {0, 1, 0}), 1), 1);
+  EXPECT_EQ(samples_per_segment(Body::sphere({0, 0, 0}, 2), 1), 1);
+  EXPECT_EQ(samples_per_segment(Body::sphere({0, 0, 0}, 0.5), 1), 4);
+  EXPECT_EQ(samples_per_segment(Body::sphere({0, 0, 0}, 1e-6), 1), 16);
 }
 
 }  // namespace

@@ -244,7 +244,7 @@ double Branch::leave(double at, double missed, Passage& passage) {
   Moment after{scene_at(at + step), {}};
   after.rod = solver_.follow(frame_problem(after.scene, obstacles_));
   if (!energy_model::succeeded(after.rod.status) && at + step < 1) {
-    solver_.go_back();
+    solver_.undo();
     step = 1 - at;
     after.scene = scene_at(1);
     after.rod = solver_.follow(frame_problem(after.scene, obstacles_));
@@ -280,7 +280,7 @@ Scene Branch::scene_at(double share) const {
 
 /// One step on the branch.
 bool Branch::try_follow(Scene scene, double from, double step, Passage& passage) {
-  std::optional<Equilibrium> rod = solver_.keep(frame_problem(scene, obstacles_));
+  std::optional<Equilibrium> rod = solver_.try_follow(frame_problem(scene, obstacles_));
   if (!rod) return false;
   Moment after{std::move(scene), std::move(*rod)};
   std::vector<Eigen::Vector3d> changes = changes_;
@@ -288,7 +288,7 @@ bool Branch::try_follow(Scene scene, double from, double step, Passage& passage)
   const double released = work.done - (energies_of(after).total() - energies_of(now_).total());
   const bool other_branch = balances_ && std::abs(released) > work.bound + noise_;
   if (other_branch || passes_through(now_, after, obstacles_)) {
-    solver_.go_back();
+    solver_.undo();
     return false;
   }
   changes_ = std::move(changes);

@@ -350,7 +350,7 @@ void set_obstacles(const Scene& scene, const std::vector<std::size_t>& obstacles
           {body.centre() + body.radius() * body.normal(), body.normal(), stiffness});
       discretisation.walls.push_back(i);
     } else {
-      rod.solids.push_back({body, stiffness, obstacle::looks_per_segment(body, L)});
+      rod.solids.push_back({body, stiffness, obstacle::samples_per_segment(body, L)});
       discretisation.solids.push_back(i);
     }
   }

@@ -85,7 +85,7 @@ energy_model::PolygonProblem polygon_problem(const force_model::Rod& rod) {
     problem.obstacles.push_back({body, wall.stiffness});
   }
   for (const force_model::Solid& solid : rod.solids) {
-    problem.obstacles.push_back({solid.body, solid.stiffness, solid.looks});
+    problem.obstacles.push_back({solid.body, solid.stiffness, solid.samples});
   }
   return problem;
 }

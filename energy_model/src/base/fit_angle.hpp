@@ -15,7 +15,7 @@ struct FittedAngle {
 };
 
 /// The angle nearest to values at the nodes of all pieces, by least squares on each piece.
-/// @param turns  by which the coefficient of p_0 = 1 turns the end of each piece (Piece::angle())
+/// @param turns  rotation, by the coefficient of p_0 = 1, of the end of each piece (Piece::angle())
 /// @param start  of the angle, if it is known
 [[nodiscard]] FittedAngle fit_angle(const LegendreTable& table, const std::vector<double>& turns,
                                     const Eigen::VectorXd& angles, std::optional<double> start);

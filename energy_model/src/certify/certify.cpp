@@ -58,8 +58,8 @@ double linear_error(const SpanSolution& solution, double load) {
   const double K = solution.terms;
   const double angle = solution.model->tail(solution.x) / (2 * K);
   const double smallest = std::min(solution.eigenvalue_nearest_zero, 1.0);
-  const double left_out = scale * angle / (2 * K) + misplaced_contact(solution);
-  return solution.next_step + (rounding_of(scale) + left_out) / smallest;
+  const double truncated = scale * angle / (2 * K) + misplaced_contact(solution);
+  return solution.next_step + (rounding_of(scale) + truncated) / smallest;
 }
 
 /// What the points of a shape may be away from those of an equilibrium, of the length. The
@@ -86,7 +86,7 @@ struct SmallEigenvalues {
 };
 
 /// @param bound    size up to which an eigenvalue counts as neutral
-/// @param free     turns of the rod as a whole, whose eigenvalues are zero
+/// @param free     rigid-body modes, whose eigenvalues are zero
 /// @param nothing  size up to which one is zero whatever its direction is; negative: none is
 SmallEigenvalues small_eigenvalues(ReducedHessian& hessian, double bound, Eigen::Index free,
                                    double nothing) {
@@ -262,7 +262,7 @@ class Certification {
 
   void look_out_of_plane() {
     SecondDerivatives across;
-    model_.sideways(solution_.multipliers, across.hessian, across.jacobian);
+    model_.out_of_plane(solution_.multipliers, across.hessian, across.jacobian);
     ReducedHessian beside;
     beside.compute(across.hessian, across.jacobian);
     const SmallEigenvalues found = eigenvalues_of(beside, rigid_.out_of_plane);
@@ -312,7 +312,7 @@ void certify_out_of_plane(SpanSolution& solution, double load, NewtonFactors& fa
   if (!solution.is_equilibrium()) return;
   solution.error = error_estimate(solution, eta);
   if (solution.status != SolveStatus::converged) return;
-  if (!solution.model->resists_sideways()) solution.finish(SolveStatus::saddle);
+  if (!solution.model->resists_out_of_plane()) solution.finish(SolveStatus::saddle);
 }
 
 }  // namespace dlo::energy_model

@@ -65,7 +65,7 @@ Feature kink_at(const SpanSolution& solution, double at, double sense) {
 }
 
 /// Where the curvature is largest within the length of an elastica that turns back there, 2 / it,
-/// and has fallen beyond.
+/// and has jumped beyond.
 std::vector<Feature> peaks_of(const SpanSolution& solution, double begin, double end) {
   constexpr double fallen = 0.6;
   constexpr double widths = 2;

@@ -66,7 +66,7 @@ RigidBodyModes rigid_body_modes(const Span& span, const Eigen::Matrix3Xd& tangen
   const Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   std::vector<Eigen::Vector3d> shape;
   if (span.has_material_directors()) {
-    // A turn about the rod's own line moves its frame.
+    // A rotation about the rod's own line moves its frame.
     shape = {axes.col(0), axes.col(1), axes.col(2)};
   } else {
     for (Eigen::Index q = 0; q < tangents.cols(); ++q) shape.emplace_back(tangents.col(q));

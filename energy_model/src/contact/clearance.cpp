@@ -51,9 +51,9 @@ std::vector<std::size_t> near_obstacles(const Span& span, const SpanShape& shape
 }
 
 /// The least clearance between `low` and `high`, by Newton's method from `at`.
-Lowest lowest_between(const Span::Obstacle& obstacle, const SpanShape& shape, double low, double at,
-                      double high) {
-  Lowest lowest{obstacle, at, std::numeric_limits<double>::infinity()};
+GapMinimum lowest_between(const Span::Obstacle& obstacle, const SpanShape& shape, double low,
+                          double at, double high) {
+  GapMinimum lowest{obstacle, at, std::numeric_limits<double>::infinity()};
   for (int k = 0; k < refinements; ++k) {
     const Clearance here = clearance_at(obstacle.body, shape.sample(std::array{at}), 0);
     if (here.value < lowest.clearance) lowest = {obstacle, at, here.value};
@@ -66,7 +66,7 @@ Lowest lowest_between(const Span::Obstacle& obstacle, const SpanShape& shape, do
 
 /// Least clearances below `below` on both sides of a contact's ends, nearer than `reach`.
 void add_beside_contacts(const Span& span, const Span::Obstacle& obstacle, const SpanShape& shape,
-                         double below, double reach, std::vector<Lowest>& found) {
+                         double below, double reach, std::vector<GapMinimum>& found) {
   const auto look = [&](double end, double first_step) {
     std::vector<double> s;
     for (double step = first_step; std::ssize(s) < halvings_beside_contact; step /= 2) {
@@ -80,9 +80,9 @@ void add_beside_contacts(const Span& span, const Span::Obstacle& obstacle, const
       const auto at = static_cast<std::size_t>(k);
       const double low = std::min(s[at - 1], s[at + 1]);
       const double high = std::max(s[at - 1], s[at + 1]);
-      const Lowest lowest = lowest_between(obstacle, shape, low, s[at], high);
+      const GapMinimum lowest = lowest_between(obstacle, shape, low, s[at], high);
       // The grid may have seen it.
-      const bool known = std::any_of(found.begin(), found.end(), [&](const Lowest& other) {
+      const bool known = std::any_of(found.begin(), found.end(), [&](const GapMinimum& other) {
         return other.obstacle.index == obstacle.index && other.s >= low && other.s <= high;
       });
       if (lowest.clearance < below && !known) found.push_back(lowest);
@@ -104,7 +104,7 @@ Clearance clearance_at(const obstacle::Body& body, const SpanSamples& samples, E
           gap.gradient.dot(samples.curvature.col(i)) + t.dot(gap.hessian * t)};
 }
 
-std::vector<Lowest> lowest_points(const Span& span, const SpanShape& shape, double below) {
+std::vector<GapMinimum> gap_minima(const Span& span, const SpanShape& shape, double below) {
   const std::vector<double> s = equal_arc_lengths(span.length, grid_points);
   const std::vector<std::size_t> looked_at = near_obstacles(span, shape, below, s);
   std::vector<double> near;
@@ -113,7 +113,7 @@ std::vector<Lowest> lowest_points(const Span& span, const SpanShape& shape, doub
   const SpanSamples grid = shape.sample(near);
   const double h = s[1];
   const double bent = grid.curvature.colwise().norm().maxCoeff();
-  std::vector<Lowest> found;
+  std::vector<GapMinimum> found;
   for (const Span::Obstacle& obstacle : span.rigid_obstacles) {
     // Between two points of the grid it may be lower by this.
     const double sag = h * h / 8 * (bent + 1 / obstacle.body.smallest_radius());
@@ -129,7 +129,7 @@ std::vector<Lowest> lowest_points(const Span& span, const SpanShape& shape, doub
       const double low = s[static_cast<std::size_t>(std::max<Eigen::Index>(0, i - 1))];
       const double high = s[static_cast<std::size_t>(std::min(grid_points - 1, i + 1))];
       const double at = s[static_cast<std::size_t>(i)];
-      Lowest lowest = lowest_between(obstacle, shape, low, at, high);
+      GapMinimum lowest = lowest_between(obstacle, shape, low, at, high);
       if (lowest.clearance < below) found.push_back(std::move(lowest));
     }
     add_beside_contacts(span, obstacle, shape, below, h, found);

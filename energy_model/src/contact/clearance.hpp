@@ -18,7 +18,7 @@ struct Clearance {
                                      Eigen::Index i);
 
 /// Where a shape comes nearest to a rigid obstacle, or is deepest behind it.
-struct Lowest {
+struct GapMinimum {
   Span::Obstacle obstacle;
   double s = 0;
   double clearance = 0;
@@ -27,7 +27,7 @@ struct Lowest {
 
 /// Every local minimum of the clearance over the rod that is below `below`, ends included, by
 /// growing s: those of a dense grid, each refined. Grips count.
-[[nodiscard]] std::vector<Lowest> lowest_points(const Span& span, const SpanShape& shape,
-                                                double below);
+[[nodiscard]] std::vector<GapMinimum> gap_minima(const Span& span, const SpanShape& shape,
+                                                 double below);
 
 }  // namespace dlo::energy_model

@@ -204,7 +204,7 @@ Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<co
   std::size_t reached = times.size() + 1;
   for (const SpanRun& run : runs) reached = std::min(reached, run.frames.size());
   EnergyBalance first;
-  double largest_miss = 0;
+  double largest_imbalance = 0;
   for (std::size_t k = 0; k < reached; ++k) {
     MovingFrame frame = frame_of_all(complete, runs, k);
     frame.time = k == 0 ? begin : times[k - 1];
@@ -212,12 +212,13 @@ Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<co
     add_loads_on_clamps(complete, begin, frame);
     if (k == 0) first = frame.energy;
     const EnergyBalance& energy = frame.energy;
-    largest_miss = std::max(largest_miss, std::abs(energy.total() - first.total() +
-                                                   energy.dissipated + energy.lost - energy.work));
+    largest_imbalance = std::max(
+        largest_imbalance,
+        std::abs(energy.total() - first.total() + energy.dissipated + energy.lost - energy.work));
     result.largest_energy = std::max(result.largest_energy, of_largest(energy, first));
     if (k > 0) result.frames.push_back(std::move(frame));
   }
-  result.energy_error = result.largest_energy > 0 ? largest_miss / result.largest_energy : 0;
+  result.energy_error = result.largest_energy > 0 ? largest_imbalance / result.largest_energy : 0;
   return result;
 }
 

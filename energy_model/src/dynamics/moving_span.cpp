@@ -150,7 +150,7 @@ std::vector<double> MovingSpan::own_breaks() const {
 SpanFrame MovingSpan::frame(SpanIntegrator& integrator, SpanDynamics& model,
                             const SpanInstant& at) const {
   SpanFrame result;
-  const Eigen::VectorXd multipliers = integrator.settle(at);
+  const Eigen::VectorXd multipliers = integrator.consistent_accelerations(at);
   const std::vector<Reaction> reactions = model.reactions(multipliers);
   const double seconds = at.time * time_;
   const Eigen::Matrix3d to_space = to_axes(seconds).transpose();
@@ -251,7 +251,7 @@ SpanRun MovingSpan::run_with(const ContactLaw& contact, const StartingShape& sta
     };
     for (; next_break != breaks.end() && is_due(*next_break) && !stopped(); ++next_break) {
       result.message = integrator.advance(at, *next_break, expired);
-      if (!stopped()) integrator.strike(at);
+      if (!stopped()) integrator.apply_impulse(at);
     }
     if (!stopped()) result.message = integrator.advance(at, time, expired);
     if (stopped()) break;

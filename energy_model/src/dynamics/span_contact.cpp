@@ -17,8 +17,8 @@ Touch::Touch(const Span::Obstacle& of, const BodyPlace& place, const Eigen::Vect
   depth = -gap.value;
 }
 
-ContactGrid::ContactGrid(const std::vector<Span::Obstacle>& obstacles, const NodeReach& reach,
-                         const ContactLaw& law)
+ContactGrid::ContactGrid(const std::vector<Span::Obstacle>& obstacles,
+                         const PositionOperator& reach, const ContactLaw& law)
     : law_(law) {
   if (obstacles.empty()) return;
   constexpr double widest = 1.0 / 128;

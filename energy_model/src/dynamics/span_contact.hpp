@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "problem/span.hpp"
-#include "strain/node_reach.hpp"
+#include "strain/position_operator.hpp"
 
 namespace dlo::energy_model {
 
@@ -59,7 +59,7 @@ class ContactGrid {
   /// Points that are no farther apart than 1/128; on a body that is not flat twice law.depth, where
   /// that is less, so that what bears on one point is known to be there to law.depth, and an edge
   /// does not come between two by more.
-  ContactGrid(const std::vector<Span::Obstacle>& obstacles, const NodeReach& reach,
+  ContactGrid(const std::vector<Span::Obstacle>& obstacles, const PositionOperator& reach,
               const ContactLaw& law);
 
   [[nodiscard]] bool empty() const { return pieces_.empty(); }

@@ -165,7 +165,7 @@ Eigen::VectorXd SpanDynamics::impulse(const Eigen::MatrixX3d& before) {
   return pulled({&tangents, {}});
 }
 
-Eigen::MatrixX3d SpanDynamics::misses() const {
+Eigen::MatrixX3d SpanDynamics::constraint_residuals() const {
   Eigen::MatrixX3d result(constraints_, 3);
   Eigen::Index row = 0;
   for (std::size_t k = 0; k < held_.size(); ++k) {

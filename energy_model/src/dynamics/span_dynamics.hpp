@@ -6,7 +6,7 @@
 
 #include "dlo/energy_model/dynamics.hpp"
 #include "dynamics/span_contact.hpp"
-#include "strain/node_reach.hpp"
+#include "strain/position_operator.hpp"
 #include "strain/rod_frames.hpp"
 #include "strain/span_shape.hpp"
 
@@ -76,7 +76,7 @@ class SpanDynamics {
   [[nodiscard]] Eigen::VectorXd impulse(const Eigen::MatrixX3d& before);
   /// By how much the constraints are missed: positions, velocities and accelerations, a column
   /// each.
-  [[nodiscard]] Eigen::MatrixX3d misses() const;
+  [[nodiscard]] Eigen::MatrixX3d constraint_residuals() const;
   /// Derivatives of the constraints by x.
   [[nodiscard]] Eigen::MatrixXd jacobian();
   [[nodiscard]] Eigen::MatrixXd mass_matrix();
@@ -122,13 +122,13 @@ class SpanDynamics {
   Eigen::Matrix3d start_frame_;
   RodFrames frames_;
   RodFrames::State state_;
-  NodeReach nodes_;
+  PositionOperator nodes_;
   SpanReach points_;
   ContactGrid grid_;
   Eigen::Index constraints_ = 0, axes_ = 3;
   Eigen::VectorXd elastic_;                 // by unknown; 0 of a free start's turn
   std::vector<Eigen::Index> held_;          // point of each hold
-  std::vector<std::vector<double>> signs_;  // NodeReach::signs() of each hold
+  std::vector<std::vector<double>> signs_;  // PositionOperator::signs() of each hold
   // Of the points; forces along the span's frame.
   Eigen::VectorXd masses_;
   Eigen::MatrixX3d gravity_, loads_;

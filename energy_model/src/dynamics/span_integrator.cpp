@@ -66,7 +66,7 @@ SpanIntegrator::Factor& SpanIntegrator::factor(const SpanInstant& at, double ste
   } else if (!renew) {
     return *found;
   }
-  const Eigen::VectorXd multipliers = settle(at);
+  const Eigen::VectorXd multipliers = consistent_accelerations(at);
   const Eigen::Index n = span_.size();
   const Eigen::Index m = span_.constraints();
   const Eigen::MatrixXd damping = span_.damping(mass_);
@@ -131,7 +131,7 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
         const auto stage = static_cast<std::size_t>(i);
         span_.move(drives[stage], x.col(i), v.col(i), values.col(i).head(n));
         residual.segment(i * (n + m), n) = span_.residual(values.col(i).tail(m));
-        residual.segment(i * (n + m) + n, m) = span_.misses().col(2);
+        residual.segment(i * (n + m) + n, m) = span_.constraint_residuals().col(2);
         powers[stage] = span_.power(span_.reactions(values.col(i).tail(m)));
       }
       const Eigen::VectorXd corrected = newton.lu.solve(residual);
@@ -174,22 +174,22 @@ std::string SpanIntegrator::project(SpanInstant& at) {
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < most_projections; ++i) {
     span_.move(drive, at.x, at.v, zero);
-    const Eigen::MatrixX3d misses = span_.misses();
+    const Eigen::MatrixX3d residuals = span_.constraint_residuals();
     const Eigen::MatrixXd jacobian = span_.jacobian();
     const Eigen::MatrixXd yields = mass.solve(jacobian.transpose());
     const Eigen::MatrixXd held_by = jacobian * yields;
     const Eigen::LDLT<Eigen::MatrixXd> solver(held_by);
-    const double missed = misses.col(0).norm();
-    if (missed < held || (missed >= before && missed < 1e3 * held)) {
-      at.v -= yields * solver.solve(misses.col(1));
+    const double residual = residuals.col(0).norm();
+    if (residual < held || (residual >= before && residual < 1e3 * held)) {
+      at.v -= yields * solver.solve(residuals.col(1));
       return {};
     }
-    Eigen::VectorXd step = yields * solver.solve(misses.col(0));
+    Eigen::VectorXd step = yields * solver.solve(residuals.col(0));
     if (!step.allFinite()) break;
     constexpr double longest = 0.5;
     if (step.norm() > longest) step *= longest / step.norm();
     at.x -= step;
-    before = missed;
+    before = residual;
   }
   return "the grips cannot be reached by the rod, or hold it straight between them";
 }
@@ -252,8 +252,8 @@ bool SpanIntegrator::take_two_halves(SpanInstant& at, double step) {
   const Eigen::VectorXd change = once.x - twice.x;
   const double apart = std::sqrt(std::max(0.0, change.dot(mass_ * change)));
   const double energy = take_energy(just_before(twice.time), twice);
-  const double missed = std::abs(energy - energy_) - energy_rounding * energy_magnitude_;
-  const double error = std::max(apart, missed / largest_energy_);
+  const double residual = std::abs(energy - energy_) - energy_rounding * energy_magnitude_;
+  const double error = std::max(apart, residual / largest_energy_);
   constexpr double order = 2 * stage_count + 1;
   const double better = std::pow(options_.tolerance / std::max(error, 1e-300), 1 / order);
   const double grown = std::clamp(0.9 * better, 0.25, 2.0);
@@ -284,7 +284,7 @@ double SpanIntegrator::take_energy(double time, const SpanInstant& at) {
   return energies.total() + at.done.dissipated + at.done.lost - at.done.work;
 }
 
-void SpanIntegrator::strike(SpanInstant& at) {
+void SpanIntegrator::apply_impulse(SpanInstant& at) {
   last_ = {};
   energy_ = std::numeric_limits<double>::quiet_NaN();
   next_ = first_step;
@@ -311,11 +311,11 @@ Eigen::VectorXd SpanIntegrator::accelerated(double time, const SpanInstant& at,
   Eigen::VectorXd residual(n + m);
   residual.head(n) =
       before != nullptr ? span_.impulse(*before) : span_.residual(Eigen::VectorXd::Zero(m));
-  residual.tail(m) = span_.misses().col(before != nullptr ? 1 : 2);
+  residual.tail(m) = span_.constraint_residuals().col(before != nullptr ? 1 : 2);
   return -matrix.partialPivLu().solve(residual);
 }
 
-Eigen::VectorXd SpanIntegrator::settle(const SpanInstant& at) {
+Eigen::VectorXd SpanIntegrator::consistent_accelerations(const SpanInstant& at) {
   const double time = just_after(at.time);
   const Eigen::VectorXd found = accelerated(time, at, nullptr);
   span_.move(drive_(time), at.x, at.v, found.head(span_.size()));

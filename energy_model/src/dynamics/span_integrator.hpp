@@ -47,12 +47,12 @@ class SpanIntegrator {
   [[nodiscard]] static bool same_instant(double a, double b);
 
   /// Brings SpanDynamics to an instant, with its accelerations. @return the grips' multipliers
-  [[nodiscard]] Eigen::VectorXd settle(const SpanInstant& at);
+  [[nodiscard]] Eigen::VectorXd consistent_accelerations(const SpanInstant& at);
 
   /// What comes is not smooth after what was: grips may have other velocities, which strikes the
   /// span. Its points keep their momentum but for the grips' impulses, whose work is what the
   /// kinetic energy changes by.
-  void strike(SpanInstant& at);
+  void apply_impulse(SpanInstant& at);
 
   [[nodiscard]] long steps() const { return steps_; }
   [[nodiscard]] double smallest_step() const { return smallest_step_; }

@@ -61,14 +61,14 @@ struct Length {
   double root_load;
 };
 
-double miss(double x, void* data) {
+double residual(double x, void* data) {
   const auto& length = *static_cast<const Length*>(data);
   return integrals(length.phi_0, x).first - length.root_load;
 }
 
 /// The x at which the rod has its length; the first integral grows with x and is not less than it.
 double solve_length(Length length) {
-  gsl_function function{miss, &length};
+  gsl_function function{residual, &length};
   const std::unique_ptr<gsl_root_fsolver, decltype(&gsl_root_fsolver_free)> solver(
       gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
   gsl_root_fsolver_set(solver.get(), &function, 0, length.root_load + 1);

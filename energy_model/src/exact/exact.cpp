@@ -37,7 +37,7 @@ constexpr std::size_t most_results = 64;  // of the spans' equilibria
 struct Found {
   std::vector<Equilibrium> equilibria;
   bool out_of_time = false;
-  std::string left_out;  // empty: nothing
+  std::string not_searched;  // empty: nothing
 };
 
 /// The lowest combinations of what is found for the spans. A rod with material directors is one.
@@ -69,7 +69,7 @@ Found solve_spans(const Problem& problem, const ExactOptions& options, const Dea
     result.equilibria.push_back(assemble(problem, rod, options.tolerance));
   }
   if (combinations.truncated) {
-    result.left_out =
+    result.not_searched =
         "only the lowest " + std::to_string(most_results) + " combinations of spans are listed";
   }
   return result;
@@ -79,7 +79,7 @@ Found scan_tip(const Problem& problem, const ReducedCantilever& cantilever,
                const ExactOptions& options, const Deadline& deadline) {
   TipShots shots = shoot_from_tip(problem, cantilever, options.tolerance, deadline);
   Found result{std::move(shots.equilibria), shots.out_of_time, ""};
-  if (!shots.complete) result.left_out = "some of the tip's angles could not be shot from";
+  if (!shots.complete) result.not_searched = "some of the tip's angles could not be shot from";
   if (result.equilibria.empty()) {
     result.equilibria.emplace_back();
     result.equilibria.front().status = SolveStatus::failed;
@@ -89,7 +89,7 @@ Found scan_tip(const Problem& problem, const ReducedCantilever& cantilever,
   return result;
 }
 
-/// The spans of a round rod that is straight by nature are twisted each on its own.
+/// The spans of a round rod that is intrinsically straight are twisted each on its own.
 void refuse_passed_torque(const Problem& problem) {
   const std::vector<OrderedGrip> grips = ordered_grips(problem);
   const auto holds = [](const OrderedGrip& g) { return g.grip->frame.has_value(); };
@@ -153,7 +153,7 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
   for (Equilibrium& equilibrium : found.equilibria) {
     equilibrium.seconds = seconds;
     separate_line_loads(problem, equilibrium);
-    if (!found.left_out.empty()) equilibrium.message += "; " + found.left_out;
+    if (!found.not_searched.empty()) equilibrium.message += "; " + found.not_searched;
     if (!found.out_of_time) continue;
     const bool holds = static_cast<bool>(equilibrium.sample);
     const std::string reached = equilibrium.message;
@@ -185,11 +185,11 @@ Equilibrium solve_exact(const Problem& problem, const ExactOptions& options) {
 
 double self_buckling_gamma() {
   silence_gsl();
-  const auto miss = [](double z, void*) {
+  const auto residual = [](double z, void*) {
     return std::sqrt(3.0) * gsl_sf_airy_Ai(-z, GSL_PREC_DOUBLE) +
            gsl_sf_airy_Bi(-z, GSL_PREC_DOUBLE);
   };
-  gsl_function function{miss, nullptr};
+  gsl_function function{residual, nullptr};
   const std::unique_ptr<gsl_root_fsolver, decltype(&gsl_root_fsolver_free)> solver(
       gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
   gsl_root_fsolver_set(solver.get(), &function, 1.5, 2.5);

@@ -16,7 +16,7 @@ std::vector<GripGap> grip_gaps(const RodSpan& span, const RodMesh& mesh) {
     const double length = to.at - from.at;
     const Eigen::Vector3d chord = to.position - from.position;
     const double penalty =
-        (100 * softest(span) / (length * length) + 4 * total_load(span)) / length;
+        (100 * least_bending_stiffness(span) / (length * length) + 4 * total_load(span)) / length;
     gaps.push_back(
         {node_at(mesh.s, from.at), node_at(mesh.s, to.at), chord, length - chord.norm(), penalty});
   }

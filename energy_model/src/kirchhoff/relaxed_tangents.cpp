@@ -296,7 +296,7 @@ RelaxedTangents relax_tangents(const RodSpan& span, const RodMesh& mesh,
                                const Eigen::Matrix3Xd& tangents, Motion motion,
                                const Deadline& deadline) {
   TangentChain chain(span, mesh, tangents, motion);
-  const double unit = softest(span) / (span.length * span.length);
+  const double unit = least_bending_stiffness(span) / (span.length * span.length);
   std::vector<double> last_open(chain.gaps.size(), std::numeric_limits<double>::infinity());
   std::vector<double> largest;
   for (const GripGap& of : chain.gaps) largest.push_back(largest_penalty * of.penalty);

@@ -18,7 +18,8 @@ struct RelaxedTangents {
 /// Newton's method on the tangents: steps downhill by a Hessian of blocks of two, shifted until it
 /// is positive definite; an augmented Lagrangian closes the gaps at the grips (GripGap::closed())
 /// as the tangents come to rest. It takes some 30 steps, each proportional to the intervals. A mode
-/// without stiffness, as an arch between clamps in line that turns about that line, may still move.
+/// without stiffness, as an arch between clamps in line that rotates around that line, may still
+/// move.
 /// @param tangents of the intervals, where it starts
 [[nodiscard]] RelaxedTangents relax_tangents(const RodSpan& span, const RodMesh& mesh,
                                              const Eigen::Matrix3Xd& tangents, Motion motion,

@@ -65,7 +65,7 @@ struct RodPiece {
   const NaturalStrain& natural;
   double begin = 0;                  ///< s
   double length = 0;                 ///< to follow
-  const Surface* surface = nullptr;  ///< on which it lies, straight by nature; null: it is free
+  const Surface* surface = nullptr;  ///< on which it lies, intrinsically straight; null: it is free
 };
 
 /// Derivatives of a cross-section by the arc length at the begin of a piece.

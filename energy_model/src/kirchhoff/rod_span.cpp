@@ -344,7 +344,7 @@ double longest_interval(const RodSpan& span, double force) {
   return std::min(span.length / 16, 1 / std::sqrt(std::max(force, 1.0)));
 }
 
-double softest(const RodSpan& span) {
+double least_bending_stiffness(const RodSpan& span) {
   double least = INFINITY;
   for (const RodSpan::Part& part : span.parts) {
     least = std::min(least, part.section.stiffness().head<2>().minCoeff());

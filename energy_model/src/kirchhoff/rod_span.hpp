@@ -64,12 +64,13 @@ struct RodSpan {
   /// Whether a clamp after the first one holds the rod's frame, so that torque twists it.
   [[nodiscard]] bool twisted() const;
   [[nodiscard]] bool has_couples() const;
-  /// Whether all sections are round and the rod is straight by nature: without twist a turn of its
-  /// sections about their tangents changes nothing.
+  /// Whether all sections are round and the rod is intrinsically straight: without twist a turn of
+  /// its sections about their tangents changes nothing.
   [[nodiscard]] bool round() const;
 };
 
-/// Rotations at the clamps of a span, one each; none: the frame may turn about the direction.
+/// Rotations at the clamps of a span, one each; none: the frame rotates freely around the
+/// direction.
 using ClampFrames = std::vector<std::optional<Eigen::Matrix3d>>;
 
 /// The frames that are held if those after the first clamp are let go.
@@ -81,7 +82,7 @@ using ClampFrames = std::vector<std::optional<Eigen::Matrix3d>>;
 /// The span whose clamps after the first one hold no frame.
 [[nodiscard]] RodSpan without_frames(RodSpan span);
 
-/// Cuts a problem at its clamps, as one of a round rod that is straight by nature. Grips within
+/// Cuts a problem at its clamps, as one of a round rod that is intrinsically straight. Grips within
 /// 1e-9 l of an end of the rod are at that end.
 /// @throws std::invalid_argument if the problem is out of range, has obstacles, or grips are
 /// further apart than the rod between them
@@ -178,7 +179,7 @@ struct ForceField {
 [[nodiscard]] double longest_interval(const RodSpan& span, double force);
 
 /// Least bending stiffness of a span, about either axis.
-[[nodiscard]] double softest(const RodSpan& span);
+[[nodiscard]] double least_bending_stiffness(const RodSpan& span);
 
 /// Sum of the norms of weight and loads.
 [[nodiscard]] double total_load(const RodSpan& span);

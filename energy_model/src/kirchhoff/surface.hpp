@@ -30,7 +30,7 @@ using ByState = Eigen::Matrix<double, Eigen::Dynamic, 12>;
 
 /// What a cross-section fulfils that lies on a surface whatever the pressure is: for
 ///     Y = (|P (r - centre)|^2 / radius - radius) / 2,  of a plane its gap,
-/// Y = Y' = Y'' = Y''' = 0, derivatives by the arc length of a rod that is straight by nature,
+/// Y = Y' = Y'' = Y''' = 0, derivatives by the arc length of a rod that is intrinsically straight,
 ///     Y' = N.t,  Y'' = N.t' + t.A t,  Y''' = N.t'' + 3 t.A t',  A = P / radius.
 struct LyingConditions {
   Eigen::Vector4d values;

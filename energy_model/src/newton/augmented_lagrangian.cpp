@@ -11,7 +11,7 @@ namespace {
 
 /// A region this small ends a minimum: the multipliers may move on.
 constexpr double least_penalty_radius = 1e-9;
-/// Miss of the constraints from which Newton's method takes over [l].
+/// Residual of the constraints from which Newton's method takes over [l].
 constexpr double close_enough = 1e-7;
 constexpr int most_updates = 40;
 
@@ -30,14 +30,14 @@ class AugmentedLagrangian {
     jacobian_.resize(m, n);
     kappa_ = std::max(100 * (1 + options_.load), 10 * options_.stiffness);
     evaluate();
-    double missed = residual_.norm();
+    double last_residual = residual_.norm();
     for (int update = 0; update < most_updates; ++update) {
-      if (!minimise(std::min(1e-2, missed))) break;
+      if (!minimise(std::min(1e-2, last_residual))) break;
       mu_ = forces();
-      const double miss = residual_.norm();
-      if (miss <= close_enough) return finish(SolveStatus::converged);
-      if (miss > missed / 4) kappa_ = std::min(largest_kappa(), 10 * kappa_);
-      missed = miss;
+      const double residual = residual_.norm();
+      if (residual <= close_enough) return finish(SolveStatus::converged);
+      if (residual > last_residual / 4) kappa_ = std::min(largest_kappa(), 10 * kappa_);
+      last_residual = residual;
     }
     if (out_of_time()) return finish(SolveStatus::time_limit);
     finish(SolveStatus::failed);

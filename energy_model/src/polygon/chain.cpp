@@ -43,7 +43,7 @@ double joint_length(const ChainProblem& problem, Eigen::Index i) {
   return (problem.segment_lengths[i - 1] + problem.segment_lengths[i]) / 2;
 }
 
-/// The joint between segments i-1 and i as it is turned by alpha, its natural turn counted.
+/// The joint between segments i-1 and i as it is bent by alpha, its natural turn counted.
 AngleJoint joint_at(const ChainProblem& problem, Eigen::Index i, double alpha) {
   const double stiffness =
       problem.stiffnesses.size() > 0 ? problem.stiffnesses[i - 1] : problem.stiffness;
@@ -192,8 +192,8 @@ double largest_natural_moment(const ChainProblem& problem) {
 }
 
 /// Damped Newton steps; each must lower the energy or the gradient.
-void polish(const ChainProblem& problem, const ChainOptions& options, const Deadline& deadline,
-            double moment_scale, ChainResult& result) {
+void newton_in_chain(const ChainProblem& problem, const ChainOptions& options,
+                     const Deadline& deadline, double moment_scale, ChainResult& result) {
   const Eigen::Matrix2Xd forces = segment_forces(problem);
   const Eigen::Index free = result.angles.size() - 1;
   Eigen::VectorXd gradient(result.angles.size());
@@ -318,7 +318,7 @@ ChainResult solve_chain(const ChainProblem& problem, const ChainOptions& options
   Eigen::VectorXd by_turn(n - 1);
   (void)objective(turns, by_turn);
   result.status = first.status;
-  if (first.is_a_start()) polish(problem, options, deadline, moment_scale, result);
+  if (first.is_a_start()) newton_in_chain(problem, options, deadline, moment_scale, result);
   result.message = to_string(result.status);
 
   const double total = chain_energy(problem, result.angles, gradient);

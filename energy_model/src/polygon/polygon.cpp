@@ -75,7 +75,7 @@ class PolygonDescent {
       if (deadline_.passed()) return SolveStatus::time_limit;
       const bool exact = which_ == HessianTerms::all;
       if (!factor(damping)) {
-        if (exact && options_.to_any_minimum) {
+        if (exact && options_.project_hessian) {
           assemble(HessianTerms::stiffening);
         } else {
           damping = std::max(4 * damping, first_damping);
@@ -94,7 +94,7 @@ class PolygonDescent {
         slows = 0;
       } else if (const bool at_rest = force.dot(step) <= rounding_energy();
                  at_rest || (size < beside_saddle && slows >= most_slow)) {
-        // At rest, but only what was left out, or damping, made the Hessian positive; or on the
+        // At rest, but only the terms omitted, or damping, made the Hessian positive; or on the
         // slow way there.
         beside_saddle = size / 4;
         slows = 0;
@@ -124,7 +124,7 @@ class PolygonDescent {
         assemble(HessianTerms::all);
         damping = damping < 4 * first_damping ? 0 : damping / 8;
         slows = !exact && size < std::exchange(last_stiffening, size) ? slows + 1 : 0;
-      } else if (exact && damping == 0 && options_.to_any_minimum) {
+      } else if (exact && damping == 0 && options_.project_hessian) {
         assemble(HessianTerms::stiffening);
       } else {
         damping = std::max(4 * damping, first_damping);

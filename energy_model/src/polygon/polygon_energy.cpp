@@ -105,8 +105,8 @@ void for_each_look(const std::vector<bool>& held, const PointObstacle& obstacle,
   for (Eigen::Index i = 0; i <= n; ++i) {
     if (!is_held(i)) action(i, 0.0, Eigen::Vector3d(points.col(i)));
     if (i == n || (is_held(i) && is_held(i + 1))) continue;
-    for (int k = 1; k < obstacle.looks; ++k) {
-      const double share = static_cast<double>(k) / obstacle.looks;
+    for (int k = 1; k < obstacle.samples; ++k) {
+      const double share = static_cast<double>(k) / obstacle.samples;
       action(i, share, Eigen::Vector3d((1 - share) * points.col(i) + share * points.col(i + 1)));
     }
   }
@@ -160,7 +160,7 @@ double polygon_energy(const PolygonProblem& problem, const Points& points,
   if (problem.obstacles.empty()) return energy;
   const std::vector<bool> held = held_points(problem);
   for (const PointObstacle& obstacle : problem.obstacles) {
-    const double k = obstacle.stiffness / obstacle.looks;
+    const double k = obstacle.stiffness / obstacle.samples;
     const auto push = [&](Eigen::Index i, double share, const Eigen::Vector3d& point) {
       if (obstacle.body.clearance(point) >= 0) return;
       const obstacle::Gap gap = obstacle.body.gap(point);
@@ -223,7 +223,7 @@ void polygon_hessian(const PolygonProblem& problem, const Points& points, Hessia
   if (problem.obstacles.empty()) return;
   const std::vector<bool> held = held_points(problem);
   for (const PointObstacle& obstacle : problem.obstacles) {
-    const double k = obstacle.stiffness / obstacle.looks;
+    const double k = obstacle.stiffness / obstacle.samples;
     const auto stiffen = [&](Eigen::Index i, double share, const Eigen::Vector3d& point) {
       if (obstacle.body.clearance(point) >= 0) return;
       const obstacle::Gap gap = obstacle.body.gap(point);

@@ -13,7 +13,7 @@ namespace {
 
 using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
 
-/// Of polygons whose joints are turned at rest.
+/// Of polygons whose joints are bent at rest.
 void require_in_plane(const char* problem, const char* what, const Points& vectors) {
   const double across = vectors.row(2).cwiseAbs().maxCoeff();
   require(across == 0, problem, (std::string("z of ") + what).c_str(), across,
@@ -53,7 +53,7 @@ void require_polygon(const PolygonProblem& problem, const Points& start,
             "stiffness of an obstacle", obstacle.stiffness, "finite and >= 0");
     require(obstacle.body.centre().allFinite() && obstacle.body.axes().allFinite(), name,
             "point of an obstacle", obstacle.body.centre().norm(), "finite, as its axes");
-    require(obstacle.looks >= 1, name, "looks per segment", obstacle.looks, ">= 1");
+    require(obstacle.samples >= 1, name, "samples per segment", obstacle.samples, ">= 1");
   }
   require_positive("PolygonOptions", "tolerance", options.tolerance);
   require(options.max_evaluations >= 1, "PolygonOptions", "max_evaluations",

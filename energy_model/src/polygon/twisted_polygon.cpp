@@ -17,9 +17,9 @@ namespace {
 constexpr double first_turning = 0.25;
 constexpr double longest_turning = 1;
 /// A step that moves a point by more than this share of the length is made shorter, down to
-/// `turning_at_leap`: what moves as far then has leapt to another shape.
+/// `turning_at_jump`: what moves as far then has jumped to another shape.
 constexpr double longest_movement = 0.05;
-constexpr double turning_at_leap = 0.02;
+constexpr double turning_at_jump = 0.02;
 constexpr double least_turning = 1e-4;
 
 /// Problems on the way from no twist to all of it.
@@ -84,7 +84,7 @@ PolygonResult twist_polygon(const PolygonProblem& problem,
   PolygonResult now;
   now.points = start;
   now.twists.assign(problem.twists.size(), 0);
-  Eigen::Matrix3Xd slope;  // of the points by part; empty after a leap
+  Eigen::Matrix3Xd slope;  // of the points by part; empty after a jump
   double part = 0;
   double turning = first_turning;
   while (part < 1) {
@@ -102,10 +102,10 @@ PolygonResult twist_polygon(const PolygonProblem& problem,
       const double moved = (found.points - now.points).colwise().norm().maxCoeff() / length;
       now.evaluations += found.evaluations;
       const bool solved = succeeded(found.status);
-      const bool leapt = !(moved <= longest_movement);
-      if (solved && (!leapt || turning <= turning_at_leap)) {
+      const bool jumped = !(moved <= longest_movement);
+      if (solved && (!jumped || turning <= turning_at_jump)) {
         slope.resize(3, 0);
-        if (!leapt) slope = (found.points - now.points) / (next - part);
+        if (!jumped) slope = (found.points - now.points) / (next - part);
         found.evaluations = now.evaluations;
         now = std::move(found);
         part = next;

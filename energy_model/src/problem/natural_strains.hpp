@@ -5,7 +5,8 @@
 
 namespace dlo::energy_model {
 
-/// Strains of a free rod along it, as series in Legendre's polynomials P_j(from + rate s).
+/// Strains of the stress-free shape along it, as series in Legendre's polynomials P_j(from + rate
+/// s).
 struct NaturalStrains {
   std::vector<Eigen::Vector3d> coefficients;  ///< none: no directors that are fixed to the
                                               ///< material; of a straight rod that has some: zero

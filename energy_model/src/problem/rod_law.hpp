@@ -41,7 +41,7 @@ struct RodPart : Section {
 /// EI about d1 and d2 and GJ, over a unit [N m^2].
 [[nodiscard]] Eigen::Vector3d principal_stiffness(const Section& section, double unit);
 
-/// Strains of the free rod at an arc length [1/m].
+/// Strains of the stress-free shape at an arc length [1/m].
 [[nodiscard]] Eigen::Vector3d natural_strain(const Problem& problem, double arc_length);
 
 /// Frame (columns d1, d2, t) of a clamp that has this d1 before it is rolled.

@@ -18,7 +18,7 @@ struct Span {
   struct Hold {
     double at = 0;
     Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< from the anchor
-    /// Of a clamp inside the span, which lets the rod turn about it.
+    /// Of a clamp inside the span, about which the rod is free to rotate.
     std::optional<Eigen::Vector3d> direction = std::nullopt;
   };
   struct Load {

@@ -342,9 +342,9 @@ PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips, 
   return placed;
 }
 
-/// Arc lengths of the clamps that nothing passes through: one that lets the rod turn about its
-/// direction passes a torque on, which there is between clamps that hold frames, and all along a
-/// rod with material directors.
+/// Arc lengths of the clamps that nothing passes through: one about which the rod rotates freely,
+/// its direction passes a torque on, which there is between clamps that hold frames, and all along
+/// a rod with material directors.
 std::vector<double> cuts_at_clamps(const Problem& problem, const std::vector<OrderedGrip>& grips) {
   std::vector<OrderedGrip> clamps;
   for (const OrderedGrip& g : grips) {

@@ -7,7 +7,7 @@
 
 #include "certify/enough_terms.hpp"
 #include "contact/clearance.hpp"
-#include "contact/lift_off.hpp"
+#include "contact/free_boundary.hpp"
 #include "newton/trust_region.hpp"
 #include "search/free_boundary_newton.hpp"
 #include "span/local_solver.hpp"
@@ -16,7 +16,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Times that the contacts are mended.
+/// Times that the contacts are updated.
 constexpr int most_contact_updates = 16;
 /// Unknowns from which on half of the terms that a load takes are tried first.
 constexpr int many_unknowns = 300;
@@ -26,19 +26,19 @@ constexpr double shortest_told = 1e-3;
 
 /// Whether the contacts end where an obstacle without friction lets them, which is what makes the
 /// shape an equilibrium: a slope or a moment that is left there would take more than pressure.
-bool lifts_off(const SpanSolution& solution) {
+bool meets_free_boundaries(const SpanSolution& solution) {
   constexpr double settled = 1e-6;
   const Span& span = solution.model->span();
-  const std::vector<LiftOff> ends = lift_offs(span);
+  const std::vector<FreeBoundary> ends = free_boundaries(span);
   if (ends.empty()) return true;
-  const Eigen::VectorXd miss = missed(solution, ends);
-  if (!(miss.cwiseAbs().maxCoeff() <= settled)) return false;
+  const Eigen::VectorXd residual = free_boundary_residual(solution, ends);
+  if (!(residual.cwiseAbs().maxCoeff() <= settled)) return false;
   // Two points share a force by where they are.
   constexpr double share = 1e-7;
   for (std::size_t i = 0; i < ends.size(); ++i) {
     if (span.contacts[ends[i].contact].lies()) continue;
     const Room room = room_of(span, ends[i]);
-    const double off = std::abs(miss[static_cast<Eigen::Index>(i)]);
+    const double off = std::abs(residual[static_cast<Eigen::Index>(i)]);
     if (!(off <= share * std::min(room.down, room.up))) return false;
   }
   return true;
@@ -47,27 +47,28 @@ bool lifts_off(const SpanSolution& solution) {
 }  // namespace
 
 SpanSolution ActiveSet::solve(Span span, TangentField near) {
-  return counted(run(std::move(span), std::move(near), {}, Terms::all));
+  return counted(run(std::move(span), std::move(near), {}, Resolution::resolved));
 }
 
 SpanSolution ActiveSet::solve(SpanSolution equilibrium) {
   Span span = equilibrium.model->span();
-  return counted(run(std::move(span), {}, std::move(equilibrium), Terms::all));
+  return counted(run(std::move(span), {}, std::move(equilibrium), Resolution::resolved));
 }
 
 SpanSolution ActiveSet::update(SpanSolution equilibrium) {
   Span span = equilibrium.model->span();
   least_terms_ = equilibrium.terms;
-  return counted(run(std::move(span), {}, std::move(equilibrium), Terms::some));
+  return counted(run(std::move(span), {}, std::move(equilibrium), Resolution::coarse));
 }
 
 SpanSolution ActiveSet::update(Span span, TangentField near, int terms) {
   least_terms_ = terms;
-  return counted(run(std::move(span), std::move(near), {}, Terms::some));
+  return counted(run(std::move(span), std::move(near), {}, Resolution::coarse));
 }
 
 /// @param solution  with the span's contacts, if it is an equilibrium; else from `near`
-SpanSolution ActiveSet::run(Span span, TangentField near, SpanSolution solution, Terms terms) {
+SpanSolution ActiveSet::run(Span span, TangentField near, SpanSolution solution,
+                            Resolution resolution) {
   spent_ += std::exchange(solution.evaluations, 0);
   for (int round = 0; round < most_contact_updates; ++round) {
     const bool found_already = round == 0 && solution.is_equilibrium();
@@ -75,8 +76,9 @@ SpanSolution ActiveSet::run(Span span, TangentField near, SpanSolution solution,
     if (!solution.is_equilibrium() && hold_points(span)) solution = newton_from(span, near);
     if (!solution.is_equilibrium()) break;
     spent_ += free_boundary_newton(solution, options_.deadline, workspace_);
-    std::optional<std::vector<Span::Contact>> next = mended(solution, load_, Terms::some);
-    if (!next && terms == Terms::some) return solution;
+    std::optional<std::vector<Span::Contact>> next =
+        updated_contacts(solution, load_, Resolution::coarse);
+    if (!next && resolution == Resolution::coarse) return solution;
     if (!next) {
       const TangentField here = solution.model->field(solution.x);
       span = solution.model->span();
@@ -87,8 +89,8 @@ SpanSolution ActiveSet::run(Span span, TangentField near, SpanSolution solution,
         if (solution.is_equilibrium()) solution = with_all_terms(std::move(solution));
       }
       if (!solution.is_equilibrium()) break;
-      next = mended(solution, load_, Terms::all);
-      if (!next && !lifts_off(solution)) break;
+      next = updated_contacts(solution, load_, Resolution::resolved);
+      if (!next && !meets_free_boundaries(solution)) break;
       if (!next) return solution;
     }
     near = solution.model->field(solution.x);
@@ -158,8 +160,8 @@ SpanSolution ActiveSet::with_all_terms(SpanSolution solution) {
 /// Behind an obstacle by no more than missing terms may make it.
 bool ActiveSet::hardly_behind(const SpanSolution& solution) const {
   if (!solution.is_equilibrium()) return false;
-  const std::vector<Lowest> behind =
-      lowest_points(searched_, solution.model->shape(solution.x), -deepest * searched_.length);
+  const std::vector<GapMinimum> behind =
+      gap_minima(searched_, solution.model->shape(solution.x), -deepest * searched_.length);
   return !behind.empty() && std::all_of(behind.begin(), behind.end(), [&](const auto& lowest) {
     return lowest.clearance > -deepest_coarse * searched_.length;
   });

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "contact/mend.hpp"
+#include "contact/update_contacts.hpp"
 #include "span/span_options.hpp"
 #include "span/span_workspace.hpp"
 #include "strain/span_solution.hpp"
@@ -9,8 +9,8 @@ namespace dlo::energy_model {
 
 /// The contacts of an equilibrium, by an active-set method: Newton's method with contacts that are
 /// given, whose ends move to where the rod lifts off (free_boundary_newton()), then contacts that
-/// pull are released and others are added where the rod is behind an obstacle (mended()), until
-/// there are none of either. Of all rods, also of those that clamps twist.
+/// pull are released and others are added where the rod is behind an obstacle (updated_contacts()),
+/// until there are none of either. Of all rods, also of those that clamps twist.
 class ActiveSet {
  public:
   /// All of them have to outlive it.
@@ -38,7 +38,8 @@ class ActiveSet {
   [[nodiscard]] int terms_of_load(const Span& span) const;
 
  private:
-  [[nodiscard]] SpanSolution run(Span span, TangentField near, SpanSolution solution, Terms terms);
+  [[nodiscard]] SpanSolution run(Span span, TangentField near, SpanSolution solution,
+                                 Resolution resolution);
   [[nodiscard]] SpanSolution with_all_terms(SpanSolution solution);
   [[nodiscard]] SpanSolution finished(SpanSolution solution);
   [[nodiscard]] bool hardly_behind(const SpanSolution& solution) const;

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "base/moves_for_nothing.hpp"
+#include "base/zero_modes_note.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/reduction.hpp"
 #include "problem/rod_law.hpp"
@@ -154,7 +154,7 @@ Equilibrium assemble(const Problem& problem, const std::vector<PlacedSpan>& plac
     }
   }
   if (succeeded(result.status) || result.status == SolveStatus::saddle) {
-    result.message += moves_for_nothing(rigid_body_modes);
+    result.message += zero_modes_note(rigid_body_modes);
     if (has_couples(problem)) result.message += in_the_plane;
   }
   if (result.status == SolveStatus::near_singular && result.neutral_directions > 0) {

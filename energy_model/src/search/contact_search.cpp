@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "contact/clearance.hpp"
-#include "contact/mend.hpp"
-#include "contact/resting_polygon.hpp"
+#include "contact/penalty_polygon.hpp"
+#include "contact/update_contacts.hpp"
 #include "search/active_set.hpp"
 #include "search/follow_contacts.hpp"
 #include "span/found.hpp"
@@ -86,7 +86,7 @@ class ContactSearch {
         continue;
       }
       const SpanShape shape = solution.model->shape(solution.x);
-      if (!lowest_points(span_, shape, -deepest * span_.length).empty()) {
+      if (!gap_minima(span_, shape, -deepest * span_.length).empty()) {
         starts.push_back(solution.model->field(solution.x));
         lowest_within = std::min(lowest_within, solution.energy);
         continue;
@@ -117,16 +117,16 @@ class ContactSearch {
       });
     };
     if (starts.size() > 1) {
-      const std::vector<RestingPolygon> coarse = whole(Segments::few);
-      std::vector<RestingPolygon> near;
-      std::vector<RestingPolygon> other;
-      for (const RestingPolygon& polygon : coarse) {
+      const std::vector<PenaltyPolygon> coarse = whole(Segments::few);
+      std::vector<PenaltyPolygon> near;
+      std::vector<PenaltyPolygon> other;
+      for (const PenaltyPolygon& polygon : coarse) {
         if (!polygon.at_rest) continue;
         const double lowest = coarse.front().energy;
         const bool is_near = polygon.energy - lowest <= near_lowest * (1 + std::abs(lowest));
         (is_near ? near : other).push_back(polygon);
       }
-      for (const std::vector<RestingPolygon>* from : {&near, &other}) {
+      for (const std::vector<PenaltyPolygon>* from : {&near, &other}) {
         if (options_.deadline.passed() && !found_.empty()) return;
         refine(polygons_from(from->size(), [&](std::size_t i) {
           return rest_refined(span_, (*from)[i], options_.deadline);
@@ -140,11 +140,11 @@ class ContactSearch {
 
   /// The rod's own shapes with the contacts of polygons, lowest first: up to the first one that
   /// suffices and what ties with it.
-  void refine(const std::vector<RestingPolygon>& polygons) {
+  void refine(const std::vector<PenaltyPolygon>& polygons) {
     for (std::size_t i = 0; i < polygons.size(); ++i) {
-      const RestingPolygon& polygon = polygons[i];
+      const PenaltyPolygon& polygon = polygons[i];
       if (options_.deadline.passed() && !found_.empty()) {
-        note_left_out(options_.log, "starts after the time limit");
+        note_not_tried(options_.log, "starts after the time limit");
         return;
       }
       if (found_.add(from_polygon(polygon))) note_found(options_.log, polygons_at_rest);
@@ -156,16 +156,16 @@ class ContactSearch {
   }
 
   /// Those that do not come to rest only where none does.
-  [[nodiscard]] std::vector<RestingPolygon> polygons_from(
-      std::size_t count, const std::function<RestingPolygon(std::size_t)>& rest) {
-    std::vector<RestingPolygon> polygons;
+  [[nodiscard]] std::vector<PenaltyPolygon> polygons_from(
+      std::size_t count, const std::function<PenaltyPolygon(std::size_t)>& rest) {
+    std::vector<PenaltyPolygon> polygons;
     for (std::size_t i = 0; i < count; ++i) {
       if (options_.deadline.passed() && !polygons.empty()) {
-        note_left_out(options_.log, "starts after the time limit");
+        note_not_tried(options_.log, "starts after the time limit");
         break;
       }
       note_tried(options_.log, polygons_at_rest);
-      RestingPolygon polygon = rest(i);
+      PenaltyPolygon polygon = rest(i);
       found_.spend(polygon.evaluations);
       const bool known = std::any_of(polygons.begin(), polygons.end(), [&](const auto& other) {
         return other.at_rest && polygon.at_rest &&
@@ -189,7 +189,7 @@ class ContactSearch {
     const std::optional<NegativeCurvature> way = negative_curvature(saddle);
     if (!way || options_.deadline.passed()) return;
     SpanEnergy pushed(way->span, saddle.terms);
-    const Eigen::VectorXd x = pushed.adopt(*saddle.model, saddle.x) + push * way->direction;
+    const Eigen::VectorXd x = pushed.prolong(*saddle.model, saddle.x) + push * way->direction;
     Span span = span_;
     span.planar = way->span.planar;
     SpanOptions options = options_;
@@ -197,8 +197,8 @@ class ContactSearch {
     ContactSearch(span, options, workspace_, found_).look_from({pushed.field(x)});
   }
 
-  /// The rod's own shape with a polygon's contacts, mended until they are right.
-  [[nodiscard]] SpanSolution from_polygon(const RestingPolygon& polygon) {
+  /// The rod's own shape with a polygon's contacts, updated until they are right.
+  [[nodiscard]] SpanSolution from_polygon(const PenaltyPolygon& polygon) {
     Span span = span_;
     span.contacts = polygon.contacts;
     if (polygon.tangents.row(2).cwiseAbs().maxCoeff() > flat) span.planar = false;

@@ -108,18 +108,18 @@ class EnergySolver::State {
       if (wanted == Wanted::all) options.log = &log_;
       solutions.push_back(solve_span_at(i, placed[i], problem, options, warm));
       followed_ = followed_ && solutions.back().front().followed;
-      if (only && !followed_) return gone_back();
+      if (only && !followed_) return undone();
     }
     std::vector<Equilibrium> result = combine(problem, placed, solutions, log_);
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     for (Equilibrium& equilibrium : result) equilibrium.seconds = seconds;
     followed_ = followed_ && (!only || succeeded(result.front().status));
-    if (only && !followed_) return gone_back();
+    if (only && !followed_) return undone();
     return result;
   }
 
-  void go_back() {
+  void undo() {
     remembered_ = former_;
     twists_ = former_twists_;
   }
@@ -130,8 +130,8 @@ class EnergySolver::State {
   [[nodiscard]] bool followed() const { return followed_; }
 
  private:
-  [[nodiscard]] std::vector<Equilibrium> gone_back() {
-    go_back();
+  [[nodiscard]] std::vector<Equilibrium> undone() {
+    undo();
     return {};
   }
 
@@ -179,14 +179,14 @@ Equilibrium EnergySolver::follow(const Problem& problem) {
   return std::move(state_->solve(problem, State::Wanted::lowest, State::From::last_shape).front());
 }
 
-std::optional<Equilibrium> EnergySolver::keep(const Problem& problem) {
+std::optional<Equilibrium> EnergySolver::try_follow(const Problem& problem) {
   std::vector<Equilibrium> kept =
       state_->solve(problem, State::Wanted::lowest, State::From::last_shape_only);
   if (kept.empty()) return std::nullopt;
   return std::move(kept.front());
 }
 
-void EnergySolver::go_back() { state_->go_back(); }
+void EnergySolver::undo() { state_->undo(); }
 
 bool EnergySolver::followed() const { return state_->followed(); }
 

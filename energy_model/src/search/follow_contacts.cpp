@@ -67,7 +67,7 @@ SpanSolution next_to_known(Span span, double share, const SpanOptions& options,
   const bool fits = span.planar || span.has_material_directors();
   // The fit also says how often the clamps are wound.
   solution.x =
-      fits ? model.fit(options.start.field(model.nodes())) : model.adopt(*known.model, known.x);
+      fits ? model.fit(options.start.field(model.nodes())) : model.prolong(*known.model, known.x);
   // A part that comes to be short has fewer of them.
   const bool as_held = known.multipliers.size() == model.constraints();
   if (as_held) solution.multipliers = known.multipliers;

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "contact/lift_off.hpp"
-#include "contact/mend.hpp"
+#include "contact/free_boundary.hpp"
+#include "contact/update_contacts.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -20,9 +20,9 @@ constexpr int updates_a_derivative = 8;
 constexpr int most_cuts = 3;
 /// Step at which an end is found, in lengths.
 constexpr double converged_step = 1e-10;
-/// Residual at which there is nothing to mend: lift_off.hpp's measures, which are steps or more.
-/// A curvature that is left at a lift-off is a moment there. What the contact carries has to make
-/// up for it next to that end, and its series of K terms ends with a force K^2 times as large.
+/// Residual at which there is nothing to mend: free_boundary.hpp's measures, which are steps or
+/// more. A curvature that is left at a lift-off is a moment there. What the contact carries has to
+/// make up for it next to that end, and its series of K terms ends with a force K^2 times as large.
 constexpr double zero_residual = 1e-12;
 /// Below, steps that no longer halve the residual are rounding.
 constexpr double small_residual = 1e-10;
@@ -39,7 +39,7 @@ class FreeBoundaryNewton {
         deadline_(deadline),
         workspace_(workspace),
         factor_(solution.factor),
-        ends_(lift_offs(solution.model->span())),
+        ends_(free_boundaries(solution.model->span())),
         residual_(residual_of(solution)),
         jacobian_(residual_.size(), residual_.size()),
         x_by_ends_(solution.x.size(), residual_.size()),
@@ -64,7 +64,7 @@ class FreeBoundaryNewton {
 
  private:
   [[nodiscard]] Eigen::VectorXd residual_of(const SpanSolution& solution) const {
-    return missed(solution, ends_);
+    return free_boundary_residual(solution, ends_);
   }
 
   /// Between each contact and the next.
@@ -116,7 +116,7 @@ class FreeBoundaryNewton {
     SpanSolution result = workspace_.empty_solution(span, solution_.terms);
     NewtonOptions options = {.load = span.total_load(), .deadline = &deadline_};
     if (result.model->pieces() == solution_.model->pieces()) {
-      result.x = result.model->adopt(*solution_.model, solution_.x);
+      result.x = result.model->prolong(*solution_.model, solution_.x);
       result.x += x_by_ends_ * way;
       result.multipliers = solution_.multipliers + multipliers_by_ends_ * way;
       options.method = method;
@@ -173,7 +173,7 @@ class FreeBoundaryNewton {
     multipliers_by_ends_.setZero(solution_.multipliers.size(), residual_.size());
     Eigen::VectorXd way = Eigen::VectorXd::Zero(residual_.size());
     for (Eigen::Index i = 0; i < residual_.size(); ++i) {
-      const LiftOff& end = ends_[static_cast<std::size_t>(i)];
+      const FreeBoundary& end = ends_[static_cast<std::size_t>(i)];
       const Span::Contact& contact = solution_.model->span().contacts[end.contact];
       if (!contact.lies() && contact.slides) {
         // Where a rod touches does not depend on where it is looked for.
@@ -199,7 +199,7 @@ class FreeBoundaryNewton {
   const Deadline& deadline_;
   SpanWorkspace& workspace_;
   std::shared_ptr<NewtonFactor> factor_;  // the last one, of ends that were hardly elsewhere
-  std::vector<LiftOff> ends_;
+  std::vector<FreeBoundary> ends_;
   Eigen::VectorXd residual_;
   // Derivatives by the ends: of the residual, and of an equilibrium's unknowns and multipliers.
   Eigen::MatrixXd jacobian_, x_by_ends_, multipliers_by_ends_;

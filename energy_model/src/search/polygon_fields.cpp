@@ -46,7 +46,7 @@ TangentField PolygonFields::field(std::size_t index) const {
   const RodMesh mesh = make_mesh(*span_, longest_);
   Eigen::VectorXd middles = middles_of(mesh);
   Eigen::Matrix3Xd tangents = minimum.tangents();
-  const double force = minimum.force.colwise().norm().maxCoeff() / softest(*span_);
+  const double force = minimum.force.colwise().norm().maxCoeff() / least_bending_stiffness(*span_);
   const double resolving =
       std::max(1 / std::sqrt(std::max(force, 1.0)), span_->length / most_field_intervals);
   if (longest_ > 1.1 * resolving) {

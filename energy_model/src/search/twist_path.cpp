@@ -12,7 +12,7 @@
 #include "base/legendre.hpp"
 #include "base/sized_samples.hpp"
 #include "certify/enough_terms.hpp"
-#include "contact/resting_polygon.hpp"
+#include "contact/penalty_polygon.hpp"
 #include "dlo/energy_model/turns.hpp"
 #include "linear/free_directions.hpp"
 #include "newton/augmented_lagrangian.hpp"
@@ -47,7 +47,7 @@ constexpr double rounded_curvature = 1e-9;
 constexpr double nearest_factor = 1e-3;
 constexpr double least_stiff_eigenvalue = 1e-2;
 
-/// Leaps to other branches, which would go on without an end where each leads to the next.
+/// Branch jumps, which would go on without an end where each leads to the next.
 constexpr int most_branch_jumps = 60;
 
 /// Of them those that a polygon has to be asked for; each may take a second.
@@ -93,7 +93,7 @@ class TwistPath {
     Span own = in_space(untwisted.solution.model->span());
     own.twist = Span::Twist{stiffness, first_d1_};
     here_ = workspace.empty_solution(own, terms_of(untwisted.solution));
-    here_.x = here_.model->adopt(*untwisted.solution.model, untwisted.solution.x);
+    here_.x = here_.model->prolong(*untwisted.solution.model, untwisted.solution.x);
   }
 
   [[nodiscard]] SpanSolution run(double whole) {
@@ -178,7 +178,7 @@ class TwistPath {
     next.evaluations = 0;
     if (!next.is_equilibrium()) return std::nullopt;
     // On the same branch the energy has risen by the torque's work. The shape tells less: it may
-    // turn about a line for nothing.
+    // rotate around a line at no energy.
     const double work = (torque(here_) + torque(next)) / 2 * turn;
     const double unit = here_.model->span().twist->stiffness / span_.length * turn * turn;
     const double rounding = 1e-9 * (1 + load_ + std::abs(next.energy));
@@ -315,7 +315,7 @@ class TwistPath {
     if (span.rigid_obstacles.empty() || span.has_material_directors()) return std::nullopt;
     if (++polygons_ > most_polygons) return std::nullopt;
     const Eigen::VectorXd x = way ? here_.x + first_push * *way : here_.x;
-    const RestingPolygon polygon =
+    const PenaltyPolygon polygon =
         rest_on_obstacles(span, here_.model->field(x), Segments::all, options_.deadline);
     spent_ += polygon.evaluations;
     span.contacts = polygon.contacts;
@@ -365,7 +365,7 @@ UntwistedShape untwisted_shape(const SpanSolution& solution, SpanWorkspace& work
   span.planar = false;
   const std::shared_ptr<SpanEnergy> model = workspace.model(span, solution.terms);
   Eigen::VectorXd gradient(model->size());
-  (void)model->value(model->adopt(*solution.model, solution.x), gradient);
+  (void)model->value(model->prolong(*solution.model, solution.x), gradient);
   const SpanShape shape = solution.model->shape(solution.x);
   const auto sample = [&shape, length = span.length](std::span<const double> at) {
     const SpanSamples own = shape.sample(at);

@@ -77,8 +77,8 @@ class TwistedSpan {
   /// Each stable shape without twist, turned until it meets the frame.
   [[nodiscard]] std::vector<SpanSolution> turned(const std::vector<SpanSolution>& untwisted,
                                                  const EndFrame& frame) const {
-    note_left_out(options_.log,
-                  "unstable twisted shapes, and those that no stable one is turned to");
+    note_not_tried(options_.log,
+                   "unstable twisted shapes, and those that no stable one is turned to");
     Found found(options_);
     for (const SpanSolution& from : untwisted) {
       if (!succeeded(from.status)) continue;

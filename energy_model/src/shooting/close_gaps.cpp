@@ -72,7 +72,7 @@ std::optional<Eigen::VectorXd> regular_step(Triplets derivatives, Eigen::Index u
 }
 
 /// Levenberg's step with a weight of the order of the gaps: it makes them smaller and moves nothing
-/// that can move for nothing, where Newton's step is not defined.
+/// that has a zero mode, where Newton's step is not defined.
 std::optional<double> levenberg_step(const ShootingSystem& system, const Triplets& derivatives,
                                      const Eigen::VectorXd& equations, ShootingPoint& point,
                                      int& shots) {
@@ -95,8 +95,8 @@ std::optional<double> levenberg_step(const ShootingSystem& system, const Triplet
 }
 
 /// The same near the end, where a twisted rod would drift: a buckle far from both clamps moves
-/// along the rod, and turns about its line, for nearly nothing, so that Newton's steps stay long.
-/// As fast as Newton's method in all other directions (Yamashita and Fukushima 2001).
+/// along the rod, and rotates around its line, with a nearly zero mode, so that Newton's steps stay
+/// long. As fast as Newton's method in all other directions (Yamashita and Fukushima 2001).
 std::optional<double> last_newton_steps(const ShootingSystem& system, const Triplets& derivatives,
                                         const Eigen::VectorXd& equations, ShootingPoint& point,
                                         int& shots) {

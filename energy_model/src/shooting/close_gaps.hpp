@@ -21,8 +21,7 @@ enum class Modes { stiff, nearly_zero };
 
 /// Newton's method on the equations of multiple shooting. Steps are damped until the next
 /// simplified step is shorter (Deuflhard's natural monotonicity); where there is no such step,
-/// because the rod can move for nothing or nearly so, a Levenberg step makes the gaps smaller.
-/// @param drifting  the rod may have ways to move for nearly nothing: do not follow them
+/// because of a zero mode or nearly one, a Levenberg step makes the gaps smaller.
 ClosedGaps close_gaps(const ShootingSystem& system, ShootingPoint& point, int max_iterations,
                       Modes modes);
 

@@ -15,7 +15,7 @@ bool factorise(const ConstrainedPencil& pencil, double mu, Factors& factors) {
   return factors.info() == Eigen::Success && factors.vectorD().allFinite();
 }
 
-/// Number of eigenvalues below mu; -1: the pivots do not tell.
+/// Number of eigenvalues below mu; -1: undetermined by the pivots.
 int count_below(const ConstrainedPencil& pencil, double mu) {
   Factors factors;
   // A pivot is zero on a set of mu that a small change leaves.

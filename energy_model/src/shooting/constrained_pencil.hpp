@@ -30,7 +30,7 @@ struct ConstrainedPencil {
 
 /// The smallest eigenvalue of a pencil, and how many there are below zero and about it.
 struct SmallestMode {
-  int negative = 0;  ///< below -neutral_eigenvalue; -1: the pivots do not tell
+  int negative = 0;  ///< below -neutral_eigenvalue; -1: undetermined by the pivots
   int neutral = 0;   ///< closer to zero
   double smallest = std::numeric_limits<double>::quiet_NaN();
   Eigen::VectorXd x;  ///< its eigenvector; empty if the iteration did not find it

@@ -12,8 +12,8 @@
 #include <memory>
 #include <numbers>
 
-#include "base/moves_for_nothing.hpp"
 #include "base/silence_gsl.hpp"
+#include "base/zero_modes_note.hpp"
 #include "shooting/refine_span.hpp"
 #include "shooting/second_variation.hpp"
 #include "shooting/span_equilibrium.hpp"
@@ -44,8 +44,8 @@ using State = std::array<double, components_and_changes>;
 constexpr int most_shot_steps = 100000;  // of the integrator, in a shot
 constexpr int most_shots = 20000;        // of a scan
 constexpr int deepest_cell = 6;          // halvings of a cell of the scan
-constexpr double cell_resolved = 0.02;   // a cubic's error in a cell over the miss there
-constexpr double double_root = 1e-11;    // of the miss: rounding of a shot
+constexpr double cell_resolved = 0.02;   // a cubic's error in a cell over the residual there
+constexpr double double_root = 1e-11;    // of the residual: rounding of a shot
 
 /// Forces in the frame whose x axis is the last force.
 struct Frame {
@@ -165,10 +165,10 @@ bool shoot(const Frame& frame, double start, double tolerance, const std::vector
   return std::isfinite(states.back()[psi]);
 }
 
-/// A tip's angle, how far it misses the clamp's angle, and the derivative of that.
+/// A tip's angle, the residual at the clamp's angle, and the derivative of that.
 struct ScanPoint {
   double start = 0;
-  double miss = 0;
+  double residual = 0;
   double slope = 0;
 };
 
@@ -183,7 +183,7 @@ struct Shooter {
   std::vector<State> states;
 
   /// How far the clamp's angle is missed; zero at every winding number. NaN if the shot fails.
-  double miss(double start) { return point(start, false).miss; }
+  double residual(double start) { return point(start, false).residual; }
 
   ScanPoint point(double start, bool with_slope) {
     ++shots;
@@ -197,10 +197,10 @@ struct Shooter {
   }
 };
 
-double miss_of(double start, void* data) {
+double residual_at(double start, void* data) {
   auto& shooter = *static_cast<Shooter*>(data);
   try {
-    return shooter.miss(start);
+    return shooter.residual(start);
   } catch (...) {
     shooter.thrown = std::current_exception();
     return NAN;
@@ -217,7 +217,7 @@ double slope_of(double start, void* data) {
   }
 }
 
-/// Root of the miss or of its slope between two starts of different sign; NaN if there is none.
+/// Root of the residual or of its slope between two starts of different sign; NaN if there is none.
 double refine_root(Shooter& shooter, double (*function_of)(double, void*), double low,
                    double high) {
   gsl_function function{function_of, &shooter};
@@ -258,7 +258,7 @@ std::vector<double> scan_grid(const PlanarCantilever& rod, bool parallel) {
   return grid;
 }
 
-/// Looks for the roots of the miss, cell by cell.
+/// Looks for the roots of the residual, cell by cell.
 class TipScan {
  public:
   explicit TipScan(Shooter& shooter) : shooter_(shooter) {}
@@ -279,18 +279,18 @@ class TipScan {
   }
 
  private:
-  static bool is_zero(const ScanPoint& point) { return std::abs(point.miss) < 1e-15; }
+  static bool is_zero(const ScanPoint& point) { return std::abs(point.residual) < 1e-15; }
 
-  /// Halves a cell until a cubic through its ends tells what the miss is in its middle.
+  /// Halves a cell until a cubic through its ends tells what the residual is in its middle.
   void look_into(const ScanPoint& low, const ScanPoint& high, int depth) {
-    if (!std::isfinite(low.miss) || !std::isfinite(high.miss)) return;
+    if (!std::isfinite(low.residual) || !std::isfinite(high.residual)) return;
     const ScanPoint middle = shooter_.point((low.start + high.start) / 2, true);
-    if (!std::isfinite(middle.miss)) return;
-    const double cubic =
-        (low.miss + high.miss) / 2 + (high.start - low.start) / 8 * (low.slope - high.slope);
-    const double size =
-        std::max({std::abs(low.miss), std::abs(middle.miss), std::abs(high.miss), 1e-12});
-    const bool resolved = std::abs(middle.miss - cubic) <= cell_resolved * size;
+    if (!std::isfinite(middle.residual)) return;
+    const double cubic = (low.residual + high.residual) / 2 +
+                         (high.start - low.start) / 8 * (low.slope - high.slope);
+    const double size = std::max(
+        {std::abs(low.residual), std::abs(middle.residual), std::abs(high.residual), 1e-12});
+    const bool resolved = std::abs(middle.residual - cubic) <= cell_resolved * size;
     if (resolved || depth == deepest_cell || shooter_.shots > most_shots) {
       find_roots(low, middle);
       find_roots(middle, high);
@@ -302,23 +302,23 @@ class TipScan {
 
   void find_roots(const ScanPoint& low, const ScanPoint& high) {
     if (is_zero(low) || is_zero(high)) return;
-    if (low.miss * high.miss < 0) {
-      add(refine_root(shooter_, miss_of, low.start, high.start));
+    if (low.residual * high.residual < 0) {
+      add(refine_root(shooter_, residual_at, low.start, high.start));
       return;
     }
-    // Two roots, or none, where the miss comes nearer to zero from both sides.
-    if (low.miss * low.slope >= 0 || high.miss * high.slope <= 0) return;
+    // Two roots, or none, where the residual comes nearer to zero from both sides.
+    if (low.residual * low.slope >= 0 || high.residual * high.slope <= 0) return;
     const double extremum = refine_root(shooter_, slope_of, low.start, high.start);
     if (!std::isfinite(extremum)) {
       ++shooter_.failures;
       return;
     }
-    const double miss = shooter_.miss(extremum);
-    if (std::abs(miss) < double_root) {
+    const double residual = shooter_.residual(extremum);
+    if (std::abs(residual) < double_root) {
       add(extremum);
-    } else if (miss * low.miss < 0) {
-      add(refine_root(shooter_, miss_of, low.start, extremum));
-      add(refine_root(shooter_, miss_of, extremum, high.start));
+    } else if (residual * low.residual < 0) {
+      add(refine_root(shooter_, residual_at, low.start, extremum));
+      add(refine_root(shooter_, residual_at, extremum, high.start));
     }
   }
 
@@ -429,7 +429,7 @@ TipShots shoot_from_tip(const Problem& problem, const ReducedCantilever& reduced
   std::vector<Equilibrium>& equilibria = found.equilibria;
   for (const double start : starts) {
     Equilibrium result;
-    result.residual = std::abs(shooter.miss(start)) * 2;
+    result.residual = std::abs(shooter.residual(start)) * 2;
     if (!(result.residual < 1e-8)) continue;  // a jump of the winding, not a root
     const auto own = [frame = shooter.frame, start, tolerance](const std::vector<double>& s) {
       return sample(frame, start, tolerance, s);

@@ -31,10 +31,10 @@ struct TipShots {
 /// angle is exponentially small (Gamma >> 1).
 ///
 /// All angles of the tip are scanned. Each cell of the grid is halved until a cubic through the
-/// miss of the clamp's angle and its derivative at the cell's ends is right to 2 % in its middle,
-/// at most six times; then roots are where the miss changes its sign, and in pairs where it comes
-/// nearer to zero from both ends of a cell and its extremum lies beyond zero. Pairs that leave less
-/// than 1e-11 there are one double root.
+/// residual of the clamp's angle and its derivative at the cell's ends is right to 2 % in its
+/// middle, at most six times; then roots are where the residual changes its sign, and in pairs
+/// where it comes nearer to zero from both ends of a cell and its extremum lies beyond zero. Pairs
+/// that leave less than 1e-11 there are one double root.
 /// @param tolerance  local error of the integrator per step
 [[nodiscard]] TipShots shoot_from_tip(const Problem& problem, const ReducedCantilever& reduced,
                                       double tolerance, const Deadline& deadline);

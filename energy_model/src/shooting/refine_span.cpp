@@ -125,7 +125,7 @@ SpanEquilibrium refine_span(const RodSpan& span, const Problem& problem, const E
           "number of clamps of a curved rod with a start", 0,
           ">= 1: the frames of the start are not known");
   const double torque_unit = bending_unit(problem) / problem.length;
-  const double b = softest(span);
+  const double b = least_bending_stiffness(span);
   double force = total_load(span) / b;
   for (const Reaction& grip : shape.grips) {
     force = std::max(force, grip.force.norm() * problem.length / torque_unit / b);

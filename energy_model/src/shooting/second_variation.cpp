@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/moves_for_nothing.hpp"
 #include "base/spin.hpp"
+#include "base/zero_modes_note.hpp"
 #include "shooting/lobatto_element.hpp"
 
 namespace dlo::energy_model {
@@ -320,7 +320,7 @@ void judge(const SecondVariation& stability, Equilibrium& shape) {
   shape.status = stability.stable() ? SolveStatus::converged : SolveStatus::saddle;
   shape.message = to_string(shape.status);
   shape.smallest_eigenvalue = stability.smallest;
-  shape.message += moves_for_nothing(stability.neutral);
+  shape.message += zero_modes_note(stability.neutral);
 }
 
 Eigen::Matrix3Xd SecondVariation::spin_at(const Eigen::VectorXd& at) const {

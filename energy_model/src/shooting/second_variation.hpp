@@ -15,7 +15,7 @@ namespace dlo::energy_model {
 /// What the second variation says of an equilibrium of a span.
 struct SecondVariation {
   int negative = -1;  ///< eigenvalues below -neutral_eigenvalue: the ways in which it is unstable
-  int neutral = -1;   ///< eigenvalues that count as zero: it can move for nothing
+  int neutral = -1;   ///< eigenvalues that count as zero: zero modes
   double smallest = std::numeric_limits<double>::quiet_NaN();  ///< eigenvalue
   Eigen::VectorXd s;      ///< arc lengths of the mode of the smallest eigenvalue, in the span
   Eigen::Matrix3Xd spin;  ///< of the frames there, the largest of length 1
@@ -40,8 +40,8 @@ using SpanStates = std::function<std::vector<RodState>(const std::vector<double>
 /// curvature costs
 ///     - f dr.(H dr),   of a point that may slide also   + f (N.(eta x t) + dr.(H t))^2 / g'',
 /// H the normal's derivative, g'' that of the gap along the rod. It leaves the
-/// plane even of a planar shape, so that buckling sideways and turning about a line are among its
-/// modes. Of a round rod that nothing twists eta along t costs nothing and is left out, with c.
+/// plane even of a planar shape, so that buckling out of plane and rotation around a line are among
+/// its modes. Of a round rod that nothing twists eta along t costs nothing and is left out, with c.
 ///
 /// What lies is kept on its surface at the ends of elements alone, so that no shape is called more
 /// stable than it is.

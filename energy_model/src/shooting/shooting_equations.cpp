@@ -214,7 +214,7 @@ bool ShootingSystem::interval_equations(const ShootingPoint& point, Eigen::Index
   RodPiece piece = piece_of(span_, mesh_, i);
   piece.begin = point.s[i];
   piece.length = point.s[i + 1] - point.s[i];
-  // A free rod ends elsewhere as it begins elsewhere; on a surface the pressure changes with r.
+  // An end without a grip moves as the begin moves; on a surface the pressure changes with r.
   const Eigen::Index placed = piece.surface != nullptr ? positions : 0;
   RodState end = node;
   RodVariation change(rows.derivatives != nullptr ? placed + 2 * turns + positions : 0);

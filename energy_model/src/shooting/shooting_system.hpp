@@ -40,8 +40,8 @@ struct ShootingPoint {
 /// may slide; where the rod begins to lie, lying_conditions() hold. What says one thing twice, as
 /// where a clamp holds the rod on what it lies on, is an equation too many.
 ///
-/// A rod that is round and not clamped turns about its own line for nothing: the first node's frame
-/// does not, in place of its torque, which is that at the other end.
+/// A rod that is round and not clamped has a zero mode, rotation around its own line: the first
+/// node's frame does not, in place of its torque, which is that at the other end.
 ///
 /// Well posed for soft rods as long as the intervals are not much longer than |n|^(-1/2), over
 /// which errors grow e-fold.

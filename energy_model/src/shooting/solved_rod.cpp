@@ -10,8 +10,8 @@
 #include <string>
 #include <utility>
 
-#include "base/moves_for_nothing.hpp"
 #include "base/sized_samples.hpp"
+#include "base/zero_modes_note.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/reduction.hpp"
 #include "problem/rod_law.hpp"

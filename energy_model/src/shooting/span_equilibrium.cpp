@@ -41,7 +41,7 @@ void add_energies(const RodSpan& span, double tolerance, SpanEquilibrium& equili
 }  // namespace
 
 double bending_force(const RodSpan& span, const std::vector<RodState>& states) {
-  const double b = softest(span);
+  const double b = least_bending_stiffness(span);
   double force = 1;
   for (const RodState& state : states) {
     force = std::max({force, state.n.norm() / b, state.m.squaredNorm() / (b * b)});

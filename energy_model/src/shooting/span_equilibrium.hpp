@@ -31,7 +31,7 @@ struct SpanEquilibrium {
 };
 
 /// The nodes to which Newton's method leads from a start (shooting_system.hpp), without a look at
-/// energies and stability. Frames that are held at both ends of a round rod are turned by many
+/// energies and stability. Frames that are held at both ends of a round rod are rotated by many
 /// turns, and its shape slides for nearly nothing: close_gaps.hpp says how it steps then.
 /// @param start  one for each node of the mesh
 [[nodiscard]] SpanEquilibrium close_span(const RodSpan& span, const RodMesh& mesh,

@@ -50,7 +50,8 @@ class SpanSearch {
  public:
   SpanSearch(const RodSpan& span, double tolerance, const Deadline& deadline)
       : span_(span),
-        mesh_(make_mesh(span, resolving_interval(span, total_load(span) / softest(span)))),
+        mesh_(make_mesh(
+            span, resolving_interval(span, total_load(span) / least_bending_stiffness(span)))),
         tolerance_(tolerance),
         deadline_(deadline) {}
 
@@ -100,7 +101,7 @@ class SpanSearch {
       mesh = std::move(finer);
     };
     // Under a large reaction the coarse polygon is not near enough.
-    const double force = polygon.force.colwise().norm().maxCoeff() / softest(span_);
+    const double force = polygon.force.colwise().norm().maxCoeff() / least_bending_stiffness(span_);
     const double resolved = std::max(1 / std::sqrt(std::max(force, 1.0)),
                                      span_.length / static_cast<double>(most_intervals));
     if (longest_of() > 1.5 * resolved) refine(resolved);
@@ -180,7 +181,7 @@ class SpanSearch {
 
 void check_load(const RodSpan& span) {
   constexpr double largest_load = 1e6;
-  const double load = total_load(span) / softest(span);
+  const double load = total_load(span) / least_bending_stiffness(span);
   require(load <= largest_load, "solve_exact", "sum of weight and loads over EI/l^2", load,
           "<= 1e6");
 }

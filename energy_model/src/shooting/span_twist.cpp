@@ -127,7 +127,7 @@ class Continuation {
       node.r += part * (node.r - before[i].r);
       node.m += part * (node.m - before[i].m);
       node.n += part * (node.n - before[i].n);
-      // The frame turns about the tangent by many times what tangents turn, on a circle.
+      // The frame rotates around the tangent by many times what tangents turn, on a circle.
       const Eigen::Vector3d t = node.t();
       const Eigen::Matrix3d old = transported(before[i].R, t);
       const double turn = std::atan2(old.col(1).dot(node.R.col(0)), old.col(0).dot(node.R.col(0)));

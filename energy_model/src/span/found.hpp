@@ -43,7 +43,7 @@ inline void note_tried(SearchLog* log, const std::string& strategy) {
 inline void note_found(SearchLog* log, const std::string& strategy) {
   if (log != nullptr) log->found(strategy);
 }
-inline void note_left_out(SearchLog* log, const std::string& what) {
+inline void note_not_tried(SearchLog* log, const std::string& what) {
   if (log != nullptr) log->leave_out(what);
 }
 

@@ -8,7 +8,7 @@ namespace dlo::energy_model {
 
 /// The equilibrium next to SpanOptions::start, certified: by Newton's method, or downhill, as it
 /// says, and the other way where that leads to none. A shape that is followed is gone on with to
-/// where it falls from a saddle.
+/// where a descent from a saddle ends.
 [[nodiscard]] SpanSolution solve_from_given_start(const Span& span, const SpanOptions& options,
                                                   SpanWorkspace& workspace);
 

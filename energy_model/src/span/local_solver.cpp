@@ -25,8 +25,8 @@ constexpr int layer_terms = 20;
 
 /// Those of a ranked start.
 Eigen::VectorXd unknowns_of(const Start& start, SpanEnergy& model) {
-  Eigen::VectorXd x = model.adopt(*start.model, start.x);
-  model.wind_to(x);
+  Eigen::VectorXd x = model.prolong(*start.model, start.x);
+  model.unwrap(x);
   return x;
 }
 
@@ -124,29 +124,29 @@ SpanSolution LocalSolver::newton_from(const TangentField& field) {
   SpanSolution solution = empty_solution(terms());
   const StartShape wanted = field(solution.model->nodes());
   const KnownShape& known = options_.start.known;
-  if (!adopt_known(wanted, solution)) {
+  if (!prolong_known(wanted, solution)) {
     solution.x = solution.model->fit(wanted);
     newton(solution);
     return solution;
   }
   if (known.factor) {
-    solution.multipliers = solution.model->adopt_multipliers(*known.model, known.multipliers);
+    solution.multipliers = solution.model->prolong_multipliers(*known.model, known.multipliers);
   }
   newton(solution, {.first_factor = known.factor});
   return solution;
 }
 
-/// In space a rod that is straight by nature has next to the same strains where its grips have
+/// In space a rod that is intrinsically straight has next to the same strains where its grips have
 /// hardly moved, unless the frame of its start has turned about it. @return whether they give the
 /// tangents that are wanted
-bool LocalSolver::adopt_known(const StartShape& wanted, SpanSolution& solution) const {
+bool LocalSolver::prolong_known(const StartShape& wanted, SpanSolution& solution) const {
   constexpr double near = 0.2;  // of tangents
   const KnownShape& known = options_.start.known;
   SpanEnergy& model = *solution.model;
   if (!known.model || span_.planar || span_.has_material_directors()) return false;
   if (known.model->span().planar || known.model->pieces() != model.pieces()) return false;
   if (known.model->span().cuts != span_.cuts) return false;
-  solution.x = model.adopt(*known.model, known.x);
+  solution.x = model.prolong(*known.model, known.x);
   Eigen::VectorXd gradient(model.size());
   (void)model.value(solution.x, gradient);
   return (model.tangents() - wanted.tangents).cwiseAbs().maxCoeff() < near;

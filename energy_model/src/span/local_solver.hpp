@@ -56,7 +56,7 @@ class LocalSolver {
 
  private:
   [[nodiscard]] bool reaches_minimum_by_newton(SpanSolution& solution);
-  [[nodiscard]] bool adopt_known(const StartShape& wanted, SpanSolution& solution) const;
+  [[nodiscard]] bool prolong_known(const StartShape& wanted, SpanSolution& solution) const;
   void minimise(SpanSolution& solution) const;
 
   const Span& span_;

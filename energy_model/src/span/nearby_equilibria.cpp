@@ -11,9 +11,9 @@
 
 #include "certify/rigid_body_modes.hpp"
 #include "linear/free_directions.hpp"
+#include "span/contact_pieces.hpp"
 #include "span/local_solver.hpp"
 #include "span/refinement.hpp"
-#include "span/settle_contact.hpp"
 #include "strain/point_on_span.hpp"
 
 namespace dlo::energy_model {
@@ -61,7 +61,7 @@ std::optional<NegativeCurvature> negative_curvature(const SpanSolution& solution
   }
   // Deep within a box, in the middle between two faces, the energy has a ridge: the span in space
   // has one of its slopes there, and only the planar one's tilts see both.
-  model.sideways(solution.multipliers, at.hessian, at.jacobian);
+  model.out_of_plane(solution.multipliers, at.hessian, at.jacobian);
   reduced.compute(at.hessian, at.jacobian);
   const std::optional<Eigen::VectorXd> tilts = negative_curvature_direction(reduced);
   if (!tilts) return std::nullopt;
@@ -86,9 +86,9 @@ std::optional<SpanSolution> leave_saddle(const SpanSolution& solution, const Spa
   const auto descended = [&](const Span& span, const Eigen::VectorXd& disturbance) {
     LocalSolver own(span, options, workspace);
     const std::shared_ptr<SpanEnergy> model = workspace.model(span, solution.terms);
-    const Eigen::VectorXd pushed = model->adopt(*solution.model, solution.x) + disturbance;
+    const Eigen::VectorXd pushed = model->prolong(*solution.model, solution.x) + disturbance;
     SpanSolution lower = own.empty_solution(std::min(solution.terms, own.coarse_terms()));
-    lower.x = lower.model->adopt(*model, pushed);
+    lower.x = lower.model->prolong(*model, pushed);
     own.descend(lower);
     return refined(own, std::move(lower));
   };
@@ -112,10 +112,10 @@ void look_between(const SpanOptions& options, SpanWorkspace& workspace, Found& f
       for (const double share : shares) {
         SpanSolution between = own.empty_solution(std::max(a.terms, b.terms));
         SpanEnergy& model = *between.model;
-        between.x = (1 - share) * model.adopt(*a.model, a.x);
-        between.x += share * model.adopt(*b.model, b.x);
-        between.multipliers = (1 - share) * model.adopt_multipliers(*a.model, a.multipliers) +
-                              share * model.adopt_multipliers(*b.model, b.multipliers);
+        between.x = (1 - share) * model.prolong(*a.model, a.x);
+        between.x += share * model.prolong(*b.model, b.x);
+        between.multipliers = (1 - share) * model.prolong_multipliers(*a.model, a.multipliers) +
+                              share * model.prolong_multipliers(*b.model, b.multipliers);
         own.newton(between);
         (void)found.add(judged(refined(own, std::move(between)), options, workspace),
                         between_found);

@@ -9,7 +9,7 @@
 #include "certify/certify.hpp"
 #include "certify/enough_terms.hpp"
 #include "certify/piece_cuts.hpp"
-#include "span/settle_contact.hpp"
+#include "span/contact_pieces.hpp"
 #include "span/span_traits.hpp"
 #include "strain/point_on_span.hpp"
 
@@ -176,9 +176,9 @@ class Refinement {
   [[nodiscard]] bool holds_with_more_terms(const SpanSolution& solution) {
     const std::shared_ptr<SpanEnergy> model =
         on_.workspace().model(span_, std::min(max_terms, 3 * solution.terms / 2));
-    PointOnSpan point = evaluated(*model, model->adopt(*solution.model, solution.x));
+    PointOnSpan point = evaluated(*model, model->prolong(*solution.model, solution.x));
     point.gradient -= point.jacobian.transpose() *
-                      model->adopt_multipliers(*solution.model, solution.multipliers);
+                      model->prolong_multipliers(*solution.model, solution.multipliers);
     return point.gradient.norm() < largest_residual * (1 + traits_.load) &&
            point.residual.norm() < largest_gap * options_.tolerance;
   }
@@ -196,7 +196,7 @@ SpanSolution refined(LocalSolver& on, SpanSolution solution) {
     return Refinement(settled).run(std::move(equilibrium));
   };
   if (on.span().soft_obstacles.empty()) return refine(on, std::move(solution));
-  return settle_contact(on, std::move(solution), refine);
+  return with_found_pieces(on, std::move(solution), refine);
 }
 
 std::optional<Span> adapted_mesh(const LocalSolver& on, const SpanSolution& shape) {
@@ -230,7 +230,8 @@ SpanSolution judged(SpanSolution solution, const SpanOptions& options, SpanWorks
   LocalSolver on(own, options, workspace);
   SpanSolution finer = workspace.with_terms(solution, more);
   on.newton(finer);
-  // Of what Newton's method left open before nobody has asked whether its terms resolve it.
+  // Of a singular point that Newton's method found before nobody has asked whether its terms
+  // resolve it.
   if (!solution.resolved) finer = refined(on, std::move(finer));
   finer.resolved = finer.resolved || solution.resolved;
   certify(finer, load, workspace.factors());

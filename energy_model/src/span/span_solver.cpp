@@ -78,7 +78,7 @@ class Search {
       descend_from_lowest_starts();
     }
     if (span_.planar && span_.has_material_directors()) look_in_space();
-    if (options_.wants_all()) tell_what_was_left_out();
+    if (options_.wants_all()) tell_what_was_not_tried();
     if (found_.empty()) (void)found_.add(out_of_time());
     return std::move(found_).take();
   }
@@ -137,7 +137,7 @@ class Search {
     }
   }
 
-  void tell_what_was_left_out() const {
+  void tell_what_was_not_tried() const {
     if (on_.out_of_time()) options_.log->leave_out("starts after the time limit");
     std::ptrdiff_t not_left = 0;
     for (std::size_t i = left_; i < found_.size(); ++i) {

@@ -58,7 +58,7 @@ double slack_amplitude(double ratio) {
   return amplitude;
 }
 
-/// Terms that the shape of the free rod is looked at with.
+/// Terms by which the stress-free shape is sampled.
 constexpr int natural_shape_terms = 32;
 
 struct Pattern {

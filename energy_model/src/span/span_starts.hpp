@@ -17,7 +17,7 @@ namespace dlo::energy_model {
 /// weight and loads by the shorter way: the limit shape of a soft rod.
 [[nodiscard]] TangentField soft_field(const Span& span);
 
-/// Of a rod with material directors: the free rod, and in the plane bent evenly to the
+/// Of a rod with material directors: the stress-free shape, and in the plane bent evenly to the
 /// directions of its end's clamp next to where it points; and the shapes of start_fields(), in
 /// space each with the rod's frame turned on evenly from the start to several angles.
 [[nodiscard]] std::vector<TangentField> natural_fields(const Span& span);

@@ -36,8 +36,8 @@ SpanSolution SpanWorkspace::empty_solution(const Span& span, int terms) {
 
 SpanSolution SpanWorkspace::with_terms(const SpanSolution& solution, int terms) {
   SpanSolution other = empty_solution(solution.model->span(), terms);
-  other.x = other.model->adopt(*solution.model, solution.x);
-  other.multipliers = other.model->adopt_multipliers(*solution.model, solution.multipliers);
+  other.x = other.model->prolong(*solution.model, solution.x);
+  other.multipliers = other.model->prolong_multipliers(*solution.model, solution.multipliers);
   return other;
 }
 

@@ -164,7 +164,7 @@ void ContactRows::reset(const Span& span, const std::vector<Piece>& pieces, int 
   linear_.resize(std::ssize(pieces) * table.nodes.size(), 0);
   normal_.resize(3, 0);
   offset_.resize(0);
-  if (!span.contacts.empty()) reach_ = NodeReach(span, pieces, table);
+  if (!span.contacts.empty()) reach_ = PositionOperator(span, pieces, table);
   for (std::size_t i = 0; i < span.contacts.size(); ++i) {
     const Span::Contact& contact = span.contacts[i];
     const obstacle::Body& body = contact.obstacle.body;
@@ -227,7 +227,7 @@ void ContactRows::place_touch(const Eigen::MatrixX3d& tangents, Touch& touch) co
     slope = sense * look(piece, touch.at + sense * way);
     (slope < 0 ? low : high) = way;
   }
-  touch.rate = 0;  // it falls to where it is not looked for
+  touch.rate = 0;  // beyond the range that is searched
 }
 
 void ContactRows::place(const Eigen::MatrixX3d& tangents) {
@@ -370,24 +370,24 @@ Eigen::Vector3d ContactRows::moment(const Eigen::Ref<const Eigen::VectorXd>& mul
   return moment;
 }
 
-Eigen::VectorXd ContactRows::adopt(const ContactRows& other,
-                                   const Eigen::VectorXd& multipliers) const {
-  Eigen::VectorXd adopted = Eigen::VectorXd::Zero(count());
+Eigen::VectorXd ContactRows::prolong(const ContactRows& other,
+                                     const Eigen::VectorXd& multipliers) const {
+  Eigen::VectorXd prolonged = Eigen::VectorXd::Zero(count());
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     const Rows& to = contacts_[i];
     const Rows& from = other.contacts_[i];
-    if (to.clearance >= 0) adopted[to.clearance] = multipliers[from.clearance];
+    if (to.clearance >= 0) prolonged[to.clearance] = multipliers[from.clearance];
     for (std::size_t k = 0; k < to.slopes.size(); ++k) {
       const Eigen::Index shared = std::min(to.slopes[k].count, from.slopes[k].count);
-      adopted.segment(to.slopes[k].first, shared) =
+      prolonged.segment(to.slopes[k].first, shared) =
           multipliers.segment(from.slopes[k].first, shared);
     }
   }
-  return adopted;
+  return prolonged;
 }
 
 std::vector<ContactForce> ContactRows::forces(const Eigen::VectorXd& multipliers) const {
-  constexpr int looks = 32;  // at the pressure of a piece
+  constexpr int samples = 32;  // at the pressure of a piece
   std::vector<ContactForce> result;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Rows& rows = contacts_[c];
@@ -416,8 +416,8 @@ std::vector<ContactForce> ContactRows::forces(const Eigen::VectorXd& multipliers
       // The pressure is its derivative, which the last coefficients hardly know.
       const Eigen::VectorXd smooth = carried.head(is_short ? 2 : (slope.count + 1) / 2);
       double last = series(smooth, 0);
-      for (int k = 1; k <= looks; ++k) {
-        const double next = series(smooth, static_cast<double>(k) / looks);
+      for (int k = 1; k <= samples; ++k) {
+        const double next = series(smooth, static_cast<double>(k) / samples);
         const double pressure = (last - next) * looks / slope.length;
         const bool first = i == 0 && k == 1;
         force.least_pressure = first ? pressure : std::min(force.least_pressure, pressure);

@@ -7,8 +7,8 @@
 
 #include "base/legendre.hpp"
 #include "problem/span.hpp"
-#include "strain/node_reach.hpp"
 #include "strain/piece.hpp"
+#include "strain/position_operator.hpp"
 
 namespace dlo::energy_model {
 
@@ -71,8 +71,8 @@ class ContactRows {
   [[nodiscard]] Eigen::Vector3d moment(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                                        const Eigen::MatrixX3d& tangents) const;
   /// Multipliers of these rows from those of the same contacts with another number of terms.
-  [[nodiscard]] Eigen::VectorXd adopt(const ContactRows& other,
-                                      const Eigen::VectorXd& multipliers) const;
+  [[nodiscard]] Eigen::VectorXd prolong(const ContactRows& other,
+                                        const Eigen::VectorXd& multipliers) const;
   /// Of each of Span::contacts. @param multipliers  of all rows
   [[nodiscard]] std::vector<ContactForce> forces(const Eigen::VectorXd& multipliers) const;
 
@@ -103,10 +103,10 @@ class ContactRows {
     std::size_t contact = 0;
     obstacle::Body body;
     Eigen::Index row = 0;
-    double at = 0;             // s where it is looked for
-    Eigen::Index before = 0;   // piece that ends there
-    double low = 0, high = 0;  // how far away it may be
-    NodeReach::Point point;    // where it is
+    double at = 0;                  // s where it is looked for
+    Eigen::Index before = 0;        // piece that ends there
+    double low = 0, high = 0;       // how far away it may be
+    PositionOperator::Point point;  // where it is
     double found = 0;
     obstacle::Gap gap;
     Eigen::Vector3d tangent = Eigen::Vector3d::Zero();
@@ -123,7 +123,7 @@ class ContactRows {
   std::vector<Curved> curved_;
   std::vector<Touch> touches_;
   std::vector<Eigen::Vector3d> normals_;  // of half-spaces, by contact
-  NodeReach reach_;
+  PositionOperator reach_;
   // Of rows that are linear in the tangents; zero of others.
   Eigen::MatrixXd linear_;   // weight times phi, nodes x rows
   Eigen::Matrix3Xd normal_;  // by row

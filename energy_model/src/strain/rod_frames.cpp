@@ -259,7 +259,7 @@ void RodFrames::pull(const FrameGradient& f, double sense, State& state,
   }
 }
 
-void RodFrames::turn_ends(State& state) const {
+void RodFrames::end_rotation_jacobian(State& state) const {
   for (const Panel& panel : panels_) end_spins(panel, state);
 }
 
@@ -430,7 +430,7 @@ void RodFrames::pair_unknowns(const Panel& panel, State& state) const {
 void RodFrames::add_hessian(const FrameGradient& f, std::span<const Eigen::Matrix3d> curvatures,
                             State& state, Eigen::Ref<Eigen::MatrixXd> hessian) const {
   resize_for_hessian(state);
-  turn_ends(state);
+  end_rotation_jacobian(state);
   Eigen::Matrix3d later_curvature = Eigen::Matrix3d::Zero();
   Eigen::Vector3d later = Eigen::Vector3d::Zero();
   std::size_t piece = pieces_;

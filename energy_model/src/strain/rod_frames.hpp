@@ -32,10 +32,10 @@ struct FrameSpins {
 /// the latter expanded in orthonormal Legendre polynomials on every piece (Piece), so that energy
 /// is half the square of the coefficients. There are no poles.
 ///
-/// A round rod that is straight by nature and whose grips leave the twist free needs two fields,
-/// u = (u1, u2, 0): d1 and d2 do not turn about the tangent (Bishop's frame). Natural strains and
-/// the principal axes of a section that is not round are fixed to the material, so that it takes u3
-/// too: of a straight rod with such a section they are given, as zero.
+/// A round rod that is intrinsically straight and whose grips leave the twist free needs two
+/// fields, u = (u1, u2, 0): d1 and d2 do not rotate around the tangent (Bishop's frame). Natural
+/// strains and the principal axes of a section that is not round are fixed to the material, so that
+/// it takes u3 too: of a straight rod with such a section they are given, as zero.
 ///
 /// Unknowns x: of u1 the coefficients piece by piece, then of u2, then of u3. If no clamp holds the
 /// start, each begins with a component of the rotation vector, in the start frame, that turns the
@@ -54,7 +54,7 @@ class RodFrames {
     Eigen::MatrixX3d tails;
     std::vector<Eigen::Quaterniond> panel_ends;  ///< frames; of a free start's turn first
     /// Derivatives of the turn of the end's frame by x, 3 x unknowns, of the
-    /// last turn_ends() or add_hessian().
+    /// last end_rotation_jacobian() or add_hessian().
     Eigen::Matrix3Xd ends;
 
     // Scratch, of a piece
@@ -105,7 +105,7 @@ class RodFrames {
             Eigen::Ref<Eigen::VectorXd> gradient) const;
 
   /// Into state.ends.
-  void turn_ends(State& state) const;
+  void end_rotation_jacobian(State& state) const;
   /// Derivatives by x of the work of a couple on the turn of the frame at a
   /// piece's end, from state.ends.
   void pull_couple(Eigen::Index piece, const Eigen::Vector3d& couple, const State& state,

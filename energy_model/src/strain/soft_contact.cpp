@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "strain/node_reach.hpp"
+#include "strain/position_operator.hpp"
 
 namespace dlo::energy_model {
 
@@ -12,7 +12,7 @@ void SoftContact::reset(const Span& span, const std::vector<Piece>& pieces,
                         const LegendreTable& table) {
   obstacles_ = span.soft_obstacles;
   if (!any()) return;
-  const NodeReach reach(span, pieces, table);
+  const PositionOperator reach(span, pieces, table);
   weights_ = reach.weights();
   const Eigen::Index Q = table.nodes.size();
   position_.resize(weights_.size(), weights_.size());

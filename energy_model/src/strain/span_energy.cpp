@@ -67,10 +67,10 @@ void SpanEnergy::tabulate_angles() {
       if (e <= director_rows_[i].piece) held_angle_(static_cast<Eigen::Index>(i), column) = turn;
     }
   }
-  turning_by_node_ = angle_.transpose();
+  angle_transposed_ = angle_.transpose();
 }
 
-/// Of the nodes of a free rod.
+/// Of the nodes of the stress-free shape.
 void SpanEnergy::tabulate_natural_angles() {
   natural_angle_.resize(0);
   if (!span_.has_material_directors()) return;
@@ -108,7 +108,7 @@ void SpanEnergy::tabulate_forces() {
   reach_.resize(nodes, std::ssize(span_.holds));
   reach_signs_.clear();
   if (span_.holds.empty()) return;
-  const NodeReach reach(span_, pieces_, *table_);
+  const PositionOperator reach(span_, pieces_, *table_);
   for (Eigen::Index j = 0; j < reach_.cols(); ++j) {
     const double at = span_.holds[static_cast<std::size_t>(j)].at;
     reach_.col(j) = reach.begin(pieces_before(pieces_, at));
@@ -227,14 +227,14 @@ double SpanEnergy::value(const Eigen::Ref<const Eigen::VectorXd>& x,
   place_tangents();
   if (contacts_.count() > 0) contacts_.place(t_);
   gradient = x;
-  // A free start turns for nothing.
+  // A free start has a rigid-body mode.
   for (Eigen::Index f = 0; f < fields() && free_start_ == 1; ++f) gradient[f * columns_] = 0;
   double energy = gradient.dot(x) / 2 - force_.cwiseProduct(t_).sum();
   total_ = force_;
   if (has_soft_obstacles()) energy += soft_contact_.add(t_, total_);
   if (span_.planar) {
     dot_in_plane(total_, t_theta_, turning_);
-    multiply(turning_by_node_, turning_, pulled_);
+    multiply(angle_transposed_, turning_, pulled_);
     gradient -= pulled_;
     if (couples_work_.size() > 0) {
       energy -= couples_work_.dot(x);
@@ -249,12 +249,12 @@ double SpanEnergy::value(const Eigen::Ref<const Eigen::VectorXd>& x,
   return energy;
 }
 
-DirectorMiss SpanEnergy::miss_of(const DirectorRow& row) const {
+DirectionResidual SpanEnergy::residual_of(const DirectorRow& row) const {
   const Eigen::Matrix3d frame = frames_.frame_after(state_, row.piece);
-  if (!row.of_d1) return director_miss(frame.col(2), row.to, row.across);
+  if (!row.of_d1) return direction_residual(frame.col(2), row.to, row.across);
   const double psi = has_psi() ? twist(x_) : 0;
   const Eigen::Vector3d d1 = std::cos(psi) * frame.col(0) + std::sin(psi) * frame.col(1);
-  return director_miss(d1, row.to, row.across);
+  return direction_residual(d1, row.to, row.across);
 }
 
 double SpanEnergy::twist(const Eigen::VectorXd& x) const {
@@ -298,7 +298,7 @@ void SpanEnergy::constraint(Eigen::Ref<Eigen::VectorXd> residual,
           t_.col(axis).dot(reach_.col(j)) - span_.holds[static_cast<std::size_t>(j)].offset[axis];
       if (!span_.planar) continue;
       turning_ = t_theta_.col(axis).cwiseProduct(reach_.col(j));
-      multiply(turning_by_node_, turning_, pulled_);
+      multiply(angle_transposed_, turning_, pulled_);
       jacobian.row(row + axis) = pulled_.transpose();
     }
     if (!span_.planar) {
@@ -331,15 +331,16 @@ void SpanEnergy::constraint(Eigen::Ref<Eigen::VectorXd> residual,
     }
     return;
   }
-  if (!director_rows_.empty()) frames_.turn_ends(state_);
+  if (!director_rows_.empty()) frames_.end_rotation_jacobian(state_);
   for (const DirectorRow& held : director_rows_) {
-    const DirectorMiss miss = miss_of(held);
-    residual[row] = miss.value;
-    frames_.pull_couple(held.piece, miss.couple, state_, jacobian.row(row).head(strains()));
+    const DirectionResidual held_residual = residual_of(held);
+    residual[row] = held_residual.value;
+    frames_.pull_couple(held.piece, held_residual.couple, state_,
+                        jacobian.row(row).head(strains()));
     // Twist turns d1 about the tangent.
     if (has_psi()) {
       jacobian(row, strains()) =
-          held.of_d1 ? miss.couple.dot(state_.end_frame().col(2)) / twist_root_ : 0;
+          held.of_d1 ? held_residual.couple.dot(state_.end_frame().col(2)) / twist_root_ : 0;
     }
     ++row;
   }
@@ -360,7 +361,7 @@ void SpanEnergy::add_angles_squared(Eigen::Ref<Eigen::MatrixXd> result) {
     const auto along = along_.segment(e * Q, Q);
     const double own_turn = pieces_[static_cast<std::size_t>(e)].angle(0);
     const Eigen::Index column = free_start_ + e * K;
-    const auto angle = turning_by_node_.block(column, e * Q, K, Q);
+    const auto angle = angle_transposed_.block(column, e * Q, K, Q);
     scaled_ = angle * along.asDiagonal();
     multiply_symmetric(angle, scaled_, own_);
     result.block(column, column, K, K) += own_;
@@ -406,9 +407,9 @@ void SpanEnergy::hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
     Eigen::Index row = first_director_row();
     for (const DirectorRow& held : director_rows_) {
       const double mu = multipliers[row++];
-      const DirectorMiss miss = miss_of(held);
-      couples_[static_cast<std::size_t>(held.piece)] -= mu * miss.couple;
-      curvatures_[static_cast<std::size_t>(held.piece)] -= mu * miss.curvature;
+      const DirectionResidual held_residual = residual_of(held);
+      couples_[static_cast<std::size_t>(held.piece)] -= mu * held_residual.couple;
+      curvatures_[static_cast<std::size_t>(held.piece)] -= mu * held_residual.curvature;
     }
     frames_.add_hessian({&carried_, couples_}, curvatures_, state_, result);
     for (const DirectorRow& held : director_rows_) {
@@ -430,9 +431,9 @@ void SpanEnergy::hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
 /// their cross product. frames_.add_hessian() has left the turns of the end.
 void SpanEnergy::add_twist_hessian(double factor, Eigen::MatrixXd& result) {
   const Eigen::Vector3d t = state_.end_frame().col(2);
-  const DirectorMiss miss = miss_of(director_rows_.back());
-  const Eigen::Vector3d turned = miss.curvature * t;
-  const Eigen::Vector3d mixed = factor / twist_root_ * (turned + t.cross(miss.couple) / 2);
+  const DirectionResidual held_residual = residual_of(director_rows_.back());
+  const Eigen::Vector3d turned = held_residual.curvature * t;
+  const Eigen::Vector3d mixed = factor / twist_root_ * (turned + t.cross(held_residual.couple) / 2);
   pulled_.head(strains()).noalias() = state_.ends.transpose() * mixed;
   result.col(strains()).head(strains()) += pulled_.head(strains());
   result.row(strains()).head(strains()) += pulled_.head(strains()).transpose();
@@ -462,7 +463,7 @@ void SpanEnergy::carry_sideways(const Eigen::Ref<const Eigen::VectorXd>& multipl
   }
 }
 
-bool SpanEnergy::resists_sideways() {
+bool SpanEnergy::resists_out_of_plane() {
   carry_sideways(Eigen::VectorXd());
   // int beta'^2 >= (pi / 2L)^2 int beta^2 for what a clamp holds at one end.
   const double bending = pi * pi / (4 * span_.length * span_.length);
@@ -472,8 +473,8 @@ bool SpanEnergy::resists_sideways() {
   return is_minimum(hessian);
 }
 
-void SpanEnergy::sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
-                          Eigen::MatrixXd& hessian, Eigen::MatrixXd& jacobian) {
+void SpanEnergy::out_of_plane(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                              Eigen::MatrixXd& hessian, Eigen::MatrixXd& jacobian) {
   if (span_.has_material_directors()) return sideways_with_twist(hessian, jacobian);
   carry_sideways(multipliers);
   hessian.setIdentity(columns_, columns_);
@@ -492,7 +493,7 @@ void SpanEnergy::sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
 void SpanEnergy::linearise_at(const SpanEnergy& other, const Eigen::VectorXd& x,
                               Eigen::MatrixXd& hessian, Eigen::MatrixXd& jacobian) {
   Eigen::VectorXd gradient(size());
-  (void)value(adopt(other, x), gradient);
+  (void)value(prolong(other, x), gradient);
   Eigen::VectorXd residual(constraints());
   jacobian.resize(constraints(), size());
   constraint(residual, jacobian);
@@ -594,7 +595,7 @@ Eigen::VectorXd SpanEnergy::fit(const StartShape& shape, int most_steps) {
   return x;
 }
 
-void SpanEnergy::wind_to(const Eigen::Ref<const Eigen::VectorXd>& x) {
+void SpanEnergy::unwrap(const Eigen::Ref<const Eigen::VectorXd>& x) {
   if (!span_.planar) return;
   for (std::size_t i = 0; i < director_rows_.size(); ++i) {
     const double angle = start_theta_ + held_angle_.row(static_cast<Eigen::Index>(i)).dot(x);
@@ -602,40 +603,40 @@ void SpanEnergy::wind_to(const Eigen::Ref<const Eigen::VectorXd>& x) {
   }
 }
 
-Eigen::VectorXd SpanEnergy::adopt(const SpanEnergy& other, const Eigen::VectorXd& x) {
+Eigen::VectorXd SpanEnergy::prolong(const SpanEnergy& other, const Eigen::VectorXd& x) {
   for (std::size_t i = 0; i < director_rows_.size() && other.span_.planar && span_.planar; ++i) {
     director_rows_[i].angle = other.director_rows_[i].angle;
   }
   const Eigen::Index shared = std::min(terms_, other.terms_);
-  Eigen::VectorXd adopted = Eigen::VectorXd::Zero(size());
+  Eigen::VectorXd prolonged = Eigen::VectorXd::Zero(size());
   // A planar shape's curvature is u1.
   const Eigen::Index known = std::min(fields(), other.fields());
   for (Eigen::Index field = 0; field < known; ++field) {
     const Eigen::Index to = field * columns_;
     const Eigen::Index from = field * other.columns_;
-    if (free_start_ == 1) adopted[to] = x[from];
+    if (free_start_ == 1) prolonged[to] = x[from];
     if (free_start_ == 1 && other.span_.planar && !span_.planar) {
-      adopted[to] = nearest_turn(x[from] - angle_of(start_frame_.col(2)), 0);
+      prolonged[to] = nearest_turn(x[from] - angle_of(start_frame_.col(2)), 0);
     }
     for (Eigen::Index e = 0; e < pieces(); ++e) {
-      adopted.segment(to + free_start_ + e * terms_, shared) =
+      prolonged.segment(to + free_start_ + e * terms_, shared) =
           x.segment(from + free_start_ + e * other.terms_, shared);
     }
   }
-  if (has_psi() && other.has_psi()) adopted[strains()] = x[other.strains()];
-  return adopted;
+  if (has_psi() && other.has_psi()) prolonged[strains()] = x[other.strains()];
+  return prolonged;
 }
 
-Eigen::VectorXd SpanEnergy::adopt_multipliers(const SpanEnergy& other,
-                                              const Eigen::VectorXd& multipliers) const {
+Eigen::VectorXd SpanEnergy::prolong_multipliers(const SpanEnergy& other,
+                                                const Eigen::VectorXd& multipliers) const {
   if (contacts_.count() == other.contacts_.count()) return multipliers;
-  Eigen::VectorXd adopted(constraints_);
-  adopted.head(first_contact_row()) = multipliers.head(first_contact_row());
-  adopted.segment(first_contact_row(), contacts_.count()) = contacts_.adopt(
+  Eigen::VectorXd prolonged(constraints_);
+  prolonged.head(first_contact_row()) = multipliers.head(first_contact_row());
+  prolonged.segment(first_contact_row(), contacts_.count()) = contacts_.prolong(
       other.contacts_, multipliers.segment(first_contact_row(), other.contacts_.count()));
   const Eigen::Index rest = constraints_ - first_director_row();
-  adopted.tail(rest) = multipliers.tail(rest);
-  return adopted;
+  prolonged.tail(rest) = multipliers.tail(rest);
+  return prolonged;
 }
 
 double SpanEnergy::longest_piece() const {
@@ -698,7 +699,7 @@ Energies SpanEnergy::energies(const Eigen::VectorXd& x) {
   energies.bending = stored.head(bends).squaredNorm() / 2;
   energies.twisting = stored.tail(stored.size() - bends).squaredNorm() / 2;
   if (!span_.loads.empty()) {
-    const NodeReach reach(span_, pieces_, *table_);
+    const PositionOperator reach(span_, pieces_, *table_);
     for (const Span::Load& load : span_.loads) {
       const Eigen::VectorXd at = reach.begin(pieces_before(pieces_, load.at));
       energies.load -= load.force.dot(t_.transpose() * at);

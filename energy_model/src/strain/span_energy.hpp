@@ -6,7 +6,7 @@
 
 #include "dlo/energy_model/problem.hpp"
 #include "strain/contact_rows.hpp"
-#include "strain/director_miss.hpp"
+#include "strain/direction_residual.hpp"
 #include "strain/rod_frames.hpp"
 #include "strain/soft_contact.hpp"
 #include "strain/span_shape.hpp"
@@ -49,15 +49,15 @@ class SpanEnergy {
   /// For a planar span: the same for bending (and twisting, with material directors) out of the
   /// plane, with its constraints' Jacobian. Unknowns of a round rod are the rates of the tangent's
   /// tilt, with material directors the last unknowns of the same span in space.
-  void sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers, Eigen::MatrixXd& hessian,
-                Eigen::MatrixXd& jacobian);
+  void out_of_plane(const Eigen::Ref<const Eigen::VectorXd>& multipliers, Eigen::MatrixXd& hessian,
+                    Eigen::MatrixXd& jacobian);
   /// Second derivatives of E - mu . c and the constraints' Jacobian at the equilibrium x of another
   /// model, of the same span in its plane; mu are the multipliers that balance it best.
   void linearise_at(const SpanEnergy& other, const Eigen::VectorXd& x, Eigen::MatrixXd& hessian,
                     Eigen::MatrixXd& jacobian);
   /// For a planar span held by one clamp and nothing else: whether bending out of the plane stores
   /// energy, at the point of the last value().
-  [[nodiscard]] bool resists_sideways();
+  [[nodiscard]] bool resists_out_of_plane();
 
   /// Arc lengths of the nodes, and tangents there at the point of the last value(), 3 x nodes.
   [[nodiscard]] const Eigen::VectorXd& nodes() const { return s_; }
@@ -71,8 +71,8 @@ class SpanEnergy {
   [[nodiscard]] Eigen::VectorXd fit(const StartShape& shape,
                                     int most_steps = RodFrames::most_fit_steps);
 
-  /// What tangents at the nodes would cost a round rod that is straight by
-  /// nature, and how far from the holds they would end, before they are fitted.
+  /// What tangents at the nodes would cost a round rod that is intrinsically
+  /// straight, and how far from the holds they would end, before they are fitted.
   struct Estimate {
     double energy = 0;
     double bending = 0;  // of it
@@ -81,18 +81,18 @@ class SpanEnergy {
   [[nodiscard]] Estimate estimate(const Eigen::Matrix3Xd& tangents) const;
 
   /// Turns the clamps' angles to the winding of these unknowns.
-  void wind_to(const Eigen::Ref<const Eigen::VectorXd>& x);
+  void unwrap(const Eigen::Ref<const Eigen::VectorXd>& x);
 
   /// Unknowns of a shape that was found with another number of terms, or in the plane.
-  [[nodiscard]] Eigen::VectorXd adopt(const SpanEnergy& other, const Eigen::VectorXd& x);
+  [[nodiscard]] Eigen::VectorXd prolong(const SpanEnergy& other, const Eigen::VectorXd& x);
 
   /// Where the unknowns of the same span with no more terms are among these.
   [[nodiscard]] std::vector<Eigen::Index> places_of(const SpanEnergy& other) const;
 
   /// Multipliers of the same span's constraints, found with another number of
   /// terms.
-  [[nodiscard]] Eigen::VectorXd adopt_multipliers(const SpanEnergy& other,
-                                                  const Eigen::VectorXd& multipliers) const;
+  [[nodiscard]] Eigen::VectorXd prolong_multipliers(const SpanEnergy& other,
+                                                    const Eigen::VectorXd& multipliers) const;
 
   /// Size of the last coefficients, which tells whether the curvature is
   /// resolved.
@@ -155,12 +155,12 @@ class SpanEnergy {
     Eigen::Vector3d to = Eigen::Vector3d::Zero();
     Eigen::Vector3d across = Eigen::Vector3d::Zero();
     bool of_d1 = false;  // not of the tangent
-    double angle = 0;    // in the plane, whole turns counted, less what the free rod turns by
+    double angle = 0;    // in the plane, whole turns counted, less that of the stress-free shape
   };
   /// Strains of the rod, or turns of it as a whole.
   [[nodiscard]] Eigen::Index fields() const { return span_.planar ? 1 : frames_.fields(); }
   [[nodiscard]] Eigen::Index strains() const { return fields() * columns_; }
-  /// By which the free rod turns its tangent in the plane up to a piece's end.
+  /// Rotation of the tangent of the stress-free shape in the plane up to a piece's end.
   [[nodiscard]] double natural_turn(Eigen::Index piece) const;
   /// Where the constraints on directors begin.
   [[nodiscard]] Eigen::Index first_director_row() const {
@@ -182,7 +182,7 @@ class SpanEnergy {
   void place_tangents();
   void sideways_with_twist(Eigen::MatrixXd& hessian, Eigen::MatrixXd& jacobian);
   void list_director_rows();
-  [[nodiscard]] DirectorMiss miss_of(const DirectorRow& row) const;
+  [[nodiscard]] DirectionResidual residual_of(const DirectorRow& row) const;
   void add_twist_hessian(double factor, Eigen::MatrixXd& result);
 
   Span span_;
@@ -199,11 +199,11 @@ class SpanEnergy {
 
   // In the plane
   double start_theta_ = 0;
-  Eigen::MatrixXd angle_;            // of the nodes by unknown
-  Eigen::MatrixXd turning_by_node_;  // its transpose
-  Eigen::MatrixXd held_angle_;       // of the director rows by unknown
-  Eigen::VectorXd natural_angle_;    // of the nodes, from the start's; empty: zero
-  Eigen::VectorXd couples_work_;     // by unknown, of the loads' couples; empty: none
+  Eigen::MatrixXd angle_;             // of the nodes by unknown
+  Eigen::MatrixXd angle_transposed_;  // its transpose
+  Eigen::MatrixXd held_angle_;        // of the director rows by unknown
+  Eigen::VectorXd natural_angle_;     // of the nodes, from the start's; empty: zero
+  Eigen::VectorXd couples_work_;      // by unknown, of the loads' couples; empty: none
   // In space
   Eigen::Matrix3d start_frame_ = Eigen::Matrix3d::Identity();
   RodFrames frames_;

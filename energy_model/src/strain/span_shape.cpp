@@ -159,7 +159,7 @@ void cut_taut(const Segment& segment, const Span& span, std::vector<double>& cut
 }
 
 /// Cuts where the layers beside contacts have decayed.
-void cut_lift_offs(const Span& span, double layer, std::vector<double>& cuts) {
+void cut_free_boundaries(const Span& span, double layer, std::vector<double>& cuts) {
   if (span.contacts.empty()) return;
   const std::vector<double> others = cuts;
   const auto cut = [&](double from, double sense) {
@@ -193,7 +193,7 @@ void cut_layers(const Span& span, std::vector<double>& cuts) {
   for (const Segment& segment : segments_of(span)) {
     if (segment.taut()) cut_taut(segment, span, cuts);
   }
-  cut_lift_offs(span, layer, cuts);
+  cut_free_boundaries(span, layer, cuts);
 }
 
 }  // namespace

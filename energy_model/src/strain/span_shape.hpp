@@ -45,7 +45,7 @@ struct StartShape {
 /// Tangents at arc lengths of a span, as a start, 3 x M.
 using TangentField = std::function<StartShape(const Eigen::VectorXd&)>;
 
-/// By which d1 is turned ahead of a frame that does not turn about the tangents, from the first
+/// Angle of d1 ahead of a frame that does not rotate around the tangents, from the first
 /// point on [rad]; no step may turn the tangent by pi.
 [[nodiscard]] Eigen::VectorXd roll_of(const Eigen::Matrix3Xd& tangents, const Eigen::Matrix3Xd& d1);
 

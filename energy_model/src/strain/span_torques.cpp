@@ -12,7 +12,8 @@ Eigen::Vector3d SpanEnergy::hold_torque(Eigen::Index hold,
   for (const DirectorRow& held : director_rows_) {
     const double mu = multipliers[row++];
     if (held.hold != hold) continue;
-    torque += span_.planar ? Eigen::Vector3d(0, 0, mu) : Eigen::Vector3d(mu * miss_of(held).couple);
+    torque +=
+        span_.planar ? Eigen::Vector3d(0, 0, mu) : Eigen::Vector3d(mu * residual_of(held).couple);
   }
   return torque;
 }

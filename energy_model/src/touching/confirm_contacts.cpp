@@ -16,7 +16,7 @@ namespace {
 
 constexpr double confirmed_depth = 1e-9;  // in l; a tenth of what a converged shape may have
 constexpr double allowed_pull = 1e-7;     // of forces, over 1 + the largest one
-constexpr int looks = 8;                  // at an interval, for depths and pressures
+constexpr int samples = 8;                // at an interval, for depths and pressures
 
 /// A rod in contact that Newton's method has closed, in its own units, and what its contacts do.
 class ClosedRod {
@@ -82,8 +82,8 @@ class ClosedRod {
   /// Cross-sections of an interval, those at its ends as they are within it.
   [[nodiscard]] std::vector<RodState> along(Eigen::Index i) const {
     std::vector<RodState> states = {closed_.nodes[static_cast<std::size_t>(i)]};
-    const double width = (closed_.s[i + 1] - closed_.s[i]) / looks;
-    for (int k = 0; k < looks; ++k) {
+    const double width = (closed_.s[i + 1] - closed_.s[i]) / samples;
+    for (int k = 0; k < samples; ++k) {
       RodState state = states.back();
       RodIntegrals integrals;
       const RodPiece piece{section_of(i), start_.span.natural, closed_.s[i] + k * width, width,

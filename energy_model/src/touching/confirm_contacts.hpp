@@ -8,13 +8,13 @@
 
 namespace dlo::energy_model {
 
-/// Whether the contacts of a problem's rod can be confirmed: it is straight by nature and its
+/// Whether the contacts of a problem's rod can be confirmed: it is intrinsically straight and its
 /// obstacles are rigid.
 [[nodiscard]] bool can_confirm(const Problem& problem);
 
 /// The equilibrium next to a shape that says which parts of the rod touch which obstacles: of a rod
-/// that is straight by nature, held by any grips, on rigid bodies of any form. Whether it is one is
-/// judged here: gaps, forces and pressures of the right sign, a positive second variation.
+/// that is intrinsically straight, held by any grips, on rigid bodies of any form. Whether it is
+/// one is judged here: gaps, forces and pressures of the right sign, a positive second variation.
 /// @param shape      of this problem or of a similar one, with its grips' reactions and contacts
 /// @param tolerance  of the integrator
 /// @return nothing where the problem is another one or the rod touches as it is not known here: it

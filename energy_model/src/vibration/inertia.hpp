@@ -6,7 +6,7 @@
 
 #include "dlo/energy_model/vibrations.hpp"
 #include "problem/split.hpp"
-#include "strain/node_reach.hpp"
+#include "strain/position_operator.hpp"
 
 namespace dlo::energy_model {
 

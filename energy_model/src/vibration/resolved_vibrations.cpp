@@ -12,7 +12,7 @@
 #include "base/sized_samples.hpp"
 #include "problem/rod_law.hpp"
 #include "search/known_shape.hpp"
-#include "strain/node_reach.hpp"
+#include "strain/position_operator.hpp"
 #include "strain/span_energy.hpp"
 #include "vibration/inertia.hpp"
 #include "vibration/span_modes.hpp"
@@ -27,7 +27,7 @@ constexpr double plane_rounding = 1e-9;
 
 /// By which tangents of one equilibrium that was solved twice may differ.
 constexpr double found_again = 1e-6;
-/// Of omega_squared, over EI / (m l^3): what is less is a rod that turns for nothing, and rounding.
+/// Of omega_squared, over EI / (m l^3): what is less is a rod with a rigid-body mode, and rounding.
 constexpr double neutral_share = 1e-2;
 
 /// Axes of which the last one is across the plane of a shape.
@@ -50,7 +50,7 @@ ShapeAxes shape_axes(const Eigen::Matrix3Xd& tangents) {
 /// One span with its modes.
 struct VibratingSpan {
   PlacedSpan placed;
-  NodeReach reach;
+  PositionOperator reach;
   std::array<Eigen::MatrixXd, 3> tangents;  ///< by the unknowns, an axis each
   SpanModes modes;
   bool flat = false;  ///< its shape
@@ -114,7 +114,7 @@ class RodVibrations {
   }
 
   /// Whether the shape that vibrates is the known one: Newton's method may have gone to another,
-  /// and with few terms it is not resolved.
+  /// and few terms do not resolve it.
   [[nodiscard]] bool is_known() const { return farthest_ <= found_again; }
 
   /// Unknowns of the largest span.
@@ -143,7 +143,7 @@ class RodVibrations {
     const ShapeAxes axes = shape_axes(model->tangents());
     auto span = std::make_shared<VibratingSpan>(
         VibratingSpan{placed,
-                      NodeReach(model->span(), pieces_of(model->span()), model->table()),
+                      PositionOperator(model->span(), pieces_of(model->span()), model->table()),
                       model->tangent_jacobian(),
                       {},
                       axes.flat});
@@ -196,11 +196,11 @@ class RodVibrations {
     }
     shape *= span->placed.frame;
     // Of the farthest of so many points.
-    constexpr int looks = 400;
+    constexpr int samples = 400;
     Eigen::Vector3d farthest = Eigen::Vector3d::Zero();
-    for (int i = 0; i <= looks; ++i) {
+    for (int i = 0; i <= samples; ++i) {
       const Eigen::Vector3d here =
-          span->moved(result.begin + (result.end - result.begin) * i / looks, l, shape);
+          span->moved(result.begin + (result.end - result.begin) * i / samples, l, shape);
       if (here.norm() > farthest.norm()) farthest = here;
     }
     Eigen::Index axis = 0;

@@ -50,7 +50,7 @@ SpanModes span_modes(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jaco
   const Eigen::MatrixXd stiffness = free.transpose() * hessian * free;
   const Eigen::MatrixXd free_mass = free.transpose() * mass * free;
   // 1 / (lambda + shift) are eigenvalues of M against H + shift M, which has to be definite: of an
-  // unstable shape, or one that turns for nothing, only with a shift. So the lowest come out best.
+  // unstable shape, or one with a rigid-body mode, only with a shift. So the lowest come out best.
   double shift = 1 / free_mass.trace();
   Eigen::LLT<Eigen::MatrixXd> factor;
   constexpr int most_shifts = 40;

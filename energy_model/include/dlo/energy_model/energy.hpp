@@ -91,7 +91,7 @@ class EnergySolver {
   /// solve_energy(). What follows throws std::invalid_argument as it does.
   Equilibrium solve(const Problem& problem);
   /// From the shape of the last call instead of a search, if it had one: for a gripper or an
-  /// obstacle that has moved a little. By Newton's method with its contacts, which are mended as
+  /// obstacle that has moved a little. By Newton's method with its contacts, which are updated as
   /// they change. Where that leads to no equilibrium near the last shape, or to an unstable one,
   /// the branch has ended: the shape is the next minimum downhill of the last, or failing that what
   /// solve() finds. The problem has the same obstacles in the same order.
@@ -99,10 +99,10 @@ class EnergySolver {
   /// follow() as far as Newton's method stays on the branch, without what it does beyond. None
   /// where that leads to no stable equilibrium near the last shape, or there is none: the next call
   /// then goes on from the same shape as this one, in a smaller step for instance.
-  std::optional<Equilibrium> keep(const Problem& problem);
-  /// Forgets the shape of the last follow() or keep() that had one: the next call goes on from the
-  /// shape before it. Once for each of them.
-  void go_back();
+  std::optional<Equilibrium> try_follow(const Problem& problem);
+  /// Forgets the shape of the last follow() or try_follow() that had one: the next call goes on
+  /// from the shape before it. Once for each of them.
+  void undo();
   /// Whether the last follow() has stayed on its branch, as far as Newton's method tells: the shape
   /// is next to the one before. Work and energy tell too (a snap-through releases energy).
   [[nodiscard]] bool followed() const;

@@ -23,8 +23,8 @@ struct PointObstacle {
   obstacle::Body body;   ///< [m]
   double stiffness = 0;  ///< force on a segment per depth [N/m], >= 0
   /// Points to a segment, each with its share of the stiffness, >= 1; 1: where segments meet
-  /// (obstacle::looks_per_segment).
-  int looks = 1;
+  /// (obstacle::samples_per_segment).
+  int samples = 1;
 };
 
 /// Twist of a round rod between two held segments that hold its material frame. The angle theta is
@@ -79,7 +79,7 @@ struct PolygonOptions {
   /// small steps downhill to a minimum next to the start. true: terms that are negative are left
   /// out, in large steps to any minimum; soft polygons far from rest take a fifth of the
   /// evaluations.
-  bool to_any_minimum = false;
+  bool project_hessian = false;
 };
 
 /// A shape of a polygon, and how it was found.

@@ -28,7 +28,7 @@ void check(const Wall& wall);
 struct Solid {
   obstacle::Body body;   ///< [m]
   double stiffness = 0;  ///< c_e of all looks at a segment together [N/m], >= 0
-  int looks = 1;         ///< to a segment, >= 1 (obstacle::looks_per_segment); 1: at its end
+  int samples = 1;       ///< to a segment, >= 1 (obstacle::samples_per_segment); 1: at its end
 };
 
 /// @throws std::invalid_argument naming the first member that is out of range

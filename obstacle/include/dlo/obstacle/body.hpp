@@ -96,6 +96,6 @@ class Body {
 /// At how many points to a segment a polygon has to be held against a body, so that it does not
 /// slip between two of them: they are no farther apart than half of its smallest radius, but for 16
 /// to a segment. @param length  of a segment [m]
-[[nodiscard]] int looks_per_segment(const Body& body, double length);
+[[nodiscard]] int samples_per_segment(const Body& body, double length);
 
 }  // namespace dlo::obstacle

@@ -11,7 +11,7 @@ namespace dlo::energy_model {
 /// those of the shape before; what they are off by moves the shape by about its square, so that a
 /// few rounds find both.
 /// @param refine  raises the number of terms of an equilibrium on pieces that stay
-[[nodiscard]] SpanSolution settle_contact(
+[[nodiscard]] SpanSolution with_found_pieces(
     LocalSolver& on, SpanSolution solution,
     const std::function<SpanSolution(LocalSolver&, SpanSolution)>& refine);
 

@@ -1,4 +1,4 @@
-#include "span/settle_contact.hpp"
+#include "span/contact_pieces.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -42,8 +42,9 @@ SpanSolution on_other_pieces(LocalSolver& on, const SpanSolution& solution, int 
   return other;
 }
 
-SpanSolution settle_contact(LocalSolver& on, SpanSolution solution,
-                            const std::function<SpanSolution(LocalSolver&, SpanSolution)>& refine) {
+SpanSolution with_found_pieces(
+    LocalSolver& on, SpanSolution solution,
+    const std::function<SpanSolution(LocalSolver&, SpanSolution)>& refine) {
   Span span = on.span();
   std::vector<double> ends = contact_ends(solution);
   bool refined = false;

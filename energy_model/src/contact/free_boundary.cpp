@@ -1,4 +1,4 @@
-#include "contact/lift_off.hpp"
+#include "contact/free_boundary.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -20,12 +20,12 @@ bool is_free(const Span& span, double at) {
 
 }  // namespace
 
-double LiftOff::at(const Span& span) const {
+double FreeBoundary::at(const Span& span) const {
   const Span::Contact& own = span.contacts[contact];
   return begins ? own.begin : own.end;
 }
 
-void LiftOff::move(Span& span, double way) const {
+void FreeBoundary::move(Span& span, double way) const {
   Span::Contact& own = span.contacts[contact];
   const bool lies = own.lies();
   if (begins || !lies) own.begin += way;
@@ -33,8 +33,8 @@ void LiftOff::move(Span& span, double way) const {
   if (!lies) own.end = own.begin;
 }
 
-std::vector<LiftOff> lift_offs(const Span& span) {
-  std::vector<LiftOff> ends;
+std::vector<FreeBoundary> free_boundaries(const Span& span) {
+  std::vector<FreeBoundary> ends;
   for (std::size_t i = 0; i < span.contacts.size(); ++i) {
     const Span::Contact& contact = span.contacts[i];
     if (is_free(span, contact.begin)) ends.push_back({i, true});
@@ -43,7 +43,7 @@ std::vector<LiftOff> lift_offs(const Span& span) {
   return ends;
 }
 
-Room room_of(const Span& span, const LiftOff& end) {
+Room room_of(const Span& span, const FreeBoundary& end) {
   const double at = end.at(span);
   const Span::Contact& own = span.contacts[end.contact];
   Room room{at, span.length - at};
@@ -62,13 +62,14 @@ Room room_of(const Span& span, const LiftOff& end) {
   return room;
 }
 
-Eigen::VectorXd missed(const SpanSolution& solution, const std::vector<LiftOff>& ends) {
+Eigen::VectorXd free_boundary_residual(const SpanSolution& solution,
+                                       const std::vector<FreeBoundary>& ends) {
   constexpr double aside = 1e-12;
   const Span& span = solution.model->span();
   Eigen::VectorXd gradient(solution.x.size());
   (void)solution.model->value(solution.x, gradient);
   std::vector<double> s;
-  for (const LiftOff& end : ends) {
+  for (const FreeBoundary& end : ends) {
     // Of two pieces that meet there the free one.
     const double at = end.at(span);
     const bool after = span.contacts[end.contact].lies() && !end.begins;

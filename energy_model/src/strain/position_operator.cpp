@@ -1,4 +1,4 @@
-#include "strain/node_reach.hpp"
+#include "strain/position_operator.hpp"
 
 #include <utility>
 
@@ -35,13 +35,14 @@ void tabulate_nodes(const std::vector<Piece>& pieces, const LegendreTable& table
   }
 }
 
-NodeReach::NodeReach(const Span& span, std::vector<Piece> pieces, const LegendreTable& table)
+PositionOperator::PositionOperator(const Span& span, std::vector<Piece> pieces,
+                                   const LegendreTable& table)
     : pieces_(std::move(pieces)), table_(&table), anchor_(span.anchor) {
   tabulate_nodes(pieces_, table, nodes_, weights_);
   to_anchor_ = (nodes_.array() < anchor_).select(weights_, Eigen::VectorXd::Zero(nodes_.size()));
 }
 
-std::vector<double> NodeReach::signs(double s) const {
+std::vector<double> PositionOperator::signs(double s) const {
   std::vector<double> result(pieces_.size(), 0);
   const auto before = static_cast<std::size_t>(pieces_before(pieces_, s));
   const auto anchor = static_cast<std::size_t>(pieces_before(pieces_, anchor_));
@@ -50,24 +51,24 @@ std::vector<double> NodeReach::signs(double s) const {
   return result;
 }
 
-Eigen::VectorXd NodeReach::begin(Eigen::Index piece) const {
+Eigen::VectorXd PositionOperator::begin(Eigen::Index piece) const {
   Eigen::VectorXd reach = -to_anchor_;
   const Eigen::Index before = piece * table_->nodes.size();
   reach.head(before) += weights_.head(before);
   return reach;
 }
 
-PointsReach NodeReach::at_begin(Eigen::Index piece) const {
+PointsReach PositionOperator::at_begin(Eigen::Index piece) const {
   return {begin(piece), 0, Eigen::MatrixXd::Zero(0, 1)};
 }
 
 /// Weights of a piece's nodes in the series in Legendre polynomials through what is given at them.
 /// @param of_terms  what the polynomials come to
-Eigen::MatrixXd NodeReach::through(const Eigen::MatrixXd& of_terms) const {
+Eigen::MatrixXd PositionOperator::through(const Eigen::MatrixXd& of_terms) const {
   return table_->weights.asDiagonal() * (table_->values * of_terms);
 }
 
-PointsReach NodeReach::points(Eigen::Index piece, const Eigen::VectorXd& shares) const {
+PointsReach PositionOperator::points(Eigen::Index piece, const Eigen::VectorXd& shares) const {
   const Eigen::Index Q = table_->nodes.size();
   Eigen::VectorXd values(Q);
   Eigen::MatrixXd integrals(Q, shares.size());
@@ -76,7 +77,7 @@ PointsReach NodeReach::points(Eigen::Index piece, const Eigen::VectorXd& shares)
   return {begin(piece), piece * Q, length * through(integrals)};
 }
 
-PointsReach NodeReach::along(Eigen::Index piece) const {
+PointsReach PositionOperator::along(Eigen::Index piece) const {
   const Eigen::Index Q = table_->nodes.size();
   const Eigen::Index first = piece * Q;
   Eigen::MatrixXd own(Q, Q + 2);
@@ -86,7 +87,7 @@ PointsReach NodeReach::along(Eigen::Index piece) const {
   return {begin(piece), first, std::move(own)};
 }
 
-Eigen::VectorXd NodeReach::at(double s) const {
+Eigen::VectorXd PositionOperator::at(double s) const {
   const auto ends_before = [s](const Piece& piece) { return piece.end() <= s; };
   const Eigen::Index piece = std::min<Eigen::Index>(
       std::count_if(pieces_.begin(), pieces_.end(), ends_before), std::ssize(pieces_) - 1);
@@ -94,7 +95,7 @@ Eigen::VectorXd NodeReach::at(double s) const {
   return points(piece, Eigen::VectorXd::Constant(1, (s - own.begin) / own.length)).weights(0);
 }
 
-NodeReach::Point NodeReach::at(Eigen::Index piece, double s) const {
+PositionOperator::Point PositionOperator::at(Eigen::Index piece, double s) const {
   const Eigen::Index Q = table_->nodes.size();
   const Piece& own = pieces_[static_cast<std::size_t>(piece)];
   const double xi = (s - own.begin) / own.length;
@@ -111,7 +112,7 @@ NodeReach::Point NodeReach::at(Eigen::Index piece, double s) const {
   return point;
 }
 
-SpanReach::SpanReach(const NodeReach& reach) : nodes_(reach.nodes().size()) {
+SpanReach::SpanReach(const PositionOperator& reach) : nodes_(reach.nodes().size()) {
   const Eigen::Index count = std::ssize(reach.pieces());
   const Eigen::Index Q = nodes_ / count;
   weights_.setZero(count * (Q + 2));

@@ -1,4 +1,4 @@
-#include "contact/mend.hpp"
+#include "contact/update_contacts.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,34 +20,34 @@ constexpr double least_rise = 1e-3;
 
 /// Largest clearance between two arc lengths.
 double highest(const SpanShape& shape, const Span::Obstacle& obstacle, double from, double to) {
-  constexpr int looks = 16;
+  constexpr int samples = 16;
   std::vector<double> s;
-  for (int i = 1; i < looks; ++i) s.push_back(from + (to - from) * i / looks);
+  for (int i = 1; i < samples; ++i) s.push_back(from + (to - from) * i / samples);
   const SpanSamples samples = shape.sample(s);
   return obstacle.body.clearances(samples.points).maxCoeff();
 }
 
 class Contacts {
  public:
-  Contacts(const SpanSolution& solution, double load, Terms terms)
+  Contacts(const SpanSolution& solution, double load, Resolution resolution)
       : solution_(solution),
         span_(solution.model->span()),
         shape_(solution.model->shape(solution.x)),
         pull_(-strongest_pull * (1 + load + solution.multipliers.norm())),
-        terms_(terms),
+        resolution_(resolution),
         contacts_(span_.contacts) {}
 
-  [[nodiscard]] std::optional<std::vector<Span::Contact>> mended() {
+  [[nodiscard]] std::optional<std::vector<Span::Contact>> updated() {
     for (Span::Contact& contact : contacts_) {
       const double middle = (contact.begin + contact.end) / 2;
       contact.feature =
           contact.obstacle.body.feature(shape_.sample(std::array{middle}).points.col(0));
     }
-    let_go();
+    release_tensile();
     join();
     unlike_ = wrong_;
-    const double depth = terms_ == Terms::all ? deepest : deepest_coarse;
-    for (const Lowest& lowest : lowest_points(span_, shape_, -depth * span_.length)) {
+    const double depth = resolution_ == Resolution::resolved ? deepest : deepest_coarse;
+    for (const GapMinimum& lowest : gap_minima(span_, shape_, -depth * span_.length)) {
       wrong_ = true;
       add(lowest);
     }
@@ -57,7 +57,7 @@ class Contacts {
 
  private:
   /// Of what an obstacle would have to pull at: points, and the ends of parts.
-  void let_go() {
+  void release_tensile() {
     const std::vector<ContactForce> forces = solution_.model->contact_forces(solution_.multipliers);
     std::vector<Span::Contact> kept;
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
@@ -68,7 +68,8 @@ class Contacts {
         continue;
       }
       const double length = contact.end - contact.begin;
-      const bool pulled_along = terms_ == Terms::all && force.least_pressure * length < pull_;
+      const bool pulled_along =
+          resolution_ == Resolution::resolved && force.least_pressure * length < pull_;
       const bool lifted = force.least_inner < pull_ || pulled_along;
       // Nothing beyond a free end is carried there.
       const bool begin_pulls = contact.begin > 0 && force.begin < pull_;
@@ -113,7 +114,7 @@ class Contacts {
 
   /// What is behind an obstacle touches it; next to another contact both lie, and so does what is
   /// behind it all the way from there to the tip.
-  void add(const Lowest& lowest) {
+  void add(const GapMinimum& lowest) {
     const double length = span_.length;
     for (Span::Contact& contact : contacts_) {
       const bool same = contact.obstacle.index == lowest.obstacle.index;
@@ -147,7 +148,7 @@ class Contacts {
   const Span& span_;
   SpanShape shape_;
   double pull_;
-  Terms terms_;
+  Resolution resolution_;
   std::vector<Span::Contact> contacts_;
   std::vector<double> split_;  // where the second points of parts are that have become two
   bool wrong_ = false;
@@ -165,9 +166,9 @@ bool are_one(const Span::Contact& here, const Span::Contact& next, const Span& s
   return rise < 0 || (gap < short_gap * span.length && rise < least_rise * gap);
 }
 
-std::optional<std::vector<Span::Contact>> mended(const SpanSolution& solution, double load,
-                                                 Terms terms) {
-  return Contacts(solution, load, terms).mended();
+std::optional<std::vector<Span::Contact>> updated_contacts(const SpanSolution& solution,
+                                                           double load, Resolution resolution) {
+  return Contacts(solution, load, resolution).updated();
 }
 
 }  // namespace dlo::energy_model

@@ -1,4 +1,4 @@
-#include "contact/resting_polygon.hpp"
+#include "contact/penalty_polygon.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -130,12 +130,12 @@ class Resting {
         });
   }
 
-  [[nodiscard]] RestingPolygon from(const TangentField& start, const Deadline& deadline) {
+  [[nodiscard]] PenaltyPolygon from(const TangentField& start, const Deadline& deadline) {
     if (!problem_.twists.empty()) problem_.twists[0].angle = start(Eigen::VectorXd::Zero(1)).twist;
     return from(points_of(start), Stages::yes, deadline);
   }
 
-  [[nodiscard]] RestingPolygon from(const RestingPolygon& coarse, const Deadline& deadline) {
+  [[nodiscard]] PenaltyPolygon from(const PenaltyPolygon& coarse, const Deadline& deadline) {
     if (!problem_.twists.empty()) problem_.twists[0].angle = coarse.twist;
     return from(points_between(coarse), Stages::no, deadline);
   }
@@ -144,16 +144,16 @@ class Resting {
   /// Whether stretch is soft at first, as far from rest.
   enum class Stages { yes, no };
 
-  [[nodiscard]] RestingPolygon from(const Eigen::Matrix3Xd& start, Stages stages,
+  [[nodiscard]] PenaltyPolygon from(const Eigen::Matrix3Xd& start, Stages stages,
                                     const Deadline& deadline) {
     PolygonOptions options;
     options.tolerance = tolerance;
     options.max_evaluations = most_evaluations;
     options.in_stages = stages == Stages::yes;
-    options.to_any_minimum = true;
+    options.project_hessian = true;
     options.time_limit = std::max(1e-3, deadline.remaining());
     const PolygonResult found = solve_polygon(problem_, start, options);
-    RestingPolygon result;
+    PenaltyPolygon result;
     result.evaluations = found.evaluations;
     result.energy = found.energy;
     result.at_rest = succeeded(found.status);
@@ -177,8 +177,8 @@ class Resting {
     return span_.length / static_cast<double>(mesh_.s.size());
   }
 
-  [[nodiscard]] int looks_at(const Span::Obstacle& obstacle) const {
-    return obstacle::looks_per_segment(obstacle.body, segment());
+  [[nodiscard]] int samples_of(const Span::Obstacle& obstacle) const {
+    return obstacle::samples_per_segment(obstacle.body, segment());
   }
 
   [[nodiscard]] double s(Eigen::Index i) const { return mesh_.s[static_cast<std::size_t>(i)]; }
@@ -195,7 +195,7 @@ class Resting {
   }
 
   void add_obstacle(const Span::Obstacle& obstacle, double stiffness) {
-    problem_.obstacles.push_back({founded(obstacle.body, span_), stiffness, looks_at(obstacle)});
+    problem_.obstacles.push_back({founded(obstacle.body, span_), stiffness, samples_of(obstacle)});
   }
 
   [[nodiscard]] Eigen::Index point_at(double at) const {
@@ -277,7 +277,7 @@ class Resting {
   }
 
   /// Between a coarser polygon's points by cubics, which stretch segments less than chords do.
-  [[nodiscard]] Eigen::Matrix3Xd points_between(const RestingPolygon& coarse) const {
+  [[nodiscard]] Eigen::Matrix3Xd points_between(const PenaltyPolygon& coarse) const {
     const auto last = static_cast<Eigen::Index>(coarse.s.size()) - 1;
     const auto at = [&](Eigen::Index i) { return coarse.s[static_cast<std::size_t>(i)]; };
     const auto slope = [&](Eigen::Index i) {
@@ -301,16 +301,16 @@ class Resting {
 
   /// Of a rigid obstacle: runs of points within it.
   void add_contacts(const Span::Obstacle& obstacle, const Eigen::Matrix3Xd& points,
-                    RestingPolygon& result) const {
+                    PenaltyPolygon& result) const {
     // Where the polygon is looked at.
-    const int looks = looks_at(obstacle);
-    const Eigen::Index count = looks * (points.cols() - 1) + 1;
+    const int samples = samples_of(obstacle);
+    const Eigen::Index count = samples * (points.cols() - 1) + 1;
     std::vector<double> at;
     Eigen::VectorXd clearance(count);
     std::vector<int> feature;
     for (Eigen::Index k = 0; k < count; ++k) {
       const Eigen::Index i = std::min(k / looks, points.cols() - 2);
-      const double share = static_cast<double>(k - i * looks) / looks;
+      const double share = static_cast<double>(k - i * samples) / samples;
       at.push_back((1 - share) * s(i) + share * s(i + 1));
       const Eigen::Vector3d point = (1 - share) * points.col(i) + share * points.col(i + 1);
       clearance[k] = obstacle.body.clearance(point);
@@ -327,7 +327,7 @@ class Resting {
       const auto next_to = [&](Eigen::Index k) { return feature[static_cast<std::size_t>(k)]; };
       while (i + 1 < count && on(i + 1) && next_to(i + 1) == next_to(first)) ++i;
       Span::Contact contact{obstacle, at[first], at[i], true, next_to(first)};
-      if (i - first + 1 < fewest_lying * looks) {
+      if (i - first + 1 < fewest_lying * samples) {
         double depth = 0;
         double moment = 0;
         for (Eigen::Index k = first; k <= i; ++k) {
@@ -351,7 +351,7 @@ class Resting {
 
 }  // namespace
 
-TangentField RestingPolygon::field() const {
+TangentField PenaltyPolygon::field() const {
   return [middles = middles, tangents = tangents, twist = twist](const Eigen::VectorXd& at) {
     StartShape result(Eigen::Matrix3Xd(3, at.size()));
     for (Eigen::Index q = 0; q < at.size(); ++q) {
@@ -362,7 +362,7 @@ TangentField RestingPolygon::field() const {
   };
 }
 
-RestingPolygon rest_on_obstacles(const Span& span, const TangentField& start, Segments segments,
+PenaltyPolygon rest_on_obstacles(const Span& span, const TangentField& start, Segments segments,
                                  const Deadline& deadline) {
   Resting resting(span, segments);
   if (!resting.goes_through(start)) return resting.from(start, deadline);
@@ -373,16 +373,16 @@ RestingPolygon rest_on_obstacles(const Span& span, const TangentField& start, Se
     for (Span::Obstacle& obstacle : rounder.rigid_obstacles) {
       obstacle.body = obstacle.body.rounded(round);
     }
-    const RestingPolygon before = Resting(rounder, segments).from(from, deadline);
+    const PenaltyPolygon before = Resting(rounder, segments).from(from, deadline);
     evaluations += before.evaluations;
     from = before.field();
   }
-  RestingPolygon result = resting.from(from, deadline);
+  PenaltyPolygon result = resting.from(from, deadline);
   result.evaluations += evaluations;
   return result;
 }
 
-RestingPolygon rest_refined(const Span& span, const RestingPolygon& coarse,
+PenaltyPolygon rest_refined(const Span& span, const PenaltyPolygon& coarse,
                             const Deadline& deadline) {
   return Resting(span, Segments::all).from(coarse, deadline);
 }

@@ -1,6 +1,6 @@
 // Points of a span as sums over tangents, against the samples of its shape.
 
-#include "strain/node_reach.hpp"
+#include "strain/position_operator.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ Span anchored_span() {
 struct Sampled {
   Span span = anchored_span();
   std::vector<Piece> pieces = pieces_of(span);
-  NodeReach reach = NodeReach(span, pieces, director_table(terms));
+  PositionOperator reach = PositionOperator(span, pieces, director_table(terms));
   SpanShape shape;
   Eigen::MatrixX3d tangents;
 
@@ -48,7 +48,7 @@ struct Sampled {
   }
 };
 
-TEST(NodeReach, PointsAreThoseOfTheShape) {
+TEST(PositionOperator, PointsAreThoseOfTheShape) {
   const Sampled rod;
   ASSERT_EQ(rod.pieces.size(), 3U);
   for (const double s : {0.0, 0.1, 0.3, 0.31, 0.5, 0.75, 1.0}) {
@@ -64,7 +64,7 @@ TEST(NodeReach, PointsAreThoseOfTheShape) {
   }
 }
 
-TEST(NodeReach, SignsAreOfThePiecesBetweenTheAnchorAndAPoint) {
+TEST(PositionOperator, SignsAreOfThePiecesBetweenTheAnchorAndAPoint) {
   const Sampled rod;
   EXPECT_EQ(rod.reach.signs(0), (std::vector<double>{-1, 0, 0}));
   EXPECT_EQ(rod.reach.signs(0.3), (std::vector<double>{0, 0, 0}));

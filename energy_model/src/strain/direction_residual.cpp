@@ -1,4 +1,4 @@
-#include "strain/director_miss.hpp"
+#include "strain/direction_residual.hpp"
 
 #include <Eigen/Geometry>
 
@@ -6,8 +6,8 @@
 
 namespace dlo::energy_model {
 
-DirectorMiss director_miss(const Eigen::Vector3d& p, const Eigen::Vector3d& to,
-                           const Eigen::Vector3d& across) {
+DirectionResidual direction_residual(const Eigen::Vector3d& p, const Eigen::Vector3d& to,
+                                     const Eigen::Vector3d& across) {
   const double n = across.dot(p);
   const double d = 1 + to.dot(p);
   const Eigen::Vector3d gradient = 2 * (across / d - n / (d * d) * to);

@@ -10,7 +10,7 @@
 namespace dlo::energy_model {
 
 /// A coarse polygon at rest on a span's obstacles, which tells what touches what.
-struct RestingPolygon {
+struct PenaltyPolygon {
   bool at_rest = false;
   double energy = 0;  ///< in EI/l
   int evaluations = 0;
@@ -34,11 +34,11 @@ enum class Segments {
 /// Descends from a shape with points that the obstacles push back by stiff springs, and stretch
 /// that is small: right to about the square of a segment. Where the shape goes through the inside
 /// of a block, which would push it out of several faces at once, the block grows out of a ball.
-[[nodiscard]] RestingPolygon rest_on_obstacles(const Span& span, const TangentField& start,
+[[nodiscard]] PenaltyPolygon rest_on_obstacles(const Span& span, const TangentField& start,
                                                Segments segments, const Deadline& deadline);
 
 /// The same with all segments, from where one of few rests.
-[[nodiscard]] RestingPolygon rest_refined(const Span& span, const RestingPolygon& coarse,
+[[nodiscard]] PenaltyPolygon rest_refined(const Span& span, const PenaltyPolygon& coarse,
                                           const Deadline& deadline);
 
 }  // namespace dlo::energy_model

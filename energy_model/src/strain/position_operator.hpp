@@ -51,10 +51,10 @@ void tabulate_nodes(const std::vector<Piece>& pieces, const LegendreTable& table
                     Eigen::VectorXd& nodes, Eigen::VectorXd& weights);
 
 /// Positions of a span's points, from the anchor, as sums over the tangents at its nodes.
-class NodeReach {
+class PositionOperator {
  public:
-  NodeReach() = default;
-  NodeReach(const Span& span, std::vector<Piece> pieces, const LegendreTable& table);
+  PositionOperator() = default;
+  PositionOperator(const Span& span, std::vector<Piece> pieces, const LegendreTable& table);
 
   [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
   [[nodiscard]] const Eigen::VectorXd& nodes() const { return nodes_; }
@@ -91,10 +91,10 @@ class NodeReach {
   Eigen::VectorXd to_anchor_;
 };
 
-/// NodeReach::along() of all pieces of a span, one after another.
+/// PositionOperator::along() of all pieces of a span, one after another.
 class SpanReach {
  public:
-  explicit SpanReach(const NodeReach& reach);
+  explicit SpanReach(const PositionOperator& reach);
 
   [[nodiscard]] Eigen::Index points() const { return weights_.size(); }
   /// Of each piece.

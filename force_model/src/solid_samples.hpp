@@ -19,12 +19,12 @@ struct SolidPush {
 template <typename Position, typename Action>
 void for_each_push(const Solid& solid, Eigen::Index count, const Position& at,
                    const Action& action) {
-  const double stiffness = solid.stiffness / solid.looks;
+  const double stiffness = solid.stiffness / solid.samples;
   for (Eigen::Index i = 0; i < count; ++i) {
-    const int looks = i + 1 < count ? solid.looks : 1;
+    const int samples = i + 1 < count ? solid.samples : 1;
     const Eigen::Vector3d here = at(i);
-    for (int k = 0; k < looks; ++k) {
-      SolidPush push{.point = i, .share = static_cast<double>(k) / solid.looks};
+    for (int k = 0; k < samples; ++k) {
+      SolidPush push{.point = i, .share = static_cast<double>(k) / solid.samples};
       Eigen::Vector3d position = here;
       if (k > 0) position += push.share * (at(i + 1) - here);
       if (solid.body.clearance(position) >= 0) continue;

@@ -15,9 +15,9 @@ inline constexpr double deepest = 1e-9;
 inline constexpr double deepest_coarse = 1e-6;
 
 /// Whether a shape has all the terms that it takes; before, the pressure on what lies says nothing.
-enum class Terms {
-  some,
-  all,
+enum class Resolution {
+  coarse,
+  resolved,
 };
 
 /// Looks whether contacts are those of an equilibrium: no obstacle pulls (concentrated forces and
@@ -26,8 +26,8 @@ enum class Terms {
 /// @return nothing if so; else the contacts to try next: without those that pull, points where they
 ///         lie too short, at both ends of a part along which the rod is pulled at, one where two
 ///         meet, more where the rod is behind an obstacle
-[[nodiscard]] std::optional<std::vector<Span::Contact>> mended(const SpanSolution& solution,
-                                                               double load, Terms terms);
+[[nodiscard]] std::optional<std::vector<Span::Contact>> updated_contacts(
+    const SpanSolution& solution, double load, Resolution resolution);
 
 /// Whether a contact and the next one are one: with the same obstacle, and the rod hardly leaves it
 /// between them or is behind it.
