@@ -78,7 +78,8 @@ inline Eigen::Vector3d bending_moment(const energy_model::Problem& problem, doub
   return first * d1 + second * d2;
 }
 
-/// The arc lengths where something happens: ends, grips, loads, sections; growing, each once.
+/// The arc lengths where something happens: ends, grips, loads, sections, where line loads begin
+/// and end; growing, each once.
 inline std::vector<double> events_of(const energy_model::Problem& problem) {
   std::vector<double> events = {0, problem.length};
   for (const energy_model::Grip& grip : problem.grips) events.push_back(grip.at);
@@ -86,6 +87,10 @@ inline std::vector<double> events_of(const energy_model::Problem& problem) {
   for (const energy_model::Section& section : problem.sections) {
     events.push_back(section.begin);
     events.push_back(section.end);
+  }
+  for (const energy_model::LineLoad& load : problem.line_loads) {
+    events.push_back(load.begin);
+    events.push_back(load.end);
   }
   std::sort(events.begin(), events.end());
   events.erase(std::unique(events.begin(), events.end()), events.end());
@@ -136,6 +141,10 @@ inline BalanceDefects balance_of(const energy_model::Problem& problem,
   largest_force = std::max(largest_force, l * problem.weight_per_length.norm());
   for (const energy_model::Load& load : problem.loads) {
     largest_force = std::max(largest_force, load.force.norm());
+    largest_torque = std::max(largest_torque, load.torque.norm());
+  }
+  for (const energy_model::LineLoad& load : problem.line_loads) {
+    largest_force = std::max(largest_force, load.between(0, l).norm());
   }
   for (const energy_model::Reaction& grip : shape.grips) {
     largest_force = std::max(largest_force, grip.force.norm());
@@ -166,7 +175,9 @@ inline BalanceDefects balance_of(const energy_model::Problem& problem,
       beyond.torque_about_origin += shape.grips[i].torque;
     }
     for (const energy_model::Load& load : problem.loads) {
-      if (load.at == cuts[c]) beyond.add(point, load.force);
+      if (load.at != cuts[c]) continue;
+      beyond.add(point, load.force);
+      beyond.torque_about_origin += load.torque;
     }
     raise(defects.integral, std::abs(at_cuts.tangents.col(here).norm() - 1));
     if (c == 0) break;
@@ -202,7 +213,13 @@ inline BalanceDefects balance_of(const energy_model::Problem& problem,
         section_at(problem, (cuts[c - 1] + cuts[c]) / 2).weight_per_length;
     for (std::size_t k = 0; k < per_panel; ++k) {
       const auto q = static_cast<Eigen::Index>((c - 1) * per_panel + k);
-      beyond.add(between.points.col(q), share[static_cast<std::size_t>(q)] * own_weight);
+      const double at = inner[static_cast<std::size_t>(q)];
+      Eigen::Vector3d own = own_weight;
+      for (const energy_model::LineLoad& load : problem.line_loads) {
+        if (at > load.begin && at < load.end)
+          own += load.at_begin + (at - load.begin) * load.slope();
+      }
+      beyond.add(between.points.col(q), share[static_cast<std::size_t>(q)] * own);
     }
   }
   defects.force = beyond.force.norm() / largest_force;

@@ -130,6 +130,22 @@ Span free_strip_span(bool planar) {
   return span;
 }
 
+/// Loads per length beside the weight, one of them over another.
+Span line_loaded_span(bool planar) {
+  const double z = planar ? 0 : 1;
+  Span span = gripped_span(planar);
+  span.line_loads = {{0.1, 0.5, {3, -9, z}, {-5, 7, -z}}, {0.4, 1, {0, 8, z}, {0, 8, z}}};
+  return span;
+}
+
+/// With a couple beside a force, curved by nature; free to turn at its start.
+Span turned_span(bool planar) {
+  Span span = free_natural_span(planar);
+  span.loads[0].couple = 3;
+  span.loads.push_back({0.8, {0, 0, 0}, -2});
+  return span;
+}
+
 /// Makes a span, planar or not.
 struct Case {
   Span (*make)(bool planar);
@@ -240,7 +256,9 @@ INSTANTIATE_TEST_SUITE_P(Spans, ObjectiveWithoutObstacles,
                                          Case{free_span, true}, Case{free_span, false},
                                          Case{twisted_span, false}, Case{natural_span, true},
                                          Case{natural_span, false}, Case{free_natural_span, false},
-                                         Case{strip_span, true}, Case{strip_span, false}));
+                                         Case{strip_span, true}, Case{strip_span, false},
+                                         Case{line_loaded_span, true},
+                                         Case{line_loaded_span, false}));
 #endif
 
 INSTANTIATE_TEST_SUITE_P(
@@ -251,7 +269,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{touching_span, false}, Case{span_on_peg, true}, Case{span_on_peg, false},
                     Case{twisted_span, false}, Case{natural_span, true}, Case{natural_span, false},
                     Case{free_natural_span, true}, Case{free_natural_span, false},
-                    Case{strip_span, true}, Case{strip_span, false}, Case{free_strip_span, false}));
+                    Case{strip_span, true}, Case{strip_span, false}, Case{free_strip_span, false},
+                    Case{line_loaded_span, true}, Case{line_loaded_span, false},
+                    Case{turned_span, true}));
 
 }  // namespace
 }  // namespace dlo::energy_model

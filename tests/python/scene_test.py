@@ -288,12 +288,34 @@ def test_what_would_be_lost_cannot_be_written(steel):
 
 def test_every_key_of_a_scene_file_has_a_field(steel):
     python = {"from": "start", "to": "end"}
-    kinds = [dlo.Gripper, dlo.Load, dlo.Obstacle, dlo.Section, dlo.ForceModelSettings, dlo.TrackRates]
+    kinds = [dlo.Gripper, dlo.Load, dlo.DistributedLoad, dlo.Obstacle, dlo.Section]
+    kinds += [dlo.ForceModelSettings, dlo.Medium, dlo.TrackRates]
     for kind in kinds:
         fields = {key for key in dir(kind) if isinstance(getattr(kind, key), property)}
         assert fields == {python.get(key, key) for key in dlo._dlo.scene_keys[kind._name]}
     for key in dlo._dlo.scene_keys["rod"]:
         assert isinstance(getattr(dlo.Scene, key), property)
+
+
+def test_loads_are_read_and_set_in_si_units(steel):
+    scene = steel.replace(
+        loads=[dlo.load(at="10 cm", torque=[0, 0, "2 mN m"])],
+        distributed_loads=[dlo.distributed_load([[0, 1, 0], [0, "2 mN/m", 0]], start="10 cm")],
+        medium={"density": "1 g/cm^3"},
+    )
+    assert scene.loads[0].force is None and scene.loads[0].torque[2] == 0.002
+    (load,) = scene.distributed_loads
+    assert load.start == 0.1 and load.end is None
+    assert load.force_per_length.tolist() == [[0, 1, 0], [0, 0.002, 0]]
+    assert scene.medium.density == 1000
+    again = dlo.Scene.from_text(scene.to_toml())
+    assert again.to_toml() == scene.to_toml()
+    again.gravity = (0, 0, 0)
+    assert again.medium.density == 1000 and len(again.distributed_loads) == 1
+    with pytest.raises(dlo.InputError, match="load.torque.*in one plane"):
+        scene.loads[0].torque = (0, 1, 0)
+    with pytest.raises(dlo.InputError, match="to > from"):
+        load.end = 0.05
 
 
 MOVING = """

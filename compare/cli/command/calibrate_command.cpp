@@ -228,9 +228,10 @@ void add_calibrate(CLI::App& app) {
       ->needs(shape)
       ->group(measured);
   command
-      ->add_flag("--same-clamps", options->same_clamps,
-                 "clamps are off alike in all shapes, as those of one fixture: what is found of "
-                 "them is shared, and -o writes it; with --clamp-angles or --clamp-positions")
+      ->add_flag(
+          "--same-clamps", options->same_clamps,
+          "the clamps are misaligned alike in all shapes, as in one fixture: what is found of "
+          "them is shared, and -o writes it; with --clamp-angles or --clamp-positions")
       ->needs(shape)
       ->group(measured);
   command

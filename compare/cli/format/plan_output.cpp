@@ -45,8 +45,12 @@ std::string twist_text(const compare::Plan& plan) {
 
 std::string stretch_text(const compare::Plan& plan) {
   if (!plan.stretch) return "none";
-  return plan.twist.empty() ? "needed: use force, or chain with c_c = AE"
-                            : "no bound; with the law hooke chain and force have it and the twist";
+  if (!plan.twist.empty()) {
+    return "no bound; with the law hooke chain and force have it and the twist";
+  }
+  return std::isfinite(plan.bound("stretch"))
+             ? "needed: use force, or chain with c_c = AE"
+             : "no bound; force and chain have it, of what they take";
 }
 
 std::string neglected_text(const compare::Neglected& item, double length) {

@@ -158,7 +158,12 @@ std::string scene_text(const Json& document) {
   add_line(out, "plane", normal.is_null() ? "none" : "normal " + json_value_text(normal));
   add_rod(out, document.at("rod"));
   add_grippers(out, document.at("grippers"));
-  add_entries(out, "load", document.at("loads"), {{"at", "at_m", "m"}, {"force", "force_N", "N"}});
+  add_entries(out, "load", document.at("loads"),
+              {{"at", "at_m", "m"}, {"force", "force_N", "N"}, {"torque", "torque_Nm", "N m"}});
+  add_entries(out, "distributed load", document.at("distributed_loads"),
+              {{"from", "from_m", "m"},
+               {"to", "to_m", "m"},
+               {"force per length", "force_per_length_N_per_m", "N/m"}});
   add_entries(out, "obstacle", document.at("obstacles"),
               {{"", "shape", ""},
                {"point", "point_m", "m"},

@@ -5,7 +5,7 @@
                       grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction="30 deg")])
     print(dlo.check(scene, points, tolerance="1%"))      # points: an array of shape (M, 3), in m
 
-Scenes       Scene, clamp, pin, load, obstacle, section, materials
+Scenes       Scene, clamp, pin, load, distributed_load, obstacle, section, materials
 One shape    solve, solve_all, check, compare, plan, calibrate
 Many         sweep, regress, report, bench, stability, modes
 Motion       track
@@ -34,13 +34,16 @@ from ._errors import ConvergenceError, InputError
 from ._functions import calibrate, check, compare, plan, solve, solve_all
 from ._loops import Batch, ForceModel
 from ._parts import (
+    DistributedLoad,
     ForceModelSettings,
     Gripper,
     Load,
+    Medium,
     Obstacle,
     Section,
     TrackRates,
     clamp,
+    distributed_load,
     load,
     obstacle,
     pin,
@@ -55,6 +58,7 @@ __all__ = [
     "Check",
     "Comparison",
     "ConvergenceError",
+    "DistributedLoad",
     "Document",
     "Equilibria",
     "ForceModel",
@@ -64,6 +68,7 @@ __all__ = [
     "InputError",
     "Load",
     "MaterialFit",
+    "Medium",
     "Modes",
     "Obstacle",
     "Plan",
@@ -81,6 +86,7 @@ __all__ = [
     "check",
     "clamp",
     "compare",
+    "distributed_load",
     "load",
     "materials",
     "modes",

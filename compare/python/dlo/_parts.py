@@ -168,12 +168,24 @@ class Gripper(Part):
 
 
 class Load(Part):
-    """A force that keeps its direction, or a mass that hangs; load() makes one."""
+    """A force that keeps its direction, a mass that hangs, a couple; load() makes one."""
 
     _name = "load"
     at = _field("at", _of("length"), "Arc length [m].")
     force = _field("force", _of("force"), "[N], shape (3,).")
     mass = _field("mass", _of("mass"), "[kg], instead of a force.")
+    torque = _field("torque", _of("torque"), "Of a couple [N m], shape (3,).")
+
+
+class DistributedLoad(Part):
+    """A force per length that keeps its direction; distributed_load() makes one."""
+
+    _name = "distributed_load"
+    start = _field("from", _of("length"), "Where it begins [m] (`from` in a file); None: at 0.")
+    end = _field("to", _of("length"), "Where it ends [m] (`to` in a file); None: at the rod's end.")
+    force_per_length = _field(
+        "force_per_length", _of("force_per_length"), "[N/m], shape (3,); or (K, 3), from start to end."
+    )
 
 
 class Obstacle(Part):
@@ -244,6 +256,13 @@ class ForceModelSettings(Settings):
     l_s = _setting("l_s", "[m]; None: derived.")
 
 
+class Medium(Settings):
+    """What the rod is immersed in, which bears it: scene.medium."""
+
+    _name = "medium"
+    density = _field("density", _of("density"), "[kg/m^3]; None: nothing bears the rod.")
+
+
 class TrackRates(Settings):
     """How a scene that moves is looked at: scene.track."""
 
@@ -286,10 +305,26 @@ def pin(at: Quantity, position: Vector) -> Gripper:
 
 
 def load(
-    at: Quantity, force: Optional[Vector] = None, *, mass: Optional[Quantity] = None
+    at: Quantity,
+    force: Optional[Vector] = None,
+    *,
+    mass: Optional[Quantity] = None,
+    torque: Optional[Vector] = None,
 ) -> Load:
-    """A force [N], or a mass [kg] that hangs, at an arc length [m]."""
-    return Load(at=at, force=force, mass=mass)
+    """A force [N], or a mass [kg] that hangs, and a couple [N m], at an arc length [m]."""
+    return Load(at=at, force=force, mass=mass, torque=torque)
+
+
+def distributed_load(
+    force_per_length: Union[Vector, Sequence[Vector]],
+    start: Optional[Quantity] = None,
+    end: Optional[Quantity] = None,
+) -> DistributedLoad:
+    """A force per length [N/m] from an arc length to another [m], or on the whole rod.
+
+    Rows of three are forces per length at equal distances from start to end, linear between.
+    """
+    return DistributedLoad(**{"from": start, "to": end, "force_per_length": force_per_length})
 
 
 def obstacle(

@@ -9,9 +9,11 @@ from ._arguments import LIST, TABLE, TEXT, Strict, require
 from ._errors import InputError
 from ._files import FileName, Materials, file_name, file_text, materials_file
 from ._parts import (
+    DistributedLoad,
     ForceModelSettings,
     Gripper,
     Load,
+    Medium,
     Obstacle,
     Part,
     Quantity,
@@ -33,10 +35,11 @@ _TOP_KEYS = ("name", "gravity")
 _PARTS: dict[str, type[Part]] = {
     "grippers": Gripper,
     "loads": Load,
+    "distributed_loads": DistributedLoad,
     "obstacles": Obstacle,
     "sections": Section,
 }
-_SETTINGS: dict[str, type[Settings]] = {"force_model": ForceModelSettings, "track": TrackRates}
+_SETTINGS: dict[str, type[Settings]] = {"force_model": ForceModelSettings, "medium": Medium, "track": TrackRates}
 
 class Scene(Strict):
     """A rod, what holds it, and what pulls at it. All numbers are in SI units, or text with a unit.
@@ -45,8 +48,9 @@ class Scene(Strict):
                   grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction="30 deg")])
 
     material is a name (dlo.materials()) or {"youngs_modulus": "3 MPa", "density": 1150}. A tube has an
-    inner_diameter too, a flat rod width (along d1) and thickness (along d2) instead. A rod may be given by bending_stiffness (EI [N m^2]; a pair about d1 and d2) and mass_per_length [kg/m]
-    instead. force_model, track: a dict, or ForceModelSettings and TrackRates. materials: a file that
+    inner_diameter too, a flat rod width (along d1) and thickness (along d2) instead. A rod may be given
+    by bending_stiffness (EI [N m^2]; a pair about d1 and d2) and mass_per_length [kg/m] instead.
+    force_model, medium, track: a dict, or ForceModelSettings, Medium and TrackRates. materials: a file that
     names are looked up in instead.
 
     Every field can be read (in SI units) and set (None: as if it had not been given). Whatever is
@@ -66,6 +70,7 @@ class Scene(Strict):
         material: Optional[Union[str, dict[str, Any]]] = None,
         grippers: Iterable[Gripper] = (),
         loads: Iterable[Load] = (),
+        distributed_loads: Iterable[DistributedLoad] = (),
         obstacles: Iterable[Obstacle] = (),
         sections: Iterable[Section] = (),
         gravity: Optional[Vector] = None,
@@ -78,6 +83,7 @@ class Scene(Strict):
         joint_stiffness: Optional[Quantity] = None,
         joint_spacing: Optional[Quantity] = None,
         force_model: Optional[Union[dict[str, Any], ForceModelSettings]] = None,
+        medium: Optional[Union[dict[str, Any], Medium]] = None,
         track: Optional[Union[dict[str, Any], TrackRates]] = None,
         materials: Optional[FileName] = None,
     ) -> None:
@@ -291,6 +297,7 @@ class Scene(Strict):
     joint_spacing = _rod_field("joint_spacing", "length", "Of a chain, as given [m], or None.")
     grippers = _part_field("grippers", "A tuple of Gripper; set any iterable of them.")
     loads = _part_field("loads", "A tuple of Load.")
+    distributed_loads = _part_field("distributed_loads", "A tuple of DistributedLoad.")
     obstacles = _part_field("obstacles", "A tuple of Obstacle.")
     sections = _part_field("sections", "A tuple of Section.")
     youngs_modulus = _derived("youngs_modulus", "E of the material [Pa]; 0: not known.")
@@ -319,6 +326,15 @@ class Scene(Strict):
     @force_model.setter
     def force_model(self, value: Union[dict[str, Any], ForceModelSettings]) -> None:
         self._put_one("force_model", value)
+
+    @property
+    def medium(self) -> Medium:
+        """What the rod is immersed in; set a dict or Medium."""
+        return self._settings["medium"]  # type: ignore[return-value]
+
+    @medium.setter
+    def medium(self, value: Union[dict[str, Any], Medium]) -> None:
+        self._put_one("medium", value)
 
     @property
     def track(self) -> TrackRates:

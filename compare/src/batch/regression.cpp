@@ -125,6 +125,13 @@ std::string content_of(const Scene& scene) {
     text += "\nload ";
     add(load.at);
     add_vector(load.force);
+    if (!load.torque.isZero(0)) add_vector(load.torque);
+  }
+  for (const DistributedLoad& load : scene.distributed_loads) {
+    text += "\ndistributed load ";
+    add(load.from);
+    add(load.to);
+    for (const Eigen::Vector3d& q : load.force_per_length) add_vector(q);
   }
   for (const Obstacle& obstacle : scene.obstacles) {
     const obstacle::Body& body = obstacle.body;

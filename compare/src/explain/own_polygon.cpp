@@ -128,8 +128,8 @@ class Chain {
         Eigen::VectorXd::Constant(after_, inner_[n - 1]);
     const double stiffness = scene_.bending_stiffness();
     const double l = scene_.length;
-    double force = stiffness / (l * l) + scene_.weight_per_length().norm() * l;
-    for (const PointLoad& load : scene_.loads) force += load.force.norm();
+    const double force =
+        stiffness / (l * l) + scene_.weight_per_length().norm() * l + scene_.total_of_loads();
     // Segments that do not stretch, but for a millionth.
     problem_.stretch_stiffness = 1e6 * force;
     problem_.stiffness = stiffness;
@@ -144,7 +144,8 @@ class Chain {
       const double at = s_[static_cast<std::size_t>(i)];
       const double begin = i == 0 ? 0 : at - inner_[i - 1] / 2;
       const double end = i == n ? l : at + inner_[i] / 2;
-      problem_.node_forces.col(i + before_) = scene_.weight_between(begin, std::min(l, end));
+      problem_.node_forces.col(i + before_) = scene_.weight_between(begin, std::min(l, end)) +
+                                              scene_.distributed_between(begin, std::min(l, end));
     }
     for (const PointLoad& load : scene_.loads) {
       const auto nearest = std::min_element(s_.begin(), s_.end(), [&](double a, double b) {
@@ -260,7 +261,8 @@ std::vector<OwnPolygon> own_polygons(const Scene& scene, const Shape& shape, Spr
                                      std::optional<JointLaw> law) {
   const Eigen::Index segments = shape.points.cols() - 1;
   const bool plain = scene.sections.empty() && !scene.has_material_directors() &&
-                     !scene.holds_twist() && obstacles_in_reach(scene).empty();
+                     !scene.holds_twist() && !scene.has_couples() &&
+                     obstacles_in_reach(scene).empty();
   if (!plain || segments < 4 || segments > most_segments) return {};
   std::vector<OwnPolygon> found;
   for (const ChainClamp clamp : {ChainClamp::hinge, ChainClamp::welded, ChainClamp::middle}) {

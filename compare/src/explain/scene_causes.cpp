@@ -17,7 +17,8 @@ constexpr double degree = std::numbers::pi / 180;
 Eigen::VectorXd zeros(Eigen::Index count) { return Eigen::VectorXd::Zero(count); }
 
 bool is_pulled_by_weight_alone(const Scene& scene) {
-  return scene.loads.empty() && scene.weight_per_length().norm() > 0;
+  return scene.loads.empty() && scene.distributed_loads.empty() &&
+         scene.weight_per_length().norm() > 0;
 }
 
 SceneCause stiffness(const Scene& scene) {
@@ -63,6 +64,10 @@ SceneCause length(const Scene& scene, double of_shape) {
             changed.length *= factor;
             for (Gripper& gripper : changed.grippers) gripper.at *= factor;
             for (PointLoad& load : changed.loads) load.at *= factor;
+            for (DistributedLoad& load : changed.distributed_loads) {
+              load.from *= factor;
+              load.to *= factor;
+            }
             for (Section& section : changed.sections) {
               section.from *= factor;
               section.to *= factor;

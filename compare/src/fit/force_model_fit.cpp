@@ -53,8 +53,7 @@ struct FittedCase {
   }
   /// Upper bound of the tension: all that hangs on the rod, or what its grippers pull with.
   [[nodiscard]] double pull() const {
-    double sum = scene.weight_per_length().norm() * scene.length;
-    for (const PointLoad& load : scene.loads) sum += load.force.norm();
+    double sum = scene.weight_per_length().norm() * scene.length + scene.total_of_loads();
     for (const energy_model::Reaction& grip : reference.grips)
       sum = std::max(sum, grip.force.norm());
     return sum;

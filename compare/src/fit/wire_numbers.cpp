@@ -128,7 +128,7 @@ void require_like_clamps(const std::vector<Scene>& scenes) {
                    });
     if (alike) continue;
     throw InputError(fmt::format(
-        "{}: its grippers are not those of {}, so they are not off alike (allowed: as many "
+        "{}: its grippers are not those of {}, so they are not misaligned alike (allowed: as many "
         "grippers, at the same arc lengths, clamps or pins)",
         scene.file, scenes.front().file));
   }
@@ -137,8 +137,7 @@ void require_like_clamps(const std::vector<Scene>& scenes) {
 }  // namespace
 
 bool has_forces_beside_weight(const Scene& scene) {
-  const bool loaded = std::any_of(scene.loads.begin(), scene.loads.end(),
-                                  [](const PointLoad& l) { return l.force.norm() > 0; });
+  const bool loaded = scene.total_of_loads() > 0;
   const std::vector<std::size_t> in_reach = obstacles_in_reach(scene);
   return loaded || std::any_of(in_reach.begin(), in_reach.end(), [&](std::size_t i) {
            return std::isfinite(scene.obstacles[i].stiffness);

@@ -202,7 +202,17 @@ nlohmann::ordered_json scene_document(const Scene& scene) {
   for (const Gripper& gripper : scene.grippers) grippers.push_back(gripper_document(gripper));
   Document loads = Document::array();
   for (const PointLoad& load : scene.loads) {
-    loads.push_back({{"at_m", load.at}, {"force_N", vector_document(load.force)}});
+    loads.push_back(
+        {{"at_m", load.at},
+         {"force_N", vector_document(load.force)},
+         {"torque_Nm", load.torque.isZero(0) ? Document() : vector_document(load.torque)}});
+  }
+  Document distributed = Document::array();
+  for (const DistributedLoad& load : scene.distributed_loads) {
+    Document forces = Document::array();
+    for (const Eigen::Vector3d& q : load.force_per_length) forces.push_back(vector_document(q));
+    distributed.push_back(
+        {{"from_m", load.from}, {"to_m", load.to}, {"force_per_length_N_per_m", forces}});
   }
   Document obstacles = Document::array();
   for (const Obstacle& obstacle : scene.obstacles) {
@@ -218,6 +228,7 @@ nlohmann::ordered_json scene_document(const Scene& scene) {
           {"rod", rod_document(scene)},
           {"grippers", std::move(grippers)},
           {"loads", std::move(loads)},
+          {"distributed_loads", std::move(distributed)},
           {"obstacles", std::move(obstacles)},
           {"force_model", force_model_document(scene)}};
 }

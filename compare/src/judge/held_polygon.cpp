@@ -23,6 +23,9 @@ HeldPolygon::HeldPolygon(const Scene& scene, int segments,
   std::vector<double> cuts = {0, scene.length};
   for (const Gripper& gripper : scene.grippers) cuts.push_back(gripper.at);
   for (const PointLoad& load : scene.loads) cuts.push_back(load.at);
+  for (const DistributedLoad& load : scene.distributed_loads) {
+    cuts.insert(cuts.end(), {load.from, load.to});
+  }
   for (const Section& section : scene.sections) {
     cuts.push_back(section.from);
     cuts.push_back(section.to);
@@ -73,7 +76,9 @@ HeldPolygon::HeldPolygon(const Scene& scene, int segments,
   }
   for (Eigen::Index i = 0; i < count(); ++i) {
     const auto at = static_cast<std::size_t>(i);
-    const Eigen::Vector3d half = scene.weight_between(s_[at], s_[at + 1]) / 2;
+    const Eigen::Vector3d half =
+        (scene.weight_between(s_[at], s_[at + 1]) + scene.distributed_between(s_[at], s_[at + 1])) /
+        2;
     dead_.push_back({i, half});
     dead_.push_back({i + 1, half});
   }

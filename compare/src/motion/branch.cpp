@@ -141,6 +141,7 @@ SceneEnergies energies_of(const Moment& moment) {
                        .contact = rod.energy.contact};
   energy.gravity -= now.weight_between(0, now.length).dot(zero);
   for (const PointLoad& load : now.loads) energy.load -= load.force.dot(zero);
+  energy.load -= now.distributed_between(0, now.length).dot(zero);
   return energy;
 }
 
@@ -172,8 +173,7 @@ Branch::Branch(const Scene& scene, const FrameClock& clock,
   // What a clamp turns the rod about itself by, and what a yielding obstacle stores, is not known.
   balances_ = !yields && !scene.holds_twist() &&
               !(scene.has_material_directors() && !clock_.scene(scene, 0).planar());
-  double loads = scene.weight_between(0, scene.length).norm();
-  for (const PointLoad& point : scene.loads) loads += point.force.norm();
+  const double loads = scene.weight_between(0, scene.length).norm() + scene.total_of_loads();
   noise_ = energy_noise * (scene.bending_stiffness() / scene.length + loads * scene.length);
 }
 

@@ -131,6 +131,9 @@ void require_dynamic(const Scene& scene, const TrackOptions& options) {
            "clamps hold the rod's frame, and twist has no inertia in the model (allowed: at most "
            "one frame or roll)");
   }
+  if (scene.has_couples()) {
+    refuse(scene, "a load's torque, which has no potential (allowed: forces)");
+  }
   if (!(scene.mass() > 0)) refuse(scene, "the rod has no mass (allowed: > 0 kg)");
 }
 

@@ -101,6 +101,7 @@ SteppedMode stepped_mode(double stiffness, double c_F, double c_h, double rate) 
 }
 
 SceneModes scene_modes(const Scene& scene, const ModeOptions& options) {
+  scene.require_no_couples("the linearised motion does");
   SceneModes result;
   energy_model::Vibrations found;
   const energy_model::VibrationOptions own = {
@@ -108,11 +109,11 @@ SceneModes scene_modes(const Scene& scene, const ModeOptions& options) {
   try {
     const energy_model::Problem problem = scene_problem(scene);
     if (energy_model::is_held_straight(problem)) {
-      if (scene.weight_between(0, scene.length).norm() > 0) {
-        throw InputError(
-            fmt::format("{}: the grippers hold the rod straight, which its weight would pull "
-                        "endlessly (allowed: some slack, or gravity = [0, 0, 0])",
-                        scene.file));
+      if (scene.weight_between(0, scene.length).norm() > 0 || !scene.distributed_loads.empty()) {
+        throw InputError(fmt::format(
+            "{}: the grippers hold the rod straight, which its weight or load would pull "
+            "endlessly (allowed: some slack, or gravity = [0, 0, 0])",
+            scene.file));
       }
       result.tension = options.tension.value_or(0);
       found = energy_model::taut_vibrations(problem, scene_inertia(scene), *result.tension, own);

@@ -13,6 +13,7 @@
 #include "polygon/point_layout.hpp"
 #include "polygon/start_shape.hpp"
 #include "scene/reach.hpp"
+#include "scene/scene_problem.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -33,6 +34,17 @@ RootMoment root_moment(const Scene& scene, const Gripper& grip, double side) {
     if (!(arm > 0)) continue;
     moment += direction.cross(load.force) * arm;
     most += load.force.norm() * arm;
+  }
+  for (const DistributedLoad& load : scene.distributed_loads) {
+    for (energy_model::LineLoad piece : line_loads(load)) {
+      const double from = side > 0 ? std::max(piece.begin, grip.at) : piece.begin;
+      const double to = side > 0 ? piece.end : std::min(piece.end, grip.at);
+      if (!(to > from)) continue;
+      const double arm = side * ((from + to) / 2 - grip.at);
+      moment += direction.cross(arm * piece.between(from, to) +
+                                side * std::pow(to - from, 3) / 12 * piece.slope());
+      most += arm * piece.between(from, to).norm();
+    }
   }
   return {moment.norm(), most};
 }
@@ -68,6 +80,7 @@ double design_curvature(const Scene& scene, const Layout& layout, const Eigen::M
   longest = std::max(longest, scene.length - begin);
   double moment = scene.weight_per_length().norm() * longest * longest / 12;
   for (const PointLoad& load : scene.loads) moment += load.force.norm() * longest / 8;
+  for (const DistributedLoad& load : scene.distributed_loads) moment += load.size() * longest / 8;
   return std::sqrt(turned / scene.length) + moment / scene.bending_stiffness();
 }
 
@@ -199,6 +212,13 @@ void add_weights(const Scene& scene, const ForceModelSettings& settings, const L
 void add_loads(const Scene& scene, const Layout& layout, Discretisation& result) {
   const std::vector<double>& s = layout.arc_length;
   result.rod.loads = result.weights;
+  // On each point what acts on its cell: with sums and moments right to second order in L.
+  for (const DistributedLoad& load : scene.distributed_loads) {
+    for (Eigen::Index i = 0; i < result.rod.loads.cols(); ++i) {
+      const Cell cell = cell_of(scene, layout, i);
+      result.rod.loads.col(i) += load.between(cell.begin, cell.end);
+    }
+  }
   for (const PointLoad& load : scene.loads) {
     const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, load.at);
     const Eigen::Index right = above - s.begin();
@@ -338,6 +358,7 @@ void set_obstacles(const Scene& scene, const std::vector<std::size_t>& obstacles
 
 Discretisation discretise(const Scene& scene, const ForceModelSettings& settings) {
   require_round(scene);
+  scene.require_no_couples("the polygons of models force and chain do");
   const Layout layout = lay_out(scene, settings);
   const double L = layout.segment_length;
   Discretisation result;

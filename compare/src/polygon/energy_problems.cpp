@@ -19,6 +19,9 @@ std::optional<ChainScene> chain_scene(const Scene& scene, const Discretisation& 
   const Eigen::Index N = settings.points;
   std::vector<Eigen::Vector3d> forces = {scene.weight_per_length() * scene.length};
   for (const PointLoad& load : scene.loads) forces.push_back(load.force);
+  for (const DistributedLoad& load : scene.distributed_loads) {
+    for (const Eigen::Vector3d& q : load.force_per_length) forces.emplace_back(q * scene.length);
+  }
   const std::optional<energy_model::Plane> plane = energy_model::find_plane(
       grip.position, reversed ? Eigen::Vector3d(-*grip.direction) : *grip.direction, forces);
   if (!plane) return std::nullopt;

@@ -24,6 +24,11 @@ bool lies_in_plane(const Scene& scene, const ForceModelSettings& settings) {
          std::all_of(scene.grippers.begin(), scene.grippers.end(), held_flat) &&
          std::all_of(scene.loads.begin(), scene.loads.end(),
                      [&](const PointLoad& load) { return flat(load.force); }) &&
+         std::all_of(scene.distributed_loads.begin(), scene.distributed_loads.end(),
+                     [&](const DistributedLoad& load) {
+                       return std::all_of(load.force_per_length.begin(),
+                                          load.force_per_length.end(), flat);
+                     }) &&
          std::all_of(in_reach.begin(), in_reach.end(),
                      [&](std::size_t i) { return flat_body(scene.obstacles[i].body); });
 }
@@ -73,6 +78,9 @@ Scene PlaneTurn::laid(const Scene& scene) const {
     if (gripper.frame && gripper.frame->d1) gripper.frame->d1 = turn_ * *gripper.frame->d1;
   }
   for (PointLoad& load : result.loads) load.force = flat(load.force);
+  for (DistributedLoad& load : result.distributed_loads) {
+    for (Eigen::Vector3d& q : load.force_per_length) q = flat(q);
+  }
   for (Obstacle& obstacle : result.obstacles) {
     obstacle.body = obstacle.body.seen_from(origin_, turn_, 1);
   }

@@ -9,6 +9,7 @@ PointMasses point_masses(const Scene& scene, const ForceModelSettings& settings)
   Scene weighed = scene;
   weighed.gravity = {0, -1, 0};
   for (PointLoad& load : weighed.loads) load.force = load.mass * weighed.gravity;
+  weighed.distributed_loads.clear();
   const Discretisation polygon = discretise(weighed, settings);
   PointMasses masses;
   for (Eigen::Index i = 0; i < polygon.weights.cols(); ++i) {

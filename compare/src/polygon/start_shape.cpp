@@ -35,6 +35,7 @@ Eigen::Vector3d any_across(const Eigen::Vector3d& axis) {
 
 Eigen::Vector3d load_between(const Scene& scene, double begin, double end) {
   Eigen::Vector3d load = scene.weight_per_length() * (end - begin);
+  load += scene.distributed_between(begin, end);
   for (const PointLoad& point_load : scene.loads) {
     if (point_load.at > begin && point_load.at < end) load += point_load.force;
   }

@@ -45,8 +45,8 @@ double Magnitudes::of(std::string_view unit) const {
 
 Magnitudes magnitudes(const Scene& scene) {
   const double l = scene.length;
-  double force = scene.softer_bending_stiffness() / (l * l) + scene.weight_between(0, l).norm();
-  for (const PointLoad& load : scene.loads) force += load.force.norm();
+  const double force = scene.softer_bending_stiffness() / (l * l) +
+                       scene.weight_between(0, l).norm() + scene.total_of_loads();
   return {.length = l, .force = force, .torque = force * l, .energy = force * l};
 }
 

@@ -100,7 +100,7 @@ std::span<const Field<SceneEnergies>> energy_fields() {
       {"bending", "", "Of the joints or the curvature", [](E e) { return e.bending; }},
       {"twisting", "", "Where clamps hold frames", [](E e) { return e.twisting; }},
       {"gravity", "", "Of the rod's weight", [](E e) { return e.gravity; }},
-      {"load", "", "Of point loads", [](E e) { return e.load; }},
+      {"load", "", "Of loads, at points and per length", [](E e) { return e.load; }},
       {"stretch", "", "Of elastic segments", [](E e) { return e.stretch; }},
       {"contact", "", "Of obstacles that yield", [](E e) { return e.contact; }},
       {"total", "", "Of all", [](E e) { return e.total(); }}};

@@ -88,7 +88,8 @@ HtmlTable scene_table(const Report& report) {
                           scene.diameter > 0 ? millimetres(scene.diameter) : "",
                           page_number(scene.bending_stiffness()),
                           page_number(scene.mass_per_length()), page_number(scene.gamma()),
-                          hold_of(scene), std::to_string(scene.loads.size()),
+                          hold_of(scene),
+                          std::to_string(scene.loads.size() + scene.distributed_loads.size()),
                           "scenes/" + entry.file.name});
   }
   return table;

@@ -7,9 +7,7 @@ namespace dlo::compare {
 namespace {
 
 double total_load(const Scene& scene) {
-  double load = scene.weight_per_length().norm() * scene.length;
-  for (const PointLoad& point_load : scene.loads) load += point_load.force.norm();
-  return load;
+  return scene.weight_per_length().norm() * scene.length + scene.total_of_loads();
 }
 
 }  // namespace

@@ -26,6 +26,8 @@ namespace {
 /// the most; of the others no scene has any use for more.
 constexpr std::size_t most_grippers = 500;
 constexpr std::size_t most_loads = 10'000;
+constexpr std::size_t most_distributed_loads = 100;
+constexpr std::size_t most_forces_per_length = 100;
 constexpr std::size_t most_sections = 1'000;
 constexpr std::size_t most_obstacles = 1'000;
 
@@ -216,6 +218,23 @@ void check_rolls(const Scene& scene, const std::vector<StrictTable>& entries) {
   }
 }
 
+/// A couple has a potential in a plane alone.
+void check_couples(const Scene& scene, const std::vector<StrictTable>& entries) {
+  const std::optional<Eigen::Vector3d> normal = scene.plane_normal();
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (scene.loads[i].torque.isZero(0)) continue;
+    if (!scene.obstacles.empty() || scene.holds_twist()) {
+      entries[i].fail("torque",
+                      "beside obstacles or held frames, with which no model takes a couple "
+                      "(allowed: neither, or no torque)");
+    }
+    if (normal) continue;
+    entries[i].fail("torque",
+                    "out of a plane, where a couple that keeps its axis has no potential (allowed: "
+                    "grips, forces and bending in one plane, and torques across it)");
+  }
+}
+
 /// Edges of a box: `size` along `axis`, along `normal` and across both.
 obstacle::Body read_box(StrictTable& table, const Eigen::Vector3d& centre) {
   const Eigen::Vector3d size = table.vector("size", Dimension::length);
@@ -312,11 +331,46 @@ PointLoad read_load(StrictTable& table, const Scene& scene) {
   if (mass && table.has("force")) {
     table.fail("mass", "given besides force (allowed: one of force and mass)");
   }
-  load.force =
-      mass ? Eigen::Vector3d(*mass * scene.gravity) : table.vector("force", Dimension::force);
+  load.torque = table.optional_vector("torque", Dimension::torque).value_or(load.torque);
+  if (mass) {
+    load.force = *mass * scene.gravity;
+  } else if (!table.has("torque") || table.has("force")) {
+    load.force = table.vector("force", Dimension::force);
+  }
   load.mass = mass.value_or(0);
   table.finish();
   return load;
+}
+
+DistributedLoad read_distributed_load(StrictTable& table, const Scene& scene) {
+  DistributedLoad load{0, scene.length, {}};
+  table.only(scene_keys("distributed_load"));
+  if (table.has("from")) load.from = read_arc_length(table, "from", scene.length);
+  if (table.has("to")) load.to = read_arc_length(table, "to", scene.length);
+  if (!(load.to > load.from)) {
+    table.fail(
+        table.has("to") ? "to" : "from",
+        fmt::format("the load ends at {:g} m, where it begins or before (allowed: to > from, "
+                    "which are 0 and the rod's length if not given)",
+                    load.to));
+  }
+  load.force_per_length =
+      table.vectors("force_per_length", Dimension::force_per_length, most_forces_per_length);
+  table.finish();
+  return load;
+}
+
+/// What the rod displaces bears it: a load against gravity, of a mass that does not move.
+DistributedLoad read_medium(StrictTable& table, const Scene& scene) {
+  table.only(scene_keys("medium"));
+  const double density = table.number("density", Dimension::density, Range::positive());
+  if (!(scene.diameter > 0)) {
+    table.fail("density",
+               "of a rod whose volume is not known (allowed: [rod] with diameter, or no [medium])");
+  }
+  table.finish();
+  const double section = std::numbers::pi * scene.diameter * scene.diameter / 4;
+  return {0, scene.length, {-density * section * scene.gravity}};
 }
 
 }  // namespace
@@ -351,10 +405,16 @@ Scene read_scene(const toml::table& root, const std::string& file,
         file));
   }
   check_twist(scene, rod);
-  for (StrictTable& entry : bounded_tables(table, "load", most_loads)) {
-    scene.loads.push_back(read_load(entry, scene));
+  std::vector<StrictTable> loads = bounded_tables(table, "load", most_loads);
+  for (StrictTable& entry : loads) scene.loads.push_back(read_load(entry, scene));
+  for (StrictTable& entry : bounded_tables(table, "distributed_load", most_distributed_loads)) {
+    scene.distributed_loads.push_back(read_distributed_load(entry, scene));
+  }
+  if (auto medium = table.optional_table("medium")) {
+    scene.distributed_loads.push_back(read_medium(*medium, scene));
   }
   check_material_directors(scene, rod, sections);
+  if (scene.has_couples()) check_couples(scene, loads);
   check_rolls(scene, grippers);
   if (auto settings = table.optional_table("force_model")) {
     scene.force_model = read_force_model(*settings);

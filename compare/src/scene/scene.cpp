@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -35,7 +36,15 @@ std::optional<Eigen::Vector3d> scene_normal(const Scene& scene) {
     if (gripper.direction) vectors.push_back(*gripper.direction);
     vectors.emplace_back(gripper.position - scene.grippers.front().position);
   }
-  for (const PointLoad& load : scene.loads) vectors.push_back(load.force);
+  for (const PointLoad& load : scene.loads) {
+    vectors.push_back(load.force);
+    if (load.torque.isZero(0)) continue;
+    const Eigen::Vector3d across = load.torque.unitOrthogonal();
+    vectors.insert(vectors.end(), {across, load.torque.normalized().cross(across)});
+  }
+  for (const DistributedLoad& load : scene.distributed_loads) {
+    vectors.insert(vectors.end(), load.force_per_length.begin(), load.force_per_length.end());
+  }
   for (const std::size_t i : obstacles_in_reach(scene)) {
     const obstacle::Body& body = scene.obstacles[i].body;
     if (body.is_half_space()) vectors.push_back(body.normal());
@@ -189,6 +198,45 @@ Eigen::Vector3d Scene::weight_between(double begin, double end) const {
       excess_between(
           *this, begin, end, [](const Section& s) { return s.mass_per_length; }, own);
   return mass * gravity;
+}
+
+Eigen::Vector3d DistributedLoad::between(double begin, double end) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const energy_model::LineLoad& piece : line_loads(*this)) sum += piece.between(begin, end);
+  return sum;
+}
+
+double DistributedLoad::size() const {
+  double sum = 0;
+  for (const energy_model::LineLoad& piece : line_loads(*this)) {
+    sum += (piece.at_begin.norm() + piece.at_end.norm()) / 2 * (piece.end - piece.begin);
+  }
+  return sum;
+}
+
+Eigen::Vector3d Scene::distributed_between(double begin, double end) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const DistributedLoad& load : distributed_loads) sum += load.between(begin, end);
+  return sum;
+}
+
+double Scene::total_of_loads() const {
+  double sum = 0;
+  for (const PointLoad& load : loads) sum += load.force.norm() + load.torque.norm() / length;
+  for (const DistributedLoad& load : distributed_loads) sum += load.size();
+  return sum;
+}
+
+bool Scene::has_couples() const {
+  return std::any_of(loads.begin(), loads.end(),
+                     [](const PointLoad& load) { return !load.torque.isZero(0); });
+}
+
+void Scene::require_no_couples(const char* who) const {
+  if (!has_couples()) return;
+  throw InputError(fmt::format(
+      "{}: load.torque: a couple, which {} not take (allowed: dlo solve --model energy or exact)",
+      file, who));
 }
 
 double Scene::bending_compliance(double begin, double end) const {

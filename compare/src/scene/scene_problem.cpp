@@ -9,6 +9,21 @@
 
 namespace dlo::compare {
 
+std::vector<energy_model::LineLoad> line_loads(const DistributedLoad& load) {
+  const std::vector<Eigen::Vector3d>& forces = load.force_per_length;
+  if (forces.size() == 1) return {{load.from, load.to, forces[0], forces[0]}};
+  std::vector<energy_model::LineLoad> pieces;
+  const double width = (load.to - load.from) / static_cast<double>(forces.size() - 1);
+  double begin = load.from;
+  for (std::size_t i = 1; i < forces.size(); ++i) {
+    const double end =
+        i + 1 == forces.size() ? load.to : load.from + static_cast<double>(i) * width;
+    pieces.push_back({begin, end, forces[i - 1], forces[i]});
+    begin = end;
+  }
+  return pieces;
+}
+
 energy_model::Problem scene_problem(const Scene& scene) {
   energy_model::Problem problem;
   problem.length = scene.length;
@@ -38,7 +53,14 @@ energy_model::Problem scene_problem(const Scene& scene) {
     if (grip.frame) held.frame = {grip.frame->d1, grip.frame->roll};
     problem.grips.push_back(std::move(held));
   }
-  for (const PointLoad& load : scene.loads) problem.loads.push_back({load.at, load.force});
+  for (const PointLoad& load : scene.loads) {
+    problem.loads.push_back({load.at, load.force, load.torque});
+  }
+  for (const DistributedLoad& load : scene.distributed_loads) {
+    for (const energy_model::LineLoad& piece : line_loads(load)) {
+      problem.line_loads.push_back(piece);
+    }
+  }
   for (const std::size_t i : obstacles_in_reach(scene)) {
     const Obstacle& obstacle = scene.obstacles[i];
     problem.obstacles.push_back({obstacle.body, obstacle.stiffness});

@@ -226,6 +226,7 @@ std::string no_polygon(const Scene& scene, const Plan& plan) {
   if (!plan.twist.empty()) return "the polygon that answers has no twist";
   if (scene.naturally_bent()) return "the polygon that answers is intrinsically straight";
   if (scene.has_two_stiffnesses()) return "the polygon that answers is round";
+  if (scene.has_couples()) return "the polygon that answers takes no couples";
   if (!scene.sections.empty()) return "the polygon that answers is of one section";
   return {};
 }

@@ -87,7 +87,7 @@ void PolygonResponse::find_forces(const energy_model::Equilibrium& rod) {
     const double s = (polygon_.arc_length[static_cast<std::size_t>(begin)] +
                       polygon_.arc_length[static_cast<std::size_t>(begin) + 1]) /
                      2;
-    force = -scene_.weight_per_length() * s;
+    force = -scene_.weight_per_length() * s - scene_.distributed_between(0, s);
     for (const PointLoad& load : scene_.loads) {
       if (load.at <= s) force -= load.force;
     }

@@ -25,7 +25,7 @@ namespace {
 /// @param solution  its grippers and contacts count
 Eigen::Vector3d section_force(const Scene& scene, const Solution& solution, double at) {
   const auto before = [&](double s) { return s < at || (s == at && at < scene.length); };
-  Eigen::Vector3d sum = scene.weight_between(0, at);
+  Eigen::Vector3d sum = scene.weight_between(0, at) + scene.distributed_between(0, at);
   for (std::size_t i = 0; i < solution.grippers.size(); ++i) {
     if (before(scene.grippers[i].at)) sum += solution.grippers[i].force;
   }

@@ -22,6 +22,8 @@ constexpr Unit angles[] = {{"rad", 1}, {"deg", std::numbers::pi / 180}};
 constexpr Unit pressures[] = {{"Pa", 1}, {"kPa", 1e3}, {"MPa", 1e6}, {"GPa", 1e9}, {"N/mm^2", 1e6}};
 constexpr Unit densities[] = {{"kg/m^3", 1}, {"kg/dm^3", 1e3}, {"g/cm^3", 1e3}};
 constexpr Unit forces[] = {{"N", 1}, {"mN", 1e-3}, {"kN", 1e3}};
+constexpr Unit torques[] = {{"N m", 1}, {"mN m", 1e-3}, {"N mm", 1e-3}, {"kN m", 1e3}};
+constexpr Unit forces_per_length[] = {{"N/m", 1}, {"mN/m", 1e-3}, {"kN/m", 1e3}, {"N/mm", 1e3}};
 constexpr Unit accelerations[] = {{"m/s^2", 1}};
 constexpr Unit curvatures[] = {{"1/m", 1}, {"1/cm", 1e2}, {"1/mm", 1e3}};
 constexpr Unit foundations[] = {{"N/m^2", 1}, {"N/mm^2", 1e6}};
@@ -46,6 +48,10 @@ std::span<const Unit> units(Dimension dimension) {
       return densities;
     case Dimension::force:
       return forces;
+    case Dimension::torque:
+      return torques;
+    case Dimension::force_per_length:
+      return forces_per_length;
     case Dimension::acceleration:
       return accelerations;
     case Dimension::curvature:

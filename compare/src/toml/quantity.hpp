@@ -14,6 +14,8 @@ enum class Dimension {
   pressure,
   density,
   force,
+  torque,
+  force_per_length,
   acceleration,
   curvature,
   foundation,         ///< force per depth and per length of rod

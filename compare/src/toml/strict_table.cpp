@@ -196,6 +196,22 @@ std::vector<Eigen::Vector2d> StrictTable::pairs(std::string_view key, Dimension 
   return pairs;
 }
 
+std::vector<Eigen::Vector3d> StrictTable::vectors(std::string_view key, Dimension dimension,
+                                                  std::size_t most) {
+  const toml::array* rows = need(key).as_array();
+  if (rows == nullptr || rows->empty() || !rows->front().is_array())
+    return {vector(key, dimension)};
+  if (rows->size() < 2 || rows->size() > most) {
+    fail(key, fmt::format("{} rows (allowed: 2 to {}, or three numbers)", rows->size(), most));
+  }
+  std::vector<Eigen::Vector3d> vectors;
+  for (const toml::node& row : *rows) {
+    vectors.emplace_back(read_numbers<3>(
+        key, row, dimension, "must be three numbers [x, y, z], or rows of these [[x, y, z], ..]"));
+  }
+  return vectors;
+}
+
 std::optional<Eigen::Matrix3d> StrictTable::optional_rows(std::string_view key) {
   const toml::node* node = find(key);
   if (node == nullptr) return std::nullopt;

@@ -65,6 +65,8 @@ class StrictTable {
   std::optional<Eigen::Vector2d> optional_pair(std::string_view key, Dimension dimension);
   /// The same, or rows of two numbers each, one to `most` of them: [[x, y], ..]. None: no key.
   std::vector<Eigen::Vector2d> pairs(std::string_view key, Dimension dimension, std::size_t most);
+  /// Three numbers, or rows of three, two to `most` of them.
+  std::vector<Eigen::Vector3d> vectors(std::string_view key, Dimension dimension, std::size_t most);
   /// Rows of three numbers each.
   std::optional<Eigen::Matrix3d> optional_rows(std::string_view key);
   /// As it is written, of any norm.

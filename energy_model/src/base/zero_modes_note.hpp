@@ -11,4 +11,8 @@ namespace dlo::energy_model {
   return ", " + std::to_string(ways) + (ways == 1 ? " zero mode" : " zero modes");
 }
 
+/// How a message goes on about a shape that couples bend.
+inline constexpr const char* in_the_plane =
+    "; in the plane alone: out of it a couple has no potential";
+
 }  // namespace dlo::energy_model

@@ -19,7 +19,14 @@ std::vector<Eigen::Vector3d> kept_vectors(const Span& span) {
   for (const Span::Part& part : span.parts) {
     kept.emplace_back(part.weight * (part.end - part.begin) / load);
   }
-  for (const Span::Load& at : span.loads) kept.emplace_back(at.force / load);
+  for (const LineLoad& on : span.line_loads) {
+    kept.emplace_back(on.at_begin * (on.end - on.begin) / load);
+    kept.emplace_back(on.at_end * (on.end - on.begin) / load);
+  }
+  for (const Span::Load& at : span.loads) {
+    kept.emplace_back(at.force / load);
+    if (at.couple != 0) kept.emplace_back(Eigen::Vector3d::UnitZ());
+  }
   if (span.start_direction) kept.push_back(*span.start_direction);
   if (span.end_direction) kept.push_back(*span.end_direction);
   for (const Span::Hold& hold : span.holds) {

@@ -40,6 +40,7 @@ Mesh mesh_of(const Span& span, Segments segments) {
   std::vector<double> cuts = {0, span.length, span.anchor};
   for (const Span::Hold& hold : span.holds) cuts.push_back(hold.at);
   for (const Span::Load& load : span.loads) cuts.push_back(load.at);
+  for (const LineLoad& load : span.line_loads) cuts.insert(cuts.end(), {load.begin, load.end});
   for (const Span::Part& part : span.parts) cuts.insert(cuts.end(), {part.begin, part.end});
   std::sort(cuts.begin(), cuts.end());
   const double load = std::max(1.0, span.total_load());

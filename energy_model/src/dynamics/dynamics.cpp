@@ -165,6 +165,8 @@ Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<co
   const Deadline deadline(options.time_limit);
   const double begin = times.empty() ? 0 : std::min(0.0, times.front());
   const MovingRod complete = completed(rod, begin);
+  require(!has_couples(complete.problem), simulate_name, "torque of a load", 1,
+          "0: a couple has no potential, but in a plane");
   const std::vector<PlacedSpan> spans = split(complete.problem);
   for (const PlacedSpan& placed : spans) {
     require_affordable(placed.span, options.terms, simulate_name);

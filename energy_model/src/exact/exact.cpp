@@ -21,6 +21,7 @@
 #include "kirchhoff/rod_span.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/reduction.hpp"
+#include "problem/rod_law.hpp"
 #include "shooting/planar_shooting.hpp"
 #include "shooting/refine_span.hpp"
 #include "shooting/solved_rod.hpp"
@@ -105,9 +106,12 @@ void refuse_passed_torque(const Problem& problem) {
 Found search(const Problem& problem, const ExactOptions& options, const Deadline& deadline) {
   if (has_material_directors(problem)) return solve_spans(problem, options, deadline);
   refuse_passed_torque(problem);
+  const bool same_everywhere =
+      std::all_of(problem.line_loads.begin(), problem.line_loads.end(),
+                  [&](const LineLoad& load) { return acts_everywhere(load, problem); });
   // The scan knows of one section.
   const std::optional<ReducedCantilever> cantilever =
-      problem.sections.empty() ? reduce_cantilever(problem) : std::nullopt;
+      problem.sections.empty() && same_everywhere ? reduce_cantilever(problem) : std::nullopt;
   const bool from_tip =
       options.start == nullptr && cantilever && planar_shots_are_well_posed(cantilever->rod);
   return from_tip ? scan_tip(problem, *cantilever, options, deadline)
@@ -116,6 +120,12 @@ Found search(const Problem& problem, const ExactOptions& options, const Deadline
 
 Found search_touching(const Problem& problem, const ExactOptions& options,
                       const Deadline& deadline) {
+  require(!has_couples(problem), "solve_exact", "torque of a load", 1,
+          "0 where there are obstacles");
+  for (const LineLoad& load : problem.line_loads) {
+    require(load.at_begin == load.at_end, "solve_exact", "force per length of a line load",
+            load.at_end.norm(), "constant where there are obstacles");
+  }
   std::optional<Equilibrium> found =
       options.start == nullptr
           ? raise_weight(problem, options.tolerance, deadline)
@@ -144,6 +154,7 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   for (Equilibrium& equilibrium : found.equilibria) {
     equilibrium.seconds = seconds;
+    separate_line_loads(problem, equilibrium);
     if (!found.not_searched.empty()) equilibrium.message += "; " + found.not_searched;
     if (!found.out_of_time) continue;
     const bool holds = static_cast<bool>(equilibrium.sample);

@@ -62,21 +62,22 @@ int rod_rates(double at, const double* y, double* rate, void* data) {
   const Vector r(y);
   const Eigen::Map<const Eigen::Matrix3d> R(y + 3);
   const Vector m(y + 12);
-  Eigen::Vector3d n = piece.n - at * section.weight;
+  const double s = piece.rod->begin + at;
+  Eigen::Vector3d n = piece.n - section.weight_from(piece.rod->begin, at);
   if (lies) n -= Vector(y + impulse);
   const Eigen::Vector3d t = R.col(2);
   const Eigen::Vector3d compliance = section.compliance();
   const Eigen::Vector3d own = R.transpose() * m;
   const Eigen::Vector3d stretch = compliance.cwiseProduct(own);
   Eigen::Vector3d u = stretch;
-  if (piece.rod->natural) u += section.natural(piece.rod->natural, piece.rod->begin + at);
+  if (piece.rod->natural) u += section.natural(piece.rod->natural, s);
   const Eigen::Vector3d omega = R * u;
   Rate(rate + 0) = t;
   for (Eigen::Index k = 0; k < 3; ++k) Rate(rate + 3 + 3 * k) = omega.cross(R.col(k));
   Rate(rate + 12) = n.cross(t);
   rate[first_integral] = (own[0] * stretch[0] + own[1] * stretch[1]) / 2;
   rate[first_integral + 1] = own[2] * stretch[2] / 2;
-  rate[first_integral + 2] = -section.weight.dot(r);
+  rate[first_integral + 2] = -(section.weight + s * section.slope).dot(r);
   rate[first_integral + 3] = u[2];
   if (lies) press(piece, {r, R, m, n}, y, rate);
   if (piece.variation->n.cols() == 0) return GSL_SUCCESS;
@@ -160,7 +161,8 @@ RodVariation::RodVariation(Eigen::Index parameters)
 
 RodRate rate_of(const RodPiece& piece, const RodState& state) {
   RodRate rate{state.t(), state.R * strain_of(piece.section, piece.natural, piece.begin, state),
-               state.n.cross(state.t()), -piece.section.weight};
+               state.n.cross(state.t()),
+               -(piece.section.weight + piece.begin * piece.section.slope)};
   if (piece.surface != nullptr) {
     rate.n -= pressure(*piece.surface, piece.section, state) * piece.surface->gap(state.r).gradient;
   }
@@ -182,7 +184,7 @@ bool follow_rod(const RodPiece& piece, double tolerance, RodState& state, RodVar
   state.r = all.segment<3>(0);
   state.R = Eigen::Map<const Eigen::Matrix3d>(y.data() + 3);
   state.m = all.segment<3>(12);
-  state.n -= piece.length * piece.section.weight;
+  state.n -= piece.section.weight_from(piece.begin, piece.length);
   integrals = {all[first_integral], all[first_integral + 1], all[first_integral + 2],
                all[first_integral + 3]};
   for (Eigen::Index k = 0; k < parameters; ++k) {

@@ -28,10 +28,17 @@ std::vector<Eigen::Vector3d> directions_of(const RodSpan& span) {
     const Eigen::Vector3d chord = hold.position - span.holds.front().position;
     if (chord.norm() > same_place) directions.emplace_back(chord.normalized());
   }
+  for (const RodSpan::Load& load : span.loads) {
+    if (load.couple.isZero(0)) continue;
+    for (const Eigen::Vector3d& direction : plane_across(load.couple))
+      directions.push_back(direction);
+  }
   const double largest = total_load(span);
   if (largest > 0) {
     for (const RodSpan::Part& part : span.parts) {
-      directions.emplace_back(part.section.weight / largest);
+      for (const double s : {part.begin, part.end}) {
+        directions.emplace_back((part.section.weight + s * part.section.slope) / largest);
+      }
     }
     for (const RodSpan::Load& load : span.loads) directions.emplace_back(load.force / largest);
   }
@@ -72,13 +79,15 @@ std::vector<RodSpan::Part> parts_between(const Problem& problem, double begin, d
   const double l = problem.length;
   const double unit = bending_unit(problem);
   std::vector<RodSpan::Part> parts;
-  for (const Section& section : rod_parts(problem)) {
+  for (const RodPart& section : rod_parts(problem)) {
     const double from = std::max(own_arc_length(section.begin, l), begin);
     const double to = std::min(own_arc_length(section.end, l), end);
     // What is shorter than the distance of two places is none.
     if (to - from < same_place) continue;
     RodSection own{section.bending_stiffness / unit, section.torsional_stiffness / unit,
                    section.weight_per_length * l * l * l / unit};
+    own.slope = section.weight_slope * l * l * l * l / unit;
+    own.weight -= (section.begin / l - begin) * own.slope;
     if (directors == Directors::of_material && section.bending_stiffness_2) {
       own.bending_2 = *section.bending_stiffness_2 / unit;
     }
@@ -131,7 +140,7 @@ void add_loads(const Problem& problem, RodSpan& span) {
     for (const RodSpan::Hold& hold : span.holds) {
       if (std::abs(at - hold.at) < same_place) at = hold.at;
     }
-    span.loads.push_back({at, load.force / force_unit});
+    span.loads.push_back({at, load.force / force_unit, load.torque / (force_unit * l)});
   }
   std::stable_sort(span.loads.begin(), span.loads.end(),
                    [](const auto& a, const auto& b) { return a.at < b.at; });
@@ -177,6 +186,11 @@ bool RodSpan::round() const {
   return !natural && std::none_of(parts.begin(), parts.end(), [](const Part& part) {
     return part.section.bending_2.has_value();
   });
+}
+
+bool RodSpan::has_couples() const {
+  return std::any_of(loads.begin(), loads.end(),
+                     [](const Load& load) { return !load.couple.isZero(0); });
 }
 
 ClampFrames released_frames(const RodSpan& span) {
@@ -287,7 +301,11 @@ RodMesh mesh_at(const RodSpan& span, const Eigen::VectorXd& nodes) {
   mesh.pull = mesh.load;
   mesh.pull_d1 = mesh.load;
   mesh.hold.assign(static_cast<std::size_t>(nodes.size()), nullptr);
-  for (const RodSpan::Load& load : span.loads) mesh.load.col(node_at(nodes, load.at)) += load.force;
+  mesh.couple = mesh.load;
+  for (const RodSpan::Load& load : span.loads) {
+    mesh.load.col(node_at(nodes, load.at)) += load.force;
+    mesh.couple.col(node_at(nodes, load.at)) += load.couple;
+  }
   for (const RodSpan::Hold& hold : span.holds) {
     mesh.hold[static_cast<std::size_t>(node_at(nodes, hold.at))] = &hold;
   }
@@ -311,16 +329,16 @@ ForceField carried_force(const RodSpan& span, const RodMesh& mesh) {
   Eigen::Vector3d n = Eigen::Vector3d::Zero();
   Eigen::Vector3d all = mesh.load.rowwise().sum();
   for (const RodSpan::Part& part : span.parts) {
-    all += (part.end - part.begin) * part.section.weight;
+    all += part.section.weight_from(part.begin, part.end - part.begin);
   }
   for (Eigen::Index i = 0; i <= last; ++i) {
     n -= mesh.load.col(i);
     if (mesh.hold[static_cast<std::size_t>(i)] == &span.holds.front()) n += all;
     field.after_node.col(i) = n;
     if (i == last) break;
-    const Eigen::Vector3d weight = mesh.width(i) * mesh.section_of(i).weight;
-    field.on_interval.col(i) = n - weight / 2;
-    n -= weight;
+    const RodSection& section = mesh.section_of(i);
+    field.on_interval.col(i) = n - section.weight_from(mesh.s[i], mesh.width(i) / 2);
+    n -= section.weight_from(mesh.s[i], mesh.width(i));
   }
   return field;
 }
@@ -347,9 +365,12 @@ double least_bending_stiffness(const RodSpan& span) {
 double total_load(const RodSpan& span) {
   double load = 0;
   for (const RodSpan::Part& part : span.parts) {
-    load += (part.end - part.begin) * part.section.weight.norm();
+    const RodSection& own = part.section;
+    load +=
+        (part.end - part.begin) / 2 *
+        ((own.weight + part.begin * own.slope).norm() + (own.weight + part.end * own.slope).norm());
   }
-  for (const RodSpan::Load& l : span.loads) load += l.force.norm();
+  for (const RodSpan::Load& l : span.loads) load += l.force.norm() + l.couple.norm() / span.length;
   return load;
 }
 

@@ -27,6 +27,7 @@ struct RodSpan {
   struct Load {
     double at = 0;  ///< s
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    Eigen::Vector3d couple = Eigen::Vector3d::Zero();
   };
   /// Of one section.
   struct Part {
@@ -62,6 +63,7 @@ struct RodSpan {
   [[nodiscard]] const Clamp* clamp_at(double s) const;
   /// Whether a clamp after the first one holds the rod's frame, so that torque twists it.
   [[nodiscard]] bool twisted() const;
+  [[nodiscard]] bool has_couples() const;
   /// Whether all sections are round and the rod is intrinsically straight: without twist a turn of
   /// its sections about their tangents changes nothing.
   [[nodiscard]] bool round() const;
@@ -131,6 +133,7 @@ struct RodContacts {
 struct RodMesh {
   Eigen::VectorXd s;         ///< growing, at least 2
   Eigen::Matrix3Xd load;     ///< on each node
+  Eigen::Matrix3Xd couple;   ///< the same
   Eigen::Matrix3Xd pull;     ///< q on each node's tangent, of energy -q.t; zero at first
   Eigen::Matrix3Xd pull_d1;  ///< the same on its d1
   std::vector<const RodSpan::Hold*> hold;  ///< at each node, null for none; of the span
@@ -141,7 +144,7 @@ struct RodMesh {
   [[nodiscard]] bool is_fixed(Eigen::Index node) const {
     const auto i = static_cast<std::size_t>(node);
     return node == 0 || node == intervals() || hold[i] != nullptr || !load.col(node).isZero(0) ||
-           section[i - 1] != section[i];
+           !couple.col(node).isZero(0) || section[i - 1] != section[i];
   }
   [[nodiscard]] Eigen::Index intervals() const { return s.size() - 1; }
   [[nodiscard]] double width(Eigen::Index interval) const { return s[interval + 1] - s[interval]; }

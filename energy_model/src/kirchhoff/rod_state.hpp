@@ -13,10 +13,15 @@ using NaturalStrain = std::function<Eigen::Vector3d(double s)>;
 struct RodSection {
   double bending = 1;  ///< b, its EI over bending_unit(); about d1 where bending_2 is given
   double torsion = 0;  ///< c, its GJ over the same unit; 0: the twist is free and costs nothing
-  Eigen::Vector3d weight = Eigen::Vector3d::Zero();            ///< w
+  Eigen::Vector3d weight = Eigen::Vector3d::Zero();            ///< w, with line loads, at s = 0
   std::optional<double> bending_2 = std::nullopt;              ///< about d2; none: as about d1
+  Eigen::Vector3d slope = Eigen::Vector3d::Zero();             ///< w'
   std::optional<Eigen::Vector2d> natural_bend = std::nullopt;  ///< its own; none: the rod's
   std::optional<double> natural_twist = std::nullopt;          ///< as natural_bend
+
+  [[nodiscard]] Eigen::Vector3d weight_from(double s, double length) const {
+    return length * (weight + (s + length / 2) * slope);
+  }
 
   /// About d1, d2 and the tangent.
   [[nodiscard]] Eigen::Vector3d stiffness() const {

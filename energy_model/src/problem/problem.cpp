@@ -86,6 +86,11 @@ bool has_material_directors(const Problem& problem) {
   return !problem.natural_strains.empty() || has_two_stiffnesses(problem);
 }
 
+bool has_couples(const Problem& problem) {
+  return std::any_of(problem.loads.begin(), problem.loads.end(),
+                     [](const Load& load) { return !load.torque.isZero(0); });
+}
+
 void check(const Problem& problem) {
   require_positive("Problem", "length", problem.length);
   require_positive("Problem", "bending_stiffness", problem.bending_stiffness);
@@ -118,7 +123,21 @@ void check(const Problem& problem) {
   for (const Load& load : problem.loads) {
     require_on_rod("arc length of a load", load.at, problem.length);
     require(load.force.allFinite(), "Problem", "force of a load", load.force.norm(), "finite");
+    require(load.torque.allFinite(), "Problem", "torque of a load", load.torque.norm(), "finite");
   }
+  for (const LineLoad& load : problem.line_loads) {
+    require_on_rod("begin of a line load", load.begin, problem.length);
+    require_on_rod("end of a line load", load.end, problem.length);
+    require(load.end > load.begin, "Problem", "end of a line load", load.end, "> its begin");
+    require(load.at_begin.allFinite() && load.at_end.allFinite(), "Problem",
+            "force per length of a line load", (load.at_begin + load.at_end).norm(), "finite");
+  }
+}
+
+Eigen::Vector3d LineLoad::between(double from, double to) const {
+  const double a = std::clamp(from, begin, end);
+  const double b = std::clamp(to, begin, end);
+  return (b - a) * (at_begin + ((a + b) / 2 - begin) * slope());
 }
 
 std::vector<double> equal_arc_lengths(double length, Eigen::Index count) {

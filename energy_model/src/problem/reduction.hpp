@@ -49,4 +49,8 @@ struct PlanarSamples {
 /// From EI/l to [J].
 [[nodiscard]] Energies restore(const Problem& problem, const Energies& own_units);
 
+/// Solvers carry line loads with the weight: moves their energy from `gravity` to `load`, by
+/// Gauss's quadrature between what the shape has kinks at. Of a shape that can be sampled.
+void separate_line_loads(const Problem& problem, Equilibrium& result);
+
 }  // namespace dlo::energy_model

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/require.hpp"
 #include "base/spin.hpp"
@@ -11,22 +12,60 @@
 
 namespace dlo::energy_model {
 
-std::vector<Section> rod_parts(const Problem& problem) {
-  std::vector<Section> parts;
+namespace {
+
+/// Cuts parts where a line load begins or ends, and adds it to those within.
+void add_line_load(const LineLoad& load, std::vector<RodPart>& parts) {
+  std::vector<RodPart> cut;
+  for (RodPart& part : parts) {
+    for (const double at : {load.begin, load.end}) {
+      if (!(at > part.begin && at < part.end)) continue;
+      cut.push_back(part);
+      cut.back().end = at;
+      part.weight_per_length += (at - part.begin) * part.weight_slope;
+      part.begin = at;
+    }
+    cut.push_back(part);
+  }
+  for (RodPart& part : cut) {
+    if (part.begin < load.begin || part.end > load.end) continue;
+    part.weight_per_length += load.at_begin + (part.begin - load.begin) * load.slope();
+    part.weight_slope += load.slope();
+  }
+  parts = std::move(cut);
+}
+
+}  // namespace
+
+std::vector<RodPart> rod_parts(const Problem& problem) {
+  std::vector<RodPart> parts;
   double at = 0;
   const auto fill_to = [&](double end) {
     if (end > at) {
-      parts.push_back({at, end, problem.bending_stiffness, problem.torsional_stiffness,
-                       problem.weight_per_length, problem.bending_stiffness_2});
+      parts.push_back({{at, end, problem.bending_stiffness, problem.torsional_stiffness,
+                        problem.weight_per_length, problem.bending_stiffness_2}});
     }
   };
   for (const Section& section : problem.sections) {
     fill_to(section.begin);
-    parts.push_back(section);
+    parts.push_back({section});
     at = section.end;
   }
   fill_to(problem.length);
+  for (const LineLoad& load : problem.line_loads) add_line_load(load, parts);
   return parts;
+}
+
+bool acts_everywhere(const LineLoad& load, const Problem& problem) {
+  return load.begin == 0 && load.end == problem.length && load.at_begin == load.at_end;
+}
+
+Eigen::Vector3d weight_everywhere(const Problem& problem) {
+  Eigen::Vector3d weight = problem.weight_per_length;
+  for (const LineLoad& load : problem.line_loads) {
+    if (acts_everywhere(load, problem)) weight += load.at_begin;
+  }
+  return weight;
 }
 
 bool has_two_stiffnesses(const Problem& problem) {
@@ -69,7 +108,15 @@ std::optional<Eigen::Vector3d> natural_normal(const Problem& problem) {
   }
   add(problem.weight_per_length, 0);
   for (const Section& section : problem.sections) add(section.weight_per_length, 0);
-  for (const Load& load : problem.loads) add(load.force, 0);
+  for (const LineLoad& load : problem.line_loads) {
+    add(load.at_begin, 0);
+    add(load.at_end, 0);
+  }
+  for (const Load& load : problem.loads) {
+    add(load.force, 0);
+    if (load.torque.isZero(0)) continue;
+    for (const Eigen::Vector3d& direction : plane_across(load.torque)) add(direction, 0);
+  }
   for (const Obstacle& obstacle : problem.obstacles) {
     if (obstacle.body.is_half_space()) add(obstacle.body.normal(), 0);
   }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
 #include <vector>
 
 #include "dlo/energy_model/natural_frame.hpp"
@@ -8,8 +10,26 @@
 
 namespace dlo::energy_model {
 
-/// The rod from end to end as parts of one section each, by growing arc length.
-[[nodiscard]] std::vector<Section> rod_parts(const Problem& problem);
+/// A part whose weight holds the line loads on it too: weight_per_length at its begin.
+struct RodPart : Section {
+  Eigen::Vector3d weight_slope = Eigen::Vector3d::Zero();  ///< by which it grows [N/m^2]
+};
+
+/// The rod from end to end as parts of one section each, cut where line loads begin and end, by
+/// growing arc length.
+[[nodiscard]] std::vector<RodPart> rod_parts(const Problem& problem);
+
+/// Whether it is the same along all of the rod.
+[[nodiscard]] bool acts_everywhere(const LineLoad& load, const Problem& problem);
+
+/// Weight per length outside sections, with the line loads that act everywhere [N/m].
+[[nodiscard]] Eigen::Vector3d weight_everywhere(const Problem& problem);
+
+/// Two directions of the plane in which couples about this axis bend a rod.
+[[nodiscard]] inline std::array<Eigen::Vector3d, 2> plane_across(const Eigen::Vector3d& axis) {
+  const Eigen::Vector3d one = axis.unitOrthogonal();
+  return {one, axis.normalized().cross(one)};
+}
 
 /// The smaller EI outside sections [N m^2]: what stiffnesses, and with the length forces, are
 /// measured in, so that a strip's scales are those of the axis about which it yields.

@@ -41,7 +41,7 @@ double tension_for(const Span& span, const Segment& segment, double distance) {
   };
   const double layers = 2 * (turn_of(segment.begin_tangent, segment.pull) +
                              turn_of(segment.end_tangent, segment.pull));
-  double sag = across(span.weight) * std::pow(length, 3) / 24;
+  double sag = across(span.mean_weight()) * std::pow(length, 3) / 24;
   for (const Span::Load& load : span.loads) {
     const double x = load.at - segment.begin;
     if (x > 0 && x < length) sag += across(load.force) * x * (length - x) / (2 * length);

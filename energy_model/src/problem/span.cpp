@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 namespace dlo::energy_model {
 
@@ -16,7 +17,14 @@ Eigen::Vector3d Span::weight_between(double from, double to) const {
     sum += (std::clamp(to, part.begin, part.end) - std::clamp(from, part.begin, part.end)) *
            part.weight;
   }
+  for (const LineLoad& load : line_loads) sum += load.between(from, to);
   return sum;
+}
+
+Eigen::Vector3d Span::mean_weight() const {
+  Eigen::Vector3d mean = weight;
+  for (const LineLoad& load : line_loads) mean += load.between(0, length) / length;
+  return mean;
 }
 
 double Span::total_load() const {
@@ -24,7 +32,10 @@ double Span::total_load() const {
   for (const Part& part : parts) {
     total += ((weight + part.weight).norm() - weight.norm()) * (part.end - part.begin);
   }
-  for (const Load& load : loads) total += load.force.norm();
+  for (const Load& load : loads) total += load.force.norm() + std::abs(load.couple) / length;
+  for (const LineLoad& load : line_loads) {
+    total += (load.at_begin.norm() + load.at_end.norm()) / 2 * (load.end - load.begin);
+  }
   return total;
 }
 
@@ -34,6 +45,10 @@ Eigen::Vector3d Span::force_before(double s) const {
     if (load.at < s) force += load.force;
   }
   return force;
+}
+
+bool Span::has_couples() const {
+  return std::any_of(loads.begin(), loads.end(), [](const Load& load) { return load.couple != 0; });
 }
 
 bool Span::pulled_one_way() const {

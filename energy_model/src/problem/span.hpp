@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "dlo/energy_model/problem.hpp"
 #include "dlo/obstacle/body.hpp"
 #include "problem/natural_strains.hpp"
 
@@ -23,6 +24,7 @@ struct Span {
   struct Load {
     double at = 0;
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    double couple = 0;  ///< about z, of a planar span: its energy is -couple times the angle there
   };
   struct Obstacle {
     std::size_t index = 0;  ///< of the problem's obstacles
@@ -65,7 +67,8 @@ struct Span {
   double anchor = 0;                               ///< s of the first grip
   std::vector<Hold> holds;                         ///< the other grips, by growing s
   Eigen::Vector3d weight = Eigen::Vector3d::Zero();
-  std::vector<Load> loads;  ///< by growing s
+  std::vector<Load> loads;           ///< by growing s
+  std::vector<LineLoad> line_loads;  ///< what is not in `weight`, of own units and s
   std::vector<SoftObstacle> soft_obstacles;
   std::vector<Obstacle> rigid_obstacles;  ///< which the energy knows nothing of but for these:
   std::vector<Contact> contacts;          ///< by growing s, none over another
@@ -95,12 +98,16 @@ struct Span {
   /// Whether the rod's frame is fixed to its material (dlo::energy_model::has_material_directors).
   [[nodiscard]] bool has_material_directors() const { return !natural.empty(); }
 
-  /// Of the rod between two arc lengths; negative where `to` comes first.
+  /// Weight and line loads of the rod between two arc lengths; negative where `to` comes first.
   [[nodiscard]] Eigen::Vector3d weight_between(double from, double to) const;
+  /// Weight outside parts and line loads, per length in the mean.
+  [[nodiscard]] Eigen::Vector3d mean_weight() const;
   /// Sum of the sizes of weight and loads, for scales.
   [[nodiscard]] double total_load() const;
   /// Of weight and loads on what lies before s.
   [[nodiscard]] Eigen::Vector3d force_before(double s) const;
+  /// Then nothing is known of the energy out of the plane.
+  [[nodiscard]] bool has_couples() const;
   /// Weight and loads all point the same way.
   [[nodiscard]] bool pulled_one_way() const;
   /// A uniform straight rod with one clamp and nothing but weight and loads, in a plane. What else
@@ -108,7 +115,8 @@ struct Span {
   /// own.
   [[nodiscard]] bool is_plain_cantilever() const {
     return planar && start_direction && holds.empty() && soft_obstacles.empty() &&
-           contacts.empty() && parts.empty() && !has_material_directors();
+           contacts.empty() && parts.empty() && line_loads.empty() && !has_couples() &&
+           !has_material_directors();
   }
 };
 

@@ -68,6 +68,10 @@ void turn_vectors(Span& span, const Eigen::Matrix3d& rotation) {
   for (Span::SoftObstacle& obstacle : span.soft_obstacles) turn_body(obstacle);
   for (Span::Obstacle& obstacle : span.rigid_obstacles) turn_body(obstacle);
   for (Span::Part& part : span.parts) turn(part.weight);
+  for (LineLoad& load : span.line_loads) {
+    turn(load.at_begin);
+    turn(load.at_end);
+  }
   turn(span.weight);
 }
 
@@ -98,6 +102,25 @@ void place_sections(const Problem& problem, PlacedSpan& placed, double begin, do
                                  more * l / force_unit});
   }
   if (placed.reversed) std::reverse(placed.span.parts.begin(), placed.span.parts.end());
+}
+
+/// What of line loads is not in the span's weight, between two arc lengths.
+void place_line_loads(const Problem& problem, PlacedSpan& placed, double begin, double end) {
+  const double l = problem.length;
+  const double unit = bending_unit(problem) / (l * l * l);
+  for (const LineLoad& load : problem.line_loads) {
+    const double from = std::max(begin, load.begin);
+    const double to = std::min(end, load.end);
+    if (acts_everywhere(load, problem) || !(to > from)) continue;
+    LineLoad own{placed.s_of(from, l), placed.s_of(to, l),
+                 (load.at_begin + (from - load.begin) * load.slope()) / unit,
+                 (load.at_begin + (to - load.begin) * load.slope()) / unit};
+    if (placed.reversed) {
+      std::swap(own.begin, own.end);
+      std::swap(own.at_begin, own.at_end);
+    }
+    placed.span.line_loads.push_back(own);
+  }
 }
 
 /// GJ over EI with which the rod between two arc lengths resists a torque, as if it were uniform.
@@ -232,6 +255,32 @@ std::optional<HeldFrames> frames_of(const Problem& problem, const OrderedGrip& s
                     .turns = turns_between(problem, first, end)};
 }
 
+constexpr const char* couples_need =
+    "0, or across the plane of grips and forces, of a rod that keeps to it, without obstacles and "
+    "held frames: elsewhere a couple has no potential";
+
+/// About the normal of the span's plane, in the order of its loads.
+void place_couples(const Problem& problem, double begin, double end, PlacedSpan& placed) {
+  constexpr double rounding = 1e-9;
+  const double unit = bending_unit(problem) / problem.length;
+  const bool holds_frames =
+      std::count_if(problem.grips.begin(), problem.grips.end(),
+                    [](const Grip& grip) { return grip.frame.has_value(); }) > 1;
+  for (const Load& load : problem.loads) {
+    const bool inside = load.at >= begin && load.at <= end;
+    if (!inside || load.torque.isZero(0) || clamp_under(problem, load)) continue;
+    const Eigen::Vector3d own = placed.frame * load.torque;
+    require(placed.span.planar && own.head<2>().norm() <= rounding * own.norm() && !holds_frames &&
+                problem.obstacles.empty(),
+            "Problem", "torque of a load", load.torque.norm(), couples_need);
+    // Beside those without one; loads at one place add up.
+    const double s = placed.s_of(load.at, problem.length);
+    const auto at = std::find_if(placed.span.loads.begin(), placed.span.loads.end(),
+                                 [s](const Span::Load& other) { return other.at == s; });
+    at->couple += own.z() / unit;
+  }
+}
+
 /// The span between arc lengths `begin` and `end`; it runs backwards from a clamp at `end` if there
 /// is none at `begin`.
 PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips, double begin,
@@ -243,12 +292,13 @@ PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips, 
   placed.start = placed.reversed ? end : begin;
   Span& span = placed.span;
   span.length = (end - begin) / l;
-  span.weight = problem.weight_per_length * l / force_unit;
+  span.weight = weight_everywhere(problem) * l / force_unit;
   span.stiffness = principal_stiffness({.bending_stiffness = problem.bending_stiffness,
                                         .torsional_stiffness = problem.torsional_stiffness,
                                         .bending_stiffness_2 = problem.bending_stiffness_2},
                                        bending_unit(problem));
   place_sections(problem, placed, begin, end);
+  place_line_loads(problem, placed, begin, end);
   const double sense = placed.reversed ? -1 : 1;
 
   std::vector<OrderedGrip> held;
@@ -283,12 +333,19 @@ PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips, 
   }
   directions.forces.push_back(span.weight);
   for (const Span::Part& part : span.parts) directions.forces.push_back(part.weight);
+  for (const LineLoad& load : span.line_loads) {
+    directions.forces.insert(directions.forces.end(), {load.at_begin, load.at_end});
+  }
   for (const Load& load : problem.loads) {
     const bool inside = load.at >= begin && load.at <= end;
     // A load on a clamp is the gripper's alone.
     if (!inside || clamp_under(problem, load)) continue;
     span.loads.push_back({placed.s_of(load.at, l), load.force / force_unit});
     directions.forces.push_back(span.loads.back().force);
+    if (load.torque.isZero(0)) continue;
+    for (const Eigen::Vector3d& direction : plane_across(load.torque)) {
+      directions.grips.push_back(direction);
+    }
   }
   std::sort(span.loads.begin(), span.loads.end(),
             [](const Span::Load& a, const Span::Load& b) { return a.at < b.at; });
@@ -305,8 +362,11 @@ PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips, 
   }
   choose_frame(placed, directions);
   turn_vectors(span, placed.frame);
+  if (has_couples(problem)) place_couples(problem, begin, end, placed);
   if (!are_symmetric(span)) span.planar = false;
   if (has_material_directors(problem)) place_material_directors(problem, placed, anchor);
+  require(!span.has_couples() || span.planar, "Problem", "torque of a load", span.total_load(),
+          couples_need);
   if (clamped_begin && clamped_end) {
     placed.frames = frames_of(problem, held.front(), *held.back().grip, placed.frame);
   }

@@ -8,6 +8,7 @@
 
 #include "base/zero_modes_note.hpp"
 #include "problem/ordered_grips.hpp"
+#include "problem/reduction.hpp"
 #include "problem/rod_law.hpp"
 #include "search/placed_shape.hpp"
 
@@ -154,6 +155,7 @@ Equilibrium assemble(const Problem& problem, const std::vector<PlacedSpan>& plac
   }
   if (succeeded(result.status) || result.status == SolveStatus::saddle) {
     result.message += zero_modes_note(rigid_body_modes);
+    if (has_couples(problem)) result.message += in_the_plane;
   }
   if (result.status == SolveStatus::near_singular && result.neutral_directions > 0) {
     result.message += ": " + std::to_string(result.neutral_directions) + " neutral direction" +
@@ -165,6 +167,7 @@ Equilibrium assemble(const Problem& problem, const std::vector<PlacedSpan>& plac
     const std::optional<std::size_t> clamp = clamp_under(problem, load);
     if (!clamp) continue;
     result.grips[*clamp].force -= load.force;
+    result.grips[*clamp].torque -= load.torque;
     result.energy.load -= load.force.dot(problem.grips[*clamp].position - origin);
   }
   std::vector<PlacedShape> shapes;
@@ -176,12 +179,14 @@ Equilibrium assemble(const Problem& problem, const std::vector<PlacedSpan>& plac
       shapes.back().ahead = [ahead = place.ahead](double) { return ahead; };
     }
   }
-  if (shapes.size() == placed.size() && !has_material_directors(problem)) {
+  const bool is_whole = shapes.size() == placed.size();
+  if (is_whole && !has_material_directors(problem)) {
     place_twisted_material(problem, solutions, shapes);
   }
   result.sample = [l, shapes = std::move(shapes)](std::span<const double> arc_lengths) {
     return sample(shapes, l, arc_lengths);
   };
+  if (is_whole) separate_line_loads(problem, result);
   return result;
 }
 

@@ -18,7 +18,7 @@ namespace {
 constexpr double same_place = 1e-9;
 
 /// 1 / GJ summed over the rod between two arc lengths.
-double torsional_compliance(const std::vector<Section>& parts, double begin, double end) {
+double torsional_compliance(const std::vector<RodPart>& parts, double begin, double end) {
   double compliance = 0;
   for (const Section& part : parts) {
     const double length = std::min(end, part.end) - std::max(begin, part.begin);
@@ -76,7 +76,7 @@ void place_twisted_material(const Problem& problem,
   const auto first = std::find_if(solutions.begin(), solutions.end(), is_twisted);
   if (first == solutions.end()) return;
   const double l = problem.length;
-  const std::vector<Section> parts = rod_parts(problem);
+  const std::vector<RodPart> parts = rod_parts(problem);
   std::vector<double> begins;
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     begins.push_back(i == 0 ? 0 : shapes[i - 1].end);

@@ -13,6 +13,7 @@
 #include <numbers>
 
 #include "base/silence_gsl.hpp"
+#include "base/zero_modes_note.hpp"
 #include "shooting/refine_span.hpp"
 #include "shooting/second_variation.hpp"
 #include "shooting/span_equilibrium.hpp"
@@ -53,8 +54,9 @@ struct Frame {
   std::vector<PlanarCantilever::Load> loads;  // by growing sigma; `at` is sigma here
 
   [[nodiscard]] bool parallel() const {
-    return weight.y() == 0 && std::all_of(loads.begin(), loads.end(),
-                                          [](const auto& load) { return load.force.y() == 0; });
+    return weight.y() == 0 && std::all_of(loads.begin(), loads.end(), [](const auto& load) {
+             return load.force.y() == 0 && load.couple == 0;
+           });
   }
 };
 
@@ -87,7 +89,7 @@ Frame make_frame(const PlanarCantilever& rod) {
   frame.axis_angle = std::atan2(last.y(), last.x());
   frame.weight = into_frame(rod.weight, frame.axis_angle);
   for (auto load = rod.loads.rbegin(); load != rod.loads.rend(); ++load) {
-    frame.loads.push_back({1 - load->at, into_frame(load->force, frame.axis_angle)});
+    frame.loads.push_back({1 - load->at, into_frame(load->force, frame.axis_angle), load->couple});
   }
   return frame;
 }
@@ -142,6 +144,7 @@ bool shoot(const Frame& frame, double start, double tolerance, const std::vector
   for (const double stop : stops) {
     for (;;) {
       while (next_load < frame.loads.size() && frame.loads[next_load].at <= sigma) {
+        state[psi_rate] -= frame.loads[next_load].couple;  // by sigma: minus the curvature
         section.loads += frame.loads[next_load++].force;
         gsl_odeiv2_evolve_reset(evolve.get());
         gsl_odeiv2_step_reset(step.get());
@@ -234,7 +237,7 @@ double refine_root(Shooter& shooter, double (*function_of)(double, void*), doubl
 
 double total_load(const PlanarCantilever& rod) {
   double load = rod.weight.norm();
-  for (const auto& l : rod.loads) load += l.force.norm();
+  for (const auto& l : rod.loads) load += l.force.norm() + std::abs(l.couple);
   return load;
 }
 
@@ -374,7 +377,9 @@ Energies energies(const PlanarCantilever& rod, const Frame& frame, double start,
   for (const auto& load : rod.loads) load_points.push_back(load.at);
   const PlanarSamples at_loads = sample(frame, start, tolerance, load_points);
   for (std::size_t j = 0; j < rod.loads.size(); ++j) {
-    energies.load -= rod.loads[j].force.dot(at_loads.points.col(static_cast<Eigen::Index>(j)));
+    const auto column = static_cast<Eigen::Index>(j);
+    energies.load -= rod.loads[j].force.dot(at_loads.points.col(column)) +
+                     rod.loads[j].couple * at_loads.angle[column];
   }
   return energies;
 }
@@ -441,6 +446,7 @@ TipShots shoot_from_tip(const Problem& problem, const ReducedCantilever& reduced
       continue;
     }
     judge(stability, result);
+    if (span.has_couples()) result.message += in_the_plane;
     equilibria.push_back(std::move(result));
   }
   found.complete = shooter.failures == 0 && shooter.shots <= most_shots;

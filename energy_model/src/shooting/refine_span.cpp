@@ -85,6 +85,7 @@ std::vector<RodState> states_by_balance(const RodSpan& span, const Problem& prob
       for (const RodSpan::Hold& hold : span.holds) {
         if (hold.at == s[k]) m += shape.grips[hold.grip].torque / torque_unit;
       }
+      m += mesh.couple.col(k / parts);
     }
     if (k == 0) break;
     m -= implied_force(problem, shape, (s[k - 1] + s[k]) / 2)
@@ -104,9 +105,9 @@ bool stays_in_plane(const RodSpan& span, const std::vector<RodState>& states) {
 Eigen::Vector3d implied_force(const Problem& problem, const Equilibrium& shape, double s) {
   const double at = s * problem.length * (1 + 1e-12);
   Eigen::Vector3d n = Eigen::Vector3d::Zero();
-  for (const Section& part : rod_parts(problem)) {
-    const double until = std::min(part.end, s * problem.length);
-    n -= std::max(0.0, until - part.begin) * part.weight_per_length;
+  for (const RodPart& part : rod_parts(problem)) {
+    const double on = std::max(0.0, std::min(part.end, s * problem.length) - part.begin);
+    n -= on * (part.weight_per_length + on / 2 * part.weight_slope);
   }
   for (std::size_t i = 0; i < problem.grips.size(); ++i) {
     if (problem.grips[i].at <= at) n -= shape.grips[i].force;

@@ -30,12 +30,13 @@ class VariationProblem {
       : span_(span),
         mesh_(mesh),
         free_twist_(span.round() && !span.twisted()),
+        in_plane_(span.has_couples() && span.plane),
         elements_(elements_of(span, mesh, force)) {
     const Eigen::Index count = elements_.size() - 1;
     std::vector<RodState> at_ends;
     if (touches()) at_ends = states({elements_.begin(), elements_.end()});
     number_unknowns(frames, at_ends);
-    if (free_twist_) leave_out_twist(states);
+    if (free_twist_ && !in_plane_) leave_out_twist(states);
     const std::vector<RodState> inside = states(gauss_points(elements_));
     for (Eigen::Index e = 0; e < count; ++e) add_element(e, inside);
     for (std::size_t k = 0; k + 1 < places_.size(); ++k) join(places_[k], places_[k + 1]);
@@ -125,6 +126,8 @@ class VariationProblem {
         basis = held ? Eigen::Matrix3Xd(3, 0) : Eigen::Matrix3Xd(clamp->direction);
       }
       if (free_twist_ && basis.cols() > 0) basis.resize(3, 2);
+      if (in_plane_ && basis.cols() > 0) basis = span_.plane->x.cross(span_.plane->y);
+      if (in_plane_ && span_.clamp_at(s) != nullptr) basis.resize(3, 0);
       nodes_.push_back({s, basis, size_});
       size_ += basis.cols();
     };
@@ -302,6 +305,7 @@ class VariationProblem {
   const RodSpan& span_;
   const RodMesh& mesh_;
   bool free_twist_;           // nothing holds it: spins about the tangent are no unknowns
+  bool in_plane_;             // spins about the plane's normal alone: of others couples know none
   Eigen::VectorXd elements_;  // their ends
   std::vector<SpinNode> nodes_;
   std::vector<Place> places_;

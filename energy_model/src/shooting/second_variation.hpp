@@ -46,6 +46,8 @@ using SpanStates = std::function<std::vector<RodState>(const std::vector<double>
 /// What lies is kept on its surface at the ends of elements alone, so that no shape is called more
 /// stable than it is.
 ///
+/// Where couples act on a span with a plane, eta is a rotation around its normal alone.
+///
 /// Eigenvalues over int |eta'|^2 + |eta|^2 ds, by finite elements of fourth order and the signs of
 /// pivots (ConstrainedPencil).
 /// @param force  what bends the span over lengths of one over its root: of the elements

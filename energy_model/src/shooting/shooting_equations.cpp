@@ -175,18 +175,19 @@ void ShootingSystem::start_equations(const ShootingPoint& point, Rows& rows) con
     rows.add(-positions_.transpose() * n / (rate_ * rate_), push.with({{n_at(), -one}}));
   }
   const Eigen::Index free = frame_equations(node, 0, rows).cols();
+  const Eigen::Vector3d m = node.m + mesh_.couple.col(0);
   if (free == turns_.cols()) return;
   if (free > 0) {
     const Eigen::RowVector3d direction = clamps_.front()->direction.transpose();
-    rows.add(direction * node.m / rate_, {{m_at(), direction}});
+    rows.add(direction * m / rate_, {{m_at(), direction}});
   } else if (span_.clamps.empty() && span_.round() && turns_.cols() == 3) {
     const Eigen::Matrix<double, 3, 2> across = axes_across(start_.front().t());
-    rows.add(across.transpose() * node.m / rate_, {{m_at(), across.transpose()}});
+    rows.add(across.transpose() * m / rate_, {{m_at(), across.transpose()}});
     const Eigen::Vector3d rotation = rotation_between(start_.front().R, node.R);
     const Eigen::RowVector3d tangent = start_.front().t().transpose();
     rows.add(tangent * rotation, {{spin_at(), tangent * rotation_rate(rotation)}});
   } else {
-    rows.add(turns_.transpose() * node.m / rate_,
+    rows.add(turns_.transpose() * m / rate_,
              {{m_at(), Eigen::MatrixXd::Identity(turns_.cols(), turns_.cols())}});
   }
 }
@@ -266,7 +267,7 @@ bool ShootingSystem::interval_equations(const ShootingPoint& point, Eigen::Index
   bent.push_back({from, kept * change.m / rate_});
   bent.push_back({other + spin_at(), -kept * by_spin * turns_ / rate_});
   bent.push_back({other + m_at(), -kept * turns_});
-  rows.add(kept * (end.m - jump - next.m) / rate_, bent);
+  rows.add(kept * (end.m - mesh_.couple.col(i + 1) - jump - next.m) / rate_, bent);
   return true;
 }
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "base/sized_samples.hpp"
+#include "base/zero_modes_note.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/reduction.hpp"
 #include "problem/rod_law.hpp"
@@ -71,6 +72,40 @@ void add_twists(const Problem& problem, const RodSpan& span, const SpanEquilibri
   }
 }
 
+/// Minus each couple times the angle by which the rod turns to it from its first clamp, in a plane.
+double energy_of_couples(const RodSpan& span, const SpanEquilibrium& equilibrium,
+                         double tolerance) {
+  if (!span.plane) return 0;
+  constexpr Eigen::Index looks = 513;  // that no two have half a turn between them
+  const Eigen::Vector3d normal = span.plane->x.cross(span.plane->y);
+  const double from = span.clamps.empty() ? 0 : span.clamps.front().at;
+  double energy = 0;
+  for (const RodSpan::Load& load : span.loads) {
+    if (load.couple.isZero(0)) continue;
+    const Eigen::VectorXd s =
+        Eigen::VectorXd::LinSpaced(looks, std::min(from, load.at), std::max(from, load.at));
+    const Eigen::Matrix3Xd t =
+        tangents_of(states_at(equilibrium, span, {s.begin(), s.end()}, tolerance));
+    double angle = 0;
+    for (Eigen::Index i = 1; i < looks; ++i) {
+      const Eigen::Vector3d before = t.col(i - 1);
+      angle +=
+          std::atan2(normal.dot(before.cross(Eigen::Vector3d(t.col(i)))), before.dot(t.col(i)));
+    }
+    energy -= (load.at < from ? -angle : angle) * load.couple.dot(normal);
+  }
+  return energy;
+}
+
+/// Whether couples act where nothing says that the shape is stable: out of its span's plane.
+bool couples_leave_plane(const RodSpan& span, const SpanEquilibrium& equilibrium) {
+  if (!span.has_couples()) return false;
+  if (!span.plane) return true;
+  const Eigen::Vector3d normal = span.plane->x.cross(span.plane->y);
+  constexpr double flat = 1e-6;
+  return (normal.transpose() * tangents_of(equilibrium.nodes)).cwiseAbs().maxCoeff() > flat;
+}
+
 /// Loads on clamps belong to no span.
 void add_loads_on_clamps(const Problem& problem, Equilibrium& result) {
   for (const Load& load : problem.loads) {
@@ -78,6 +113,7 @@ void add_loads_on_clamps(const Problem& problem, Equilibrium& result) {
     if (!clamp) continue;
     const Eigen::Vector3d& position = problem.grips[*clamp].position;
     result.grips[*clamp].force -= load.force;
+    result.grips[*clamp].torque -= load.torque;
     result.energy.load -= load.force.dot(position - problem.grips.front().position);
   }
 }
@@ -125,6 +161,7 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
                             .s = {},
                             .spin = {}};
   Energies energy;
+  bool unjudged = false;
   for (std::size_t i = 0; i < rod->spans.size(); ++i) {
     const RodSpan& span = rod->spans[i];
     const SpanEquilibrium& equilibrium = rod->equilibria[i];
@@ -142,7 +179,8 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
     energy.bending += equilibrium.energy.bending;
     energy.twisting += equilibrium.energy.twisting;
     energy.gravity += equilibrium.energy.gravity;
-    energy.load += equilibrium.energy.load;
+    energy.load += equilibrium.energy.load + energy_of_couples(span, equilibrium, tolerance);
+    unjudged = unjudged || couples_leave_plane(span, equilibrium);
     const std::vector<RodState> before = before_nodes(span, equilibrium, tolerance);
     add_reactions(problem, span, equilibrium, before, result.grips);
     add_twists(problem, span, equilibrium, before, result.twists);
@@ -159,6 +197,12 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
   result.energy = restore(problem, energy);
   add_loads_on_clamps(problem, result);
   judge(stability, result);
+  if (has_couples(problem)) result.message += in_the_plane;
+  if (unjudged) {
+    result.status = SolveStatus::not_verified;
+    result.message =
+        "an equilibrium whose stability is not judged: out of a plane a couple has no potential";
+  }
   result.sample = [problem, rod, tolerance](std::span<const double> arc_lengths) {
     return sample(problem, *rod, tolerance, arc_lengths);
   };

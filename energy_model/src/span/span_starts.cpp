@@ -81,8 +81,9 @@ class GrippedField {
       } else if (span.start_direction) {
         along = *span.start_direction;
       }
-      Eigen::Vector3d down = span.weight - span.weight.dot(along) * along;
-      if (down.norm() < 1e-9 * (1 + span.weight.norm())) down = across(span, along);
+      const Eigen::Vector3d weight = span.mean_weight();
+      Eigen::Vector3d down = weight - weight.dot(along) * along;
+      if (down.norm() < 1e-9 * (1 + weight.norm())) down = across(span, along);
       down.normalize();
       if (pattern.out_of_plane) down = along.cross(down);
       chords_.push_back({along, down, slack_amplitude(std::min(1.0, ratio))});
@@ -197,7 +198,7 @@ TangentField field(Tangent tangent) {
 std::optional<TangentField> lying_field(const Span& span, const Span::Obstacle& obstacle) {
   if (!obstacle.body.is_half_space()) return {};
   const Eigen::Vector3d normal = obstacle.body.normal();
-  const double pressed = -span.weight.dot(normal);
+  const double pressed = -span.mean_weight().dot(normal);
   const double height = obstacle.body.clearance(Eigen::Vector3d::Zero());
   const Eigen::Vector3d& start = *span.start_direction;
   const Eigen::Vector3d along = start - start.dot(normal) * normal;

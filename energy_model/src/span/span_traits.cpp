@@ -1,6 +1,7 @@
 #include "span/span_traits.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 #include <stdexcept>
 
@@ -21,6 +22,17 @@ double longest_without_load(const Span& span) {
     begin = load.at;
   }
   return std::max(longest, span.length - begin);
+}
+
+/// A bound on the curvature.
+double bent_by_couples(const Span& span) {
+  double couples = 0;
+  for (const Span::Load& load : span.loads) couples += std::abs(load.couple);
+  double softest = span.stiffness.head<2>().minCoeff();
+  for (const Span::Part& part : span.parts) {
+    softest = std::min(softest, part.stiffness.head<2>().minCoeff());
+  }
+  return couples / softest;
 }
 
 int unknowns_by_term(const Span& span) {
@@ -48,9 +60,9 @@ SpanTraits::SpanTraits(const Span& span)
   for (const Piece& piece : pieces_of(span)) {
     longest_piece = std::max(longest_piece, piece.length);
   }
-  if (!span.has_material_directors()) return;
-  // The rotation of the stress-free shape has to be resolved as well.
-  const double curvature = span.natural.largest();
+  if (!span.has_material_directors() && !span.has_couples()) return;
+  // The rotation of the stress-free shape, and by couples, has to be resolved as well.
+  const double curvature = span.natural.largest() + bent_by_couples(span);
   natural_terms = first_terms(curvature * curvature, longest_piece);
 }
 

@@ -19,7 +19,7 @@ struct SpanTraits {
   int fields;
   bool adapted;  ///< pieces end where a shape that is known wants it
   double longest_piece = 0;
-  int natural_terms = 0;  ///< that natural strains take
+  int natural_terms = 0;  ///< that natural strains take, and couples
   bool taut = false;      ///< pieces end where the layers at taut segments' ends have decayed
   double stiffness = 0;   ///< of the tautest segment along its chord
 };

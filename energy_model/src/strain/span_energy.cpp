@@ -80,6 +80,18 @@ void SpanEnergy::tabulate_natural_angles() {
   }
 }
 
+void SpanEnergy::tabulate_couples() {
+  couples_work_.resize(0);
+  if (!span_.has_couples()) return;
+  couples_work_.setZero(columns_);
+  for (const Span::Load& load : span_.loads) {
+    if (free_start_ == 1) couples_work_[0] += load.couple;
+    for (Eigen::Index e = 0; e < pieces_before(pieces_, load.at); ++e) {
+      couples_work_[free_start_ + e * terms_] += load.couple * piece(e).angle(0);
+    }
+  }
+}
+
 void SpanEnergy::tabulate_forces() {
   const Eigen::Index nodes = s_.size();
   force_.resize(nodes, 3);
@@ -136,6 +148,7 @@ void SpanEnergy::reset(const Span& span, int terms) {
   if (span.planar) {
     if (!has_angles) tabulate_angles();
     tabulate_natural_angles();
+    tabulate_couples();
     start_theta_ = span.start_direction ? angle_of(*span.start_direction) : 0;
     for (DirectorRow& row : director_rows_) {
       row.angle = nearest_turn(angle_of(row.to), start_theta_) - natural_turn(row.piece);
@@ -223,6 +236,10 @@ double SpanEnergy::value(const Eigen::Ref<const Eigen::VectorXd>& x,
     dot_in_plane(total_, t_theta_, turning_);
     multiply(angle_transposed_, turning_, pulled_);
     gradient -= pulled_;
+    if (couples_work_.size() > 0) {
+      energy -= couples_work_.dot(x);
+      gradient -= couples_work_;
+    }
   } else {
     frames_.pull({&total_}, -1, state_, gradient);
   }
@@ -689,6 +706,11 @@ Energies SpanEnergy::energies(const Eigen::VectorXd& x) {
     }
   }
   energies.gravity = -force_.cwiseProduct(t_).sum() - energies.load;
+  if (couples_work_.size() > 0) energies.load -= couples_work_.dot(x);
+  for (const Span::Load& load : span_.loads) {
+    if (natural_angle_.size() > 0)
+      energies.load -= load.couple * span_.natural.integral(load.at).x();
+  }
   energies.contact = soft_contact_.energy();
   return energies;
 }

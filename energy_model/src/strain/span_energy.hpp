@@ -174,6 +174,7 @@ class SpanEnergy {
   [[nodiscard]] bool has_psi() const { return span_.twist && !span_.has_material_directors(); }
   void tabulate_angles();
   void tabulate_natural_angles();
+  void tabulate_couples();
   void tabulate_forces();
   void carry(const Eigen::Ref<const Eigen::VectorXd>& multipliers);
   void add_angles_squared(Eigen::Ref<Eigen::MatrixXd> result);
@@ -202,6 +203,7 @@ class SpanEnergy {
   Eigen::MatrixXd angle_transposed_;  // its transpose
   Eigen::MatrixXd held_angle_;        // of the director rows by unknown
   Eigen::VectorXd natural_angle_;     // of the nodes, from the start's; empty: zero
+  Eigen::VectorXd couples_work_;      // by unknown, of the loads' couples; empty: none
   // In space
   Eigen::Matrix3d start_frame_ = Eigen::Matrix3d::Identity();
   RodFrames frames_;

@@ -205,6 +205,7 @@ std::vector<Piece> pieces_of(const Span& span) {
   for (const Span::Hold& hold : span.holds) cuts.push_back(hold.at);
   for (const Span::Load& load : span.loads) cuts.push_back(load.at);
   for (const Span::Part& part : span.parts) cuts.insert(cuts.end(), {part.begin, part.end});
+  for (const LineLoad& load : span.line_loads) cuts.insert(cuts.end(), {load.begin, load.end});
   for (const Span::Contact& contact : span.contacts) {
     cuts.insert(cuts.end(), {contact.begin, contact.end});
   }

@@ -32,6 +32,7 @@ Eigen::Vector3d SpanEnergy::start_torque(const Eigen::VectorXd& multipliers) con
     return t_.col(a).dot(force_.col(b)) - t_.col(b).dot(force_.col(a));
   };
   moment.z() += carried(0, 1);
+  for (const Span::Load& load : span_.loads) moment.z() += load.couple;
   if (!span_.planar) moment.head<2>() += Eigen::Vector2d(carried(1, 2), carried(2, 0));
   if (contacts_.count() > 0) {
     moment += contacts_.moment(multipliers.segment(first_contact_row(), contacts_.count()), t_);

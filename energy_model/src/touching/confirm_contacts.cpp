@@ -108,8 +108,9 @@ class ClosedRod {
   /// Of an interval that lies: what of n its weight does not take.
   void add_pressure(Eigen::Index i, ContactPart& part) const {
     const std::vector<RodState> states = along(i);
-    const double width = closed_.s[i + 1] - closed_.s[i];
-    part.force += force_unit_ * (states.front().n - states.back().n - width * section_of(i).weight);
+    part.force +=
+        force_unit_ * (states.front().n - states.back().n -
+                       section_of(i).weight_from(closed_.s[i], closed_.s[i + 1] - closed_.s[i]));
     for (const RodState& state : states) {
       const double p = pressure(*closed_.contacts.surface_of(i), section_of(i), state);
       part.largest_pressure = std::max(part.largest_pressure, force_unit_ / problem_.length * p);

@@ -27,12 +27,17 @@ double gamma_of(const Problem& problem) {
   const double l = problem.length;
   double force = l * problem.weight_per_length.norm();
   for (const Load& load : problem.loads) force += load.force.norm();
+  for (const LineLoad& load : problem.line_loads) force += load.between(0, l).norm();
   return force * l * l / bending_unit(problem);
 }
 
 Problem with_share(Problem problem, double share) {
   problem.weight_per_length *= share;
   for (Load& load : problem.loads) load.force *= share;
+  for (LineLoad& load : problem.line_loads) {
+    load.at_begin *= share;
+    load.at_end *= share;
+  }
   return problem;
 }
 

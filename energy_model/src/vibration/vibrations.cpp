@@ -42,11 +42,19 @@ Problem with_slack(const Problem& problem) {
 }
 
 /// @throws std::invalid_argument if anything could bend or twist it
+void require_no_couples(const Problem& problem) {
+  require(!has_couples(problem), "vibrations", "torque of a load", 1,
+          "0: out of the plane of the rod a couple has no potential");
+}
+
 void require_nothing_bends(const Problem& problem) {
   const char* where = "taut_vibrations";
   double weight = problem.weight_per_length.norm();
   for (const Section& section : problem.sections) {
     weight = std::max(weight, section.weight_per_length.norm());
+  }
+  for (const LineLoad& load : problem.line_loads) {
+    weight = std::max({weight, load.at_begin.norm(), load.at_end.norm()});
   }
   require(weight == 0, where, "weight_per_length", weight,
           "0: what weighs does not hang straight, or is pulled endlessly");
@@ -66,6 +74,7 @@ double VibrationMode::omega() const { return std::sqrt(omega_squared); }
 Vibrations vibrations(const Problem& problem, const Inertia& inertia, const Equilibrium& known,
                       const VibrationOptions& options) {
   check(problem);
+  require_no_couples(problem);
   check(problem, inertia, "vibrations");
   check_options(options);
   Vibrations result;
@@ -109,6 +118,7 @@ Vibrations taut_vibrations(const Problem& problem, const Inertia& inertia, doubl
   check(slack, inertia, where);
   check_options(options);
   require(std::isfinite(tension), where, "tension", tension, "finite");
+  require_no_couples(problem);
   require_nothing_bends(problem);
   if (!is_held_straight(problem)) {
     throw std::invalid_argument(std::string(where) +

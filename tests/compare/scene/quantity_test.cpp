@@ -47,6 +47,14 @@ constexpr UnitCase unit_cases[] = {
     {Dimension::force, "N", 1, none},
     {Dimension::force, "mN", 1000, none},
     {Dimension::force, "kN", none, 1000},
+    {Dimension::force_per_length, "N/m", 1, none},
+    {Dimension::force_per_length, "mN/m", 1000, none},
+    {Dimension::force_per_length, "kN/m", none, 1000},
+    {Dimension::force_per_length, "N/mm", none, 1000},
+    {Dimension::torque, "N m", 1, none},
+    {Dimension::torque, "mN m", 1000, none},
+    {Dimension::torque, "N mm", 1000, none},
+    {Dimension::torque, "kN m", none, 1000},
     {Dimension::acceleration, "m/s^2", 1, none},
     {Dimension::curvature, "1/m", 1, none},
     {Dimension::curvature, "1/cm", none, 100},
@@ -74,7 +82,8 @@ TEST(Quantity, EveryUnitHasItsFactor) {
   for (const Dimension dimension :
        {Dimension::number, Dimension::length, Dimension::angle, Dimension::pressure,
         Dimension::density, Dimension::force, Dimension::acceleration, Dimension::curvature,
-        Dimension::foundation, Dimension::section_stiffness, Dimension::joint_stiffness}) {
+        Dimension::foundation, Dimension::section_stiffness, Dimension::joint_stiffness,
+        Dimension::force_per_length, Dimension::torque}) {
     EXPECT_EQ(tested[dimension], known_units(dimension));
   }
 }

@@ -30,8 +30,8 @@ struct MaterialFitOptions {
   double direction_tolerance = 0;
   /// The same of the grippers' positions along each axis [m].
   double position_tolerance = 0;
-  /// Clamps are off alike in all shapes, as those of one fixture are: the numbers of their
-  /// directions and positions are shared (MaterialFit::clamps). Else each shape has its own.
+  /// Clamps are misaligned alike in all shapes, as in one fixture: the numbers of their directions
+  /// and positions are shared (MaterialFit::clamps). Else each shape has its own.
   bool shared_clamps = false;
   /// Each shape in turn is left out of the fit, and predicted (MaterialFit::prediction).
   bool predict = false;

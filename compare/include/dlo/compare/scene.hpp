@@ -39,14 +39,31 @@ struct Gripper {
   bool operator==(const Gripper&) const = default;
 };
 
-/// A force that keeps its direction.
+/// A force that keeps its direction and a couple that keeps its axis.
 struct PointLoad {
-  double at = 0;                                    ///< arc length [m]
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N]; of a mass in the file, its weight
-  double mass = 0;                                  ///< [kg], of what hangs there and would move
+  double at = 0;                                     ///< arc length [m]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N]; of a mass in the file, its weight
+  double mass = 0;                                   ///< [kg], of what hangs there and would move
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m], across the rod's plane
 
   /// In every field.
   bool operator==(const PointLoad&) const = default;
+};
+
+/// A dead force per length besides the weight.
+struct DistributedLoad {
+  double from = 0;  ///< arc length [m]
+  double to = 0;    ///< arc length [m], > from
+  /// At equal distances from `from` to `to`, linear between [N/m]; one: the same all along.
+  std::vector<Eigen::Vector3d> force_per_length;
+
+  /// Of the rod between two arc lengths [N].
+  [[nodiscard]] Eigen::Vector3d between(double begin, double end) const;
+  /// Sum of its sizes [N]; no less than that of its forces.
+  [[nodiscard]] double size() const;
+
+  /// In every field.
+  bool operator==(const DistributedLoad&) const = default;
 };
 
 /// A body that the rod's axis stays out of: one that its surface must not enter, as a scene file
@@ -142,11 +159,12 @@ struct Scene {
   Eigen::Vector3d natural_strain = Eigen::Vector3d::Zero();
   /// What the curvature varies by: coefficients of Legendre's P_1, P_2, .. of 2 s/l - 1 [1/m].
   std::vector<Eigen::Vector2d> natural_variation;
-  std::vector<Gripper> grippers;    ///< one or more, in the file's order
-  std::vector<PointLoad> loads;     ///< may be empty
-  std::vector<Obstacle> obstacles;  ///< may be empty
-  ForceModelSettings force_model;   ///< as the file has it
-  TrackRates track;                 ///< as the file has it
+  std::vector<Gripper> grippers;                   ///< one or more, in the file's order
+  std::vector<PointLoad> loads;                    ///< may be empty
+  std::vector<DistributedLoad> distributed_loads;  ///< may be empty; they add up
+  std::vector<Obstacle> obstacles;                 ///< may be empty
+  ForceModelSettings force_model;                  ///< as the file has it
+  TrackRates track;                                ///< as the file has it
 
   [[nodiscard]] double cross_section() const;  ///< A [m^2]; 0 if its sizes are not known
   /// I / A of it about d1 and d2 [m^2]; 0 likewise.
@@ -181,6 +199,15 @@ struct Scene {
   [[nodiscard]] Eigen::Vector3d weight_per_length() const;
   /// Of the rod between two arc lengths [N], 0 <= begin <= end <= length.
   [[nodiscard]] Eigen::Vector3d weight_between(double begin, double end) const;
+  /// Of distributed loads, as above [N].
+  [[nodiscard]] Eigen::Vector3d distributed_between(double begin, double end) const;
+  /// Sum of the sizes of all loads, weight not counted; of couples over the length [N].
+  [[nodiscard]] double total_of_loads() const;
+  /// Whether a load has a couple.
+  [[nodiscard]] bool has_couples() const;
+  /// @param who  does not take couples, as "the polygons of models force and chain do"
+  /// @throws InputError if there are some
+  void require_no_couples(const char* who) const;
   /// int 1/GJ ds between two arc lengths [1/(N m)], as above; of a rod with a GJ.
   [[nodiscard]] double twisting_compliance(double begin, double end) const;
   /// int 1/EI ds between two arc lengths [1/(N m)], as above.

@@ -49,7 +49,7 @@ struct SceneEnergies {
   double bending = 0;   ///< of the joints or the curvature
   double twisting = 0;  ///< where the scene holds twist, but for Solution::neglected
   double gravity = 0;   ///< of the rod's weight
-  double load = 0;      ///< of point loads
+  double load = 0;      ///< of loads, at points and per length
   double stretch = 0;   ///< of elastic segments
   double contact = 0;   ///< of obstacles that yield
 

@@ -38,11 +38,11 @@ using StartingShape = std::function<Samples(std::span<const double>)>;
 
 /// What a moving rod has and has done, up to one time [J].
 struct EnergyBalance {
-  double kinetic = 0;    ///< of the points' movement
-  double bending = 0;    ///< int 1/2 EI kappa^2 ds
-  double gravity = 0;    ///< of the rod's weight; zero where points sit at the first grip at time 0
-  double load = 0;       ///< of dead loads, the same
-  double obstacles = 0;  ///< of the springs of what yields, and of those that stand for rigid ones
+  double kinetic = 0;     ///< of the points' movement
+  double bending = 0;     ///< int 1/2 EI kappa^2 ds
+  double gravity = 0;     ///< of weight and line loads; zero at the first grip at time 0
+  double load = 0;        ///< of dead loads, the same
+  double obstacles = 0;   ///< of the springs of what yields, and of those that stand for rigid ones
   double dissipated = 0;  ///< since the begin, in the material and in the air
   double lost = 0;        ///< since the begin, on rigid obstacles
   double work = 0;        ///< since the begin, of grips and of obstacles that move on the rod

@@ -29,10 +29,26 @@ struct Grip {
   std::optional<FrameHold> frame;                      ///< of a clamp
 };
 
-/// A dead force.
+/// A dead force and a dead couple, which keeps its axis. A couple has a potential in a plane alone,
+/// minus torque times the tangent's angle: `energy` takes it across the plane of the rod, of what
+/// touches nothing and holds no frame. `exact` takes any; out of the plane nobody judges stability.
 struct Load {
-  double at = 0;                                    ///< arc length [m], 0 .. length
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N]
+  double at = 0;                                     ///< arc length [m], 0 .. length
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N]
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
+};
+
+/// A dead force per length besides the weight, linear along its part.
+struct LineLoad {
+  double begin = 0;                                    ///< arc length [m], 0 .. length
+  double end = 0;                                      ///< arc length [m], > begin
+  Eigen::Vector3d at_begin = Eigen::Vector3d::Zero();  ///< [N/m]
+  Eigen::Vector3d at_end = Eigen::Vector3d::Zero();    ///< [N/m]
+
+  /// By which it grows [N/m^2].
+  [[nodiscard]] Eigen::Vector3d slope() const { return (at_end - at_begin) / (end - begin); }
+  /// Of what lies between two arc lengths [N]; negative where `to` comes first.
+  [[nodiscard]] Eigen::Vector3d between(double from, double to) const;
 };
 
 /// A body that the rod's axis may not enter.
@@ -74,6 +90,7 @@ struct Problem {
   Eigen::Vector3d weight_per_length = Eigen::Vector3d::Zero();  ///< rho A g [N/m]
   std::vector<Grip> grips;                                      ///< one or more
   std::vector<Load> loads;                                      ///< may be empty
+  std::vector<LineLoad> line_loads;                             ///< may be empty; they add up
   std::vector<Obstacle> obstacles;                              ///< may be empty
   std::vector<Section> sections;  ///< where it is another one, by arc length, none over another
   /// Strains u of the stress-free shape about d1, d2 and the tangent t, of which t' = u2 d1 - u1 d2
@@ -89,17 +106,22 @@ struct Problem {
 /// one of its sections has two bending stiffnesses, were they equal. A round straight rod has none.
 [[nodiscard]] bool has_material_directors(const Problem& problem);
 
+/// Whether a load has a couple.
+[[nodiscard]] bool has_couples(const Problem& problem);
+
 /// Whether each member is in its range. That the rod reaches from grip to grip is for the solvers
 /// to ask.
 /// @throws std::invalid_argument naming the first member that is not, its value and its range
 void check(const Problem& problem);
 
-/// Energies [J]; gravity and loads are zero where their points sit at the first grip.
+/// Energies [J]; gravity and loads are zero where their points sit at the first grip, couples where
+/// the tangent has the direction of the clamp before (else of that after; without a clamp up to a
+/// constant). Out of a plane couples have none.
 struct Energies {
   double bending = 0;   ///< int 1/2 (EI_1 u1^2 + EI_2 u2^2) ds, of what is not natural of u
   double twisting = 0;  ///< int 1/2 GJ tau^2 ds, tau the twist per length that is not natural
   double gravity = 0;   ///< of the rod's weight
-  double load = 0;      ///< of point loads
+  double load = 0;      ///< of loads, at points and per length
   double contact = 0;   ///< of obstacles that yield: int 1/2 k d^2 ds, d the depth
 
   /// Of all [J].

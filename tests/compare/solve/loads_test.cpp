@@ -1,0 +1,184 @@
+// Couples and distributed loads of a scene: what its file may say, and what each model makes of it.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "../scenes.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "dlo/compare/solve.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using test::heavy_scene;
+
+const std::string rod = R"([rod]
+length = "2 m"
+bending_stiffness = "0.5 N m^2"
+mass_per_length = "20 g/m"
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = "0 deg"
+)";
+
+std::string refused(const std::string& loads) {
+  try {
+    (void)parse_scene(rod + loads, "my.toml");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+void expect_refused(const std::string& loads, const std::vector<std::string>& parts) {
+  const std::string said = refused(loads);
+  for (const std::string& part : parts) EXPECT_NE(said.find(part), std::string::npos) << said;
+}
+
+double apart(const Solution& a, const Solution& b) {
+  return (a.shape.points - b.shape.points).cwiseAbs().maxCoeff();
+}
+
+TEST(Loads, OfAFileHaveUnitsAndPlaces) {
+  const Scene scene = parse_scene(rod + R"([[load]]
+at = "50 cm"
+torque = [0, 0, "200 mN m"]
+[[load]]
+at = "2 m"
+force = [0, "1 N", 0]
+torque = [0, 0, "-200 N mm"]
+[[distributed_load]]
+force_per_length = [0, "0.3 N/m", 0]
+[[distributed_load]]
+from = "40 cm"
+to = "1 m"
+force_per_length = [[0, 1, 0], [0, 3, 0], ["1 mN/m", 0, 0]]
+)",
+                                  "my.toml");
+  EXPECT_EQ(scene.loads[0].force, Eigen::Vector3d(0, 0, 0));
+  EXPECT_EQ(scene.loads[0].torque, Eigen::Vector3d(0, 0, 0.2));
+  EXPECT_EQ(scene.loads[1].torque, Eigen::Vector3d(0, 0, -0.2));
+  ASSERT_EQ(scene.distributed_loads.size(), 2U);
+  EXPECT_EQ(scene.distributed_loads[0].from, 0);
+  EXPECT_EQ(scene.distributed_loads[0].to, 2);
+  // The means of its halves are 2 and 1.5 N/m.
+  EXPECT_NEAR(scene.distributed_loads[1].between(0, 2).y(), 0.3 * 2 + 0.3 * 1.5, 1e-14);
+  EXPECT_NEAR(scene.distributed_between(0, 0.55).y(), 0.3 * 0.55 + 0.15 * 1.5, 1e-14);
+}
+
+TEST(Loads, RefusalsNameTheKeyThePlaceAndWhatIsAllowed) {
+  expect_refused("[[load]]\nat = 0.5\n", {"my.toml:9", "load.force", "missing"});
+  expect_refused("[[load]]\nat = 0.5\ntorque = [0, 0, \"1 N\"]\n",
+                 {"my.toml:11", "load.torque", "N m"});
+  expect_refused("[[load]]\nat = 0.5\ntorque = [0, 1, 0]\n",
+                 {"my.toml:11", "load.torque", "in one plane"});
+  expect_refused(
+      "[[load]]\nat = 0.5\ntorque = [0, 0, 1]\n[[obstacle]]\npoint = [0, -1, 0]\n"
+      "normal = [0, 1, 0]\n",
+      {"load.torque", "obstacles"});
+  expect_refused("[[distributed_load]]\nfrom = 1\nto = 0.5\nforce_per_length = [0, 1, 0]\n",
+                 {"my.toml:11", "distributed_load.to", "to > from"});
+  expect_refused("[[distributed_load]]\nforce = [0, 1, 0]\n",
+                 {"my.toml:10", "unknown key", "force_per_length"});
+  expect_refused("[[distributed_load]]\nforce_per_length = [[0, 1, 0]]\n",
+                 {"distributed_load.force_per_length", "2 to"});
+  expect_refused("[[distributed_load]]\nforce_per_length = [0, \"1 N\", 0]\n",
+                 {"force_per_length", "N/m"});
+}
+
+TEST(Loads, DistributedInsteadOfTheWeightBendAlikeInEveryModel) {
+  Scene heavy = heavy_scene(5, 20);
+  heavy.force_model.law = BendingLaw::hooke;
+  heavy.force_model.bookkeeping = Bookkeeping::consistent;
+  Scene loaded = heavy;
+  loaded.distributed_loads = {{0, 1, {heavy.weight_per_length()}}};
+  loaded.gravity.setZero();
+  for (const Model model : {Model::energy, Model::exact, Model::chain, Model::force}) {
+    SCOPED_TRACE(to_string(model));
+    const Solution one = solve(heavy, model);
+    const Solution other = solve(loaded, model);
+    EXPECT_LT(apart(one, other), model == Model::force ? 1e-7 : 1e-12);
+    EXPECT_NEAR(other.energy.gravity, 0, 1e-12);
+    // Steps end where the force model is nearly at rest.
+    const double rest = model == Model::force ? 1e-6 : 1e-9;
+    EXPECT_NEAR(other.energy.load, one.energy.gravity, rest * std::abs(one.energy.gravity));
+    EXPECT_LT((other.grippers[0].force - one.grippers[0].force).norm(),
+              1e-6 * one.grippers[0].force.norm());
+  }
+}
+
+TEST(Loads, ChainsOfAPartlyLoadedRodConvergeAtSecondOrder) {
+  Scene scene = heavy_scene(1, 0);
+  const double w = scene.weight_per_length().norm();
+  scene.distributed_loads = {{0.25, 0.75, {{0, -8 * w, 0}, {3 * w, 5 * w, 0}}},
+                             {0.5, 1, {{0, 6 * w, 0}}}};
+  scene.force_model.law = BendingLaw::hooke;
+  scene.force_model.bookkeeping = Bookkeeping::consistent;
+  std::vector<double> errors;
+  for (const int points : {24, 96, 384}) {
+    scene.force_model.points = points;
+    const Solution chain = solve(scene, Model::chain);
+    const Solution energy = solve(scene, Model::energy, {}, chain.shape.arc_length);
+    errors.push_back(apart(chain, energy));
+  }
+  EXPECT_NEAR(std::log(errors[0] / errors[2]) / std::log(16), 2, 0.2);
+  EXPECT_LT(errors[2], 1e-5);
+}
+
+TEST(Loads, TensionCountsWhatIsDistributed) {
+  Scene hanging = heavy_scene(1, -90);
+  const double w = hanging.weight_per_length().norm();
+  hanging.distributed_loads = {{0, 0.5, {{0, -2 * w, 0}}}};
+  const Solution solution = solve(hanging, Model::energy, {}, {0, 0.25, 0.75});
+  EXPECT_NEAR(solution.tension[0], 2 * w, 1e-9 * w);
+  EXPECT_NEAR(solution.tension[1], 0.75 * w + 0.5 * w, 1e-9 * w);
+  EXPECT_NEAR(solution.tension[2], 0.25 * w, 1e-9 * w);
+}
+
+TEST(Loads, AMediumBearsWhatTheRodDisplaces) {
+  const auto scene_of = [](double density, const std::string& medium) {
+    return parse_scene(
+        "[rod]\nlength = 2\ndiameter = 0.01\nmaterial = { youngs_modulus = 1e8, "
+        "density = " +
+            std::to_string(density) +
+            " }\n[[gripper]]\nat = 0\n"
+            "position = [0, 0, 0]\ndirection = \"0 deg\"\n" +
+            medium,
+        "my.toml");
+  };
+  const std::string water = "[medium]\ndensity = \"1000 kg/m^3\"\n";
+  const Solution immersed = solve(scene_of(1400, water), Model::energy);
+  EXPECT_LT(apart(immersed, solve(scene_of(400, ""), Model::energy)), 1e-11);
+  const Solution floats = solve(scene_of(1000, water), Model::exact);
+  EXPECT_LT(floats.shape.points.row(1).cwiseAbs().maxCoeff(), 1e-12);
+  expect_refused("[medium]\ndensity = 1000\n", {"medium.density", "diameter"});
+}
+
+TEST(Loads, ACoupleIsForEnergyAndExactAndOthersSaySo) {
+  Scene scene = heavy_scene(0.5, 0);
+  const double torque = 0.8 * std::numbers::pi * scene.bending_stiffness();
+  scene.loads = {{.at = 1, .torque = {0, 0, torque}}};
+  EXPECT_TRUE(scene.planar());
+  const Solution energy = solve(scene, Model::energy);
+  EXPECT_LT(apart(energy, solve(scene, Model::exact)), 1e-9);
+  EXPECT_NE(energy.message.find("in the plane alone"), std::string::npos) << energy.message;
+  for (const Model model : {Model::chain, Model::force}) {
+    try {
+      (void)solve(scene, model);
+      FAIL();
+    } catch (const InputError& error) {
+      const std::string said = error.what();
+      EXPECT_NE(said.find("load.torque"), std::string::npos) << said;
+      EXPECT_NE(said.find("--model energy or exact"), std::string::npos) << said;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace dlo::compare

@@ -1,0 +1,198 @@
+// Couples: arcs that they roll a rod into, their jump of the moment, energy against shooting, and
+// what is said where they have no potential.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "dlo/energy_model/dynamics.hpp"
+#include "dlo/energy_model/energy.hpp"
+#include "dlo/energy_model/exact.hpp"
+#include "dlo/energy_model/vibrations.hpp"
+#include "equilibrium_balance.hpp"
+#include "problems.hpp"
+#include "random_problems.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using std::numbers::pi;
+using test::heavy_cantilever;
+using test::RandomNumbers;
+using test::two_clamps;
+
+using Solve = Equilibrium (*)(const Problem&);
+const std::vector<Solve> both = {+[](const Problem& p) { return solve_energy(p); },
+                                 +[](const Problem& p) { return solve_exact(p); }};
+
+Problem with_couple(Problem problem, double at, double torque) {
+  problem.loads.push_back({at, {0, 0, 0}, {0, 0, torque}});
+  return problem;
+}
+
+double couple_apart(const Equilibrium& a, const Equilibrium& b) {
+  const std::vector<double> s = equal_arc_lengths(1, 41);
+  return (a.sample(s).points - b.sample(s).points).cwiseAbs().maxCoeff();
+}
+
+TEST(Couple, AtTheTipRollsTheRodIntoAnArc) {
+  for (const double lambda : {0.8, 2.0, -1.3, 3.5}) {
+    const double torque = lambda * pi;  // and the arc's angle
+    for (const Solve solve : both) {
+      const Equilibrium result = solve(with_couple(heavy_cantilever(0, 0), 1, torque));
+      ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+      EXPECT_NE(result.message.find("in the plane alone"), std::string::npos) << result.message;
+      const std::vector<double> s = {0.25, 1};
+      const Samples shape = result.sample(s);
+      for (Eigen::Index i = 0; i < 2; ++i) {
+        const double angle = torque * s[static_cast<std::size_t>(i)];
+        EXPECT_NEAR(shape.points(0, i), std::sin(angle) / torque, 1e-11);
+        EXPECT_NEAR(shape.points(1, i), (1 - std::cos(angle)) / torque, 1e-11);
+      }
+      EXPECT_NEAR(result.energy.bending, torque * torque / 2, 1e-9);
+      EXPECT_NEAR(result.energy.load, -torque * torque, 1e-9);
+      EXPECT_NEAR(result.grips[0].torque.z(), -torque, 1e-9);
+    }
+  }
+}
+
+TEST(Couple, InTheMiddleBendsWhatIsBeforeIt) {
+  constexpr double at = 0.4;
+  constexpr double torque = 5;
+  for (const Solve solve : both) {
+    const Equilibrium result = solve(with_couple(heavy_cantilever(0, 90), at, torque));
+    ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+    const std::vector<double> s = {0.2, 0.7};
+    const Samples shape = result.sample(s);
+    EXPECT_NEAR(shape.curvature.col(0).norm(), torque, 1e-9);
+    EXPECT_NEAR(shape.curvature.col(1).norm(), 0, 1e-9);
+    // Upwards, then to the left.
+    EXPECT_NEAR(shape.tangents(0, 1), -std::sin(torque * at), 1e-10);
+    EXPECT_NEAR(shape.tangents(1, 1), std::cos(torque * at), 1e-10);
+    EXPECT_NEAR(result.energy.load, -torque * torque * at, 1e-9);
+  }
+}
+
+TEST(Couple, SeenFromTheOtherEndIsTheSame) {
+  Problem problem = with_couple(heavy_cantilever(5, 20), 0.6, 4);
+  problem.loads[0].force = {1, 2, 0};
+  Problem reversed = problem;
+  reversed.grips[0].at = 1;
+  *reversed.grips[0].direction *= -1;
+  reversed.loads[0].at = 0.4;
+  const std::vector<double> s = {0, 0.3, 1};
+  const std::vector<double> back = {1, 0.7, 0};
+  const Equilibrium one = solve_energy(problem);
+  for (const Solve solve : both) {
+    const Equilibrium other = solve(reversed);
+    ASSERT_EQ(other.status, SolveStatus::converged) << other.message;
+    EXPECT_LT((one.sample(s).points - other.sample(back).points).norm(), 1e-9);
+    EXPECT_NEAR(other.energy.load, one.energy.load, 1e-9);
+    EXPECT_LT((other.grips[0].torque - one.grips[0].torque).norm(), 1e-8);
+  }
+}
+
+TEST(Couple, OnAClampIsTheGrippersAlone) {
+  for (const Solve solve : both) {
+    const Equilibrium result = solve(with_couple(heavy_cantilever(2, 0), 0, 3));
+    EXPECT_EQ(couple_apart(result, solve(heavy_cantilever(2, 0))), 0);
+    const double without = solve(heavy_cantilever(2, 0)).grips[0].torque.z();
+    EXPECT_NEAR(result.grips[0].torque.z(), without - 3, 1e-12);
+  }
+}
+
+TEST(Couple, EnergyFindsWhatShootingFindsOnRandomCantilevers) {
+  int found = 0;
+  for (std::uint64_t seed = 0; seed < 15; ++seed) {
+    SCOPED_TRACE(seed);
+    RandomNumbers random(seed);
+    Problem problem = heavy_cantilever(random.uniform(0, 15), random.uniform(-180, 180));
+    for (int i = 1 + random.below(2); i > 0; --i) {
+      const double at = random.chance(0.4) ? 1 : random.uniform(0.1, 1);
+      problem = with_couple(problem, at, random.uniform(-6, 6));
+      const Eigen::Vector3d force = random.direction(test::RandomSpace::plane);
+      if (random.chance(0.5)) problem.loads.back().force = 5 * random.uniform() * force;
+    }
+    const Equilibrium energy = solve_energy(problem);
+    if (!succeeded(energy.status)) continue;
+    EXPECT_LT(test::balance_of(problem, energy, 0.02).worst(), 1e-7);
+    const std::vector<Equilibrium> all = all_exact(problem);
+    ASSERT_FALSE(all.empty());
+    const bool among = std::any_of(all.begin(), all.end(), [&](const Equilibrium& exact) {
+      return succeeded(exact.status) && couple_apart(energy, exact) < 1e-8 &&
+             std::abs(energy.energy.total() - exact.energy.total()) < 1e-8;
+    });
+    EXPECT_TRUE(among) << energy.message;
+    found += among ? 1 : 0;
+  }
+  EXPECT_GE(found, 14);
+}
+
+TEST(Couple, BetweenClampsShootingConfirmsTheEnergysShape) {
+  Problem clamps = two_clamps(10, 0.8);
+  Problem pins = two_clamps(10, 0.8);
+  for (Grip& grip : pins.grips) grip.direction.reset();
+  Problem overhang = two_clamps(3, 0.6);
+  overhang.grips[1].at = 0.7;
+  Problem curved = two_clamps(10, 0.8);
+  curved.natural_strains = {{0, 2, 0}};
+  curved.torsional_stiffness = 0.8;
+  for (const Problem& held : {clamps, pins, overhang, curved}) {
+    const Problem problem = with_couple(held, 0.35, 3);
+    const Equilibrium energy = solve_energy(problem);
+    ASSERT_TRUE(succeeded(energy.status)) << energy.message;
+    EXPECT_LT(test::balance_of(problem, energy, 0.02).worst(), 1e-7);
+    ExactOptions options;
+    options.start = &energy;
+    const Equilibrium exact = solve_exact(problem, options);
+    ASSERT_TRUE(succeeded(exact.status)) << exact.message;
+    EXPECT_LT(couple_apart(energy, exact), 1e-8);
+    for (std::size_t i = 0; i < 2; ++i) {
+      EXPECT_LT((energy.grips[i].torque - exact.grips[i].torque).norm(), 1e-6);
+    }
+    if (held.grips[0].direction) {
+      EXPECT_NEAR(energy.energy.load, exact.energy.load, 1e-8);
+    }
+    EXPECT_NEAR(energy.energy.bending, exact.energy.bending, 1e-7);
+  }
+}
+
+TEST(Couple, AShapeThatHasForgottenItIsNoEquilibrium) {
+  const Problem without = two_clamps(10, 0.8);
+  const Problem problem = with_couple(without, 0.35, 0.5);
+  EXPECT_GT(test::balance_of(problem, solve_energy(without), 0.02).worst(), 1e-3);
+  EXPECT_LT(test::balance_of(problem, solve_energy(problem), 0.02).worst(), 1e-7);
+}
+
+TEST(Couple, OutOfThePlaneIsForShootingAloneAndNotCalledStable) {
+  Problem problem = heavy_cantilever(0, 0);
+  constexpr double torque = 1e-3;
+  problem.loads = {{1, {0, -1e-3, 0}, {0, torque, 0}}};
+  EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
+  const Equilibrium exact = solve_exact(problem);
+  EXPECT_EQ(exact.status, SolveStatus::not_verified);
+  EXPECT_NE(exact.message.find("not judged"), std::string::npos) << exact.message;
+  const std::vector<double> tip = {1};
+  EXPECT_NEAR(exact.sample(tip).points(2, 0), -torque / 2, 1e-8);
+  EXPECT_NEAR(exact.sample(tip).points(1, 0), -1e-3 / 3, 1e-8);
+}
+
+TEST(Couple, IsRefusedWhereItIsNotKnown) {
+  Problem framed = with_couple(two_clamps(1, 0.8), 0.5, 1);
+  framed.torsional_stiffness = 1;
+  for (Grip& grip : framed.grips) grip.frame = FrameHold{};
+  EXPECT_THROW((void)solve_energy(framed), std::invalid_argument);
+  Problem on_floor = with_couple(heavy_cantilever(1, 0), 1, 1);
+  on_floor.obstacles = {{obstacle::Body::half_space({0, -0.1, 0}, Eigen::Vector3d::UnitY())}};
+  EXPECT_THROW((void)solve_energy(on_floor), std::invalid_argument);
+  EXPECT_THROW((void)solve_exact(on_floor), std::invalid_argument);
+  const Problem problem = with_couple(heavy_cantilever(1, 0), 1, 1);
+  const Equilibrium rest = solve_energy(problem);
+  EXPECT_THROW((void)vibrations(problem, {.mass_per_length = 1}, rest), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace dlo::energy_model

@@ -1,0 +1,201 @@
+// Loads per length: against the weight, against beam theory, energy against multiple shooting, and
+// that a shape which has forgotten them is not taken for one that carries them.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <vector>
+
+#include "dlo/energy_model/energy.hpp"
+#include "dlo/energy_model/exact.hpp"
+#include "equilibrium_balance.hpp"
+#include "problem/split.hpp"
+#include "problems.hpp"
+#include "random_problems.hpp"
+#include "strain/span_energy.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using test::heavy_cantilever;
+using test::RandomNumbers;
+using test::RandomSpace;
+using test::two_clamps;
+
+Problem with_weight_as_load(Problem problem) {
+  problem.line_loads = {{0, 1, problem.weight_per_length, problem.weight_per_length}};
+  problem.weight_per_length.setZero();
+  return problem;
+}
+
+/// One or two loads of up to 0.6 (1 + Gamma) on all of the rod or on parts of it.
+Problem with_random_line_loads(Problem problem, std::uint64_t seed, bool planar) {
+  RandomNumbers random(seed);
+  const double size = 0.6 * (1 + problem.weight_per_length.norm());
+  const RandomSpace space = planar ? RandomSpace::plane : RandomSpace::space;
+  for (int i = 1 + random.below(2); i > 0; --i) {
+    const double begin = random.chance(0.3) ? 0 : random.uniform(0, 0.6);
+    const double end = random.chance(0.3) ? 1 : random.uniform(begin + 0.1, 1);
+    const Eigen::Vector3d force = size * random.direction(space);
+    problem.line_loads.push_back(
+        {begin, end, force, random.chance(0.5) ? force : size * random.direction(space)});
+  }
+  return problem;
+}
+
+double load_apart(const Equilibrium& a, const Equilibrium& b) {
+  const std::vector<double> s = equal_arc_lengths(1, 41);
+  return (a.sample(s).points - b.sample(s).points).cwiseAbs().maxCoeff();
+}
+
+TEST(LineLoad, OnAllOfTheRodIsAWeight) {
+  Problem tilted = heavy_cantilever(20, 30);
+  tilted.loads = {{0.5, {1, 2, 3}}};
+  for (const Problem& heavy : {heavy_cantilever(20, 30), two_clamps(10, 0.8), tilted}) {
+    const Problem loaded = with_weight_as_load(heavy);
+    for (const auto& solve : {+[](const Problem& p) { return solve_energy(p); },
+                              +[](const Problem& p) { return solve_exact(p); }}) {
+      const Equilibrium one = solve(heavy);
+      const Equilibrium other = solve(loaded);
+      ASSERT_EQ(other.status, SolveStatus::converged) << other.message;
+      EXPECT_EQ(load_apart(one, other), 0);
+      EXPECT_NEAR(other.energy.load, one.energy.gravity + one.energy.load, 1e-11 * 20);
+      EXPECT_NEAR(other.energy.total(), one.energy.total(), 1e-12 * 20);
+      EXPECT_EQ(one.grips[0].torque, other.grips[0].torque);
+    }
+  }
+}
+
+TEST(LineLoad, PartsAddUp) {
+  const Problem heavy = heavy_cantilever(20, 30);
+  const Eigen::Vector3d w = heavy.weight_per_length;
+  const Eigen::Vector3d none = Eigen::Vector3d::Zero();
+  Problem halves = heavy;
+  halves.weight_per_length.setZero();
+  halves.line_loads = {{0, 0.4, w, w}, {0.4, 1, w, w}};
+  Problem wedges = halves;
+  wedges.line_loads = {{0, 1, w, none}, {0, 1, none, w}};
+  const Equilibrium one = solve_exact(heavy);
+  for (const Problem& problem : {halves, wedges}) {
+    const Equilibrium energy = solve_energy(problem);
+    const Equilibrium exact = solve_exact(problem);
+    ASSERT_EQ(energy.status, SolveStatus::converged) << energy.message;
+    ASSERT_EQ(exact.status, SolveStatus::converged) << exact.message;
+    EXPECT_LT(load_apart(energy, one), 1e-9);
+    EXPECT_LT(load_apart(exact, one), 1e-11);
+    EXPECT_NEAR(exact.energy.load, one.energy.gravity, 1e-10);
+    EXPECT_NEAR(energy.energy.load, one.energy.gravity, 1e-9);
+    EXPECT_NEAR(energy.energy.gravity, 0, 1e-11);
+  }
+}
+
+TEST(LineLoad, TendsToBeamTheoryWithTheSquareOfTheLoad) {
+  // The tip sinks by int q(s) s^2 (3 - s) / 6 ds; here q grows from 0 at 0.2 to q at 0.7.
+  constexpr double a = 0.2;
+  constexpr double b = 0.7;
+  const auto moment = [](double s) {  // int (s - a) s^2 (3 - s) / 6
+    return (-std::pow(s, 5) / 5 + (3 + a) * std::pow(s, 4) / 4 - a * std::pow(s, 3)) / 6;
+  };
+  const double beam = (moment(b) - moment(a)) / (b - a);
+  for (const auto& solve : {+[](const Problem& p) { return solve_energy(p); },
+                            +[](const Problem& p) { return solve_exact(p); }}) {
+    double before = 0;
+    for (const double q : {0.4, 0.2, 0.1}) {
+      Problem problem = heavy_cantilever(0, 0);
+      problem.line_loads = {{a, b, {0, 0, 0}, {0, -q, 0}}};
+      const Equilibrium result = solve(problem);
+      ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+      const std::vector<double> tip = {1};
+      const double error = 1 + result.sample(tip).points(1, 0) / (q * beam);
+      if (before > 0) EXPECT_NEAR(before / error, 4, 0.02);
+      before = error;
+      EXPECT_LT(std::abs(error), 1e-3);
+    }
+  }
+}
+
+/// Energy's shape is confirmed by shooting, and weighs what it should.
+void expect_confirmed(const Problem& problem, int& confirmed) {
+  const Equilibrium energy = solve_energy(problem);
+  if (!succeeded(energy.status)) return;
+  const double force = 1 + problem.weight_per_length.norm();
+  double largest = force;
+  for (const Reaction& grip : energy.grips) largest = std::max(largest, grip.force.norm());
+  const double panel = std::min(0.02, 0.25 / std::sqrt(largest));
+  EXPECT_LT(test::balance_of(problem, energy, panel).worst(), 1e-7);
+  ExactOptions options;
+  options.start = &energy;
+  const Equilibrium exact = solve_exact(problem, options);
+  if (!succeeded(exact.status)) return;
+  ++confirmed;
+  EXPECT_LT(load_apart(energy, exact), 1e-8);
+  EXPECT_NEAR(energy.energy.load, exact.energy.load, 1e-7 * force);
+  EXPECT_NEAR(energy.energy.gravity, exact.energy.gravity, 1e-7 * force);
+  for (std::size_t i = 0; i < energy.grips.size(); ++i) {
+    const Eigen::Vector3d miss = energy.grips[i].force - exact.grips[i].force;
+    EXPECT_LT(miss.norm(), 1e-5 * (force + exact.grips[i].force.norm()));
+  }
+}
+
+TEST(LineLoad, EnergyAndShootingAgreeOnRandomScenes) {
+  for (const RandomSpace space :
+       {RandomSpace::plane, RandomSpace::space, RandomSpace::curved, RandomSpace::twisted}) {
+    int confirmed = 0;
+    const int count = space == RandomSpace::twisted ? 3 : 8;
+    for (int i = 0; i < count; ++i) {
+      const auto number = static_cast<std::uint64_t>(i);
+      SCOPED_TRACE(test::name_of(space) + std::to_string(number));
+      const bool planar = space == RandomSpace::plane;
+      Problem problem = random_problem(number, space);
+      // Stiff enough for every one to be solved in a moment.
+      const double share = std::min(1.0, 30 / problem.weight_per_length.norm());
+      problem.weight_per_length *= share;
+      for (Load& load : problem.loads) load.force *= share;
+      expect_confirmed(with_random_line_loads(problem, number, planar), confirmed);
+    }
+    EXPECT_GE(confirmed, count - 2) << test::name_of(space);
+  }
+}
+
+TEST(LineLoad, ARodSeenFromItsOtherEndIsTheSame) {
+  Problem problem = heavy_cantilever(5, 20);
+  problem.line_loads = {{0.1, 0.6, {1, 2, 0}, {-3, 4, 0}}};
+  Problem reversed = problem;
+  reversed.grips[0].at = 1;
+  *reversed.grips[0].direction *= -1;
+  reversed.line_loads = {{0.4, 0.9, {-3, 4, 0}, {1, 2, 0}}};
+  const std::vector<double> s = {0, 0.3, 1};
+  const std::vector<double> back = {1, 0.7, 0};
+  for (const auto& solve : {+[](const Problem& p) { return solve_energy(p); },
+                            +[](const Problem& p) { return solve_exact(p); }}) {
+    const Equilibrium one = solve(problem);
+    const Equilibrium other = solve(reversed);
+    ASSERT_EQ(other.status, SolveStatus::converged) << other.message;
+    EXPECT_LT((one.sample(s).points - other.sample(back).points).norm(), 1e-10);
+  }
+}
+
+TEST(LineLoad, AShapeThatHasForgottenItIsNoEquilibrium) {
+  Problem problem = two_clamps(10, 0.8);
+  const Equilibrium without = solve_energy(problem);
+  problem.line_loads = {{0.3, 0.5, {0, 5, 0}, {0, 5, 0}}};
+  EXPECT_GT(test::balance_of(problem, without, 0.01).worst(), 1e-3);
+  EXPECT_LT(test::balance_of(problem, solve_energy(problem), 0.01).worst(), 1e-7);
+  ExactOptions options;
+  options.start = &without;
+  EXPECT_GT(load_apart(solve_exact(problem, options), without), 1e-4);
+}
+
+TEST(LineLoad, OfWhatIsNotOnTheRodIsRefused) {
+  Problem problem = heavy_cantilever(1, 0);
+  for (const LineLoad& wrong : {LineLoad{0.5, 0.5}, LineLoad{-0.1, 0.5}, LineLoad{0.5, 1.1},
+                                LineLoad{0, 1, {NAN, 0, 0}, {0, 0, 0}}}) {
+    problem.line_loads = {wrong};
+    EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
+    EXPECT_THROW((void)solve_exact(problem), std::invalid_argument);
+  }
+}
+
+}  // namespace
+}  // namespace dlo::energy_model
