@@ -63,7 +63,7 @@ TEST(Simulation, StepsInTimeAndImplicitOnesDoNotAllocate) {
   rod.masses.setConstant(steel.points, 1e-3);
   rod.walls = {{.point = {0, -0.01, 0}, .normal = {0, 1, 0}, .stiffness = 100}};
   rod.solids = {
-      {.body = obstacle::Body::sphere({0.3, -0.05, 0}, 0.045), .stiffness = 100, .looks = 2}};
+      {.body = obstacle::Body::sphere({0.3, -0.05, 0}, 0.045), .stiffness = 100, .samples = 2}};
   struct Steps {
     Stepper stepper;
     double time_step;

@@ -66,7 +66,7 @@ std::vector<ImplicitCase> implicit_cases() {
   result.back().rod.walls = {floor_at(-0.1, 100)};
   result.push_back({"over a ball", soft.rod(), soft.straight()});
   result.back().rod.solids = {
-      {.body = obstacle::Body::sphere({0.25, -0.1, 0}, 0.05), .stiffness = 100, .looks = 4}};
+      {.body = obstacle::Body::sphere({0.25, -0.1, 0}, 0.05), .stiffness = 100, .samples = 4}};
   result.push_back({"between two clamps", soft.rod(), soft.straight()});
   Rod& two = result.back().rod;
   two.grips.push_back({.first_point = 14,

@@ -309,7 +309,7 @@ class Resting {
     Eigen::VectorXd clearance(count);
     std::vector<int> feature;
     for (Eigen::Index k = 0; k < count; ++k) {
-      const Eigen::Index i = std::min(k / looks, points.cols() - 2);
+      const Eigen::Index i = std::min(k / samples, points.cols() - 2);
       const double share = static_cast<double>(k - i * samples) / samples;
       at.push_back((1 - share) * s(i) + share * s(i + 1));
       const Eigen::Vector3d point = (1 - share) * points.col(i) + share * points.col(i + 1);

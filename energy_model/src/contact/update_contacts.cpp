@@ -23,8 +23,8 @@ double highest(const SpanShape& shape, const Span::Obstacle& obstacle, double fr
   constexpr int samples = 16;
   std::vector<double> s;
   for (int i = 1; i < samples; ++i) s.push_back(from + (to - from) * i / samples);
-  const SpanSamples samples = shape.sample(s);
-  return obstacle.body.clearances(samples.points).maxCoeff();
+  const SpanSamples inside = shape.sample(s);
+  return obstacle.body.clearances(inside.points).maxCoeff();
 }
 
 class Contacts {

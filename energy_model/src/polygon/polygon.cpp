@@ -293,7 +293,7 @@ class PolygonDescent {
 };
 
 /// The stretch stiffness of the first stage.
-double softest(const PolygonProblem& problem, const Eigen::Matrix3Xd& start) {
+double first_stretch_stiffness(const PolygonProblem& problem, const Eigen::Matrix3Xd& start) {
   PolygonProblem bending = problem;
   bending.node_forces.setZero();
   bending.obstacles.clear();
@@ -320,8 +320,8 @@ PolygonResult solve_polygon(const PolygonProblem& problem, const Points& start,
   PolygonProblem stage = problem;
   constexpr double growth = 10;
   const double shortest = problem.rest_lengths.minCoeff();
-  const double first =
-      options.in_stages ? softest(problem, result.points) : problem.stretch_stiffness;
+  const double first = options.in_stages ? first_stretch_stiffness(problem, result.points)
+                                         : problem.stretch_stiffness;
   for (double c_c = first;; c_c *= growth) {
     const bool last = c_c >= problem.stretch_stiffness;
     stage.stretch_stiffness = last ? problem.stretch_stiffness : c_c;

@@ -418,7 +418,7 @@ std::vector<ContactForce> ContactRows::forces(const Eigen::VectorXd& multipliers
       double last = series(smooth, 0);
       for (int k = 1; k <= samples; ++k) {
         const double next = series(smooth, static_cast<double>(k) / samples);
-        const double pressure = (last - next) * looks / slope.length;
+        const double pressure = (last - next) * samples / slope.length;
         const bool first = i == 0 && k == 1;
         force.least_pressure = first ? pressure : std::min(force.least_pressure, pressure);
         force.largest_pressure = first ? pressure : std::max(force.largest_pressure, pressure);

@@ -69,7 +69,7 @@ class Layout {
     std::sort(touched.begin(), touched.end());
     const auto same = [](double a, double b) { return b - a < same_place; };
     touched.erase(std::unique(touched.begin(), touched.end(), same), touched.end());
-    force = std::max(1.0, force / softest(start_.span));
+    force = std::max(1.0, force / least_bending_stiffness(start_.span));
     const double longest = std::min(start_.span.length / 8, growth_of_interval / std::sqrt(force));
     start_.mesh = make_mesh(start_.span, longest, touched);
     start_.mesh.contacts.surface.resize(static_cast<std::size_t>(start_.mesh.intervals()));

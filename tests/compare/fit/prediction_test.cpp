@@ -19,7 +19,7 @@
 namespace dlo::compare {
 namespace {
 
-constexpr double deg = std::numbers::pi / 180;
+constexpr double degree = std::numbers::pi / 180;
 
 struct Hangings {
   std::vector<Scene> scenes;
@@ -46,7 +46,7 @@ Hangings in_a_fixture() {
   Hangings result;
   for (const double angle : {-40.0, -10.0, 20.0, 45.0}) {
     const Scene said = test::heavy_scene(20, angle);
-    Scene truth = turned(said, 0, 6 * deg);
+    Scene truth = turned(said, 0, 6 * degree);
     truth.natural_strain.y() = 0.8;
     result.add(said, truth, 0, random);
   }
@@ -56,16 +56,16 @@ Hangings in_a_fixture() {
 TEST(Prediction, WhatAFixtureHasWrongIsFoundOnceAndPredictsTheShapeLeftOut) {
   const Hangings seen = in_a_fixture();
   const MaterialFitOptions options{.natural_curvature_terms = 1,
-                                   .direction_tolerance = 20 * deg,
+                                   .direction_tolerance = 20 * degree,
                                    .shared_clamps = true,
                                    .predict = true};
   const MaterialFit found = fit_material(seen.scenes, seen.shapes, options);
   ASSERT_EQ(found.others.size(), 2);
   EXPECT_NEAR(found.others[0].value, 0.8, 1e-4);
-  EXPECT_NEAR(found.others[1].value, 6 * deg, 1e-4);
+  EXPECT_NEAR(found.others[1].value, 6 * degree, 1e-4);
   EXPECT_FALSE(found.others[1].shape.has_value());
   ASSERT_EQ(found.clamps.size(), 1);
-  EXPECT_NEAR(found.clamps[0].rotation.z(), 6 * deg, 1e-4);
+  EXPECT_NEAR(found.clamps[0].rotation.z(), 6 * degree, 1e-4);
   ASSERT_TRUE(found.prediction.has_value());
   EXPECT_EQ(found.prediction->shapes_m.size(), 4);
   EXPECT_LT(found.prediction->rms_m, 1e-4);
@@ -77,7 +77,7 @@ TEST(Prediction, WhatEachShapeHasOfItsOwnPredictsNoOther) {
   const Hangings seen = in_a_fixture();
   const MaterialFit own = fit_material(
       seen.scenes, seen.shapes,
-      {.natural_curvature_terms = 1, .direction_tolerance = 20 * deg, .predict = true});
+      {.natural_curvature_terms = 1, .direction_tolerance = 20 * degree, .predict = true});
   ASSERT_TRUE(own.prediction.has_value());
   EXPECT_LT(own.rms_m, 1e-4);
   EXPECT_TRUE(own.clamps.empty());
@@ -105,7 +105,7 @@ TEST(Prediction, MoreTermsNeverLeaveMuchMore) {
   Scene said = test::heavy_scene(200, 0);
   said.grippers.push_back(
       {.at = 1, .position = {-0.08, 0, 0}, .direction = Eigen::Vector3d::UnitX()});
-  const Scene truth = turned(turned(said, 0, -15 * deg), 1, 25 * deg);
+  const Scene truth = turned(turned(said, 0, -15 * degree), 1, 25 * degree);
   Hangings seen;
   for (int i = 0; i < 3; ++i) seen.add(said, truth, 0.006, random);
   double before = INFINITY;

@@ -27,7 +27,7 @@ void check(const Wall& wall);
 /// points or, so that no edge and no thin body slips between two of them, all along its segments.
 struct Solid {
   obstacle::Body body;   ///< [m]
-  double stiffness = 0;  ///< c_e of all looks at a segment together [N/m], >= 0
+  double stiffness = 0;  ///< c_e of all samples of a segment together [N/m], >= 0
   int samples = 1;       ///< to a segment, >= 1 (obstacle::samples_per_segment); 1: at its end
 };
 
