@@ -103,14 +103,13 @@ class WireFitter {
     values[0] = start.log_modulus;
     if (density_) values[1] = start.log_density;
     look_for_start(values);
-    const double least_noise = own_error * scenes_.front().length;
     fit_.emplace(rods_, values,
                  GaussNewtonOptions{.noise = options_.noise,
-                                    .least_noise = least_noise,
+                                    .least_noise = std::sqrt(least_variance()),
                                     .lowest = std::log(options_.smallest_ratio),
                                     .highest = std::log(options_.largest_ratio)});
     descend();
-    if (fit_->variance() > std::pow(least_noise, 2)) allow_for_correlation();
+    allow_for_correlation();
     optimum_ = rods_.rods();
     unseen_ = unseen(fit_->linear(), fit_->variance(), fit_->before());
     return result();
@@ -166,6 +165,11 @@ class WireFitter {
     covariance_ = fit_->covariance_of_numbers();
   }
 
+  /// No less is taken for the errors' [m^2].
+  [[nodiscard]] double least_variance() const {
+    return std::pow(own_error * scenes_.front().length, 2);
+  }
+
   [[nodiscard]] double squares_left() const {
     double sum = 0;
     for (const ResidualSeries& one : fit_->series()) sum += one.residual.squaredNorm();
@@ -177,16 +181,16 @@ class WireFitter {
   void allow_for_correlation() {
     const GaussNewton least_squares = *fit_;
     const double least = squares_left();
-    for (int i = 0; i < most_correlations; ++i) {
+    for (int i = 0; i < most_correlations && fit_->variance() > least_variance(); ++i) {
       const CorrelationEstimate estimate = correlation_of(fit_->series());
       tested_ = estimate.tested;
       const ErrorCovariance next = estimate.significant ? estimate.covariance : ErrorCovariance();
-      if (next.share == errors_.share && next.length == errors_.length) return;
+      if (next.share == errors_.share && next.length == errors_.length) break;
       errors_ = next;
       fit_->assume(errors_);
       descend();
-      if (squares_left() > std::pow(largest_trade, 2) * least) return go_back_to(least_squares);
     }
+    if (squares_left() > std::pow(largest_trade, 2) * least) go_back_to(least_squares);
   }
 
   void go_back_to(const GaussNewton& least_squares) {

@@ -12,7 +12,7 @@
 #include "picture/front_figure.hpp"
 #include "picture/map_figure.hpp"
 #include "picture/track_figure.hpp"
-#include "report/again.hpp"
+#include "report/provenance.hpp"
 
 namespace dlo::compare {
 namespace {

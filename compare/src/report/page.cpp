@@ -10,7 +10,6 @@
 #include "base/quote.hpp"
 #include "picture/comparison_figure.hpp"
 #include "polygon/step_constants.hpp"
-#include "report/again.hpp"
 #include "report/html.hpp"
 #include "report/page_data.hpp"
 #include "report/page_writer.hpp"

@@ -167,7 +167,9 @@ std::string optional_part(const SceneChoices& choices, const Scene& scene) {
 #bending_stiffness = {section_EI:.3g}  # N m^2, N mm^2
 #mass_per_length = {section_mass:.3g}  # kg/m, g/m, g/cm
 
-# A force at a point of the rod, one [[load]] for each; of a weight that hangs there mass = "10 g".
+# A force at a point of the rod, one [[load]] for each; of a weight that hangs there mass = "10 g"; of
+# a couple, in a plane, torque = [0, 0, "1 N m"]. Along the rod [[distributed_load]] has from, to and
+# force_per_length; [medium] has the density of what the rod is immersed in.
 #[[load]]
 #at = {middle:.4g}  # arc length
 #force = {force}  # N, mN, kN

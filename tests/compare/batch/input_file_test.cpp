@@ -178,7 +178,7 @@ TEST(TextLimits, NothingIsNestedSoDeepThatAParserOverflows) {
   EXPECT_EQ(scene("\na = " + repeated("[", many) + repeated("]", many)), brackets);
   EXPECT_EQ(scene("\na = " + repeated("{a = ", many) + "1" + repeated("}", many)), brackets);
   // As deep as allowed goes through the parser.
-  const std::string unknown = ": unknown key (allowed: force_model, ";
+  const std::string unknown = ": unknown key (allowed: distributed_load, ";
   EXPECT_NE(scene("a" + repeated(".a", 31) + " = 1").find(unknown), std::string::npos);
   EXPECT_NE(scene("a = " + repeated("[", 32) + repeated("]", 32)).find(unknown), std::string::npos);
 }
