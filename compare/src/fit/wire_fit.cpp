@@ -25,9 +25,6 @@ constexpr double own_error = 1e-8;
 constexpr double longest_log_step = 1;
 /// The correlation is measured from residuals of a fit that knows it: so often.
 constexpr int most_correlations = 3;
-/// Residuals of a fit that takes errors for correlated, over those of least squares: above it
-/// smooth residuals are traded for likelihood, and least squares has the numbers.
-constexpr double largest_trade = 1.05;
 /// An end of the interval is right if the deviance there is its quantile's square to this share.
 constexpr double end_tolerance = 0.05;
 constexpr int most_ends = 6;
@@ -103,14 +100,26 @@ class WireFitter {
     values[0] = start.log_modulus;
     if (density_) values[1] = start.log_density;
     look_for_start(values);
+    const double least_noise = own_error * scenes_.front().length;
     fit_.emplace(rods_, values,
                  GaussNewtonOptions{.noise = options_.noise,
-                                    .least_noise = std::sqrt(least_variance()),
+                                    .least_noise = least_noise,
                                     .lowest = std::log(options_.smallest_ratio),
                                     .highest = std::log(options_.largest_ratio)});
-    descend();
-    allow_for_correlation();
-    optimum_ = rods_.rods();
+    for (int i = 0; i < most_correlations; ++i) {
+      if (!fit_->descend()) {
+        throw ConvergenceError(fmt::format(
+            "{}: the energy model has no shape beside the fitted one", scenes_.front().file));
+      }
+      if (!(fit_->variance() > std::pow(least_noise, 2))) break;
+      const CorrelationEstimate estimate = correlation_of(fit_->series());
+      tested_ = estimate.tested;
+      const ErrorCovariance next = estimate.significant ? estimate.covariance : ErrorCovariance();
+      const ErrorCovariance& now = fit_->covariance();
+      if (next.share == now.share && next.length == now.length) break;
+      fit_->assume(next);
+    }
+    optimum_ = fit_->rods();
     unseen_ = unseen(fit_->linear(), fit_->variance(), fit_->before());
     return result();
   }
@@ -156,89 +165,18 @@ class WireFitter {
     rods_.go_on_from(std::move(nearest));
   }
 
-  void descend() {
-    if (!fit_->descend()) {
-      throw ConvergenceError(fmt::format("{}: the energy model has no shape beside the fitted one",
-                                         scenes_.front().file));
-    }
-    effect_ = {.degrees_of_freedom = fit_->freedom()};
-    covariance_ = fit_->covariance_of_numbers();
-  }
-
-  /// No less is taken for the errors' [m^2].
-  [[nodiscard]] double least_variance() const {
-    return std::pow(own_error * scenes_.front().length, 2);
-  }
-
-  [[nodiscard]] double squares_left() const {
-    double sum = 0;
-    for (const ResidualSeries& one : fit_->series()) sum += one.residual.squaredNorm();
-    return sum;
-  }
-
-  /// From the numbers of least squares on: those under the errors' own covariance, unless they
-  /// leave larger residuals.
-  void allow_for_correlation() {
-    const GaussNewton least_squares = *fit_;
-    const double least = squares_left();
-    for (int i = 0; i < most_correlations && fit_->variance() > least_variance(); ++i) {
-      const CorrelationEstimate estimate = correlation_of(fit_->series());
-      tested_ = estimate.tested;
-      const ErrorCovariance next = estimate.significant ? estimate.covariance : ErrorCovariance();
-      if (next.share == errors_.share && next.length == errors_.length) break;
-      errors_ = next;
-      fit_->assume(errors_);
-      descend();
-    }
-    if (squares_left() > std::pow(largest_trade, 2) * least) go_back_to(least_squares);
-  }
-
-  void go_back_to(const GaussNewton& least_squares) {
-    rods_.go_on_from(least_squares.rods());
-    fit_.emplace(least_squares);
-    errors_ = correlation_of(fit_->series()).covariance;
-    effect_ = correlation_effect(fit_->series(), measured_.frame_columns(), errors_);
-    // What was known before is no number found.
-    effect_.degrees_of_freedom = std::min(effect_.degrees_of_freedom, fit_->freedom());
-    covariance_ = covariance_under(fit_->series(), fit_->linear(), errors_);
-  }
-
-  /// Whether the numbers are those of least squares although errors are correlated.
-  [[nodiscard]] bool trades() const { return errors_.share > 0 && !(fit_->covariance().share > 0); }
-
-  /// Of a coordinate's error [m^2]; the numbers of least squares have taken out what neighbours
-  /// have in common.
-  [[nodiscard]] double error_variance(double residual_factor) const {
-    return options_.noise ? fit_->variance() : fit_->variance() / residual_factor;
-  }
-
-  /// Covariance of the numbers of least squares under such errors.
-  [[nodiscard]] Eigen::MatrixXd covariance_under(const std::vector<ResidualSeries>& series,
-                                                 const LinearFit& linear,
-                                                 const ErrorCovariance& errors) const {
-    const double factor =
-        correlation_effect(series, measured_.frame_columns(), errors).residual_factor;
-    return posterior_under(series, linear, fit_->variance(), fit_->before(), errors,
-                           error_variance(factor));
-  }
-
-  /// By what correlated errors make the interval of E wider, its quantile aside.
-  [[nodiscard]] double correlated_width() const {
-    return std::sqrt(covariance_(0, 0) / fit_->covariance_of_numbers()(0, 0));
-  }
-
   [[nodiscard]] double quantile() const {
     return options_.noise ? gsl_cdf_ugaussian_Pinv(0.975)
-                          : gsl_cdf_tdist_Pinv(0.975, effect_.degrees_of_freedom);
+                          : gsl_cdf_tdist_Pinv(0.975, fit_->freedom());
   }
 
   /// Distance in log E to the end of the interval on a side (1: above, -1: below); none: open.
   /// Where the equilibria that are followed end before, linear theory has to do.
   [[nodiscard]] std::optional<double> end(double side) {
     if (unseen_[0]) return std::nullopt;
-    const double wanted = quantile() * correlated_width();
+    const double wanted = quantile();
     const double least = fit_->deviance();
-    const double linear = quantile() * std::sqrt(covariance_(0, 0));
+    const double linear = wanted * std::sqrt(fit_->covariance_of_numbers()(0, 0));
     const double farthest = side > 0 ? std::log(options_.largest_ratio) - fit_->values()[0]
                                      : fit_->values()[0] - std::log(options_.smallest_ratio);
     constexpr double jump = 4;
@@ -268,8 +206,8 @@ class WireFitter {
         nuisances.push_back(
             {frames + number, fit_->values()[number], numbers_[k].described.known_before});
       }
-      estimates.push_back(estimate_of_shape(series_of_shape(fit_->series(), shape), errors_,
-                                            variance, frames, nuisances));
+      estimates.push_back(estimate_of_shape(series_of_shape(fit_->series(), shape),
+                                            fit_->covariance(), variance, frames, nuisances));
     }
     fit.scatter = scatter_between(estimates, quantile());
   }
@@ -300,42 +238,35 @@ class WireFitter {
   /// all that they leave likely is averaged over. Of their variance it takes what the residuals
   /// say, a given noise may be another one.
   [[nodiscard]] double unknown_covariance() const {
-    if (!(errors_.share > 0) || unseen_[0]) return 1;
-    const std::vector<ResidualSeries> few = thinned(fit_->series());
+    if (!(fit_->covariance().share > 0) || unseen_[0]) return 1;
     const auto of_errors = [this](const LinearFit& linear) {
       return linear.residual.squaredNorm() / fit_->freedom();
-    };
-    // Variance of E, and where it would be.
-    const auto finding = [&](const ErrorCovariance& errors) {
-      const LinearFit linear =
-          linear_fit(few, trades() ? ErrorCovariance() : errors, measured_.frame_columns());
-      if (trades()) return Eigen::Vector2d(covariance_under(few, linear, errors)(0, 0), 0);
-      const double variance = of_errors(linear);
-      const Eigen::MatrixXd inverse = posterior(linear, variance, fit_->before());
-      return Eigen::Vector2d(inverse(0, 0), inverse.row(0).dot(slope(
-                                                linear, variance, fit_->before(), fit_->values())));
     };
     double variance = 0;
     double mean = 0;
     double square = 0;
+    const std::vector<ResidualSeries> few = thinned(fit_->series());
     for (const LikelyCovariance& likely : likely_covariances(few)) {
-      const Eigen::Vector2d found = finding(likely.covariance);
-      variance += likely.weight * found[0];
-      mean += likely.weight * found[1];
-      square += likely.weight * found[1] * found[1];
+      const LinearFit linear = linear_fit(few, likely.covariance, measured_.frame_columns());
+      const Eigen::MatrixXd inverse = posterior(linear, of_errors(linear), fit_->before());
+      const double shift =
+          inverse.row(0).dot(slope(linear, of_errors(linear), fit_->before(), fit_->values()));
+      variance += likely.weight * inverse(0, 0);
+      mean += likely.weight * shift;
+      square += likely.weight * shift * shift;
     }
-    return std::max(1.0, std::sqrt((variance + square - mean * mean) / finding(errors_)[0]));
+    const LinearFit likeliest = linear_fit(few, fit_->covariance(), measured_.frame_columns());
+    const double alone = posterior(likeliest, of_errors(likeliest), fit_->before())(0, 0);
+    return std::max(1.0, std::sqrt((variance + square - mean * mean) / alone));
   }
 
   /// Where a given noise explains less than there is: by what the interval is wider.
   [[nodiscard]] double misfit(MaterialFit& fit) const {
     if (!options_.noise) return 1;
-    // Of correlated errors a chi-squared variable as well (Satterthwaite), up to its mean.
-    const double freedom = effect_.degrees_of_freedom;
-    const double share = fit_->deviance() / (fit_->freedom() * effect_.residual_factor);
+    const double squares = fit_->deviance();
     constexpr double significant = 0.05;
-    if (!(gsl_cdf_chisq_Q(share * freedom, freedom) < significant)) return 1;
-    const double times = std::sqrt(share);
+    if (!(gsl_cdf_chisq_Q(squares, fit_->freedom()) < significant)) return 1;
+    const double times = std::sqrt(squares / fit_->freedom());
     fit.warning = fmt::format(
         "the residuals are {:.3g} times what the given noise explains; the interval is as much "
         "wider",
@@ -365,8 +296,7 @@ class WireFitter {
       // The interval's ends are `widening` times as far away as where the deviance has its limit.
       const double excess =
           fit_->profile(fit_->values()[0] + (x - fit_->values()[0]) / widening) - least;
-      const double reached = std::sqrt(std::max(0.0, excess)) / (quantile() * correlated_width());
-      fit.profile.push_back({unit * std::exp(x), reached * reached});
+      fit.profile.push_back({unit * std::exp(x), excess / (quantile() * quantile())});
     }
   }
 
@@ -390,7 +320,7 @@ class WireFitter {
   [[nodiscard]] MaterialFit result() {
     MaterialFit fit;
     const double times_noise = misfit(fit);
-    measure_scatter(fit, error_variance(effect_.residual_factor) * times_noise * times_noise);
+    measure_scatter(fit, fit_->variance() * times_noise * times_noise);
     const double unknown = unknown_covariance();
     const double widening = unknown * times_noise * (fit.scatter ? fit.scatter->widening : 1);
     const auto widened = [widening](std::optional<double> distance) {
@@ -419,7 +349,8 @@ class WireFitter {
           options_.identified_within);
     }
     if (density_) {
-      const std::optional<double> half = half_width({1}, covariance_(1, 1), widening);
+      const std::optional<double> half =
+          half_width({1}, fit_->covariance_of_numbers()(1, 1), widening);
       fit.density = identified(fit_->values()[1], scenes_.front().heaviness().value, half, half);
     }
     if (options_.torsional_stiffness) {
@@ -427,16 +358,19 @@ class WireFitter {
       const Eigen::Index k = curvature_ - 1;
       const double GJ = scenes_.front().twisting_stiffness();
       const double EI = scenes_.front().mean_bending_stiffness();
-      const double variance = covariance_(0, 0) + 2 * covariance_(0, k) + covariance_(k, k);
+      const double variance = fit_->covariance_of_numbers()(0, 0) +
+                              2 * fit_->covariance_of_numbers()(0, k) +
+                              fit_->covariance_of_numbers()(k, k);
       const std::optional<double> half = half_width({0, k}, variance, widening);
       fit.torsional_stiffness = identified(fit_->values()[0] + fit_->values()[k], GJ, half, half);
-      const std::optional<double> half_ratio = half_width({k}, covariance_(k, k), widening);
+      const std::optional<double> half_ratio =
+          half_width({k}, fit_->covariance_of_numbers()(k, k), widening);
       fit.torsion_over_bending = identified(fit_->values()[k], GJ / EI, half_ratio, half_ratio);
     }
     for (Eigen::Index number = curvature_; number < fit_->values().size(); ++number) {
       FittedNumber found = numbers_[static_cast<std::size_t>(number)].described;
       found.value = fit_->values()[number];
-      found.deviation = std::sqrt(covariance_(number, number));
+      found.deviation = std::sqrt(fit_->covariance_of_numbers()(number, number));
       fit.others.push_back(std::move(found));
     }
     if (options_.natural_curvature_terms > 0) {
@@ -446,18 +380,15 @@ class WireFitter {
                                    found.natural_variation.end());
     }
     if (options_.shared_clamps) fit.clamps = clamp_corrections();
-    fit.noise_m = std::sqrt(error_variance(effect_.residual_factor));
+    fit.noise_m = std::sqrt(fit_->variance());
     fit.noise_is_estimated = !options_.noise;
     fit.degrees_of_freedom = static_cast<int>(fit_->freedom());
     fit.correlation_was_tested = tested_;
-    if (errors_.share > 0) {
-      const double independent = options_.noise ? gsl_cdf_ugaussian_Pinv(0.975)
-                                                : gsl_cdf_tdist_Pinv(0.975, fit_->freedom());
-      fit.correlation =
-          CorrelatedErrors{.length_m = errors_.length,
-                           .share = errors_.share,
-                           .widening = unknown * correlated_width() * quantile() / independent,
-                           .degrees_of_freedom = effect_.degrees_of_freedom};
+    if (fit_->covariance().share > 0) {
+      fit.correlation = CorrelatedErrors{.length_m = fit_->covariance().length,
+                                         .share = fit_->covariance().share,
+                                         .widening = unknown,
+                                         .degrees_of_freedom = fit_->freedom()};
     }
     rods_.go_on_from(optimum_);
     const std::vector<Alignment> alignments = rods_.alignments(fit_->values());
@@ -480,10 +411,7 @@ class WireFitter {
   FittedRods::SceneAt scene_at_;
   FittedRods rods_;
   std::optional<GaussNewton> fit_;
-  bool tested_ = false;         // whether errors are correlated
-  ErrorCovariance errors_;      // independent, unless they are shown not to be
-  CorrelationEffect effect_;    // of the errors' correlation
-  Eigen::MatrixXd covariance_;  // of the numbers under these errors
+  bool tested_ = false;  // whether errors are correlated
   FittedRods::Rods optimum_;
   std::vector<bool> unseen_;  // of the numbers, see unseen()
 };

@@ -67,7 +67,7 @@ void GaussNewton::measure_variance() {
 }
 
 bool GaussNewton::descend() {
-  for (int i = 0; i < most_steps; ++i) {
+  for (int i = 0;; ++i) {
     std::optional<std::vector<ResidualSeries>> series =
         rods_.residuals(values_, FittedRods::Columns::all);
     if (!series) return false;
@@ -76,6 +76,8 @@ bool GaussNewton::descend() {
     linear_ = linear_fit(series_, covariance_, rods_.measured().frame_columns());
     measure_variance();
     posterior_ = posterior(linear_, variance_, before_);
+    // What is said of the values belongs to them: no step is made that nothing would be said of.
+    if (i == most_steps) return true;
     Eigen::VectorXd step = next_step();
     const Eigen::VectorXd deviations = posterior_.diagonal().cwiseSqrt();
     if ((step.array().abs() <= options_.last_step * deviations.array()).all()) return true;
@@ -94,7 +96,6 @@ bool GaussNewton::descend() {
     if (halvings == most_halvings) return true;
     values_ += step;
   }
-  return true;
 }
 
 /// To the least deviance of the linear problem with the first number near: where that is hardly

@@ -46,16 +46,6 @@ Eigen::MatrixXd posterior(const LinearFit& fit, double variance, const Eigen::Ve
   return information_of(fit, variance, before).completeOrthogonalDecomposition().pseudoInverse();
 }
 
-Eigen::MatrixXd posterior_under(const std::vector<ResidualSeries>& series, const LinearFit& fit,
-                                double weight, const Eigen::VectorXd& before,
-                                const ErrorCovariance& errors, double variance) {
-  const Eigen::MatrixXd inverse = posterior(fit, weight, before);
-  Eigen::MatrixXd scatter = covariance_products(series, fit.design, errors);
-  scatter *= variance / (weight * weight);
-  scatter.diagonal() += before.cwiseAbs2();
-  return inverse * scatter * inverse;
-}
-
 std::vector<bool> unseen(const LinearFit& fit, double variance, const Eigen::VectorXd& before) {
   const Eigen::MatrixXd information = information_of(fit, variance, before);
   const Eigen::VectorXd deviations =

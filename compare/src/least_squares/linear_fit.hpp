@@ -26,14 +26,6 @@ struct LinearFit {
 [[nodiscard]] Eigen::MatrixXd posterior(const LinearFit& fit, double variance,
                                         const Eigen::VectorXd& before);
 
-/// The same of a fit that took the errors for independent, if they are correlated along the rod.
-/// @param series    of which the fit is;  @param weight  the variance with which the numbers were
-///                  fitted;  @param errors, variance  how the errors are
-[[nodiscard]] Eigen::MatrixXd posterior_under(const std::vector<ResidualSeries>& series,
-                                              const LinearFit& fit, double weight,
-                                              const Eigen::VectorXd& before,
-                                              const ErrorCovariance& errors, double variance);
-
 /// Of each number: neither the points nor what was known before tells it, alone or beside the
 /// others. Its variance is infinite.
 [[nodiscard]] std::vector<bool> unseen(const LinearFit& fit, double variance,

@@ -99,24 +99,6 @@ TEST(Prediction, RepeatabilityIsTheDistanceToTheMeanOfTheOthers) {
   EXPECT_FALSE(repeatability({shapes.front()}).has_value());
 }
 
-// Clamps that are off in the same way, of which the fit knows nothing, and errors that repeat.
-TEST(Prediction, MoreTermsNeverLeaveMuchMore) {
-  std::mt19937 random(8);
-  Scene said = test::heavy_scene(200, 0);
-  said.grippers.push_back(
-      {.at = 1, .position = {-0.08, 0, 0}, .direction = Eigen::Vector3d::UnitX()});
-  const Scene truth = turned(turned(said, 0, -15 * degree), 1, 25 * degree);
-  Hangings seen;
-  for (int i = 0; i < 3; ++i) seen.add(said, truth, 0.006, random);
-  double before = INFINITY;
-  for (const int terms : {0, 2, 3}) {
-    const MaterialFit found =
-        fit_material(seen.scenes, seen.shapes, {.natural_curvature_terms = terms});
-    EXPECT_LT(found.rms_m, 1.05 * before) << terms;
-    before = found.rms_m;
-  }
-}
-
 TEST(Prediction, RefusesWhatItCannotDo) {
   const Hangings seen = in_a_fixture();
   const auto refused = [&](const Hangings& with, const MaterialFitOptions& options) {

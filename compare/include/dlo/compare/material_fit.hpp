@@ -253,9 +253,7 @@ struct MaterialFit {
 ///
 /// With torsional stiffness, natural curvature, directions or positions to be fitted too, all
 /// numbers are found together by Gauss-Newton steps from that E, in generalised least squares under
-/// the errors' covariance, unless that leaves residuals more than 5 % larger than least squares do:
-/// then the numbers are those of least squares, and their intervals those under the errors'
-/// covariance. What is known before (the tolerances; of each term of natural curvature
+/// the errors' covariance; what is known before (the tolerances; of each term of natural curvature
 /// a standard deviation of 10 / l; of GJ / EI, where the scene's is a guess, a factor of ten)
 /// counts as measured. The interval of E then is that of the profile likelihood in which the
 /// others' effect is linear about the optimum, that of GJ is linear altogether.
