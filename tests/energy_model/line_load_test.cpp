@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "../sanitized.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "equilibrium_balance.hpp"
@@ -142,7 +143,8 @@ TEST(LineLoad, EnergyAndShootingAgreeOnRandomScenes) {
   for (const RandomSpace space :
        {RandomSpace::plane, RandomSpace::space, RandomSpace::curved, RandomSpace::twisted}) {
     int confirmed = 0;
-    const int count = space == RandomSpace::twisted ? 3 : 8;
+    const int all = space == RandomSpace::twisted ? 3 : 8;
+    const int count = test::sanitized ? 1 : all;
     for (int i = 0; i < count; ++i) {
       const auto number = static_cast<std::uint64_t>(i);
       SCOPED_TRACE(test::name_of(space) + std::to_string(number));
@@ -154,7 +156,7 @@ TEST(LineLoad, EnergyAndShootingAgreeOnRandomScenes) {
       for (Load& load : problem.loads) load.force *= share;
       expect_confirmed(with_random_line_loads(problem, number, planar), confirmed);
     }
-    EXPECT_GE(confirmed, count - 2) << test::name_of(space);
+    EXPECT_GE(confirmed, all == count ? all - 2 : 0) << test::name_of(space);
   }
 }
 

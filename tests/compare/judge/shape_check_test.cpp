@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "../../sanitized.hpp"
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/deviation.hpp"
@@ -64,6 +65,7 @@ TEST(ShapeCheck, AFrameByNearestPointsIsNeverWorseThanByLengthsAlongThePoints) {
   for (const double direction : {0.0, 60.0, -80.0}) {
     const Scene scene = heavy_scene(140, direction);
     for (const double stiffer : {0.5, 1.5, 3.0}) {
+      if (test::sanitized && stiffer != 1.5) continue;
       Scene other = scene;
       other.material.youngs_modulus *= stiffer;
       for (const int count : {9, 40}) {
