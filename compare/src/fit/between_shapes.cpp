@@ -106,6 +106,7 @@ AcrossRod across_rod(const Shape& shape, const Shape& rod, const Eigen::Vector3d
 
 std::optional<double> common_share(const std::vector<AcrossRod>& shapes) {
   std::vector<std::vector<double>> arc_lengths;
+  arc_lengths.reserve(shapes.size());
   for (const AcrossRod& one : shapes) arc_lengths.push_back(one.arc_length);
   const std::optional<Range> range = common_range(arc_lengths);
   if (!range) return std::nullopt;
@@ -126,6 +127,7 @@ std::optional<double> common_share(const std::vector<AcrossRod>& shapes) {
 
 std::optional<double> repeatability(const std::vector<Shape>& shapes) {
   std::vector<std::vector<double>> arc_lengths;
+  arc_lengths.reserve(shapes.size());
   for (const Shape& one : shapes) arc_lengths.push_back(one.arc_length);
   const std::optional<Range> range = common_range(arc_lengths);
   if (!range) return std::nullopt;
