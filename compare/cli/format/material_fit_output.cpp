@@ -8,7 +8,6 @@
 #include "base/display.hpp"
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/error.hpp"
-#include "fit/fitted_scene.hpp"
 #include "format/alignment_output.hpp"
 #include "format/comparison_output.hpp"
 #include "record/csv_table.hpp"
@@ -43,9 +42,9 @@ std::string correlation_text(const compare::Calibration& report) {
   const FittedValue& E = report.fit.youngs_modulus;
   const bool has_interval = E.low || E.high;
   return fmt::format(
-      "            errors along the rod are correlated: {:.2g} % of their variance over about "
+      "            errors along the rod are correlated: {:.0f} % of their variance over about "
       "{:.2g} "
-      "m\n            ({:.2g} % of the rod){} ({:.3g} degrees of freedom)\n",
+      "m\n            ({:.0f} % of the rod){} ({:.3g} degrees of freedom)\n",
       errors.share * 100, errors.length_m, errors.length_m / report.scenes.front().length * 100,
       has_interval ? fmt::format("; the interval is {:.3g} times as wide to account for that",
                                  errors.widening)
@@ -110,8 +109,8 @@ std::string prediction_text(const compare::Prediction& prediction) {
       prediction.rms_m * 1e3);
   if (prediction.repeatability_m) {
     append(out,
-           "            {:.4g} mm between each shape and the mean of the others: no rod predicts "
-           "better than they repeat\n",
+           "            {:.4g} mm between each shape and the mean of the others: a prediction can "
+           "hardly come nearer\n",
            *prediction.repeatability_m * 1e3);
   }
   return out;
@@ -427,13 +426,16 @@ std::string material_toml(const compare::Calibration& report) {
     append(out, "{}natural_curvature = {}\n",
            given ? "" : "# of the rod: ", natural_curvature_text(fit));
   }
-  const std::vector<compare::Gripper> held = compare::fitted_scene(scene, fit, scene).grippers;
   for (const compare::ClampCorrection& correction : fit.clamps) {
-    const compare::Gripper& gripper = held[correction.gripper];
-    append(out, "# of the scene's gripper {}: position = {}", correction.gripper + 1,
-           vector_text(gripper.position));
-    if (gripper.direction) append(out, ", direction = {}", vector_text(*gripper.direction));
-    out += "\n";
+    const double angle = correction.rotation.norm();
+    append(
+        out,
+        "# gripper {} of every scene: direction rotated by {:.4g} deg about {}, position moved by "
+        "{} m\n",
+        correction.gripper + 1, angle * 180 / std::numbers::pi,
+        vector_text(angle > 0 ? Eigen::Vector3d(correction.rotation / angle)
+                              : Eigen::Vector3d::UnitZ()),
+        vector_text(correction.displacement));
   }
   append(out, "{}least squares of {} measured shape{}, noise {:.3g} m{}{}\n",
          given ? "# " : "source = \"", fit.shapes.size(), fit.shapes.size() == 1 ? "" : "s",

@@ -144,8 +144,8 @@ void require_pairs(const std::vector<Scene>& scenes, const std::vector<MeasuredS
   if (options.shared_clamps &&
       !(options.direction_tolerance > 0 || options.position_tolerance > 0)) {
     throw InputError(
-        "calibrate: clamps that are alike in all shapes, but nothing says how well they are known "
-        "(allowed: with clamp angles or clamp positions)");
+        "calibrate: the same clamps in all shapes, but nothing says how well they are known "
+        "(allowed: with clamp angles or positions, as --clamp-angles \"5 deg\")");
   }
   constexpr std::size_t fewest_predicted = 3;
   if (options.predict && shapes.size() < fewest_predicted) {

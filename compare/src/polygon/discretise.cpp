@@ -36,7 +36,7 @@ RootMoment root_moment(const Scene& scene, const Gripper& grip, double side) {
     most += load.force.norm() * arm;
   }
   for (const DistributedLoad& load : scene.distributed_loads) {
-    for (energy_model::LineLoad piece : line_loads(load)) {
+    for (const energy_model::LineLoad& piece : line_loads(load)) {
       const double from = side > 0 ? std::max(piece.begin, grip.at) : piece.begin;
       const double to = side > 0 ? piece.end : std::min(piece.end, grip.at);
       if (!(to > from)) continue;

@@ -110,8 +110,8 @@ TEST(Prediction, RefusesWhatItCannotDo) {
     return std::string();
   };
   EXPECT_EQ(refused(seen, {.shared_clamps = true}),
-            "calibrate: clamps that are alike in all shapes, but nothing says how well they are "
-            "known (allowed: with clamp angles or clamp positions)");
+            "calibrate: the same clamps in all shapes, but nothing says how well they are known "
+            "(allowed: with clamp angles or positions, as --clamp-angles \"5 deg\")");
   Hangings two = seen;
   two.scenes.resize(2);
   two.shapes.resize(2);
