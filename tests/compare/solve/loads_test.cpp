@@ -17,7 +17,7 @@ namespace {
 
 using test::heavy_scene;
 
-const std::string rod = R"([rod]
+const std::string clamped_at_its_begin = R"([rod]
 length = "2 m"
 bending_stiffness = "0.5 N m^2"
 mass_per_length = "20 g/m"
@@ -27,17 +27,17 @@ position = [0, 0, 0]
 direction = "0 deg"
 )";
 
-std::string refused(const std::string& loads) {
+std::string load_refusal(const std::string& loads) {
   try {
-    (void)parse_scene(rod + loads, "my.toml");
+    (void)parse_scene(clamped_at_its_begin + loads, "my.toml");
   } catch (const InputError& error) {
     return error.what();
   }
   return "no error";
 }
 
-void expect_refused(const std::string& loads, const std::vector<std::string>& parts) {
-  const std::string said = refused(loads);
+void expect_load_refused(const std::string& loads, const std::vector<std::string>& parts) {
+  const std::string said = load_refusal(loads);
   for (const std::string& part : parts) EXPECT_NE(said.find(part), std::string::npos) << said;
 }
 
@@ -46,7 +46,7 @@ double apart(const Solution& a, const Solution& b) {
 }
 
 TEST(Loads, OfAFileHaveUnitsAndPlaces) {
-  const Scene scene = parse_scene(rod + R"([[load]]
+  const Scene scene = parse_scene(clamped_at_its_begin + R"([[load]]
 at = "50 cm"
 torque = [0, 0, "200 mN m"]
 [[load]]
@@ -73,23 +73,23 @@ force_per_length = [[0, 1, 0], [0, 3, 0], ["1 mN/m", 0, 0]]
 }
 
 TEST(Loads, RefusalsNameTheKeyThePlaceAndWhatIsAllowed) {
-  expect_refused("[[load]]\nat = 0.5\n", {"my.toml:9", "load.force", "missing"});
-  expect_refused("[[load]]\nat = 0.5\ntorque = [0, 0, \"1 N\"]\n",
-                 {"my.toml:11", "load.torque", "N m"});
-  expect_refused("[[load]]\nat = 0.5\ntorque = [0, 1, 0]\n",
-                 {"my.toml:11", "load.torque", "in one plane"});
-  expect_refused(
+  expect_load_refused("[[load]]\nat = 0.5\n", {"my.toml:9", "load.force", "missing"});
+  expect_load_refused("[[load]]\nat = 0.5\ntorque = [0, 0, \"1 N\"]\n",
+                      {"my.toml:11", "load.torque", "N m"});
+  expect_load_refused("[[load]]\nat = 0.5\ntorque = [0, 1, 0]\n",
+                      {"my.toml:11", "load.torque", "in one plane"});
+  expect_load_refused(
       "[[load]]\nat = 0.5\ntorque = [0, 0, 1]\n[[obstacle]]\npoint = [0, -1, 0]\n"
       "normal = [0, 1, 0]\n",
       {"load.torque", "obstacles"});
-  expect_refused("[[distributed_load]]\nfrom = 1\nto = 0.5\nforce_per_length = [0, 1, 0]\n",
-                 {"my.toml:11", "distributed_load.to", "to > from"});
-  expect_refused("[[distributed_load]]\nforce = [0, 1, 0]\n",
-                 {"my.toml:10", "unknown key", "force_per_length"});
-  expect_refused("[[distributed_load]]\nforce_per_length = [[0, 1, 0]]\n",
-                 {"distributed_load.force_per_length", "2 to"});
-  expect_refused("[[distributed_load]]\nforce_per_length = [0, \"1 N\", 0]\n",
-                 {"force_per_length", "N/m"});
+  expect_load_refused("[[distributed_load]]\nfrom = 1\nto = 0.5\nforce_per_length = [0, 1, 0]\n",
+                      {"my.toml:11", "distributed_load.to", "to > from"});
+  expect_load_refused("[[distributed_load]]\nforce = [0, 1, 0]\n",
+                      {"my.toml:10", "unknown key", "force_per_length"});
+  expect_load_refused("[[distributed_load]]\nforce_per_length = [[0, 1, 0]]\n",
+                      {"distributed_load.force_per_length", "2 to"});
+  expect_load_refused("[[distributed_load]]\nforce_per_length = [0, \"1 N\", 0]\n",
+                      {"force_per_length", "N/m"});
 }
 
 TEST(Loads, DistributedInsteadOfTheWeightBendAlikeInEveryModel) {
@@ -157,7 +157,7 @@ TEST(Loads, AMediumBearsWhatTheRodDisplaces) {
   EXPECT_LT(apart(immersed, solve(scene_of(400, ""), Model::energy)), 1e-11);
   const Solution floats = solve(scene_of(1000, water), Model::exact);
   EXPECT_LT(floats.shape.points.row(1).cwiseAbs().maxCoeff(), 1e-12);
-  expect_refused("[medium]\ndensity = 1000\n", {"medium.density", "diameter"});
+  expect_load_refused("[medium]\ndensity = 1000\n", {"medium.density", "diameter"});
 }
 
 TEST(Loads, ACoupleIsForEnergyAndExactAndOthersSaySo) {
