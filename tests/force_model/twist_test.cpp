@@ -129,7 +129,7 @@ TEST(Twist, AtRestTheGripsBalanceEachOtherAndBearIt) {
   const double moment = twist_angle(spans[0], points) / spans[0].compliance;
   EXPECT_NEAR(grips[1].torque.x(), moment, 1e-5 * scale);
   EXPECT_GT(moment, 1);
-  // It gives way to some of the turn by leaving its plane.
+  // A part of the turn becomes writhe.
   EXPECT_LT(rod.twist.angles[0], 1.99);
   EXPECT_GT(points.row(2).cwiseAbs().maxCoeff(), 0.01);
   EXPECT_NEAR(energy(rod, points).twist, moment * moment * spans[0].compliance / 2, 1e-12);

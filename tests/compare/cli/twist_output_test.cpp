@@ -210,7 +210,7 @@ TEST_F(TwistCommand, TheEnergyModelGivesTorqueAndEnergyOfTheTwist) {
   const json document = json::parse(result.out);
   EXPECT_FALSE(document.contains("neglected"));
   const json& part = document.at("twist").at("parts")[0];
-  // Bending out of its plane the wire gives way to some of the half turn.
+  // Bending out of its plane the wire turns a part of the half turn into writhe.
   const double angle = part.at("angle_rad").get<double>();
   EXPECT_GT(angle, pi / 2);
   EXPECT_LT(angle, pi);

@@ -354,7 +354,7 @@ TEST(Comparison, SaysWhichOfSeveralStatesItCompared) {
   Scene scene = heavy_scene(100, 0);
   scene.force_model.c_c = scene.axial_stiffness() / 100;
   const Comparison c = compare(scene);
-  // Above Gamma = 41.4 a horizontal clamp has other shapes, thrown back over the clamp.
+  // Above Gamma = 41.4 a horizontal clamp has other shapes, folded over it.
   EXPECT_GE(c.state.others.size(), 1U);
   EXPECT_EQ(c.state.rank, 1);
   EXPECT_EQ(static_cast<int>(c.state.others.size()), c.state.stable + c.state.unstable - 1);
