@@ -156,7 +156,8 @@ TEST(LineLoad, EnergyAndShootingAgreeOnRandomScenes) {
       for (Load& load : problem.loads) load.force *= share;
       expect_confirmed(with_random_line_loads(problem, number, planar), confirmed);
     }
-    EXPECT_GE(confirmed, all == count ? all - 2 : 0) << test::name_of(space);
+    if (test::sanitized) continue;
+    EXPECT_GE(confirmed, count - 2) << test::name_of(space);
   }
 }
 
