@@ -37,6 +37,7 @@ struct CalibrateOptions {
   std::string clamp_positions;
   bool same_clamps = false;
   bool predict = false;
+  std::string chosen = "given";
   std::vector<std::string> holdouts;
   std::optional<double> target;
   ShapeOptions shape_options;
@@ -102,6 +103,7 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
           quantity_of("--clamp-positions", options.clamp_positions, Dimension::length).value_or(0),
       .shared_clamps = options.same_clamps,
       .predict = options.predict,
+      .choose_options = options.chosen == "auto",
       .chain_segments = options.segments,
       .profile_points = options.plot.draws() ? profile_points : 0,
       .noise = quantity_of("--noise", options.noise, Dimension::length),
@@ -238,6 +240,13 @@ void add_calibrate(CLI::App& app) {
       ->add_flag("--predict", options->predict,
                  "leave out each shape in turn and predict it by the fit to the others: says which "
                  "options predict best (three shapes or more)")
+      ->needs(shape)
+      ->group(measured);
+  command
+      ->add_option("--options", options->chosen,
+                   "given, or auto: the terms of natural curvature, and clamps misaligned alike or "
+                   "not, that predict shapes best that are left out (three shapes or more)")
+      ->check(CLI::IsMember({"given", "auto"}))
       ->needs(shape)
       ->group(measured);
   command

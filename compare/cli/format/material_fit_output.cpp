@@ -89,6 +89,21 @@ std::string words_of(const compare::FitAlternative& alternative) {
     append(out, "{}--clamp-angles \"{:.3g} deg\"", out.empty() ? "" : " ",
            alternative.direction_tolerance * 180 / std::numbers::pi);
   }
+  if (alternative.shared_clamps) out += " --same-clamps";
+  return out;
+}
+
+/// The options that were chosen, and what the others predict.
+std::string tried_text(const std::vector<compare::FitAlternative>& tried) {
+  std::string out;
+  for (std::size_t i = 0; i < tried.size(); ++i) {
+    const std::string words = words_of(tried[i]);
+    append(out,
+           "{} {}: {:.4g} mm between each shape and the rod fitted to the others, residual {:.4g} "
+           "mm\n",
+           i == 0 ? "chosen     " : "           ", words.empty() ? "no option" : words,
+           tried[i].prediction_m.value_or(NAN) * 1e3, tried[i].rms_m * 1e3);
+  }
   return out;
 }
 
@@ -241,12 +256,15 @@ void add_value(Json& result, const Key& key, const std::string& prefix, const Fi
   result[prefix + "interval_95" + key.unit] = {json_of(value.low), json_of(value.high)};
 }
 
-Json alternatives_json(const compare::Calibration& report) {
+Json alternatives_json(const compare::Calibration& report,
+                       const std::vector<compare::FitAlternative>& alternatives) {
   Json result = Json::array();
-  for (const compare::FitAlternative& alternative : report.fit.alternatives) {
+  for (const compare::FitAlternative& alternative : alternatives) {
     Json one = {{"options", words_of(alternative)},
                 {"natural_curvature_terms", alternative.natural_curvature_terms},
                 {"direction_tolerance_rad", alternative.direction_tolerance},
+                {"same_clamps", alternative.shared_clamps},
+                {"prediction_rms_m", json_of(alternative.prediction_m)},
                 {"rms_m", alternative.rms_m}};
     add_value(one, stiffness_key(report.scenes.front()), "", alternative.youngs_modulus);
     result.push_back(std::move(one));
@@ -294,6 +312,7 @@ std::string material_text(const compare::Calibration& report) {
   }
   append(out, "residual    {:.4g} mm between points and rod (RMS)\n", fit.rms_m * 1e3);
   if (fit.prediction) out += prediction_text(*fit.prediction);
+  out += tried_text(fit.tried);
   append(out, "{}", alternatives_text(report));
   for (std::size_t i = 0; i < fit.shapes.size(); ++i) {
     const compare::Alignment& a = fit.shapes[i].alignment;
@@ -354,7 +373,8 @@ Json material_json(const compare::Calibration& report) {
             {"effective_degrees_of_freedom", errors.degrees_of_freedom}};
   });
   result["common_share"] = json_of(fit.common_share);
-  result["alternatives"] = alternatives_json(report);
+  result["alternatives"] = alternatives_json(report, fit.alternatives);
+  result["tried"] = alternatives_json(report, fit.tried);
   result["others"] = numbers_json(fit);
   result["chains"] = chains_json(fit.chains);
   result["clamps"] = json_list(fit.clamps, [](const compare::ClampCorrection& one) -> Json {

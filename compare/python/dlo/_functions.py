@@ -185,6 +185,7 @@ def plan(
     clamp_positions=QUANTITY,
     same_clamps=TRUTH,
     predict=TRUTH,
+    options=TEXT,
     noise=QUANTITY,
     segments=INTEGER,
     time=NUMBER,
@@ -206,6 +207,7 @@ def calibrate(
     clamp_positions: Quantity = 0.0,
     same_clamps: bool = False,
     predict: bool = False,
+    options: str = "given",
     noise: Optional[Quantity] = None,
     segments: int = 0,
     time: Optional[float] = None,
@@ -218,7 +220,8 @@ def calibrate(
     [m], a tuple of points and their arc lengths, or the name of a file in metres. density, torsional_stiffness: fit these as well;
     natural_curvature: so many terms of it. clamp_angles, clamp_positions: how well the clamps are
     known (standard deviations, "5 deg", "2 mm"); each shape's own are then fitted,
-    with same_clamps what all share. predict: each shape is left out in turn, and predicted. noise: standard
+    with same_clamps what all share. predict: each shape is left out in turn, and predicted. options: "auto" chooses the terms of
+    natural curvature and same_clamps that predict best ("tried" of the document). noise: standard
     deviation of one coordinate; None: estimated. segments: of your simulator's chain, whose springs are
     then found too ("chains" of the document). register, arc_lengths: as of check(). time, materials: as of
     solve(), of all scenes.
@@ -240,6 +243,7 @@ def calibrate(
         "clamp_positions": _si(clamp_positions, "length"),
         "same_clamps": bool(same_clamps),
         "predict": bool(predict),
+        "options": options,
         "segments": segments,
         "noise": None if noise is None else _si(noise, "length"),
     }

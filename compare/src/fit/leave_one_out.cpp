@@ -36,7 +36,7 @@ double distance_from_rod(const Scene& scene, const MeasuredShape& shape,
       {scene}, {shape},
       {.pose = options.pose, .arc_lengths = options.arc_lengths, .solve = options.solve},
       std::chrono::steady_clock::now());
-  return std::sqrt(measured.alignment(0, measured.solve(scene, nullptr)).mean_square);
+  return std::sqrt(measured.alignment(0, measured.solve(0, scene, nullptr)).mean_square);
 }
 
 std::optional<double> repeatability_of(const std::vector<Scene>& scenes, const MaterialFit& fit) {

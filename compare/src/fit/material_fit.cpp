@@ -14,6 +14,7 @@
 #include "dlo/compare/error.hpp"
 #include "fit/between_shapes.hpp"
 #include "fit/chain_springs.hpp"
+#include "fit/choose_options.hpp"
 #include "fit/fitted_scene.hpp"
 #include "fit/leave_one_out.hpp"
 #include "fit/log_profile.hpp"
@@ -141,14 +142,14 @@ void require_pairs(const std::vector<Scene>& scenes, const std::vector<MeasuredS
     throw InputError(
         "calibrate: arc lengths by chord are not exact enough (allowed: auto, file, nearest)");
   }
-  if (options.shared_clamps &&
+  if (options.shared_clamps && !options.choose_options &&
       !(options.direction_tolerance > 0 || options.position_tolerance > 0)) {
     throw InputError(
         "calibrate: the same clamps in all shapes, but nothing says how well they are known "
         "(allowed: with clamp angles or positions, as --clamp-angles \"5 deg\")");
   }
   constexpr std::size_t fewest_predicted = 3;
-  if (options.predict && shapes.size() < fewest_predicted) {
+  if ((options.predict || options.choose_options) && shapes.size() < fewest_predicted) {
     throw InputError(
         fmt::format("calibrate: prediction of {} shapes, each by the others (allowed: {} or more)",
                     shapes.size(), fewest_predicted));
@@ -546,6 +547,7 @@ class MaterialFitter {
 MaterialFit fit_material(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
                          const MaterialFitOptions& options) {
   require_pairs(scenes, shapes, options);
+  if (options.choose_options) return fit_with_chosen_options(scenes, shapes, options);
   MaterialFit fit = MaterialFitter(scenes, shapes, options).run();
   if (options.predict) fit.prediction = leave_one_out(scenes, shapes, options, fit);
   if (options.chain_segments > 0 && fit.youngs_modulus.value) add_chains(scenes, options, fit);

@@ -60,7 +60,7 @@ std::shared_ptr<ShapeMisfit::Solved> ShapeMisfit::solve(std::size_t i,
   auto result = std::make_shared<Solved>();
   result->material = material;
   result->scene = i;
-  result->equilibrium = measured_.solve(scene, start);
+  result->equilibrium = measured_.solve(i, scene, start);
   if (result->equilibrium.status == energy_model::SolveStatus::not_verified) {
     result->penetration = depth_in_obstacles(scene, result->equilibrium);
   }

@@ -15,6 +15,7 @@
 #include "fit/log_profile.hpp"
 #include "fit/wire_numbers.hpp"
 #include "least_squares/gauss_newton.hpp"
+#include "least_squares/linear_fit.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -23,8 +24,11 @@ namespace {
 constexpr double own_error = 1e-8;
 /// Longest step in log E: beyond it nothing is linear.
 constexpr double longest_log_step = 1;
-/// The correlation is measured from residuals of a fit that knows it: so often.
-constexpr int most_correlations = 3;
+/// Correlated errors tell less than as many independent ones, which counts beside what was known
+/// before. How much less is measured from the residuals of a fit that knows it: so often, and to so
+/// much of it.
+constexpr int most_weights = 3;
+constexpr double weight_tolerance = 0.1;
 /// An end of the interval is right if the deviance there is its quantile's square to this share.
 constexpr double end_tolerance = 0.05;
 constexpr int most_ends = 6;
@@ -70,11 +74,12 @@ FittedRods::SceneAt scene_at(std::vector<Scene> scenes, std::vector<WireNumber> 
   };
 }
 
-std::vector<Unknown> unknowns_of(const std::vector<WireNumber>& numbers) {
+/// @param terms  of natural curvature that are fitted, the others stay
+std::vector<Unknown> unknowns_of(const std::vector<WireNumber>& numbers, int terms) {
   std::vector<Unknown> result;
   result.reserve(numbers.size());
   for (const WireNumber& number : numbers) {
-    result.push_back({.stride = number.stride,
+    result.push_back({.stride = number.term < std::max(1, terms) ? number.stride : 0,
                       .shape = number.described.shape,
                       .known_before = number.described.known_before});
   }
@@ -93,38 +98,64 @@ class WireFitter {
         numbers_(wire_numbers(scenes, shapes, options, density)),
         measured_(measured),
         scene_at_(scene_at(fitted_scenes(scenes, measured, options), numbers_)),
-        rods_(measured, scene_at_, unknowns_of(numbers_)) {}
+        rods_(measured, scene_at_, unknowns_of(numbers_, options.natural_curvature_terms)) {}
 
   [[nodiscard]] MaterialFit run(const MaterialPoint& start) {
     Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(numbers_.size()));
     values[0] = start.log_modulus;
     if (density_) values[1] = start.log_density;
     look_for_start(values);
-    const double least_noise = own_error * scenes_.front().length;
-    fit_.emplace(rods_, values,
-                 GaussNewtonOptions{.noise = options_.noise,
-                                    .least_noise = least_noise,
-                                    .lowest = std::log(options_.smallest_ratio),
-                                    .highest = std::log(options_.largest_ratio)});
-    for (int i = 0; i < most_correlations; ++i) {
+    fit_fewer_terms(values);
+    fit_.emplace(rods_, values, steps());
+    for (int i = 0; i < most_weights; ++i) {
       if (!fit_->descend()) {
         throw ConvergenceError(fmt::format(
             "{}: the energy model has no shape beside the fitted one", scenes_.front().file));
       }
-      if (!(fit_->variance() > std::pow(least_noise, 2))) break;
+      error_variance_ = fit_->variance();
+      error_freedom_ = fit_->freedom();
+      if (!(fit_->variance() > std::pow(least_noise(), 2))) break;
       const CorrelationEstimate estimate = correlation_of(fit_->series());
       tested_ = estimate.tested;
-      const ErrorCovariance next = estimate.significant ? estimate.covariance : ErrorCovariance();
-      const ErrorCovariance& now = fit_->covariance();
-      if (next.share == now.share && next.length == now.length) break;
-      fit_->assume(next);
+      errors_ = estimate.significant ? estimate.covariance : ErrorCovariance();
+      if (!estimate.significant) break;
+      measure_errors();
+      const double next = correlated_weight();
+      const bool settled = std::abs(next / fit_->weight() - 1) < weight_tolerance;
+      if (settled || fit_->before().isZero()) break;
+      fit_->weigh(next);
     }
     optimum_ = fit_->rods();
-    unseen_ = unseen(fit_->linear(), fit_->variance(), fit_->before());
+    unseen_ = unseen(fit_->linear(), fit_->weight(), fit_->before());
+    covariance_ = covariance_of_numbers();
     return result();
   }
 
  private:
+  [[nodiscard]] double least_noise() const { return own_error * scenes_.front().length; }
+
+  [[nodiscard]] GaussNewtonOptions steps() const {
+    return {.noise = options_.noise,
+            .least_noise = least_noise(),
+            .lowest = std::log(options_.smallest_ratio),
+            .highest = std::log(options_.largest_ratio)};
+  }
+
+  /// More terms of natural curvature never fit worse than fewer: each one is added where the fit
+  /// without it has led.
+  void fit_fewer_terms(Eigen::VectorXd& values) {
+    GaussNewtonOptions coarse = steps();
+    coarse.last_step = 0.1;
+    for (int terms = 1; terms < options_.natural_curvature_terms; ++terms) {
+      FittedRods rods(measured_, scene_at_, unknowns_of(numbers_, terms));
+      rods.go_on_from(rods_.rods());
+      GaussNewton fit(rods, values, coarse);
+      if (!fit.descend()) return;
+      values = fit.values();
+      rods_.go_on_from(fit.rods());
+    }
+  }
+
   /// A rod that is intrinsically curved may hang on the other side of its clamp, and the E that
   /// fits best without that may be far away. So mean curvatures all over what is likely are gone
   /// through from both ends, each shape following its own equilibrium, with that E and the scene's;
@@ -165,18 +196,63 @@ class WireFitter {
     rods_.go_on_from(std::move(nearest));
   }
 
+  /// Of correlated errors.
+  void measure_errors() {
+    const VarianceEstimate seen =
+        variance_under(fit_->series(), errors_, measured_.frame_columns());
+    error_freedom_ = std::max(1.0, seen.freedom);
+    error_variance_ = options_.noise ? std::pow(*options_.noise, 2) : seen.variance;
+  }
+
+  /// The variance over which the squares of correlated errors count as much as they tell of E.
+  [[nodiscard]] double correlated_weight() const {
+    const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(fit_->before().size());
+    const double independent = posterior(fit_->linear(), 1, nothing)(0, 0);
+    const double correlated =
+        posterior_under(fit_->series(), fit_->linear(), 1, nothing, errors_, 1)(0, 0);
+    return error_variance_ * std::max(1.0, correlated / independent);
+  }
+
+  /// Under the errors' covariance, which is known from the residuals only: the mean over all that
+  /// they leave likely.
+  [[nodiscard]] Eigen::MatrixXd covariance_of_numbers() const {
+    if (!(errors_.share > 0)) return fit_->covariance_of_numbers();
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(fit_->values().size(), fit_->values().size());
+    for (const LikelyCovariance& likely : likely_covariances(fit_->series())) {
+      const double variance = options_.noise ? error_variance_
+                                             : variance_under(fit_->series(), likely.covariance,
+                                                              measured_.frame_columns())
+                                                   .variance;
+      sum += likely.weight * posterior_under(fit_->series(), fit_->linear(), fit_->weight(),
+                                             fit_->before(), likely.covariance, variance);
+    }
+    return sum;
+  }
+
+  /// By what correlated errors make the interval of E wider than where the deviance has its limit.
+  [[nodiscard]] double correlated_width() const {
+    return std::sqrt(covariance_(0, 0) / fit_->covariance_of_numbers()(0, 0));
+  }
+
+  /// By what they make it wider than as many independent ones of the same squares would.
+  [[nodiscard]] double correlated_widening() const {
+    const double independent = posterior(fit_->linear(), fit_->variance(), fit_->before())(0, 0);
+    const double alone = options_.noise ? quantile() : gsl_cdf_tdist_Pinv(0.975, fit_->freedom());
+    return std::sqrt(covariance_(0, 0) / independent) * quantile() / alone;
+  }
+
   [[nodiscard]] double quantile() const {
     return options_.noise ? gsl_cdf_ugaussian_Pinv(0.975)
-                          : gsl_cdf_tdist_Pinv(0.975, fit_->freedom());
+                          : gsl_cdf_tdist_Pinv(0.975, error_freedom_);
   }
 
   /// Distance in log E to the end of the interval on a side (1: above, -1: below); none: open.
   /// Where the equilibria that are followed end before, linear theory has to do.
   [[nodiscard]] std::optional<double> end(double side) {
     if (unseen_[0]) return std::nullopt;
-    const double wanted = quantile();
+    const double wanted = quantile() * correlated_width();
     const double least = fit_->deviance();
-    const double linear = wanted * std::sqrt(fit_->covariance_of_numbers()(0, 0));
+    const double linear = quantile() * std::sqrt(covariance_(0, 0));
     const double farthest = side > 0 ? std::log(options_.largest_ratio) - fit_->values()[0]
                                      : fit_->values()[0] - std::log(options_.smallest_ratio);
     constexpr double jump = 4;
@@ -206,8 +282,8 @@ class WireFitter {
         nuisances.push_back(
             {frames + number, fit_->values()[number], numbers_[k].described.known_before});
       }
-      estimates.push_back(estimate_of_shape(series_of_shape(fit_->series(), shape),
-                                            fit_->covariance(), variance, frames, nuisances));
+      estimates.push_back(estimate_of_shape(series_of_shape(fit_->series(), shape), errors_,
+                                            variance, frames, nuisances));
     }
     fit.scatter = scatter_between(estimates, quantile());
   }
@@ -234,39 +310,17 @@ class WireFitter {
     return quantile() * std::sqrt(variance) * widening;
   }
 
-  /// The errors' covariance is known from the residuals only: by what the interval is wider when
-  /// all that they leave likely is averaged over. Of their variance it takes what the residuals
-  /// say, a given noise may be another one.
-  [[nodiscard]] double unknown_covariance() const {
-    if (!(fit_->covariance().share > 0) || unseen_[0]) return 1;
-    const auto of_errors = [this](const LinearFit& linear) {
-      return linear.residual.squaredNorm() / fit_->freedom();
-    };
-    double variance = 0;
-    double mean = 0;
-    double square = 0;
-    const std::vector<ResidualSeries> few = thinned(fit_->series());
-    for (const LikelyCovariance& likely : likely_covariances(few)) {
-      const LinearFit linear = linear_fit(few, likely.covariance, measured_.frame_columns());
-      const Eigen::MatrixXd inverse = posterior(linear, of_errors(linear), fit_->before());
-      const double shift =
-          inverse.row(0).dot(slope(linear, of_errors(linear), fit_->before(), fit_->values()));
-      variance += likely.weight * inverse(0, 0);
-      mean += likely.weight * shift;
-      square += likely.weight * shift * shift;
-    }
-    const LinearFit likeliest = linear_fit(few, fit_->covariance(), measured_.frame_columns());
-    const double alone = posterior(likeliest, of_errors(likeliest), fit_->before())(0, 0);
-    return std::max(1.0, std::sqrt((variance + square - mean * mean) / alone));
-  }
-
   /// Where a given noise explains less than there is: by what the interval is wider.
   [[nodiscard]] double misfit(MaterialFit& fit) const {
     if (!options_.noise) return 1;
-    const double squares = fit_->deviance();
+    const double squares =
+        errors_.share > 0
+            ? variance_under(fit_->series(), errors_, measured_.frame_columns()).variance *
+                  error_freedom_ / error_variance_
+            : fit_->deviance();
     constexpr double significant = 0.05;
-    if (!(gsl_cdf_chisq_Q(squares, fit_->freedom()) < significant)) return 1;
-    const double times = std::sqrt(squares / fit_->freedom());
+    if (!(gsl_cdf_chisq_Q(squares, error_freedom_) < significant)) return 1;
+    const double times = std::sqrt(squares / error_freedom_);
     fit.warning = fmt::format(
         "the residuals are {:.3g} times what the given noise explains; the interval is as much "
         "wider",
@@ -296,8 +350,27 @@ class WireFitter {
       // The interval's ends are `widening` times as far away as where the deviance has its limit.
       const double excess =
           fit_->profile(fit_->values()[0] + (x - fit_->values()[0]) / widening) - least;
-      fit.profile.push_back({unit * std::exp(x), excess / (quantile() * quantile())});
+      const double limit = quantile() * correlated_width();
+      fit.profile.push_back({unit * std::exp(x), excess / (limit * limit)});
     }
+  }
+
+  /// A rod that was found in its plane, but would not stay there.
+  void note_ways_out_of_plane(MaterialFit& fit) {
+    double farthest = 0;
+    std::size_t whose = 0;
+    for (std::size_t i = 0; i < optimum_.size(); ++i) {
+      const double way = measured_.way_out_of_plane(i, scene_at_(i, fit_->values()), *optimum_[i]);
+      if (way > farthest) whose = i;
+      farthest = std::max(farthest, way);
+    }
+    if (!(farthest > 0)) return;
+    if (!fit.warning.empty()) fit.warning += "; ";
+    fit.warning += fmt::format(
+        "the rod was fitted in the plane of its points; with these numbers it leaves that plane, "
+        "by "
+        "{:.3g} mm in {}: GJ is larger, or the natural curvature another one",
+        farthest * 1000, scenes_[whose].file);
   }
 
   /// What was found of clamps that are alike in all scenes.
@@ -320,9 +393,8 @@ class WireFitter {
   [[nodiscard]] MaterialFit result() {
     MaterialFit fit;
     const double times_noise = misfit(fit);
-    measure_scatter(fit, fit_->variance() * times_noise * times_noise);
-    const double unknown = unknown_covariance();
-    const double widening = unknown * times_noise * (fit.scatter ? fit.scatter->widening : 1);
+    measure_scatter(fit, error_variance_ * times_noise * times_noise);
+    const double widening = times_noise * (fit.scatter ? fit.scatter->widening : 1);
     const auto widened = [widening](std::optional<double> distance) {
       if (distance) *distance *= widening;
       return distance;
@@ -349,8 +421,7 @@ class WireFitter {
           options_.identified_within);
     }
     if (density_) {
-      const std::optional<double> half =
-          half_width({1}, fit_->covariance_of_numbers()(1, 1), widening);
+      const std::optional<double> half = half_width({1}, covariance_(1, 1), widening);
       fit.density = identified(fit_->values()[1], scenes_.front().heaviness().value, half, half);
     }
     if (options_.torsional_stiffness) {
@@ -358,19 +429,16 @@ class WireFitter {
       const Eigen::Index k = curvature_ - 1;
       const double GJ = scenes_.front().twisting_stiffness();
       const double EI = scenes_.front().mean_bending_stiffness();
-      const double variance = fit_->covariance_of_numbers()(0, 0) +
-                              2 * fit_->covariance_of_numbers()(0, k) +
-                              fit_->covariance_of_numbers()(k, k);
+      const double variance = covariance_(0, 0) + 2 * covariance_(0, k) + covariance_(k, k);
       const std::optional<double> half = half_width({0, k}, variance, widening);
       fit.torsional_stiffness = identified(fit_->values()[0] + fit_->values()[k], GJ, half, half);
-      const std::optional<double> half_ratio =
-          half_width({k}, fit_->covariance_of_numbers()(k, k), widening);
+      const std::optional<double> half_ratio = half_width({k}, covariance_(k, k), widening);
       fit.torsion_over_bending = identified(fit_->values()[k], GJ / EI, half_ratio, half_ratio);
     }
     for (Eigen::Index number = curvature_; number < fit_->values().size(); ++number) {
       FittedNumber found = numbers_[static_cast<std::size_t>(number)].described;
       found.value = fit_->values()[number];
-      found.deviation = std::sqrt(fit_->covariance_of_numbers()(number, number));
+      found.deviation = std::sqrt(covariance_(number, number));
       fit.others.push_back(std::move(found));
     }
     if (options_.natural_curvature_terms > 0) {
@@ -380,15 +448,15 @@ class WireFitter {
                                    found.natural_variation.end());
     }
     if (options_.shared_clamps) fit.clamps = clamp_corrections();
-    fit.noise_m = std::sqrt(fit_->variance());
+    fit.noise_m = std::sqrt(error_variance_);
     fit.noise_is_estimated = !options_.noise;
     fit.degrees_of_freedom = static_cast<int>(fit_->freedom());
     fit.correlation_was_tested = tested_;
-    if (fit_->covariance().share > 0) {
-      fit.correlation = CorrelatedErrors{.length_m = fit_->covariance().length,
-                                         .share = fit_->covariance().share,
-                                         .widening = unknown,
-                                         .degrees_of_freedom = fit_->freedom()};
+    if (errors_.share > 0) {
+      fit.correlation = CorrelatedErrors{.length_m = errors_.length,
+                                         .share = errors_.share,
+                                         .widening = correlated_widening(),
+                                         .degrees_of_freedom = error_freedom_};
     }
     rods_.go_on_from(optimum_);
     const std::vector<Alignment> alignments = rods_.alignments(fit_->values());
@@ -399,6 +467,7 @@ class WireFitter {
     }
     if (options_.profile_points > 0) draw_profile(fit, widening);
     fit.rms_m = std::sqrt(squares / static_cast<double>(measured_.points()));
+    note_ways_out_of_plane(fit);
     return fit;
   }
 
@@ -411,7 +480,11 @@ class WireFitter {
   FittedRods::SceneAt scene_at_;
   FittedRods rods_;
   std::optional<GaussNewton> fit_;
-  bool tested_ = false;  // whether errors are correlated
+  bool tested_ = false;         // whether errors are correlated
+  ErrorCovariance errors_;      // independent, unless they are shown not to be
+  double error_variance_ = 0;   // [m^2]
+  double error_freedom_ = 0;    // degrees, of the residuals
+  Eigen::MatrixXd covariance_;  // of the numbers, under these errors
   FittedRods::Rods optimum_;
   std::vector<bool> unseen_;  // of the numbers, see unseen()
 };

@@ -55,7 +55,8 @@ void add_natural_curvature(std::vector<WireNumber>& numbers, const std::vector<S
                          1e-3 / length,
                          [about, term](Scene& scene, double value) {
                            bend_by_nature(scene, static_cast<std::size_t>(term), value * about);
-                         }});
+                         },
+                         term});
     }
   }
 }

@@ -15,6 +15,7 @@ struct WireNumber {
   FittedNumber described;
   double stride = 0;  ///< of differences, in its unit; 0: it is in no shape
   std::function<void(Scene&, double)> change;
+  int term = 0;  ///< of natural curvature; 0 of all other numbers
 };
 
 /// Whether a force acts on the rod that does not grow with its stiffness: weight, a load, an

@@ -242,6 +242,13 @@ Innovations innovations(const std::vector<ResidualSeries>& series,
   return {white.rightCols<1>(), white.leftCols(all.design.cols())};
 }
 
+Eigen::MatrixXd covariance_products(const std::vector<ResidualSeries>& series,
+                                    const Eigen::MatrixXd& columns,
+                                    const ErrorCovariance& covariance) {
+  if (!(covariance.share > 0)) return columns.transpose() * columns;
+  return columns.transpose() * covariance_times(columns, stacked(series).step, covariance);
+}
+
 CorrelationEffect correlation_effect(const std::vector<ResidualSeries>& series, Eigen::Index column,
                                      const ErrorCovariance& covariance) {
   const Stacked all = stacked(series);

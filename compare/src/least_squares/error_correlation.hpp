@@ -75,6 +75,12 @@ struct Innovations {
 [[nodiscard]] Innovations innovations(const std::vector<ResidualSeries>& series,
                                       const ErrorCovariance& covariance);
 
+/// columns' C columns.
+/// @param columns  a row for each residual, the series below each other
+[[nodiscard]] Eigen::MatrixXd covariance_products(const std::vector<ResidualSeries>& series,
+                                                  const Eigen::MatrixXd& columns,
+                                                  const ErrorCovariance& covariance);
+
 /// @param column  of the design: the fitted number
 [[nodiscard]] CorrelationEffect correlation_effect(const std::vector<ResidualSeries>& series,
                                                    Eigen::Index column,

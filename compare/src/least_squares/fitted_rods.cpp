@@ -18,8 +18,10 @@ std::optional<energy_model::Equilibrium> FittedRods::solve(std::size_t shape,
   try {
     const Scene changed = scene_(shape, values);
     const bool follows = last_[shape].has_value();
-    energy_model::Equilibrium rod = measured_.solve(changed, follows ? &*last_[shape] : nullptr);
-    if (follows && !energy_model::succeeded(rod.status)) rod = measured_.solve(changed, nullptr);
+    energy_model::Equilibrium rod =
+        measured_.solve(shape, changed, follows ? &*last_[shape] : nullptr);
+    if (follows && !energy_model::succeeded(rod.status))
+      rod = measured_.solve(shape, changed, nullptr);
     if (!energy_model::succeeded(rod.status)) return std::nullopt;
     return rod;
   } catch (const InputError&) {

@@ -31,15 +31,15 @@ double GaussNewton::penalty(const Eigen::VectorXd& values) const {
 }
 
 double GaussNewton::deviance() const {
-  return linear_.residual.squaredNorm() / variance_ + penalty(values_);
+  return linear_.residual.squaredNorm() / weight() + penalty(values_);
 }
 
 double GaussNewton::deviance_at(const Eigen::VectorXd& values) {
   const std::optional<std::vector<ResidualSeries>> series =
       rods_.residuals(values, FittedRods::Columns::frames);
   if (!series) return INFINITY;
-  const LinearFit there = linear_fit(*series, covariance_, rods_.measured().frame_columns());
-  return there.residual.squaredNorm() / variance_ + penalty(values);
+  const LinearFit there = linear_fit(*series, {}, rods_.measured().frame_columns());
+  return there.residual.squaredNorm() / weight() + penalty(values);
 }
 
 void GaussNewton::measure_variance() {
@@ -55,7 +55,7 @@ void GaussNewton::measure_variance() {
   }
   // What was known before is no number found.
   const Eigen::VectorXd kept =
-      posterior(linear_, variance_, before_).diagonal().cwiseProduct(before_.cwiseAbs2());
+      posterior(linear_, weight(), before_).diagonal().cwiseProduct(before_.cwiseAbs2());
   freedom_ = static_cast<double>(linear_.freedom - before_.size()) + kept.sum();
   if (!(freedom_ >= 1)) {
     throw InputError(
@@ -73,16 +73,16 @@ bool GaussNewton::descend() {
     if (!series) return false;
     series_ = std::move(*series);
     here_ = rods_.rods();
-    linear_ = linear_fit(series_, covariance_, rods_.measured().frame_columns());
+    linear_ = linear_fit(series_, {}, rods_.measured().frame_columns());
     measure_variance();
-    posterior_ = posterior(linear_, variance_, before_);
+    posterior_ = posterior(linear_, weight(), before_);
     // What is said of the values belongs to them: no step is made that nothing would be said of.
     if (i == most_steps) return true;
     Eigen::VectorXd step = next_step();
     const Eigen::VectorXd deviations = posterior_.diagonal().cwiseSqrt();
     if ((step.array().abs() <= options_.last_step * deviations.array()).all()) return true;
     const double here = deviance();
-    const double promised = (linear_.residual - linear_.design * step).squaredNorm() / variance_ +
+    const double promised = (linear_.residual - linear_.design * step).squaredNorm() / weight() +
                             penalty(values_ + step);
     if (here - promised < options_.least_gain * here) return true;
     // Every trial follows from here, not from where a longer one has led.
@@ -102,7 +102,7 @@ bool GaussNewton::descend() {
 /// seen it would be far away, and take the others with it.
 Eigen::VectorXd GaussNewton::next_step() const {
   const std::vector<Unknown>& unknowns = rods_.unknowns();
-  const Eigen::VectorXd down = slope(linear_, variance_, before_, values_);
+  const Eigen::VectorXd down = slope(linear_, weight(), before_, values_);
   Eigen::VectorXd step = posterior_ * down;
   const double longest = unknowns.front().longest_step;
   const double there = std::clamp(values_[0] + std::clamp(step[0], -longest, longest),
@@ -110,7 +110,7 @@ Eigen::VectorXd GaussNewton::next_step() const {
   if (values_[0] + step[0] != there) {
     step[0] = there - values_[0];
     if (step.size() > 1) {
-      step.tail(step.size() - 1) = step_of_others(linear_, variance_, before_, down, step[0]);
+      step.tail(step.size() - 1) = step_of_others(linear_, weight(), before_, down, step[0]);
     }
   }
   double share = 1;
@@ -134,10 +134,10 @@ double GaussNewton::profile(double first) {
     const std::optional<std::vector<ResidualSeries>> series =
         rods_.residuals(values, FittedRods::Columns::frames);
     if (!series) break;
-    chord.residual = linear_fit(*series, covariance_, rods_.measured().frame_columns()).residual;
-    const Eigen::VectorXd down = slope(chord, variance_, before_, values);
+    chord.residual = linear_fit(*series, {}, rods_.measured().frame_columns()).residual;
+    const Eigen::VectorXd down = slope(chord, weight(), before_, values);
     Eigen::VectorXd next = values;
-    next.tail(others) += step_of_others(chord, variance_, before_, down, 0);
+    next.tail(others) += step_of_others(chord, weight(), before_, down, 0);
     const double deviance_there = deviance_at(next);
     if (!(deviance_there < least)) break;
     const bool done = least - deviance_there < deviance_tolerance;

@@ -18,10 +18,11 @@ struct GaussNewtonOptions {
   double least_gain = 0;    ///< share of the deviance that a step has to promise to be made
 };
 
-/// The least deviance of measured shapes over numbers that change their scenes: generalised least
-/// squares under the covariance of the errors along the rod, with what was known of the numbers
-/// before (Gauss-Newton steps, each shortened until the deviance is less). Every fit to shapes is
-/// made by it: those of a wire's numbers, and the explanations of a shape that is wrong.
+/// The least deviance of measured shapes over numbers that change their scenes: least squares with
+/// what was known of the numbers before (Gauss-Newton steps, each shortened until the deviance is
+/// less). Errors that are correlated along the rod count in intervals, not here: a fit under their
+/// covariance leaves larger residuals wherever the rod itself is not quite the wire. Every fit to
+/// shapes is made by it: those of a wire's numbers, and the explanations of a shape that is wrong.
 class GaussNewton {
  public:
   /// @param rods     outlives this; they go on from where they are
@@ -34,9 +35,9 @@ class GaussNewton {
   /// @throws InputError if there are no more numbers measured than found
   [[nodiscard]] bool descend();
 
-  /// Takes errors to be correlated so.
-  void assume(const ErrorCovariance& covariance) { covariance_ = covariance; }
-  [[nodiscard]] const ErrorCovariance& covariance() const { return covariance_; }
+  /// Squares count over this variance beside what was known before, from the next descend() on
+  /// [m^2].
+  void weigh(double weight) { given_weight_ = weight; }
 
   // At the values, after descend():
   [[nodiscard]] const Eigen::VectorXd& values() const { return values_; }
@@ -45,9 +46,10 @@ class GaussNewton {
   [[nodiscard]] const LinearFit& linear() const { return linear_; }
   [[nodiscard]] const Eigen::MatrixXd& covariance_of_numbers() const { return posterior_; }
   [[nodiscard]] double variance() const { return variance_; }  ///< of a coordinate's error [m^2]
-  [[nodiscard]] double freedom() const { return freedom_; }    ///< degrees, of the residuals
+  [[nodiscard]] double weight() const { return given_weight_.value_or(variance_); }
+  [[nodiscard]] double freedom() const { return freedom_; }  ///< degrees, of the residuals
   [[nodiscard]] const Eigen::VectorXd& before() const { return before_; }  ///< see posterior()
-  /// Sum of squares over the variance, and of what was known before.
+  /// Sum of squares over the weight, and of what was known before.
   [[nodiscard]] double deviance() const;
 
   /// Least deviance over all other numbers with the first at some value, by chords of the
@@ -64,7 +66,7 @@ class GaussNewton {
   GaussNewtonOptions options_;
   Eigen::VectorXd before_;
   Eigen::VectorXd values_;
-  ErrorCovariance covariance_;
+  std::optional<double> given_weight_;
   double variance_ = 0;
   double freedom_ = 0;
   FittedRods::Rods here_;

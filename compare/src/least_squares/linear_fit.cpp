@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -44,6 +45,25 @@ LinearFit linear_fit(const std::vector<ResidualSeries>& series, const ErrorCovar
 
 Eigen::MatrixXd posterior(const LinearFit& fit, double variance, const Eigen::VectorXd& before) {
   return information_of(fit, variance, before).completeOrthogonalDecomposition().pseudoInverse();
+}
+
+Eigen::MatrixXd posterior_under(const std::vector<ResidualSeries>& series, const LinearFit& fit,
+                                double weight, const Eigen::VectorXd& before,
+                                const ErrorCovariance& errors, double variance) {
+  const Eigen::MatrixXd inverse = posterior(fit, weight, before);
+  Eigen::MatrixXd scatter = covariance_products(series, fit.design, errors);
+  scatter *= variance / (weight * weight);
+  scatter.diagonal() += before.cwiseAbs2();
+  return inverse * scatter * inverse;
+}
+
+VarianceEstimate variance_under(const std::vector<ResidualSeries>& series,
+                                const ErrorCovariance& errors, Eigen::Index frames) {
+  const LinearFit fit = linear_fit(series, errors, frames);
+  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> design(fit.design);
+  const auto freedom = static_cast<double>(fit.freedom - design.rank());
+  const Eigen::VectorXd left = fit.residual - fit.design * design.solve(fit.residual);
+  return {left.squaredNorm() / std::max(1.0, freedom), freedom};
 }
 
 std::vector<bool> unseen(const LinearFit& fit, double variance, const Eigen::VectorXd& before) {

@@ -26,6 +26,23 @@ struct LinearFit {
 [[nodiscard]] Eigen::MatrixXd posterior(const LinearFit& fit, double variance,
                                         const Eigen::VectorXd& before);
 
+/// The same of a least squares fit that takes errors for independent while they are not.
+/// @param series  of which the fit is;  @param weight  the variance over which its squares counted
+/// @param errors  their covariance, up to `variance`
+[[nodiscard]] Eigen::MatrixXd posterior_under(const std::vector<ResidualSeries>& series,
+                                              const LinearFit& fit, double weight,
+                                              const Eigen::VectorXd& before,
+                                              const ErrorCovariance& errors, double variance);
+
+/// Variance of errors of that covariance, from what generalised least squares without anything
+/// known before leaves, and of how many degrees of freedom that is.
+struct VarianceEstimate {
+  double variance = 0;  ///< [m^2]
+  double freedom = 0;
+};
+[[nodiscard]] VarianceEstimate variance_under(const std::vector<ResidualSeries>& series,
+                                              const ErrorCovariance& errors, Eigen::Index frames);
+
 /// Of each number: neither the points nor what was known before tells it, alone or beside the
 /// others. Its variance is infinite.
 [[nodiscard]] std::vector<bool> unseen(const LinearFit& fit, double variance,

@@ -15,10 +15,24 @@
 namespace dlo::compare {
 namespace {
 
+/// A rod is in a plane that it leaves by no more than this share of its length: rounding.
+constexpr double in_plane = 1e-8;
+
 /// Numbers that are measured of a shape.
 int measured_numbers(const Aligner& aligner, bool flat) {
   const int per_point = (aligner.arc_lengths() == ArcLengths::nearest ? 2 : 3) - (flat ? 1 : 0);
   return per_point * static_cast<int>(aligner.points());
+}
+
+/// Where a rod is looked at along its length.
+constexpr int looks = 201;
+
+/// What energy_model::Problem::confined_to_plane allows.
+bool can_be_confined(const Scene& scene) {
+  const auto frames =
+      std::count_if(scene.grippers.begin(), scene.grippers.end(),
+                    [](const Gripper& gripper) { return gripper.frame.has_value(); });
+  return scene.planar() && scene.obstacles.empty() && frames < 2;
 }
 
 /// Numbers of a shape's frame.
@@ -126,7 +140,27 @@ int MeasuredShapes::frame_numbers() const {
   return sum;
 }
 
-energy_model::Equilibrium MeasuredShapes::solve(const Scene& scene,
+energy_model::Equilibrium MeasuredShapes::solve(std::size_t shape, const Scene& scene,
+                                                const energy_model::Equilibrium* start) {
+  energy_model::Problem problem = energy_problem(scene);
+  problem.confined_to_plane = shapes_[shape].flat && can_be_confined(scene);
+  return solve(problem, scene.file, start);
+}
+
+double MeasuredShapes::way_out_of_plane(std::size_t shape, const Scene& scene,
+                                        const energy_model::Equilibrium& rod) {
+  if (!shapes_[shape].flat || !can_be_confined(scene)) return 0;
+  const energy_model::Equilibrium free = solve(energy_problem(scene), scene.file, &rod);
+  if (!energy_model::succeeded(free.status)) return 0;
+  const Eigen::Vector3d normal = *scene.plane_normal();
+  const Eigen::Matrix3Xd points = free.sample(equal_arc_lengths(scene.length, looks)).points;
+  const Eigen::RowVectorXd out = normal.transpose() * (points.colwise() - points.col(0));
+  const double way = out.cwiseAbs().maxCoeff();
+  return way > in_plane * scene.length ? way : 0;
+}
+
+energy_model::Equilibrium MeasuredShapes::solve(const energy_model::Problem& problem,
+                                                const std::string& file,
                                                 const energy_model::Equilibrium* start) {
   const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
   const double limit = options_.solve.time_limit;
@@ -138,15 +172,15 @@ energy_model::Equilibrium MeasuredShapes::solve(const Scene& scene,
   }
   ++solves_;
   try {
-    energy_model::Equilibrium rod = energy_model::solve_energy(
-        energy_problem(scene), {.terms = options_.solve.terms,
-                                .max_evaluations = options_.solve.max_evaluations,
-                                .time_limit = std::min(limit, left),
-                                .start = start});
+    energy_model::Equilibrium rod =
+        energy_model::solve_energy(problem, {.terms = options_.solve.terms,
+                                             .max_evaluations = options_.solve.max_evaluations,
+                                             .time_limit = std::min(limit, left),
+                                             .start = start});
     evaluations_ += rod.evaluations;
     return rod;
   } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: {}", scene.file, error.what()));
+    throw InputError(fmt::format("{}: {}", file, error.what()));
   }
 }
 

@@ -58,12 +58,17 @@ class MeasuredShapes {
   /// Columns of a design before those of the fitted numbers: each shape's frame.
   [[nodiscard]] Eigen::Index frame_columns() const { return frame_columns_; }
 
-  /// The energy model's solution of a shape's scene as it was changed.
+  /// The energy model's solution of a shape's scene as it was changed. The rod of a flat shape is
+  /// confined to the scene's plane, if it has one: a photograph does not see the third coordinate,
+  /// so a fit would bend the rod out of the picture to come nearer in it.
   /// @param start  an equilibrium to follow; null: search
   /// @throws ConvergenceError if the time limit is over
   /// @throws InputError if the scene is none that the model has
-  [[nodiscard]] energy_model::Equilibrium solve(const Scene& scene,
+  [[nodiscard]] energy_model::Equilibrium solve(std::size_t shape, const Scene& scene,
                                                 const energy_model::Equilibrium* start);
+  /// How far a rod that was confined leaves its plane where nothing confines it [m].
+  [[nodiscard]] double way_out_of_plane(std::size_t shape, const Scene& scene,
+                                        const energy_model::Equilibrium& rod);
 
   /// A rod as a curve that shapes are laid on.
   [[nodiscard]] Curve curve(std::size_t shape, const energy_model::Equilibrium& rod) const {
@@ -92,6 +97,9 @@ class MeasuredShapes {
   [[nodiscard]] long evaluations() const { return evaluations_; }
 
  private:
+  energy_model::Equilibrium solve(const energy_model::Problem& problem, const std::string& file,
+                                  const energy_model::Equilibrium* start);
+
   /// Roots of the points' weights, whose mean is 1.
   [[nodiscard]] Eigen::VectorXd root_weights(const std::vector<double>& s,
                                              const Eigen::Matrix3Xd& points) const;

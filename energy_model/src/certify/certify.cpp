@@ -180,7 +180,7 @@ class Certification {
     solution_.rigid_body_modes = static_cast<int>(rigid_.all());
     ask_factor();
     const bool at_fold = estimate_error();
-    if (model_.span().planar && !model_.span().has_couples()) look_out_of_plane();
+    if (model_.span().planar && !model_.span().stays_in_plane()) look_out_of_plane();
     if (undetermined || !small_step_ || at_fold) {
       return solution_.finish(SolveStatus::near_singular);
     }

@@ -147,6 +147,8 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
   const auto begin = std::chrono::steady_clock::now();
   require_positive("solve_exact", "tolerance", options.tolerance);
   require(options.time_limit > 0, "solve_exact", "time_limit", options.time_limit, "> 0");
+  require(!problem.confined_to_plane, "solve_exact", "confined_to_plane", 1,
+          "false: solve_energy() alone confines a rod");
   if (std::optional<Equilibrium> taut = taut_line(problem)) return {*std::move(taut)};
   Found found = problem.obstacles.empty() ? search(problem, options, deadline)
                                           : search_touching(problem, options, deadline);

@@ -62,6 +62,7 @@ struct Span {
 
   double length = 1;
   bool planar = true;
+  bool confined = false;  ///< Problem::confined_to_plane
   std::optional<Eigen::Vector3d> start_direction;  ///< a clamp holds the start, which is the anchor
   std::optional<Eigen::Vector3d> end_direction;    ///< a clamp holds the end, the last of `holds`
   double anchor = 0;                               ///< s of the first grip
@@ -108,6 +109,8 @@ struct Span {
   [[nodiscard]] Eigen::Vector3d force_before(double s) const;
   /// Then nothing is known of the energy out of the plane.
   [[nodiscard]] bool has_couples() const;
+  /// What leaves the plane is not looked at: the rod cannot, or couples have no potential there.
+  [[nodiscard]] bool stays_in_plane() const { return planar && (confined || has_couples()); }
   /// Weight and loads all point the same way.
   [[nodiscard]] bool pulled_one_way() const;
   /// A uniform straight rod with one clamp and nothing but weight and loads, in a plane. What else

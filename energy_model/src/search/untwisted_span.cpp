@@ -49,7 +49,9 @@ void add_polygon_minima(const PlacedSpan& placed, const Problem& problem, SpanOp
     // away.
     options.start = {fields.field(i)};
     Span span = placed.span;
-    span.planar = span.planar && !is_out_of_plane(span, options.start.field);
+    const bool is_out = span.planar && is_out_of_plane(span, options.start.field);
+    if (is_out && span.stays_in_plane()) continue;
+    span.planar = span.planar && !is_out;
     (void)found.add(from_start(span, options, workspace), from_polygons);
     if (found.suffices()) return;
   }
@@ -67,7 +69,9 @@ std::vector<SpanSolution> solve_untwisted(const PlacedSpan& placed, const Proble
     (void)found.add({});
     return std::move(found).take();
   }
-  if (!options.wants_all() && (shape != nullptr || is_known)) {
+  const bool leaves = placed.span.confined && shape != nullptr &&
+                      is_out_of_plane(placed.span, field_of(*shape, placed, problem.length));
+  if (!options.wants_all() && (shape != nullptr || is_known) && !leaves) {
     Span span = placed.span;
     if (is_known) {
       options.start = {last->field(placed), options.start.approach, last->last, last->before};

@@ -47,7 +47,7 @@ std::optional<NegativeCurvature> negative_curvature(const SpanSolution& solution
   if (std::optional<Eigen::VectorXd> within = negative_curvature_direction(reduced)) {
     return NegativeCurvature{model.span(), std::move(*within)};
   }
-  if (!model.span().planar || model.span().has_couples()) return std::nullopt;
+  if (!model.span().planar || model.span().stays_in_plane()) return std::nullopt;
   // Out of the plane u2 is not the rate of the tangent's tilt where the rod is bent: its frame
   // rolls.
   NegativeCurvature out{model.span(), {}};

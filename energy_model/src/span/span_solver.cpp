@@ -66,7 +66,7 @@ class Search {
   [[nodiscard]] std::vector<SpanSolution> run() {
     if (!options_.wants_all() && span_.is_plain_cantilever() && span_.pulled_one_way()) {
       SpanSolution solution = plain_cantilever(on_);
-      certify_out_of_plane(solution, traits_.load, workspace_.factors());
+      if (!span_.confined) certify_out_of_plane(solution, traits_.load, workspace_.factors());
       if (solution.status != SolveStatus::saddle) return list_of(std::move(solution));
       (void)add(std::move(solution));
     }
@@ -77,7 +77,8 @@ class Search {
     } else {
       descend_from_lowest_starts();
     }
-    if (span_.planar && span_.has_material_directors()) look_in_space();
+    const bool may_leave = span_.planar && !span_.stays_in_plane();
+    if (may_leave && span_.has_material_directors()) look_in_space();
     if (options_.wants_all()) tell_what_was_not_tried();
     if (found_.empty()) (void)found_.add(out_of_time());
     return std::move(found_).take();

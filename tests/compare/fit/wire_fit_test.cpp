@@ -234,12 +234,19 @@ TEST(WireFit, AConstantCurvatureBetweenTwoClampsIsSaidNotToBeSeen) {
                            .direction = Eigen::Vector3d(std::cos(0.6), std::sin(0.6), 0)});
   Scene truth = said;
   truth.natural_strain.y() = 0.4;
-  const MaterialFit found =
-      fit({picture_of(truth, said, 1e-3, 0.02, random)}, {.natural_curvature_terms = 1});
-  ASSERT_EQ(found.others.size(), 1);
-  EXPECT_FALSE(found.others[0].is_seen());
-  EXPECT_NEAR(found.others[0].deviation / found.others[0].known_before, 1, 0.01);
-  EXPECT_TRUE(test::holds(found.youngs_modulus, true_modulus({said, {}}) * too_stiff));
+  constexpr int draws = test::sanitized ? 2 : 20;
+  int held = 0;
+  for (int draw = 0; draw < draws; ++draw) {
+    const MaterialFit found =
+        fit({picture_of(truth, said, 1e-3, 0.02, random)}, {.natural_curvature_terms = 1});
+    ASSERT_EQ(found.others.size(), 1);
+    EXPECT_FALSE(found.others[0].is_seen());
+    EXPECT_NEAR(found.others[0].deviation / found.others[0].known_before, 1, 0.01);
+    held += test::holds(found.youngs_modulus, true_modulus({said, {}}) * too_stiff) ? 1 : 0;
+  }
+  RecordProperty("held", held);
+  // An interval of 95 % holds in fewer than 17 of 20 once in 60 times.
+  if (!test::sanitized) EXPECT_GE(held, 17);
 }
 
 // A stiff rod's moments are a parabola along it at any E, and so is a natural curvature of three
@@ -305,19 +312,27 @@ TEST(WireFit, ShapesOfOneStiffnessSeldomScatter) {
 
 TEST(WireFit, ANoiseThatIsTooSmallWidensTheIntervalAndWarns) {
   std::mt19937 random(10);
-  const std::vector<Picture> pictures = five_pictures(2 * deg, 0.002, random);
   MaterialFitOptions options{.natural_curvature_terms = 2, .direction_tolerance = 2 * deg};
   const auto width = [](const MaterialFit& found) {
     return std::log(*found.youngs_modulus.high / *found.youngs_modulus.low);
   };
-  options.noise = 0.002;
-  const MaterialFit right = fit(pictures, options);
-  options.noise = 0.0005;
-  const MaterialFit wrong = fit(pictures, options);
-  EXPECT_TRUE(right.warning.empty()) << right.warning;
-  EXPECT_NE(wrong.warning.find("times what the given noise explains"), std::string::npos)
-      << wrong.warning;
-  EXPECT_NEAR(width(wrong) / width(right), 1, 0.3);
+  constexpr int draws = test::sanitized ? 1 : 20;
+  int warned = 0;
+  for (int draw = 0; draw < draws; ++draw) {
+    const std::vector<Picture> pictures = five_pictures(2 * deg, 0.002, random);
+    options.noise = 0.002;
+    const MaterialFit right = fit(pictures, options);
+    warned += right.warning.empty() ? 0 : 1;
+    if (draw > 1) continue;
+    options.noise = 0.0005;
+    const MaterialFit wrong = fit(pictures, options);
+    EXPECT_NE(wrong.warning.find("times what the given noise explains"), std::string::npos)
+        << wrong.warning;
+    EXPECT_NEAR(width(wrong) / width(right), 1, 0.3);
+  }
+  RecordProperty("warned", warned);
+  // Once in twenty by chance: more than three of twenty once in 60 times.
+  if (!test::sanitized) EXPECT_LE(warned, 3);
 }
 
 // What is fitted with the wire's own numbers has what is left of the time.

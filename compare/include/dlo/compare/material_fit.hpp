@@ -35,6 +35,11 @@ struct MaterialFitOptions {
   bool shared_clamps = false;
   /// Each shape in turn is left out of the fit, and predicted (MaterialFit::prediction).
   bool predict = false;
+  /// Terms of natural curvature and clamps misaligned alike in all shapes are fitted as they
+  /// predict shapes best that are left out (MaterialFit::tried); the numbers above say up to how
+  /// many terms (three at least) and how well clamps are known (20 degrees if they do not). Three
+  /// shapes or more.
+  bool choose_options = false;
   /// Where residuals are systematic, and none of the above is fitted, it is tried what would remove
   /// them (MaterialFit::alternatives).
   bool alternatives = false;
@@ -88,6 +93,9 @@ struct FitAlternative {
   double direction_tolerance = 0;   ///< as in MaterialFitOptions [rad]
   double rms_m = 0;                 ///< of the distances between points and rod
   FittedValue youngs_modulus;       ///< as MaterialFit::youngs_modulus
+  bool shared_clamps = false;       ///< as in MaterialFitOptions
+  /// Prediction::rms_m, if it was looked at [m].
+  std::optional<double> prediction_m = std::nullopt;
 };
 
 /// The springs with which a chain of equal segments comes nearest to the fitted rod in a scene.
@@ -202,6 +210,10 @@ struct MaterialFit {
   /// Of systematic residuals (correlated along the rod, or common to all shapes): what would leave
   /// 0.7 of them or less, the least first. The interval of E holds if nothing else is wrong.
   std::vector<FitAlternative> alternatives;
+  /// With `choose_options`: what was tried, first what was chosen: the fewest numbers among those
+  /// that predict as well as any (2 %). The interval of E is widened to what those say that predict
+  /// nearly as well (10 %).
+  std::vector<FitAlternative> tried;
   std::vector<FittedNumber> others;  ///< those that were asked for, the wire's first
   /// Of the first scene with what was fitted of it: coefficients of P_0, P_1, .. about d1 and d2
   /// [1/m]; empty if it was not asked for.
@@ -252,11 +264,15 @@ struct MaterialFit {
 /// Between several grippers, equilibria are followed from one E to the next.
 ///
 /// With torsional stiffness, natural curvature, directions or positions to be fitted too, all
-/// numbers are found together by Gauss-Newton steps from that E, in generalised least squares under
-/// the errors' covariance; what is known before (the tolerances; of each term of natural curvature
-/// a standard deviation of 10 / l; of GJ / EI, where the scene's is a guess, a factor of ten)
-/// counts as measured. The interval of E then is that of the profile likelihood in which the
-/// others' effect is linear about the optimum, that of GJ is linear altogether.
+/// numbers are found together by Gauss-Newton steps from that E, in least squares; terms of natural
+/// curvature are added one after the other, so that more of them never fit worse. What is known
+/// before (the tolerances; of each term of natural curvature a standard deviation of 10 / l; of
+/// GJ / EI, where the scene's is a guess, a factor of ten) counts as measured. Where errors are
+/// correlated the numbers' covariance is that of least squares under such errors, in the mean over
+/// all correlations that the residuals leave likely. The interval of E is where the profile of the
+/// squares, in which the others' effect is linear about the optimum, has risen by as much as that
+/// variance says; that of GJ is linear altogether. The rod of a flat shape is confined to its
+/// scene's plane, and the warning says if it would leave it.
 ///
 /// Two shapes or more are asked whether they agree on E within their errors; where they do not, the
 /// interval is that of their mean under a scatter between shapes (Paule and Mandel's estimate, with

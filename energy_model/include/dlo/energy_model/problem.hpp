@@ -100,6 +100,9 @@ struct Problem {
   /// EI about d2 [N m^2], > 0; none: round, EI is that about every axis across. Given:
   /// torsional_stiffness > 0.
   std::optional<double> bending_stiffness_2 = std::nullopt;
+  /// The rod moves in the plane of grips and forces alone, as between two plates: shapes beside it
+  /// are none, and stability is judged in it. Only `energy`, without obstacles and held frames.
+  bool confined_to_plane = false;
 };
 
 /// Whether d1 and d2 are fixed to the rod's material: it is not intrinsically straight, or it or

@@ -1,0 +1,157 @@
+#include "fit/choose_options.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "dlo/compare/error.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Terms that are tried where the options do not ask for more.
+constexpr int usual_terms = 3;
+/// How well clamps are known where the options do not say: hardly.
+constexpr double usual_direction_tolerance = 20 * std::numbers::pi / 180;
+/// Fewer numbers are chosen where they predict worse by no more than this share.
+constexpr double as_well = 0.02;
+/// Options that predict worse by no more than this share may be right too.
+constexpr double nearly_as_well = 0.1;
+/// Terms in a row that predict no better, after which no more are tried.
+constexpr int most_vain_terms = 2;
+
+struct Trial {
+  MaterialFitOptions options;
+  MaterialFit fit;
+
+  [[nodiscard]] double prediction() const { return fit.prediction->rms_m; }
+  [[nodiscard]] std::size_t numbers() const { return fit.others.size(); }
+};
+
+class Choice {
+ public:
+  Choice(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
+         const MaterialFitOptions& options)
+      : scenes_(scenes), shapes_(shapes), options_(options) {}
+
+  [[nodiscard]] MaterialFit run() {
+    try_terms(false);
+    try_terms(true);
+    if (trials_.empty()) {
+      throw ConvergenceError("calibrate: no fit came to an end with any options that were tried");
+    }
+    const Trial& chosen = best();
+    MaterialFitOptions last = chosen.options;
+    last.predict = false;
+    last.chain_segments = options_.chain_segments;
+    last.profile_points = options_.profile_points;
+    MaterialFit fit = fit_material(scenes_, shapes_, last);
+    fit.prediction = chosen.fit.prediction;
+    widen(fit, chosen);
+    for (const Trial& trial : trials_) {
+      fit.tried.push_back({.natural_curvature_terms = trial.options.natural_curvature_terms,
+                           .direction_tolerance = trial.options.direction_tolerance,
+                           .rms_m = trial.fit.rms_m,
+                           .youngs_modulus = trial.fit.youngs_modulus,
+                           .shared_clamps = trial.options.shared_clamps,
+                           .prediction_m = trial.prediction()});
+      if (&trial == &chosen) std::swap(fit.tried.front(), fit.tried.back());
+    }
+    return fit;
+  }
+
+ private:
+  void try_terms(bool shared_clamps) {
+    const int terms = std::max(usual_terms, options_.natural_curvature_terms);
+    double least = INFINITY;
+    int vain = 0;
+    for (int term = 0; term <= terms && vain < most_vain_terms; ++term) {
+      const std::optional<double> prediction = predict(term, shared_clamps);
+      vain = prediction && *prediction < (1 - as_well) * least ? 0 : vain + 1;
+      least = std::min(least, prediction.value_or(INFINITY));
+    }
+  }
+
+  /// @return how well that predicts; none if it has no fit
+  std::optional<double> predict(int terms, bool shared_clamps) {
+    MaterialFitOptions options = options_;
+    options.choose_options = false;
+    options.alternatives = false;
+    options.chain_segments = options.profile_points = 0;
+    options.natural_curvature_terms = terms;
+    options.shared_clamps = shared_clamps;
+    if (!shared_clamps) {
+      options.direction_tolerance = options.position_tolerance = 0;
+    } else if (!(options.direction_tolerance > 0)) {
+      options.direction_tolerance = usual_direction_tolerance;
+    }
+    options.predict = true;
+    try {
+      trials_.push_back({options, fit_material(scenes_, shapes_, options)});
+    } catch (const ConvergenceError&) {
+      return std::nullopt;
+    }
+    return trials_.back().prediction();
+  }
+
+  /// The one of fewest numbers among those that predict as well as any.
+  [[nodiscard]] const Trial& best() const {
+    const auto better = [](const Trial& a, const Trial& b) {
+      return a.prediction() < b.prediction();
+    };
+    const double least = std::min_element(trials_.begin(), trials_.end(), better)->prediction();
+    const Trial* result = nullptr;
+    for (const Trial& trial : trials_) {
+      if (trial.prediction() > (1 + as_well) * least) continue;
+      if (result == nullptr || trial.numbers() < result->numbers()) result = &trial;
+    }
+    return *result;
+  }
+
+  /// The interval under one model knows nothing of the others: the mean square about the chosen
+  /// estimate over all that predict nearly as well.
+  void widen(MaterialFit& fit, const Trial& chosen) const {
+    FittedValue& E = fit.youngs_modulus;
+    if (!E.estimate || !E.low || !E.high) return;
+    constexpr double deviations = 1.96;
+    const double own = std::log(*E.high / *E.low) / 2;
+    double squares = 0;
+    int count = 0;
+    for (const Trial& trial : trials_) {
+      const FittedValue& other = trial.fit.youngs_modulus;
+      if (trial.prediction() > (1 + nearly_as_well) * chosen.prediction()) continue;
+      if (!other.estimate || !other.low || !other.high) continue;
+      const double half = std::log(*other.high / *other.low) / 2;
+      const double apart = std::log(*other.estimate / *E.estimate);
+      squares += half * half + std::pow(deviations * apart, 2);
+      ++count;
+    }
+    const double wide = count > 0 ? std::sqrt(squares / count) : 0;
+    if (!(wide > own)) return;
+    E.low = *E.low * std::exp(own - wide);
+    E.high = *E.high * std::exp(wide - own);
+    if (std::log(*E.high / *E.low) <= std::log(options_.identified_within)) return;
+    E.value.reset();
+    if (fit.not_identified.empty()) {
+      fit.not_identified = "options that predict the shapes alike differ too much in it";
+    }
+  }
+
+  const std::vector<Scene>& scenes_;
+  const std::vector<MeasuredShape>& shapes_;
+  const MaterialFitOptions& options_;
+  std::vector<Trial> trials_;
+};
+
+}  // namespace
+
+MaterialFit fit_with_chosen_options(const std::vector<Scene>& scenes,
+                                    const std::vector<MeasuredShape>& shapes,
+                                    const MaterialFitOptions& options) {
+  return Choice(scenes, shapes, options).run();
+}
+
+}  // namespace dlo::compare

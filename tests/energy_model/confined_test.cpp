@@ -1,0 +1,95 @@
+// Rods that cannot leave their plane: equilibria of the free rod all the same, as the other solver
+// confirms, stable in the plane and only there.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "dlo/energy_model/energy.hpp"
+#include "dlo/energy_model/exact.hpp"
+#include "problems.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// Held against the way it is bent by nature: free, it turns over.
+Problem bent_the_wrong_way(double gamma, double span) {
+  Problem problem = test::two_clamps(gamma, span);
+  problem.torsional_stiffness = 0.4;
+  problem.natural_strains = {{0, -7, 0}, {0, 1.5, 0}};
+  return problem;
+}
+
+Problem confined(Problem problem) {
+  problem.confined_to_plane = true;
+  return problem;
+}
+
+double out_of_plane(const Equilibrium& rod) {
+  return rod.sample(equal_arc_lengths(1, 41)).points.row(2).cwiseAbs().maxCoeff();
+}
+
+TEST(ConfinedRod, IsAnEquilibriumThatIsUnstableWhereNothingConfinesIt) {
+  for (const double gamma : {0.0, 30.0, 200.0}) {
+    const Problem problem = bent_the_wrong_way(gamma, 0.6);
+    const Equilibrium flat = solve_energy(confined(problem));
+    ASSERT_EQ(flat.status, SolveStatus::converged) << flat.message;
+    EXPECT_LT(out_of_plane(flat), 1e-14);
+    const Equilibrium free = solve_energy(problem);
+    ASSERT_EQ(free.status, SolveStatus::converged) << free.message;
+    EXPECT_GT(out_of_plane(free), 0.01);
+    EXPECT_LT(free.energy.total(), flat.energy.total());
+    const Equilibrium confirmed = solve_exact(problem, {.start = &flat});
+    EXPECT_EQ(confirmed.status, SolveStatus::saddle) << confirmed.message;
+    EXPECT_NEAR(confirmed.energy.total(), flat.energy.total(), 1e-8);
+    const std::vector<double> s = equal_arc_lengths(1, 41);
+    EXPECT_LT((confirmed.sample(s).points - flat.sample(s).points).cwiseAbs().maxCoeff(), 1e-8);
+  }
+}
+
+// In the plane it is found as the free one is where that stays.
+TEST(ConfinedRod, IsTheFreeOneWhereThatStaysInItsPlane) {
+  for (const Problem& problem : {test::heavy_cantilever(12, 30), test::two_clamps(40, 0.7)}) {
+    const Equilibrium free = solve_energy(problem);
+    const Equilibrium flat = solve_energy(confined(problem));
+    ASSERT_EQ(flat.status, SolveStatus::converged) << flat.message;
+    EXPECT_NEAR(flat.energy.total(), free.energy.total(), 1e-12 * std::abs(free.energy.total()));
+  }
+}
+
+// A shape beside the plane is no start.
+TEST(ConfinedRod, DoesNotFollowAShapeOutOfThePlane) {
+  const Problem problem = bent_the_wrong_way(30, 0.6);
+  const Equilibrium free = solve_energy(problem);
+  const Equilibrium flat = solve_energy(confined(problem), {.start = &free});
+  ASSERT_EQ(flat.status, SolveStatus::converged) << flat.message;
+  EXPECT_LT(out_of_plane(flat), 1e-14);
+  EXPECT_NEAR(flat.energy.total(), solve_energy(confined(problem)).energy.total(), 1e-9);
+}
+
+TEST(ConfinedRod, RefusesWhatHasNoPlane) {
+  const auto refused = [](const Problem& problem, auto&& solve) {
+    try {
+      (void)solve(confined(problem));
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what()).find("confined_to_plane") != std::string::npos;
+    }
+    return false;
+  };
+  const auto energy = [](const Problem& problem) { return solve_energy(problem); };
+  Problem twisted = bent_the_wrong_way(0, 0.6);
+  for (Grip& grip : twisted.grips) grip.frame = FrameHold{};
+  EXPECT_TRUE(refused(twisted, energy));
+  Problem in_space = test::two_clamps(10, 0.6);
+  in_space.grips[1].position.z() = 0.1;
+  EXPECT_TRUE(refused(in_space, energy));
+  EXPECT_TRUE(refused(test::heavy_cantilever(1, 0),
+                      [](const Problem& problem) { return solve_exact(problem); }));
+}
+
+}  // namespace
+}  // namespace dlo::energy_model
