@@ -18,6 +18,7 @@
 #include "base/require.hpp"
 #include "base/silence_gsl.hpp"
 #include "dlo/energy_model/taut_line.hpp"
+#include "exact/without_potential.hpp"
 #include "kirchhoff/rod_span.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/reduction.hpp"
@@ -118,6 +119,14 @@ Found search(const Problem& problem, const ExactOptions& options, const Deadline
                   : solve_spans(problem, options, deadline);
 }
 
+Found search_without_potential(const Problem& problem, const ExactOptions& options,
+                               const Deadline& deadline) {
+  Found found;
+  found.equilibria.push_back(solve_without_potential(problem, options, deadline));
+  found.out_of_time = deadline.passed();
+  return found;
+}
+
 Found search_touching(const Problem& problem, const ExactOptions& options,
                       const Deadline& deadline) {
   require(!has_couples(problem), "solve_exact", "torque of a load", 1,
@@ -147,9 +156,13 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
   const auto begin = std::chrono::steady_clock::now();
   require_positive("solve_exact", "tolerance", options.tolerance);
   require(options.time_limit > 0, "solve_exact", "time_limit", options.time_limit, "> 0");
-  if (std::optional<Equilibrium> taut = taut_line(problem)) return {*std::move(taut)};
-  Found found = problem.obstacles.empty() ? search(problem, options, deadline)
-                                          : search_touching(problem, options, deadline);
+  const bool judged = has_potential(problem);
+  if (judged) {
+    if (std::optional<Equilibrium> taut = taut_line(problem)) return {*std::move(taut)};
+  }
+  Found found = !judged                     ? search_without_potential(problem, options, deadline)
+                : problem.obstacles.empty() ? search(problem, options, deadline)
+                                            : search_touching(problem, options, deadline);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   for (Equilibrium& equilibrium : found.equilibria) {

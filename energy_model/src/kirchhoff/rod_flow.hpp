@@ -74,10 +74,11 @@ struct RodRate {
 [[nodiscard]] RodRate rate_of(const RodPiece& piece, const RodState& state);
 
 /// Follows the rod's equations over a piece,
-///     r' = t,   R' = R hat(u),   m' = n x t,   n' = -w, and -w - p N where it lies,
+///     r' = t,   R' = R hat(u),   m' = n x t,   n' = -w - f(t), and -w - p N where it lies,
 /// and their linearisation,
 ///     dr' = spin x t,   spin' = R K^-1 R^T (dm + m x spin),   dm' = dn x t + n x (spin x t),
-/// with GSL's rk8pd. Nine components of a rotation and no angles, so no chart that could end.
+/// f the drag, with GSL's rk8pd. Nine components of a rotation and no angles, so no chart that
+/// could end.
 /// @param tolerance  local error per step, relative to 1 + |component|
 /// @param[in,out] state, variation  from the beginning of the piece to its end
 /// @param[out] integrals  of the piece

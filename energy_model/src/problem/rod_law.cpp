@@ -112,7 +112,9 @@ std::optional<Eigen::Vector3d> natural_normal(const Problem& problem) {
     add(load.at_begin, 0);
     add(load.at_end, 0);
   }
+  if (problem.drag) add(problem.drag->velocity, 0);
   for (const Load& load : problem.loads) {
+    if (load.follows) continue;  // that lies in the section's axes
     add(load.force, 0);
     if (load.torque.isZero(0)) continue;
     for (const Eigen::Vector3d& direction : plane_across(load.torque)) add(direction, 0);
