@@ -59,7 +59,7 @@ TipState tip_rates(const TipRod& rod, const TipState& y) {
 }
 
 /// Runge and Kutta's classical method from the tip to the clamp.
-TipState at_clamp(const TipRod& rod, TipState y, int steps = 2000) {
+TipState integrated_to_clamp(const TipRod& rod, TipState y, int steps = 2000) {
   const double h = -1.0 / steps;
   for (int i = 0; i < steps; ++i) {
     const TipState a = tip_rates(rod, y);
@@ -81,7 +81,8 @@ Eigen::Matrix3d frame_at(const TipState& y) {
 /// without weight: what the tip's own axes see, seen from the clamp.
 Eigen::Vector3d followed_tip(const TipRod& rod, const Eigen::Matrix3d& clamp,
                              const Eigen::Vector3d& force, const Eigen::Vector3d& torque) {
-  const TipState y = at_clamp(rod, tip_state(Eigen::Matrix3d::Identity(), torque, force));
+  const TipState y =
+      integrated_to_clamp(rod, tip_state(Eigen::Matrix3d::Identity(), torque, force));
   return clamp * frame_at(y).transpose() * -y.head<3>();
 }
 
@@ -91,7 +92,7 @@ Eigen::Vector3d dragged_tip(const TipRod& rod, const Eigen::Vector3d& direction,
   const auto reached = [&](const Eigen::Vector3d& t) {
     Eigen::Matrix3d R;
     R << t.unitOrthogonal(), t.cross(t.unitOrthogonal()), t;
-    return at_clamp(rod, tip_state(R, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()));
+    return integrated_to_clamp(rod, tip_state(R, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()));
   };
   for (int iteration = 0; iteration < 12; ++iteration) {
     const std::array<Eigen::Vector3d, 2> across = {tangent.unitOrthogonal(),
@@ -112,7 +113,7 @@ Eigen::Vector3d dragged_tip(const TipRod& rod, const Eigen::Vector3d& direction,
   return -reached(tangent).head<3>();
 }
 
-Eigen::Vector3d tip_of(const Equilibrium& shape, double at = 1) {
+Eigen::Vector3d place_along(const Equilibrium& shape, double at = 1) {
   const std::vector<double> s = {at};
   return shape.sample(s).points.col(0);
 }
@@ -209,7 +210,7 @@ TEST(WithoutPotential, ACoupleAcrossAClampInAnyPlaneRollsTheRodUp) {
     const double angle = lambda * pi;
     const Eigen::Vector3d expected =
         std::sin(angle) / angle * direction + (1 - std::cos(angle)) / angle * axis.cross(direction);
-    EXPECT_LT((tip_of(result) - expected).norm(), 1e-11);
+    EXPECT_LT((place_along(result) - expected).norm(), 1e-11);
     // Following the section it is the same one.
     problem.loads = {{1, {0, 0, 0}, {0, angle, 0}, true}};
     problem.grips[0].frame = FrameHold{.d1 = axis.cross(direction)};
@@ -217,7 +218,7 @@ TEST(WithoutPotential, ACoupleAcrossAClampInAnyPlaneRollsTheRodUp) {
     const Equilibrium follows = solve_exact(problem);
     // d2 = t x d1 = t x (axis x t) = axis
     expect_balance_alone(follows);
-    EXPECT_LT((tip_of(follows) - expected).norm(), 1e-10);
+    EXPECT_LT((place_along(follows) - expected).norm(), 1e-10);
     EXPECT_LT((follows.grips[0].torque + angle * axis).norm(), 1e-9);
   }
 }
@@ -246,8 +247,8 @@ TEST(WithoutPotential, AnObliqueCoupleWindsTheRodIntoAHelix) {
   const Eigen::Vector3d m = first + last;
   const Eigen::Vector3d middle = integral(m, 0.35, direction);
   const Eigen::Vector3d t = wound(m, 0.35) * direction;
-  EXPECT_LT((tip_of(result, 0.35) - middle).norm(), 1e-10);
-  EXPECT_LT((tip_of(result) - middle - integral(last, 0.65, t)).norm(), 1e-10);
+  EXPECT_LT((place_along(result, 0.35) - middle).norm(), 1e-10);
+  EXPECT_LT((place_along(result) - middle - integral(last, 0.65, t)).norm(), 1e-10);
   EXPECT_LT((result.grips[0].torque + m).norm(), 1e-9);
 }
 
@@ -261,7 +262,7 @@ TEST(WithoutPotential, ForcesThatFollowInThePlaneAreThoseOfAnIntegrationFromTheT
     problem.loads = {{1, force, {0, 0.5, 0}, true}};
     const Equilibrium result = solve_exact(problem);
     expect_balance_alone(result);
-    EXPECT_LT((tip_of(result) - followed_tip({}, clamp, force, {0, 0.5, 0})).norm(), 1e-10);
+    EXPECT_LT((place_along(result) - followed_tip({}, clamp, force, {0, 0.5, 0})).norm(), 1e-10);
     EXPECT_EQ(result.energy.load, 0);
     // The gripper holds what the tip pulls.
     const Eigen::Vector3d t = tip_tangent_of(result);
@@ -284,13 +285,13 @@ TEST(WithoutPotential, LoadsThatFollowInSpaceTwistAndBendEveryRod) {
     expect_balance_alone(result);
     const Eigen::Matrix3d clamp = rolled(frame_of(Eigen::Vector3d(1, 0.1, 0.3), direction), 0.4);
     const TipRod rod{{1, second, 0.6}, Eigen::Vector3d::Zero(), {}};
-    EXPECT_LT((tip_of(result) - followed_tip(rod, clamp, force, torque)).norm(), 1e-9);
+    EXPECT_LT((place_along(result) - followed_tip(rod, clamp, force, torque)).norm(), 1e-9);
     // It is found again from itself.
     ExactOptions options;
     options.start = &result;
     const Equilibrium again = solve_exact(problem, options);
     expect_balance_alone(again);
-    EXPECT_LT((tip_of(again) - tip_of(result)).norm(), 1e-9);
+    EXPECT_LT((place_along(again) - place_along(result)).norm(), 1e-9);
     EXPECT_LT(again.evaluations, result.evaluations);
   }
 }
@@ -309,7 +310,7 @@ TEST(WithoutPotential, NormalDragBendsARodAsTheSquareOfTheSine) {
   const Equilibrium result = solve_exact(problem);
   expect_balance_alone(result);
   const Eigen::Vector3d expected = dragged_tip(rod, up, tip_tangent_of(result));
-  EXPECT_LT((tip_of(result) - expected).norm(), 1e-10);
+  EXPECT_LT((place_along(result) - expected).norm(), 1e-10);
   EXPECT_GT(expected.x(), 0.3);  // far from straight
   EXPECT_GT(result.grips[0].torque.z(), 0);
 }
@@ -327,7 +328,7 @@ TEST(WithoutPotential, DragAlongAndAcrossWithWeightIsThatOfAnIntegrationFromTheT
     const TipRod rod{
         {1, 1, 1}, {0, -4, 0}, [&](const Eigen::Vector3d& t) { return drag.force(t); }};
     const Eigen::Vector3d expected = dragged_tip(rod, direction, tip_tangent_of(result));
-    EXPECT_LT((tip_of(result) - expected).norm(), 1e-9);
+    EXPECT_LT((place_along(result) - expected).norm(), 1e-9);
   }
 }
 
@@ -342,7 +343,7 @@ TEST(WithoutPotential, DirectorsStayWhereThePlaneWithAllLoadsSays) {
   const TipRod rod{
       {3, 3, 3}, {0, 0, 0}, [&](const Eigen::Vector3d& t) { return problem.drag->force(t); }};
   const Eigen::Vector3d expected = dragged_tip(rod, {1, 0, 0}, tip_tangent_of(result));
-  EXPECT_LT((tip_of(result) - expected).norm(), 1e-9);
+  EXPECT_LT((place_along(result) - expected).norm(), 1e-9);
 }
 
 TEST(WithoutPotential, ALineOnPinsInACurrentBalances) {
@@ -360,18 +361,19 @@ TEST(WithoutPotential, ALineOnPinsInACurrentBalances) {
     sum += weight / 1200 * problem.drag->force(t.col(i));
   }
   EXPECT_LT((sum + result.grips[0].force + result.grips[1].force).norm(), 1e-8);
-  EXPECT_GT(tip_of(result, 0.5).z(), 0.05);
-  EXPECT_LT((tip_of(result) - Eigen::Vector3d(0.8, 0, 0)).norm(), 1e-9);
+  EXPECT_GT(place_along(result, 0.5).z(), 0.05);
+  EXPECT_LT((place_along(result) - Eigen::Vector3d(0.8, 0, 0)).norm(), 1e-9);
 }
 
 TEST(WithoutPotential, ErrorsFallWithTheIntegratorsTolerance) {
   Problem problem = held_along({1, 0, 0});
   problem.drag = Drag{{0, 2, 1}, 1.5, 0.3};
   problem.loads = {{0.7, {0, 0, 0}, {0.5, 1, 2}}};
-  const Eigen::Vector3d best = tip_of(solve_exact(problem, {.tolerance = 1e-13}));
+  const Eigen::Vector3d best = place_along(solve_exact(problem, {.tolerance = 1e-13}));
   double before = INFINITY;
   for (const double tolerance : {1e-4, 1e-7, 1e-10}) {
-    const double error = (tip_of(solve_exact(problem, {.tolerance = tolerance})) - best).norm();
+    const double error =
+        (place_along(solve_exact(problem, {.tolerance = tolerance})) - best).norm();
     EXPECT_LT(error, 100 * tolerance);
     EXPECT_LE(error, before);
     before = error;
@@ -382,10 +384,10 @@ TEST(WithoutPotential, DragThatIsNothingChangesNothing) {
   const Problem problem = heavy_cantilever(5, 30);
   Problem still = problem;
   still.drag = Drag{{0, 0, 0}, 1, 1};
-  EXPECT_LT((tip_of(solve_exact(problem)) - tip_of(solve_exact(still))).norm(), 1e-10);
+  EXPECT_LT((place_along(solve_exact(problem)) - place_along(solve_exact(still))).norm(), 1e-10);
   still.loads = {{1, {0, 0, 0}, {0, 0, 0}, true}};
   still.drag.reset();
-  EXPECT_LT((tip_of(solve_exact(problem)) - tip_of(solve_exact(still))).norm(), 1e-10);
+  EXPECT_LT((place_along(solve_exact(problem)) - place_along(solve_exact(still))).norm(), 1e-10);
 }
 
 TEST(WithoutPotential, WhatNeedsAPotentialRefusesThem) {
