@@ -312,8 +312,9 @@ def test_loads_are_read_and_set_in_si_units(steel):
     assert again.to_toml() == scene.to_toml()
     again.gravity = (0, 0, 0)
     assert again.medium.density == 1000 and len(again.distributed_loads) == 1
-    with pytest.raises(dlo.InputError, match="load.torque.*in one plane"):
+    with pytest.raises(dlo.InputError, match="load.torque.*out of a plane.*--model exact"):
         scene.loads[0].torque = (0, 1, 0)
+        dlo.solve(scene)
     with pytest.raises(dlo.InputError, match="to > from"):
         load.end = 0.05
 

@@ -159,11 +159,20 @@ std::string scene_text(const Json& document) {
   add_rod(out, document.at("rod"));
   add_grippers(out, document.at("grippers"));
   add_entries(out, "load", document.at("loads"),
-              {{"at", "at_m", "m"}, {"force", "force_N", "N"}, {"torque", "torque_Nm", "N m"}});
+              {{"at", "at_m", "m"},
+               {"force", "force_N", "N"},
+               {"torque", "torque_Nm", "N m"},
+               {"follows", "follows", ""}});
   add_entries(out, "distributed load", document.at("distributed_loads"),
               {{"from", "from_m", "m"},
                {"to", "to_m", "m"},
                {"force per length", "force_per_length_N_per_m", "N/m"}});
+  if (document.contains("drag")) {
+    add_entries(out, "drag", Json::array({document.at("drag")}),
+                {{"velocity", "velocity_m_per_s", "m/s"},
+                 {"normal", "normal_kg_per_m2", "kg/m^2"},
+                 {"tangential", "tangential_kg_per_m2", "kg/m^2"}});
+  }
   add_entries(out, "obstacle", document.at("obstacles"),
               {{"", "shape", ""},
                {"point", "point_m", "m"},

@@ -57,6 +57,7 @@ double quantity(const std::string& text, const std::string& dimension) {
       {"torque", Dimension::torque},
       {"force_per_length", Dimension::force_per_length},
       {"acceleration", Dimension::acceleration},
+      {"velocity", Dimension::velocity},
       {"curvature", Dimension::curvature},
       {"foundation", Dimension::foundation},
       {"section_stiffness", Dimension::section_stiffness},

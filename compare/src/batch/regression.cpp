@@ -126,12 +126,19 @@ std::string content_of(const Scene& scene) {
     add(load.at);
     add_vector(load.force);
     if (!load.torque.isZero(0)) add_vector(load.torque);
+    if (load.follows) text += "follows ";
   }
   for (const DistributedLoad& load : scene.distributed_loads) {
     text += "\ndistributed load ";
     add(load.from);
     add(load.to);
     for (const Eigen::Vector3d& q : load.force_per_length) add_vector(q);
+  }
+  if (scene.drag) {
+    text += "\ndrag ";
+    add_vector(scene.drag->velocity);
+    add(scene.drag->normal);
+    add(scene.drag->tangential);
   }
   for (const Obstacle& obstacle : scene.obstacles) {
     const obstacle::Body& body = obstacle.body;

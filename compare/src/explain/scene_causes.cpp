@@ -17,7 +17,7 @@ constexpr double degree = std::numbers::pi / 180;
 Eigen::VectorXd zeros(Eigen::Index count) { return Eigen::VectorXd::Zero(count); }
 
 bool is_pulled_by_weight_alone(const Scene& scene) {
-  return scene.loads.empty() && scene.distributed_loads.empty() &&
+  return scene.loads.empty() && scene.distributed_loads.empty() && !scene.drag &&
          scene.weight_per_length().norm() > 0;
 }
 

@@ -206,6 +206,7 @@ nlohmann::ordered_json scene_document(const Scene& scene) {
         {{"at_m", load.at},
          {"force_N", vector_document(load.force)},
          {"torque_Nm", load.torque.isZero(0) ? Document() : vector_document(load.torque)}});
+    if (load.follows) loads.back()["follows"] = true;
   }
   Document distributed = Document::array();
   for (const DistributedLoad& load : scene.distributed_loads) {
@@ -219,18 +220,24 @@ nlohmann::ordered_json scene_document(const Scene& scene) {
     obstacles.push_back(obstacle_document(obstacle));
   }
   const std::optional<Eigen::Vector3d> normal = scene.plane_normal();
-  return {{"schema", "dlo/scene/1"},
-          {"scene", scene.name},
-          {"file", scene.file},
-          {"gravity_m_per_s2", vector_document(scene.gravity)},
-          {"gamma", scene.gamma()},
-          {"plane_normal", normal ? vector_document(*normal) : Document()},
-          {"rod", rod_document(scene)},
-          {"grippers", std::move(grippers)},
-          {"loads", std::move(loads)},
-          {"distributed_loads", std::move(distributed)},
-          {"obstacles", std::move(obstacles)},
-          {"force_model", force_model_document(scene)}};
+  Document document = {{"schema", "dlo/scene/1"},
+                       {"scene", scene.name},
+                       {"file", scene.file},
+                       {"gravity_m_per_s2", vector_document(scene.gravity)},
+                       {"gamma", scene.gamma()},
+                       {"plane_normal", normal ? vector_document(*normal) : Document()},
+                       {"rod", rod_document(scene)},
+                       {"grippers", std::move(grippers)},
+                       {"loads", std::move(loads)},
+                       {"distributed_loads", std::move(distributed)},
+                       {"obstacles", std::move(obstacles)},
+                       {"force_model", force_model_document(scene)}};
+  if (scene.drag) {
+    document["drag"] = {{"velocity_m_per_s", vector_document(scene.drag->velocity)},
+                        {"normal_kg_per_m2", scene.drag->normal},
+                        {"tangential_kg_per_m2", scene.drag->tangential}};
+  }
+  return document;
 }
 
 std::string scene_document_text(const Scene& scene) {

@@ -137,6 +137,7 @@ energy_model::Equilibrium MeasuredShapes::solve(const Scene& scene,
                     limit, size() > 1 ? " per scene" : "", solves_));
   }
   ++solves_;
+  scene.require_potential("the energy model does");
   try {
     energy_model::Equilibrium rod = energy_model::solve_energy(
         energy_problem(scene), {.terms = options_.solve.terms,

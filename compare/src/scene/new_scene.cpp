@@ -168,8 +168,9 @@ std::string optional_part(const SceneChoices& choices, const Scene& scene) {
 #mass_per_length = {section_mass:.3g}  # kg/m, g/m, g/cm
 
 # A force at a point of the rod, one [[load]] for each; of a weight that hangs there mass = "10 g"; of
-# a couple, in a plane, torque = [0, 0, "1 N m"]. Along the rod [[distributed_load]] has from, to and
-# force_per_length; [medium] has the density of what the rod is immersed in.
+# a couple torque = [0, 0, "1 N m"]; follows = true lets both turn with the rod. Along the rod
+# [[distributed_load]] has from, to and force_per_length; [medium] has the density of what the rod is
+# immersed in, and the velocity of what drags it.
 #[[load]]
 #at = {middle:.4g}  # arc length
 #force = {force}  # N, mN, kN

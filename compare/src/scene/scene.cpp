@@ -37,6 +37,7 @@ std::optional<Eigen::Vector3d> scene_normal(const Scene& scene) {
     vectors.emplace_back(gripper.position - scene.grippers.front().position);
   }
   for (const PointLoad& load : scene.loads) {
+    if (load.follows) continue;
     vectors.push_back(load.force);
     if (load.torque.isZero(0)) continue;
     const Eigen::Vector3d across = load.torque.unitOrthogonal();
@@ -45,6 +46,7 @@ std::optional<Eigen::Vector3d> scene_normal(const Scene& scene) {
   for (const DistributedLoad& load : scene.distributed_loads) {
     vectors.insert(vectors.end(), load.force_per_length.begin(), load.force_per_length.end());
   }
+  if (scene.drag) vectors.push_back(scene.drag->velocity);
   for (const std::size_t i : obstacles_in_reach(scene)) {
     const obstacle::Body& body = scene.obstacles[i].body;
     if (body.is_half_space()) vectors.push_back(body.normal());
@@ -232,11 +234,35 @@ bool Scene::has_couples() const {
                      [](const PointLoad& load) { return !load.torque.isZero(0); });
 }
 
-void Scene::require_no_couples(const char* who) const {
-  if (!has_couples()) return;
+void Scene::require_potential(const char* who) const {
+  if (drag) {
+    throw InputError(fmt::format(
+        "{}: medium.velocity: drag, which has no potential and which {} not take (allowed: dlo "
+        "solve --model exact or force)",
+        file, who));
+  }
+  const bool follows =
+      std::any_of(loads.begin(), loads.end(), [](const PointLoad& load) { return load.follows; });
+  if (follows) {
+    throw InputError(fmt::format(
+        "{}: load.follows: a load that turns with the rod, which has no potential and which {} not "
+        "take (allowed: dlo solve --model exact)",
+        file, who));
+  }
+  if (!has_couples() || energy_model::has_potential(scene_problem(*this))) return;
   throw InputError(fmt::format(
-      "{}: load.torque: a couple, which {} not take (allowed: dlo solve --model energy or exact)",
+      "{}: load.torque: out of a plane, where a couple that keeps its axis has no potential, so "
+      "that {} not take it (allowed: dlo solve --model exact)",
       file, who));
+}
+
+void Scene::require_no_couples(const char* who) const {
+  require_potential(who);
+  if (!has_couples()) return;
+  throw InputError(
+      fmt::format("{}: load.torque: a couple, which {} not take (allowed: dlo solve --model "
+                  "energy or exact)",
+                  file, who));
 }
 
 double Scene::bending_compliance(double begin, double end) const {
@@ -370,6 +396,10 @@ void Scene::scale_density(double factor) {
 
 std::optional<Eigen::Vector3d> Scene::plane_normal() const {
   if (holds_twist()) return std::nullopt;
+  const bool leaves_plane = std::any_of(loads.begin(), loads.end(), [](const PointLoad& load) {
+    return load.follows && (load.force.y() != 0 || load.torque.x() != 0 || load.torque.z() != 0);
+  });
+  if (leaves_plane) return std::nullopt;
   std::optional<Eigen::Vector3d> normal = scene_normal(*this);
   const bool curved = naturally_curved();
   if (!normal || !(curved || has_two_stiffnesses())) return normal;

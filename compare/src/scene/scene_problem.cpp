@@ -54,13 +54,14 @@ energy_model::Problem scene_problem(const Scene& scene) {
     problem.grips.push_back(std::move(held));
   }
   for (const PointLoad& load : scene.loads) {
-    problem.loads.push_back({load.at, load.force, load.torque});
+    problem.loads.push_back({load.at, load.force, load.torque, load.follows});
   }
   for (const DistributedLoad& load : scene.distributed_loads) {
     for (const energy_model::LineLoad& piece : line_loads(load)) {
       problem.line_loads.push_back(piece);
     }
   }
+  problem.drag = scene.drag;
   for (const std::size_t i : obstacles_in_reach(scene)) {
     const Obstacle& obstacle = scene.obstacles[i];
     problem.obstacles.push_back({obstacle.body, obstacle.stiffness});

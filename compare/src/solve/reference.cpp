@@ -39,6 +39,13 @@ std::string looked_from(const std::vector<energy_model::Equilibrium>& searches) 
                      searches.front().evaluations);
 }
 
+/// Whether it is an equilibrium of loads without a potential: no energy could say more of it.
+bool is_balance_alone(const energy_model::Problem& problem,
+                      const energy_model::Equilibrium& shape) {
+  return shape.status == energy_model::SolveStatus::not_verified && shape.sample &&
+         !energy_model::has_potential(problem);
+}
+
 /// Whether a shape may be handed on: proven, or unproven and asked for.
 bool acceptable(energy_model::SolveStatus status, const SolveOptions& options) {
   return energy_model::succeeded(status) ||
@@ -95,6 +102,7 @@ energy_model::Equilibrium exact_shape(const Scene& scene, const energy_model::Pr
 
 energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
                                           const SolveOptions& options) {
+  if (model == Model::energy) scene.require_potential("the energy model does");
   const energy_model::Problem problem = energy_problem(scene);
   energy_model::Equilibrium result;
   try {
@@ -108,7 +116,7 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
     refuse_rod(scene, model, error);
   }
   refuse_lost_turns(scene, result);
-  if (!acceptable(result.status, options)) {
+  if (!acceptable(result.status, options) && !is_balance_alone(problem, result)) {
     throw ConvergenceError(fmt::format(
         "{}: the {} model did not converge: {} ({} evaluations{}{})", scene.file, to_string(model),
         result.message, result.evaluations,
@@ -123,6 +131,7 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
 }
 
 energy_model::EnergySearch search_states(const Scene& scene, const SolveOptions& options) {
+  scene.require_potential("the energy model does");
   energy_model::EnergySearch search;
   std::vector<energy_model::Equilibrium>& states = search.equilibria;
   try {

@@ -14,6 +14,7 @@
 #include "dlo/compare/reference.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
+#include "polygon/shape_loads.hpp"
 #include "scene/reach.hpp"
 #include "solve/linking.hpp"
 
@@ -23,9 +24,11 @@ namespace {
 /// What the part of the rod beyond `at` pulls the part before it with: the opposite of all that
 /// acts on the part before.
 /// @param solution  its grippers and contacts count
-Eigen::Vector3d section_force(const Scene& scene, const Solution& solution, double at) {
+/// @param of_shape  of loads that depend on the shape, on the part before
+Eigen::Vector3d section_force(const Scene& scene, const Solution& solution, double at,
+                              const Eigen::Vector3d& of_shape) {
   const auto before = [&](double s) { return s < at || (s == at && at < scene.length); };
-  Eigen::Vector3d sum = scene.weight_between(0, at) + scene.distributed_between(0, at);
+  Eigen::Vector3d sum = scene.weight_between(0, at) + scene.distributed_between(0, at) + of_shape;
   for (std::size_t i = 0; i < solution.grippers.size(); ++i) {
     if (before(scene.grippers[i].at)) sum += solution.grippers[i].force;
   }
@@ -34,7 +37,7 @@ Eigen::Vector3d section_force(const Scene& scene, const Solution& solution, doub
     if (before(contact.end)) sum += contact.force;
   }
   for (const PointLoad& load : scene.loads) {
-    if (before(load.at)) sum += load.force;
+    if (!load.follows && before(load.at)) sum += load.force;
   }
   return -sum;
 }
@@ -94,12 +97,13 @@ Solution solution_of(const Scene& scene, Model model, const energy_model::Equili
   for (energy_model::ContactPart& contact : solution.contacts) {
     contact.obstacle = obstacles[contact.obstacle];
   }
+  const std::vector<Eigen::Vector3d> of_shape = shape_loads_before(scene, equilibrium, samples);
   const bool sinks_in = touches_yielding_obstacle(scene, solution.obstacles);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
     solution.curvature.push_back(shape.curvature.col(column).norm());
     if (sinks_in) continue;
-    const Eigen::Vector3d force = section_force(scene, solution, samples[i]);
+    const Eigen::Vector3d force = section_force(scene, solution, samples[i], of_shape[i]);
     // Adding zero turns -0 into 0.
     solution.tension.push_back(force.dot(shape.tangents.col(column)) + 0.0);
   }

@@ -25,6 +25,7 @@ constexpr Unit forces[] = {{"N", 1}, {"mN", 1e-3}, {"kN", 1e3}};
 constexpr Unit torques[] = {{"N m", 1}, {"mN m", 1e-3}, {"N mm", 1e-3}, {"kN m", 1e3}};
 constexpr Unit forces_per_length[] = {{"N/m", 1}, {"mN/m", 1e-3}, {"kN/m", 1e3}, {"N/mm", 1e3}};
 constexpr Unit accelerations[] = {{"m/s^2", 1}};
+constexpr Unit velocities[] = {{"m/s", 1}, {"mm/s", 1e-3}, {"km/h", 1 / 3.6}};
 constexpr Unit curvatures[] = {{"1/m", 1}, {"1/cm", 1e2}, {"1/mm", 1e3}};
 constexpr Unit foundations[] = {{"N/m^2", 1}, {"N/mm^2", 1e6}};
 constexpr Unit section_stiffnesses[] = {{"N m^2", 1}, {"N mm^2", 1e-6}};
@@ -54,6 +55,8 @@ std::span<const Unit> units(Dimension dimension) {
       return forces_per_length;
     case Dimension::acceleration:
       return accelerations;
+    case Dimension::velocity:
+      return velocities;
     case Dimension::curvature:
       return curvatures;
     case Dimension::foundation:

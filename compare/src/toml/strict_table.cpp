@@ -127,6 +127,14 @@ int StrictTable::integer(std::string_view key, int low, int high) {
   return static_cast<int>(*value);
 }
 
+bool StrictTable::flag(std::string_view key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return false;
+  const auto value = node->value_exact<bool>();
+  if (!value) fail(key, "must be true or false (allowed: true, false)");
+  return *value;
+}
+
 std::string StrictTable::text(std::string_view key) {
   const auto value = need(key).value_exact<std::string>();
   if (!value) fail(key, "must be a string");

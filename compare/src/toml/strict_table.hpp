@@ -44,6 +44,8 @@ class StrictTable {
   std::optional<double> optional_number(std::string_view key, Dimension dimension,
                                         const Range& range);
   std::optional<int> optional_integer(std::string_view key, int low, int high);
+  /// true or false; false where there is no such key.
+  bool flag(std::string_view key);
   std::string text(std::string_view key);
   std::optional<std::string> optional_text(std::string_view key);
   int integer(std::string_view key, int low, int high);

@@ -9,6 +9,7 @@
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/material.hpp"
 #include "dlo/compare/trajectory.hpp"
+#include "dlo/energy_model/drag.hpp"
 #include "dlo/obstacle/body.hpp"
 
 namespace dlo::compare {
@@ -39,12 +40,15 @@ struct Gripper {
   bool operator==(const Gripper&) const = default;
 };
 
-/// A force that keeps its direction and a couple that keeps its axis.
+/// A force that keeps its direction and a couple that keeps its axis, or such that turn with the
+/// rod.
 struct PointLoad {
   double at = 0;                                     ///< arc length [m]
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N]; of a mass in the file, its weight
   double mass = 0;                                   ///< [kg], of what hangs there and would move
-  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m], across the rod's plane
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
+  /// Force and torque are along d1, d2 and the tangent of the section, as energy_model::Load's.
+  bool follows = false;
 
   /// In every field.
   bool operator==(const PointLoad&) const = default;
@@ -162,6 +166,7 @@ struct Scene {
   std::vector<Gripper> grippers;                   ///< one or more, in the file's order
   std::vector<PointLoad> loads;                    ///< may be empty
   std::vector<DistributedLoad> distributed_loads;  ///< may be empty; they add up
+  std::optional<energy_model::Drag> drag;          ///< of a steady stream on all of the rod
   std::vector<Obstacle> obstacles;                 ///< may be empty
   ForceModelSettings force_model;                  ///< as the file has it
   TrackRates track;                                ///< as the file has it
@@ -205,7 +210,11 @@ struct Scene {
   [[nodiscard]] double total_of_loads() const;
   /// Whether a load has a couple.
   [[nodiscard]] bool has_couples() const;
-  /// @param who  does not take couples, as "the polygons of models force and chain do"
+  /// @param who  needs a potential, as "the energy model does"
+  /// @throws InputError if a load has none (energy_model::has_potential), which names it
+  void require_potential(const char* who) const;
+  /// @param who  does not take couples, nor what has no potential, as "the polygons of models force
+  /// and chain do"
   /// @throws InputError if there are some
   void require_no_couples(const char* who) const;
   /// int 1/GJ ds between two arc lengths [1/(N m)], as above; of a rod with a GJ.
