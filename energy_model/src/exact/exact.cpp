@@ -17,6 +17,7 @@
 #include "base/lowest_combinations.hpp"
 #include "base/require.hpp"
 #include "base/silence_gsl.hpp"
+#include "dlo/energy_model/soft_line.hpp"
 #include "dlo/energy_model/taut_line.hpp"
 #include "kirchhoff/rod_span.hpp"
 #include "problem/ordered_grips.hpp"
@@ -148,6 +149,7 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
   require_positive("solve_exact", "tolerance", options.tolerance);
   require(options.time_limit > 0, "solve_exact", "time_limit", options.time_limit, "> 0");
   if (std::optional<Equilibrium> taut = taut_line(problem)) return {*std::move(taut)};
+  if (std::optional<Equilibrium> line = soft_line_for_models(problem)) return {*std::move(line)};
   Found found = problem.obstacles.empty() ? search(problem, options, deadline)
                                           : search_touching(problem, options, deadline);
   const double seconds =
