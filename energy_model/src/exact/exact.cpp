@@ -112,7 +112,9 @@ Found search(const Problem& problem, const ExactOptions& options, const Deadline
                   [&](const LineLoad& load) { return acts_everywhere(load, problem); });
   // The scan knows of one section.
   const std::optional<ReducedCantilever> cantilever =
-      problem.sections.empty() && same_everywhere ? reduce_cantilever(problem) : std::nullopt;
+      problem.sections.empty() && same_everywhere && !problem.axial_stiffness
+          ? reduce_cantilever(problem)
+          : std::nullopt;
   const bool from_tip =
       options.start == nullptr && cantilever && planar_shots_are_well_posed(cantilever->rod);
   return from_tip ? scan_tip(problem, *cantilever, options, deadline)
@@ -121,6 +123,8 @@ Found search(const Problem& problem, const ExactOptions& options, const Deadline
 
 Found search_touching(const Problem& problem, const ExactOptions& options,
                       const Deadline& deadline) {
+  require(!problem.axial_stiffness, "solve_exact", "axial_stiffness",
+          problem.axial_stiffness.value_or(0), "none where there are obstacles");
   require(!has_couples(problem), "solve_exact", "torque of a load", 1,
           "0 where there are obstacles");
   for (const LineLoad& load : problem.line_loads) {
@@ -148,8 +152,10 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
   const auto begin = std::chrono::steady_clock::now();
   require_positive("solve_exact", "tolerance", options.tolerance);
   require(options.time_limit > 0, "solve_exact", "time_limit", options.time_limit, "> 0");
-  if (std::optional<Equilibrium> taut = taut_line(problem)) return {*std::move(taut)};
-  if (std::optional<Equilibrium> line = soft_line_for_models(problem)) return {*std::move(line)};
+  if (!problem.axial_stiffness) {
+    if (std::optional<Equilibrium> taut = taut_line(problem)) return {*std::move(taut)};
+    if (std::optional<Equilibrium> line = soft_line_for_models(problem)) return {*std::move(line)};
+  }
   Found found = problem.obstacles.empty() ? search(problem, options, deadline)
                                           : search_touching(problem, options, deadline);
   const double seconds =

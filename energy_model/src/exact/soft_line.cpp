@@ -273,7 +273,7 @@ class SoftLine {
     };
     const auto framed = [](const Grip& grip) { return grip.frame.has_value(); };
     const std::vector<Grip>& grips = problem_.grips;
-    if (has_material_directors(problem_) ||
+    if (problem_.axial_stiffness || has_material_directors(problem_) ||
         !problem_.sections.empty() || !problem_.loads.empty() || !problem_.line_loads.empty() ||
         !(problem_.weight_per_length.norm() > 0) || problem_.obstacles.size() > 1 ||
         grips.empty() || grips.size() > 2 || !std::ranges::all_of(grips, at_end) ||

@@ -94,6 +94,9 @@ bool has_couples(const Problem& problem) {
 void check(const Problem& problem) {
   require_positive("Problem", "length", problem.length);
   require_positive("Problem", "bending_stiffness", problem.bending_stiffness);
+  if (problem.axial_stiffness) {
+    require_positive("Problem", "axial_stiffness", *problem.axial_stiffness);
+  }
   require(problem.weight_per_length.allFinite(), "Problem", "weight_per_length",
           problem.weight_per_length.norm(), "finite");
   require(!problem.grips.empty(), "Problem", "number of grips", 0, ">= 1");

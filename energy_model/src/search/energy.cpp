@@ -12,6 +12,7 @@
 #include "dlo/energy_model/soft_line.hpp"
 #include "dlo/energy_model/taut_line.hpp"
 #include "problem/redundant_obstacles.hpp"
+#include "problem/rod_law.hpp"
 #include "problem/split.hpp"
 #include "search/assemble.hpp"
 #include "search/twisted_span.hpp"
@@ -85,6 +86,7 @@ class EnergySolver::State {
     const auto begin = std::chrono::steady_clock::now();
     const Deadline deadline(options_.time_limit);
     log_ = {};
+    require_inextensible(problem, "solve_energy");
     std::optional<Equilibrium> known = taut_line(problem);
     if (!known) known = soft_line_for_models(problem);
     if (known) {
