@@ -121,6 +121,17 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
     append(out,
            "           (without it this is one shape; friction could hold others beside it)\n");
   }
+  if (compare::neglects(solution, "stretch") && solution.stretch.strain > 0) {
+    append(out, "           (N/EA is up to {:.2g} %", solution.stretch.strain * 100);
+    if (std::isnan(solution.stretch.moved_m)) {
+      append(out, ": what that changes is not known)\n");
+    } else {
+      append(out,
+             ": with it the points would be {:.2g} m away (RMS), the largest tension {:+.2g} %, to "
+             "first order)\n",
+             solution.stretch.moved_m, solution.stretch.tension * 100);
+    }
+  }
   if (const auto crossing = compare::self_crossing(solution.shape, scene.diameter)) {
     append(out,
            "crossing   at s = {:.4g} m and {:.4g} m the rod's axis is {:.2g} m apart, its diameter "

@@ -77,6 +77,8 @@ class Scene(Strict):
         name: Optional[str] = None,
         bending_stiffness: Optional[Union[Quantity, Sequence[Quantity]]] = None,
         mass_per_length: Optional[Quantity] = None,
+        axial_stiffness: Optional[Quantity] = None,
+        stretch: Optional[bool] = None,
         torsional_stiffness: Optional[Quantity] = None,
         natural_curvature: Optional[Any] = None,
         natural_twist: Optional[Quantity] = None,
@@ -284,6 +286,7 @@ class Scene(Strict):
         "bending_stiffness", "EI [N m^2], given or of the material; about d1 of two."
     )
     mass_per_length = _top_field("mass_per_length", "rho A [kg/m], given or of the material.")
+    axial_stiffness = _top_field("axial_stiffness", "EA [N], given, of the material, or assumed.")
     torsional_stiffness = _rod_field(
         "torsional_stiffness", "section_stiffness", "GJ as given [N m^2], or None."
     )
@@ -302,7 +305,6 @@ class Scene(Strict):
     sections = _part_field("sections", "A tuple of Section.")
     youngs_modulus = _derived("youngs_modulus", "E of the material [Pa]; 0: not known.")
     density = _derived("density", "Of the material [kg/m^3]; 0: not known.")
-    axial_stiffness = _derived("axial_stiffness", "EA [N].")
     mass = _derived("mass", "Of the rod, with sections [kg].")
     gamma = _derived("gamma", "w l^3 / (EI) [-]: below 0.1 nearly straight, from 1000 on a rope.")
     planar = _derived("planar", "Whether grips, forces and obstacles in reach share a plane.")
@@ -317,6 +319,15 @@ class Scene(Strict):
     @material.setter
     def material(self, value: Optional[Union[str, dict[str, Any]]]) -> None:
         self._put_one("material", value)
+
+    @property
+    def stretch(self) -> bool:
+        """Whether it stretches by its tension over EA; model exact alone takes it."""
+        return bool(self._rod.get("stretch", False))
+
+    @stretch.setter
+    def stretch(self, value: Optional[bool]) -> None:
+        self._put_one("stretch", value)
 
     @property
     def force_model(self) -> ForceModelSettings:

@@ -255,6 +255,13 @@ void read_rod(StrictTable& rod, std::vector<StrictTable>& sections,
   rod.only(scene_keys("rod"));
   scene.length = rod.number("length", Dimension::length, Range::between(1e-6, 1e6, " m"));
   read_stiffness(rod, known_materials, scene);
+  scene.given_axial_stiffness =
+      rod.optional_number("axial_stiffness", Dimension::force, Range::positive());
+  scene.stretch = rod.optional_flag("stretch").value_or(false);
+  if (scene.stretch && !scene.known_axial_stiffness()) {
+    rod.fail("stretch",
+             "EA is not known (allowed: axial_stiffness, or material and section, or false)");
+  }
   scene.torsional_stiffness =
       rod.optional_number("torsional_stiffness", Dimension::section_stiffness, Range::positive());
   const std::vector<Eigen::Vector2d> curvature =

@@ -163,9 +163,14 @@ double Scene::assumed_torsional_stiffness() const {
 
 bool Scene::assumes_torsion() const { return has_material_directors() && !torsional_stiffness; }
 
-double Scene::axial_stiffness() const {
+std::optional<double> Scene::known_axial_stiffness() const {
+  if (given_axial_stiffness) return given_axial_stiffness;
   const double EA = material.youngs_modulus * cross_section();
-  if (EA > 0) return EA;
+  return EA > 0 ? std::optional(EA) : std::nullopt;
+}
+
+double Scene::axial_stiffness() const {
+  if (const std::optional<double> EA = known_axial_stiffness()) return *EA;
   if (cross_section() > 0) return bending_stiffness() / squared_gyration().x();
   return 1e6 * bending_stiffness() / (length * length);
 }
@@ -373,6 +378,7 @@ void Scene::scale_modulus(double factor) {
   material.youngs_modulus *= factor;
   if (given_bending_stiffness) *given_bending_stiffness *= factor;
   if (given_bending_stiffness_2) *given_bending_stiffness_2 *= factor;
+  if (given_axial_stiffness) *given_axial_stiffness *= factor;
   if (torsional_stiffness) *torsional_stiffness *= factor;
   for (Section& section : sections) {
     section.bending_stiffness *= factor;

@@ -51,6 +51,7 @@ Solution solve_rigid_chain(const Scene& scene, const ForceModelSettings& setting
     points = points.rowwise().reverse().eval();
   }
   Solution solution = polygon_solution(scene, settings, discretisation, discretisation.rod, points);
+  if (scene.stretch) solution.neglected.emplace_back("stretch");
   solution.status = result.status;
   solution.message = result.message;
   solution.grippers = {balancing_load(discretisation, points)};

@@ -17,6 +17,7 @@
 #include "polygon/shape_loads.hpp"
 #include "scene/reach.hpp"
 #include "solve/linking.hpp"
+#include "solve/stretch_effect.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -62,6 +63,18 @@ std::vector<double> all_on_rod(std::vector<double> arc_lengths, double length) {
   return arc_lengths;
 }
 
+/// The same, and what stretch would change of it.
+Solution told_solution(const Scene& scene, Model model,
+                       const energy_model::Equilibrium& equilibrium, const SolveOptions& options,
+                       const std::vector<double>& arc_lengths,
+                       const std::vector<std::size_t>& obstacles) {
+  Solution solution = solution_of(scene, model, equilibrium, arc_lengths, obstacles);
+  if (scene.stretch) return solution;
+  solution.stretch = stretch_effect(scene, model, equilibrium, options);
+  if (matters(solution.stretch, scene, options)) solution.neglected.emplace_back("stretch");
+  return solution;
+}
+
 }  // namespace
 
 Solution solution_of(const Scene& scene, Model model, const energy_model::Equilibrium& equilibrium,
@@ -84,6 +97,7 @@ Solution solution_of(const Scene& scene, Model model, const energy_model::Equili
                      .twisting = equilibrium.energy.twisting,
                      .gravity = equilibrium.energy.gravity,
                      .load = equilibrium.energy.load,
+                     .stretch = equilibrium.energy.stretch,
                      .contact = equilibrium.energy.contact};
   for (const energy_model::Reaction& reaction : equilibrium.grips) {
     solution.grippers.push_back({reaction.force, reaction.torque});
@@ -118,8 +132,8 @@ Solution solution_of(const Scene& scene, Model model, const energy_model::Equili
 Solution solve(const Scene& scene, Model model, const SolveOptions& options,
                const std::vector<double>& arc_lengths) {
   if (model == Model::energy || model == Model::exact) {
-    return solution_of(scene, model, solve_reference(scene, model, options), arc_lengths,
-                       obstacles_in_reach(scene));
+    return told_solution(scene, model, solve_reference(scene, model, options), options, arc_lengths,
+                         obstacles_in_reach(scene));
   }
   Solution solution = model == Model::chain ? solve_chain(scene, scene.force_model, options)
                                             : solve_force(scene, scene.force_model, options);
@@ -140,7 +154,8 @@ AllSolutions solve_all(const Scene& scene, const SolveOptions& options,
   all.not_looked = std::move(search.not_looked);
   const std::vector<std::size_t> obstacles = obstacles_in_reach(scene);
   for (const energy_model::Equilibrium& state : search.equilibria) {
-    all.solutions.push_back(solution_of(scene, Model::energy, state, arc_lengths, obstacles));
+    all.solutions.push_back(
+        told_solution(scene, Model::energy, state, options, arc_lengths, obstacles));
   }
   return all;
 }

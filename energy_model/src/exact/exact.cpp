@@ -17,6 +17,7 @@
 #include "base/lowest_combinations.hpp"
 #include "base/require.hpp"
 #include "base/silence_gsl.hpp"
+#include "dlo/energy_model/soft_line.hpp"
 #include "dlo/energy_model/taut_line.hpp"
 #include "exact/without_potential.hpp"
 #include "kirchhoff/rod_span.hpp"
@@ -112,7 +113,9 @@ Found search(const Problem& problem, const ExactOptions& options, const Deadline
                   [&](const LineLoad& load) { return acts_everywhere(load, problem); });
   // The scan knows of one section.
   const std::optional<ReducedCantilever> cantilever =
-      problem.sections.empty() && same_everywhere ? reduce_cantilever(problem) : std::nullopt;
+      problem.sections.empty() && same_everywhere && !problem.axial_stiffness
+          ? reduce_cantilever(problem)
+          : std::nullopt;
   const bool from_tip =
       options.start == nullptr && cantilever && planar_shots_are_well_posed(cantilever->rod);
   return from_tip ? scan_tip(problem, *cantilever, options, deadline)
@@ -129,6 +132,8 @@ Found search_without_potential(const Problem& problem, const ExactOptions& optio
 
 Found search_touching(const Problem& problem, const ExactOptions& options,
                       const Deadline& deadline) {
+  require(!problem.axial_stiffness, "solve_exact", "axial_stiffness",
+          problem.axial_stiffness.value_or(0), "none where there are obstacles");
   require(!has_couples(problem), "solve_exact", "torque of a load", 1,
           "0 where there are obstacles");
   for (const LineLoad& load : problem.line_loads) {
@@ -157,8 +162,12 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
   require_positive("solve_exact", "tolerance", options.tolerance);
   require(options.time_limit > 0, "solve_exact", "time_limit", options.time_limit, "> 0");
   const bool judged = has_potential(problem);
-  if (judged) {
+  require(judged || !problem.axial_stiffness, "solve_exact", "axial_stiffness",
+          problem.axial_stiffness.value_or(0),
+          "none of a rod in a stream, with loads that follow it, or couples out of its plane");
+  if (judged && !problem.axial_stiffness) {
     if (std::optional<Equilibrium> taut = taut_line(problem)) return {*std::move(taut)};
+    if (std::optional<Equilibrium> line = soft_line_for_models(problem)) return {*std::move(line)};
   }
   Found found = !judged                     ? search_without_potential(problem, options, deadline)
                 : problem.obstacles.empty() ? search(problem, options, deadline)

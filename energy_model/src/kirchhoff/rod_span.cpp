@@ -91,6 +91,7 @@ std::vector<RodSpan::Part> parts_between(const Problem& problem, double begin, d
     if (to - from < same_place) continue;
     RodSection own{section.bending_stiffness / unit, section.torsional_stiffness / unit,
                    section.weight_per_length * l * l * l / unit};
+    if (problem.axial_stiffness) own.stretch = unit / (*problem.axial_stiffness * l * l);
     own.slope = section.weight_slope * l * l * l * l / unit;
     own.weight -= (section.begin / l - begin) * own.slope;
     if (directors == Directors::of_material && section.bending_stiffness_2) {

@@ -131,6 +131,9 @@ void require_dead_loads(const Problem& problem, const char* function) {
 void check(const Problem& problem) {
   require_positive("Problem", "length", problem.length);
   require_positive("Problem", "bending_stiffness", problem.bending_stiffness);
+  if (problem.axial_stiffness) {
+    require_positive("Problem", "axial_stiffness", *problem.axial_stiffness);
+  }
   require(problem.weight_per_length.allFinite(), "Problem", "weight_per_length",
           problem.weight_per_length.norm(), "finite");
   require(!problem.grips.empty(), "Problem", "number of grips", 0, ">= 1");

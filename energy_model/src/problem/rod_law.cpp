@@ -74,6 +74,12 @@ bool has_two_stiffnesses(const Problem& problem) {
                      [](const Section& section) { return section.bending_stiffness_2; });
 }
 
+void require_inextensible(const Problem& problem, std::string_view function) {
+  require(!problem.axial_stiffness, function, "axial_stiffness",
+          problem.axial_stiffness.value_or(0),
+          "none: solve_exact() alone takes a rod that stretches");
+}
+
 double bending_unit(const Problem& problem) {
   return std::min(problem.bending_stiffness,
                   problem.bending_stiffness_2.value_or(problem.bending_stiffness));

@@ -189,6 +189,7 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
     energy.bending += equilibrium.energy.bending;
     energy.twisting += equilibrium.energy.twisting;
     energy.gravity += equilibrium.energy.gravity;
+    energy.stretch += equilibrium.energy.stretch;
     energy.load += equilibrium.energy.load + energy_of_couples(span, equilibrium, tolerance);
     unjudged = unjudged || couples_leave_plane(span, equilibrium);
     const std::vector<RodState> before = before_nodes(span, equilibrium, tolerance);

@@ -29,6 +29,7 @@ void add_energies(const RodSpan& span, double tolerance, SpanEquilibrium& equili
     equilibrium.energy.bending += integrals.bending;
     equilibrium.energy.twisting += integrals.twisting;
     equilibrium.energy.gravity += integrals.gravity;
+    equilibrium.energy.stretch += integrals.stretch;
     equilibrium.turns.push_back(integrals.turn);
   }
 }

@@ -154,6 +154,8 @@ struct Scene {
   std::optional<double> given_mass_per_length;    ///< rho A [kg/m], >= 0; none: of the material
   /// EI about d2 [N m^2], > 0, beside given_bending_stiffness, which then is about d1; none: round.
   std::optional<double> given_bending_stiffness_2;
+  std::optional<double> given_axial_stiffness;  ///< EA [N], > 0; none: axial_stiffness()
+  bool stretch = false;                         ///< it stretches by N / EA; EA is then known
   /// GJ [N m^2], > 0; needed where two clamps hold frames or the rod has material directors, of no
   /// effect elsewhere.
   std::optional<double> torsional_stiffness;
@@ -191,10 +193,13 @@ struct Scene {
   [[nodiscard]] double assumed_torsional_stiffness() const;
   /// Whether that GJ is an assumption.
   [[nodiscard]] bool assumes_torsion() const;
-  /// EA [N], one for all of the rod: of the material; without one of a rod of one material with
-  /// this EI and section (solid and round: 16 EI / d^2); without a section 1e6 EI / l^2, a rod 250
-  /// times as long as thick.
+  /// EA [N], one for all of the rod: as given, or of the material; without one of a rod of one
+  /// material with this EI and section (solid and round: 16 EI / d^2); without a section 1e6 EI /
+  /// l^2, a rod 250 times as long as thick.
   [[nodiscard]] double axial_stiffness() const;
+  /// The same where the scene says it; none where it is only assumed: of the EI and the diameter of
+  /// a cable whose strands slip EA is far more than a solid rod's.
+  [[nodiscard]] std::optional<double> known_axial_stiffness() const;
   /// The stiffness that a fit multiplies.
   [[nodiscard]] NamedValue stiffness() const;
   /// The same of the mass.

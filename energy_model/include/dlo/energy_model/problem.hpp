@@ -79,8 +79,9 @@ struct Section {
   std::optional<double> natural_twist = std::nullopt;  ///< the same of the twist [rad/m]
 };
 
-/// An inextensible rod, round or of two bending stiffnesses about the principal axes d1 and d2 of
-/// its section, as a ribbon or a flat cable has them; SI units, any right-handed axes.
+/// A rod, inextensible but where axial_stiffness is given, round or of two bending stiffnesses
+/// about the principal axes d1 and d2 of its section, as a ribbon or a flat cable has them; SI
+/// units, any right-handed axes.
 ///
 /// Two neighbouring clamps with frames fix the twist and writhe between them (held_turns() in
 /// turns.hpp); energy_model/doc/search.md says how a solver comes there. A rod that
@@ -107,6 +108,10 @@ struct Problem {
   /// EI about d2 [N m^2], > 0; none: round, EI is that about every axis across. Given:
   /// torsional_stiffness > 0.
   std::optional<double> bending_stiffness_2 = std::nullopt;
+  /// EA [N], > 0, of all of the rod: r' = (1 + N/EA) t, N the tension. Arc lengths, weight and
+  /// loads per length and strains are those of the unstretched rod. None: it does not stretch.
+  /// `exact` alone takes it, of a rod that touches nothing.
+  std::optional<double> axial_stiffness = std::nullopt;
 };
 
 /// Whether d1 and d2 are fixed to the rod's material: it is not intrinsically straight, or it or
@@ -138,9 +143,12 @@ struct Energies {
   double gravity = 0;   ///< of the rod's weight
   double load = 0;      ///< of loads, at points and per length
   double contact = 0;   ///< of obstacles that yield: int 1/2 k d^2 ds, d the depth
+  double stretch = 0;   ///< int N^2 / (2 EA) ds, where axial_stiffness is given
 
   /// Of all [J].
-  [[nodiscard]] double total() const { return bending + twisting + gravity + load + contact; }
+  [[nodiscard]] double total() const {
+    return bending + twisting + gravity + load + contact + stretch;
+  }
 };
 
 /// What a gripper exerts on the rod, the torque about the gripper's position.
