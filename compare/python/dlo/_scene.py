@@ -336,7 +336,7 @@ class Scene(Strict):
         return as_it_is(self._rod.get("layers"))
 
     @layers.setter
-    def layers(self, value: Optional[Sequence[dict[str, Any]]]) -> None:
+    def layers(self, value: Any) -> None:
         self._put_one("layers", value)
 
     @property
@@ -356,7 +356,7 @@ class Scene(Strict):
         return value
 
     @helix.setter
-    def helix(self, value: Optional[dict[str, Quantity]]) -> None:
+    def helix(self, value: Optional[dict[str, Any]]) -> None:
         self._put_one("helix", value)
 
     @property

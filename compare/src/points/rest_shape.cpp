@@ -32,12 +32,12 @@ constexpr double good_enough_share = 1e-7;
 constexpr double length_tolerance = 0.05;
 
 /// Where a rod that has the strains of an arc is behind its begin, and its frame there.
-struct Placed {
+struct ArcPlace {
   Vector3d point;
   Matrix3d frame;  // d1, d2, t
 };
 
-Placed along_arc(const Placed& begin, const Vector2d& curvature, double s) {
+ArcPlace along_arc(const ArcPlace& begin, const Vector2d& curvature, double s) {
   const double rate = curvature.norm();
   const double angle = rate * s;
   if (!(std::abs(angle) > 1e-12)) {
@@ -54,7 +54,7 @@ Placed along_arc(const Placed& begin, const Vector2d& curvature, double s) {
 
 /// Arcs and where they are.
 struct Arcs {
-  Placed begin;
+  ArcPlace begin;
   std::vector<RestShape::Arc> arcs;
 };
 
@@ -62,7 +62,7 @@ struct Arcs {
 class Trace {
  public:
   explicit Trace(const Arcs& arcs) : arcs_(arcs.arcs) {
-    Placed at = arcs.begin;
+    ArcPlace at = arcs.begin;
     double before = 0;
     for (const RestShape::Arc& arc : arcs_) {
       begins_.push_back({before, at});
@@ -70,7 +70,7 @@ class Trace {
       before = arc.end;
     }
   }
-  [[nodiscard]] Placed at(double s) const {
+  [[nodiscard]] ArcPlace at(double s) const {
     const auto after = std::find_if(arcs_.begin(), std::prev(arcs_.end()),
                                     [s](const RestShape::Arc& arc) { return s < arc.end; });
     const Begin& begin = begins_[static_cast<std::size_t>(after - arcs_.begin())];
@@ -80,7 +80,7 @@ class Trace {
  private:
   struct Begin {
     double s;
-    Placed placed;
+    ArcPlace placed;
   };
   const std::vector<RestShape::Arc>& arcs_;
   std::vector<Begin> begins_;
@@ -98,38 +98,38 @@ struct Target {
   [[nodiscard]] bool slides(Index i) const { return !knows_s && i > 0 && i + 1 < points.cols(); }
 };
 
-Vector3d difference(const Target& target, Index i, const Placed& at) {
+Vector3d arc_difference(const Target& target, Index i, const ArcPlace& at) {
   const Vector3d d = at.point - target.points.col(i);
   const Vector3d t = at.frame.col(2);
   return target.slides(i) ? Vector3d(d - d.dot(t) * t) : d;
 }
 
-Eigen::VectorXd residual(const Target& target, const Arcs& arcs) {
+Eigen::VectorXd arc_residual(const Target& target, const Arcs& arcs) {
   const Trace trace(arcs);
   Eigen::VectorXd r(3 * target.points.cols());
   for (Index i = 0; i < target.points.cols(); ++i) {
     r.segment<3>(3 * i) =
-        difference(target, i, trace.at(target.s[static_cast<std::size_t>(i)])) / target.length;
+        arc_difference(target, i, trace.at(target.s[static_cast<std::size_t>(i)])) / target.length;
   }
   return r;
 }
 
 /// Moves the arc lengths that are not known to those of the nearest points.
-void slide(Target& target, const Arcs& arcs) {
+void slide_along(Target& target, const Arcs& arcs) {
   const Trace trace(arcs);
   for (Index i = 0; i < target.points.cols(); ++i) {
     if (!target.slides(i)) continue;
     double& s = target.s[static_cast<std::size_t>(i)];
-    const Placed at = trace.at(s);
+    const ArcPlace at = trace.at(s);
     s = std::clamp(s + at.frame.col(2).dot(target.points.col(i) - at.point), 0.0, target.length);
   }
 }
 
 /// Arcs a step of all their parameters away: rotation, position, curvatures, ends, over the length.
-Arcs stepped(const Target& target, Arcs arcs, const Eigen::VectorXd& step) {
+Arcs stepped_arcs(const Target& target, Arcs arcs, const Eigen::VectorXd& step) {
   Index k = 0;
   const double l = target.length;
-  Placed& begin = arcs.begin;
+  ArcPlace& begin = arcs.begin;
   if (target.planar) {
     begin.frame = Eigen::AngleAxisd(step[k], target.normal) * begin.frame;
     const Vector3d across = begin.frame.col(0);
@@ -151,25 +151,25 @@ Arcs stepped(const Target& target, Arcs arcs, const Eigen::VectorXd& step) {
   return arcs;
 }
 
-Index parameters(const Target& target, std::size_t arcs) {
+Index arc_parameters(const Target& target, std::size_t arcs) {
   const auto n = static_cast<Index>(arcs);
   return (target.planar ? 3 + n : 6 + 2 * n) + n - 1;
 }
 
 /// Of the residual by all parameters, but for what slides: differences of the arc that a parameter
 /// belongs to, behind which the others move as a rigid body.
-Eigen::MatrixXd derivative(const Target& target, const Arcs& arcs) {
+Eigen::MatrixXd arc_derivative(const Target& target, const Arcs& arcs) {
   constexpr double h = 1e-7;  // of a parameter over its unit
-  const Index count = parameters(target, arcs.arcs.size());
+  const Index count = arc_parameters(target, arcs.arcs.size());
   const std::size_t n = arcs.arcs.size();
-  std::vector<Placed> begins = {arcs.begin};
+  std::vector<ArcPlace> begins = {arcs.begin};
   std::vector<double> bounds = {0};
   for (const RestShape::Arc& arc : arcs.arcs) {
     begins.push_back(along_arc(begins.back(), arc.curvature, arc.end - bounds.back()));
     bounds.push_back(arc.end);
   }
   const Trace trace(arcs);
-  std::vector<Placed> at;
+  std::vector<ArcPlace> at;
   std::vector<std::size_t> on;  // the arc of each point
   for (const double s : target.s) {
     at.push_back(trace.at(s));
@@ -185,13 +185,13 @@ Eigen::MatrixXd derivative(const Target& target, const Arcs& arcs) {
   };
   // Points of arcs from `first` on, of which those up to `last` are bent and the others rigid.
   const auto move = [&](const Arcs& next, std::size_t first, std::size_t last) {
-    std::vector<Placed> moved = begins;
+    std::vector<ArcPlace> moved = begins;
     if (first == 0) moved[0] = next.begin;
     for (std::size_t k = first; k <= last; ++k) {
       const double from = k == 0 ? 0 : next.arcs[k - 1].end;
       moved[k + 1] = along_arc(moved[k], next.arcs[k].curvature, next.arcs[k].end - from);
     }
-    const Placed& end = moved[last + 1];
+    const ArcPlace& end = moved[last + 1];
     const Matrix3d turn = end.frame * begins[last + 1].frame.transpose();
     for (Index i = 0; i < target.points.cols(); ++i) {
       const auto point = static_cast<std::size_t>(i);
@@ -204,7 +204,9 @@ Eigen::MatrixXd derivative(const Target& target, const Arcs& arcs) {
       set(i, (there - at[point].point) / h);
     }
   };
-  const auto next = [&] { return stepped(target, arcs, h * Eigen::VectorXd::Unit(count, column)); };
+  const auto next = [&] {
+    return stepped_arcs(target, arcs, h * Eigen::VectorXd::Unit(count, column));
+  };
   const Index pose = target.planar ? 3 : 6;
   for (; column < pose; ++column) {
     const Arcs moved = next();
@@ -241,11 +243,11 @@ constexpr Effort of_result{30, 1e-6};
 
 /// Levenberg and Marquardt's method; arc lengths that are not known follow. Returns the sum of
 /// squares over the length's.
-double improve(Target& target, Arcs& arcs, const Effort& effort) {
+double improve_arcs(Target& target, Arcs& arcs, const Effort& effort) {
   double damping = 1e-3;
-  Eigen::VectorXd r = residual(target, arcs);
+  Eigen::VectorXd r = arc_residual(target, arcs);
   for (int step = 0; step < effort.most_steps; ++step) {
-    const Eigen::MatrixXd J = derivative(target, arcs);
+    const Eigen::MatrixXd J = arc_derivative(target, arcs);
     const Eigen::MatrixXd H = J.transpose() * J;
     const Eigen::VectorXd g = J.transpose() * r;
     const double before = r.squaredNorm();
@@ -254,11 +256,11 @@ double improve(Target& target, Arcs& arcs, const Effort& effort) {
       Eigen::MatrixXd damped = H;
       damped.diagonal() *= 1 + damping;
       damped.diagonal().array() += 1e-14 * H.diagonal().maxCoeff();
-      const Arcs next = stepped(target, arcs, damped.ldlt().solve(-g));
+      const Arcs next = stepped_arcs(target, arcs, damped.ldlt().solve(-g));
       if (in_order(target, next)) {
         Target there = target;
-        slide(there, next);
-        const Eigen::VectorXd after = residual(there, next);
+        slide_along(there, next);
+        const Eigen::VectorXd after = arc_residual(there, next);
         if (after.squaredNorm() < before) {
           arcs = next;
           target = there;
@@ -311,8 +313,8 @@ Profile profile_of(const Eigen::Matrix3Xd& points, const Vector3d& normal) {
   return profile;
 }
 
-/// Places to cut a profile into pieces of one curvature, those first that leave the smallest sum of
-/// squares: each cut halves nothing but lowers it most.
+/// Places to cut a profile into pieces of one curvature, that first which lowers the sum of squares
+/// most.
 std::vector<Index> cuts_of(const Eigen::Matrix2Xd& curvature, std::size_t most) {
   const Index n = curvature.cols();
   Eigen::Matrix2Xd sums = Eigen::Matrix2Xd::Zero(2, n + 1);
@@ -379,7 +381,7 @@ Arcs cut_where_far(const Target& target, const Arcs& arcs, std::size_t count) {
     pieces.push_back({arc, before, 0});
     before = arc.end;
   }
-  const Eigen::VectorXd r = residual(target, arcs);
+  const Eigen::VectorXd r = arc_residual(target, arcs);
   for (Index i = 0; i < target.points.cols(); ++i) {
     const double s = target.s[static_cast<std::size_t>(i)];
     const auto on = std::find_if(pieces.begin(), std::prev(pieces.end()),
@@ -463,7 +465,7 @@ std::vector<double> all_arc_lengths(const Eigen::Matrix3Xd& points,
 /// Of all points.
 void state_error(Target all, const Arcs& arcs, RestShape& shape) {
   constexpr int projections = 5;
-  for (int i = 0; i < projections; ++i) slide(all, arcs);
+  for (int i = 0; i < projections; ++i) slide_along(all, arcs);
   const Trace trace(arcs);
   double sum = 0;
   for (Index i = 0; i < all.points.cols(); ++i) {
@@ -482,10 +484,10 @@ double largest_part(const Eigen::VectorXd& r) {
 }
 
 /// Schwarz's criterion over the number of residuals; what rounding leaves counts as nothing.
-double information(const Target& target, std::size_t arcs, double sum) {
+double arc_information(const Target& target, std::size_t arcs, double sum) {
   const auto n = static_cast<double>(target.points.cols() * (target.planar ? 1 : 2));
   constexpr double rounding = 1e-20;
-  const auto p = static_cast<double>(parameters(target, arcs));
+  const auto p = static_cast<double>(arc_parameters(target, arcs));
   return std::log(sum / n + rounding) + p * std::log(n) / n;
 }
 
@@ -537,7 +539,7 @@ RestShape fit_rest_shape(const MeasuredShape& measured, double length) {
   int worse = 0;
   for (const std::size_t arcs : {1, 2, 3, 4, 6, 8, 12, 16, 24, most_rest_arcs}) {
     const Index residuals = fitted * (target.planar ? 1 : 2);
-    if (arcs > 1 && (arcs - 1 > cuts.size() || 2 * parameters(target, arcs) > residuals)) break;
+    if (arcs > 1 && (arcs - 1 > cuts.size() || 2 * arc_parameters(target, arcs) > residuals)) break;
     // Cut at jumps of the points' curvature, which noise hides; equally; where fewer arcs are far.
     const auto end = cuts.begin() + static_cast<std::ptrdiff_t>(arcs - 1);
     std::vector<Index> equal;
@@ -548,7 +550,7 @@ RestShape fit_rest_shape(const MeasuredShape& measured, double length) {
     Arcs guess;
     double sum = std::numeric_limits<double>::infinity();
     const auto attempt = [&](Target there, Arcs from) {
-      const double left = improve(there, from, of_candidate);
+      const double left = improve_arcs(there, from, of_candidate);
       if (!(left < sum)) return;
       sum = left;
       own = std::move(there);
@@ -561,7 +563,7 @@ RestShape fit_rest_shape(const MeasuredShape& measured, double length) {
     }
     last = guess;
     last_target = own;
-    const double value = information(target, arcs, sum);
+    const double value = arc_information(target, arcs, sum);
     worse = value < least ? 0 : worse + 1;
     if (value < least) {
       least = value;
@@ -570,9 +572,9 @@ RestShape fit_rest_shape(const MeasuredShape& measured, double length) {
     }
     constexpr int enough_worse = 3;
     if (worse == enough_worse) break;
-    if (largest_part(residual(own, guess)) <= good_enough_share) break;
+    if (largest_part(arc_residual(own, guess)) <= good_enough_share) break;
   }
-  (void)improve(best_target, best, of_result);
+  (void)improve_arcs(best_target, best, of_result);
 
   RestShape shape{.file = given.file,
                   .points = count,
