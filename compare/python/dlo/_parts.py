@@ -245,6 +245,7 @@ class ForceModelSettings(Settings):
     _name = "force_model"
     points = _setting("points", "N.")
     law = _setting("law", '"hooke" (linear) or "paper" (cubic).')
+    joint_law = _setting("joint_law", 'Of model chain alone: "linear", "binormal" or "hooke"; None: as law.')
     bookkeeping = _setting("bookkeeping", '"consistent" or "paper".')
     stepper = _setting("stepper", '"auto", or one of the paper\'s.')
     bending_rule = _setting("bending_rule", "Of the law paper.")

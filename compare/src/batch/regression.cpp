@@ -163,6 +163,7 @@ std::string content_of(const Scene& scene) {
   }
   const ForceModelSettings& settings = scene.force_model;
   text += fmt::format("\n{} {} ", to_string(settings.stepper), to_string(settings.bending_rule));
+  if (settings.joint_law) text += fmt::format("joints {} ", to_string(*settings.joint_law));
   for (const auto& value : {settings.design_curvature, settings.point_weight, settings.c_b,
                             settings.c_c, settings.c_F, settings.c_h, settings.l_s}) {
     add_optional(value);

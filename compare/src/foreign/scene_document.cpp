@@ -1,6 +1,7 @@
 #include "foreign/scene_document.hpp"
 
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -57,6 +58,28 @@ Document sections_document(const Scene& scene) {
   return result;
 }
 
+Document layers_document(const Scene& scene) {
+  if (!scene.layers) return nullptr;
+  const LayeredSection& layers = *scene.layers;
+  return {{"bound", layers.bonded ? "bonded" : "free"},
+          {"bonded_bending_stiffness_Nm2", layers.bonded_bending_stiffness},
+          {"free_bending_stiffness_Nm2", layers.free_bending_stiffness},
+          {"bonded_torsional_stiffness_Nm2", layers.bonded_torsional_stiffness},
+          {"free_torsional_stiffness_Nm2", layers.free_torsional_stiffness}};
+}
+
+Document rest_shape_document(const Scene& scene) {
+  if (!scene.rest_shape) return nullptr;
+  const RestShape& shape = *scene.rest_shape;
+  return {{"file", shape.file},
+          {"points", shape.points},
+          {"arcs", shape.arcs.size()},
+          {"largest_error_m", shape.largest_error},
+          {"rms_error_m", shape.rms_error},
+          {"begin_m", vector_document(shape.begin)},
+          {"first_frame", columns_document(shape.first_frame)}};
+}
+
 Document rod_document(const Scene& scene) {
   Document curvature = Document::array();
   if (scene.naturally_curved()) {
@@ -85,6 +108,8 @@ Document rod_document(const Scene& scene) {
           {"mean_weight_N_per_m", vector_document(scene.weight_per_length())},
           {"natural_curvature_per_m", std::move(curvature)},
           {"natural_twist_rad_per_m", scene.natural_strain.z()},
+          {"layers", layers_document(scene)},
+          {"rest_shape", rest_shape_document(scene)},
           {"first_frame",
            scene.has_material_directors() ? columns_document(scene.first_frame()) : Document()},
           {"sections", sections_document(scene)}};
@@ -181,9 +206,11 @@ void add_polygon(const Scene& scene, const ForceModelSettings& settings, Documen
 }
 
 Document force_model_document(const Scene& scene) {
-  const ForceModelSettings& settings = scene.force_model;
+  ForceModelSettings settings = scene.force_model;
+  const std::optional<energy_model::JointLaw> joint_law = std::exchange(settings.joint_law, {});
   Document result = {{"points", settings.points},
                      {"law", to_string(settings.law)},
+                     {"joint_law", joint_law ? Document(to_string(*joint_law)) : Document()},
                      {"bookkeeping", to_string(settings.bookkeeping)},
                      {"stepper", to_string(settings.stepper)},
                      {"refused", nullptr}};

@@ -186,7 +186,7 @@ void check_material_directors(const Scene& scene, const StrictTable& rod,
                   [](const Gripper& gripper) { return gripper.direction.has_value(); });
   constexpr const char* unheld =
       "no gripper holds the rod's frame (allowed: a gripper with hold = \"clamp\")";
-  for (const char* key : {"natural_curvature", "natural_twist"}) {
+  for (const char* key : {"natural_curvature", "natural_twist", "helix", "rest_shape"}) {
     if (!clamped && rod.has(key)) rod.fail(key, unheld);
     for (const StrictTable& section : sections) {
       if (!clamped && section.has(key)) section.fail(key, unheld);
@@ -346,6 +346,11 @@ PointLoad read_load(StrictTable& table, const Scene& scene) {
   if (mass) {
     load.force = *mass * scene.gravity;
   } else if (!table.has("torque") || table.has("force")) {
+    if (!table.has("force")) {
+      table.fail("force",
+                 "missing, and so are mass and torque (allowed: force or mass, torque, or one of "
+                 "the two with torque)");
+    }
     load.force = table.vector("force", Dimension::force);
   }
   load.mass = mass.value_or(0);

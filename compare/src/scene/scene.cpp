@@ -294,6 +294,7 @@ Scene Scene::without_natural_strain() const {
   Scene scene = *this;
   scene.natural_strain.setZero();
   scene.natural_variation.clear();
+  scene.rest_shape.reset();
   for (Section& section : scene.sections) {
     section.natural_curvature.reset();
     section.natural_twist.reset();
@@ -301,8 +302,49 @@ Scene Scene::without_natural_strain() const {
   return scene;
 }
 
+void Scene::set_rest_shape(const RestShape& shape) {
+  *this = without_natural_strain();
+  rest_shape = shape;
+  if (shape.arcs.size() == 1) {
+    natural_strain.head<2>() = shape.arcs.front().curvature;
+    return;
+  }
+  std::vector<Section> all;
+  double at = 0;
+  const auto fill_to = [&](double end) {
+    if (!(end > at)) return;
+    all.push_back({.from = at,
+                   .to = end,
+                   .bending_stiffness = bending_stiffness(),
+                   .mass_per_length = mass_per_length(),
+                   .torsional_stiffness = std::nullopt,
+                   .bending_stiffness_2 = bending_stiffness_2()});
+  };
+  for (const Section& section : sections) {
+    fill_to(section.from);
+    all.push_back(section);
+    at = section.to;
+  }
+  fill_to(length);
+  sections.clear();
+  for (Section section : all) {
+    for (const RestShape::Arc& arc : shape.arcs) {
+      if (arc.end <= section.from) continue;
+      Section part = section;
+      // A boundary of the two that differs by rounding is one.
+      constexpr double rounding = 1e-12;
+      part.to = arc.end < section.to - rounding * length ? arc.end : section.to;
+      part.natural_curvature = arc.curvature;
+      sections.push_back(part);
+      section.from = part.to;
+      if (part.to >= section.to) break;
+    }
+  }
+}
+
 Eigen::Matrix3d Scene::first_frame() const {
-  const char* const key = naturally_bent()          ? "natural_curvature"
+  const char* const key = rest_shape                ? "rest_shape"
+                          : naturally_bent()        ? "natural_curvature"
                           : given_bending_stiffness ? "bending_stiffness"
                           : width > 0               ? "width"
                                                     : "bending_stiffness";
@@ -376,6 +418,13 @@ Scene Scene::without_twist() const {
 
 void Scene::scale_modulus(double factor) {
   material.youngs_modulus *= factor;
+  if (layers) {
+    for (double* stiffness : {&layers->bonded_bending_stiffness, &layers->free_bending_stiffness,
+                              &layers->bonded_torsional_stiffness,
+                              &layers->free_torsional_stiffness, &layers->axial_stiffness}) {
+      *stiffness *= factor;
+    }
+  }
   if (given_bending_stiffness) *given_bending_stiffness *= factor;
   if (given_bending_stiffness_2) *given_bending_stiffness_2 *= factor;
   if (given_axial_stiffness) *given_axial_stiffness *= factor;
@@ -396,6 +445,7 @@ void Scene::scale_torsion(double factor) {
 
 void Scene::scale_density(double factor) {
   material.density *= factor;
+  if (layers) layers->mass_per_length *= factor;
   if (given_mass_per_length) *given_mass_per_length *= factor;
   for (Section& section : sections) section.mass_per_length *= factor;
 }

@@ -11,9 +11,13 @@ const std::vector<SceneTable>& scene_tables() {
        {"distributed_load", "force_model", "gravity", "gripper", "load", "medium", "name",
         "obstacle", "rod", "section", "track"}},
       {"rod",
-       {"axial_stiffness", "bending_stiffness", "diameter", "inner_diameter", "joint_spacing",
-        "joint_stiffness", "length", "mass_per_length", "material", "natural_curvature",
-        "natural_twist", "stretch", "thickness", "torsional_stiffness", "width"}},
+       {"axial_stiffness", "bending_stiffness", "diameter", "helix", "inner_diameter",
+        "joint_spacing", "joint_stiffness", "layer_bound", "layers", "length", "mass_per_length",
+        "material", "natural_curvature", "natural_twist", "rest_shape", "stretch", "thickness",
+        "torsional_stiffness", "width"}},
+      {"helix", {"pitch", "radius"}},
+      {"layers",
+       {"density", "material", "outer_diameter", "strand_diameter", "strands", "youngs_modulus"}},
       {"medium", {"density", "normal_drag", "tangential_drag", "velocity"}},
       {"material", {"density", "youngs_modulus"}},
       {"gripper",
@@ -28,8 +32,8 @@ const std::vector<SceneTable>& scene_tables() {
        {"bending_stiffness", "from", "mass_per_length", "natural_curvature", "natural_twist", "to",
         "torsional_stiffness"}},
       {"force_model",
-       {"bending_rule", "bookkeeping", "c_F", "c_b", "c_c", "c_h", "design_curvature", "l_s", "law",
-        "point_weight", "points", "stepper"}},
+       {"bending_rule", "bookkeeping", "c_F", "c_b", "c_c", "c_h", "design_curvature", "joint_law",
+        "l_s", "law", "point_weight", "points", "stepper"}},
       {"track", {"frame_rate", "obstacle_rate", "step_rate"}}};
   return tables;
 }

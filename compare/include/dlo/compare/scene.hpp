@@ -8,6 +8,7 @@
 
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/material.hpp"
+#include "dlo/compare/rest_shape.hpp"
 #include "dlo/compare/trajectory.hpp"
 #include "dlo/energy_model/drag.hpp"
 #include "dlo/obstacle/body.hpp"
@@ -149,7 +150,9 @@ struct Scene {
   double inner_diameter = 0;  ///< of a tube [m], < diameter; 0: solid
   double width = 0;           ///< of a rectangular section, along d1 [m]; 0: it is none
   double thickness = 0;       ///< of a rectangular section, along d2 [m]
-  Material material;          ///< youngs_modulus 0: not known
+  Material material;          ///< youngs_modulus 0: not known; of layers the mean of the section
+  /// Bounds of a rod of layers, of which given_bending_stiffness and torsional_stiffness are one.
+  std::optional<LayeredSection> layers;
   std::optional<double> given_bending_stiffness;  ///< EI [N m^2], > 0; none: of the material
   std::optional<double> given_mass_per_length;    ///< rho A [kg/m], >= 0; none: of the material
   /// EI about d2 [N m^2], > 0, beside given_bending_stiffness, which then is about d1; none: round.
@@ -165,6 +168,9 @@ struct Scene {
   Eigen::Vector3d natural_strain = Eigen::Vector3d::Zero();
   /// What the curvature varies by: coefficients of Legendre's P_1, P_2, .. of 2 s/l - 1 [1/m].
   std::vector<Eigen::Vector2d> natural_variation;
+  /// What points in space say of the stress-free shape, where they say it: its arcs are the natural
+  /// curvature of `sections`, or natural_strain where there is one arc.
+  std::optional<RestShape> rest_shape;
   std::vector<Gripper> grippers;                   ///< one or more, in the file's order
   std::vector<PointLoad> loads;                    ///< may be empty
   std::vector<DistributedLoad> distributed_loads;  ///< may be empty; they add up
@@ -264,6 +270,11 @@ struct Scene {
   /// Whether there is one.
   [[nodiscard]] bool planar() const { return plane_normal().has_value(); }
   [[nodiscard]] int spans() const;  ///< parts that the clamps cut the rod into
+
+  /// Makes a shape the stress-free one, in place of any natural curvature and twist before. Of
+  /// several arcs each is a section, or cuts one.
+  /// @param shape  of a rod of this length
+  void set_rest_shape(const RestShape& shape);
 
   /// Multiplies E, and EI and GJ with it, those of sections too: their ratios are those of
   /// Poisson's ratio and of the sections' shapes.
