@@ -119,6 +119,50 @@ def test_a_tube_and_a_flat_strip_have_what_follows_from_their_sections(steel):
         strip.replace(diameter="1 mm")
 
 
+def arcs(s):
+    """A shaft of 0.2 m, an arc of 80 1/m, one of 40 1/m."""
+    a, b = 80 * numpy.clip(s - 0.2, 0, 0.02), 40 * numpy.clip(s - 0.22, 0, None)
+    x = numpy.minimum(s, 0.2) + numpy.sin(a) / 80 + (numpy.sin(a + b) - numpy.sin(a)) / 40
+    y = (1 - numpy.cos(a)) / 80 + (numpy.cos(a) - numpy.cos(a + b)) / 40
+    return numpy.column_stack([x, y, 0 * s])
+
+
+def test_a_rest_shape_from_points_or_a_file_comes_back(tmp_path):
+    s = numpy.linspace(0, 0.24, 61)
+    numpy.savetxt(tmp_path / "points.csv", arcs(s), delimiter=",")
+    fields = dict(
+        length=0.24, gravity=(0, 0, 0), bending_stiffness=1e-3, mass_per_length=4e-3,
+        grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction="0 deg")],
+    )
+    for rest_shape in (arcs(s), arcs(s).tolist(), str(tmp_path / "points.csv")):
+        wire = dlo.Scene(rest_shape=rest_shape, **fields)
+        assert wire.rest_shape_error < 1e-9
+        numpy.testing.assert_allclose(dlo.solve(wire, samples=2).points[-1], arcs(s)[-1], atol=1e-8)
+    assert math.isnan(wire.replace(rest_shape=None).rest_shape_error)
+    with pytest.raises(dlo.InputError, match="given besides helix"):
+        wire.replace(helix={"radius": 1, "pitch": 1})
+
+
+def test_a_helix_and_a_cable_are_keys_of_the_rod():
+    spring = dlo.Scene(
+        length=0.3, bending_stiffness=1e-3, mass_per_length=4e-3,
+        helix={"radius": "2 cm", "pitch": "1 cm"},
+        grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction="0 deg")],
+    )
+    assert spring.helix == {"radius": "2 cm", "pitch": "1 cm"}
+    with pytest.raises(dlo.InputError, match="helix.radius") as wrong:
+        spring.helix = {"radius": -1, "pitch": 0}
+    assert wrong.value.key == "rod.helix.radius"
+    strands = [{"strands": n, "strand_diameter": "1 mm", "material": "copper"} for n in (1, 6)]
+    cable = dlo.Scene(length=0.3, layers=strands, grippers=spring.grippers)
+    bonded = cable.bending_stiffness
+    cable.layer_bound = "free"
+    assert cable.bending_stiffness / bonded == pytest.approx(7 / 55)
+    assert cable.diameter == pytest.approx(3e-3)
+    cable.force_model = {"joint_law": "linear"}
+    assert cable.force_model.joint_law == "linear"
+
+
 @pytest.mark.parametrize(
     "change, key, words",
     [
@@ -312,8 +356,9 @@ def test_loads_are_read_and_set_in_si_units(steel):
     assert again.to_toml() == scene.to_toml()
     again.gravity = (0, 0, 0)
     assert again.medium.density == 1000 and len(again.distributed_loads) == 1
-    with pytest.raises(dlo.InputError, match="load.torque.*in one plane"):
+    with pytest.raises(dlo.InputError, match="load.torque.*out of a plane.*--model exact"):
         scene.loads[0].torque = (0, 1, 0)
+        dlo.solve(scene)
     with pytest.raises(dlo.InputError, match="to > from"):
         load.end = 0.05
 

@@ -113,6 +113,7 @@ void run(const SolveOptions& options) {
   }
   compare::SolveOptions solve = options.overrides.solve();
   solve.accept_unverified = true;
+  solve.target = options.plan.plan().target;
   compare::AllSolutions all;
   if (options.all) {
     all = compare::solve_all(scene, solve, arc_lengths);

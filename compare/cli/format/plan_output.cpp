@@ -90,6 +90,25 @@ std::string assumption_text(const compare::Scene& scene) {
       compare::assumed_poisson_ratio);
 }
 
+std::string layers_text(const compare::Scene& scene) {
+  if (!scene.layers) return "";
+  const compare::LayeredSection& section = *scene.layers;
+  return fmt::format(
+      "EI {:.6g} N m^2 bonded, {:.6g} N m^2 free to slip; GJ {:.6g}, {:.6g} N m^2 (Poisson's ratio "
+      "{:g}); taken: {}",
+      section.bonded_bending_stiffness, section.free_bending_stiffness,
+      section.bonded_torsional_stiffness, section.free_torsional_stiffness,
+      compare::assumed_poisson_ratio, section.bonded ? "bonded" : "free");
+}
+
+std::string rest_shape_text(const compare::Scene& scene) {
+  if (!scene.rest_shape) return "";
+  const compare::RestShape& shape = *scene.rest_shape;
+  return fmt::format("{}: {} points, within {:.2g} m of {} arc{} (RMS {:.2g} m)",
+                     compare::display(shape.file), shape.points, shape.largest_error,
+                     shape.arcs.size(), shape.arcs.size() == 1 ? "" : "s", shape.rms_error);
+}
+
 std::string plan_text(const compare::Plan& plan, const compare::Scene& scene) {
   std::string out;
   append(out, "plan of {}   Gamma = {:.4g}\n", compare::display(scene.name), plan.gamma);
@@ -115,6 +134,8 @@ std::string plan_text(const compare::Plan& plan, const compare::Scene& scene) {
   }
   out += twist_text(plan);
   if (scene.assumes_torsion()) append(out, "  assumed         {}\n", assumption_text(scene));
+  if (scene.layers) append(out, "  layers          {}\n", layers_text(scene));
+  if (scene.rest_shape) append(out, "  rest shape      {}\n", rest_shape_text(scene));
   append(out, "  stretch         {}\n", stretch_text(plan));
   append(out, "  N               ");
   if (plan.points > 0) {

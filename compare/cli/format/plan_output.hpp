@@ -11,6 +11,12 @@ namespace dlo::cli {
 /// What is assumed of a scene's rod, as a sentence; empty if nothing is.
 [[nodiscard]] std::string assumption_text(const compare::Scene& scene);
 
+/// Bounds of a rod of layers, and which it is; empty of another.
+[[nodiscard]] std::string layers_text(const compare::Scene& scene);
+
+/// What a rest shape leaves of its points; empty of a scene without one.
+[[nodiscard]] std::string rest_shape_text(const compare::Scene& scene);
+
 /// A plan as a person reads it, with a blank line after it.
 [[nodiscard]] std::string plan_text(const compare::Plan& plan, const compare::Scene& scene);
 

@@ -102,6 +102,8 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
   append(out, "model      {}, {}\n", compare::to_string(solution.model), solution.message);
   append(out, "Gamma      {:.6g}   (w l^3 / EI)\n", scene.gamma());
   if (scene.assumes_torsion()) append(out, "assumed    {}\n", assumption_text(scene));
+  if (scene.layers) append(out, "layers     {}\n", layers_text(scene));
+  if (scene.rest_shape) append(out, "rest shape {}\n", rest_shape_text(scene));
   if (solution.steps > 0) {
     append(out, "steps      {}", solution.steps);
     // Steps in time and Newton's have neither.
@@ -120,6 +122,17 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
   if (compare::neglects(solution, "friction")) {
     append(out,
            "           (without it this is one shape; friction could hold others beside it)\n");
+  }
+  if (compare::neglects(solution, "stretch") && solution.stretch.strain > 0) {
+    append(out, "           (N/EA is up to {:.2g} %", solution.stretch.strain * 100);
+    if (std::isnan(solution.stretch.moved_m)) {
+      append(out, ": what that changes is not known)\n");
+    } else {
+      append(out,
+             ": with it the points would be {:.2g} m away (RMS), the largest tension {:+.2g} %, to "
+             "first order)\n",
+             solution.stretch.moved_m, solution.stretch.tension * 100);
+    }
   }
   if (const auto crossing = compare::self_crossing(solution.shape, scene.diameter)) {
     append(out,
@@ -190,6 +203,16 @@ Json solution_json(const compare::Solution& solution, const compare::Scene& scen
   if (scene.assumes_torsion()) {
     result["assumed"] = {{"torsional_stiffness_Nm2", scene.twisting_stiffness()},
                          {"poisson_ratio", compare::assumed_poisson_ratio}};
+  }
+  if (scene.layers) {
+    result["layers"] = {{"bonded_bending_stiffness_Nm2", scene.layers->bonded_bending_stiffness},
+                        {"free_bending_stiffness_Nm2", scene.layers->free_bending_stiffness},
+                        {"bonded", scene.layers->bonded}};
+  }
+  if (scene.rest_shape) {
+    result["rest_shape"] = {{"file", scene.rest_shape->file},
+                            {"largest_error_m", scene.rest_shape->largest_error},
+                            {"rms_error_m", scene.rest_shape->rms_error}};
   }
   if (solution.status == energy_model::SolveStatus::near_singular &&
       solution.model == compare::Model::energy) {

@@ -62,7 +62,16 @@ void add_entries(std::string& out, const char* name, const Json& entries,
   }
 }
 
-void add_rod(std::string& out, const Json& rod) {
+/// With one EI where both are the same.
+Json one_stiffness(Json table) {
+  Json& EI = table["bending_stiffness_Nm2"];
+  if (EI.at(0) == EI.at(1)) EI = Json(EI.at(0));
+  return table;
+}
+
+void add_rod(std::string& out, const Json& whole) {
+  Json rod = one_stiffness(whole);
+  for (Json& section : rod["sections"]) section = one_stiffness(section);
   add_line(out, "rod",
            quantities_text(rod, {{"length", "length_m", "m"},
                                  {"diameter", "diameter_m", "m"},
@@ -86,6 +95,14 @@ void add_rod(std::string& out, const Json& rod) {
                (of_no_effect ? ", and of no effect here)"
                 : assumed    ? ")"
                              : ""));
+  if (const Json& layers = rod.at("layers"); !layers.is_null()) {
+    add_line(out, "layers",
+             quantities_text(layers, {{"taken", "bound", ""},
+                                      {"EI bonded", "bonded_bending_stiffness_Nm2", "N m^2"},
+                                      {"EI free to slip", "free_bending_stiffness_Nm2", "N m^2"},
+                                      {"GJ bonded", "bonded_torsional_stiffness_Nm2", "N m^2"},
+                                      {"GJ free", "free_torsional_stiffness_Nm2", "N m^2"}}));
+  }
   add_line(out, "weight",
            quantities_text(rod, {{"mass per length", "mass_per_length_kg_per_m", "kg/m"},
                                  {"mean weight", "mean_weight_N_per_m", "N/m"}}));
@@ -93,6 +110,17 @@ void add_rod(std::string& out, const Json& rod) {
            quantities_text(rod, {{"curvature", "natural_curvature_per_m", "1/m"},
                                  {"twist", "natural_twist_rad_per_m", "rad/m"},
                                  {"first frame", "first_frame", ""}}));
+  if (const Json& rest = rod.at("rest_shape"); !rest.is_null()) {
+    add_line(out, "rest shape",
+             quantities_text(rest, {{"", "file", ""},
+                                    {"points", "points", ""},
+                                    {"arcs", "arcs", ""},
+                                    {"error up to", "largest_error_m", "m"},
+                                    {"RMS", "rms_error_m", "m"}}));
+    add_line(
+        out, "  in its axes",
+        quantities_text(rest, {{"begins at", "begin_m", "m"}, {"with frame", "first_frame", ""}}));
+  }
   add_entries(out, "section", rod.at("sections"),
               {{"from", "from_m", "m"},
                {"to", "to_m", "m"},
@@ -123,6 +151,7 @@ void add_force_model(std::string& out, const Json& model) {
   add_line(out, "force model",
            quantities_text(model, {{"N", "points", ""},
                                    {"law", "law", ""},
+                                   {"joint law", "joint_law", ""},
                                    {"bookkeeping", "bookkeeping", ""},
                                    {"stepper", "stepper", ""}}));
   add_line(out, "  refused",
@@ -159,11 +188,20 @@ std::string scene_text(const Json& document) {
   add_rod(out, document.at("rod"));
   add_grippers(out, document.at("grippers"));
   add_entries(out, "load", document.at("loads"),
-              {{"at", "at_m", "m"}, {"force", "force_N", "N"}, {"torque", "torque_Nm", "N m"}});
+              {{"at", "at_m", "m"},
+               {"force", "force_N", "N"},
+               {"torque", "torque_Nm", "N m"},
+               {"follows", "follows", ""}});
   add_entries(out, "distributed load", document.at("distributed_loads"),
               {{"from", "from_m", "m"},
                {"to", "to_m", "m"},
                {"force per length", "force_per_length_N_per_m", "N/m"}});
+  if (document.contains("drag")) {
+    add_entries(out, "drag", Json::array({document.at("drag")}),
+                {{"velocity", "velocity_m_per_s", "m/s"},
+                 {"normal", "normal_kg_per_m2", "kg/m^2"},
+                 {"tangential", "tangential_kg_per_m2", "kg/m^2"}});
+  }
   add_entries(out, "obstacle", document.at("obstacles"),
               {{"", "shape", ""},
                {"point", "point_m", "m"},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <limits>
 #include <sstream>
 
 #include "array.hpp"
@@ -57,6 +58,7 @@ double quantity(const std::string& text, const std::string& dimension) {
       {"torque", Dimension::torque},
       {"force_per_length", Dimension::force_per_length},
       {"acceleration", Dimension::acceleration},
+      {"velocity", Dimension::velocity},
       {"curvature", Dimension::curvature},
       {"foundation", Dimension::foundation},
       {"section_stiffness", Dimension::section_stiffness},
@@ -75,6 +77,9 @@ py::dict settings_of(const SceneData& data) {
   py::dict result;
   result["points"] = settings.points;
   result["law"] = compare::to_string(settings.law);
+  result["joint_law"] = settings.joint_law
+                            ? py::object(py::str(compare::to_string(*settings.joint_law)))
+                            : py::object(py::none());
   result["bookkeeping"] = compare::to_string(settings.bookkeeping);
   result["stepper"] = compare::to_string(settings.stepper);
   result["bending_rule"] = compare::to_string(settings.bending_rule);
@@ -165,6 +170,10 @@ void bind_scene(py::module_& module) {
       .def_property_readonly("mass", of([](const Scene& s) { return s.mass(); }))
       .def_property_readonly("gamma", of([](const Scene& s) { return s.gamma(); }))
       .def_property_readonly("planar", of([](const Scene& s) { return s.planar(); }))
+      .def_property_readonly("rest_shape_error", of([](const Scene& s) {
+                               return s.rest_shape ? s.rest_shape->largest_error
+                                                   : std::numeric_limits<double>::quiet_NaN();
+                             }))
       .def_property_readonly("force_model", settings_of)
       .def_property_readonly("track", rates_of);
   module.attr("scene_keys") = table_keys();

@@ -168,13 +168,14 @@ class Gripper(Part):
 
 
 class Load(Part):
-    """A force that keeps its direction, a mass that hangs, a couple; load() makes one."""
+    """A force that keeps its direction, or turns with the rod, a mass that hangs, a couple; load() makes one."""
 
     _name = "load"
     at = _field("at", _of("length"), "Arc length [m].")
     force = _field("force", _of("force"), "[N], shape (3,).")
     mass = _field("mass", _of("mass"), "[kg], instead of a force.")
     torque = _field("torque", _of("torque"), "Of a couple [N m], shape (3,).")
+    follows = _field("follows", as_it_is, "Whether both are along d1, d2 and the tangent, and turn with them.")
 
 
 class DistributedLoad(Part):
@@ -244,6 +245,7 @@ class ForceModelSettings(Settings):
     _name = "force_model"
     points = _setting("points", "N.")
     law = _setting("law", '"hooke" (linear) or "paper" (cubic).')
+    joint_law = _setting("joint_law", 'Of model chain alone: "linear", "binormal" or "hooke"; None: as law.')
     bookkeeping = _setting("bookkeeping", '"consistent" or "paper".')
     stepper = _setting("stepper", '"auto", or one of the paper\'s.')
     bending_rule = _setting("bending_rule", "Of the law paper.")
@@ -257,10 +259,13 @@ class ForceModelSettings(Settings):
 
 
 class Medium(Settings):
-    """What the rod is immersed in, which bears it: scene.medium."""
+    """What the rod is immersed in, which bears it, and drags it where it streams: scene.medium."""
 
     _name = "medium"
     density = _field("density", _of("density"), "[kg/m^3]; None: nothing bears the rod.")
+    velocity = _field("velocity", _of("velocity"), "Of a steady stream [m/s], shape (3,); None: at rest.")
+    normal_drag = _field("normal_drag", _of("number"), "Coefficient across the rod [-].")
+    tangential_drag = _field("tangential_drag", _of("number"), "Coefficient along the rod [-]; None: 0.")
 
 
 class TrackRates(Settings):
@@ -310,9 +315,13 @@ def load(
     *,
     mass: Optional[Quantity] = None,
     torque: Optional[Vector] = None,
+    follows: Optional[bool] = None,
 ) -> Load:
-    """A force [N], or a mass [kg] that hangs, and a couple [N m], at an arc length [m]."""
-    return Load(at=at, force=force, mass=mass, torque=torque)
+    """A force [N], or a mass [kg] that hangs, and a couple [N m], at an arc length [m].
+
+    follows: force and torque are along d1, d2 and the tangent of the rod there, and turn with them.
+    """
+    return Load(at=at, force=force, mass=mass, torque=torque, follows=follows)
 
 
 def distributed_load(

@@ -50,6 +50,11 @@ class Scene(Strict):
     material is a name (dlo.materials()) or {"youngs_modulus": "3 MPa", "density": 1150}. A tube has an
     inner_diameter too, a flat rod width (along d1) and thickness (along d2) instead. A rod may be given
     by bending_stiffness (EI [N m^2]; a pair about d1 and d2) and mass_per_length [kg/m] instead.
+    A cable has layers instead, from the inside out, such as {"outer_diameter": "2 mm", "material": "copper"}
+    or {"strands": 6, "strand_diameter": "2 mm", "material": "copper"}, and layer_bound "bonded" or "free".
+    helix is {"radius": "2 cm", "pitch": "1 cm"} of the stress-free shape, pitch > 0 right-handed. rest_shape
+    is a file of its points or the points themselves [m], shape (M, 3); rest_shape_error says what arcs
+    leave of them.
     force_model, medium, track: a dict, or ForceModelSettings, Medium and TrackRates. materials: a file that
     names are looked up in instead.
 
@@ -77,9 +82,15 @@ class Scene(Strict):
         name: Optional[str] = None,
         bending_stiffness: Optional[Union[Quantity, Sequence[Quantity]]] = None,
         mass_per_length: Optional[Quantity] = None,
+        axial_stiffness: Optional[Quantity] = None,
+        stretch: Optional[bool] = None,
         torsional_stiffness: Optional[Quantity] = None,
         natural_curvature: Optional[Any] = None,
         natural_twist: Optional[Quantity] = None,
+        layers: Optional[Sequence[dict[str, Any]]] = None,
+        layer_bound: Optional[str] = None,
+        helix: Optional[dict[str, Quantity]] = None,
+        rest_shape: Optional[Union[str, Any]] = None,
         joint_stiffness: Optional[Quantity] = None,
         joint_spacing: Optional[Quantity] = None,
         force_model: Optional[Union[dict[str, Any], ForceModelSettings]] = None,
@@ -284,6 +295,7 @@ class Scene(Strict):
         "bending_stiffness", "EI [N m^2], given or of the material; about d1 of two."
     )
     mass_per_length = _top_field("mass_per_length", "rho A [kg/m], given or of the material.")
+    axial_stiffness = _top_field("axial_stiffness", "EA [N], given, of the material, or assumed.")
     torsional_stiffness = _rod_field(
         "torsional_stiffness", "section_stiffness", "GJ as given [N m^2], or None."
     )
@@ -291,6 +303,9 @@ class Scene(Strict):
         "natural_curvature", "curvature", "As given [1/m]: k, [x, y], or rows of such; or None."
     )
     natural_twist = _rod_field("natural_twist", "twist", "As given [rad/m], or None.")
+    rest_shape_error = _derived(
+        "rest_shape_error", "Largest distance of rest_shape's points from the rod's arcs [m]; NaN without."
+    )
     joint_stiffness = _rod_field(
         "joint_stiffness", "joint_stiffness", "Of a chain's joints, as given [N m/rad], or None."
     )
@@ -302,7 +317,6 @@ class Scene(Strict):
     sections = _part_field("sections", "A tuple of Section.")
     youngs_modulus = _derived("youngs_modulus", "E of the material [Pa]; 0: not known.")
     density = _derived("density", "Of the material [kg/m^3]; 0: not known.")
-    axial_stiffness = _derived("axial_stiffness", "EA [N].")
     mass = _derived("mass", "Of the rod, with sections [kg].")
     gamma = _derived("gamma", "w l^3 / (EI) [-]: below 0.1 nearly straight, from 1000 on a rope.")
     planar = _derived("planar", "Whether grips, forces and obstacles in reach share a plane.")
@@ -317,6 +331,53 @@ class Scene(Strict):
     @material.setter
     def material(self, value: Optional[Union[str, dict[str, Any]]]) -> None:
         self._put_one("material", value)
+
+    @property
+    def stretch(self) -> bool:
+        """Whether it stretches by its tension over EA; model exact alone takes it."""
+        return bool(self._rod.get("stretch", False))
+
+    @stretch.setter
+    def stretch(self, value: Optional[bool]) -> None:
+        self._put_one("stretch", value)
+
+    @property
+    def layers(self) -> Any:
+        """Of a cable, as given: tables from the inside out; or None."""
+        return as_it_is(self._rod.get("layers"))
+
+    @layers.setter
+    def layers(self, value: Any) -> None:
+        self._put_one("layers", value)
+
+    @property
+    def layer_bound(self) -> Optional[str]:
+        """Of a cable, as given: "bonded" or "free" to slip; or None, which is bonded."""
+        value: Optional[str] = self._rod.get("layer_bound")
+        return value
+
+    @layer_bound.setter
+    def layer_bound(self, value: Optional[str]) -> None:
+        self._put_one("layer_bound", value)
+
+    @property
+    def helix(self) -> Optional[dict[str, Any]]:
+        """A copy of its table, or None."""
+        value: Optional[dict[str, Any]] = as_it_is(self._rod.get("helix"))
+        return value
+
+    @helix.setter
+    def helix(self, value: Optional[dict[str, Any]]) -> None:
+        self._put_one("helix", value)
+
+    @property
+    def rest_shape(self) -> Any:
+        """As given: a file's name or points; or None."""
+        return as_it_is(self._rod.get("rest_shape"))
+
+    @rest_shape.setter
+    def rest_shape(self, value: Any) -> None:
+        self._put_one("rest_shape", value)
 
     @property
     def force_model(self) -> ForceModelSettings:

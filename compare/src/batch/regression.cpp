@@ -83,6 +83,8 @@ std::string content_of(const Scene& scene) {
   add_named("EI ", scene.given_bending_stiffness);
   add_named("EI_2 ", scene.given_bending_stiffness_2);
   add_named("mass ", scene.given_mass_per_length);
+  add_named("EA ", scene.given_axial_stiffness);
+  if (scene.stretch) add_named("stretch ", scene.axial_stiffness());
   const auto add_known = [&](const char* name, double value) {
     if (value > 0) add_named(name, value);
   };
@@ -126,12 +128,19 @@ std::string content_of(const Scene& scene) {
     add(load.at);
     add_vector(load.force);
     if (!load.torque.isZero(0)) add_vector(load.torque);
+    if (load.follows) text += "follows ";
   }
   for (const DistributedLoad& load : scene.distributed_loads) {
     text += "\ndistributed load ";
     add(load.from);
     add(load.to);
     for (const Eigen::Vector3d& q : load.force_per_length) add_vector(q);
+  }
+  if (scene.drag) {
+    text += "\ndrag ";
+    add_vector(scene.drag->velocity);
+    add(scene.drag->normal);
+    add(scene.drag->tangential);
   }
   for (const Obstacle& obstacle : scene.obstacles) {
     const obstacle::Body& body = obstacle.body;
@@ -154,6 +163,7 @@ std::string content_of(const Scene& scene) {
   }
   const ForceModelSettings& settings = scene.force_model;
   text += fmt::format("\n{} {} ", to_string(settings.stepper), to_string(settings.bending_rule));
+  if (settings.joint_law) text += fmt::format("joints {} ", to_string(*settings.joint_law));
   for (const auto& value : {settings.design_curvature, settings.point_weight, settings.c_b,
                             settings.c_c, settings.c_F, settings.c_h, settings.l_s}) {
     add_optional(value);

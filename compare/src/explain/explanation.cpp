@@ -340,6 +340,8 @@ ShapeJudgement judge_with_chains(const Scene& scene, const ShapeCheck& check,
     result.reason = fmt::format("right for {}, {:.3g} mm away ({})",
                                 words_of(chain.clamp, shape.points.cols() - 1) + and_springs(chain),
                                 distance * 1e3, tolerance.largest ? "largest" : "RMS") +
+                    fmt::format(", allowed {:.4g} mm = {:g} of the tolerance",
+                                right_chain * tolerance.allowed_m * 1e3, right_chain) +
                     fmt::format("; the rod itself is {:.4g} mm = {:.3g} % of l away, all of it ",
                                 result.judged_m * 1e3, result.judged_m / check.length_m * 100) +
                     "discretisation";

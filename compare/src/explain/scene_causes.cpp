@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "least_squares/scene_change.hpp"
+#include "scene/scene_problem.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -17,7 +18,7 @@ constexpr double degree = std::numbers::pi / 180;
 Eigen::VectorXd zeros(Eigen::Index count) { return Eigen::VectorXd::Zero(count); }
 
 bool is_pulled_by_weight_alone(const Scene& scene) {
-  return scene.loads.empty() && scene.distributed_loads.empty() &&
+  return scene.loads.empty() && scene.distributed_loads.empty() && !scene.drag &&
          scene.weight_per_length().norm() > 0;
 }
 
@@ -60,18 +61,7 @@ SceneCause length(const Scene& scene, double of_shape) {
   return {Eigen::VectorXd::Constant(1, std::log(of_shape / scene.length)), zeros(1), 0,
           [scene](const Eigen::VectorXd& p) {
             Scene changed = scene;
-            const double factor = std::exp(p[0]);
-            changed.length *= factor;
-            for (Gripper& gripper : changed.grippers) gripper.at *= factor;
-            for (PointLoad& load : changed.loads) load.at *= factor;
-            for (DistributedLoad& load : changed.distributed_loads) {
-              load.from *= factor;
-              load.to *= factor;
-            }
-            for (Section& section : changed.sections) {
-              section.from *= factor;
-              section.to *= factor;
-            }
+            scale_length(changed, std::exp(p[0]));
             return changed;
           },
           [scene](const Eigen::VectorXd& p) {

@@ -38,6 +38,12 @@ void add_natural_curvature(std::vector<WireNumber>& numbers, const std::vector<S
   const bool planar =
       std::all_of(scenes.begin(), scenes.end(), [](const Scene& scene) { return scene.planar(); });
   for (const Scene& scene : scenes) {
+    if (scene.rest_shape) {
+      throw InputError(fmt::format(
+          "{}: rod.rest_shape: says the natural curvature that is to be fitted (allowed: "
+          "natural_curvature or none)",
+          scene.file));
+    }
     Scene bent = scene;
     bend_by_nature(bent, 0, {0, 1 / scene.length});
     (void)bent.first_frame();

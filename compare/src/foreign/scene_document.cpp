@@ -1,6 +1,7 @@
 #include "foreign/scene_document.hpp"
 
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -57,6 +58,28 @@ Document sections_document(const Scene& scene) {
   return result;
 }
 
+Document layers_document(const Scene& scene) {
+  if (!scene.layers) return nullptr;
+  const LayeredSection& layers = *scene.layers;
+  return {{"bound", layers.bonded ? "bonded" : "free"},
+          {"bonded_bending_stiffness_Nm2", layers.bonded_bending_stiffness},
+          {"free_bending_stiffness_Nm2", layers.free_bending_stiffness},
+          {"bonded_torsional_stiffness_Nm2", layers.bonded_torsional_stiffness},
+          {"free_torsional_stiffness_Nm2", layers.free_torsional_stiffness}};
+}
+
+Document rest_shape_document(const Scene& scene) {
+  if (!scene.rest_shape) return nullptr;
+  const RestShape& shape = *scene.rest_shape;
+  return {{"file", shape.file},
+          {"points", shape.points},
+          {"arcs", shape.arcs.size()},
+          {"largest_error_m", shape.largest_error},
+          {"rms_error_m", shape.rms_error},
+          {"begin_m", vector_document(shape.begin)},
+          {"first_frame", columns_document(shape.first_frame)}};
+}
+
 Document rod_document(const Scene& scene) {
   Document curvature = Document::array();
   if (scene.naturally_curved()) {
@@ -85,6 +108,8 @@ Document rod_document(const Scene& scene) {
           {"mean_weight_N_per_m", vector_document(scene.weight_per_length())},
           {"natural_curvature_per_m", std::move(curvature)},
           {"natural_twist_rad_per_m", scene.natural_strain.z()},
+          {"layers", layers_document(scene)},
+          {"rest_shape", rest_shape_document(scene)},
           {"first_frame",
            scene.has_material_directors() ? columns_document(scene.first_frame()) : Document()},
           {"sections", sections_document(scene)}};
@@ -181,9 +206,11 @@ void add_polygon(const Scene& scene, const ForceModelSettings& settings, Documen
 }
 
 Document force_model_document(const Scene& scene) {
-  const ForceModelSettings& settings = scene.force_model;
+  ForceModelSettings settings = scene.force_model;
+  const std::optional<energy_model::JointLaw> joint_law = std::exchange(settings.joint_law, {});
   Document result = {{"points", settings.points},
                      {"law", to_string(settings.law)},
+                     {"joint_law", joint_law ? Document(to_string(*joint_law)) : Document()},
                      {"bookkeeping", to_string(settings.bookkeeping)},
                      {"stepper", to_string(settings.stepper)},
                      {"refused", nullptr}};
@@ -206,6 +233,7 @@ nlohmann::ordered_json scene_document(const Scene& scene) {
         {{"at_m", load.at},
          {"force_N", vector_document(load.force)},
          {"torque_Nm", load.torque.isZero(0) ? Document() : vector_document(load.torque)}});
+    if (load.follows) loads.back()["follows"] = true;
   }
   Document distributed = Document::array();
   for (const DistributedLoad& load : scene.distributed_loads) {
@@ -219,18 +247,24 @@ nlohmann::ordered_json scene_document(const Scene& scene) {
     obstacles.push_back(obstacle_document(obstacle));
   }
   const std::optional<Eigen::Vector3d> normal = scene.plane_normal();
-  return {{"schema", "dlo/scene/1"},
-          {"scene", scene.name},
-          {"file", scene.file},
-          {"gravity_m_per_s2", vector_document(scene.gravity)},
-          {"gamma", scene.gamma()},
-          {"plane_normal", normal ? vector_document(*normal) : Document()},
-          {"rod", rod_document(scene)},
-          {"grippers", std::move(grippers)},
-          {"loads", std::move(loads)},
-          {"distributed_loads", std::move(distributed)},
-          {"obstacles", std::move(obstacles)},
-          {"force_model", force_model_document(scene)}};
+  Document document = {{"schema", "dlo/scene/1"},
+                       {"scene", scene.name},
+                       {"file", scene.file},
+                       {"gravity_m_per_s2", vector_document(scene.gravity)},
+                       {"gamma", scene.gamma()},
+                       {"plane_normal", normal ? vector_document(*normal) : Document()},
+                       {"rod", rod_document(scene)},
+                       {"grippers", std::move(grippers)},
+                       {"loads", std::move(loads)},
+                       {"distributed_loads", std::move(distributed)},
+                       {"obstacles", std::move(obstacles)},
+                       {"force_model", force_model_document(scene)}};
+  if (scene.drag) {
+    document["drag"] = {{"velocity_m_per_s", vector_document(scene.drag->velocity)},
+                        {"normal_kg_per_m2", scene.drag->normal},
+                        {"tangential_kg_per_m2", scene.drag->tangential}};
+  }
+  return document;
 }
 
 std::string scene_document_text(const Scene& scene) {

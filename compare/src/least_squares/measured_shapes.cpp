@@ -171,6 +171,7 @@ energy_model::Equilibrium MeasuredShapes::solve(const energy_model::Problem& pro
                     limit, size() > 1 ? " per scene" : "", solves_));
   }
   ++solves_;
+  scene.require_potential("the energy model does");
   try {
     energy_model::Equilibrium rod =
         energy_model::solve_energy(problem, {.terms = options_.solve.terms,

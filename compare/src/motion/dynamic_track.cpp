@@ -131,6 +131,7 @@ void require_dynamic(const Scene& scene, const TrackOptions& options) {
            "clamps hold the rod's frame, and twist has no inertia in the model (allowed: at most "
            "one frame or roll)");
   }
+  scene.require_potential("the moving rod does");
   if (scene.has_couples()) {
     refuse(scene, "a load's torque, which has no potential (allowed: forces)");
   }

@@ -357,6 +357,12 @@ void set_obstacles(const Scene& scene, const std::vector<std::size_t>& obstacles
 }
 
 Discretisation discretise(const Scene& scene, const ForceModelSettings& settings) {
+  if (settings.joint_law) {
+    throw InputError(fmt::format(
+        "{}: force_model.joint_law = \"{}\": no other model than chain has it (allowed: dlo solve "
+        "--model chain, or no joint_law)",
+        scene.file, to_string(*settings.joint_law)));
+  }
   require_round(scene);
   scene.require_no_couples("the polygons of models force and chain do");
   const Layout layout = lay_out(scene, settings);

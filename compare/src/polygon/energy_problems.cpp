@@ -31,8 +31,9 @@ std::optional<ChainScene> chain_scene(const Scene& scene, const Discretisation& 
   result.y = plane->y;
   energy_model::ChainProblem& problem = result.problem;
   problem.segment_lengths = discretisation.rod.rest_lengths;
-  problem.law = settings.law == BendingLaw::paper ? energy_model::JointLaw::paper
-                                                  : energy_model::JointLaw::hooke;
+  problem.law = settings.law == BendingLaw::paper
+                    ? energy_model::JointLaw::paper
+                    : settings.joint_law.value_or(energy_model::JointLaw::hooke);
   const force_model::Bending& bending = discretisation.rod.bending;
   problem.stiffness = bending.stiffness;
   problem.stiffnesses = bending.stiffnesses;
@@ -61,13 +62,15 @@ Eigen::Matrix3Xd ChainScene::to_space(const Eigen::Matrix2Xd& points) const {
   return (x * points.row(0) + y * points.row(1)).colwise() + origin;
 }
 
-energy_model::PolygonProblem polygon_problem(const force_model::Rod& rod) {
+energy_model::PolygonProblem polygon_problem(const force_model::Rod& rod,
+                                             std::optional<energy_model::JointLaw> joint_law) {
   energy_model::PolygonProblem problem;
   problem.rest_lengths = rod.rest_lengths;
   problem.stretch_stiffness = rod.c_c;
   problem.node_forces = rod.loads;
-  problem.law = rod.bending.law == force_model::BendingLaw::paper ? energy_model::JointLaw::paper
-                                                                  : energy_model::JointLaw::hooke;
+  problem.law = rod.bending.law == force_model::BendingLaw::paper
+                    ? energy_model::JointLaw::paper
+                    : joint_law.value_or(energy_model::JointLaw::hooke);
   problem.stiffness = rod.bending.stiffness;
   problem.stiffnesses = rod.bending.stiffnesses;
   problem.natural_turns = rod.bending.natural_turns;

@@ -28,7 +28,9 @@ struct ChainScene {
                                                     const ForceModelSettings& settings);
 
 /// The same polygon for the solver of elastic ones, which takes every scene.
-[[nodiscard]] energy_model::PolygonProblem polygon_problem(const force_model::Rod& rod);
+/// @param joint_law  in place of the rod's own (ForceModelSettings::joint_law)
+[[nodiscard]] energy_model::PolygonProblem polygon_problem(
+    const force_model::Rod& rod, std::optional<energy_model::JointLaw> joint_law = std::nullopt);
 
 /// The scene as the energy model sees it. @throws InputError naming file, line and key if two
 /// grippers hold one arc length, or are no less apart than the rod between them

@@ -20,7 +20,7 @@ bool lies_in_plane(const Scene& scene, const ForceModelSettings& settings) {
     return body.is_symmetric(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ(), scene.length);
   };
   const auto in_reach = obstacles_in_reach(scene, settings);
-  return flat(scene.gravity) &&
+  return flat(scene.gravity) && (!scene.drag || flat(scene.drag->velocity)) &&
          std::all_of(scene.grippers.begin(), scene.grippers.end(), held_flat) &&
          std::all_of(scene.loads.begin(), scene.loads.end(),
                      [&](const PointLoad& load) { return flat(load.force); }) &&
@@ -78,6 +78,7 @@ Scene PlaneTurn::laid(const Scene& scene) const {
     if (gripper.frame && gripper.frame->d1) gripper.frame->d1 = turn_ * *gripper.frame->d1;
   }
   for (PointLoad& load : result.loads) load.force = flat(load.force);
+  if (result.drag) result.drag->velocity = flat(result.drag->velocity);
   for (DistributedLoad& load : result.distributed_loads) {
     for (Eigen::Vector3d& q : load.force_per_length) q = flat(q);
   }

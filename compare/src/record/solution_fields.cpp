@@ -75,7 +75,15 @@ std::span<const Field<SolvedShape>> solution_fields() {
       {"error_estimate", "m", "What the points may be off; NaN: not known",
        [](S s) { return s.solution.error_estimate; }, in_python},
       {"neglected", "", "What the scene has and the model neglects",
-       [](S s) { return s.solution.neglected; }, in_python}};
+       [](S s) { return s.solution.neglected; }, in_python},
+      {"stretch_strain", "",
+       "Largest axial strain N/EA of a shape that is solved without; none: EA is not known, or it "
+       "is too small to matter",
+       [](S s) { return s.solution.stretch.strain; }, document},
+      {"stretch_moves", "m", "By which stretch would move the points, RMS, to first order",
+       [](S s) { return s.solution.stretch.moved_m; }, document},
+      {"stretch_tension_change", "", "The same of the largest tension, over it",
+       [](S s) { return s.solution.stretch.tension; }, document}};
   return fields;
 }
 

@@ -27,6 +27,7 @@ void check(const ForceModelSettings& settings, const std::string& where) {
   }
   if (settings.l_s && masses_or_newton) refuse("l_s", "stepper limited, relative, dynamic or auto");
   if (settings.c_b && settings.law == BendingLaw::hooke) refuse("c_b", "law paper");
+  if (settings.joint_law && settings.law == BendingLaw::paper) refuse("joint_law", "law hooke");
   if (settings.point_weight && settings.bookkeeping != Bookkeeping::paper) {
     refuse("point_weight", "bookkeeping paper");
   }

@@ -95,7 +95,11 @@ diameter = {diameter}  # round, solid; bending stiffness EI = E pi d^4 / 64
 # first clamp's frame: d2 is the normal of the scene's plane unless a frame or roll says otherwise.
 # The stress-free shape need not be straight: natural_curvature = "3 1/m" bends it to the left in its plane;
 # [x, y] are about d1 and d2 of the first clamp's frame, natural_twist = "90 deg/m" about the rod.
-# torsional_stiffness (GJ) is then EI / 1.3, if it is not given.
+# torsional_stiffness (GJ) is then EI / 1.3, if it is not given. Instead of these two, of a helix:
+# helix = {{ radius = "2 cm", pitch = "1 cm" }}; of points of that shape in space: rest_shape = "points.csv".
+# Of a cable, from the inside out, instead of diameter and material:
+# layers = [{{ outer_diameter = "2 mm", material = "copper" }}, {{ strands = 6, strand_diameter = "2 mm",
+# material = "copper" }}], and layer_bound = "free" of strands that slip on each other.
 
 # What holds the rod; one [[gripper]] for each.
 [[gripper]]
@@ -168,8 +172,9 @@ std::string optional_part(const SceneChoices& choices, const Scene& scene) {
 #mass_per_length = {section_mass:.3g}  # kg/m, g/m, g/cm
 
 # A force at a point of the rod, one [[load]] for each; of a weight that hangs there mass = "10 g"; of
-# a couple, in a plane, torque = [0, 0, "1 N m"]. Along the rod [[distributed_load]] has from, to and
-# force_per_length; [medium] has the density of what the rod is immersed in.
+# a couple torque = [0, 0, "1 N m"]; follows = true lets both turn with the rod. Along the rod
+# [[distributed_load]] has from, to and force_per_length; [medium] has the density of what the rod is
+# immersed in, and the velocity of what drags it.
 #[[load]]
 #at = {middle:.4g}  # arc length
 #force = {force}  # N, mN, kN
@@ -208,6 +213,7 @@ std::string optional_part(const SceneChoices& choices, const Scene& scene) {
 #   c_b              [N]    bending stiffness, law paper; else it follows from
 #   bending_rule     {bending_rules}, law paper
 #   design_curvature [1/m]  k of the bending rule
+#   joint_law        {joint_laws}: joints of model chain alone, law hooke
 #   point_weight     [N]    weight of every point, bookkeeping paper
 #   c_F              [m/N]  step factor, stepper basic, limited, relative or dynamic
 #   c_h              [-]    share of the last movement, 0 <= c_h < 1, stepper dynamic
@@ -226,6 +232,7 @@ std::string optional_part(const SceneChoices& choices, const Scene& scene) {
       fmt::arg("frames", scene.track.frames), fmt::arg("steps", scene.track.steps),
       fmt::arg("points", defaults.points), fmt::arg("law", to_string(defaults.law)),
       fmt::arg("laws", toml_choices<BendingLaw>(Meaning::said)),
+      fmt::arg("joint_laws", toml_choices<energy_model::JointLaw>(Meaning::omitted)),
       fmt::arg("bookkeeping", to_string(defaults.bookkeeping)),
       fmt::arg("bookkeepings", toml_choices<Bookkeeping>(Meaning::said)),
       fmt::arg("stepper", to_string(defaults.stepper)),

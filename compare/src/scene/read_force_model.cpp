@@ -9,6 +9,7 @@ ForceModelSettings read_force_model(StrictTable& table) {
   ForceModelSettings settings;
   settings.points = table.optional_integer("points", 4, 1'000'000).value_or(settings.points);
   settings.law = table.optional_choice<BendingLaw>("law").value_or(settings.law);
+  settings.joint_law = table.optional_choice<energy_model::JointLaw>("joint_law");
   settings.bookkeeping =
       table.optional_choice<Bookkeeping>("bookkeeping").value_or(settings.bookkeeping);
   settings.stepper = table.optional_choice<Stepper>("stepper").value_or(settings.stepper);

@@ -186,7 +186,7 @@ void check_material_directors(const Scene& scene, const StrictTable& rod,
                   [](const Gripper& gripper) { return gripper.direction.has_value(); });
   constexpr const char* unheld =
       "no gripper holds the rod's frame (allowed: a gripper with hold = \"clamp\")";
-  for (const char* key : {"natural_curvature", "natural_twist"}) {
+  for (const char* key : {"natural_curvature", "natural_twist", "helix", "rest_shape"}) {
     if (!clamped && rod.has(key)) rod.fail(key, unheld);
     for (const StrictTable& section : sections) {
       if (!clamped && section.has(key)) section.fail(key, unheld);
@@ -218,20 +218,27 @@ void check_rolls(const Scene& scene, const std::vector<StrictTable>& entries) {
   }
 }
 
-/// A couple has a potential in a plane alone.
-void check_couples(const Scene& scene, const std::vector<StrictTable>& entries) {
-  const std::optional<Eigen::Vector3d> normal = scene.plane_normal();
+/// What has no potential, and couples, act on a rod that touches nothing; what follows it, where no
+/// clamp holds it.
+/// @param entries  the loads' tables, in the scene's order
+void check_turning_loads(const Scene& scene, const std::vector<StrictTable>& entries) {
+  constexpr double at_clamp = 1e-9;  // of the length, as energy_model has it
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    if (scene.loads[i].torque.isZero(0)) continue;
-    if (!scene.obstacles.empty() || scene.holds_twist()) {
-      entries[i].fail("torque",
-                      "beside obstacles or held frames, with which no model takes a couple "
-                      "(allowed: neither, or no torque)");
+    const PointLoad& load = scene.loads[i];
+    if (load.torque.isZero(0) && !load.follows) continue;
+    if (!scene.obstacles.empty()) {
+      entries[i].fail(load.follows ? "follows" : "torque",
+                      "beside obstacles, with which no model takes it (allowed: no obstacles, or "
+                      "forces that keep their direction)");
     }
-    if (normal) continue;
-    entries[i].fail("torque",
-                    "out of a plane, where a couple that keeps its axis has no potential (allowed: "
-                    "grips, forces and bending in one plane, and torques across it)");
+    if (!load.follows) continue;
+    const auto clamped = [&](const Gripper& gripper) {
+      return gripper.direction && std::abs(gripper.at - load.at) <= at_clamp * scene.length;
+    };
+    if (std::any_of(scene.grippers.begin(), scene.grippers.end(), clamped)) {
+      entries[i].fail("follows",
+                      "at a clamp, which would hold it (allowed: true where no clamp is)");
+    }
   }
 }
 
@@ -332,9 +339,18 @@ PointLoad read_load(StrictTable& table, const Scene& scene) {
     table.fail("mass", "given besides force (allowed: one of force and mass)");
   }
   load.torque = table.optional_vector("torque", Dimension::torque).value_or(load.torque);
+  load.follows = table.flag("follows");
+  if (mass && load.follows) {
+    table.fail("follows", "of a mass, which hangs along gravity (allowed: force and torque)");
+  }
   if (mass) {
     load.force = *mass * scene.gravity;
   } else if (!table.has("torque") || table.has("force")) {
+    if (!table.has("force")) {
+      table.fail("force",
+                 "missing, and so are mass and torque (allowed: force or mass, torque, or one of "
+                 "the two with torque)");
+    }
     load.force = table.vector("force", Dimension::force);
   }
   load.mass = mass.value_or(0);
@@ -360,17 +376,44 @@ DistributedLoad read_distributed_load(StrictTable& table, const Scene& scene) {
   return load;
 }
 
+/// What drags the rod, by Morison's law on its diameter.
+std::optional<energy_model::Drag> read_drag(StrictTable& table, double density, double diameter) {
+  if (!table.has("velocity")) {
+    for (const char* key : {"normal_drag", "tangential_drag"}) {
+      if (!table.has(key)) continue;
+      table.fail(key, fmt::format("of a medium at rest (allowed: velocity too, or no {})", key));
+    }
+    return std::nullopt;
+  }
+  energy_model::Drag drag;
+  drag.velocity = table.vector("velocity", Dimension::velocity);
+  const double unit = density * diameter / 2;
+  drag.normal = unit * table.number("normal_drag", Dimension::number, Range::not_negative());
+  drag.tangential =
+      std::numbers::pi * unit *
+      table.optional_number("tangential_drag", Dimension::number, Range::not_negative())
+          .value_or(0);
+  if (drag.velocity.isZero(0)) return std::nullopt;
+  return drag;
+}
+
 /// What the rod displaces bears it: a load against gravity, of a mass that does not move.
-DistributedLoad read_medium(StrictTable& table, const Scene& scene) {
+void read_medium(StrictTable& table, Scene& scene) {
   table.only(scene_keys("medium"));
   const double density = table.number("density", Dimension::density, Range::positive());
   if (!(scene.diameter > 0)) {
     table.fail("density",
                "of a rod whose volume is not known (allowed: [rod] with diameter, or no [medium])");
   }
+  scene.drag = read_drag(table, density, scene.diameter);
+  if (scene.drag && !scene.obstacles.empty()) {
+    table.fail(
+        "velocity",
+        "beside obstacles, with which no model takes drag (allowed: neither, or no velocity)");
+  }
   table.finish();
   const double section = std::numbers::pi * scene.diameter * scene.diameter / 4;
-  return {0, scene.length, {-density * section * scene.gravity}};
+  scene.distributed_loads.push_back({0, scene.length, {-density * section * scene.gravity}});
 }
 
 }  // namespace
@@ -411,10 +454,10 @@ Scene read_scene(const toml::table& root, const std::string& file,
     scene.distributed_loads.push_back(read_distributed_load(entry, scene));
   }
   if (auto medium = table.optional_table("medium")) {
-    scene.distributed_loads.push_back(read_medium(*medium, scene));
+    read_medium(*medium, scene);
   }
   check_material_directors(scene, rod, sections);
-  if (scene.has_couples()) check_couples(scene, loads);
+  check_turning_loads(scene, loads);
   check_rolls(scene, grippers);
   if (auto settings = table.optional_table("force_model")) {
     scene.force_model = read_force_model(*settings);

@@ -37,6 +37,7 @@ std::optional<Eigen::Vector3d> scene_normal(const Scene& scene) {
     vectors.emplace_back(gripper.position - scene.grippers.front().position);
   }
   for (const PointLoad& load : scene.loads) {
+    if (load.follows) continue;
     vectors.push_back(load.force);
     if (load.torque.isZero(0)) continue;
     const Eigen::Vector3d across = load.torque.unitOrthogonal();
@@ -45,6 +46,7 @@ std::optional<Eigen::Vector3d> scene_normal(const Scene& scene) {
   for (const DistributedLoad& load : scene.distributed_loads) {
     vectors.insert(vectors.end(), load.force_per_length.begin(), load.force_per_length.end());
   }
+  if (scene.drag) vectors.push_back(scene.drag->velocity);
   for (const std::size_t i : obstacles_in_reach(scene)) {
     const obstacle::Body& body = scene.obstacles[i].body;
     if (body.is_half_space()) vectors.push_back(body.normal());
@@ -161,9 +163,14 @@ double Scene::assumed_torsional_stiffness() const {
 
 bool Scene::assumes_torsion() const { return has_material_directors() && !torsional_stiffness; }
 
-double Scene::axial_stiffness() const {
+std::optional<double> Scene::known_axial_stiffness() const {
+  if (given_axial_stiffness) return given_axial_stiffness;
   const double EA = material.youngs_modulus * cross_section();
-  if (EA > 0) return EA;
+  return EA > 0 ? std::optional(EA) : std::nullopt;
+}
+
+double Scene::axial_stiffness() const {
+  if (const std::optional<double> EA = known_axial_stiffness()) return *EA;
   if (cross_section() > 0) return bending_stiffness() / squared_gyration().x();
   return 1e6 * bending_stiffness() / (length * length);
 }
@@ -232,11 +239,35 @@ bool Scene::has_couples() const {
                      [](const PointLoad& load) { return !load.torque.isZero(0); });
 }
 
-void Scene::require_no_couples(const char* who) const {
-  if (!has_couples()) return;
+void Scene::require_potential(const char* who) const {
+  if (drag) {
+    throw InputError(fmt::format(
+        "{}: medium.velocity: drag, which has no potential and which {} not take (allowed: dlo "
+        "solve --model exact or force)",
+        file, who));
+  }
+  const bool follows =
+      std::any_of(loads.begin(), loads.end(), [](const PointLoad& load) { return load.follows; });
+  if (follows) {
+    throw InputError(fmt::format(
+        "{}: load.follows: a load that turns with the rod, which has no potential and which {} not "
+        "take (allowed: dlo solve --model exact)",
+        file, who));
+  }
+  if (!has_couples() || energy_model::has_potential(scene_problem(*this))) return;
   throw InputError(fmt::format(
-      "{}: load.torque: a couple, which {} not take (allowed: dlo solve --model energy or exact)",
+      "{}: load.torque: out of a plane, where a couple that keeps its axis has no potential, so "
+      "that {} not take it (allowed: dlo solve --model exact)",
       file, who));
+}
+
+void Scene::require_no_couples(const char* who) const {
+  require_potential(who);
+  if (!has_couples()) return;
+  throw InputError(
+      fmt::format("{}: load.torque: a couple, which {} not take (allowed: dlo solve --model "
+                  "energy or exact)",
+                  file, who));
 }
 
 double Scene::bending_compliance(double begin, double end) const {
@@ -263,6 +294,7 @@ Scene Scene::without_natural_strain() const {
   Scene scene = *this;
   scene.natural_strain.setZero();
   scene.natural_variation.clear();
+  scene.rest_shape.reset();
   for (Section& section : scene.sections) {
     section.natural_curvature.reset();
     section.natural_twist.reset();
@@ -270,8 +302,49 @@ Scene Scene::without_natural_strain() const {
   return scene;
 }
 
+void Scene::set_rest_shape(const RestShape& shape) {
+  *this = without_natural_strain();
+  rest_shape = shape;
+  if (shape.arcs.size() == 1) {
+    natural_strain.head<2>() = shape.arcs.front().curvature;
+    return;
+  }
+  std::vector<Section> all;
+  double at = 0;
+  const auto fill_to = [&](double end) {
+    if (!(end > at)) return;
+    all.push_back({.from = at,
+                   .to = end,
+                   .bending_stiffness = bending_stiffness(),
+                   .mass_per_length = mass_per_length(),
+                   .torsional_stiffness = std::nullopt,
+                   .bending_stiffness_2 = bending_stiffness_2()});
+  };
+  for (const Section& section : sections) {
+    fill_to(section.from);
+    all.push_back(section);
+    at = section.to;
+  }
+  fill_to(length);
+  sections.clear();
+  for (Section section : all) {
+    for (const RestShape::Arc& arc : shape.arcs) {
+      if (arc.end <= section.from) continue;
+      Section part = section;
+      // A boundary of the two that differs by rounding is one.
+      constexpr double rounding = 1e-12;
+      part.to = arc.end < section.to - rounding * length ? arc.end : section.to;
+      part.natural_curvature = arc.curvature;
+      sections.push_back(part);
+      section.from = part.to;
+      if (part.to >= section.to) break;
+    }
+  }
+}
+
 Eigen::Matrix3d Scene::first_frame() const {
-  const char* const key = naturally_bent()          ? "natural_curvature"
+  const char* const key = rest_shape                ? "rest_shape"
+                          : naturally_bent()        ? "natural_curvature"
                           : given_bending_stiffness ? "bending_stiffness"
                           : width > 0               ? "width"
                                                     : "bending_stiffness";
@@ -345,8 +418,16 @@ Scene Scene::without_twist() const {
 
 void Scene::scale_modulus(double factor) {
   material.youngs_modulus *= factor;
+  if (layers) {
+    for (double* stiffness : {&layers->bonded_bending_stiffness, &layers->free_bending_stiffness,
+                              &layers->bonded_torsional_stiffness,
+                              &layers->free_torsional_stiffness, &layers->axial_stiffness}) {
+      *stiffness *= factor;
+    }
+  }
   if (given_bending_stiffness) *given_bending_stiffness *= factor;
   if (given_bending_stiffness_2) *given_bending_stiffness_2 *= factor;
+  if (given_axial_stiffness) *given_axial_stiffness *= factor;
   if (torsional_stiffness) *torsional_stiffness *= factor;
   for (Section& section : sections) {
     section.bending_stiffness *= factor;
@@ -364,12 +445,17 @@ void Scene::scale_torsion(double factor) {
 
 void Scene::scale_density(double factor) {
   material.density *= factor;
+  if (layers) layers->mass_per_length *= factor;
   if (given_mass_per_length) *given_mass_per_length *= factor;
   for (Section& section : sections) section.mass_per_length *= factor;
 }
 
 std::optional<Eigen::Vector3d> Scene::plane_normal() const {
   if (holds_twist()) return std::nullopt;
+  const bool leaves_plane = std::any_of(loads.begin(), loads.end(), [](const PointLoad& load) {
+    return load.follows && (load.force.y() != 0 || load.torque.x() != 0 || load.torque.z() != 0);
+  });
+  if (leaves_plane) return std::nullopt;
   std::optional<Eigen::Vector3d> normal = scene_normal(*this);
   const bool curved = naturally_curved();
   if (!normal || !(curved || has_two_stiffnesses())) return normal;

@@ -30,6 +30,7 @@ energy_model::Problem scene_problem(const Scene& scene) {
   problem.bending_stiffness = scene.bending_stiffness();
   problem.bending_stiffness_2 = scene.bending_stiffness_2();
   problem.torsional_stiffness = scene.twisting_stiffness();
+  if (scene.stretch) problem.axial_stiffness = scene.axial_stiffness();
   problem.weight_per_length = scene.mass_per_length() * scene.gravity;
   for (const Section& section : scene.sections) {
     // Dividing first leaves GJ as it is where EI is.
@@ -54,18 +55,33 @@ energy_model::Problem scene_problem(const Scene& scene) {
     problem.grips.push_back(std::move(held));
   }
   for (const PointLoad& load : scene.loads) {
-    problem.loads.push_back({load.at, load.force, load.torque});
+    problem.loads.push_back({load.at, load.force, load.torque, load.follows});
   }
   for (const DistributedLoad& load : scene.distributed_loads) {
     for (const energy_model::LineLoad& piece : line_loads(load)) {
       problem.line_loads.push_back(piece);
     }
   }
+  problem.drag = scene.drag;
   for (const std::size_t i : obstacles_in_reach(scene)) {
     const Obstacle& obstacle = scene.obstacles[i];
     problem.obstacles.push_back({obstacle.body, obstacle.stiffness});
   }
   return problem;
+}
+
+void scale_length(Scene& scene, double factor) {
+  scene.length *= factor;
+  for (Gripper& gripper : scene.grippers) gripper.at *= factor;
+  for (PointLoad& load : scene.loads) load.at *= factor;
+  for (DistributedLoad& load : scene.distributed_loads) {
+    load.from *= factor;
+    load.to *= factor;
+  }
+  for (Section& section : scene.sections) {
+    section.from *= factor;
+    section.to *= factor;
+  }
 }
 
 double rectangle_torsion_constant(double width, double thickness) {

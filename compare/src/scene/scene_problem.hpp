@@ -26,4 +26,7 @@ namespace dlo::compare {
 /// @param width, thickness  the edges [m], > 0, in any order
 [[nodiscard]] double rectangle_torsion_constant(double width, double thickness);
 
+/// Makes the rod `factor` times as long, of the same section, with all on it at the same shares.
+void scale_length(Scene& scene, double factor);
+
 }  // namespace dlo::compare

@@ -192,12 +192,18 @@ struct SceneTemplate::Parsed {
 };
 
 SceneTemplate::SceneTemplate(const std::string& text, std::string name,
-                             std::vector<Material> known_materials, MissingElements missing) {
+                             std::vector<Material> known_materials, MissingElements missing,
+                             const std::string& folder) {
   std::string all = name + '\n' + text;
   for (const Material& material : known_materials) {
     all += fmt::format("\n{} {} {}", material.name, material.youngs_modulus, material.density);
   }
   toml::table root = parse_toml(text, name);
+  const auto points = root["rod"]["rest_shape"].value_exact<std::string>();
+  if (points && !folder.empty()) {
+    root["rod"].as_table()->insert_or_assign("rest_shape",
+                                             (std::filesystem::path(folder) / *points).string());
+  }
   const std::optional<double> EI = bending_stiffness_with_torsion(root, name, known_materials);
   parsed_ = std::make_shared<const Parsed>(Parsed{std::move(root), std::move(name),
                                                   std::move(known_materials), EI,
@@ -249,7 +255,9 @@ Scene make_scene(const std::vector<SceneField>& fields, const std::string& file)
 
 SceneTemplate load_scene_template(const std::string& path,
                                   const std::vector<Material>& known_materials) {
-  return {read_file(path), std::filesystem::path(path).filename(), known_materials};
+  const std::filesystem::path file(path);
+  return {read_file(path), file.filename(), known_materials, MissingElements::refused,
+          file.parent_path()};
 }
 
 }  // namespace dlo::compare

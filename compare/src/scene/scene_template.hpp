@@ -28,10 +28,11 @@ enum class MissingElements {
 class SceneTemplate {
  public:
   /// @param name  of the file, for messages and Scene::file
+  /// @param folder  that rod.rest_shape is relative to, where it is not that of the name
   /// @throws InputError if the text is no TOML
   SceneTemplate(const std::string& text, std::string name,
                 std::vector<Material> known_materials = materials(),
-                MissingElements missing = MissingElements::refused);
+                MissingElements missing = MissingElements::refused, const std::string& folder = "");
 
   /// The scene with other values. @throws InputError as parse_scene, and if a path leads nowhere
   [[nodiscard]] Scene with(const std::vector<SceneField>& values) const;

@@ -51,8 +51,10 @@ Solution solve_rigid_chain(const Scene& scene, const ForceModelSettings& setting
     points = points.rowwise().reverse().eval();
   }
   Solution solution = polygon_solution(scene, settings, discretisation, discretisation.rod, points);
+  if (scene.stretch) solution.neglected.emplace_back("stretch");
   solution.status = result.status;
   solution.message = result.message;
+  if (settings.joint_law) solution.energy.bending = result.bending_energy;
   solution.grippers = {balancing_load(discretisation, points)};
   solution.evaluations = result.evaluations;
   solution.seconds = result.seconds;
@@ -64,6 +66,14 @@ Solution solve_elastic_chain(const Scene& scene, const ForceModelSettings& setti
   const LowestPolygon lowest = lowest_polygon(scene, settings, discretisation, options);
   const Eigen::Matrix3Xd& points = lowest.result.points;
   Solution solution = polygon_solution(scene, settings, discretisation, lowest.rod, points);
+  if (settings.joint_law) {
+    // The rest is that of the rod's own law.
+    const auto energy_with = [&](std::optional<energy_model::JointLaw> law) {
+      Eigen::Matrix3Xd gradient(3, points.cols());
+      return energy_model::polygon_energy(polygon_problem(lowest.rod, law), points, gradient);
+    };
+    solution.energy.bending += energy_with(settings.joint_law) - energy_with(std::nullopt);
+  }
   solution.status = lowest.result.status;
   solution.message = lowest.result.message;
   Eigen::Index next = 0;  // grip_forces are in the order of the grips' points
@@ -90,7 +100,9 @@ Solution solve_chain(const Scene& scene, const ForceModelSettings& settings,
   if (const std::optional<PlaneTurn> turn = turn_into_plane(scene, settings)) {
     return turned_back(solve_chain(turn->laid(scene), settings, options), *turn);
   }
-  const Discretisation discretisation = discretise(scene, settings);
+  ForceModelSettings polygon = settings;
+  polygon.joint_law.reset();
+  const Discretisation discretisation = discretise(scene, polygon);
   const std::optional<ChainScene> chain = chain_scene(scene, discretisation, settings);
   Solution solution = chain ? solve_rigid_chain(scene, settings, discretisation, *chain, options)
                             : solve_elastic_chain(scene, settings, discretisation, options);

@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/QR>
+#include <algorithm>
 #include <chrono>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/discretise.hpp"
@@ -13,6 +17,7 @@
 #include "dlo/energy_model/interrupt.hpp"
 #include "dlo/force_model/simulation.hpp"
 #include "dlo/force_model/tangent_stiffness.hpp"
+#include "polygon/drag_forces.hpp"
 #include "polygon/natural_plane.hpp"
 #include "polygon/step_constants.hpp"
 #include "solve/polygon_solution.hpp"
@@ -62,23 +67,139 @@ bool in_another_state(const Scene& scene, const Discretisation& discretisation,
   return rms(discretisation.arc_length, points - rest) > apart * scene.length;
 }
 
+using Simulate = std::function<force_model::Simulation(const force_model::Rod& rod,
+                                                       const Eigen::Matrix3Xd& points)>;
+
+/// A simulation at rest, and how it came there.
+struct RestingRod {
+  force_model::Simulation simulation;
+  force_model::RelaxResult result;
+};
+
+/// Anderson's acceleration of a fixed-point iteration (type II; Walker and Ni 2011): what the least
+/// squares of the last residuals make of the last values.
+class FixedPoint {
+ public:
+  /// @return where to look next, after g(x)
+  Eigen::VectorXd next(const Eigen::VectorXd& x, const Eigen::VectorXd& g) {
+    constexpr Eigen::Index most_kept = 8;
+    const Eigen::VectorXd f = g - x;
+    if (f_.size() == 0) {
+      residuals_.resize(f.size(), 0);
+      values_.resize(f.size(), 0);
+    } else {
+      const Eigen::Index kept = std::min(residuals_.cols(), most_kept - 1);
+      Eigen::MatrixXd residuals(f.size(), kept + 1);
+      Eigen::MatrixXd values(f.size(), kept + 1);
+      residuals << residuals_.rightCols(kept), f - f_;
+      values << values_.rightCols(kept), g - g_;
+      residuals_ = std::move(residuals);
+      values_ = std::move(values);
+    }
+    f_ = f;
+    g_ = g;
+    if (residuals_.cols() == 0) return g;
+    const Eigen::VectorXd shares = residuals_.colPivHouseholderQr().solve(f);
+    return g - values_ * shares;
+  }
+
+ private:
+  Eigen::VectorXd f_;
+  Eigen::VectorXd g_;
+  Eigen::MatrixXd residuals_;  // changes of f, one a column
+  Eigen::MatrixXd values_;     // of g
+};
+
+/// Rest under a share of the drag: it is frozen on a shape while the polygon comes to
+/// rest, and the shape is sought that is its own rest.
+/// @param moves  by which it counts as not moving [m]
+/// @return nothing where it goes on moving, or does not come to rest
+std::optional<RestingRod> rest_under(const Scene& scene, const std::vector<double>& arc_length,
+                                     const force_model::Rod& dead, double share,
+                                     const Eigen::Matrix3Xd& begin, double moves,
+                                     const force_model::RelaxOptions& limits,
+                                     const Simulate& simulate, long& steps) {
+  constexpr int most_rounds = 25;
+  const double farthest = 0.25 * scene.length;  // a longer way may lead to another branch
+  FixedPoint search;
+  Eigen::Matrix3Xd shape = begin;  // that the drag is frozen on
+  Eigen::Matrix3Xd rest = begin;
+  for (int round = 0; round < most_rounds; ++round) {
+    force_model::Rod rod = dead;
+    rod.loads += share * drag_forces(scene, arc_length, shape);
+    force_model::Simulation simulation = simulate(rod, rest);
+    const force_model::RelaxResult result = simulation.relax(limits);
+    steps += result.steps;
+    if (result.status != force_model::RelaxStatus::at_rest) return std::nullopt;
+    rest = simulation.points();
+    const double moved = (rest - shape).colwise().norm().maxCoeff();
+    if (moved < moves) return RestingRod{std::move(simulation), result};
+    if (moved > farthest) return std::nullopt;
+    const Eigen::VectorXd next = search.next(shape.reshaped(), rest.reshaped());
+    shape = next.reshaped(3, rest.cols());
+  }
+  return std::nullopt;
+}
+
+/// The rest that one without drag goes over into while it grows.
+RestingRod raise_drag(const Scene& scene, const std::vector<double>& arc_length,
+                      const force_model::Simulation& unloaded,
+                      const force_model::RelaxOptions& limits, const Simulate& simulate) {
+  constexpr double first_share = 0.25;
+  constexpr double least_share = 0.02;  // below, it does not grow
+  constexpr double on_the_way = 1e-3;   // of the length, before all of it is there
+  const double at_the_end = 10 * limits.tolerance;
+  const force_model::Rod dead = unloaded.rod();
+  Eigen::Matrix3Xd points = unloaded.points();
+  double reached = 0;
+  long steps = 0;
+  for (double step = first_share; step > least_share;) {
+    const double share = std::min(1.0, reached + step);
+    std::optional<RestingRod> rest =
+        rest_under(scene, arc_length, dead, share, points,
+                   (share < 1 ? on_the_way : at_the_end) * scene.length, limits, simulate, steps);
+    if (!rest) {
+      step /= 2;
+      continue;
+    }
+    if (share == 1) {
+      rest->result.steps = steps;
+      rest->result.message +=
+          ", an equilibrium whose stability is not judged: drag has no potential";
+      return *std::move(rest);
+    }
+    points = rest->simulation.points();
+    reached = share;
+    step *= 1.5;
+  }
+  throw ConvergenceError(
+      fmt::format("{}: the force model did not come to rest under more than {:.2g} of the drag "
+                  "(--model exact may do)",
+                  scene.file, reached));
+}
+
 }  // namespace
 
-Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
+Solution solve_force(const Scene& given, const ForceModelSettings& settings,
                      const SolveOptions& options) {
-  if (const std::optional<PlaneTurn> turn = turn_into_plane(scene, settings)) {
-    return turned_back(solve_force(turn->laid(scene), settings, options), *turn);
+  if (const std::optional<PlaneTurn> turn = turn_into_plane(given, settings)) {
+    return turned_back(solve_force(turn->laid(given), settings, options), *turn);
   }
+  Scene scene = given;
+  scene.drag.reset();
   Discretisation discretisation = discretise(scene, settings);
   set_masses(scene, settings, discretisation);
   const SimulationStart start = simulation_start(scene, settings, discretisation, options);
   const auto begin = std::chrono::steady_clock::now();
-  const auto simulation_from = [&](const Eigen::Matrix3Xd& points) {
+  const auto simulate = [&](const force_model::Rod& rod, const Eigen::Matrix3Xd& points) {
     try {
-      return force_model::Simulation(start.rod, points, step_options(settings, discretisation));
+      return force_model::Simulation(rod, points, step_options(settings, discretisation));
     } catch (const std::invalid_argument& error) {
       throw InputError(fmt::format("{}: the force model: {}", scene.file, error.what()));
     }
+  };
+  const auto simulation_from = [&](const Eigen::Matrix3Xd& points) {
+    return simulate(start.rod, points);
   };
   const force_model::RelaxOptions limits{.tolerance = options.rest_tolerance,
                                          .max_steps = options.max_steps,
@@ -108,12 +229,20 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
             : "; stepper auto chooses its constants, a lower c_c lets the others take larger "
               "steps"));
   }
+  const Eigen::Matrix3Xd dead_loads = simulation.rod().loads;
+  if (given.drag) {
+    RestingRod rest = raise_drag(given, discretisation.arc_length, simulation, limits, simulate);
+    rest.result.steps += result.steps;
+    simulation = std::move(rest.simulation);
+    result = std::move(rest.result);
+  }
   require_unstrained(scene, settings, discretisation, simulation.points(), "force");
-  Solution solution =
-      polygon_solution(scene, settings, discretisation, simulation.rod(), simulation.points());
+  force_model::Rod rod = simulation.rod();
+  rod.loads = dead_loads;  // drag has no energy
+  Solution solution = polygon_solution(scene, settings, discretisation, rod, simulation.points());
   solution.model = Model::force;
   solution.message = result.message;
-  if (strayed()) solution.message += ", in another state than the chain";
+  if (!given.drag && strayed()) solution.message += ", in another state than the chain";
   // What an obstacle does to a held point inside a gripper is not felt outside.
   force_model::Rod without_walls = simulation.rod();
   without_walls.walls.clear();

@@ -16,8 +16,8 @@
 #include "dlo/compare/solution.hpp"
 #include "dlo/force_model/heuristics.hpp"
 #include "polygon/natural_plane.hpp"
+#include "polygon/polygon_response.hpp"
 #include "scene/reach.hpp"
-#include "solve/polygon_response.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -26,8 +26,6 @@ constexpr double unbounded = std::numeric_limits<double>::infinity();
 /// Second-order terms may double the first-order answer, up to this share of the length.
 constexpr double bound_factor = 2;
 constexpr double largest_response = 0.03;
-/// Points of the polygon that stands for the rod itself.
-constexpr int rod_points = 97;
 constexpr double largest_joint_angle = 0.5;  // [rad]
 
 /// The time that a plan may take.
@@ -106,20 +104,6 @@ std::optional<energy_model::Equilibrium> rod_shape(const Scene& scene, double ti
 bool touches(const energy_model::Equilibrium& rod) {
   return std::any_of(rod.obstacles.begin(), rod.obstacles.end(),
                      [](const Eigen::Vector3d& force) { return force.norm() > 0; });
-}
-
-/// The hooke polygon of N points with the scene's bookkeeping and a physical c_c; nothing if the
-/// grips ask for more points.
-std::optional<Discretisation> hooke_polygon(const Scene& scene, int points) {
-  ForceModelSettings settings;
-  settings.points = points;
-  settings.bookkeeping = scene.force_model.bookkeeping;
-  settings.point_weight = scene.force_model.point_weight;
-  try {
-    return discretise(scene, settings);
-  } catch (const InputError&) {
-    return std::nullopt;
-  }
 }
 
 double bounded(double response, double length) {
@@ -221,16 +205,6 @@ void look_at_twist(const energy_model::Equilibrium& rod, Plan& plan) {
   for (std::size_t i = 0; i < plan.twist.size(); ++i) plan.twist[i].twist = rod.twists[i].angle;
 }
 
-/// Why no polygon answers for the rod; empty if one does.
-std::string no_polygon(const Scene& scene, const Plan& plan) {
-  if (!plan.twist.empty()) return "the polygon that answers has no twist";
-  if (scene.naturally_bent()) return "the polygon that answers is intrinsically straight";
-  if (scene.has_two_stiffnesses()) return "the polygon that answers is round";
-  if (scene.has_couples()) return "the polygon that answers takes no couples";
-  if (!scene.sections.empty()) return "the polygon that answers is of one section";
-  return {};
-}
-
 }  // namespace
 
 double Plan::bound(const std::string& what) const {
@@ -240,12 +214,15 @@ double Plan::bound(const std::string& what) const {
   throw std::invalid_argument(fmt::format("Plan::bound: nothing called \"{}\" is neglected", what));
 }
 
-Plan make_plan(const Scene& scene, const PlanOptions& options) {
+Plan make_plan(const Scene& given, const PlanOptions& options) {
   if (!(options.target > 0) || !(options.gripper_speed >= 0) || !(options.time_limit > 0)) {
     throw std::invalid_argument(fmt::format(
         "make_plan: target = {}, gripper_speed = {}, time_limit = {}, must be > 0, >= 0 and > 0",
         options.target, options.gripper_speed, options.time_limit));
   }
+  // What stretches is planned for by the shape that does not.
+  Scene scene = given;
+  scene.stretch = false;
   const PlanClock clock(options.time_limit);
   const std::vector<std::size_t> in_reach = obstacles_in_reach(scene, scene.force_model);
   const std::vector<double> clearances = obstacle_clearances(scene);
@@ -291,14 +268,14 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
       no_bound(why);
     } else if (plan.contact) {
       no_bound("the rod touches an obstacle");
-    } else if (const std::string none = no_polygon(scene, plan); !none.empty()) {
+    } else if (const std::string none = why_no_polygon(scene); !none.empty()) {
       no_bound(none);
     } else if (!fine) {
       no_bound("the grips lie closer than any polygon looked at");
     } else {
       const PolygonResponse response(scene, *fine, *rod);
       const double EA = scene.axial_stiffness();
-      stretch.bound_m = bounded(response.stretch(EA), scene.length);
+      stretch.bound_m = bounded(response.stretch(EA).moved_m, scene.length);
       stretch.why = "tension over EA, as the shape answers it";
       shear.bound_m = bounded(response.shear(0.3 * EA), scene.length);
       shear.why = "force across over kGA, kG >= 0.3 E";
@@ -312,7 +289,8 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
     no_bound(fmt::format("not found out: {}", error.what()));
   }
   plan.stretch = stretch.bound_m > options.target * scene.length / 10;
-  plan.neglected = {stretch, shear, polygon, inertia(scene, options.gripper_speed), twist};
+  plan.neglected = {shear, polygon, inertia(scene, options.gripper_speed), twist};
+  if (!given.stretch) plan.neglected.insert(plan.neglected.begin(), stretch);
   if (scene.naturally_bent()) plan.neglected.push_back(natural);
   if (friction_in_reach(scene)) plan.neglected.push_back(neglected_friction(plan));
   plan.moving = plan.bound("inertia") > options.target * scene.length;

@@ -113,7 +113,8 @@ void require_unstrained(const Scene& scene, const ForceModelSettings& settings,
 
 LowestPolygon lowest_polygon(const Scene& scene, const ForceModelSettings& settings,
                              const Discretisation& discretisation, const SolveOptions& options) {
-  const energy_model::PolygonProblem problem = polygon_problem(discretisation.rod);
+  const energy_model::PolygonProblem problem =
+      polygon_problem(discretisation.rod, settings.joint_law);
   const double allowed = largest_strain(scene, settings);
   const TimeLeft left(options.time_limit);
   energy_model::PolygonOptions polygon_options;
@@ -150,8 +151,8 @@ LowestPolygon lowest_polygon(const Scene& scene, const ForceModelSettings& setti
   lowest.untwisted = lowest.result.points;
   lowest.rod = with_frames(scene, discretisation, lowest.untwisted);
   polygon_options.time_limit = std::max(left.now(), options.time_limit / 4);
-  lowest.result =
-      energy_model::twist_polygon(polygon_problem(lowest.rod), lowest.untwisted, polygon_options);
+  lowest.result = energy_model::twist_polygon(polygon_problem(lowest.rod, settings.joint_law),
+                                              lowest.untwisted, polygon_options);
   lowest.evaluations += lowest.result.evaluations;
   lowest.seconds += lowest.result.seconds;
   if (!energy_model::succeeded(lowest.result.status)) {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -39,6 +40,13 @@ std::string looked_from(const std::vector<energy_model::Equilibrium>& searches) 
                      searches.front().evaluations);
 }
 
+/// Whether it is an equilibrium of loads without a potential: no energy could say more of it.
+bool is_balance_alone(const energy_model::Problem& problem,
+                      const energy_model::Equilibrium& shape) {
+  return shape.status == energy_model::SolveStatus::not_verified && shape.sample &&
+         !energy_model::has_potential(problem);
+}
+
 /// Whether a shape may be handed on: proven, or unproven and asked for.
 bool acceptable(energy_model::SolveStatus status, const SolveOptions& options) {
   return energy_model::succeeded(status) ||
@@ -55,6 +63,33 @@ void refuse_lost_turns(const Scene& scene, energy_model::Equilibrium& equilibriu
   equilibrium.message = std::move(lost);
 }
 
+/// Of a soft rod that stretches, whose search by shots is slow: from the shape that does not, as
+/// the energy model finds it. None where it finds none, as of one that is pulled straight.
+std::optional<energy_model::Equilibrium> stretched_shape(const Scene& scene,
+                                                         const energy_model::Problem& problem,
+                                                         const energy_model::ExactOptions& exact) {
+  constexpr double soft = 1e3;  // Gamma; stiffer rods are searched by shots in no time
+  if (!problem.axial_stiffness || !problem.obstacles.empty() || !(scene.gamma() > soft)) {
+    return std::nullopt;
+  }
+  energy_model::Problem rigid = problem;
+  rigid.axial_stiffness.reset();
+  try {
+    const energy_model::Equilibrium told =
+        energy_model::solve_energy(rigid, {.time_limit = exact.time_limit / 2});
+    if (!energy_model::succeeded(told.status)) return std::nullopt;
+    energy_model::ExactOptions from = exact;
+    from.start = &told;
+    from.time_limit = exact.time_limit / 2;
+    energy_model::Equilibrium result = energy_model::solve_exact(problem, from);
+    if (!energy_model::succeeded(result.status)) return std::nullopt;
+    result.message += ", from the energy model's shape without stretch";
+    return result;
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
+}
+
 /// By the exact model on its own, or, of a rod that touches what it does not find by itself,
 /// from what the energy model says touches: its contacts are confirmed or corrected.
 /// @throws std::invalid_argument, ConvergenceError if the energy model finds none
@@ -66,6 +101,9 @@ energy_model::Equilibrium exact_shape(const Scene& scene, const energy_model::Pr
     return std::max(options.time_limit - spent.count(), std::numeric_limits<double>::min());
   };
   energy_model::ExactOptions exact{.time_limit = options.time_limit};
+  if (std::optional<energy_model::Equilibrium> stretched = stretched_shape(scene, problem, exact)) {
+    return *std::move(stretched);
+  }
   // What yields it refuses from any start.
   const bool yields = std::any_of(
       problem.obstacles.begin(), problem.obstacles.end(),
@@ -91,10 +129,21 @@ energy_model::Equilibrium exact_shape(const Scene& scene, const energy_model::Pr
   return confirmed;
 }
 
+/// @throws InputError if the rod stretches, which is said of the scene's key
+void refuse_stretch(const Scene& scene) {
+  if (!scene.stretch) return;
+  throw InputError(fmt::format(
+      "{}: rod.stretch = true: model energy does not stretch (allowed: --model exact, or chain and "
+      "force, whose segments do; or stretch = false)",
+      scene.file));
+}
+
 }  // namespace
 
 energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
                                           const SolveOptions& options) {
+  if (model == Model::energy) scene.require_potential("the energy model does");
+  if (model == Model::energy) refuse_stretch(scene);
   const energy_model::Problem problem = energy_problem(scene);
   energy_model::Equilibrium result;
   try {
@@ -108,7 +157,7 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
     refuse_rod(scene, model, error);
   }
   refuse_lost_turns(scene, result);
-  if (!acceptable(result.status, options)) {
+  if (!acceptable(result.status, options) && !is_balance_alone(problem, result)) {
     throw ConvergenceError(fmt::format(
         "{}: the {} model did not converge: {} ({} evaluations{}{})", scene.file, to_string(model),
         result.message, result.evaluations,
@@ -123,6 +172,8 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
 }
 
 energy_model::EnergySearch search_states(const Scene& scene, const SolveOptions& options) {
+  scene.require_potential("the energy model does");
+  refuse_stretch(scene);
   energy_model::EnergySearch search;
   std::vector<energy_model::Equilibrium>& states = search.equilibria;
   try {

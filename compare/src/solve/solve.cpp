@@ -14,8 +14,10 @@
 #include "dlo/compare/reference.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
+#include "polygon/shape_loads.hpp"
 #include "scene/reach.hpp"
 #include "solve/linking.hpp"
+#include "solve/stretch_effect.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -23,9 +25,11 @@ namespace {
 /// What the part of the rod beyond `at` pulls the part before it with: the opposite of all that
 /// acts on the part before.
 /// @param solution  its grippers and contacts count
-Eigen::Vector3d section_force(const Scene& scene, const Solution& solution, double at) {
+/// @param of_shape  of loads that depend on the shape, on the part before
+Eigen::Vector3d section_force(const Scene& scene, const Solution& solution, double at,
+                              const Eigen::Vector3d& of_shape) {
   const auto before = [&](double s) { return s < at || (s == at && at < scene.length); };
-  Eigen::Vector3d sum = scene.weight_between(0, at) + scene.distributed_between(0, at);
+  Eigen::Vector3d sum = scene.weight_between(0, at) + scene.distributed_between(0, at) + of_shape;
   for (std::size_t i = 0; i < solution.grippers.size(); ++i) {
     if (before(scene.grippers[i].at)) sum += solution.grippers[i].force;
   }
@@ -34,7 +38,7 @@ Eigen::Vector3d section_force(const Scene& scene, const Solution& solution, doub
     if (before(contact.end)) sum += contact.force;
   }
   for (const PointLoad& load : scene.loads) {
-    if (before(load.at)) sum += load.force;
+    if (!load.follows && before(load.at)) sum += load.force;
   }
   return -sum;
 }
@@ -59,6 +63,18 @@ std::vector<double> all_on_rod(std::vector<double> arc_lengths, double length) {
   return arc_lengths;
 }
 
+/// The same, and what stretch would change of it.
+Solution told_solution(const Scene& scene, Model model,
+                       const energy_model::Equilibrium& equilibrium, const SolveOptions& options,
+                       const std::vector<double>& arc_lengths,
+                       const std::vector<std::size_t>& obstacles) {
+  Solution solution = solution_of(scene, model, equilibrium, arc_lengths, obstacles);
+  if (scene.stretch) return solution;
+  solution.stretch = stretch_effect(scene, model, equilibrium, options);
+  if (matters(solution.stretch, scene, options)) solution.neglected.emplace_back("stretch");
+  return solution;
+}
+
 }  // namespace
 
 Solution solution_of(const Scene& scene, Model model, const energy_model::Equilibrium& equilibrium,
@@ -81,6 +97,7 @@ Solution solution_of(const Scene& scene, Model model, const energy_model::Equili
                      .twisting = equilibrium.energy.twisting,
                      .gravity = equilibrium.energy.gravity,
                      .load = equilibrium.energy.load,
+                     .stretch = equilibrium.energy.stretch,
                      .contact = equilibrium.energy.contact};
   for (const energy_model::Reaction& reaction : equilibrium.grips) {
     solution.grippers.push_back({reaction.force, reaction.torque});
@@ -94,12 +111,13 @@ Solution solution_of(const Scene& scene, Model model, const energy_model::Equili
   for (energy_model::ContactPart& contact : solution.contacts) {
     contact.obstacle = obstacles[contact.obstacle];
   }
+  const std::vector<Eigen::Vector3d> of_shape = shape_loads_before(scene, equilibrium, samples);
   const bool sinks_in = touches_yielding_obstacle(scene, solution.obstacles);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
     solution.curvature.push_back(shape.curvature.col(column).norm());
     if (sinks_in) continue;
-    const Eigen::Vector3d force = section_force(scene, solution, samples[i]);
+    const Eigen::Vector3d force = section_force(scene, solution, samples[i], of_shape[i]);
     // Adding zero turns -0 into 0.
     solution.tension.push_back(force.dot(shape.tangents.col(column)) + 0.0);
   }
@@ -114,8 +132,8 @@ Solution solution_of(const Scene& scene, Model model, const energy_model::Equili
 Solution solve(const Scene& scene, Model model, const SolveOptions& options,
                const std::vector<double>& arc_lengths) {
   if (model == Model::energy || model == Model::exact) {
-    return solution_of(scene, model, solve_reference(scene, model, options), arc_lengths,
-                       obstacles_in_reach(scene));
+    return told_solution(scene, model, solve_reference(scene, model, options), options, arc_lengths,
+                         obstacles_in_reach(scene));
   }
   Solution solution = model == Model::chain ? solve_chain(scene, scene.force_model, options)
                                             : solve_force(scene, scene.force_model, options);
@@ -136,7 +154,8 @@ AllSolutions solve_all(const Scene& scene, const SolveOptions& options,
   all.not_looked = std::move(search.not_looked);
   const std::vector<std::size_t> obstacles = obstacles_in_reach(scene);
   for (const energy_model::Equilibrium& state : search.equilibria) {
-    all.solutions.push_back(solution_of(scene, Model::energy, state, arc_lengths, obstacles));
+    all.solutions.push_back(
+        told_solution(scene, Model::energy, state, options, arc_lengths, obstacles));
   }
   return all;
 }

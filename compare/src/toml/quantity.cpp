@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 #include <span>
+#include <utility>
 
 #include "base/number.hpp"
 #include "dlo/compare/error.hpp"
@@ -25,11 +28,14 @@ constexpr Unit forces[] = {{"N", 1}, {"mN", 1e-3}, {"kN", 1e3}};
 constexpr Unit torques[] = {{"N m", 1}, {"mN m", 1e-3}, {"N mm", 1e-3}, {"kN m", 1e3}};
 constexpr Unit forces_per_length[] = {{"N/m", 1}, {"mN/m", 1e-3}, {"kN/m", 1e3}, {"N/mm", 1e3}};
 constexpr Unit accelerations[] = {{"m/s^2", 1}};
+constexpr Unit velocities[] = {{"m/s", 1}, {"mm/s", 1e-3}, {"km/h", 1 / 3.6}};
 constexpr Unit curvatures[] = {{"1/m", 1}, {"1/cm", 1e2}, {"1/mm", 1e3}};
 constexpr Unit foundations[] = {{"N/m^2", 1}, {"N/mm^2", 1e6}};
-constexpr Unit section_stiffnesses[] = {{"N m^2", 1}, {"N mm^2", 1e-6}};
-constexpr Unit joint_stiffnesses[] = {
-    {"N m/rad", 1}, {"N m", 1}, {"N mm/rad", 1e-3}, {"N mm", 1e-3}};
+constexpr Unit section_stiffnesses[] = {
+    {"N m^2", 1}, {"mN m^2", 1e-3}, {"kN m^2", 1e3}, {"N cm^2", 1e-4}, {"N mm^2", 1e-6}};
+constexpr Unit joint_stiffnesses[] = {{"N m/rad", 1},     {"N m", 1},
+                                      {"mN m/rad", 1e-3}, {"N mm/rad", 1e-3},
+                                      {"N mm", 1e-3},     {"N m/deg", 180 / std::numbers::pi}};
 constexpr Unit masses[] = {{"kg", 1}, {"g", 1e-3}};
 constexpr Unit masses_per_length[] = {{"kg/m", 1}, {"g/m", 1e-3}, {"g/cm", 1e-1}};
 constexpr Unit twists[] = {{"rad/m", 1}, {"deg/m", std::numbers::pi / 180}, {"1/m", 1}};
@@ -54,6 +60,8 @@ std::span<const Unit> units(Dimension dimension) {
       return forces_per_length;
     case Dimension::acceleration:
       return accelerations;
+    case Dimension::velocity:
+      return velocities;
     case Dimension::curvature:
       return curvatures;
     case Dimension::foundation:
@@ -76,6 +84,36 @@ std::span<const Unit> units(Dimension dimension) {
       break;
   }
   return {};
+}
+
+/// As units are spelled here: "N*m" and one with a dot have a blank between, powers a "^".
+std::string plain_spelling(std::string_view written) {
+  constexpr std::pair<std::string_view, std::string_view> spellings[] = {
+      {"*", " "},         {"\xc2\xb7", " "}, {"\xe2\x8b\x85", " "}, {"\xc2\xb2", "^2"},
+      {"\xc2\xb3", "^3"}, {"\xc2\xb5", "u"}, {"\xce\xbc", "u"},     {"\xc2\xb0", "deg"}};
+  std::string plain;
+  while (!written.empty()) {
+    const auto* const found =
+        std::find_if(std::begin(spellings), std::end(spellings),
+                     [&](const auto& spelling) { return written.starts_with(spelling.first); });
+    if (found != std::end(spellings)) {
+      plain += found->second;
+      written.remove_prefix(found->first.size());
+    } else {
+      plain += written.front();
+      written.remove_prefix(1);
+    }
+  }
+  return plain;
+}
+
+/// Whether it is the unit's name, or that without its blank: "Nm". A blank too many, as in "m m",
+/// would be another unit.
+bool names(std::string_view plain, std::string_view unit) {
+  if (plain == unit) return true;
+  std::string joined(unit);
+  std::erase(joined, ' ');
+  return plain == joined;
 }
 
 }  // namespace
@@ -121,8 +159,9 @@ double parse_quantity(std::string_view text, Dimension dimension) {
         fmt::format("\"{}\" lacks a unit (allowed: {}; a bare number without quotes is SI)", text,
                     known_units(dimension)));
   }
+  const std::string plain = plain_spelling(name);
   for (const Unit& unit : units(dimension)) {
-    if (unit.name == name) return value * unit.factor;
+    if (names(plain, unit.name)) return value * unit.factor;
   }
   throw InputError(fmt::format("unknown unit \"{}\" in \"{}\" (allowed: {})", name, text,
                                units(dimension).empty() ? "none" : known_units(dimension)));

@@ -17,6 +17,7 @@ enum class Dimension {
   torque,
   force_per_length,
   acceleration,
+  velocity,
   curvature,
   foundation,         ///< force per depth and per length of rod
   section_stiffness,  ///< moment per curvature (EI), torque per twist (GJ)

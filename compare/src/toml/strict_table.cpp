@@ -119,12 +119,28 @@ std::optional<int> StrictTable::optional_integer(std::string_view key, int low, 
   return integer(key, low, high);
 }
 
+std::optional<bool> StrictTable::optional_flag(std::string_view key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return std::nullopt;
+  const std::optional<bool> value = node->value_exact<bool>();
+  if (!value) fail(key, "not a flag (allowed: true or false)");
+  return value;
+}
+
 int StrictTable::integer(std::string_view key, int low, int high) {
   const auto value = need(key).value_exact<std::int64_t>();
   if (!value || *value < low || *value > high) {
     fail(key, fmt::format("must be a whole number (allowed: {} to {})", low, high));
   }
   return static_cast<int>(*value);
+}
+
+bool StrictTable::flag(std::string_view key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return false;
+  const auto value = node->value_exact<bool>();
+  if (!value) fail(key, "must be true or false (allowed: true, false)");
+  return *value;
 }
 
 std::string StrictTable::text(std::string_view key) {

@@ -44,9 +44,13 @@ class StrictTable {
   std::optional<double> optional_number(std::string_view key, Dimension dimension,
                                         const Range& range);
   std::optional<int> optional_integer(std::string_view key, int low, int high);
+  /// true or false; false where there is no such key.
+  bool flag(std::string_view key);
   std::string text(std::string_view key);
   std::optional<std::string> optional_text(std::string_view key);
   int integer(std::string_view key, int low, int high);
+  /// true or false; none: no key.
+  std::optional<bool> optional_flag(std::string_view key);
   /// One of `allowed`.
   std::string choice(std::string_view key, const std::vector<std::string>& allowed);
   /// Of an enumeration with a table of names.

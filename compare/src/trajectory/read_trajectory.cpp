@@ -105,21 +105,6 @@ Pose pose_of(const std::vector<std::string_view>& fields, const PoseColumns& col
   return pose;
 }
 
-/// Relative to the folder of the scene; a pipe or a device could keep a scene from ever being read.
-std::string read_beside(const StrictTable& table, const std::string& name,
-                        const std::string& scene_file) {
-  const std::string path = path_beside(name, scene_file);
-  std::error_code unknown;
-  if (!std::filesystem::is_regular_file(path, unknown)) {
-    const bool is_there = std::filesystem::exists(path, unknown);
-    table.fail(
-        "trajectory",
-        fmt::format("{} {}", is_there ? "not a regular file" : "no such file beside the scene",
-                    file_allowed));
-  }
-  return read_file(path);
-}
-
 Trajectory read_rows(StrictTable& table, std::vector<StrictTable>& rows, const PoseKeys& keys) {
   std::vector<Pose> poses;
   std::vector<std::string> allowed{keys.position, "time"};
@@ -150,6 +135,19 @@ Trajectory read_rows(StrictTable& table, std::vector<StrictTable>& rows, const P
 }
 
 }  // namespace
+
+std::string read_beside(const StrictTable& table, std::string_view key, const std::string& name,
+                        const std::string& scene_file, const char* allowed) {
+  const std::string path = path_beside(name, scene_file);
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(path, unknown)) {
+    const bool is_there = std::filesystem::exists(path, unknown);
+    table.fail(
+        key, fmt::format("{} {}", is_there ? "not a regular file" : "no such file beside the scene",
+                         allowed));
+  }
+  return read_file(path);
+}
 
 Trajectory parse_trajectory(std::string_view text, const std::string& file) {
   std::optional<PoseColumns> columns;
@@ -193,7 +191,8 @@ Trajectory read_trajectory(StrictTable& table, const PoseKeys& keys,
   if (!name) return rows.empty() ? Trajectory() : read_rows(table, rows, keys);
   Trajectory trajectory;
   try {
-    trajectory = parse_trajectory(read_beside(table, *name, scene_file), *name);
+    trajectory =
+        parse_trajectory(read_beside(table, "trajectory", *name, scene_file, file_allowed), *name);
   } catch (const InputError& error) {
     // One that the table has made says where it is already.
     if (std::string_view(error.what()).starts_with(scene_file)) throw;

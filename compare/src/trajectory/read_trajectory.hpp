@@ -23,6 +23,13 @@ struct PoseKeys {
 [[nodiscard]] Trajectory read_trajectory(StrictTable& table, const PoseKeys& keys,
                                          const std::string& scene_file);
 
+/// Text of the file that a table's key names, relative to the folder of the scene; a pipe or a
+/// device could keep a scene from ever being read.
+/// @param allowed  "(allowed: ..)";  @throws InputError naming the key if there is no such file
+[[nodiscard]] std::string read_beside(const StrictTable& table, std::string_view key,
+                                      const std::string& name, const std::string& scene_file,
+                                      const char* allowed);
+
 /// Poses of a CSV file: a header with time, x, y, z and (all or none) dx, dy, dz, in any order,
 /// then a row a pose, in s and m; empty lines and those that begin with # are passed over.
 /// @throws InputError naming the file, the line, and what is allowed

@@ -17,7 +17,9 @@
 #include "base/lowest_combinations.hpp"
 #include "base/require.hpp"
 #include "base/silence_gsl.hpp"
+#include "dlo/energy_model/soft_line.hpp"
 #include "dlo/energy_model/taut_line.hpp"
+#include "exact/without_potential.hpp"
 #include "kirchhoff/rod_span.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/reduction.hpp"
@@ -111,15 +113,27 @@ Found search(const Problem& problem, const ExactOptions& options, const Deadline
                   [&](const LineLoad& load) { return acts_everywhere(load, problem); });
   // The scan knows of one section.
   const std::optional<ReducedCantilever> cantilever =
-      problem.sections.empty() && same_everywhere ? reduce_cantilever(problem) : std::nullopt;
+      problem.sections.empty() && same_everywhere && !problem.axial_stiffness
+          ? reduce_cantilever(problem)
+          : std::nullopt;
   const bool from_tip =
       options.start == nullptr && cantilever && planar_shots_are_well_posed(cantilever->rod);
   return from_tip ? scan_tip(problem, *cantilever, options, deadline)
                   : solve_spans(problem, options, deadline);
 }
 
+Found search_without_potential(const Problem& problem, const ExactOptions& options,
+                               const Deadline& deadline) {
+  Found found;
+  found.equilibria.push_back(solve_without_potential(problem, options, deadline));
+  found.out_of_time = deadline.passed();
+  return found;
+}
+
 Found search_touching(const Problem& problem, const ExactOptions& options,
                       const Deadline& deadline) {
+  require(!problem.axial_stiffness, "solve_exact", "axial_stiffness",
+          problem.axial_stiffness.value_or(0), "none where there are obstacles");
   require(!has_couples(problem), "solve_exact", "torque of a load", 1,
           "0 where there are obstacles");
   for (const LineLoad& load : problem.line_loads) {
@@ -149,9 +163,17 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
   require(options.time_limit > 0, "solve_exact", "time_limit", options.time_limit, "> 0");
   require(!problem.confined_to_plane, "solve_exact", "confined_to_plane", 1,
           "false: solve_energy() alone confines a rod");
-  if (std::optional<Equilibrium> taut = taut_line(problem)) return {*std::move(taut)};
-  Found found = problem.obstacles.empty() ? search(problem, options, deadline)
-                                          : search_touching(problem, options, deadline);
+  const bool judged = has_potential(problem);
+  require(judged || !problem.axial_stiffness, "solve_exact", "axial_stiffness",
+          problem.axial_stiffness.value_or(0),
+          "none of a rod in a stream, with loads that follow it, or couples out of its plane");
+  if (judged && !problem.axial_stiffness) {
+    if (std::optional<Equilibrium> taut = taut_line(problem)) return {*std::move(taut)};
+    if (std::optional<Equilibrium> line = soft_line_for_models(problem)) return {*std::move(line)};
+  }
+  Found found = !judged                     ? search_without_potential(problem, options, deadline)
+                : problem.obstacles.empty() ? search(problem, options, deadline)
+                                            : search_touching(problem, options, deadline);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   for (Equilibrium& equilibrium : found.equilibria) {

@@ -10,8 +10,9 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Layout of the integrated vector: r, R, m, the four integrals, then r, spin and m of each
-/// parameter; of a piece that lies the impulse int p N ds and its derivatives too.
+/// Layout of the integrated vector: r, R, m, the first four integrals, then r, spin and m of each
+/// parameter; of a piece that lies the impulse int p N ds and its derivatives too, where a stream
+/// drags it that of the drag; of one that stretches, which does not lie, that energy.
 constexpr Eigen::Index first_integral = 15;
 constexpr Eigen::Index state_size = 19;
 constexpr Eigen::Index variation_size = 9;
@@ -21,11 +22,15 @@ struct FlowPiece {
   Eigen::Vector3d n;  // at its beginning, less what presses on it
   const RodVariation* variation;
 
+  [[nodiscard]] bool has_impulse() const {
+    return rod->surface != nullptr || rod->section.drag.has_value();
+  }
   [[nodiscard]] Eigen::Index impulse() const {
     return state_size + variation->n.cols() * variation_size;
   }
+  [[nodiscard]] bool stretches() const { return rod->section.stretch > 0; }
   [[nodiscard]] Eigen::Index size() const {
-    return impulse() + (rod->surface != nullptr ? 3 * (1 + variation->n.cols()) : 0);
+    return impulse() + (has_impulse() ? 3 * (1 + variation->n.cols()) : 0) + (stretches() ? 1 : 0);
   }
 };
 
@@ -52,19 +57,34 @@ void press(const FlowPiece& piece, const RodState& state, const double* y, doubl
   }
 }
 
+/// What a stream exerts.
+void drag(const FlowPiece& piece, const Eigen::Vector3d& t, const double* y, double* rate) {
+  const Drag& own = *piece.rod->section.drag;
+  const Eigen::Index impulse = piece.impulse();
+  Eigen::Map<Eigen::Vector3d>(rate + impulse) = own.force(t);
+  const Eigen::Index parameters = piece.variation->n.cols();
+  if (parameters == 0) return;
+  const Eigen::Matrix3d by_tangent = own.by_tangent(t);
+  for (Eigen::Index k = 0; k < parameters; ++k) {
+    const Eigen::Map<const Eigen::Vector3d> spin(y + state_size + k * variation_size + 3);
+    Eigen::Map<Eigen::Vector3d>(rate + impulse + 3 * (k + 1)) = by_tangent * spin.cross(t);
+  }
+}
+
 int rod_rates(double at, const double* y, double* rate, void* data) {
   using Vector = Eigen::Map<const Eigen::Vector3d>;
   using Rate = Eigen::Map<Eigen::Vector3d>;
   const auto& piece = *static_cast<const FlowPiece*>(data);
   const RodSection& section = piece.rod->section;
   const bool lies = piece.rod->surface != nullptr;
+  const bool has_impulse = piece.has_impulse();
   const Eigen::Index impulse = piece.impulse();
   const Vector r(y);
   const Eigen::Map<const Eigen::Matrix3d> R(y + 3);
   const Vector m(y + 12);
   const double s = piece.rod->begin + at;
   Eigen::Vector3d n = piece.n - section.weight_from(piece.rod->begin, at);
-  if (lies) n -= Vector(y + impulse);
+  if (has_impulse) n -= Vector(y + impulse);
   const Eigen::Vector3d t = R.col(2);
   const Eigen::Vector3d compliance = section.compliance();
   const Eigen::Vector3d own = R.transpose() * m;
@@ -79,7 +99,18 @@ int rod_rates(double at, const double* y, double* rate, void* data) {
   rate[first_integral + 1] = own[2] * stretch[2] / 2;
   rate[first_integral + 2] = -(section.weight + s * section.slope).dot(r);
   rate[first_integral + 3] = u[2];
-  if (lies) press(piece, {r, R, m, n}, y, rate);
+  double along = 1;  // dr = along t ds
+  if (piece.stretches()) {
+    along += section.stretch * n.dot(t);
+    Rate(rate + 0) *= along;
+    Rate(rate + 12) *= along;
+    rate[piece.size() - 1] = (along - 1) * n.dot(t) / 2;
+  }
+  if (lies) {
+    press(piece, {r, R, m, n}, y, rate);
+  } else if (has_impulse) {
+    drag(piece, t, y, rate);
+  }
   if (piece.variation->n.cols() == 0) return GSL_SUCCESS;
   const Eigen::Matrix3d yields = R * compliance.asDiagonal() * R.transpose();
   for (Eigen::Index k = 0; k < piece.variation->n.cols(); ++k) {
@@ -89,10 +120,16 @@ int rod_rates(double at, const double* y, double* rate, void* data) {
     const Vector dm(change + 6);
     const Eigen::Vector3d dt = spin.cross(t);
     Eigen::Vector3d dn = piece.variation->n.col(k);
-    if (lies) dn -= Vector(y + impulse + 3 * (k + 1));
-    Rate(change_rate + 0) = dt;
+    if (has_impulse) dn -= Vector(y + impulse + 3 * (k + 1));
     Rate(change_rate + 3) = yields * (dm + m.cross(spin));
-    Rate(change_rate + 6) = dn.cross(t) + n.cross(dt);
+    if (!piece.stretches()) {
+      Rate(change_rate + 0) = dt;
+      Rate(change_rate + 6) = dn.cross(t) + n.cross(dt);
+      continue;
+    }
+    const Eigen::Vector3d dr = along * dt + section.stretch * (dn.dot(t) + n.dot(dt)) * t;
+    Rate(change_rate + 0) = dr;
+    Rate(change_rate + 6) = along * dn.cross(t) + n.cross(dr);
   }
   return GSL_SUCCESS;
 }
@@ -160,9 +197,10 @@ RodVariation::RodVariation(Eigen::Index parameters)
       n(Eigen::Matrix3Xd::Zero(3, parameters)) {}
 
 RodRate rate_of(const RodPiece& piece, const RodState& state) {
-  RodRate rate{state.t(), state.R * strain_of(piece.section, piece.natural, piece.begin, state),
-               state.n.cross(state.t()),
-               -(piece.section.weight + piece.begin * piece.section.slope)};
+  const Eigen::Vector3d dr = (1 + piece.section.stretch * state.n.dot(state.t())) * state.t();
+  RodRate rate{dr, state.R * strain_of(piece.section, piece.natural, piece.begin, state),
+               state.n.cross(dr), -(piece.section.weight + piece.begin * piece.section.slope)};
+  if (piece.section.drag) rate.n -= piece.section.drag->force(state.t());
   if (piece.surface != nullptr) {
     rate.n -= pressure(*piece.surface, piece.section, state) * piece.surface->gap(state.r).gradient;
   }
@@ -186,14 +224,14 @@ bool follow_rod(const RodPiece& piece, double tolerance, RodState& state, RodVar
   state.m = all.segment<3>(12);
   state.n -= piece.section.weight_from(piece.begin, piece.length);
   integrals = {all[first_integral], all[first_integral + 1], all[first_integral + 2],
-               all[first_integral + 3]};
+               all[first_integral + 3], flow.stretches() ? all[flow.size() - 1] : 0.0};
   for (Eigen::Index k = 0; k < parameters; ++k) {
     const Eigen::Index at = state_size + k * variation_size;
     variation.r.col(k) = all.segment<3>(at);
     variation.spin.col(k) = all.segment<3>(at + 3);
     variation.m.col(k) = all.segment<3>(at + 6);
   }
-  if (piece.surface == nullptr) return true;
+  if (!flow.has_impulse()) return true;
   state.n -= all.segment<3>(flow.impulse());
   for (Eigen::Index k = 0; k < parameters; ++k) {
     variation.n.col(k) -= all.segment<3>(flow.impulse() + 3 * (k + 1));

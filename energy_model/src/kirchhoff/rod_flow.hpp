@@ -53,6 +53,7 @@ struct RodIntegrals {
   double twisting = 0;  ///< of c (u - u0)_3^2 / 2
   double gravity = 0;   ///< of -w . r
   double turn = 0;      ///< of u_3: the frame's turn ahead of transport
+  double stretch = 0;   ///< of a (n.t)^2 / 2, a the section's stretch
 };
 
 /// What the rod's equations need of a piece of it.
@@ -74,10 +75,13 @@ struct RodRate {
 [[nodiscard]] RodRate rate_of(const RodPiece& piece, const RodState& state);
 
 /// Follows the rod's equations over a piece,
-///     r' = t,   R' = R hat(u),   m' = n x t,   n' = -w, and -w - p N where it lies,
+///     r' = t,   R' = R hat(u),   m' = n x t,   n' = -w - f(t), and -w - p N where it lies,
 /// and their linearisation,
 ///     dr' = spin x t,   spin' = R K^-1 R^T (dm + m x spin),   dm' = dn x t + n x (spin x t),
-/// with GSL's rk8pd. Nine components of a rotation and no angles, so no chart that could end.
+/// f the drag, with GSL's rk8pd. Of a section that stretches by a, in place of t in r' and m', and
+/// in dr' and dm' of its change,
+///     (1 + a n.t) t   and   (1 + a n.t) spin x t + a (dn.t + n.(spin x t)) t.
+/// Nine components of a rotation and no angles, so no chart that could end.
 /// @param tolerance  local error per step, relative to 1 + |component|
 /// @param[in,out] state, variation  from the beginning of the piece to its end
 /// @param[out] integrals  of the piece

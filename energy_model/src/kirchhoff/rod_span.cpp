@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/require.hpp"
+#include "dlo/energy_model/natural_frame.hpp"
 #include "dlo/energy_model/turns.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/rod_law.hpp"
@@ -29,7 +30,7 @@ std::vector<Eigen::Vector3d> directions_of(const RodSpan& span) {
     if (chord.norm() > same_place) directions.emplace_back(chord.normalized());
   }
   for (const RodSpan::Load& load : span.loads) {
-    if (load.couple.isZero(0)) continue;
+    if (load.couple.isZero(0) || load.follows) continue;
     for (const Eigen::Vector3d& direction : plane_across(load.couple))
       directions.push_back(direction);
   }
@@ -40,7 +41,11 @@ std::vector<Eigen::Vector3d> directions_of(const RodSpan& span) {
         directions.emplace_back((part.section.weight + s * part.section.slope) / largest);
       }
     }
-    for (const RodSpan::Load& load : span.loads) directions.emplace_back(load.force / largest);
+    for (const RodSpan::Load& load : span.loads) {
+      if (!load.follows) directions.emplace_back(load.force / largest);
+    }
+    const std::optional<Drag>& drag = span.parts.front().section.drag;
+    if (drag && drag->largest() > 0) directions.emplace_back(drag->velocity.normalized());
   }
   return directions;
 }
@@ -86,10 +91,16 @@ std::vector<RodSpan::Part> parts_between(const Problem& problem, double begin, d
     if (to - from < same_place) continue;
     RodSection own{section.bending_stiffness / unit, section.torsional_stiffness / unit,
                    section.weight_per_length * l * l * l / unit};
+    if (problem.axial_stiffness) own.stretch = unit / (*problem.axial_stiffness * l * l);
     own.slope = section.weight_slope * l * l * l * l / unit;
     own.weight -= (section.begin / l - begin) * own.slope;
     if (directors == Directors::of_material && section.bending_stiffness_2) {
       own.bending_2 = *section.bending_stiffness_2 / unit;
+    }
+    if (problem.drag) {
+      const double force = l * l * l / unit;
+      own.drag = {problem.drag->velocity, force * problem.drag->normal,
+                  force * problem.drag->tangential};
     }
     if (section.natural_curvature) own.natural_bend = l * *section.natural_curvature;
     if (section.natural_twist) own.natural_twist = l * *section.natural_twist;
@@ -140,7 +151,8 @@ void add_loads(const Problem& problem, RodSpan& span) {
     for (const RodSpan::Hold& hold : span.holds) {
       if (std::abs(at - hold.at) < same_place) at = hold.at;
     }
-    span.loads.push_back({at, load.force / force_unit, load.torque / (force_unit * l)});
+    span.loads.push_back(
+        {at, load.force / force_unit, load.torque / (force_unit * l), load.follows});
   }
   std::stable_sort(span.loads.begin(), span.loads.end(),
                    [](const auto& a, const auto& b) { return a.at < b.at; });
@@ -224,6 +236,54 @@ RodSpan whole(const Problem& problem) {
   return span;
 }
 
+RodSpan with_own_axes(const Problem& problem) {
+  constexpr double rounding = 1e-12;
+  require_no_obstacles(problem);
+  const bool material = has_material_directors(problem);
+  RodSpan span = material ? uncut(problem) : whole(problem);
+  span.has_potential = has_potential(problem);
+  if (material) return span;
+  span.plane = plane_of(span);
+  const auto across = [](const RodSpan::Load& load) {
+    return load.follows && !(load.force.head<2>().isZero(0) && load.couple.head<2>().isZero(0));
+  };
+  const bool asks_for_d1 = std::any_of(span.loads.begin(), span.loads.end(), across);
+  const bool leaves_d2 =
+      std::any_of(span.loads.begin(), span.loads.end(), [](const RodSpan::Load& load) {
+        return load.follows &&
+               (load.force.y() != 0 || load.couple.x() != 0 || load.couple.z() != 0);
+      });
+  require(!asks_for_d1 || !span.clamps.empty(), "solve_exact",
+          "number of clamps of a rod that a load follows along d1 or d2", 0, ">= 1");
+  if (asks_for_d1) {
+    span.has_axes = true;
+    span.first_frame = first_frame(problem);
+    const Grip& clamp = problem.grips[*first_clamp(problem)];
+    span.first_roll = clamp.frame ? clamp.frame->roll : 0;
+    const Eigen::Vector3d d2 = span.first_frame.col(1);
+    const bool flat = span.plane && span.plane->x.cross(span.plane->y).cross(d2).norm() < rounding;
+    if (!flat) span.plane = plane_across_d2(span);
+  }
+  if (leaves_d2) span.plane.reset();
+  require(span.plane || !asks_for_d1 || problem.torsional_stiffness > 0, "solve_exact",
+          "torsional_stiffness of a rod that a load follows along d1 or d2 out of a plane",
+          problem.torsional_stiffness, "> 0");
+  return span;
+}
+
+RodSpan loaded_by(RodSpan span, double factor) {
+  for (RodSpan::Part& part : span.parts) {
+    if (!part.section.drag) continue;
+    part.section.drag->normal *= factor;
+    part.section.drag->tangential *= factor;
+  }
+  for (RodSpan::Load& load : span.loads) {
+    load.couple *= factor;
+    if (load.follows) load.force *= factor;
+  }
+  return span;
+}
+
 std::vector<Eigen::Vector3d> natural_probes(const RodSpan& span, int count) {
   std::vector<Eigen::Vector3d> strains;
   if (!span.natural) return strains;
@@ -302,9 +362,12 @@ RodMesh mesh_at(const RodSpan& span, const Eigen::VectorXd& nodes) {
   mesh.pull_d1 = mesh.load;
   mesh.hold.assign(static_cast<std::size_t>(nodes.size()), nullptr);
   mesh.couple = mesh.load;
+  mesh.own_load = mesh.load;
+  mesh.own_couple = mesh.load;
   for (const RodSpan::Load& load : span.loads) {
-    mesh.load.col(node_at(nodes, load.at)) += load.force;
-    mesh.couple.col(node_at(nodes, load.at)) += load.couple;
+    const Eigen::Index node = node_at(nodes, load.at);
+    (load.follows ? mesh.own_load : mesh.load).col(node) += load.force;
+    (load.follows ? mesh.own_couple : mesh.couple).col(node) += load.couple;
   }
   for (const RodSpan::Hold& hold : span.holds) {
     mesh.hold[static_cast<std::size_t>(node_at(nodes, hold.at))] = &hold;
@@ -369,6 +432,7 @@ double total_load(const RodSpan& span) {
     load +=
         (part.end - part.begin) / 2 *
         ((own.weight + part.begin * own.slope).norm() + (own.weight + part.end * own.slope).norm());
+    if (own.drag) load += (part.end - part.begin) * own.drag->largest();
   }
   for (const RodSpan::Load& l : span.loads) load += l.force.norm() + l.couple.norm() / span.length;
   return load;

@@ -28,6 +28,7 @@ struct RodSpan {
     double at = 0;  ///< s
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
     Eigen::Vector3d couple = Eigen::Vector3d::Zero();
+    bool follows = false;  ///< both are along d1, d2 and t there
   };
   /// Of one section.
   struct Part {
@@ -57,7 +58,9 @@ struct RodSpan {
   std::optional<Plane> plane;
   /// That the first clamp holds; of a rod that is round() and not twisted() any one will do.
   Eigen::Matrix3d first_frame = Eigen::Matrix3d::Identity();
-  double first_roll = 0;  ///< of that frame, which contains it; zero of a rod that is cut [rad]
+  bool has_potential = true;  ///< of its loads
+  bool has_axes = false;      ///< a load follows d1 or d2, round or not
+  double first_roll = 0;      ///< of that frame, which contains it; zero of a rod that is cut [rad]
 
   /// Null: no clamp there.
   [[nodiscard]] const Clamp* clamp_at(double s) const;
@@ -98,6 +101,12 @@ using ClampFrames = std::vector<std::optional<Eigen::Matrix3d>>;
 /// @throws std::invalid_argument as whole(), or if there are obstacles
 [[nodiscard]] RodSpan uncut(const Problem& problem);
 
+/// All of a rod, as uncut() or whole() says, for loads without a potential: the frame of the first
+/// clamp is that which such loads count from, round or not.
+/// @throws std::invalid_argument as uncut(), or if a load follows a rod along a d1 that nobody
+/// knows
+[[nodiscard]] RodSpan with_own_axes(const Problem& problem);
+
 /// Natural strains at places that are `count` equal lengths apart, and in the middle of each part:
 /// none of a straight rod.
 [[nodiscard]] std::vector<Eigen::Vector3d> natural_probes(const RodSpan& span, int count);
@@ -131,11 +140,13 @@ struct RodContacts {
 /// The nodes of a span: its ends and those of its parts, grips and loads, and as many between them
 /// as are asked for.
 struct RodMesh {
-  Eigen::VectorXd s;         ///< growing, at least 2
-  Eigen::Matrix3Xd load;     ///< on each node
-  Eigen::Matrix3Xd couple;   ///< the same
-  Eigen::Matrix3Xd pull;     ///< q on each node's tangent, of energy -q.t; zero at first
-  Eigen::Matrix3Xd pull_d1;  ///< the same on its d1
+  Eigen::VectorXd s;            ///< growing, at least 2
+  Eigen::Matrix3Xd load;        ///< on each node
+  Eigen::Matrix3Xd couple;      ///< the same
+  Eigen::Matrix3Xd own_load;    ///< that follows it, along d1, d2 and t
+  Eigen::Matrix3Xd own_couple;  ///< the same
+  Eigen::Matrix3Xd pull;        ///< q on each node's tangent, of energy -q.t; zero at first
+  Eigen::Matrix3Xd pull_d1;     ///< the same on its d1
   std::vector<const RodSpan::Hold*> hold;  ///< at each node, null for none; of the span
   std::vector<const RodSection*> section;  ///< of each interval; of the span
   RodContacts contacts;
@@ -144,7 +155,8 @@ struct RodMesh {
   [[nodiscard]] bool is_fixed(Eigen::Index node) const {
     const auto i = static_cast<std::size_t>(node);
     return node == 0 || node == intervals() || hold[i] != nullptr || !load.col(node).isZero(0) ||
-           !couple.col(node).isZero(0) || section[i - 1] != section[i];
+           !couple.col(node).isZero(0) || !own_load.col(node).isZero(0) ||
+           !own_couple.col(node).isZero(0) || section[i - 1] != section[i];
   }
   [[nodiscard]] Eigen::Index intervals() const { return s.size() - 1; }
   [[nodiscard]] double width(Eigen::Index interval) const { return s[interval + 1] - s[interval]; }
@@ -184,6 +196,9 @@ struct ForceField {
 
 /// Least bending stiffness of a span, about either axis.
 [[nodiscard]] double least_bending_stiffness(const RodSpan& span);
+
+/// The span with its drag and what follows it, and all couples, times a factor.
+[[nodiscard]] RodSpan loaded_by(RodSpan span, double factor);
 
 /// Sum of the norms of weight and loads.
 [[nodiscard]] double total_load(const RodSpan& span);

@@ -4,6 +4,8 @@
 #include <functional>
 #include <optional>
 
+#include "dlo/energy_model/drag.hpp"
+
 namespace dlo::energy_model {
 
 /// Natural strains at s, times l; none: a straight rod.
@@ -18,6 +20,8 @@ struct RodSection {
   Eigen::Vector3d slope = Eigen::Vector3d::Zero();             ///< w'
   std::optional<Eigen::Vector2d> natural_bend = std::nullopt;  ///< its own; none: the rod's
   std::optional<double> natural_twist = std::nullopt;          ///< as natural_bend
+  std::optional<Drag> drag = std::nullopt;                     ///< of forces in units of the rod
+  double stretch = 0;  ///< EI / (EA l^2): the tangent's stretch by the tension; 0: none
 
   [[nodiscard]] Eigen::Vector3d weight_from(double s, double length) const {
     return length * (weight + (s + length / 2) * slope);

@@ -23,7 +23,8 @@ std::vector<OrderedGrip> ordered_grips(const Problem& problem) {
   for (std::size_t i = 0; i + 1 < grips.size(); ++i) {
     const double rod = grips[i + 1].grip->at - grips[i].grip->at;
     const double apart = (grips[i + 1].grip->position - grips[i].grip->position).norm();
-    if (rod > same_arc_length_share * problem.length && apart < rod) continue;
+    const bool reaches = apart < rod || problem.axial_stiffness;
+    if (rod > same_arc_length_share * problem.length && reaches) continue;
     std::ostringstream message;
     message << "Problem: grips at arc lengths " << grips[i].grip->at << " m and "
             << grips[i + 1].grip->at << " m are " << apart << " m apart, must be less than the "

@@ -13,8 +13,8 @@ struct OrderedGrip {
 };
 
 /// The grips by growing arc length.
-/// @throws std::invalid_argument if two are further apart than the rod between them, or at one arc
-/// length
+/// @throws std::invalid_argument if two are at one arc length, or further apart than the rod
+/// between them, which does not stretch
 [[nodiscard]] std::vector<OrderedGrip> ordered_grips(const Problem& problem);
 
 /// The clamp that carries a load alone, because they are within 1e-9 l of each other: its index in

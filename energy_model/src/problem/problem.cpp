@@ -1,11 +1,13 @@
 #include "dlo/energy_model/problem.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "base/require.hpp"
+#include "dlo/energy_model/natural_frame.hpp"
 #include "problem/rod_law.hpp"
 
 namespace dlo::energy_model {
@@ -80,6 +82,21 @@ void check_material_directors(const Problem& problem) {
                    problem.torsional_stiffness);
 }
 
+/// Whether a rod with material directors bends about its d2 alone, across a plane with this normal.
+bool bends_in_plane(const Problem& problem, const Eigen::Vector3d& normal) {
+  constexpr double rounding = 1e-12;
+  if (!has_material_directors(problem)) return true;
+  const auto about_d2 = [](const Eigen::Vector3d& u) { return u.x() == 0 && u.z() == 0; };
+  const bool flat =
+      std::all_of(problem.natural_strains.begin(), problem.natural_strains.end(), about_d2) &&
+      std::all_of(problem.sections.begin(), problem.sections.end(), [](const Section& section) {
+        return section.natural_curvature.value_or(Eigen::Vector2d::Zero()).x() == 0 &&
+               section.natural_twist.value_or(0) == 0;
+      });
+  return flat &&
+         (!first_clamp(problem) || first_frame(problem).col(1).cross(normal).norm() < rounding);
+}
+
 }  // namespace
 
 bool has_material_directors(const Problem& problem) {
@@ -91,9 +108,32 @@ bool has_couples(const Problem& problem) {
                      [](const Load& load) { return !load.torque.isZero(0); });
 }
 
+bool has_potential(const Problem& problem) {
+  const bool dead = !problem.drag && std::none_of(problem.loads.begin(), problem.loads.end(),
+                                                  [](const Load& load) { return load.follows; });
+  if (!dead) return false;
+  if (!has_couples(problem)) return true;
+  const auto held = std::count_if(problem.grips.begin(), problem.grips.end(),
+                                  [](const Grip& grip) { return grip.frame.has_value(); });
+  const std::optional<Eigen::Vector3d> normal = natural_normal(problem);
+  return held < 2 && normal && bends_in_plane(problem, *normal);
+}
+
+void require_dead_loads(const Problem& problem, const char* function) {
+  require(!problem.drag, function, "velocity of drag", problem.drag ? 1 : 0,
+          "none: drag has no potential (solve_exact() takes it)");
+  for (const Load& load : problem.loads) {
+    require(!load.follows, function, "arc length of a load that follows the rod", load.at,
+            "that of a dead one: what follows has no potential (solve_exact() takes it)");
+  }
+}
+
 void check(const Problem& problem) {
   require_positive("Problem", "length", problem.length);
   require_positive("Problem", "bending_stiffness", problem.bending_stiffness);
+  if (problem.axial_stiffness) {
+    require_positive("Problem", "axial_stiffness", *problem.axial_stiffness);
+  }
   require(problem.weight_per_length.allFinite(), "Problem", "weight_per_length",
           problem.weight_per_length.norm(), "finite");
   require(!problem.grips.empty(), "Problem", "number of grips", 0, ">= 1");
@@ -124,6 +164,14 @@ void check(const Problem& problem) {
     require_on_rod("arc length of a load", load.at, problem.length);
     require(load.force.allFinite(), "Problem", "force of a load", load.force.norm(), "finite");
     require(load.torque.allFinite(), "Problem", "torque of a load", load.torque.norm(), "finite");
+  }
+  if (problem.drag) {
+    require(problem.drag->velocity.allFinite(), "Problem", "velocity of drag",
+            problem.drag->velocity.norm(), "finite");
+    for (const double coefficient : {problem.drag->normal, problem.drag->tangential}) {
+      require(coefficient >= 0 && std::isfinite(coefficient), "Problem", "coefficient of drag",
+              coefficient, "finite and >= 0");
+    }
   }
   for (const LineLoad& load : problem.line_loads) {
     require_on_rod("begin of a line load", load.begin, problem.length);

@@ -90,7 +90,8 @@ Energies restore(const Problem& problem, const Energies& own_units) {
   return {.bending = own_units.bending * unit,
           .twisting = own_units.twisting * unit,
           .gravity = own_units.gravity * unit,
-          .load = own_units.load * unit};
+          .load = own_units.load * unit,
+          .stretch = own_units.stretch * unit};
 }
 
 void separate_line_loads(const Problem& problem, Equilibrium& result) {

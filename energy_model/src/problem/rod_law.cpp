@@ -74,6 +74,12 @@ bool has_two_stiffnesses(const Problem& problem) {
                      [](const Section& section) { return section.bending_stiffness_2; });
 }
 
+void require_inextensible(const Problem& problem, std::string_view function) {
+  require(!problem.axial_stiffness, function, "axial_stiffness",
+          problem.axial_stiffness.value_or(0),
+          "none: solve_exact() alone takes a rod that stretches");
+}
+
 double bending_unit(const Problem& problem) {
   return std::min(problem.bending_stiffness,
                   problem.bending_stiffness_2.value_or(problem.bending_stiffness));
@@ -112,7 +118,9 @@ std::optional<Eigen::Vector3d> natural_normal(const Problem& problem) {
     add(load.at_begin, 0);
     add(load.at_end, 0);
   }
+  if (problem.drag) add(problem.drag->velocity, 0);
   for (const Load& load : problem.loads) {
+    if (load.follows) continue;  // that lies in the section's axes
     add(load.force, 0);
     if (load.torque.isZero(0)) continue;
     for (const Eigen::Vector3d& direction : plane_across(load.torque)) add(direction, 0);

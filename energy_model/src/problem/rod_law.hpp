@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <string_view>
 #include <vector>
 
 #include "dlo/energy_model/natural_frame.hpp"
@@ -34,6 +35,9 @@ struct RodPart : Section {
 /// The smaller EI outside sections [N m^2]: what stiffnesses, and with the length forces, are
 /// measured in, so that a strip's scales are those of the axis about which it yields.
 [[nodiscard]] double bending_unit(const Problem& problem);
+
+/// @throws std::invalid_argument if the rod stretches, which solve_exact() alone knows
+void require_inextensible(const Problem& problem, std::string_view function);
 
 /// Whether it or one of its sections has a bending_stiffness_2.
 [[nodiscard]] bool has_two_stiffnesses(const Problem& problem);

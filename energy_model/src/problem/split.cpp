@@ -408,6 +408,8 @@ std::vector<double> cuts_at_clamps(const Problem& problem, const std::vector<Ord
 
 std::vector<PlacedSpan> split(const Problem& problem) {
   check(problem);
+  require_dead_loads(problem, "Problem");
+  require_inextensible(problem, "Problem");
   const std::vector<OrderedGrip> grips = ordered_grips(problem);
   const std::vector<double> clamps = cuts_at_clamps(problem, grips);
   std::vector<PlacedSpan> spans;

@@ -9,8 +9,10 @@
 #include "base/lowest_combinations.hpp"
 #include "base/require.hpp"
 #include "contact/penetration.hpp"
+#include "dlo/energy_model/soft_line.hpp"
 #include "dlo/energy_model/taut_line.hpp"
 #include "problem/redundant_obstacles.hpp"
+#include "problem/rod_law.hpp"
 #include "problem/split.hpp"
 #include "search/assemble.hpp"
 #include "search/twisted_span.hpp"
@@ -84,12 +86,15 @@ class EnergySolver::State {
     const auto begin = std::chrono::steady_clock::now();
     const Deadline deadline(options_.time_limit);
     log_ = {};
-    if (std::optional<Equilibrium> taut = taut_line(problem)) {
+    require_inextensible(problem, "solve_energy");
+    std::optional<Equilibrium> known = taut_line(problem);
+    if (!known) known = soft_line_for_models(problem);
+    if (known) {
       followed_ = false;
       if (from == From::last_shape_only) return {};
       former_ = std::exchange(remembered_, {});
       former_twists_ = std::exchange(twists_, {});
-      return {std::move(*taut)};
+      return {std::move(*known)};
     }
     std::vector<PlacedSpan> placed = split(problem);
     for (PlacedSpan& span : placed) {

@@ -85,7 +85,7 @@ std::vector<RodState> states_by_balance(const RodSpan& span, const Problem& prob
       for (const RodSpan::Hold& hold : span.holds) {
         if (hold.at == s[k]) m += shape.grips[hold.grip].torque / torque_unit;
       }
-      m += mesh.couple.col(k / parts);
+      m += mesh.couple.col(k / parts) + state.R * mesh.own_couple.col(k / parts);
     }
     if (k == 0) break;
     m -= implied_force(problem, shape, (s[k - 1] + s[k]) / 2)

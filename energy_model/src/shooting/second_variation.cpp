@@ -177,19 +177,28 @@ class VariationProblem {
     Eigen::Matrix<double, own, own> second = Eigen::Matrix<double, own, own>::Zero();
     Eigen::Matrix<double, own, own> norm = Eigen::Matrix<double, own, own>::Zero();
     Eigen::Matrix<double, 3, own> integral = Eigen::Matrix<double, 3, own>::Zero();
+    Eigen::Matrix3d yields = Eigen::Matrix3d::Zero();
     for (std::size_t q = 0; q < element_quadrature; ++q) {
       const RodState& state = inside[static_cast<std::size_t>(e) * element_quadrature + q];
       const double weight = h / 2 * element_weight[q];
       const Eigen::Matrix3d stiffness = stiffness_of(section, state.R);
       const Eigen::Matrix3d moment = cross_matrix(state.m);
       const Eigen::Matrix3d outer = state.n * state.t().transpose();
-      const Eigen::Matrix3d force =
+      Eigen::Matrix3d force =
           outer.trace() * Eigen::Matrix3d::Identity() - (outer + outer.transpose()) / 2;
+      Eigen::Matrix3d moved = -cross_matrix(state.t());  // dr' by eta
+      if (section.stretch > 0) {
+        const Eigen::Vector3d turned = state.t().cross(state.n);
+        const double along = 1 + section.stretch * outer.trace();
+        force = along * force - section.stretch * turned * turned.transpose();
+        moved = along * moved + section.stretch * state.t() * turned.transpose();
+        yields += weight * section.stretch * state.t() * state.t().transpose();
+      }
       const auto row = static_cast<Eigen::Index>(q);
       for (Eigen::Index a = 0; a <= static_cast<Eigen::Index>(element_order); ++a) {
         const double value = basis.value(row, a);
         const double rate = 2 / h * basis.rate(row, a);
-        integral.middleCols<3>(3 * a) -= weight * value * cross_matrix(state.t());
+        integral.middleCols<3>(3 * a) += weight * value * moved;
         for (Eigen::Index b = 0; b <= static_cast<Eigen::Index>(element_order); ++b) {
           const double other = basis.value(row, b);
           const double other_rate = 2 / h * basis.rate(row, b);
@@ -204,6 +213,7 @@ class VariationProblem {
     finite_ = finite_ && second.allFinite();
     press(e, inside);
     const Eigen::Index multiplier = multiplier_of(e);
+    if (section.stretch > 0 && multiplier >= 0) add(fixed_, multiplier, multiplier, -yields);
     const std::size_t first = static_cast<std::size_t>(e) * element_order;
     for (std::size_t a = 0; a <= element_order; ++a) {
       const SpinNode& node = nodes_[first + a];

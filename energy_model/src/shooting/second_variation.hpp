@@ -46,6 +46,11 @@ using SpanStates = std::function<std::vector<RodState>(const std::vector<double>
 /// What lies is kept on its surface at the ends of elements alone, so that no shape is called more
 /// stable than it is.
 ///
+/// Of a section that stretches by a the strain eps that is least for eta and for the multipliers mu
+/// of the constraint is eliminated, eps = a (n.(eta x t) - mu.t): (1 + a n.t) multiplies the terms
+/// in n and eta x t, - a (n.(eta x t))^2 is added to Q, a (n.(eta x t)) t to the constraint, and
+/// - a (mu.t)^2 costs what stretch gives.
+///
 /// Where couples act on a span with a plane, eta is a rotation around its normal alone.
 ///
 /// Eigenvalues over int |eta'|^2 + |eta|^2 ds, by finite elements of fourth order and the signs of

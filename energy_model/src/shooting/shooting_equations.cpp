@@ -45,6 +45,13 @@ std::pair<Eigen::Vector3d, Eigen::Matrix3d> jump_of_moment(const RodState& node,
               (t.dot(on_tangent) + d1.dot(on_d1)) * Eigen::Matrix3d::Identity()};
 }
 
+/// A load that follows a cross-section in space, and its derivative by a spin.
+std::pair<Eigen::Vector3d, Eigen::Matrix3d> following(const RodState& node,
+                                                      const Eigen::Vector3d& own) {
+  const Eigen::Vector3d load = node.R * own;
+  return {load, -cross_matrix(load)};
+}
+
 }  // namespace
 
 /// Equations as they come.
@@ -171,24 +178,32 @@ void ShootingSystem::start_equations(const ShootingPoint& point, Rows& rows) con
     rows.add(positions_.transpose() * (node.r - mesh_.hold.front()->position), {{0, one}});
   } else {
     const Push push = push_at(point, 0);
-    const Eigen::Vector3d n = node.n + mesh_.load.col(0) + push.force;
-    rows.add(-positions_.transpose() * n / (rate_ * rate_), push.with({{n_at(), -one}}));
+    const auto [follows, by_spin] = following(node, mesh_.own_load.col(0));
+    const Eigen::Vector3d n = node.n + mesh_.load.col(0) + follows + push.force;
+    const double force = rate_ * rate_;
+    rows.add(-positions_.transpose() * n / force,
+             push.with({{spin_at(), -positions_.transpose() * by_spin * turns_ / force},
+                        {n_at(), -one}}));
   }
   const Eigen::Index free = frame_equations(node, 0, rows).cols();
-  const Eigen::Vector3d m = node.m + mesh_.couple.col(0);
+  const auto [follows, by_spin] = following(node, mesh_.own_couple.col(0));
+  const Eigen::Vector3d m = node.m + mesh_.couple.col(0) + follows;
+  const Eigen::MatrixXd turned = by_spin * turns_ / rate_;
   if (free == turns_.cols()) return;
   if (free > 0) {
     const Eigen::RowVector3d direction = clamps_.front()->direction.transpose();
-    rows.add(direction * m / rate_, {{m_at(), direction}});
+    rows.add(direction * m / rate_, {{spin_at(), direction * turned}, {m_at(), direction}});
   } else if (span_.clamps.empty() && span_.round() && turns_.cols() == 3) {
     const Eigen::Matrix<double, 3, 2> across = axes_across(start_.front().t());
-    rows.add(across.transpose() * m / rate_, {{m_at(), across.transpose()}});
+    rows.add(across.transpose() * m / rate_,
+             {{spin_at(), across.transpose() * turned}, {m_at(), across.transpose()}});
     const Eigen::Vector3d rotation = rotation_between(start_.front().R, node.R);
     const Eigen::RowVector3d tangent = start_.front().t().transpose();
     rows.add(tangent * rotation, {{spin_at(), tangent * rotation_rate(rotation)}});
   } else {
     rows.add(turns_.transpose() * m / rate_,
-             {{m_at(), Eigen::MatrixXd::Identity(turns_.cols(), turns_.cols())}});
+             {{spin_at(), turns_.transpose() * turned},
+              {m_at(), Eigen::MatrixXd::Identity(turns_.cols(), turns_.cols())}});
   }
 }
 
@@ -248,10 +263,13 @@ bool ShootingSystem::interval_equations(const ShootingPoint& point, Eigen::Index
     rows.add(positions_.transpose() * (next.r - hold->position), {{other, one}});
   } else {
     const Push push = push_at(point, i + 1);
+    const auto [follows, by_spin] = following(next, mesh_.own_load.col(i + 1));
     std::vector<Block> pulled = with_width(i, positions_.transpose() * by_width.n / force);
     pulled.push_back({from, positions_.transpose() * change.n / force});
+    pulled.push_back({other + spin_at(), -positions_.transpose() * by_spin * turns_ / force});
     pulled.push_back({other + n_at(), -one});
-    rows.add(positions_.transpose() * (end.n - mesh_.load.col(i + 1) - push.force - next.n) / force,
+    const Eigen::Vector3d added = mesh_.load.col(i + 1) + follows + push.force;
+    rows.add(positions_.transpose() * (end.n - added - next.n) / force,
              push.with(std::move(pulled)));
   }
   const Eigen::Matrix3Xd free = frame_equations(next, i + 1, rows);
@@ -263,11 +281,12 @@ bool ShootingSystem::interval_equations(const ShootingPoint& point, Eigen::Index
           : Eigen::MatrixXd(clamps_[static_cast<std::size_t>(i + 1)]->direction.transpose());
   const auto [jump, by_spin] =
       jump_of_moment(next, mesh_.pull.col(i + 1), mesh_.pull_d1.col(i + 1));
+  const auto [follows, follows_by_spin] = following(next, mesh_.own_couple.col(i + 1));
   std::vector<Block> bent = with_width(i, kept * by_width.m / rate_);
   bent.push_back({from, kept * change.m / rate_});
-  bent.push_back({other + spin_at(), -kept * by_spin * turns_ / rate_});
+  bent.push_back({other + spin_at(), -kept * (by_spin + follows_by_spin) * turns_ / rate_});
   bent.push_back({other + m_at(), -kept * turns_});
-  rows.add(kept * (end.m - mesh_.couple.col(i + 1) - jump - next.m) / rate_, bent);
+  rows.add(kept * (end.m - mesh_.couple.col(i + 1) - follows - jump - next.m) / rate_, bent);
   return true;
 }
 

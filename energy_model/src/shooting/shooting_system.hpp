@@ -28,11 +28,12 @@ struct ShootingPoint {
 };
 
 /// The equations of multiple shooting and their derivatives: the span is integrated from every node
-/// of the mesh to the next, and r, R, m and n meet there but for what nodes add. Where a position
-/// is given n is free; at a clamp two of R and two of m, at one that holds the frame all three; at
-/// a free end m = n = 0. Between neighbouring nodes R is compared by the logarithm of the rotation
-/// that is left. At each node Newton moves r, a spin of R, m and n: in the plane two of positions
-/// and forces and one of spins and moments, which is three and three in space.
+/// of the mesh to the next, and r, R, m and n meet there but for what nodes add, R times what
+/// follows the rod. Where a position is given n is free; at a clamp two of R and two of m, at one
+/// that holds the frame all three; at a free end m = n = 0. Between neighbouring nodes R is
+/// compared by the logarithm of the rotation that is left. At each node Newton moves r, a spin of
+/// R, m and n: in the plane two of positions and forces and one of spins and moments, which is
+/// three and three in space.
 ///
 /// Where a rod touches a body, n falls by an unknown force along its normal; a point that may slide
 /// and the ends of what lies are at unknown arc lengths, between which and their neighbours the

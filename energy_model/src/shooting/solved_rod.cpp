@@ -45,7 +45,8 @@ void add_reactions(const Problem& problem, const RodSpan& span, const SpanEquili
     const auto i = static_cast<std::size_t>(node_at(equilibrium.s, hold.at));
     Eigen::Vector3d force = before[i].n - equilibrium.nodes[i].n;
     for (const RodSpan::Load& load : span.loads) {
-      if (load.at == hold.at) force -= load.force;
+      if (load.at != hold.at) continue;
+      force -= load.follows ? before[i].R * load.force : load.force;
     }
     Reaction& reaction = reactions[hold.grip];
     reaction.force += force_unit * force;
@@ -81,7 +82,7 @@ double energy_of_couples(const RodSpan& span, const SpanEquilibrium& equilibrium
   const double from = span.clamps.empty() ? 0 : span.clamps.front().at;
   double energy = 0;
   for (const RodSpan::Load& load : span.loads) {
-    if (load.couple.isZero(0)) continue;
+    if (load.couple.isZero(0) || load.follows) continue;
     const Eigen::VectorXd s =
         Eigen::VectorXd::LinSpaced(looks, std::min(from, load.at), std::max(from, load.at));
     const Eigen::Matrix3Xd t =
@@ -95,6 +96,15 @@ double energy_of_couples(const RodSpan& span, const SpanEquilibrium& equilibrium
     energy -= (load.at < from ? -angle : angle) * load.couple.dot(normal);
   }
   return energy;
+}
+
+/// Which load it is that has none, for a message.
+std::string why_no_potential(const Problem& problem) {
+  if (problem.drag) return "drag has no potential";
+  const bool follows = std::any_of(problem.loads.begin(), problem.loads.end(),
+                                   [](const Load& load) { return load.follows; });
+  return follows ? "a load that follows the rod has no potential"
+                 : "out of a plane a couple has no potential";
 }
 
 /// Whether couples act where nothing says that the shape is stable: out of its span's plane.
@@ -179,6 +189,7 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
     energy.bending += equilibrium.energy.bending;
     energy.twisting += equilibrium.energy.twisting;
     energy.gravity += equilibrium.energy.gravity;
+    energy.stretch += equilibrium.energy.stretch;
     energy.load += equilibrium.energy.load + energy_of_couples(span, equilibrium, tolerance);
     unjudged = unjudged || couples_leave_plane(span, equilibrium);
     const std::vector<RodState> before = before_nodes(span, equilibrium, tolerance);
@@ -198,10 +209,13 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
   add_loads_on_clamps(problem, result);
   judge(stability, result);
   if (has_couples(problem)) result.message += in_the_plane;
-  if (unjudged) {
+  if (unjudged || !has_potential(problem)) {
     result.status = SolveStatus::not_verified;
     result.message =
-        "an equilibrium whose stability is not judged: out of a plane a couple has no potential";
+        "an equilibrium, of which the balance alone is checked; its stability is not "
+        "judged: " +
+        why_no_potential(problem);
+    result.smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   }
   result.sample = [problem, rod, tolerance](std::span<const double> arc_lengths) {
     return sample(problem, *rod, tolerance, arc_lengths);

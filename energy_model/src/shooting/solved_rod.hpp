@@ -14,8 +14,10 @@ struct SolvedRod {
   std::vector<RodSpan> spans;  ///< by growing arc length
   std::vector<SpanEquilibrium> equilibria;
 
-  /// Whether it is one whose material directors are followed from end to end.
-  [[nodiscard]] bool has_directors() const { return !spans.front().round(); }
+  /// Whether it is one whose directors are followed from end to end.
+  [[nodiscard]] bool has_directors() const {
+    return spans.front().has_axes || !spans.front().round();
+  }
 };
 
 /// The rod's equilibrium with its verdict, in the problem's units; `failed` where a span has none.

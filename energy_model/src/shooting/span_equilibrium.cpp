@@ -10,13 +10,8 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double largest_growth = 3;  // of an interval: its length times bending_force^(1/2)
 /// Of the integrator for the second variation, whose elements are right to 1e-8.
 constexpr double variation_tolerance = 1e-10;
-
-double longest_of(const RodMesh& mesh) {
-  return (mesh.s.tail(mesh.intervals()) - mesh.s.head(mesh.intervals())).maxCoeff();
-}
 
 void add_energies(const RodSpan& span, double tolerance, SpanEquilibrium& equilibrium) {
   const RodMesh mesh = closed_mesh(span, equilibrium);
@@ -34,11 +29,16 @@ void add_energies(const RodSpan& span, double tolerance, SpanEquilibrium& equili
     equilibrium.energy.bending += integrals.bending;
     equilibrium.energy.twisting += integrals.twisting;
     equilibrium.energy.gravity += integrals.gravity;
+    equilibrium.energy.stretch += integrals.stretch;
     equilibrium.turns.push_back(integrals.turn);
   }
 }
 
 }  // namespace
+
+double longest_of(const RodMesh& mesh) {
+  return (mesh.s.tail(mesh.intervals()) - mesh.s.head(mesh.intervals())).maxCoeff();
+}
 
 double bending_force(const RodSpan& span, const std::vector<RodState>& states) {
   const double b = least_bending_stiffness(span);
@@ -104,7 +104,12 @@ RodMesh closed_mesh(const RodSpan& span, const SpanEquilibrium& equilibrium) {
 
 void complete(const RodSpan& span, double tolerance, SpanEquilibrium& equilibrium) {
   add_energies(span, tolerance, equilibrium);
-  if (equilibrium.converged) judge_stability(span, tolerance, equilibrium);
+  if (!span.has_potential) {
+    equilibrium.stability.negative = 0;  // nor is any counted
+    equilibrium.stability.neutral = 0;
+  } else if (equilibrium.converged) {
+    judge_stability(span, tolerance, equilibrium);
+  }
 }
 
 void judge_stability(const RodSpan& span, double tolerance, SpanEquilibrium& equilibrium) {

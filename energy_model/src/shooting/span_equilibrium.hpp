@@ -30,6 +30,12 @@ struct SpanEquilibrium {
   [[nodiscard]] bool stable() const { return converged && stability.stable(); }
 };
 
+/// Growth of errors over an interval, its length times bending_force^(1/2), that is too much.
+inline constexpr double largest_growth = 3;
+
+/// The length of its longest interval.
+[[nodiscard]] double longest_of(const RodMesh& mesh);
+
 /// The nodes to which Newton's method leads from a start (shooting_system.hpp), without a look at
 /// energies and stability. Frames that are held at both ends of a round rod are rotated by many
 /// turns, and its shape slides for nearly nothing: close_gaps.hpp says how it steps then.
@@ -47,7 +53,8 @@ struct SpanEquilibrium {
 /// The mesh on which it has been closed.
 [[nodiscard]] RodMesh closed_mesh(const RodSpan& span, const SpanEquilibrium& equilibrium);
 
-/// Energies and stability of an equilibrium that close_span() has found.
+/// Energies of an equilibrium that close_span() has found, and its stability if the span's loads
+/// have a potential.
 void complete(const RodSpan& span, double tolerance, SpanEquilibrium& equilibrium);
 
 /// Looks at the second variation of an equilibrium.

@@ -177,6 +177,102 @@ class SpanSearch {
   int shots_ = 0;
 };
 
+/// Whether grips hold a part of it no nearer than that is long.
+bool is_pulled_straight(const RodSpan& span) {
+  for (std::size_t i = 0; i + 1 < span.holds.size(); ++i) {
+    const RodSpan::Hold& a = span.holds[i];
+    const RodSpan::Hold& b = span.holds[i + 1];
+    constexpr double rounding = 1e-12;
+    if ((b.position - a.position).norm() >= (b.at - a.at) * (1 - rounding)) return true;
+  }
+  return false;
+}
+
+/// A rod that stretches, from lines between its grips, of which there are two or more, and beyond.
+SpanEquilibrium shoot_from_lines(const RodSpan& span, double tolerance, const Deadline& deadline) {
+  const std::vector<RodSpan::Hold>& holds = span.holds;
+  const double yields = span.parts.front().section.stretch;
+  std::vector<Eigen::Vector3d> tangents;
+  std::vector<double> strains;
+  double largest = total_load(span);
+  for (std::size_t i = 0; i + 1 < holds.size(); ++i) {
+    const Eigen::Vector3d way = holds[i + 1].position - holds[i].position;
+    tangents.push_back(way.normalized());
+    strains.push_back(way.norm() / (holds[i + 1].at - holds[i].at) - 1);
+    largest = std::max(largest, std::abs(strains.back()) / yields);
+  }
+  const RodMesh mesh =
+      make_mesh(span, resolving_interval(span, largest / least_bending_stiffness(span)));
+  std::vector<RodState> start(static_cast<std::size_t>(mesh.s.size()));
+  for (Eigen::Index k = 0; k < mesh.s.size(); ++k) {
+    std::size_t i = 0;
+    while (i + 2 < holds.size() && mesh.s[k] >= holds[i + 1].at) ++i;
+    RodState& state = start[static_cast<std::size_t>(k)];
+    const double inside = std::clamp(mesh.s[k], holds[i].at, holds[i + 1].at);
+    const double way = (inside - holds[i].at) * (1 + strains[i]) + mesh.s[k] - inside;
+    state.r = holds[i].position + way * tangents[i];
+    state.R = frame_of(tangents[i].unitOrthogonal(), tangents[i]);
+    if (inside == mesh.s[k] && inside < holds.back().at) {
+      state.n = strains[i] / yields * tangents[i];
+    }
+  }
+  carry_frames(span, mesh, start_tolerance, start);
+  return shoot_span(span, mesh, std::move(start), released_frames(span),
+                    {.tolerance = tolerance, .deadline = deadline});
+}
+
+/// The span with a share of its stretch.
+RodSpan stretching(RodSpan span, double share) {
+  for (RodSpan::Part& part : span.parts) part.section.stretch *= share;
+  return span;
+}
+
+/// From an equilibrium of the span that does not stretch, by continuation in the stretch.
+SpanEquilibrium let_stretch(const RodSpan& span, SpanEquilibrium rigid, double tolerance,
+                            const Deadline& deadline) {
+  constexpr double least_step = 1.0 / 256;
+  int shots = rigid.shots;
+  double reached = 0;
+  double step = 1;
+  while (rigid.converged && reached < 1) {
+    const RodSpan next = stretching(span, std::min(1.0, reached + step));
+    SpanEquilibrium solved = shoot_span(next, mesh_at(next, rigid.s), rigid.nodes, rigid.frames,
+                                        {.tolerance = tolerance, .deadline = deadline});
+    shots += solved.shots;
+    if (solved.converged) {
+      reached = std::min(1.0, reached + step);
+      rigid = std::move(solved);
+      continue;
+    }
+    step /= 2;
+    if (step < least_step || deadline.passed()) {
+      solved.shots = shots;
+      return solved;
+    }
+  }
+  rigid.shots = shots;
+  return rigid;
+}
+
+SpanSearchResult search_released(const RodSpan& span, double tolerance, const Deadline& deadline) {
+  if (span.parts.front().section.stretch == 0) return SpanSearch(span, tolerance, deadline).run();
+  if (is_pulled_straight(span)) return {{shoot_from_lines(span, tolerance, deadline)}, true};
+  SpanSearchResult search = SpanSearch(stretching(span, 0), tolerance, deadline).run();
+  for (SpanEquilibrium& found : search.found) {
+    found = let_stretch(span, std::move(found), tolerance, deadline);
+  }
+  // What would have to bend may be pressed instead.
+  if (span.holds.size() > 1) {
+    SpanEquilibrium pressed = shoot_from_lines(span, tolerance, deadline);
+    const bool known = std::ranges::any_of(search.found, [&](const SpanEquilibrium& other) {
+      return other.converged && same(span, other, pressed);
+    });
+    if (pressed.converged && !known) search.found.push_back(std::move(pressed));
+  }
+  sort_by_stability(search.found);
+  return search;
+}
+
 }  // namespace
 
 void check_load(const RodSpan& span) {
@@ -197,7 +293,7 @@ double resolving_interval(const RodSpan& span, double force) {
 SpanSearchResult search_span(const RodSpan& span, double tolerance, const Deadline& deadline) {
   check_load(span);
   const RodSpan released = without_frames(span);
-  SpanSearchResult search = SpanSearch(released, tolerance, deadline).run();
+  SpanSearchResult search = search_released(released, tolerance, deadline);
   if (!span.twisted()) return search;
   SpanEquilibrium twisted = twist_span(span, search.found.front(), tolerance, deadline);
   return {{std::move(twisted)}, search.complete && !deadline.passed()};

@@ -146,8 +146,8 @@ TEST(Frames, ErrorsNameFileLineKeyAndWhatIsAllowed) {
        {"my.toml:1: rod.torsional_stiffness: missing", "two clamps", "> 0", "0.00793 N m^2"}},
       {rod_without_torsion + "torsional_stiffness = \"-1 N m^2\"\n" + first,
        {"my.toml:5", "rod.torsional_stiffness", "> 0"}},
-      {rod_without_torsion + "torsional_stiffness = \"1 Nm^2\"\n" + first,
-       {"my.toml:5", "rod.torsional_stiffness", "N m^2, N mm^2"}},
+      {rod_without_torsion + "torsional_stiffness = \"1 N m\"\n" + first,
+       {"my.toml:5", "rod.torsional_stiffness", "N m^2, mN m^2, kN m^2, N cm^2, N mm^2"}},
       {rod + first + gripper(0.5, "direction = \"180 deg\"\nroll = 1\n"),
        {"gripper.roll = 1", "opposite", "frame or quaternion"}},
   };

@@ -62,11 +62,16 @@ constexpr UnitCase unit_cases[] = {
     {Dimension::foundation, "N/m^2", 1, none},
     {Dimension::foundation, "N/mm^2", none, 1000.0 * 1000},
     {Dimension::section_stiffness, "N m^2", 1, none},
+    {Dimension::section_stiffness, "mN m^2", 1000, none},
+    {Dimension::section_stiffness, "kN m^2", none, 1000},
+    {Dimension::section_stiffness, "N cm^2", 100.0 * 100, none},
     {Dimension::section_stiffness, "N mm^2", 1000.0 * 1000, none},
     {Dimension::joint_stiffness, "N m/rad", 1, none},
     {Dimension::joint_stiffness, "N m", 1, none},
+    {Dimension::joint_stiffness, "mN m/rad", 1000, none},
     {Dimension::joint_stiffness, "N mm/rad", 1000, none},
-    {Dimension::joint_stiffness, "N mm", 1000, none}};
+    {Dimension::joint_stiffness, "N mm", 1000, none},
+    {Dimension::joint_stiffness, "N m/deg", none, 180 / 3.141592653589793}};
 
 TEST(Quantity, EveryUnitHasItsFactor) {
   std::map<Dimension, std::string> tested;
@@ -105,6 +110,20 @@ TEST(Quantity, ConvertsToSi) {
   EXPECT_DOUBLE_EQ(parse_quantity("+7.9 kg/dm^3", Dimension::density), 7900);
   EXPECT_DOUBLE_EQ(parse_quantity("0.005 1/mm", Dimension::curvature), 5);
   EXPECT_DOUBLE_EQ(parse_quantity("3", Dimension::number), 3);
+}
+
+TEST(Quantity, UnitsMayBeSpelledAsTheFieldDoes) {
+  for (const char* text : {"3 Nm", "3Nm", "3 N*m", "3 N\xc2\xb7m"}) {
+    EXPECT_DOUBLE_EQ(parse_quantity(text, Dimension::torque), 3) << text;
+  }
+  EXPECT_DOUBLE_EQ(parse_quantity("3 mNm^2", Dimension::section_stiffness), 3e-3);
+  EXPECT_DOUBLE_EQ(parse_quantity("3 N*m\xc2\xb2", Dimension::section_stiffness), 3);
+  EXPECT_DOUBLE_EQ(parse_quantity("3 Nm/rad", Dimension::joint_stiffness), 3);
+  EXPECT_DOUBLE_EQ(parse_quantity("3 \xc2\xb5m", Dimension::length), 3e-6);
+  EXPECT_DOUBLE_EQ(parse_quantity("180 \xc2\xb0", Dimension::angle), std::numbers::pi);
+  // A blank is a product.
+  EXPECT_EQ(message("3 m m", Dimension::length).find("unknown unit"), 0U);
+  EXPECT_EQ(message("3 m N", Dimension::force).find("unknown unit"), 0U);
 }
 
 TEST(Quantity, SaysWhichUnitsAreAllowed) {

@@ -98,8 +98,9 @@ TEST(ScenesRod, SaysWhatIsMissingOrTooMuch) {
                  {"rod.diameter: missing", "no material"});
   expect_message("[rod]\nlength = 2\nbending_stiffnes = 1\nmass_per_length = 1\n" + clamp,
                  {"rod.bending_stiffnes = 1: unknown key, did you mean bending_stiffness?"});
-  expect_message("[rod]\nlength = 2\nbending_stiffness = \"3 N\"\nmass_per_length = 1\n" + clamp,
-                 {"my.toml:3: rod.bending_stiffness", "3 N", "N m^2, N mm^2"});
+  expect_message(
+      "[rod]\nlength = 2\nbending_stiffness = \"3 N\"\nmass_per_length = 1\n" + clamp,
+      {"my.toml:3: rod.bending_stiffness", "3 N", "N m^2, mN m^2, kN m^2, N cm^2, N mm^2"});
   expect_message("[rod]\nlength = 2\nbending_stiffness = 0\nmass_per_length = 1\n" + clamp,
                  {"rod.bending_stiffness = 0", "> 0"});
   expect_message("[rod]\nlength = 2\nbending_stiffness = 1\nmass_per_length = -1\n" + clamp,

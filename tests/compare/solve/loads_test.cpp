@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -76,8 +77,12 @@ TEST(Loads, RefusalsNameTheKeyThePlaceAndWhatIsAllowed) {
   expect_load_refused("[[load]]\nat = 0.5\n", {"my.toml:9", "load.force", "missing"});
   expect_load_refused("[[load]]\nat = 0.5\ntorque = [0, 0, \"1 N\"]\n",
                       {"my.toml:11", "load.torque", "N m"});
-  expect_load_refused("[[load]]\nat = 0.5\ntorque = [0, 1, 0]\n",
-                      {"my.toml:11", "load.torque", "in one plane"});
+  expect_load_refused("[[load]]\nat = 0.5\nmass = 1\nfollows = true\n",
+                      {"my.toml:12", "load.follows", "mass"});
+  expect_load_refused("[[load]]\nat = 0\nforce = [0, 1, 0]\nfollows = true\n",
+                      {"my.toml:12", "load.follows", "at a clamp"});
+  expect_load_refused("[[load]]\nat = 1\nforce = [0, 1, 0]\nfollows = 1\n",
+                      {"my.toml:12", "load.follows", "true or false"});
   expect_load_refused(
       "[[load]]\nat = 0.5\ntorque = [0, 0, 1]\n[[obstacle]]\npoint = [0, -1, 0]\n"
       "normal = [0, 1, 0]\n",
@@ -160,7 +165,104 @@ TEST(Loads, AMediumBearsWhatTheRodDisplaces) {
   expect_load_refused("[medium]\ndensity = 1000\n", {"medium.density", "diameter"});
 }
 
-TEST(Loads, ACoupleIsForEnergyAndExactAndOthersSaySo) {
+const std::string thick_rod_held = R"([rod]
+length = 1
+diameter = 0.01
+material = { youngs_modulus = 2e8, density = 1100 }
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = [1, 0, 0]
+)";
+
+TEST(Loads, AStreamDragsByMorisonsLawOnTheDiameter) {
+  const Scene scene = parse_scene(thick_rod_held + R"([medium]
+density = 1000
+velocity = ["3.6 km/h", 0, 0]
+normal_drag = 1.2
+tangential_drag = 0.02
+)",
+                                  "my.toml");
+  ASSERT_TRUE(scene.drag.has_value());
+  EXPECT_NEAR(scene.drag->velocity.x(), 1, 1e-15);
+  // 1/2 rho C d v^2 across, pi times that along.
+  EXPECT_NEAR(scene.drag->force({0, 1, 0}).x(), 0.5 * 1000 * 1.2 * 0.01, 1e-12);
+  EXPECT_NEAR(scene.drag->force({1, 0, 0}).x(), 0.5 * 1000 * 0.02 * std::numbers::pi * 0.01, 1e-12);
+  EXPECT_EQ(scene.distributed_loads.size(), 1U);  // and bears it
+  const auto refused = [](const std::string& medium, const std::vector<std::string>& parts) {
+    try {
+      (void)parse_scene(thick_rod_held + "[medium]\ndensity = 1000\n" + medium, "my.toml");
+      ADD_FAILURE() << medium;
+    } catch (const InputError& error) {
+      const std::string said = error.what();
+      for (const std::string& part : parts) EXPECT_NE(said.find(part), std::string::npos) << said;
+    }
+  };
+  refused("velocity = [1, 0, 0]\n", {"medium.normal_drag", "missing"});
+  refused("normal_drag = 1\n", {"my.toml:11", "medium.normal_drag", "at rest"});
+  refused("velocity = [1, 0, 0]\nnormal_drag = -1\n", {"medium.normal_drag", ">= 0"});
+  refused("velocity = [\"1 m\", 0, 0]\nnormal_drag = 1\n", {"medium.velocity", "m/s"});
+  refused(
+      "velocity = [1, 0, 0]\nnormal_drag = 1\n[[obstacle]]\npoint = [0, -1, 0]\n"
+      "normal = [0, 1, 0]\n",
+      {"medium.velocity", "obstacles"});
+}
+
+TEST(Loads, WhatHasNoPotentialIsForExactWhichSaysWhatItHasChecked) {
+  const std::string turning = "[[load]]\nat = 0.5\nforce = [1, 0, -2]\nfollows = true\n";
+  const std::string in_space = "[[load]]\nat = 1\ntorque = [0.2, 0.3, 0.1]\n";
+  const std::string stream =
+      "[medium]\ndensity = 1000\nvelocity = [1, 0, 0.5]\nnormal_drag = 1.2\n";
+  const std::vector<std::array<std::string, 3>> cases = {
+      {turning, "load.follows", "follows the rod"},
+      {in_space + "[[load]]\nat = 0.4\nforce = [1, 0, 0]\n", "load.torque", "out of a plane"},
+      {stream, "medium.velocity", "drag"}};
+  for (const auto& [text, key, why] : cases) {
+    const Scene scene = parse_scene(thick_rod_held + text, "my.toml");
+    for (const Model model : {Model::energy, Model::chain, Model::force}) {
+      if (model == Model::force && scene.drag) continue;
+      try {
+        (void)solve(scene, model);
+        ADD_FAILURE() << text;
+      } catch (const InputError& error) {
+        const std::string said = error.what();
+        EXPECT_NE(said.find(key), std::string::npos) << said;
+        EXPECT_NE(said.find("--model exact"), std::string::npos) << said;
+      }
+    }
+    const Solution exact = solve(scene, Model::exact);
+    EXPECT_NE(exact.message.find("stability is not judged"), std::string::npos) << exact.message;
+    EXPECT_NE(exact.message.find(why), std::string::npos) << exact.message;
+    EXPECT_TRUE(std::isnan(exact.smallest_eigenvalue));
+    // The tension of a free tip is none, at the clamp it is what the gripper holds along the rod.
+    EXPECT_NEAR(exact.tension.back(), 0, 1e-8);
+    EXPECT_NEAR(exact.tension.front(), -exact.grippers[0].force.x(), 1e-6);
+  }
+}
+
+TEST(Loads, DragOnSegmentsComesToTheExactShapeAtSecondOrder) {
+  Scene scene = parse_scene(thick_rod_held +
+                                "[medium]\ndensity = 1000\nvelocity = [0.2, 0, 0.3]\n"
+                                "normal_drag = 1.2\ntangential_drag = 0.1\n",
+                            "my.toml");
+  scene.force_model.law = BendingLaw::hooke;
+  scene.force_model.bookkeeping = Bookkeeping::consistent;
+  scene.force_model.stepper = Stepper::implicit;
+  std::vector<double> errors;
+  for (const int points : {12, 24, 48}) {
+    scene.force_model.points = points;
+    const Solution force = solve(scene, Model::force, {.rest_tolerance = 1e-8});
+    const Solution exact = solve(scene, Model::exact, {}, force.shape.arc_length);
+    errors.push_back(apart(force, exact));
+    EXPECT_NE(force.message.find("stability is not judged"), std::string::npos) << force.message;
+    EXPECT_LT((force.grippers[0].force - exact.grippers[0].force).norm(), 5e-3);
+  }
+  EXPECT_NEAR(std::log(errors[0] / errors[2]) / std::log(4), 2, 0.3)
+      << errors[0] << " " << errors[1] << " " << errors[2];
+  EXPECT_LT(errors[2], 1e-3);
+}
+
+TEST(Loads, ACoupleInThePlaneIsForEnergyAndExactAndOthersSaySo) {
   Scene scene = heavy_scene(0.5, 0);
   const double torque = 0.8 * std::numbers::pi * scene.bending_stiffness();
   scene.loads = {{.at = 1, .torque = {0, 0, torque}}};

@@ -5,6 +5,7 @@
 
 #include "dlo/compare/bending_rule.hpp"
 #include "dlo/compare/choice.hpp"
+#include "dlo/energy_model/chain.hpp"
 #include "dlo/force_model/bending_law.hpp"
 #include "dlo/force_model/stepper.hpp"
 
@@ -25,6 +26,16 @@ struct Choices<BendingLaw> {
   /// In the enumeration's order.
   static constexpr Choice<BendingLaw> all[] = {{BendingLaw::paper, "paper", "cubic in the angle"},
                                                {BendingLaw::hooke, "hooke", "as a rod bends"}};
+};
+
+/// Of the joints of model chain.
+template <>
+struct Choices<energy_model::JointLaw> {
+  /// Without that of the paper, which is BendingLaw's.
+  static constexpr Choice<energy_model::JointLaw> all[] = {
+      {energy_model::JointLaw::hooke, "hooke", "linear in 2 tan(angle/2), as a rod bends"},
+      {energy_model::JointLaw::linear, "linear", "linear in the angle, as most simulators have it"},
+      {energy_model::JointLaw::binormal, "binormal", "discrete elastic rods"}};
 };
 
 /// Of the bookkeeping.
@@ -52,8 +63,10 @@ struct Choices<Stepper> {
 
 /// Settings of the force model. What is not given is derived from the scene.
 struct ForceModelSettings {
-  int points = 16;                                     ///< N
-  BendingLaw law = BendingLaw::hooke;                  ///< of bending
+  int points = 16;                     ///< N
+  BendingLaw law = BendingLaw::hooke;  ///< of bending
+  /// Of model chain alone, besides law hooke: joints as other programs have them; none: as `law`.
+  std::optional<energy_model::JointLaw> joint_law = std::nullopt;
   Bookkeeping bookkeeping = Bookkeeping::consistent;   ///< of the polygon
   Stepper stepper = Stepper::automatic;                ///< of the simulation
   BendingRule bending_rule = BendingRule::formula_21;  ///< of the law `paper`

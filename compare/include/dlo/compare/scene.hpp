@@ -8,7 +8,9 @@
 
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/material.hpp"
+#include "dlo/compare/rest_shape.hpp"
 #include "dlo/compare/trajectory.hpp"
+#include "dlo/energy_model/drag.hpp"
 #include "dlo/obstacle/body.hpp"
 
 namespace dlo::compare {
@@ -39,12 +41,15 @@ struct Gripper {
   bool operator==(const Gripper&) const = default;
 };
 
-/// A force that keeps its direction and a couple that keeps its axis.
+/// A force that keeps its direction and a couple that keeps its axis, or such that turn with the
+/// rod.
 struct PointLoad {
   double at = 0;                                     ///< arc length [m]
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N]; of a mass in the file, its weight
   double mass = 0;                                   ///< [kg], of what hangs there and would move
-  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m], across the rod's plane
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
+  /// Force and torque are along d1, d2 and the tangent of the section, as energy_model::Load's.
+  bool follows = false;
 
   /// In every field.
   bool operator==(const PointLoad&) const = default;
@@ -145,11 +150,15 @@ struct Scene {
   double inner_diameter = 0;  ///< of a tube [m], < diameter; 0: solid
   double width = 0;           ///< of a rectangular section, along d1 [m]; 0: it is none
   double thickness = 0;       ///< of a rectangular section, along d2 [m]
-  Material material;          ///< youngs_modulus 0: not known
+  Material material;          ///< youngs_modulus 0: not known; of layers the mean of the section
+  /// Bounds of a rod of layers, of which given_bending_stiffness and torsional_stiffness are one.
+  std::optional<LayeredSection> layers;
   std::optional<double> given_bending_stiffness;  ///< EI [N m^2], > 0; none: of the material
   std::optional<double> given_mass_per_length;    ///< rho A [kg/m], >= 0; none: of the material
   /// EI about d2 [N m^2], > 0, beside given_bending_stiffness, which then is about d1; none: round.
   std::optional<double> given_bending_stiffness_2;
+  std::optional<double> given_axial_stiffness;  ///< EA [N], > 0; none: axial_stiffness()
+  bool stretch = false;                         ///< it stretches by N / EA; EA is then known
   /// GJ [N m^2], > 0; needed where two clamps hold frames or the rod has material directors, of no
   /// effect elsewhere.
   std::optional<double> torsional_stiffness;
@@ -159,9 +168,13 @@ struct Scene {
   Eigen::Vector3d natural_strain = Eigen::Vector3d::Zero();
   /// What the curvature varies by: coefficients of Legendre's P_1, P_2, .. of 2 s/l - 1 [1/m].
   std::vector<Eigen::Vector2d> natural_variation;
+  /// What points in space say of the stress-free shape, where they say it: its arcs are the natural
+  /// curvature of `sections`, or natural_strain where there is one arc.
+  std::optional<RestShape> rest_shape;
   std::vector<Gripper> grippers;                   ///< one or more, in the file's order
   std::vector<PointLoad> loads;                    ///< may be empty
   std::vector<DistributedLoad> distributed_loads;  ///< may be empty; they add up
+  std::optional<energy_model::Drag> drag;          ///< of a steady stream on all of the rod
   std::vector<Obstacle> obstacles;                 ///< may be empty
   ForceModelSettings force_model;                  ///< as the file has it
   TrackRates track;                                ///< as the file has it
@@ -186,10 +199,13 @@ struct Scene {
   [[nodiscard]] double assumed_torsional_stiffness() const;
   /// Whether that GJ is an assumption.
   [[nodiscard]] bool assumes_torsion() const;
-  /// EA [N], one for all of the rod: of the material; without one of a rod of one material with
-  /// this EI and section (solid and round: 16 EI / d^2); without a section 1e6 EI / l^2, a rod 250
-  /// times as long as thick.
+  /// EA [N], one for all of the rod: as given, or of the material; without one of a rod of one
+  /// material with this EI and section (solid and round: 16 EI / d^2); without a section 1e6 EI /
+  /// l^2, a rod 250 times as long as thick.
   [[nodiscard]] double axial_stiffness() const;
+  /// The same where the scene says it; none where it is only assumed: of the EI and the diameter of
+  /// a cable whose strands slip EA is far more than a solid rod's.
+  [[nodiscard]] std::optional<double> known_axial_stiffness() const;
   /// The stiffness that a fit multiplies.
   [[nodiscard]] NamedValue stiffness() const;
   /// The same of the mass.
@@ -205,7 +221,11 @@ struct Scene {
   [[nodiscard]] double total_of_loads() const;
   /// Whether a load has a couple.
   [[nodiscard]] bool has_couples() const;
-  /// @param who  does not take couples, as "the polygons of models force and chain do"
+  /// @param who  needs a potential, as "the energy model does"
+  /// @throws InputError if a load has none (energy_model::has_potential), which names it
+  void require_potential(const char* who) const;
+  /// @param who  does not take couples, nor what has no potential, as "the polygons of models force
+  /// and chain do"
   /// @throws InputError if there are some
   void require_no_couples(const char* who) const;
   /// int 1/GJ ds between two arc lengths [1/(N m)], as above; of a rod with a GJ.
@@ -250,6 +270,11 @@ struct Scene {
   /// Whether there is one.
   [[nodiscard]] bool planar() const { return plane_normal().has_value(); }
   [[nodiscard]] int spans() const;  ///< parts that the clamps cut the rod into
+
+  /// Makes a shape the stress-free one, in place of any natural curvature and twist before. Of
+  /// several arcs each is a section, or cuts one.
+  /// @param shape  of a rod of this length
+  void set_rest_shape(const RestShape& shape);
 
   /// Multiplies E, and EI and GJ with it, those of sections too: their ratios are those of
   /// Poisson's ratio and of the sections' shapes.

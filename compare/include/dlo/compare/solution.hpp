@@ -42,6 +42,8 @@ struct SolveOptions {
   bool accept_unverified = false;
   /// Of the energy model: an equilibrium of a similar scene to follow, instead of the lowest.
   const energy_model::Equilibrium* start = nullptr;
+  /// What is neglected is told from here on, of the length and of the largest tension [-], > 0.
+  double target = 1e-3;
 };
 
 /// Energies [J]; gravity and loads are zero at the first gripper.
@@ -63,6 +65,14 @@ struct SceneEnergies {
 struct GripperLoad {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N]
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
+};
+
+/// What axial stretch would change of a shape whose model has none, to first order in N/EA. NaN:
+/// not known, or EA is not, or the strain is too small to matter.
+struct StretchEffect {
+  double strain = std::numeric_limits<double>::quiet_NaN();   ///< the largest |N| / EA [-]
+  double moved_m = std::numeric_limits<double>::quiet_NaN();  ///< the points, RMS [m]
+  double tension = std::numeric_limits<double>::quiet_NaN();  ///< by its largest value's share [-]
 };
 
 /// Turns of a part of the rod whose ends hold frames, in turns; the writhe is of that part with its
@@ -102,8 +112,10 @@ struct Solution {
   /// Of energy and exact, of the same parts; but where an end's line passes through the rod.
   std::vector<Linking> linking;
   /// What the scene has and the model neglects: "twist", "natural curvature", "friction"
-  /// (where it touches an obstacle that has it; of Comparison, where either model does).
+  /// (where it touches an obstacle that has it; of Comparison, where either model does), "stretch"
+  /// (of energy and exact, where solve() finds that it matters).
   std::vector<std::string> neglected;
+  StretchEffect stretch;  ///< of energy and exact, from solve() and solve_all()
   /// Smallest eigenvalue of the reduced Hessian over EI/l, where a search looked; else NaN.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   /// Of a `near_singular` one of energy: directions in which it is singular, at a fold or

@@ -26,9 +26,14 @@ struct ExactOptions {
 
 /// Lowest stable equilibrium that shooting finds, of the inextensible rod as a boundary value
 /// problem (Kirchhoff's equations; Love, Mathematical Theory of Elasticity, ch. 18-19)
-///     r' = t,  R' = R hat(u),  m = R diag(EI_1, EI_2, GJ) (u - u0),  m' = n x t,  n' = -w,
-/// R = (d1, d2, t), m and n what lies beyond s exerts; no basis, no code of solve_energy(). What
-/// it searches, and which contact it can confirm, says energy_model/doc/exact.md.
+///     r' = t,  R' = R hat(u),  m = R diag(EI_1, EI_2, GJ) (u - u0),  m' = n x t,  n' = -w - f(t),
+/// R = (d1, d2, t), m and n what lies beyond s exerts, f the drag; no basis, no code of
+/// solve_energy(). What it searches, and which contact it can confirm, says
+/// energy_model/doc/exact.md.
+///
+/// Where a load has no potential (has_potential()), it is the equilibrium that the lowest one under
+/// the others goes over into as that load and all couples grow from nothing; `not_verified`, since
+/// no energy says whether it is stable. Its energies are without such loads.
 /// @return the lowest `converged` shape, else the lowest other one, else why there is none; its
 /// stability is that of the second variation by finite elements on its own shape
 /// @throws std::invalid_argument if the problem or an option is out of range; of obstacles those

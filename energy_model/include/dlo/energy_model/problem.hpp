@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "dlo/energy_model/drag.hpp"
 #include "dlo/energy_model/status.hpp"
 #include "dlo/obstacle/body.hpp"
 
@@ -29,13 +30,18 @@ struct Grip {
   std::optional<FrameHold> frame;                      ///< of a clamp
 };
 
-/// A dead force and a dead couple, which keeps its axis. A couple has a potential in a plane alone,
-/// minus torque times the tangent's angle: `energy` takes it across the plane of the rod, of what
-/// touches nothing and holds no frame. `exact` takes any; out of the plane nobody judges stability.
+/// A force and a couple. Dead, a couple keeps its axis; it has a potential in a plane alone, minus
+/// torque times the tangent's angle: `energy` takes it across the plane of the rod, of what touches
+/// nothing and holds no frame. `exact` takes any; out of the plane nobody judges stability.
+///
+/// What follows the rod has none: `exact` alone takes it, where no clamp is.
 struct Load {
   double at = 0;                                     ///< arc length [m], 0 .. length
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N]
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
+  /// Whether both turn with the section, given along its d1, d2 and tangent: where these are says
+  /// Problem, of a round straight rod as if it had material directors.
+  bool follows = false;
 };
 
 /// A dead force per length besides the weight, linear along its part.
@@ -73,8 +79,9 @@ struct Section {
   std::optional<double> natural_twist = std::nullopt;  ///< the same of the twist [rad/m]
 };
 
-/// An inextensible rod, round or of two bending stiffnesses about the principal axes d1 and d2 of
-/// its section, as a ribbon or a flat cable has them; SI units, any right-handed axes.
+/// A rod, inextensible but where axial_stiffness is given, round or of two bending stiffnesses
+/// about the principal axes d1 and d2 of its section, as a ribbon or a flat cable has them; SI
+/// units, any right-handed axes.
 ///
 /// Two neighbouring clamps with frames fix the twist and writhe between them (held_turns() in
 /// turns.hpp); energy_model/doc/search.md says how a solver comes there. A rod that
@@ -91,6 +98,7 @@ struct Problem {
   std::vector<Grip> grips;                                      ///< one or more
   std::vector<Load> loads;                                      ///< may be empty
   std::vector<LineLoad> line_loads;                             ///< may be empty; they add up
+  std::optional<Drag> drag;                                     ///< on all of it; `exact` alone
   std::vector<Obstacle> obstacles;                              ///< may be empty
   std::vector<Section> sections;  ///< where it is another one, by arc length, none over another
   /// Strains u of the stress-free shape about d1, d2 and the tangent t, of which t' = u2 d1 - u1 d2
@@ -103,6 +111,10 @@ struct Problem {
   /// The rod moves in the plane of grips and forces alone, as between two plates: shapes beside it
   /// are none, and stability is judged in it. Only `energy`, without obstacles and held frames.
   bool confined_to_plane = false;
+  /// EA [N], > 0, of all of the rod: r' = (1 + N/EA) t, N the tension. Arc lengths, weight and
+  /// loads per length and strains are those of the unstretched rod. None: it does not stretch.
+  /// `exact` alone takes it, of a rod that touches nothing.
+  std::optional<double> axial_stiffness = std::nullopt;
 };
 
 /// Whether d1 and d2 are fixed to the rod's material: it is not intrinsically straight, or it or
@@ -111,6 +123,14 @@ struct Problem {
 
 /// Whether a load has a couple.
 [[nodiscard]] bool has_couples(const Problem& problem);
+
+/// Whether all loads have a potential, so that an energy says what is stable: no drag, none that
+/// follows the rod, no couple but across the plane of a rod that keeps to one and is not twisted.
+[[nodiscard]] bool has_potential(const Problem& problem);
+
+/// Whether solve_energy() and what else needs a potential has to refuse loads whose kind has none.
+/// @throws std::invalid_argument naming the function, the load and solve_exact()
+void require_dead_loads(const Problem& problem, const char* function);
 
 /// Whether each member is in its range. That the rod reaches from grip to grip is for the solvers
 /// to ask.
@@ -126,9 +146,12 @@ struct Energies {
   double gravity = 0;   ///< of the rod's weight
   double load = 0;      ///< of loads, at points and per length
   double contact = 0;   ///< of obstacles that yield: int 1/2 k d^2 ds, d the depth
+  double stretch = 0;   ///< int N^2 / (2 EA) ds, where axial_stiffness is given
 
   /// Of all [J].
-  [[nodiscard]] double total() const { return bending + twisting + gravity + load + contact; }
+  [[nodiscard]] double total() const {
+    return bending + twisting + gravity + load + contact + stretch;
+  }
 };
 
 /// What a gripper exerts on the rod, the torque about the gripper's position.
@@ -153,7 +176,8 @@ struct Samples {
   Eigen::Matrix3Xd tangents;       ///< unit, along growing arc length [-], 3 x M
   Eigen::Matrix3Xd curvature;      ///< derivative of the tangent by arc length [1/m], 3 x M
   /// First director of the rod's material, unit and across the tangent, 3 x M: of a rod that
-  /// has_material_directors(), and from solve_energy() of a round straight one that clamps twist.
+  /// has_material_directors(), from solve_energy() of a round straight one that clamps twist, and
+  /// from solve_exact() of one that a load follows along d1 or d2.
   /// Clamps that hold a frame have it where they hold it; what holds none is not twisted, and a
   /// frame without d1 at the begin has any. Empty of others.
   Eigen::Matrix3Xd d1;

@@ -1,4 +1,4 @@
-#include "solve/polygon_response.hpp"
+#include "polygon/polygon_response.hpp"
 
 #include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "dlo/compare/deviation.hpp"
+#include "dlo/compare/error.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -32,6 +33,29 @@ JointDerivatives joint_derivatives(double stiffness, const Eigen::Vector3d& u,
 }
 
 }  // namespace
+
+std::optional<Discretisation> hooke_polygon(const Scene& scene, int points) {
+  ForceModelSettings settings;
+  settings.points = points;
+  settings.bookkeeping = scene.force_model.bookkeeping;
+  settings.point_weight = scene.force_model.point_weight;
+  try {
+    return discretise(scene, settings);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+std::string why_no_polygon(const Scene& scene) {
+  const auto holds_frame = [](const Gripper& gripper) { return gripper.frame.has_value(); };
+  const auto frames = std::ranges::count_if(scene.grippers, holds_frame);
+  if (frames > 1) return "the polygon that answers has no twist";
+  if (scene.naturally_bent()) return "the polygon that answers is intrinsically straight";
+  if (scene.has_two_stiffnesses()) return "the polygon that answers is round";
+  if (scene.has_couples()) return "the polygon that answers takes no couples";
+  if (!scene.sections.empty()) return "the polygon that answers is of one section";
+  return {};
+}
 
 PolygonResponse::PolygonResponse(const Scene& scene, const Discretisation& discretisation,
                                  const energy_model::Equilibrium& rod)
@@ -189,6 +213,11 @@ PolygonResponse::Turns PolygonResponse::turns(const Eigen::Matrix3Xd& f,
   for (Eigen::Index i = 0; i < n_; ++i) {
     result.dt.col(i) = across_[static_cast<std::size_t>(i)] * solution.segment<2>(2 * i);
   }
+  // H dt - f = L dn across the tangents, of which the multipliers are -dn / EI.
+  result.dn.resize(3, gaps.cols());
+  for (Eigen::Index k = 0; k < gaps.cols(); ++k) {
+    result.dn.col(k) = -scene_.bending_stiffness() * solution.segment<3>(2 * n_ + 3 * k);
+  }
   return result;
 }
 
@@ -208,7 +237,8 @@ double PolygonResponse::moved_rms(const Eigen::Matrix3Xd& movement) const {
   return rms(moved.arc_length, moved.points - rod_points_);
 }
 
-double PolygonResponse::moved_by(const Eigen::Matrix3Xd& f, const Eigen::Matrix3Xd& eta) const {
+PolygonResponse::Answer PolygonResponse::answer_to(const Eigen::Matrix3Xd& f,
+                                                   const Eigen::Matrix3Xd& eta) const {
   const Eigen::RowVectorXd L = polygon_.rod.rest_lengths.transpose();
   const std::vector<force_model::Grip>& grips = polygon_.rod.grips;
   Eigen::Matrix3Xd steps = eta * L.asDiagonal();
@@ -222,12 +252,12 @@ double PolygonResponse::moved_by(const Eigen::Matrix3Xd& f, const Eigen::Matrix3
     gaps.col(k) = -steps.middleCols(begin, end - begin).rowwise().sum();
   }
   const Turns turned = turns(f, gaps);
-  if (!turned.possible) return std::numeric_limits<double>::infinity();
+  if (!turned.possible) return {std::numeric_limits<double>::infinity(), {}};
   steps += turned.dt * L.asDiagonal();
-  return moved_rms(points_along(Eigen::Vector3d::Zero(), steps));
+  return {moved_rms(points_along(Eigen::Vector3d::Zero(), steps)), turned.dn};
 }
 
-double PolygonResponse::stretch(double stiffness) const {
+StretchResponse PolygonResponse::stretch(double stiffness) const {
   Eigen::Matrix3Xd f(3, n_);
   Eigen::Matrix3Xd eta(3, n_);
   for (Eigen::Index i = 0; i < n_; ++i) {
@@ -235,7 +265,20 @@ double PolygonResponse::stretch(double stiffness) const {
     eta.col(i) = strain * tangents_.col(i);
     f.col(i) = polygon_.rod.rest_lengths[i] * strain * forces_.col(i);
   }
-  return moved_by(f, eta);
+  const Answer answer = answer_to(f, eta);
+  StretchResponse result{answer.moved_m, std::numeric_limits<double>::quiet_NaN()};
+  if (!std::isfinite(answer.moved_m)) return result;
+  double largest = 0;
+  for (std::size_t k = 0; k + 1 < along_.size(); ++k) {
+    const Eigen::Index end = polygon_.rod.grips[along_[k + 1]].first_point;
+    for (Eigen::Index i = polygon_.rod.grips[along_[k]].first_point; i < end; ++i) {
+      const double tension = forces_.col(i).dot(tangents_.col(i));
+      if (!(std::abs(tension) > std::abs(largest))) continue;
+      largest = tension;
+      result.tension = answer.dn.col(static_cast<Eigen::Index>(k)).dot(tangents_.col(i)) / tension;
+    }
+  }
+  return result;
 }
 
 double PolygonResponse::shear(double stiffness) const {
@@ -246,7 +289,7 @@ double PolygonResponse::shear(double stiffness) const {
     eta.col(i) = (forces_.col(i) - tension * tangents_.col(i)) / stiffness;
     f.col(i) = -polygon_.rod.rest_lengths[i] * tension * eta.col(i);
   }
-  return moved_by(f, eta);
+  return answer_to(f, eta).moved_m;
 }
 
 double PolygonResponse::discretisation() const {

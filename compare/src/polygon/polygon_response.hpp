@@ -2,12 +2,32 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
+#include <optional>
+#include <string>
 
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
 
 namespace dlo::compare {
+
+/// Points of the polygon that stands for the rod itself.
+inline constexpr int rod_points = 97;
+
+/// The hooke polygon of N points with the scene's bookkeeping and a physical c_c; nothing if the
+/// grips ask for more points.
+[[nodiscard]] std::optional<Discretisation> hooke_polygon(const Scene& scene, int points);
+
+/// Why no polygon answers for a rod that touches nothing (PolygonResponse); empty if one does.
+[[nodiscard]] std::string why_no_polygon(const Scene& scene);
+
+/// What stretch changes.
+struct StretchResponse {
+  double moved_m = 0;  ///< RMS along the rod [m]
+  /// Change of the tension where it is largest, over that; NaN where there is no answer or no
+  /// tension [-].
+  double tension = 0;
+};
 
 /// How an equilibrium of the continuous rod answers, to first order, to what a model neglects.
 ///
@@ -34,7 +54,7 @@ class PolygonResponse {
   // second variation with 5 % less of the joints' stiffness is still positive.
 
   /// @param stiffness  EA [N]
-  [[nodiscard]] double stretch(double stiffness) const;
+  [[nodiscard]] StretchResponse stretch(double stiffness) const;
   /// @param stiffness  kGA [N]
   [[nodiscard]] double shear(double stiffness) const;
   /// Of the hooke polygon against the rod.
@@ -44,6 +64,7 @@ class PolygonResponse {
   struct Turns {
     bool possible = false;
     Eigen::Matrix3Xd dt;  // 3 x n
+    Eigen::Matrix3Xd dn;  // change of the force between two grips each, 3 x (grips - 1) [N]
   };
   void find_held_segments();
   void find_forces(const energy_model::Equilibrium& rod);
@@ -54,7 +75,11 @@ class PolygonResponse {
   [[nodiscard]] Eigen::Index constraints() const;
   /// Whether `matrix` is positive definite where the constraints hold, by Sylvester's law.
   [[nodiscard]] bool is_positive(const Eigen::SparseMatrix<double>& matrix) const;
-  [[nodiscard]] double moved_by(const Eigen::Matrix3Xd& f, const Eigen::Matrix3Xd& eta) const;
+  struct Answer {
+    double moved_m;       // infinite: none
+    Eigen::Matrix3Xd dn;  // as Turns::dn
+  };
+  [[nodiscard]] Answer answer_to(const Eigen::Matrix3Xd& f, const Eigen::Matrix3Xd& eta) const;
   [[nodiscard]] Eigen::Matrix3Xd points_along(const Eigen::Vector3d& start,
                                               const Eigen::Matrix3Xd& steps) const;
   [[nodiscard]] double moved_rms(const Eigen::Matrix3Xd& movement) const;

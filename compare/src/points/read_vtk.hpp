@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "shape/raw_shape.hpp"
+#include "points/raw_shape.hpp"
 
 namespace dlo::compare {
 

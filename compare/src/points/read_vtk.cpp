@@ -1,4 +1,4 @@
-#include "shape/read_vtk.hpp"
+#include "points/read_vtk.hpp"
 
 #include <fmt/format.h>
 

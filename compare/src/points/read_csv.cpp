@@ -1,4 +1,4 @@
-#include "shape/read_csv.hpp"
+#include "points/read_csv.hpp"
 
 #include <fmt/format.h>
 

@@ -7,10 +7,10 @@
 
 #include "base/input_file.hpp"
 #include "dlo/compare/error.hpp"
-#include "shape/raw_shape.hpp"
-#include "shape/read_csv.hpp"
-#include "shape/read_json.hpp"
-#include "shape/read_vtk.hpp"
+#include "points/raw_shape.hpp"
+#include "points/read_csv.hpp"
+#include "points/read_json.hpp"
+#include "points/read_vtk.hpp"
 
 namespace dlo::compare {
 namespace {

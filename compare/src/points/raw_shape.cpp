@@ -1,4 +1,4 @@
-#include "shape/raw_shape.hpp"
+#include "points/raw_shape.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "shape/read_json.hpp"
+#include "points/read_json.hpp"
 
 #include <fmt/format.h>
 

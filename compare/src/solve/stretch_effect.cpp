@@ -1,0 +1,126 @@
+#include "solve/stretch_effect.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/solve.hpp"
+#include "polygon/polygon_response.hpp"
+#include "scene/reach.hpp"
+#include "scene/scene_problem.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// No section carries more than half of all forces, since those on both sides of it balance [N].
+double most_force(const Scene& scene, const energy_model::Equilibrium& rod) {
+  double all = scene.weight_per_length().norm() * scene.length + scene.total_of_loads();
+  for (const energy_model::Reaction& grip : rod.grips) all += grip.force.norm();
+  for (const Eigen::Vector3d& force : rod.obstacles) all += force.norm();
+  return all / 2;
+}
+
+/// The least share of rod that two neighbouring grips leave to spare; 1 of a single one.
+double least_slack(const Scene& scene) {
+  const std::vector<const Gripper*> along = grippers_along(scene);
+  double least = 1;
+  for (std::size_t i = 0; i + 1 < along.size(); ++i) {
+    const double rod = along[i + 1]->at - along[i]->at;
+    if (!(rod > 0)) continue;
+    least = std::min(least, 1 - (along[i + 1]->position - along[i]->position).norm() / rod);
+  }
+  return least;
+}
+
+bool touches_any(const energy_model::Equilibrium& rod) {
+  return std::any_of(rod.obstacles.begin(), rod.obstacles.end(),
+                     [](const Eigen::Vector3d& force) { return force.norm() > 0; });
+}
+
+double largest_size(const std::vector<double>& values) {
+  double largest = 0;
+  for (const double value : values) largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+/// The lowest shape of the rod as much longer, with its weight and EI.
+/// @param own  the rod's solution, with a tension at equal distances
+void look_at_longer_rod(const Scene& scene, const Solution& own, double EA,
+                        const SolveOptions& options, StretchEffect& effect) {
+  double mean = 0;
+  for (std::size_t i = 1; i < own.tension.size(); ++i) {
+    mean += (own.tension[i - 1] + own.tension[i]) / (2 * EA);
+  }
+  mean /= static_cast<double>(own.tension.size() - 1);
+  Scene longer = scene;
+  scale_length(longer, 1 + mean);
+  longer.scale_density(1 / (1 + mean));
+  for (DistributedLoad& load : longer.distributed_loads) {
+    for (Eigen::Vector3d& force : load.force_per_length) force /= 1 + mean;
+  }
+  SolveOptions anew = options;
+  anew.start = nullptr;
+  try {
+    const Solution other =
+        solution_of(longer, Model::energy, solve_reference(longer, Model::energy, anew),
+                    equal_arc_lengths(longer.length, rod_points), obstacles_in_reach(longer));
+    effect.moved_m = rms(own.shape.arc_length, other.shape.points - own.shape.points);
+    const double before = largest_size(own.tension);
+    effect.tension = largest_size(other.tension) / before - 1;
+  } catch (const ConvergenceError&) {
+    // Then it is not known.
+  } catch (const InputError&) {
+    // The same.
+  }
+}
+
+}  // namespace
+
+StretchEffect stretch_effect(const Scene& scene, Model model, const energy_model::Equilibrium& rod,
+                             const SolveOptions& options) {
+  StretchEffect effect;
+  const std::optional<double> EA = scene.known_axial_stiffness();
+  if (!EA || !rod.sample) return effect;
+  const double slack = least_slack(scene);
+  constexpr double taut = 1e-9;
+  if (!(slack > taut)) return effect;
+  if (!(most_force(scene, rod) / *EA * (1 + 1 / slack) > options.target)) return effect;
+  const Solution own = solution_of(scene, model, rod, equal_arc_lengths(scene.length, rod_points),
+                                   obstacles_in_reach(scene));
+  if (own.tension.empty()) return effect;
+  effect.strain = largest_size(own.tension) / *EA;
+  if (!(effect.strain * (1 + 1 / slack) > options.target)) return effect;
+  if (!touches_any(rod) && why_no_polygon(scene).empty()) {
+    if (const std::optional<Discretisation> fine = hooke_polygon(scene, rod_points)) {
+      const StretchResponse response = PolygonResponse(scene, *fine, rod).stretch(*EA);
+      if (std::isfinite(response.moved_m)) {
+        effect.moved_m = response.moved_m;
+        effect.tension = response.tension;
+        return effect;
+      }
+    }
+  }
+  look_at_longer_rod(scene, own, *EA, options, effect);
+  // Another state would be farther away than that.
+  constexpr double another = 10;
+  if (effect.moved_m > another * effect.strain * (1 + 1 / slack) * scene.length) {
+    effect.moved_m = effect.tension = std::numeric_limits<double>::quiet_NaN();
+  }
+  return effect;
+}
+
+bool matters(const StretchEffect& effect, const Scene& scene, const SolveOptions& options) {
+  if (std::isnan(effect.moved_m)) {
+    // A line that sags by its slack alone is pulled less by this share.
+    return effect.strain / (2 * least_slack(scene)) > options.target;
+  }
+  return effect.moved_m > options.target * scene.length ||
+         std::abs(effect.tension) > options.target;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,487 @@
+#include "dlo/energy_model/soft_line.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <numbers>
+#include <span>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/sized_samples.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+/// Of the length: arc lengths and heights that are meant to be the same.
+constexpr double same_place = 1e-9;
+/// What a clamp may bend the rod by: of a straight fold nobody says to which side.
+constexpr double most_turned = 170 * std::numbers::pi / 180;
+/// Lengths of a layer after which nothing is left of it: exp(-40) = 4e-18.
+constexpr double layer_reach = 40;
+/// Of the length; the models' own estimates are lower where they succeed.
+constexpr double most_error = 1e-7;
+
+/// A catenary, part of which may lie on the level of its lowest point.
+struct Catenary {
+  double a = 0;      // T / w at the lowest point [m]; 0: a line that hangs straight
+  double low = 0;    // arc length of that point; beyond the ends if the line rises all along
+  double lying = 0;  // length that lies from there on
+  Vector origin;     // that point
+  Vector level;      // unit, along growing arc length
+  Vector up;         // unit
+
+  /// Arc length from the lowest point, or from the end of what lies.
+  [[nodiscard]] double own(double s) const {
+    if (s < low) return s - low;
+    return std::max(0.0, s - low - lying);
+  }
+  [[nodiscard]] double height(double s) const { return std::hypot(a, own(s)); }
+  [[nodiscard]] bool lies(double s) const { return s > low && s < low + lying; }
+  [[nodiscard]] Vector point(double s) const {
+    const double q = own(s);
+    const double x = std::clamp(s - low, 0.0, lying) + (a > 0 ? a * std::asinh(q / a) : 0.0);
+    return origin + x * level + (std::hypot(a, q) - a) * up;
+  }
+  [[nodiscard]] Vector tangent(double s) const {
+    if (a == 0) return own(s) < 0 || (own(s) == 0 && low > 0) ? Vector(-up) : up;
+    return (a * level + own(s) * up) / height(s);
+  }
+  [[nodiscard]] Vector curvature(double s) const {
+    if (a == 0 || lies(s)) return Vector::Zero();
+    const double y = height(s);
+    return a / (y * y) * (a * up - own(s) * level) / y;
+  }
+  /// int (height - a) ds from the lowest point on.
+  [[nodiscard]] double height_integral(double q) const {
+    const double area = (q * std::hypot(a, q) + (a > 0 ? a * a * std::asinh(q / a) : 0.0)) / 2;
+    return area - a * q;
+  }
+  /// int |curvature|^2 ds from there on.
+  [[nodiscard]] double bend_integral(double q) const {
+    if (a == 0) return 0;
+    return (q / (a * a + q * q) + std::atan(q / a) / a) / 2;
+  }
+};
+
+/// u of sinh(u) / u = ratio, given ratio - 1.
+double root_of_sinh_ratio(double excess) {
+  const auto excess_at = [](double u) {
+    if (u > 1) return std::sinh(u) / u - 1;
+    double term = 1;
+    double sum = 0;
+    for (int k = 1; k < 12; ++k) sum += term *= u * u / (2 * k * (2 * k + 1));
+    return sum;
+  };
+  double low = 0;
+  double high = 1;
+  while (excess_at(high) < excess && high < 700) high *= 2;
+  constexpr int halvings = 200;
+  for (int i = 0; i < halvings && high - low > 1e-16 * high; ++i) {
+    const double middle = (low + high) / 2;
+    (excess_at(middle) < excess ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
+/// Between two points, arc length l apart; none if they are above each other or as far as that.
+std::optional<Catenary> hang_between(const Vector& begin, const Vector& end, double l,
+                                     const Vector& up) {
+  const Vector way = end - begin;
+  const double rise = way.dot(up);
+  const Vector flat = way - rise * up;
+  const double x = flat.norm();
+  if (!(x > same_place * l) || !(way.norm() < l * (1 - same_place))) return std::nullopt;
+  const double ratio = std::sqrt((l - rise) * (l + rise)) / x;
+  const double excess = (l - way.norm()) * (l + way.norm()) / (x * x * (ratio + 1));
+  const double u = root_of_sinh_ratio(excess);
+  Catenary line;
+  line.a = x / (2 * u);
+  line.level = flat / x;
+  line.up = up;
+  const double first = line.a * std::sinh(std::atanh(rise / l) - u);
+  line.low = -first;
+  line.origin = begin - line.a * std::asinh(first / line.a) * line.level -
+                (std::hypot(line.a, first) - line.a) * up;
+  return line;
+}
+
+/// The same on a floor that carries its lowest part; none if it does not.
+std::optional<Catenary> lie_between(const Vector& begin, const Vector& end, double l,
+                                    const Vector& up, double floor) {
+  const Vector way = end - begin;
+  const Vector flat = way - way.dot(up) * up;
+  const double x = flat.norm();
+  if (!(x > same_place * l)) return std::nullopt;
+  const std::array<double, 2> heights = {std::max(0.0, begin.dot(up) - floor),
+                                         std::max(0.0, end.dot(up) - floor)};
+  const auto length = [](double h, double a) { return std::sqrt(h * (h + 2 * a)); };
+  const auto reach = [](double h, double a) {
+    const double z = h / a;
+    return a * std::log1p(z + std::sqrt(z * (z + 2)));
+  };
+  const auto spare = [&](double a) {
+    double sum = 0;
+    for (const double h : heights) sum += length(h, a) - reach(h, a);
+    return sum;
+  };
+  double low = 1e-6 * l;
+  double high = 1e6 * l;
+  if (!(spare(low) > l - x) || !(spare(high) < l - x)) return std::nullopt;
+  constexpr int halvings = 200;
+  for (int i = 0; i < halvings && high / low > 1 + 1e-15; ++i) {
+    const double middle = std::sqrt(low * high);
+    (spare(middle) > l - x ? low : high) = middle;
+  }
+  Catenary line;
+  line.a = std::sqrt(low * high);
+  line.level = flat / x;
+  line.up = up;
+  line.low = length(heights[0], line.a);
+  line.lying = l - line.low - length(heights[1], line.a);
+  if (!(line.lying > 0)) return std::nullopt;
+  line.origin = begin + reach(heights[0], line.a) * line.level - heights[0] * up;
+  return line;
+}
+
+/// How the rod leaves a grip at one of its ends.
+struct Layer {
+  const Grip* grip = nullptr;
+  bool at_end = false;
+  double length = 0;               // lambda
+  double turn = 0;                 // phi_0; 0 of a pin
+  Vector along = Vector::Zero();   // the catenary's tangent into the rod
+  Vector across = Vector::Zero();  // unit; to where the clamp turns the rod
+
+  [[nodiscard]] double angle(double sigma) const {
+    return 4 * std::atan(std::tan(turn / 4) * std::exp(-sigma / length));
+  }
+  /// From the asymptote to the rod.
+  [[nodiscard]] Vector way(double angle) const {
+    return 2 * length * ((1 - std::cos(angle / 2)) * along - std::sin(angle / 2) * across);
+  }
+  [[nodiscard]] Vector axis() const { return along.cross(across); }
+};
+
+/// The catenary and the layers at its ends.
+struct Composite {
+  Catenary line;
+  std::vector<Layer> layers;
+  double length = 0;
+  double edge_layer = 0;  // length of the layer in which the rod bends as it leaves what carries it
+
+  struct Place {
+    Vector point, tangent, curvature;
+  };
+
+  [[nodiscard]] Place at(double s) const {
+    Place place{line.point(s), line.tangent(s), line.curvature(s)};
+    if (line.lying > 0) lift(s, place.curvature);
+    for (const Layer& layer : layers) {
+      const double sigma = layer.at_end ? length - s : s;
+      if (sigma > layer_reach * layer.length) continue;
+      if (!layer.grip->direction) {
+        place.curvature *= -std::expm1(-sigma / layer.length);
+        continue;
+      }
+      const double angle = layer.angle(sigma);
+      const double rate = (layer.at_end ? 2 : -2) * std::sin(angle / 2) / layer.length;
+      const Eigen::AngleAxisd turn(angle, layer.axis());
+      place.point += layer.way(angle);
+      place.tangent = turn * place.tangent;
+      place.curvature = turn * place.curvature + rate * layer.axis().cross(place.tangent);
+    }
+    return place;
+  }
+
+  /// The curvature grows from zero where the rod lifts off.
+  void lift(double s, Vector& curvature) const {
+    for (const double sign : {-1.0, 1.0}) {
+      const double off = sign < 0 ? line.low + edge_layer : line.low + line.lying - edge_layer;
+      const double beyond = sign * (s - off);
+      if (!(beyond > 0) || beyond > layer_reach * edge_layer) continue;
+      const Vector full = line.lies(s) ? Vector(line.up / line.a) : curvature;
+      curvature = -std::expm1(-beyond / edge_layer) * full;
+    }
+  }
+
+  /// By which the unit tangents, integrated over the rod, miss its other end [m].
+  [[nodiscard]] double gap() const {
+    std::vector<double> nodes = {0, length};
+    const auto add_layer = [&](double begin, double way, double size) {
+      constexpr int steps = 160;  // of a quarter of a layer: Gauss' rule is then exact to rounding
+      for (int i = 0; i <= steps; ++i)
+        nodes.push_back(begin + way * size * layer_reach * i / steps);
+    };
+    for (const Layer& layer : layers) {
+      add_layer(layer.at_end ? length : 0, layer.at_end ? -1 : 1, layer.length);
+    }
+    constexpr int parts = 400;
+    for (int i = 0; i < parts; ++i) nodes.push_back(length * i / parts);
+    // Where the line turns sharply its arc lengths are those of equal angles.
+    for (int i = -parts; i <= parts; ++i) {
+      constexpr double angles = 12;
+      const double q = line.a * std::sinh(angles * i / parts);
+      nodes.push_back(q < 0 ? line.low + q : line.low + line.lying + q);
+    }
+    std::erase_if(nodes, [&](double s) { return !(s >= 0 && s <= length); });
+    std::sort(nodes.begin(), nodes.end());
+    constexpr std::array<double, 3> point = {-0.7745966692414834, 0, 0.7745966692414834};
+    constexpr std::array<double, 3> share = {5.0 / 18, 8.0 / 18, 5.0 / 18};
+    Vector missed = at(0).point - at(length).point;
+    for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
+      const double h = nodes[i + 1] - nodes[i];
+      for (std::size_t q = 0; q < point.size(); ++q) {
+        missed += h * share[q] * at(nodes[i] + h * (1 + point[q]) / 2).tangent;
+      }
+    }
+    return missed.norm();
+  }
+};
+
+class SoftLine {
+ public:
+  explicit SoftLine(const Problem& problem) : problem_(problem) {}
+
+  std::optional<Equilibrium> solve() {
+    if (!is_taken()) return std::nullopt;
+    weight_ = problem_.weight_per_length.norm();
+    up_ = -problem_.weight_per_length / weight_;
+    for (const Grip& grip : problem_.grips) {
+      layers_.push_back({.grip = &grip, .at_end = grip.at > problem_.length / 2});
+    }
+    constexpr int rounds = 12;  // each leaves a layer's share of the length of what was missed
+    for (int i = 0; i < rounds; ++i) {
+      if (!find_catenary()) return std::nullopt;
+      for (Layer& layer : layers_) bend(layer);
+    }
+    if (!find_catenary() || !is_well_apart()) return std::nullopt;
+    return result();
+  }
+
+ private:
+  [[nodiscard]] bool is_taken() const {
+    const double l = problem_.length;
+    const auto at_end = [&](const Grip& grip) {
+      return grip.at < same_place * l || grip.at > l * (1 - same_place);
+    };
+    const auto framed = [](const Grip& grip) { return grip.frame.has_value(); };
+    const std::vector<Grip>& grips = problem_.grips;
+    if (problem_.axial_stiffness || has_material_directors(problem_) ||
+        !problem_.sections.empty() || !problem_.loads.empty() || !problem_.line_loads.empty() ||
+        !(problem_.weight_per_length.norm() > 0) || problem_.obstacles.size() > 1 ||
+        grips.empty() || grips.size() > 2 || !std::ranges::all_of(grips, at_end) ||
+        std::ranges::count_if(grips, framed) > 1) {
+      return false;
+    }
+    if (grips.size() == 1) return grips.front().direction.has_value();
+    return std::abs(grips[0].at - grips[1].at) > l / 2;
+  }
+
+  /// Height of a floor, if that is what the obstacle is.
+  [[nodiscard]] std::optional<double> floor() const {
+    if (problem_.obstacles.empty()) return std::nullopt;
+    const Obstacle& obstacle = problem_.obstacles.front();
+    if (!std::isinf(obstacle.stiffness) || !obstacle.body.is_half_space()) return std::nullopt;
+    const obstacle::Body& body = obstacle.body;
+    if ((body.normal() - up_).norm() > same_place) return std::nullopt;
+    return (body.centre() + body.radius() * body.normal()).dot(up_);
+  }
+
+  /// Where the asymptote of a layer leads.
+  [[nodiscard]] static Vector begin_of(const Layer& layer) {
+    return layer.grip->position - (layer.length > 0 ? layer.way(layer.turn) : Vector::Zero());
+  }
+
+  bool find_catenary() {
+    const double l = problem_.length;
+    if (layers_.size() == 1) {
+      if (!problem_.obstacles.empty()) return false;
+      const Layer& layer = layers_.front();
+      line_ = {.a = 0,
+               .low = layer.at_end ? 0.0 : l,
+               .lying = 0,
+               .origin = begin_of(layer) - l * up_,
+               .level = up_.unitOrthogonal(),
+               .up = up_};
+      return true;
+    }
+    const Vector begin = begin_of(layers_[layers_[0].at_end ? 1 : 0]);
+    const Vector end = begin_of(layers_[layers_[0].at_end ? 0 : 1]);
+    const std::optional<Catenary> free = hang_between(begin, end, l, up_);
+    if (!free) return false;
+    line_ = *free;
+    if (problem_.obstacles.empty()) return true;
+    const std::optional<double> ground = floor();
+    if (!ground) return false;
+    const double lowest = line_.point(std::clamp(line_.low, 0.0, l)).dot(up_);
+    if (lowest > *ground + same_place * l) return true;
+    const std::optional<Catenary> lying = lie_between(begin, end, l, up_, *ground);
+    if (!lying) return false;
+    line_ = *lying;
+    return true;
+  }
+
+  [[nodiscard]] double at(const Layer& layer) const { return layer.at_end ? problem_.length : 0; }
+
+  void bend(Layer& layer) const {
+    const double sign = layer.at_end ? -1 : 1;
+    layer.along = sign * line_.tangent(at(layer));
+    layer.length = std::sqrt(problem_.bending_stiffness / (weight_ * line_.height(at(layer))));
+    layer.turn = 0;
+    layer.across = layer.along.unitOrthogonal();
+    if (!layer.grip->direction) return;
+    const Vector held = sign * layer.grip->direction->normalized();
+    const Vector across = held - held.dot(layer.along) * layer.along;
+    layer.turn = std::atan2(across.norm(), held.dot(layer.along));
+    if (across.norm() > 0) layer.across = across.normalized();
+  }
+
+  /// Where the rod bends as what lies next to it lifts off.
+  [[nodiscard]] double edge_layer() const {
+    return line_.a > 0 ? std::sqrt(problem_.bending_stiffness / (weight_ * line_.a)) : 0.0;
+  }
+
+  /// Whether layers end before others begin, and above the floor, and bend to a side.
+  [[nodiscard]] bool is_well_apart() const {
+    const std::optional<double> ground = floor();
+    for (const Layer& layer : layers_) {
+      if (!(layer.turn < most_turned)) return false;
+      if (!(2 * layer_reach * layer.length < problem_.length)) return false;
+      const double above = ground ? layer.grip->position.dot(up_) - *ground : 1.0;
+      if (!ground) continue;
+      const bool lies_there = line_.lies(layer.at_end ? problem_.length * (1 - 1e-15) : 1e-300) ||
+                              line_.own(at(layer)) == 0;
+      if (lies_there) {
+        // On the floor, along it.
+        if (std::abs(above) > same_place * problem_.length || layer.turn > same_place) return false;
+      } else if (!(above > layer_reach * layer.length)) {
+        return false;
+      }
+    }
+    const bool lies = line_.lying > 0;
+    if (lies) return line_.lying > 2 * layer_reach * edge_layer();
+    if (!ground) return true;
+    const double l = problem_.length;
+    return line_.point(std::clamp(line_.low, 0.0, l)).dot(up_) > *ground + 10 * edge_layer();
+  }
+
+  [[nodiscard]] double error() const {
+    const double l = problem_.length;
+    double sum = line_.a > 0 ? 2 * edge_layer() * edge_layer() / line_.a : 0.0;
+    for (const Layer& layer : layers_) {
+      sum += 2 * layer.length * layer.length * (1 + layer.turn) / line_.height(at(layer));
+    }
+    if (layers_.size() == 1) return sum / l;
+    const double slack = 1 - (problem_.grips[0].position - problem_.grips[1].position).norm() / l;
+    return (1 + 1 / std::sqrt(slack)) * sum / l;
+  }
+
+  [[nodiscard]] std::optional<Equilibrium> result() const {
+    const double l = problem_.length;
+    const double EI = problem_.bending_stiffness;
+    const Composite shape{line_, layers_, l, edge_layer()};
+    Equilibrium result;
+    result.error_estimate = error();
+    result.residual = shape.gap() / l;
+    constexpr double rounding = 1e-12;
+    if (!(result.residual <= result.error_estimate + rounding)) return std::nullopt;
+    result.status = SolveStatus::converged;
+    result.message =
+        "converged: a catenary with bending layers at its ends, the limit of small EI / (w l^3); "
+        "what the limit neglects moves points by about " +
+        text_of(result.error_estimate) + " of l";
+    const double first = line_.own(0);
+    const double last = line_.own(l);
+    const double offset = (line_.origin - problem_.grips.front().position).dot(up_);
+    result.energy.bending = EI / 2 * (line_.bend_integral(last) - line_.bend_integral(first));
+    result.energy.gravity =
+        weight_ * (offset * l + line_.height_integral(last) - line_.height_integral(first));
+    result.grips.resize(problem_.grips.size());
+    for (const Layer& layer : layers_) {
+      const double half = layer.turn / 2;
+      result.energy.bending += 2 * EI / layer.length * (1 - std::cos(half));
+      const double area = layer.length * layer.length;
+      result.energy.gravity +=
+          weight_ * area *
+          (-4 * std::log(std::cos(half / 2)) * layer.along - 2 * half * layer.across).dot(up_);
+      Reaction& reaction =
+          result.grips[static_cast<std::size_t>(layer.grip - problem_.grips.data())];
+      reaction.force = -weight_ * line_.height(at(layer)) * layer.along;
+      if (!layer.grip->direction) continue;
+      const Composite::Place place = shape.at(at(layer));
+      reaction.torque = (layer.at_end ? EI : -EI) * place.tangent.cross(place.curvature);
+    }
+    result.obstacles.assign(problem_.obstacles.size(), Vector::Zero());
+    if (line_.lying > 0) add_contact(result);
+    result.sample = [shape](std::span<const double> arc_lengths) {
+      Samples samples = sized_samples(arc_lengths, shape.length);
+      for (Eigen::Index i = 0; i < samples.points.cols(); ++i) {
+        const Composite::Place place = shape.at(arc_lengths[static_cast<std::size_t>(i)]);
+        samples.points.col(i) = place.point;
+        samples.tangents.col(i) = place.tangent;
+        samples.curvature.col(i) = place.curvature;
+      }
+      return samples;
+    };
+    return result;
+  }
+
+  /// Where the line rises from what carries it, it lifts off a layer's length before.
+  void add_contact(Equilibrium& result) const {
+    const double pressed = weight_ * edge_layer();
+    const double end = line_.low + line_.lying;
+    const bool rises_at_begin = line_.low > 0;
+    const bool rises_at_end = end < problem_.length * (1 - same_place);
+    result.obstacles.front() = weight_ * line_.lying * up_;
+    ContactPart part;
+    part.kind = ContactKind::lying;
+    part.begin = rises_at_begin ? line_.low + edge_layer() : 0.0;
+    part.end = rises_at_end ? end - edge_layer() : problem_.length;
+    part.force = result.obstacles.front();
+    part.begin_force = rises_at_begin ? pressed : 0.0;
+    part.end_force = rises_at_end ? pressed : 0.0;
+    part.largest_pressure = weight_;
+    result.contacts = {part};
+  }
+
+  static std::string text_of(double value) {
+    std::ostringstream text;
+    text << std::setprecision(1) << std::scientific << value;
+    return text.str();
+  }
+
+  const Problem& problem_;
+  double weight_ = 0;
+  Vector up_;
+  std::vector<Layer> layers_;
+  Catenary line_;
+};
+
+}  // namespace
+
+bool is_soft_line(const Problem& problem) {
+  const double l = problem.length;
+  return l > 0 &&
+         problem.bending_stiffness < line_stiffness * problem.weight_per_length.norm() * l * l * l;
+}
+
+std::optional<Equilibrium> soft_line(const Problem& problem) {
+  check(problem);
+  return SoftLine(problem).solve();
+}
+
+std::optional<Equilibrium> soft_line_for_models(const Problem& problem) {
+  if (!is_soft_line(problem)) return std::nullopt;
+  std::optional<Equilibrium> line = soft_line(problem);
+  if (!line || !(line->error_estimate <= most_error)) return std::nullopt;
+  return line;
+}
+
+}  // namespace dlo::energy_model

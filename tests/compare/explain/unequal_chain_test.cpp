@@ -1,0 +1,89 @@
+// Chains of hinges whose segments are unequal, against an independent chain.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/scene.hpp"
+#include "explain/own_polygon.hpp"
+#include "rolled_chain.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr double weight = 30;  // N/m, on EI = 1 N m^2 and 1 m
+
+Scene unequal_scene() {
+  Scene scene;
+  scene.file = "u.toml";
+  scene.gravity = {0, -10, 0};
+  scene.length = 1;
+  scene.given_bending_stiffness = 1;
+  scene.given_mass_per_length = weight / 10;
+  scene.grippers = {
+      {.at = 0, .position = Eigen::Vector3d::Zero(), .direction = Eigen::Vector3d(1, 0, 0)}};
+  return scene;
+}
+
+/// Welded to its clamp: from a third to three thirds of the longest.
+Eigen::VectorXd unequal_segments() {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> length(0.5, 1.5);
+  Eigen::VectorXd segments(20);
+  for (double& h : segments) h = length(random);
+  return segments / segments.sum();
+}
+
+/// @param factor  of springs that are EI over half of both neighbours
+template <typename Moment>
+Shape unequal_chain(const Moment& moment, double factor) {
+  const Eigen::VectorXd h = unequal_segments();
+  const Eigen::Index n = h.size();
+  Eigen::Matrix2Xd forces = Eigen::Matrix2Xd::Zero(2, n + 1);
+  forces.row(1).head(n) -= weight * h.transpose() / 2;
+  forces.row(1).tail(n) -= weight * h.transpose() / 2;
+  const Eigen::VectorXd springs = 2 * factor * (h.head(n - 1) + h.tail(n - 1)).cwiseInverse();
+  Shape shape;
+  shape.points = test::chain_at_rest(h, springs, forces, moment);
+  shape.arc_length = {0};
+  for (const double part : h) shape.arc_length.push_back(shape.arc_length.back() + part);
+  return shape;
+}
+
+const OwnPolygon& welded(const std::vector<OwnPolygon>& chains) {
+  return *std::find_if(chains.begin(), chains.end(),
+                       [](const OwnPolygon& chain) { return chain.clamp == ChainClamp::welded; });
+}
+
+TEST(UnequalChain, EachJointHasHalfOfBothItsSegments) {
+  const Scene scene = unequal_scene();
+  const auto expect = [&](const Shape& shape, energy_model::JointLaw law) {
+    const std::vector<OwnPolygon> chains = own_polygons(scene, shape, Springs::as_the_rod);
+    ASSERT_FALSE(chains.empty());
+    EXPECT_LT(welded(chains).rms_m, 1e-6);
+    EXPECT_EQ(welded(chains).law, law);
+    EXPECT_TRUE(welded(chains).law_shows);
+    const std::vector<OwnPolygon> fitted = own_polygons(scene, shape, Springs::fitted);
+    EXPECT_NEAR(welded(fitted).stiffness, 1, 1e-4);
+  };
+  expect(unequal_chain(test::linear_moment, 1), energy_model::JointLaw::linear);
+  expect(unequal_chain(test::hooke_moment, 1), energy_model::JointLaw::hooke);
+  expect(unequal_chain(test::binormal_moment, 1), energy_model::JointLaw::binormal);
+}
+
+TEST(UnequalChain, WrongSpringsAreNamedWithTheirFactor) {
+  const Scene scene = unequal_scene();
+  for (const double factor : {0.7, 1.4}) {
+    const Shape shape = unequal_chain(test::linear_moment, factor);
+    EXPECT_GT(welded(own_polygons(scene, shape, Springs::as_the_rod)).rms_m, 1e-3);
+    const OwnPolygon found = welded(own_polygons(scene, shape, Springs::fitted));
+    EXPECT_NEAR(found.stiffness, factor, 1e-4 * factor);
+    EXPECT_LT(found.rms_m, 1e-6);
+  }
+}
+
+}  // namespace
+}  // namespace dlo::compare

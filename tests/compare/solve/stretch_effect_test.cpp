@@ -1,0 +1,92 @@
+// What solve() says of the stretch that its model leaves out, against the elastic catenary.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "dlo/compare/scene_file.hpp"
+#include "dlo/compare/solve.hpp"
+#include "record/solution_fields.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A line of 100 m between two pins, in the units that a file would have.
+Scene line(double EA, double apart) {
+  Scene scene;
+  scene.gravity = {0, 0, -10};
+  scene.length = 100;
+  scene.given_bending_stiffness = 1;
+  scene.given_mass_per_length = 2;
+  scene.given_axial_stiffness = EA;
+  scene.grippers = {{.at = 0, .position = {0, 0, 0}}, {.at = 100, .position = {apart, 0, 0}}};
+  return scene;
+}
+
+/// Tension at the pins, on one level, of a line without EI that stretches: with H at the middle,
+///     apart = H l / EA + 2 H / w asinh(w l / (2 H))   (Irvine, Cable Structures, ch. 1).
+double tension_of(double EA, double w, double l, double apart) {
+  double low = 1e-3;
+  double high = 1e9;
+  while (high / low > 1 + 1e-14) {
+    const double H = std::sqrt(low * high);
+    const double reach = H * l / EA + 2 * H / w * std::asinh(w * l / (2 * H));
+    (reach < apart ? low : high) = H;
+  }
+  return std::hypot(low, w * l / 2);
+}
+
+TEST(StretchEffect, IsTheElasticCatenarysToFirstOrder) {
+  // What is left out is of second order.
+  for (const double EA : {4e6, 1e6}) {
+    const Scene scene = line(EA, 98);
+    const Solution solution = solve(scene, Model::energy);
+    const double rigid = tension_of(1e30, 20, 100, 98);
+    const double change = tension_of(EA, 20, 100, 98) / rigid - 1;
+    EXPECT_NEAR(solution.stretch.strain, rigid / EA, 2e-2 * rigid / EA);
+    EXPECT_NEAR(solution.stretch.tension, change, 5 * change * change + 1e-3 * std::abs(change))
+        << EA;
+    EXPECT_TRUE(neglects(solution, "stretch"));
+  }
+}
+
+TEST(StretchEffect, IsToldByTheShapeThatALongerRodHasWhereItLies) {
+  Scene scene = line(4e5, 96);
+  scene.given_bending_stiffness = 200;
+  scene.grippers[1].position.z() = 10;
+  const Solution hangs = solve(scene, Model::energy);
+  scene.obstacles.push_back({.body = obstacle::Body::half_space({0, 0, -4}, Vector3d::UnitZ())});
+  const Solution lies = solve(scene, Model::energy);
+  ASSERT_GT(lies.obstacles[0].z(), 0);
+  EXPECT_TRUE(neglects(lies, "stretch"));
+  EXPECT_LT(lies.stretch.tension, 0);
+  EXPECT_GT(lies.stretch.moved_m, 0);
+  EXPECT_TRUE(neglects(hangs, "stretch"));
+}
+
+TEST(StretchEffect, IsSilentWhereItDoesNotMatter) {
+  EXPECT_FALSE(neglects(solve(line(4e9, 98), Model::energy), "stretch"));
+  Scene unknown = line(4e5, 98);
+  unknown.given_axial_stiffness.reset();
+  unknown.diameter = 0.02;
+  const Solution solution = solve(unknown, Model::energy);
+  EXPECT_FALSE(neglects(solution, "stretch"));
+  EXPECT_TRUE(std::isnan(solution.stretch.strain));
+}
+
+TEST(StretchEffect, IsNotAskedOfARodThatStretches) {
+  Scene scene = line(4e5, 98);
+  scene.given_bending_stiffness = 200;
+  scene.stretch = true;
+  const Solution solution = solve(scene, Model::exact);
+  EXPECT_FALSE(neglects(solution, "stretch"));
+  EXPECT_GT(solution.energy.stretch, 0);
+  EXPECT_THROW((void)solve(scene, Model::energy), std::exception);
+  const double tension = tension_of(4e5, 20, 100, 98);
+  EXPECT_NEAR(solution.grippers[1].force.norm() / tension, 1, 1e-3);
+}
+
+}  // namespace
+}  // namespace dlo::compare

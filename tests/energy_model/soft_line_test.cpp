@@ -1,0 +1,162 @@
+// Catenaries with bending layers: against closed forms, and against the rod's own models where
+// these still resolve the layers.
+
+#include "dlo/energy_model/soft_line.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "dlo/energy_model/energy.hpp"
+#include "dlo/energy_model/exact.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using Eigen::Vector3d;
+
+/// l = 1, w = 1 along -z, EI = `stiffness`.
+Problem line(double stiffness) {
+  Problem problem;
+  problem.length = 1;
+  problem.bending_stiffness = stiffness;
+  problem.weight_per_length = {0, 0, -1};
+  return problem;
+}
+
+Problem between_pins(double stiffness, const Vector3d& end) {
+  Problem problem = line(stiffness);
+  problem.grips = {{0, {0.1, 0.2, 0.3}, {}, {}}, {1, Vector3d(0.1, 0.2, 0.3) + end, {}, {}}};
+  return problem;
+}
+
+/// Clamps that turn the line out of its plane.
+Problem between_clamps(double stiffness) {
+  Problem problem = between_pins(stiffness, {0.7, 0.1, 0.2});
+  problem.grips[0].direction = Vector3d(0.3, 1, 0.4);
+  problem.grips[1].direction = Vector3d(1, -0.4, -0.1);
+  return problem;
+}
+
+/// What points of two shapes are apart at most, over l = 1.
+double apart(const Equilibrium& a, const Equilibrium& b) {
+  const std::vector<double> s = equal_arc_lengths(1, 501);
+  return (a.sample(s).points - b.sample(s).points).colwise().norm().maxCoeff();
+}
+
+TEST(SoftLine, HasTheTensionOfTheCatenary) {
+  // Of a = 0.4 from -0.3 to 0.7 of arc length.
+  const double a = 0.4;
+  const Vector3d end((std::asinh(0.7 / a) + std::asinh(0.3 / a)) * a, 0,
+                     std::hypot(a, 0.7) - std::hypot(a, 0.3));
+  const Problem problem = between_pins(1e-12, end);
+  for (const Equilibrium& solved : {solve_energy(problem), solve_exact(problem)}) {
+    ASSERT_EQ(solved.status, SolveStatus::converged) << solved.message;
+    EXPECT_LT((solved.grips[0].force - Vector3d(-a, 0, 0.3)).norm(), 1e-12);
+    EXPECT_LT((solved.grips[1].force - Vector3d(a, 0, 0.7)).norm(), 1e-12);
+    EXPECT_LT(solved.error_estimate, 1e-10);
+    const std::vector<double> middle = {0.3};
+    EXPECT_NEAR(solved.sample(middle).points(2, 0), 0.3 + a - std::hypot(a, 0.3), 1e-12);
+  }
+}
+
+TEST(SoftLine, IsAsNearToTheRodAsItSays) {
+  for (const auto& make : {between_clamps, +[](double stiffness) {
+                             return between_pins(stiffness, {0.6, 0, -0.3});
+                           }}) {
+    double before = 0;
+    for (const double stiffness : {1e-5, 1e-6, 1e-7}) {
+      const Problem problem = make(stiffness);
+      const std::optional<Equilibrium> soft = soft_line(problem);
+      ASSERT_TRUE(soft);
+      const Equilibrium rod = solve_energy(problem);
+      ASSERT_EQ(rod.status, SolveStatus::converged) << rod.message;
+      const double missed = apart(*soft, rod);
+      EXPECT_LT(missed, soft->error_estimate) << stiffness;
+      // Second order in the layers' lengths, which is first order in EI.
+      if (before > 0) {
+        EXPECT_GT(before / missed, 7) << stiffness;
+      }
+      before = missed;
+      const double share = 30 * std::sqrt(stiffness);
+      EXPECT_LT((soft->grips[0].force - rod.grips[0].force).norm(), 3 * soft->error_estimate);
+      EXPECT_NEAR(soft->energy.bending / rod.energy.bending, 1, share);
+      EXPECT_NEAR(soft->energy.total(), rod.energy.total(), 3 * soft->error_estimate);
+      for (const std::size_t i : {0U, 1U}) {
+        EXPECT_LE((soft->grips[i].torque - rod.grips[i].torque).norm(),
+                  share * rod.grips[i].torque.norm() + 1e-12);
+      }
+    }
+  }
+}
+
+TEST(SoftLine, HangsFromAClamp) {
+  double before = 0;
+  for (const double stiffness : {1e-4, 1e-5}) {
+    Problem problem = line(stiffness);
+    problem.grips = {{1, {0, 0, 0}, Vector3d(-1, 0, 0.3), {}}};
+    const std::optional<Equilibrium> soft = soft_line(problem);
+    ASSERT_TRUE(soft);
+    const Equilibrium rod = solve_energy(problem);
+    const double missed = apart(*soft, rod);
+    EXPECT_LT(missed, soft->error_estimate);
+    if (before > 0) {
+      EXPECT_GT(before / missed, 7);
+    }
+    before = missed;
+    EXPECT_NEAR(soft->grips[0].torque.y() / rod.grips[0].torque.y(), 1, 10 * std::sqrt(stiffness));
+    EXPECT_NEAR(soft->grips[0].force.z(), 1, 1e-14);
+  }
+}
+
+/// A pin on the floor at the origin and one above it.
+Problem on_floor(double stiffness) {
+  Problem problem = line(stiffness);
+  problem.grips = {{0, {0, 0, 0}, {}, {}}, {1, {0.9, 0, 0.3}, {}, {}}};
+  problem.obstacles = {{obstacle::Body::half_space({0, 0, 0}, Vector3d::UnitZ())}};
+  return problem;
+}
+
+TEST(SoftLine, LiesOnAFloor) {
+  const Equilibrium soft = solve_energy(on_floor(1e-12));
+  ASSERT_EQ(soft.status, SolveStatus::converged) << soft.message;
+  ASSERT_EQ(soft.contacts.size(), 1U);
+  const ContactPart& part = soft.contacts[0];
+  // From where it lies the arm is as long as its weight, and its length and way are a catenary's.
+  const double arm = 1 - part.end;
+  const double a = soft.grips[1].force.x();
+  EXPECT_NEAR(soft.grips[1].force.z(), arm, 2e-6);
+  EXPECT_NEAR(std::hypot(a, arm) - a, 0.3, 2e-6);
+  EXPECT_NEAR(part.end + a * std::asinh(arm / a), 0.9, 2e-6);
+  EXPECT_NEAR(part.force.z(), part.end, 2e-6);
+  EXPECT_NEAR(part.end_force, std::sqrt(1e-12 / a), 1e-15);
+  EXPECT_EQ(part.begin, 0);
+}
+
+TEST(SoftLine, LiftsOffAsTheRodDoes) {
+  const Problem problem = on_floor(1e-5);
+  const std::optional<Equilibrium> soft = soft_line(problem);
+  ASSERT_TRUE(soft);
+  const Equilibrium rod = solve_energy(problem);
+  ASSERT_TRUE(succeeded(rod.status)) << rod.message;
+  EXPECT_LT(apart(*soft, rod), soft->error_estimate);
+  ASSERT_EQ(rod.contacts.size(), 1U);
+  EXPECT_NEAR(soft->contacts[0].end, rod.contacts[0].end, 1e-3);
+  EXPECT_NEAR(soft->contacts[0].end_force / rod.contacts[0].end_force, 1, 0.05);
+}
+
+TEST(SoftLine, TakesNothingElse) {
+  EXPECT_FALSE(is_soft_line(line(1e-9)));
+  Problem upright = line(1e-12);
+  upright.grips = {{0, {0, 0, 0}, Vector3d::UnitZ(), {}}};
+  EXPECT_FALSE(soft_line(upright));
+  Problem loaded = between_clamps(1e-12);
+  loaded.loads = {{0.5, {0, 0, -1}}};
+  EXPECT_FALSE(soft_line(loaded));
+  Problem folded = between_pins(1e-12, {0, 0, 0.2});
+  EXPECT_FALSE(soft_line(folded));
+}
+
+}  // namespace
+}  // namespace dlo::energy_model

@@ -1,0 +1,239 @@
+// Rods that stretch by N / EA: closed forms, an integration of its own, and derivatives.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+#include "dlo/energy_model/energy.hpp"
+#include "dlo/energy_model/exact.hpp"
+#include "kirchhoff/rod_flow.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using Eigen::Vector3d;
+
+Problem rod(double EA) {
+  Problem problem;
+  problem.length = 1;
+  problem.bending_stiffness = 1;
+  problem.axial_stiffness = EA;
+  return problem;
+}
+
+TEST(Stretch, OfARodThatHangsIsTheIntegralOfItsTension) {
+  Problem problem = rod(40);
+  problem.length = 2;
+  problem.weight_per_length = {0, -3, 0};
+  problem.grips = {{0, {1, 1, 0}, -Vector3d::UnitY(), {}}};
+  problem.loads = {{2, {0, -1.5, 0}}};
+  const Equilibrium solved = solve_exact(problem);
+  ASSERT_EQ(solved.status, SolveStatus::converged) << solved.message;
+  const std::vector<double> s = {0, 0.7, 2};
+  const Samples shape = solved.sample(s);
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    // N = P + w (l - s)
+    const double longer = (1.5 * s[i] + 3 * (2 * s[i] - s[i] * s[i] / 2)) / 40;
+    EXPECT_NEAR(shape.points(1, static_cast<Eigen::Index>(i)), 1 - s[i] - longer, 1e-11);
+  }
+  EXPECT_NEAR(solved.energy.stretch, (std::pow(7.5, 3) - std::pow(1.5, 3)) / (6 * 3 * 40), 1e-11);
+  EXPECT_NEAR(solved.energy.load, -1.5 * (2 + (3 + 6) / 40.0), 1e-10);
+  EXPECT_NEAR(solved.grips[0].force.y(), 7.5, 1e-11);
+}
+
+/// An end of a line without EI, unstretched length 1, w = `w` along -y, that is pulled at its begin
+/// by (-H, -V): x = H s/EA + H/w (asinh((V + w s)/H) - asinh(V/H)), y likewise (Irvine, ch. 1).
+Vector3d end_of_elastic_catenary(double H, double V, double w, double EA) {
+  return {H / EA + H / w * (std::asinh((V + w) / H) - std::asinh(V / H)),
+          (V + w / 2) / EA + (std::hypot(H, V + w) - std::hypot(H, V)) / w, 0};
+}
+
+TEST(Stretch, OfALineIsTheElasticCatenarys) {
+  // EI is what is left out: first order in it, which two of them take away.
+  std::array<double, 2> tension{};
+  const std::array<double, 2> weights = {2e4, 4e4};
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    const double w = weights[i];
+    Problem problem = rod(30 * w);
+    problem.weight_per_length = {0, -w, 0};
+    problem.grips = {{0, {0, 0, 0}, {}, {}},
+                     {1, end_of_elastic_catenary(0.5 * w, -0.4 * w, w, 30 * w), {}, {}}};
+    Problem rigid = problem;
+    rigid.axial_stiffness.reset();
+    const Equilibrium start = solve_energy(rigid);
+    const Equilibrium solved = solve_exact(problem, {.start = &start});
+    ASSERT_EQ(solved.status, SolveStatus::converged) << solved.message;
+    tension[i] = solved.grips[1].force.norm() / w;
+  }
+  const double closed = std::hypot(0.5, 0.6);
+  EXPECT_NEAR((2 * tension[1] - tension[0]) / closed, 1, 1e-6);
+  EXPECT_NEAR(tension[1] / closed, 1, 1e-3);
+}
+
+/// theta, m, x, y by s in the plane, with the force on the section; fourth order Runge and Kutta.
+struct PlanarStep {
+  double EI, EA, w;
+  Eigen::Vector2d begin_force;  // n at s = 0
+
+  [[nodiscard]] Eigen::Vector4d rate(double s, const Eigen::Vector4d& y) const {
+    const Eigen::Vector2d n = begin_force + Eigen::Vector2d(0, w * s);
+    const Eigen::Vector2d t(std::cos(y[0]), std::sin(y[0]));
+    const Eigen::Vector2d along = (1 + n.dot(t) / EA) * t;
+    return {y[1] / EI, n.x() * along.y() - n.y() * along.x(), along.x(), along.y()};
+  }
+};
+
+TEST(Stretch, OfACantileverIsThatOfAnIntegrationFromItsClamp) {
+  Problem problem = rod(60);
+  problem.bending_stiffness = 1.3;
+  problem.weight_per_length = {0, -2, 0};
+  problem.grips = {{0, {0, 0, 0}, Vector3d::UnitX(), {}}};
+  problem.loads = {{1, {4, -3, 0}}};
+  const Equilibrium solved = solve_exact(problem);
+  ASSERT_EQ(solved.status, SolveStatus::converged) << solved.message;
+  const PlanarStep step{1.3, 60, 2, -solved.grips[0].force.head<2>()};
+  Eigen::Vector4d y(0, -solved.grips[0].torque.z(), 0, 0);
+  constexpr int steps = 2000;
+  const double h = 1.0 / steps;
+  for (int i = 0; i < steps; ++i) {
+    const double s = i * h;
+    const Eigen::Vector4d a = step.rate(s, y);
+    const Eigen::Vector4d b = step.rate(s + h / 2, y + h / 2 * a);
+    const Eigen::Vector4d c = step.rate(s + h / 2, y + h / 2 * b);
+    const Eigen::Vector4d d = step.rate(s + h, y + h * c);
+    y += h / 6 * (a + 2 * b + 2 * c + d);
+  }
+  const std::vector<double> tip = {1};
+  const Vector3d point = solved.sample(tip).points.col(0);
+  EXPECT_NEAR(y[1], 0, 1e-10);
+  EXPECT_NEAR(y[2], point.x(), 1e-10);
+  EXPECT_NEAR(y[3], point.y(), 1e-10);
+  // Without stretch the tip is elsewhere.
+  problem.axial_stiffness.reset();
+  const Vector3d rigid = solve_exact(problem).sample(tip).points.col(0);
+  EXPECT_GT((rigid - point).norm(), 0.02);
+}
+
+TEST(Stretch, HoldsARodBetweenClampsThatAreFartherApart) {
+  Problem problem = rod(2000);
+  problem.length = 2;
+  problem.grips = {{0, {1, 0, 0}, Vector3d::UnitX(), {}}, {2, {3.02, 0, 0}, Vector3d::UnitX(), {}}};
+  const Equilibrium solved = solve_exact(problem);
+  ASSERT_EQ(solved.status, SolveStatus::converged) << solved.message;
+  EXPECT_NEAR(solved.grips[1].force.x(), 20, 1e-9);
+  EXPECT_NEAR(solved.grips[0].force.x(), -20, 1e-9);
+  EXPECT_NEAR(solved.energy.stretch, 0.2, 1e-11);
+  // Its own length apart, and bent by its weight.
+  problem.grips[1].position.x() = 3;
+  problem.weight_per_length = {0, -1, 0};
+  const Equilibrium sags = solve_exact(problem);
+  ASSERT_EQ(sags.status, SolveStatus::converged) << sags.message;
+  const std::vector<double> middle = {1};
+  // Less than a beam's w l^4 / (384 EI) by what its stretch takes.
+  const double beam = std::pow(2.0, 4) / 384;
+  EXPECT_NEAR(sags.sample(middle).points(1, 0), -beam, 0.5 * beam);
+  EXPECT_LT(-sags.sample(middle).points(1, 0), beam);
+  EXPECT_GT(sags.grips[1].force.x(), 0);
+}
+
+TEST(Stretch, MovesTheLoadThatBucklesAColumn) {
+  // P (1 - P / EA) = pi^2 EI / (4 l^2): 2.6031 of EA = 50, 2.4674 without.
+  for (const double load : {2.59, 2.62}) {
+    Problem problem = rod(50);
+    problem.grips = {{0, {0, 0, 0}, Vector3d::UnitX(), {}}};
+    problem.loads = {{1, {-load, 0, 0}}};
+    const Equilibrium solved = solve_exact(problem);
+    ASSERT_EQ(solved.status, SolveStatus::converged) << solved.message;
+    const std::vector<double> tip = {1};
+    const Vector3d point = solved.sample(tip).points.col(0);
+    if (load < 2.6) {
+      EXPECT_NEAR(point.x(), 1 - load / 50, 1e-10);
+      EXPECT_GT(solved.smallest_eigenvalue, 0);
+    } else {
+      EXPECT_GT(point.tail<2>().norm(), 0.02);
+    }
+  }
+}
+
+TEST(Stretch, PressesARodBetweenClampsUntilItBuckles) {
+  // EA delta (1 - delta) = 4 pi^2 EI / l^2.
+  for (const double delta : {0.03, 0.05}) {
+    Problem problem = rod(1000);
+    problem.grips = {{0, {0, 0, 0}, Vector3d::UnitX(), {}},
+                     {1, {1 - delta, 0, 0}, Vector3d::UnitX(), {}}};
+    const Equilibrium solved = solve_exact(problem);
+    ASSERT_EQ(solved.status, SolveStatus::converged) << solved.message;
+    const std::vector<double> middle = {0.5};
+    const double bent = solved.sample(middle).points.col(0).tail<2>().norm();
+    if (1000 * delta * (1 - delta) < 4 * std::pow(std::acos(-1.0), 2)) {
+      EXPECT_NEAR(solved.energy.total(), 1000 * delta * delta / 2, 1e-9);
+      EXPECT_LT(bent, 1e-9);
+    } else {
+      EXPECT_LT(solved.energy.total(), 1000 * delta * delta / 2);
+      EXPECT_GT(bent, 0.02);
+    }
+  }
+}
+
+TEST(Stretch, DerivativesAreThoseOfDifferences) {
+  RodSection section;
+  section.bending = 1.2;
+  section.bending_2 = 0.7;
+  section.torsion = 0.9;
+  section.weight = {0.3, -2, 0.5};
+  section.stretch = 0.05;
+  const NaturalStrain none;
+  const RodPiece piece{section, none, 0.1, 0.6};
+  RodState state;
+  state.m = {0.4, -0.8, 0.3};
+  state.n = {2, -1, 3};
+  RodVariation change(12);
+  change.r.leftCols<3>().setIdentity();
+  change.spin.middleCols<3>(3).setIdentity();
+  change.m.middleCols<3>(6).setIdentity();
+  change.n.rightCols<3>().setIdentity();
+  const auto follow = [&](Eigen::Index k, double step) {
+    RodState moved = state;
+    Vector3d unit = Vector3d::Zero();
+    unit[k % 3] = step;
+    if (k < 3) moved.r += unit;
+    if (k >= 3 && k < 6) moved.R = rotation_by(unit) * moved.R;
+    if (k >= 6 && k < 9) moved.m += unit;
+    if (k >= 9) moved.n += unit;
+    RodIntegrals integrals;
+    EXPECT_TRUE(follow_rod(piece, 1e-13, moved, integrals));
+    return moved;
+  };
+  RodState end = state;
+  RodIntegrals integrals;
+  ASSERT_TRUE(follow_rod(piece, 1e-13, end, change, integrals));
+  constexpr double step = 1e-5;
+  for (Eigen::Index k = 0; k < 12; ++k) {
+    const RodState up = follow(k, step);
+    const RodState down = follow(k, -step);
+    EXPECT_LT(((up.r - down.r) / (2 * step) - change.r.col(k)).norm(), 1e-8) << k;
+    EXPECT_LT(((up.m - down.m) / (2 * step) - change.m.col(k)).norm(), 1e-8) << k;
+    const Vector3d dt = change.spin.col(k).cross(end.t());
+    EXPECT_LT(((up.t() - down.t()) / (2 * step) - dt).norm(), 1e-8) << k;
+  }
+  EXPECT_GT(integrals.stretch, 0);
+}
+
+TEST(Stretch, IsRefusedByNameByWhatDoesNotStretch) {
+  Problem problem = rod(60);
+  problem.grips = {{0, {0, 0, 0}, Vector3d::UnitX(), {}}};
+  try {
+    (void)solve_energy(problem);
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("solve_exact() alone"), std::string::npos);
+  }
+  problem.obstacles = {{obstacle::Body::half_space({0, -1, 0}, Vector3d::UnitY())}};
+  EXPECT_THROW((void)solve_exact(problem), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace dlo::energy_model
