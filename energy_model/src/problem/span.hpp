@@ -62,7 +62,7 @@ struct Span {
 
   double length = 1;
   bool planar = true;
-  bool confined = false;  ///< Problem::confined_to_plane
+  bool confined = false;                           ///< Problem::confined_to_plane
   std::optional<Eigen::Vector3d> start_direction;  ///< a clamp holds the start, which is the anchor
   std::optional<Eigen::Vector3d> end_direction;    ///< a clamp holds the end, the last of `holds`
   double anchor = 0;                               ///< s of the first grip
