@@ -363,6 +363,21 @@ def test_loads_are_read_and_set_in_si_units(steel):
         load.end = 0.05
 
 
+def test_what_has_no_potential_is_for_exact(steel):
+    scene = steel.replace(
+        loads=[dlo.load(at=steel.length, force=["1 mN", 0, 0], follows=True)],
+        medium={"density": 1.2, "velocity": [0, 0, "36 km/h"], "normal_drag": 1.2},
+    )
+    assert scene.loads[0].follows is True and scene.medium.velocity.tolist() == [0, 0, 10]
+    with pytest.raises(dlo.InputError, match="medium.velocity.*--model exact or force"):
+        dlo.solve(scene)
+    with pytest.raises(dlo.InputError, match="medium.normal_drag"):
+        scene.medium = {"density": 1.2, "velocity": [1, 0, 0]}
+    still = steel.replace(loads=[dlo.load(at=steel.length, force=["1 mN", 0, 0], follows=True)])
+    shape = dlo.solve(still, model="exact")
+    assert shape.status == "not_verified" and "stability is not judged" in shape.message
+
+
 MOVING = """
 [rod]
 length = 1

@@ -13,6 +13,7 @@
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
 #include "picture/solution_figure.hpp"
+#include "record/solution_fields.hpp"
 #include "shape/write_vtk.hpp"
 
 namespace dlo::cli {
@@ -59,9 +60,11 @@ void warn_of_force_model_options(const SolveOptions& options) {
 }
 
 /// A shape that is not verified, at a singular point or, as the first of all that are found,
-/// unstable has been shown, which is no success.
+/// unstable has been shown, which is no success. Where loads have no potential nothing more could
+/// be.
 void require_verified(const compare::Solution& solution, const compare::Scene& scene) {
   if (energy_model::succeeded(solution.status)) return;
+  if (compare::is_balance_alone(scene, solution)) return;
   throw compare::ConvergenceError(fmt::format(
       "{}: the {} model: {}", scene.file, compare::to_string(solution.model), solution.message));
 }

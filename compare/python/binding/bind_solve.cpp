@@ -86,7 +86,8 @@ py::object solve(const SharedScene& scene, const std::string& model_name, int sa
     return compare::solve(scene->scene, model, options, s);
   });
   py::object result = py::cast(solved);
-  if (!energy_model::succeeded(solved->solution.status)) {
+  if (!energy_model::succeeded(solved->solution.status) &&
+      !compare::is_balance_alone(scene->scene, solved->solution)) {
     raise_convergence(fmt::format("{}: the {} model: {}", scene->scene.file, model_name,
                                   solved->solution.message),
                       result);

@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "scene/scene_problem.hpp"
+
 namespace dlo::compare {
 namespace {
 
@@ -150,6 +152,11 @@ bool is_stable(const Solution& solution) {
   return energy_model::succeeded(solution.status) ||
          (solution.status == energy_model::SolveStatus::not_verified &&
           solution.smallest_eigenvalue >= 0);
+}
+
+bool is_balance_alone(const Scene& scene, const Solution& solution) {
+  return solution.status == energy_model::SolveStatus::not_verified &&
+         !energy_model::has_potential(scene_problem(scene));
 }
 
 bool neglects(const Solution& solution, std::string_view what) {

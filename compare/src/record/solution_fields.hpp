@@ -34,6 +34,10 @@ struct SolvedShape {
 /// bifurcation is a singular point.
 [[nodiscard]] bool is_stable(const Solution& solution);
 
+/// Whether it is an equilibrium of loads without a potential, `not_verified` because no more than
+/// its balance can be checked.
+[[nodiscard]] bool is_balance_alone(const Scene& scene, const Solution& solution);
+
 /// Whether it is among Solution::neglected.
 [[nodiscard]] bool neglects(const Solution& solution, std::string_view what);
 

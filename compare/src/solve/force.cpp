@@ -242,6 +242,7 @@ Solution solve_force(const Scene& given, const ForceModelSettings& settings,
   Solution solution = polygon_solution(scene, settings, discretisation, rod, simulation.points());
   solution.model = Model::force;
   solution.message = result.message;
+  if (given.drag) solution.status = energy_model::SolveStatus::not_verified;
   if (!given.drag && strayed()) solution.message += ", in another state than the chain";
   // What an obstacle does to a held point inside a gripper is not felt outside.
   force_model::Rod without_walls = simulation.rod();

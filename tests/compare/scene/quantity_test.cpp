@@ -56,6 +56,9 @@ constexpr UnitCase unit_cases[] = {
     {Dimension::torque, "N mm", 1000, none},
     {Dimension::torque, "kN m", none, 1000},
     {Dimension::acceleration, "m/s^2", 1, none},
+    {Dimension::velocity, "m/s", 1, none},
+    {Dimension::velocity, "mm/s", 1000, none},
+    {Dimension::velocity, "km/h", 3.6, none},
     {Dimension::curvature, "1/m", 1, none},
     {Dimension::curvature, "1/cm", none, 100},
     {Dimension::curvature, "1/mm", none, 1000},
@@ -88,7 +91,7 @@ TEST(Quantity, EveryUnitHasItsFactor) {
        {Dimension::number, Dimension::length, Dimension::angle, Dimension::pressure,
         Dimension::density, Dimension::force, Dimension::acceleration, Dimension::curvature,
         Dimension::foundation, Dimension::section_stiffness, Dimension::joint_stiffness,
-        Dimension::force_per_length, Dimension::torque}) {
+        Dimension::force_per_length, Dimension::torque, Dimension::velocity}) {
     EXPECT_EQ(tested[dimension], known_units(dimension));
   }
 }
