@@ -43,13 +43,14 @@ std::string twist_text(const compare::Plan& plan) {
   return out;
 }
 
-std::string stretch_text(const compare::Plan& plan) {
+std::string stretch_text(const compare::Plan& plan, const compare::Scene& scene) {
+  if (scene.stretch) return "of the scene: exact has it, chain and force by their segments";
   if (!plan.stretch) return "none";
   if (!plan.twist.empty()) {
     return "no bound; with the law hooke chain and force have it and the twist";
   }
   return std::isfinite(plan.bound("stretch"))
-             ? "needed: use force, or chain with c_c = AE"
+             ? "needed: stretch = true with exact, or force, or chain with c_c = AE"
              : "no bound; force and chain have it, of what they take";
 }
 
@@ -136,7 +137,7 @@ std::string plan_text(const compare::Plan& plan, const compare::Scene& scene) {
   if (scene.assumes_torsion()) append(out, "  assumed         {}\n", assumption_text(scene));
   if (scene.layers) append(out, "  layers          {}\n", layers_text(scene));
   if (scene.rest_shape) append(out, "  rest shape      {}\n", rest_shape_text(scene));
-  append(out, "  stretch         {}\n", stretch_text(plan));
+  append(out, "  stretch         {}\n", stretch_text(plan, scene));
   append(out, "  N               ");
   if (plan.points > 0) {
     append(out, "{} for {:g} % of l with the hooke law; the scene has {}\n", plan.points,

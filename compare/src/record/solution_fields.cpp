@@ -111,7 +111,7 @@ std::span<const Field<SceneEnergies>> energy_fields() {
       {"twisting", "", "Where clamps hold frames", [](E e) { return e.twisting; }},
       {"gravity", "", "Of the rod's weight", [](E e) { return e.gravity; }},
       {"load", "", "Of loads, at points and per length", [](E e) { return e.load; }},
-      {"stretch", "", "Of elastic segments", [](E e) { return e.stretch; }},
+      {"stretch", "", "Of a rod or of segments that stretch", [](E e) { return e.stretch; }},
       {"contact", "", "Of obstacles that yield", [](E e) { return e.contact; }},
       {"total", "", "Of all", [](E e) { return e.total(); }}};
   return fields;

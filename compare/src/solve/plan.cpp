@@ -288,7 +288,7 @@ Plan make_plan(const Scene& given, const PlanOptions& options) {
     // A plan is no reason for a solve to fail.
     no_bound(fmt::format("not found out: {}", error.what()));
   }
-  plan.stretch = stretch.bound_m > options.target * scene.length / 10;
+  plan.stretch = !given.stretch && stretch.bound_m > options.target * scene.length / 10;
   plan.neglected = {shear, polygon, inertia(scene, options.gripper_speed), twist};
   if (!given.stretch) plan.neglected.insert(plan.neglected.begin(), stretch);
   if (scene.naturally_bent()) plan.neglected.push_back(natural);

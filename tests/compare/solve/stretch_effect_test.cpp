@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/plan.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solve.hpp"
 #include "record/solution_fields.hpp"
@@ -83,9 +85,21 @@ TEST(StretchEffect, IsNotAskedOfARodThatStretches) {
   const Solution solution = solve(scene, Model::exact);
   EXPECT_FALSE(neglects(solution, "stretch"));
   EXPECT_GT(solution.energy.stretch, 0);
-  EXPECT_THROW((void)solve(scene, Model::energy), std::exception);
+  EXPECT_THROW((void)solve(scene, Model::energy), InputError);
+  EXPECT_THROW((void)make_plan(scene).bound("stretch"), std::invalid_argument);
   const double tension = tension_of(4e5, 20, 100, 98);
   EXPECT_NEAR(solution.grippers[1].force.norm() / tension, 1, 1e-3);
+}
+
+TEST(StretchEffect, NeedsAStiffnessThatIsKnown) {
+  const std::string text =
+      "[rod]\nlength = 1\nbending_stiffness = 0.1\nmass_per_length = 0.01\nstretch = true\n";
+  const std::string gripper = "[[gripper]]\nat = 0\nposition = [0, 0, 0]\nhold = \"pin\"\n";
+  EXPECT_THROW((void)parse_scene(text + gripper, "text", materials()), InputError);
+  const Scene scene =
+      parse_scene(text + "axial_stiffness = \"2 kN\"\n" + gripper, "text", materials());
+  EXPECT_TRUE(scene.stretch);
+  EXPECT_EQ(scene.axial_stiffness(), 2000);
 }
 
 }  // namespace
