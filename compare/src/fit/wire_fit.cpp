@@ -13,6 +13,7 @@
 #include "dlo/compare/error.hpp"
 #include "fit/between_shapes.hpp"
 #include "fit/log_profile.hpp"
+#include "fit/wire_errors.hpp"
 #include "fit/wire_numbers.hpp"
 #include "least_squares/gauss_newton.hpp"
 #include "least_squares/linear_fit.hpp"
@@ -107,27 +108,16 @@ class WireFitter {
     look_for_start(values);
     fit_fewer_terms(values);
     fit_.emplace(rods_, values, steps());
-    for (int i = 0; i < most_weights; ++i) {
-      if (!fit_->descend()) {
-        throw ConvergenceError(fmt::format(
-            "{}: the energy model has no shape beside the fitted one", scenes_.front().file));
-      }
-      error_variance_ = fit_->variance();
-      error_freedom_ = fit_->freedom();
-      if (!(fit_->variance() > std::pow(least_noise(), 2))) break;
-      const CorrelationEstimate estimate = correlation_of(fit_->series());
-      tested_ = estimate.tested;
-      errors_ = estimate.significant ? estimate.covariance : ErrorCovariance();
-      if (!estimate.significant) break;
-      measure_errors();
-      const double next = correlated_weight();
-      const bool settled = std::abs(next / fit_->weight() - 1) < weight_tolerance;
-      if (settled || fit_->before().isZero()) break;
-      fit_->weigh(next);
+    descend();
+    for (int i = 0; i < most_weights && !fit_->before().isZero(); ++i) {
+      const double weight = weight_of(errors_, *fit_);
+      if (std::abs(weight / fit_->weight() - 1) < weight_tolerance) break;
+      fit_->weigh(weight);
+      descend();
     }
     optimum_ = fit_->rods();
     unseen_ = unseen(fit_->linear(), fit_->weight(), fit_->before());
-    covariance_ = covariance_of_numbers();
+    covariance_ = covariance_of_numbers(errors_, *fit_, measured_.frame_columns(), options_.noise);
     return result();
   }
 
@@ -139,6 +129,14 @@ class WireFitter {
             .least_noise = least_noise(),
             .lowest = std::log(options_.smallest_ratio),
             .highest = std::log(options_.largest_ratio)};
+  }
+
+  void descend() {
+    if (!fit_->descend()) {
+      throw ConvergenceError(fmt::format("{}: the energy model has no shape beside the fitted one",
+                                         scenes_.front().file));
+    }
+    errors_ = errors_about(*fit_, measured_.frame_columns(), options_.noise, least_noise());
   }
 
   /// More terms of natural curvature never fit worse than fewer: each one is added where the fit
@@ -196,39 +194,6 @@ class WireFitter {
     rods_.go_on_from(std::move(nearest));
   }
 
-  /// Of correlated errors.
-  void measure_errors() {
-    const VarianceEstimate seen =
-        variance_under(fit_->series(), errors_, measured_.frame_columns());
-    error_freedom_ = std::max(1.0, seen.freedom);
-    error_variance_ = options_.noise ? std::pow(*options_.noise, 2) : seen.variance;
-  }
-
-  /// The variance over which the squares of correlated errors count as much as they tell of E.
-  [[nodiscard]] double correlated_weight() const {
-    const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(fit_->before().size());
-    const double independent = posterior(fit_->linear(), 1, nothing)(0, 0);
-    const double correlated =
-        posterior_under(fit_->series(), fit_->linear(), 1, nothing, errors_, 1)(0, 0);
-    return error_variance_ * std::max(1.0, correlated / independent);
-  }
-
-  /// Under the errors' covariance, which is known from the residuals only: the mean over all that
-  /// they leave likely.
-  [[nodiscard]] Eigen::MatrixXd covariance_of_numbers() const {
-    if (!(errors_.share > 0)) return fit_->covariance_of_numbers();
-    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(fit_->values().size(), fit_->values().size());
-    for (const LikelyCovariance& likely : likely_covariances(fit_->series())) {
-      const double variance = options_.noise ? error_variance_
-                                             : variance_under(fit_->series(), likely.covariance,
-                                                              measured_.frame_columns())
-                                                   .variance;
-      sum += likely.weight * posterior_under(fit_->series(), fit_->linear(), fit_->weight(),
-                                             fit_->before(), likely.covariance, variance);
-    }
-    return sum;
-  }
-
   /// By what correlated errors make the interval of E wider than where the deviance has its limit.
   [[nodiscard]] double correlated_width() const {
     return std::sqrt(covariance_(0, 0) / fit_->covariance_of_numbers()(0, 0));
@@ -243,7 +208,7 @@ class WireFitter {
 
   [[nodiscard]] double quantile() const {
     return options_.noise ? gsl_cdf_ugaussian_Pinv(0.975)
-                          : gsl_cdf_tdist_Pinv(0.975, error_freedom_);
+                          : gsl_cdf_tdist_Pinv(0.975, errors_.freedom);
   }
 
   /// Distance in log E to the end of the interval on a side (1: above, -1: below); none: open.
@@ -282,8 +247,8 @@ class WireFitter {
         nuisances.push_back(
             {frames + number, fit_->values()[number], numbers_[k].described.known_before});
       }
-      estimates.push_back(estimate_of_shape(series_of_shape(fit_->series(), shape), errors_,
-                                            variance, frames, nuisances));
+      estimates.push_back(estimate_of_shape(series_of_shape(fit_->series(), shape),
+                                            errors_.correlation, variance, frames, nuisances));
     }
     fit.scatter = scatter_between(estimates, quantile());
   }
@@ -291,6 +256,10 @@ class WireFitter {
   [[nodiscard]] FittedValue identified(double log_value, double unit, std::optional<double> below,
                                        std::optional<double> above) const {
     FittedValue value{.estimate = unit * std::exp(log_value)};
+    // An end farther away than E is looked for is no bound.
+    const double farthest = std::log(options_.largest_ratio / options_.smallest_ratio);
+    if (below && !(*below < farthest)) below.reset();
+    if (above && !(*above < farthest)) above.reset();
     if (below) value.low = unit * std::exp(log_value - *below);
     if (above) value.high = unit * std::exp(log_value + *above);
     if (below && above && *below + *above <= std::log(options_.identified_within)) {
@@ -313,14 +282,9 @@ class WireFitter {
   /// Where a given noise explains less than there is: by what the interval is wider.
   [[nodiscard]] double misfit(MaterialFit& fit) const {
     if (!options_.noise) return 1;
-    const double squares =
-        errors_.share > 0
-            ? variance_under(fit_->series(), errors_, measured_.frame_columns()).variance *
-                  error_freedom_ / error_variance_
-            : fit_->deviance();
     constexpr double significant = 0.05;
-    if (!(gsl_cdf_chisq_Q(squares, error_freedom_) < significant)) return 1;
-    const double times = std::sqrt(squares / error_freedom_);
+    if (!(gsl_cdf_chisq_Q(errors_.squares, errors_.freedom) < significant)) return 1;
+    const double times = std::sqrt(errors_.squares / errors_.freedom);
     fit.warning = fmt::format(
         "the residuals are {:.3g} times what the given noise explains; the interval is as much "
         "wider",
@@ -355,6 +319,27 @@ class WireFitter {
     }
   }
 
+  static void warn(MaterialFit& fit, const std::string& what) {
+    if (!fit.warning.empty()) fit.warning += "; ";
+    fit.warning += what;
+  }
+
+  /// Clamps that are not known as well as was said.
+  static void note_contradicted_tolerances(MaterialFit& fit) {
+    constexpr double likely = 2.5;  // standard deviations
+    const auto excess = [](const FittedNumber& number) {
+      const bool is_clamp = number.unit == "rad" || number.unit == "m";
+      return is_clamp ? std::abs(number.value) / number.known_before : 0;
+    };
+    const auto farthest = std::max_element(
+        fit.others.begin(), fit.others.end(),
+        [&](const FittedNumber& a, const FittedNumber& b) { return excess(a) < excess(b); });
+    if (farthest == fit.others.end() || !(excess(*farthest) > likely)) return;
+    warn(fit, fmt::format("the shapes contradict how well clamps are said to be known: {} is off "
+                          "by {:.2g} times that; say less",
+                          farthest->name, excess(*farthest)));
+  }
+
   /// A rod that was found in its plane, but would not stay there.
   void note_ways_out_of_plane(MaterialFit& fit) {
     double farthest = 0;
@@ -365,12 +350,9 @@ class WireFitter {
       farthest = std::max(farthest, way);
     }
     if (!(farthest > 0)) return;
-    if (!fit.warning.empty()) fit.warning += "; ";
-    fit.warning += fmt::format(
-        "the rod was fitted in the plane of its points; with these numbers it leaves that plane, "
-        "by "
-        "{:.3g} mm in {}: GJ is larger, or the natural curvature another one",
-        farthest * 1000, scenes_[whose].file);
+    warn(fit, fmt::format("the rod was fitted in the plane of its points and would leave it, by "
+                          "{:.3g} mm in {}: GJ is larger, or the natural curvature another one",
+                          farthest * 1000, scenes_[whose].file));
   }
 
   /// What was found of clamps that are alike in all scenes.
@@ -393,7 +375,7 @@ class WireFitter {
   [[nodiscard]] MaterialFit result() {
     MaterialFit fit;
     const double times_noise = misfit(fit);
-    measure_scatter(fit, error_variance_ * times_noise * times_noise);
+    measure_scatter(fit, errors_.variance * times_noise * times_noise);
     const double widening = times_noise * (fit.scatter ? fit.scatter->widening : 1);
     const auto widened = [widening](std::optional<double> distance) {
       if (distance) *distance *= widening;
@@ -448,15 +430,15 @@ class WireFitter {
                                    found.natural_variation.end());
     }
     if (options_.shared_clamps) fit.clamps = clamp_corrections();
-    fit.noise_m = std::sqrt(error_variance_);
+    fit.noise_m = std::sqrt(errors_.variance);
     fit.noise_is_estimated = !options_.noise;
     fit.degrees_of_freedom = static_cast<int>(fit_->freedom());
-    fit.correlation_was_tested = tested_;
-    if (errors_.share > 0) {
-      fit.correlation = CorrelatedErrors{.length_m = errors_.length,
-                                         .share = errors_.share,
+    fit.correlation_was_tested = errors_.tested;
+    if (errors_.are_correlated()) {
+      fit.correlation = CorrelatedErrors{.length_m = errors_.correlation.length,
+                                         .share = errors_.correlation.share,
                                          .widening = correlated_widening(),
-                                         .degrees_of_freedom = error_freedom_};
+                                         .degrees_of_freedom = errors_.freedom};
     }
     rods_.go_on_from(optimum_);
     const std::vector<Alignment> alignments = rods_.alignments(fit_->values());
@@ -468,6 +450,7 @@ class WireFitter {
     if (options_.profile_points > 0) draw_profile(fit, widening);
     fit.rms_m = std::sqrt(squares / static_cast<double>(measured_.points()));
     note_ways_out_of_plane(fit);
+    note_contradicted_tolerances(fit);
     return fit;
   }
 
@@ -480,10 +463,7 @@ class WireFitter {
   FittedRods::SceneAt scene_at_;
   FittedRods rods_;
   std::optional<GaussNewton> fit_;
-  bool tested_ = false;         // whether errors are correlated
-  ErrorCovariance errors_;      // independent, unless they are shown not to be
-  double error_variance_ = 0;   // [m^2]
-  double error_freedom_ = 0;    // degrees, of the residuals
+  WireErrors errors_;
   Eigen::MatrixXd covariance_;  // of the numbers, under these errors
   FittedRods::Rods optimum_;
   std::vector<bool> unseen_;  // of the numbers, see unseen()
