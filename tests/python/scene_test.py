@@ -452,3 +452,22 @@ def test_names_of_materials_are_those_of_a_file(tmp_path):
         dlo.solve(read, materials=tmp_path / "none.toml")
     with pytest.raises(dlo.InputError, match=r"materials: a int \(allowed: the name of a file"):
         dlo.solve(path, materials=3)
+
+
+def test_a_line_that_stretches():
+    line = dlo.Scene(
+        length=100, bending_stiffness=200, mass_per_length=2, axial_stiffness="400 kN", gravity=(0, 0, -9.81),
+        grippers=[dlo.pin(at=0, position=(0, 0, 0)), dlo.pin(at=100, position=(98, 0, 0))],
+    )
+    assert line.axial_stiffness == 400000 and line.stretch is False
+    without = dlo.solve(line)
+    assert "stretch" in without.neglected
+    assert without.json["stretch_strain"] == without.stretch_strain > 0.007
+    line.stretch = True
+    stretched = dlo.solve(line, model="exact")
+    assert stretched.neglected == [] and stretched.energy["stretch"] > 0
+    assert dlo.Scene.from_text(line.to_toml()).stretch is True
+    with pytest.raises(dlo.InputError, match="stretch"):
+        dlo.solve(line)
+    with pytest.raises(dlo.InputError, match="true or false"):
+        line.stretch = "yes"
