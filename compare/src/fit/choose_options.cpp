@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <numbers>
 #include <optional>
-#include <utility>
 
 #include "dlo/compare/error.hpp"
 
@@ -31,10 +30,10 @@ struct Trial {
   [[nodiscard]] std::size_t numbers() const { return fit.others.size(); }
 };
 
-class Choice {
+class OptionsSearch {
  public:
-  Choice(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-         const MaterialFitOptions& options)
+  OptionsSearch(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
+                const MaterialFitOptions& options)
       : scenes_(scenes), shapes_(shapes), options_(options) {}
 
   [[nodiscard]] MaterialFit run() {
@@ -58,7 +57,7 @@ class Choice {
                            .youngs_modulus = trial.fit.youngs_modulus,
                            .shared_clamps = trial.options.shared_clamps,
                            .prediction_m = trial.prediction()});
-      if (&trial == &chosen) std::swap(fit.tried.front(), fit.tried.back());
+      if (&trial == &chosen) std::rotate(fit.tried.begin(), fit.tried.end() - 1, fit.tried.end());
     }
     return fit;
   }
@@ -111,8 +110,8 @@ class Choice {
     return *result;
   }
 
-  /// The interval under one model knows nothing of the others: the mean square about the chosen
-  /// estimate over all that predict nearly as well.
+  /// The interval under one model knows nothing of the others: what the estimates of those that
+  /// predict nearly as well differ from the chosen one adds to its square, in the mean.
   void widen(MaterialFit& fit, const Trial& chosen) const {
     FittedValue& E = fit.youngs_modulus;
     if (!E.estimate || !E.low || !E.high) return;
@@ -124,12 +123,10 @@ class Choice {
       const FittedValue& other = trial.fit.youngs_modulus;
       if (trial.prediction() > (1 + nearly_as_well) * chosen.prediction()) continue;
       if (!other.estimate || !other.low || !other.high) continue;
-      const double half = std::log(*other.high / *other.low) / 2;
-      const double apart = std::log(*other.estimate / *E.estimate);
-      squares += half * half + std::pow(deviations * apart, 2);
+      squares += std::pow(deviations * std::log(*other.estimate / *E.estimate), 2);
       ++count;
     }
-    const double wide = count > 0 ? std::sqrt(squares / count) : 0;
+    const double wide = count > 0 ? std::sqrt(own * own + squares / count) : 0;
     if (!(wide > own)) return;
     E.low = *E.low * std::exp(own - wide);
     E.high = *E.high * std::exp(wide - own);
@@ -151,7 +148,7 @@ class Choice {
 MaterialFit fit_with_chosen_options(const std::vector<Scene>& scenes,
                                     const std::vector<MeasuredShape>& shapes,
                                     const MaterialFitOptions& options) {
-  return Choice(scenes, shapes, options).run();
+  return OptionsSearch(scenes, shapes, options).run();
 }
 
 }  // namespace dlo::compare

@@ -142,6 +142,7 @@ int MeasuredShapes::frame_numbers() const {
 
 energy_model::Equilibrium MeasuredShapes::solve(std::size_t shape, const Scene& scene,
                                                 const energy_model::Equilibrium* start) {
+  scene.require_potential("the energy model does");
   energy_model::Problem problem = energy_problem(scene);
   problem.confined_to_plane = shapes_[shape].flat && can_be_confined(scene);
   return solve(problem, scene.file, start);
@@ -171,7 +172,6 @@ energy_model::Equilibrium MeasuredShapes::solve(const energy_model::Problem& pro
                     limit, size() > 1 ? " per scene" : "", solves_));
   }
   ++solves_;
-  scene.require_potential("the energy model does");
   try {
     energy_model::Equilibrium rod =
         energy_model::solve_energy(problem, {.terms = options_.solve.terms,

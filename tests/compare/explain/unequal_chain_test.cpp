@@ -14,7 +14,7 @@
 namespace dlo::compare {
 namespace {
 
-constexpr double weight = 30;  // N/m, on EI = 1 N m^2 and 1 m
+constexpr double chain_weight = 30;  // N/m, on EI = 1 N m^2 and 1 m
 
 Scene unequal_scene() {
   Scene scene;
@@ -22,7 +22,7 @@ Scene unequal_scene() {
   scene.gravity = {0, -10, 0};
   scene.length = 1;
   scene.given_bending_stiffness = 1;
-  scene.given_mass_per_length = weight / 10;
+  scene.given_mass_per_length = chain_weight / 10;
   scene.grippers = {
       {.at = 0, .position = Eigen::Vector3d::Zero(), .direction = Eigen::Vector3d(1, 0, 0)}};
   return scene;
@@ -43,8 +43,8 @@ Shape unequal_chain(const Moment& moment, double factor) {
   const Eigen::VectorXd h = unequal_segments();
   const Eigen::Index n = h.size();
   Eigen::Matrix2Xd forces = Eigen::Matrix2Xd::Zero(2, n + 1);
-  forces.row(1).head(n) -= weight * h.transpose() / 2;
-  forces.row(1).tail(n) -= weight * h.transpose() / 2;
+  forces.row(1).head(n) -= chain_weight * h.transpose() / 2;
+  forces.row(1).tail(n) -= chain_weight * h.transpose() / 2;
   const Eigen::VectorXd springs = 2 * factor * (h.head(n - 1) + h.tail(n - 1)).cwiseInverse();
   Shape shape;
   shape.points = test::chain_at_rest(h, springs, forces, moment);
