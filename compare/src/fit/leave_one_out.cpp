@@ -7,6 +7,7 @@
 
 #include "fit/between_shapes.hpp"
 #include "fit/fitted_scene.hpp"
+#include "fit/wire_numbers.hpp"
 #include "least_squares/measured_shapes.hpp"
 
 namespace dlo::compare {
@@ -32,10 +33,12 @@ bool are_alike(const Scene& a, const Scene& b) {
 /// Distance of a shape from the rod of its scene (RMS) [m].
 double distance_from_rod(const Scene& scene, const MeasuredShape& shape,
                          const MaterialFitOptions& options) {
-  MeasuredShapes measured(
-      {scene}, {shape},
-      {.pose = options.pose, .arc_lengths = options.arc_lengths, .solve = options.solve},
-      std::chrono::steady_clock::now());
+  MeasuredShapes measured({scene}, {shape},
+                          {.pose = options.pose,
+                           .arc_lengths = options.arc_lengths,
+                           .solve = options.solve,
+                           .flat = flat_shapes(options)},
+                          std::chrono::steady_clock::now());
   return std::sqrt(measured.alignment(0, measured.solve(0, scene, nullptr)).mean_square);
 }
 

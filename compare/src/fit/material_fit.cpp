@@ -179,10 +179,12 @@ class MaterialFitter {
       : scenes_(scenes),
         shapes_(shapes),
         options_(options),
-        measured_(
-            scenes, shapes,
-            {.pose = options.pose, .arc_lengths = options.arc_lengths, .solve = options.solve},
-            std::chrono::steady_clock::now()),
+        measured_(scenes, shapes,
+                  {.pose = options.pose,
+                   .arc_lengths = options.arc_lengths,
+                   .solve = options.solve,
+                   .flat = flat_shapes(options)},
+                  std::chrono::steady_clock::now()),
         misfit_(scenes, measured_),
         forced_(std::any_of(scenes.begin(), scenes.end(), is_forced)),
         both_(options.density &&

@@ -9,8 +9,10 @@ namespace dlo::compare {
 
 WireErrors errors_about(const GaussNewton& fit, Eigen::Index frames,
                         const std::optional<double>& noise, double least_noise) {
-  WireErrors errors{
-      .variance = fit.variance(), .freedom = fit.freedom(), .squares = fit.deviance()};
+  WireErrors errors{.variance = fit.variance(),
+                    .freedom = fit.freedom(),
+                    .squares = fit.deviance(),
+                    .freedom_of_squares = fit.freedom()};
   if (!(fit.variance() > least_noise * least_noise)) return errors;
   const CorrelationEstimate estimate = correlation_of(fit.series());
   errors.tested = estimate.tested;
@@ -19,7 +21,10 @@ WireErrors errors_about(const GaussNewton& fit, Eigen::Index frames,
   const VarianceEstimate seen = variance_under(fit.series(), errors.correlation, frames);
   errors.freedom = std::max(1.0, seen.freedom);
   errors.variance = noise ? *noise * *noise : seen.variance;
-  errors.squares = seen.variance / errors.variance * errors.freedom;
+  const CorrelationEffect effect = correlation_effect(fit.series(), frames, errors.correlation);
+  const double expected = errors.variance * effect.residual_factor * errors.freedom;
+  errors.freedom_of_squares = effect.degrees_of_freedom;
+  errors.squares = fit.linear().residual.squaredNorm() / expected * errors.freedom_of_squares;
   return errors;
 }
 

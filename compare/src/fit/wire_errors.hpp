@@ -14,7 +14,11 @@ struct WireErrors {
   ErrorCovariance correlation;  ///< independent, unless they are shown not to be
   double variance = 0;          ///< of a coordinate; given, or from the residuals [m^2]
   double freedom = 0;           ///< degrees, of the residuals
-  double squares = 0;           ///< of the residuals as independent ones, over the variance
+  /// Sum of squares of the residuals over what the variance explains, and of how many degrees of
+  /// freedom it then is: of correlated errors by Satterthwaite, since residuals tell their length
+  /// of correlation hardly better than their variance.
+  double squares = 0;
+  double freedom_of_squares = 0;
 
   [[nodiscard]] bool are_correlated() const { return correlation.share > 0; }
 };

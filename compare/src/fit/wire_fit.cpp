@@ -283,8 +283,8 @@ class WireFitter {
   [[nodiscard]] double misfit(MaterialFit& fit) const {
     if (!options_.noise) return 1;
     constexpr double significant = 0.05;
-    if (!(gsl_cdf_chisq_Q(errors_.squares, errors_.freedom) < significant)) return 1;
-    const double times = std::sqrt(errors_.squares / errors_.freedom);
+    if (!(gsl_cdf_chisq_Q(errors_.squares, errors_.freedom_of_squares) < significant)) return 1;
+    const double times = std::sqrt(errors_.squares / errors_.freedom_of_squares);
     fit.warning = fmt::format(
         "the residuals are {:.3g} times what the given noise explains; the interval is as much "
         "wider",

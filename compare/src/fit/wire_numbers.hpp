@@ -6,6 +6,7 @@
 
 #include "dlo/compare/material_fit.hpp"
 #include "dlo/compare/scene.hpp"
+#include "least_squares/measured_shapes.hpp"
 
 namespace dlo::compare {
 
@@ -17,6 +18,12 @@ struct WireNumber {
   std::function<void(Scene&, double)> change;
   int term = 0;  ///< of natural curvature; 0 of all other numbers
 };
+
+/// What flat shapes say. A photograph does not see the third coordinate: a fit of natural curvature
+/// would bend the rod out of the picture to come nearer in it, so it is confined.
+[[nodiscard]] inline FlatShapes flat_shapes(const MaterialFitOptions& options) {
+  return options.natural_curvature_terms > 0 ? FlatShapes::confined : FlatShapes::unmeasured;
+}
 
 /// Whether a force acts on the rod that does not grow with its stiffness: weight, a load, an
 /// obstacle that yields. Without one its energy is E times a function of the shape alone, so the

@@ -116,7 +116,7 @@ MeasuredShapes::MeasuredShapes(const std::vector<Scene>& scenes,
                      .weights = options_.weights,
                      .up = up});
     const Eigen::Index columns = aligner.free_coordinates();
-    const bool flat = options_.flat == FlatShapes::unmeasured && lies_in_a_plane(shapes[i].points);
+    const bool flat = options_.flat != FlatShapes::measured && lies_in_a_plane(shapes[i].points);
     shapes_.push_back({std::move(aligner), scenes[i].length, flat, up, frame_columns_});
     frame_columns_ += columns;
   }
@@ -144,13 +144,17 @@ energy_model::Equilibrium MeasuredShapes::solve(std::size_t shape, const Scene& 
                                                 const energy_model::Equilibrium* start) {
   scene.require_potential("the energy model does");
   energy_model::Problem problem = energy_problem(scene);
-  problem.confined_to_plane = shapes_[shape].flat && can_be_confined(scene);
+  problem.confined_to_plane = is_confined(shape, scene);
   return solve(problem, scene.file, start);
+}
+
+bool MeasuredShapes::is_confined(std::size_t shape, const Scene& scene) const {
+  return options_.flat == FlatShapes::confined && shapes_[shape].flat && can_be_confined(scene);
 }
 
 double MeasuredShapes::way_out_of_plane(std::size_t shape, const Scene& scene,
                                         const energy_model::Equilibrium& rod) {
-  if (!shapes_[shape].flat || !can_be_confined(scene)) return 0;
+  if (!is_confined(shape, scene)) return 0;
   const energy_model::Equilibrium free = solve(energy_problem(scene), scene.file, &rod);
   if (!energy_model::succeeded(free.status)) return 0;
   const Eigen::Vector3d normal = *scene.plane_normal();

@@ -21,6 +21,7 @@ namespace dlo::compare {
 /// What points that lie in a plane say of the third coordinate.
 enum class FlatShapes {
   unmeasured,  ///< nothing: it is a photograph
+  confined,    ///< nothing either, and a rod of a scene with a plane is confined to that
   measured,    ///< that it is nought
 };
 
@@ -58,9 +59,7 @@ class MeasuredShapes {
   /// Columns of a design before those of the fitted numbers: each shape's frame.
   [[nodiscard]] Eigen::Index frame_columns() const { return frame_columns_; }
 
-  /// The energy model's solution of a shape's scene as it was changed. The rod of a flat shape is
-  /// confined to the scene's plane, if it has one: a photograph does not see the third coordinate,
-  /// so a fit would bend the rod out of the picture to come nearer in it.
+  /// The energy model's solution of a shape's scene as it was changed.
   /// @param start  an equilibrium to follow; null: search
   /// @throws ConvergenceError if the time limit is over
   /// @throws InputError if the scene is none that the model has
@@ -97,6 +96,7 @@ class MeasuredShapes {
   [[nodiscard]] long evaluations() const { return evaluations_; }
 
  private:
+  [[nodiscard]] bool is_confined(std::size_t shape, const Scene& scene) const;
   energy_model::Equilibrium solve(const energy_model::Problem& problem, const std::string& file,
                                   const energy_model::Equilibrium* start);
 

@@ -271,8 +271,8 @@ struct MaterialFit {
 /// correlated the numbers' covariance is that of least squares under such errors, in the mean over
 /// all correlations that the residuals leave likely. The interval of E is where the profile of the
 /// squares, in which the others' effect is linear about the optimum, has risen by as much as that
-/// variance says; that of GJ is linear altogether. The rod of a flat shape is confined to its
-/// scene's plane, and the warning says if it would leave it.
+/// variance says; that of GJ is linear altogether. Where natural curvature is fitted, the
+/// rod of a flat shape is confined to its scene's plane; the warning says if it would leave it.
 ///
 /// Two shapes or more are asked whether they agree on E within their errors; where they do not, the
 /// interval is that of their mean under a scatter between shapes (Paule and Mandel's estimate, with
