@@ -40,7 +40,7 @@ Problem between_clamps(double stiffness) {
 }
 
 /// What points of two shapes are apart at most, over l = 1.
-double apart(const Equilibrium& a, const Equilibrium& b) {
+double lines_apart(const Equilibrium& a, const Equilibrium& b) {
   const std::vector<double> s = equal_arc_lengths(1, 501);
   return (a.sample(s).points - b.sample(s).points).colwise().norm().maxCoeff();
 }
@@ -72,7 +72,7 @@ TEST(SoftLine, IsAsNearToTheRodAsItSays) {
       ASSERT_TRUE(soft);
       const Equilibrium rod = solve_energy(problem);
       ASSERT_EQ(rod.status, SolveStatus::converged) << rod.message;
-      const double missed = apart(*soft, rod);
+      const double missed = lines_apart(*soft, rod);
       EXPECT_LT(missed, soft->error_estimate) << stiffness;
       // Second order in the layers' lengths, which is first order in EI.
       if (before > 0) {
@@ -99,7 +99,7 @@ TEST(SoftLine, HangsFromAClamp) {
     const std::optional<Equilibrium> soft = soft_line(problem);
     ASSERT_TRUE(soft);
     const Equilibrium rod = solve_energy(problem);
-    const double missed = apart(*soft, rod);
+    const double missed = lines_apart(*soft, rod);
     EXPECT_LT(missed, soft->error_estimate);
     if (before > 0) {
       EXPECT_GT(before / missed, 7);
@@ -140,7 +140,7 @@ TEST(SoftLine, LiftsOffAsTheRodDoes) {
   ASSERT_TRUE(soft);
   const Equilibrium rod = solve_energy(problem);
   ASSERT_TRUE(succeeded(rod.status)) << rod.message;
-  EXPECT_LT(apart(*soft, rod), soft->error_estimate);
+  EXPECT_LT(lines_apart(*soft, rod), soft->error_estimate);
   ASSERT_EQ(rod.contacts.size(), 1U);
   EXPECT_NEAR(soft->contacts[0].end, rod.contacts[0].end, 1e-3);
   EXPECT_NEAR(soft->contacts[0].end_force / rod.contacts[0].end_force, 1, 0.05);

@@ -12,7 +12,7 @@ namespace dlo::compare {
 namespace {
 
 /// Terms that are tried where the options do not ask for more.
-constexpr int usual_terms = 3;
+constexpr int usual_curvature_terms = 3;
 /// How well clamps are known where the options do not say: hardly.
 constexpr double usual_direction_tolerance = 20 * std::numbers::pi / 180;
 /// Fewer numbers are chosen where they predict worse by no more than this share.
@@ -64,7 +64,7 @@ class OptionsSearch {
 
  private:
   void try_terms(bool shared_clamps) {
-    const int terms = std::max(usual_terms, options_.natural_curvature_terms);
+    const int terms = std::max(usual_curvature_terms, options_.natural_curvature_terms);
     double least = INFINITY;
     int vain = 0;
     for (int term = 0; term <= terms && vain < most_vain_terms; ++term) {

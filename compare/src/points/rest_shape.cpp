@@ -163,7 +163,7 @@ Eigen::MatrixXd arc_derivative(const Target& target, const Arcs& arcs) {
   const Index count = arc_parameters(target, arcs.arcs.size());
   const std::size_t n = arcs.arcs.size();
   std::vector<ArcPlace> begins = {arcs.begin};
-  std::vector<double> bounds = {0};
+  std::vector<double> bounds(1, 0.0);
   for (const RestShape::Arc& arc : arcs.arcs) {
     begins.push_back(along_arc(begins.back(), arc.curvature, arc.end - bounds.back()));
     bounds.push_back(arc.end);

@@ -20,7 +20,7 @@ namespace {
 using Vector = Eigen::Vector3d;
 
 /// Of the length: arc lengths and heights that are meant to be the same.
-constexpr double same_place = 1e-9;
+constexpr double negligible = 1e-9;
 /// What a clamp may bend the rod by: of a straight fold nobody says to which side.
 constexpr double most_turned = 170 * std::numbers::pi / 180;
 /// Lengths of a layer after which nothing is left of it: exp(-40) = 4e-18.
@@ -97,7 +97,7 @@ std::optional<Catenary> hang_between(const Vector& begin, const Vector& end, dou
   const double rise = way.dot(up);
   const Vector flat = way - rise * up;
   const double x = flat.norm();
-  if (!(x > same_place * l) || !(way.norm() < l * (1 - same_place))) return std::nullopt;
+  if (!(x > negligible * l) || !(way.norm() < l * (1 - negligible))) return std::nullopt;
   const double ratio = std::sqrt((l - rise) * (l + rise)) / x;
   const double excess = (l - way.norm()) * (l + way.norm()) / (x * x * (ratio + 1));
   const double u = root_of_sinh_ratio(excess);
@@ -118,7 +118,7 @@ std::optional<Catenary> lie_between(const Vector& begin, const Vector& end, doub
   const Vector way = end - begin;
   const Vector flat = way - way.dot(up) * up;
   const double x = flat.norm();
-  if (!(x > same_place * l)) return std::nullopt;
+  if (!(x > negligible * l)) return std::nullopt;
   const std::array<double, 2> heights = {std::max(0.0, begin.dot(up) - floor),
                                          std::max(0.0, end.dot(up) - floor)};
   const auto length = [](double h, double a) { return std::sqrt(h * (h + 2 * a)); };
@@ -269,7 +269,7 @@ class SoftLine {
   [[nodiscard]] bool is_taken() const {
     const double l = problem_.length;
     const auto at_end = [&](const Grip& grip) {
-      return grip.at < same_place * l || grip.at > l * (1 - same_place);
+      return grip.at < negligible * l || grip.at > l * (1 - negligible);
     };
     const auto framed = [](const Grip& grip) { return grip.frame.has_value(); };
     const std::vector<Grip>& grips = problem_.grips;
@@ -290,7 +290,7 @@ class SoftLine {
     const Obstacle& obstacle = problem_.obstacles.front();
     if (!std::isinf(obstacle.stiffness) || !obstacle.body.is_half_space()) return std::nullopt;
     const obstacle::Body& body = obstacle.body;
-    if ((body.normal() - up_).norm() > same_place) return std::nullopt;
+    if ((body.normal() - up_).norm() > negligible) return std::nullopt;
     return (body.centre() + body.radius() * body.normal()).dot(up_);
   }
 
@@ -321,7 +321,7 @@ class SoftLine {
     const std::optional<double> ground = floor();
     if (!ground) return false;
     const double lowest = line_.point(std::clamp(line_.low, 0.0, l)).dot(up_);
-    if (lowest > *ground + same_place * l) return true;
+    if (lowest > *ground + negligible * l) return true;
     const std::optional<Catenary> lying = lie_between(begin, end, l, up_, *ground);
     if (!lying) return false;
     line_ = *lying;
@@ -360,7 +360,7 @@ class SoftLine {
                               line_.own(at(layer)) == 0;
       if (lies_there) {
         // On the floor, along it.
-        if (std::abs(above) > same_place * problem_.length || layer.turn > same_place) return false;
+        if (std::abs(above) > negligible * problem_.length || layer.turn > negligible) return false;
       } else if (!(above > layer_reach * layer.length)) {
         return false;
       }
@@ -438,7 +438,7 @@ class SoftLine {
     const double pressed = weight_ * edge_layer();
     const double end = line_.low + line_.lying;
     const bool rises_at_begin = line_.low > 0;
-    const bool rises_at_end = end < problem_.length * (1 - same_place);
+    const bool rises_at_end = end < problem_.length * (1 - negligible);
     result.obstacles.front() = weight_ * line_.lying * up_;
     ContactPart part;
     part.kind = ContactKind::lying;
