@@ -98,9 +98,7 @@ std::string tried_text(const std::vector<compare::FitAlternative>& tried) {
   std::string out;
   for (std::size_t i = 0; i < tried.size(); ++i) {
     const std::string words = words_of(tried[i]);
-    append(out,
-           "{} {}: {:.4g} mm between each shape and the rod fitted to the others, residual {:.4g} "
-           "mm\n",
+    append(out, "{} {}: predicts {:.4g} mm, residual {:.4g} mm\n",
            i == 0 ? "chosen     " : "           ", words.empty() ? "no option" : words,
            tried[i].prediction_m.value_or(NAN) * 1e3, tried[i].rms_m * 1e3);
   }

@@ -13,14 +13,18 @@ namespace {
 
 /// Terms that are tried where the options do not ask for more.
 constexpr int usual_curvature_terms = 3;
-/// How well clamps are known where the options do not say: hardly.
-constexpr double usual_direction_tolerance = 20 * std::numbers::pi / 180;
+/// How well clamps are known where the options do not say: a fixture's hardly, and where each shape
+/// has its own they are like each other.
+constexpr double fixture_tolerance = 20 * std::numbers::pi / 180;
+constexpr double own_tolerance = 5 * std::numbers::pi / 180;
 /// Fewer numbers are chosen where they predict worse by no more than this share.
 constexpr double as_well = 0.02;
 /// Options that predict worse by no more than this share may be right too.
 constexpr double nearly_as_well = 0.1;
 /// Terms in a row that predict no better, after which no more are tried.
 constexpr int most_vain_terms = 2;
+
+enum class Clamps { as_said, alike, own };
 
 struct Trial {
   MaterialFitOptions options;
@@ -37,8 +41,7 @@ class OptionsSearch {
       : scenes_(scenes), shapes_(shapes), options_(options) {}
 
   [[nodiscard]] MaterialFit run() {
-    try_terms(false);
-    try_terms(true);
+    for (const Clamps clamps : {Clamps::as_said, Clamps::alike, Clamps::own}) try_terms(clamps);
     if (trials_.empty()) {
       throw ConvergenceError("calibrate: no fit came to an end with any options that were tried");
     }
@@ -63,29 +66,29 @@ class OptionsSearch {
   }
 
  private:
-  void try_terms(bool shared_clamps) {
+  void try_terms(Clamps clamps) {
     const int terms = std::max(usual_curvature_terms, options_.natural_curvature_terms);
     double least = INFINITY;
     int vain = 0;
     for (int term = 0; term <= terms && vain < most_vain_terms; ++term) {
-      const std::optional<double> prediction = predict(term, shared_clamps);
+      const std::optional<double> prediction = predict(term, clamps);
       vain = prediction && *prediction < (1 - as_well) * least ? 0 : vain + 1;
       least = std::min(least, prediction.value_or(INFINITY));
     }
   }
 
   /// @return how well that predicts; none if it has no fit
-  std::optional<double> predict(int terms, bool shared_clamps) {
+  std::optional<double> predict(int terms, Clamps clamps) {
     MaterialFitOptions options = options_;
     options.choose_options = false;
     options.alternatives = false;
     options.chain_segments = options.profile_points = 0;
     options.natural_curvature_terms = terms;
-    options.shared_clamps = shared_clamps;
-    if (!shared_clamps) {
+    options.shared_clamps = clamps == Clamps::alike;
+    if (clamps == Clamps::as_said) {
       options.direction_tolerance = options.position_tolerance = 0;
     } else if (!(options.direction_tolerance > 0)) {
-      options.direction_tolerance = usual_direction_tolerance;
+      options.direction_tolerance = options.shared_clamps ? fixture_tolerance : own_tolerance;
     }
     options.predict = true;
     try {

@@ -35,10 +35,10 @@ struct MaterialFitOptions {
   bool shared_clamps = false;
   /// Each shape in turn is left out of the fit, and predicted (MaterialFit::prediction).
   bool predict = false;
-  /// Terms of natural curvature and clamps misaligned alike in all shapes are fitted as they
-  /// predict shapes best that are left out (MaterialFit::tried); the numbers above say up to how
-  /// many terms (three at least) and how well clamps are known (20 degrees if they do not). Three
-  /// shapes or more.
+  /// Terms of natural curvature, and clamps as said, misaligned alike in all shapes or each on its
+  /// own, are fitted as they predict shapes best that are left out (MaterialFit::tried). The numbers
+  /// above say up to how many terms (three at least) and how well clamps are known (if they do not,
+  /// 20 degrees of those that are alike, 5 of each shape's own). Three shapes or more.
   bool choose_options = false;
   /// Where residuals are systematic, and none of the above is fitted, it is tried what would remove
   /// them (MaterialFit::alternatives).
