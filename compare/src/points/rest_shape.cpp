@@ -410,7 +410,7 @@ void find_points_plane(Target& target) {
   const Vector3d centre = target.points.rowwise().mean();
   const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(target.points.colwise() - centre,
                                                Eigen::ComputeFullU);
-  const Matrix3d axes = svd.matrixU();
+  const Matrix3d& axes = svd.matrixU();
   const auto spread = [&](Index k) {
     return (axes.col(k).transpose() * (target.points.colwise() - centre)).cwiseAbs().maxCoeff();
   };

@@ -173,6 +173,7 @@ bool read_layers(StrictTable& rod, const std::vector<Material>& known_materials,
                                    tables.size(), most));
   }
   std::vector<Layer> layers;
+  layers.reserve(tables.size());
   for (StrictTable& table : tables) layers.push_back(read_layer(table, known_materials));
   LayeredSection section;
   try {

@@ -43,7 +43,7 @@ inline constexpr int most_rest_arcs = 32;
 /// else those of the nearest points; both are scaled to the rod's length.
 /// @param length  of the rod [m]
 /// @throws InputError if the points' curve is not as long, within 5 %, or there are fewer than 5
-[[nodiscard]] RestShape fit_rest_shape(const MeasuredShape& points, double length);
+[[nodiscard]] RestShape fit_rest_shape(const MeasuredShape& measured, double length);
 
 /// Curvature of a helix about d2 and its twist, [0, R / (R^2 + c^2), c / (R^2 + c^2)] [1/m] with c
 /// = pitch / (2 pi). It begins along t, its axis is the radius away along d1.
