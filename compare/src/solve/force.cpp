@@ -149,7 +149,7 @@ RestingRod raise_drag(const Scene& scene, const std::vector<double>& arc_length,
   constexpr double least_share = 0.02;  // below, it does not grow
   constexpr double on_the_way = 1e-3;   // of the length, before all of it is there
   const double at_the_end = 10 * limits.tolerance;
-  const force_model::Rod dead = unloaded.rod();
+  const force_model::Rod& dead = unloaded.rod();
   Eigen::Matrix3Xd points = unloaded.points();
   double reached = 0;
   long steps = 0;
@@ -180,22 +180,22 @@ RestingRod raise_drag(const Scene& scene, const std::vector<double>& arc_length,
 
 }  // namespace
 
-Solution solve_force(const Scene& given, const ForceModelSettings& settings,
+Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
                      const SolveOptions& options) {
-  if (const std::optional<PlaneTurn> turn = turn_into_plane(given, settings)) {
-    return turned_back(solve_force(turn->laid(given), settings, options), *turn);
+  if (const std::optional<PlaneTurn> turn = turn_into_plane(scene, settings)) {
+    return turned_back(solve_force(turn->laid(scene), settings, options), *turn);
   }
-  Scene scene = given;
-  scene.drag.reset();
-  Discretisation discretisation = discretise(scene, settings);
-  set_masses(scene, settings, discretisation);
-  const SimulationStart start = simulation_start(scene, settings, discretisation, options);
+  Scene dead_scene = scene;
+  dead_scene.drag.reset();
+  Discretisation discretisation = discretise(dead_scene, settings);
+  set_masses(dead_scene, settings, discretisation);
+  const SimulationStart start = simulation_start(dead_scene, settings, discretisation, options);
   const auto begin = std::chrono::steady_clock::now();
   const auto simulate = [&](const force_model::Rod& rod, const Eigen::Matrix3Xd& points) {
     try {
       return force_model::Simulation(rod, points, step_options(settings, discretisation));
     } catch (const std::invalid_argument& error) {
-      throw InputError(fmt::format("{}: the force model: {}", scene.file, error.what()));
+      throw InputError(fmt::format("{}: the force model: {}", dead_scene.file, error.what()));
     }
   };
   const auto simulation_from = [&](const Eigen::Matrix3Xd& points) {
@@ -209,7 +209,7 @@ Solution solve_force(const Scene& given, const ForceModelSettings& settings,
   force_model::RelaxResult result = simulation.relax(limits);
   const auto strayed = [&] {
     return result.status == force_model::RelaxStatus::at_rest && start.rest &&
-           in_another_state(scene, discretisation, simulation.points(), *start.rest);
+           in_another_state(dead_scene, discretisation, simulation.points(), *start.rest);
   };
   if (strayed()) {
     // It has swung past the chain's state; from a tenth of the way before it it cannot.
@@ -222,7 +222,7 @@ Solution solve_force(const Scene& given, const ForceModelSettings& settings,
     throw ConvergenceError(fmt::format(
         "{}: the force model did not come to rest: {} after {} steps, about {:.2g} m from it "
         "(stepper {}, c_F = {:.4g} m/N, c_c = {:.4g} N{})",
-        scene.file, result.message, result.steps, result.remaining_error,
+        dead_scene.file, result.message, result.steps, result.remaining_error,
         to_string(settings.stepper), simulation.options().c_F, discretisation.parameters.c_c,
         settings.stepper == Stepper::automatic || settings.stepper == Stepper::implicit
             ? ""
@@ -230,20 +230,21 @@ Solution solve_force(const Scene& given, const ForceModelSettings& settings,
               "steps"));
   }
   const Eigen::Matrix3Xd dead_loads = simulation.rod().loads;
-  if (given.drag) {
-    RestingRod rest = raise_drag(given, discretisation.arc_length, simulation, limits, simulate);
+  if (scene.drag) {
+    RestingRod rest = raise_drag(scene, discretisation.arc_length, simulation, limits, simulate);
     rest.result.steps += result.steps;
     simulation = std::move(rest.simulation);
     result = std::move(rest.result);
   }
-  require_unstrained(scene, settings, discretisation, simulation.points(), "force");
+  require_unstrained(dead_scene, settings, discretisation, simulation.points(), "force");
   force_model::Rod rod = simulation.rod();
   rod.loads = dead_loads;  // drag has no energy
-  Solution solution = polygon_solution(scene, settings, discretisation, rod, simulation.points());
+  Solution solution =
+      polygon_solution(dead_scene, settings, discretisation, rod, simulation.points());
   solution.model = Model::force;
   solution.message = result.message;
-  if (given.drag) solution.status = energy_model::SolveStatus::not_verified;
-  if (!given.drag && strayed()) solution.message += ", in another state than the chain";
+  if (scene.drag) solution.status = energy_model::SolveStatus::not_verified;
+  if (!scene.drag && strayed()) solution.message += ", in another state than the chain";
   // What an obstacle does to a held point inside a gripper is not felt outside.
   force_model::Rod without_walls = simulation.rod();
   without_walls.walls.clear();

@@ -214,27 +214,28 @@ double Plan::bound(const std::string& what) const {
   throw std::invalid_argument(fmt::format("Plan::bound: nothing called \"{}\" is neglected", what));
 }
 
-Plan make_plan(const Scene& given, const PlanOptions& options) {
+Plan make_plan(const Scene& scene, const PlanOptions& options) {
   if (!(options.target > 0) || !(options.gripper_speed >= 0) || !(options.time_limit > 0)) {
     throw std::invalid_argument(fmt::format(
         "make_plan: target = {}, gripper_speed = {}, time_limit = {}, must be > 0, >= 0 and > 0",
         options.target, options.gripper_speed, options.time_limit));
   }
   // What stretches is planned for by the shape that does not.
-  Scene scene = given;
-  scene.stretch = false;
+  Scene inextensible = scene;
+  inextensible.stretch = false;
   const PlanClock clock(options.time_limit);
-  const std::vector<std::size_t> in_reach = obstacles_in_reach(scene, scene.force_model);
-  const std::vector<double> clearances = obstacle_clearances(scene);
+  const std::vector<std::size_t> in_reach =
+      obstacles_in_reach(inextensible, inextensible.force_model);
+  const std::vector<double> clearances = obstacle_clearances(inextensible);
   Plan plan;
-  plan.gamma = scene.gamma();
+  plan.gamma = inextensible.gamma();
   plan.target = options.target;
-  plan.planar = scene.planar();
-  plan.spans = spans_of(scene);
-  plan.twist = twists_of(scene);
-  plan.frame_held = std::any_of(scene.grippers.begin(), scene.grippers.end(),
+  plan.planar = inextensible.planar();
+  plan.spans = spans_of(inextensible);
+  plan.twist = twists_of(inextensible);
+  plan.frame_held = std::any_of(inextensible.grippers.begin(), inextensible.grippers.end(),
                                 [](const Gripper& gripper) { return gripper.frame.has_value(); });
-  plan.scene_points = scene.force_model.points;
+  plan.scene_points = inextensible.force_model.points;
   for (std::size_t i = 0; i < clearances.size(); ++i) {
     plan.obstacles.push_back(
         {clearances[i], std::find(in_reach.begin(), in_reach.end(), i) != in_reach.end()});
@@ -243,8 +244,8 @@ Plan make_plan(const Scene& given, const PlanOptions& options) {
   Neglected stretch{.what = "stretch", .models = "energy, exact, chain of rigid segments"};
   Neglected shear{.what = "shear", .models = "all"};
   Neglected polygon{.what = "polygon", .models = "chain, force"};
-  Neglected twist = neglected_twist(scene, plan);
-  Neglected natural = neglected_natural(scene);
+  Neglected twist = neglected_twist(inextensible, plan);
+  Neglected natural = neglected_natural(inextensible);
   const auto no_bound = [&](const std::string& why) {
     for (Neglected* item : {&stretch, &shear, &polygon}) {
       item->bound_m = unbounded;
@@ -254,51 +255,52 @@ Plan make_plan(const Scene& given, const PlanOptions& options) {
   plan.contact = true;
   try {
     std::string why;
-    const std::optional<energy_model::Equilibrium> rod = rod_shape(scene, options.time_limit, why);
+    const std::optional<energy_model::Equilibrium> rod =
+        rod_shape(inextensible, options.time_limit, why);
     plan.contact = !rod || touches(*rod);
     if (rod && !plan.twist.empty()) {
       look_at_twist(*rod, plan);
-      look_at(scene.without_twist(), *rod, clock.left(), twist);
+      look_at(inextensible.without_twist(), *rod, clock.left(), twist);
     }
-    if (rod && scene.naturally_bent()) {
-      look_at(scene.without_natural_strain(), *rod, clock.left(), natural);
+    if (rod && inextensible.naturally_bent()) {
+      look_at(inextensible.without_natural_strain(), *rod, clock.left(), natural);
     }
-    const std::optional<Discretisation> fine = hooke_polygon(scene, rod_points);
+    const std::optional<Discretisation> fine = hooke_polygon(inextensible, rod_points);
     if (!rod) {
       no_bound(why);
     } else if (plan.contact) {
       no_bound("the rod touches an obstacle");
-    } else if (const std::string none = why_no_polygon(scene); !none.empty()) {
+    } else if (const std::string none = why_no_polygon(inextensible); !none.empty()) {
       no_bound(none);
     } else if (!fine) {
       no_bound("the grips lie closer than any polygon looked at");
     } else {
-      const PolygonResponse response(scene, *fine, *rod);
-      const double EA = scene.axial_stiffness();
-      stretch.bound_m = bounded(response.stretch(EA).moved_m, scene.length);
+      const PolygonResponse response(inextensible, *fine, *rod);
+      const double EA = inextensible.axial_stiffness();
+      stretch.bound_m = bounded(response.stretch(EA).moved_m, inextensible.length);
       stretch.why = "tension over EA, as the shape answers it";
-      shear.bound_m = bounded(response.shear(0.3 * EA), scene.length);
+      shear.bound_m = bounded(response.shear(0.3 * EA), inextensible.length);
       shear.why = "force across over kGA, kG >= 0.3 E";
-      polygon.bound_m = polygon_bound(scene, *rod, scene.force_model.points);
+      polygon.bound_m = polygon_bound(inextensible, *rod, inextensible.force_model.points);
       polygon.why = fmt::format("segments instead of curves, hooke law, bookkeeping {}, N = {}",
-                                to_string(scene.force_model.bookkeeping), plan.scene_points);
-      plan.points = points_for_target(scene, *rod, options.target, clock);
+                                to_string(inextensible.force_model.bookkeeping), plan.scene_points);
+      plan.points = points_for_target(inextensible, *rod, options.target, clock);
     }
   } catch (const std::exception& error) {
     // A plan is no reason for a solve to fail.
     no_bound(fmt::format("not found out: {}", error.what()));
   }
-  plan.stretch = !given.stretch && stretch.bound_m > options.target * scene.length / 10;
-  plan.neglected = {shear, polygon, inertia(scene, options.gripper_speed), twist};
-  if (!given.stretch) plan.neglected.insert(plan.neglected.begin(), stretch);
-  if (scene.naturally_bent()) plan.neglected.push_back(natural);
-  if (friction_in_reach(scene)) plan.neglected.push_back(neglected_friction(plan));
-  plan.moving = plan.bound("inertia") > options.target * scene.length;
-  if (in_reach.size() < scene.obstacles.size()) {
-    plan.neglected.push_back(
-        {"obstacles out of reach", "all", 0,
-         fmt::format("{} of {}: no point of the rod gets there",
-                     scene.obstacles.size() - in_reach.size(), scene.obstacles.size())});
+  plan.stretch = !scene.stretch && stretch.bound_m > options.target * inextensible.length / 10;
+  plan.neglected = {shear, polygon, inertia(inextensible, options.gripper_speed), twist};
+  if (!scene.stretch) plan.neglected.insert(plan.neglected.begin(), stretch);
+  if (inextensible.naturally_bent()) plan.neglected.push_back(natural);
+  if (friction_in_reach(inextensible)) plan.neglected.push_back(neglected_friction(plan));
+  plan.moving = plan.bound("inertia") > options.target * inextensible.length;
+  if (in_reach.size() < inextensible.obstacles.size()) {
+    plan.neglected.push_back({"obstacles out of reach", "all", 0,
+                              fmt::format("{} of {}: no point of the rod gets there",
+                                          inextensible.obstacles.size() - in_reach.size(),
+                                          inextensible.obstacles.size())});
   }
   return plan;
 }
