@@ -41,7 +41,7 @@ TEST(ModelChain, HasTheLawOfOtherPrograms) {
     Eigen::Matrix3Xd points =
         test::chain_at_rest(h, springs, polygon.rod.loads.topRows<2>(), moment);
     points.row(0).array() -= h[0] / 2;
-    const Solution chain = solve(rope_of_law(law), Model::chain);
+    Solution chain = solve(rope_of_law(law), Model::chain);
     const Shape own = polygon.shape(points);
     EXPECT_LT((chain.shape.points - own.points).cwiseAbs().maxCoeff(), 1e-9);
     return chain;
