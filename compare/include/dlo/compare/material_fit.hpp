@@ -36,9 +36,9 @@ struct MaterialFitOptions {
   /// Each shape in turn is left out of the fit, and predicted (MaterialFit::prediction).
   bool predict = false;
   /// Terms of natural curvature, and clamps as said, misaligned alike in all shapes or each on its
-  /// own, are fitted as they predict shapes best that are left out (MaterialFit::tried). The numbers
-  /// above say up to how many terms (three at least) and how well clamps are known (if they do not,
-  /// 20 degrees of those that are alike, 5 of each shape's own). Three shapes or more.
+  /// own, are fitted as they predict shapes best that are left out (MaterialFit::tried). The
+  /// numbers above say up to how many terms (three at least) and how well clamps are known (if they
+  /// do not, 20 degrees of those that are alike, 5 of each shape's own). Three shapes or more.
   bool choose_options = false;
   /// Where residuals are systematic, and none of the above is fitted, it is tried what would remove
   /// them (MaterialFit::alternatives).
