@@ -9,8 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "dlo/energy_model/dynamics.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
+#include "dlo/energy_model/vibrations.hpp"
 #include "problems.hpp"
 
 namespace dlo::energy_model {
@@ -87,8 +89,15 @@ TEST(ConfinedRod, RefusesWhatHasNoPlane) {
   Problem in_space = test::two_clamps(10, 0.6);
   in_space.grips[1].position.z() = 0.1;
   EXPECT_TRUE(refused(in_space, energy));
-  EXPECT_TRUE(refused(test::heavy_cantilever(1, 0),
-                      [](const Problem& problem) { return solve_exact(problem); }));
+  const Problem cantilever = test::heavy_cantilever(1, 0);
+  EXPECT_TRUE(refused(cantilever, [](const Problem& problem) { return solve_exact(problem); }));
+  EXPECT_TRUE(refused(cantilever, [&](const Problem& problem) {
+    return vibrations(problem, {.mass_per_length = 1}, solve_energy(cantilever));
+  }));
+  EXPECT_TRUE(refused(cantilever, [](const Problem& problem) {
+    MovingRod rod{.problem = problem, .inertia = {.mass_per_length = 1}};
+    return simulate(rod, straight_rod(Eigen::Vector3d::UnitX()), std::vector<double>{0.1});
+  }));
 }
 
 }  // namespace

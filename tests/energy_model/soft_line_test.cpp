@@ -7,9 +7,11 @@
 
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
+#include "dlo/energy_model/taut_line.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -43,6 +45,19 @@ Problem between_clamps(double stiffness) {
 double lines_apart(const Equilibrium& a, const Equilibrium& b) {
   const std::vector<double> s = equal_arc_lengths(1, 501);
   return (a.sample(s).points - b.sample(s).points).colwise().norm().maxCoeff();
+}
+
+// A catenary knows nothing of a stream, nor of what follows a line that is pulled straight.
+TEST(SoftLine, IsNoneOfLoadsWithoutAPotential) {
+  Problem dragged = between_pins(1e-12, {0.7, 0, 0.1});
+  dragged.drag = Drag{.velocity = {0, 1, 0}, .normal = 0.2};
+  EXPECT_FALSE(soft_line(dragged).has_value());
+  EXPECT_THROW((void)solve_energy(dragged), std::invalid_argument);
+  Problem taut = between_pins(1, {0, 0, -1});  // hangs, so that no force is across it
+  EXPECT_TRUE(taut_line(taut).has_value());
+  taut.drag = dragged.drag;
+  EXPECT_FALSE(taut_line(taut).has_value());
+  EXPECT_THROW((void)solve_energy(taut), std::invalid_argument);
 }
 
 TEST(SoftLine, HasTheTensionOfTheCatenary) {

@@ -28,7 +28,7 @@ Problem stretched(double slack, double first, double last, bool pinned) {
   return problem;
 }
 
-Span span_of(const Problem& problem) {
+Span the_span(const Problem& problem) {
   Span span;
   span.planar = false;
   span.start_direction = problem.grips[0].direction;
@@ -141,7 +141,7 @@ TEST(Taut, TensionIsWhatTheSlackAsksFor) {
         const Equilibrium solved = solve_energy(problem);
         ASSERT_EQ(solved.status, SolveStatus::converged)
             << slack << ", " << angle << ": " << solved.message;
-        const std::vector<Segment> segments = segments_of(span_of(problem));
+        const std::vector<Segment> segments = segments_of(the_span(problem));
         ASSERT_EQ(segments.size(), 1U);
         if (!segments[0].taut()) continue;
         ++taut;
@@ -164,7 +164,7 @@ TEST(Taut, StartsBendAsLoadsAndWeightAcrossThemWantIt) {
   problem.loads = {{0.3, {0, 24000, 9000}}, {0.7, {500, -9000, 12500}}};
   const Equilibrium solved = solve_energy(problem);
   ASSERT_EQ(solved.status, SolveStatus::converged) << solved.message;
-  Span span = span_of(problem);
+  Span span = the_span(problem);
   for (const Load& load : problem.loads) span.loads.push_back({load.at, load.force});
   ASSERT_TRUE(segments_of(span).front().taut());
   const std::vector<double> s = equal_arc_lengths(1, 201);
@@ -204,7 +204,7 @@ TEST(Taut, AgreesWithMultipleShooting) {
 }
 
 TEST(AugmentedLagrangian, MeetsTheGripsFromAStartThatIsFarFromThem) {
-  const Span span = span_of(stretched(0.05, 1, -0.5, false));
+  const Span span = the_span(stretched(0.05, 1, -0.5, false));
   SpanSolution solution;
   solution.model = std::make_shared<SpanEnergy>(span, 16);
   solution.terms = 16;

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 using std::numbers::pi;
 
 /// Clamps that do not fit each other, and weight.
-Problem askew(double roll) {
+Problem rolled_section(double roll) {
   Problem problem = test::heavy_cantilever(3, 0);
   problem.torsional_stiffness = 0.7;
   problem.grips = {
@@ -63,7 +63,7 @@ std::vector<double> turns(const Samples& samples) {
 
 TEST(TwistedMaterial, IsWhereBothClampsHoldItWhateverTheTwist) {
   for (const double roll : {0.0, 1.0, -2.5, 2 * pi, 9.0}) {
-    const Problem problem = askew(roll);
+    const Problem problem = rolled_section(roll);
     const Equilibrium found = solve_energy(problem);
     ASSERT_TRUE(succeeded(found.status)) << found.message;
     const Samples samples = found.sample(equal_arc_lengths(1, 21));
@@ -77,7 +77,7 @@ TEST(TwistedMaterial, IsWhereBothClampsHoldItWhateverTheTwist) {
 TEST(TwistedMaterial, TurnsEvenlyAndBySectionsAsTheirTorsionalStiffnessesSay) {
   constexpr Eigen::Index steps = 800;
   for (const bool has_section : {false, true}) {
-    Problem problem = askew(4);
+    Problem problem = rolled_section(4);
     if (has_section) problem.sections = {{0.25, 0.5, 1, 2.1, problem.weight_per_length}};
     const Equilibrium found = solve_energy(problem);
     ASSERT_TRUE(succeeded(found.status)) << found.message;
@@ -96,7 +96,7 @@ TEST(TwistedMaterial, TurnsEvenlyAndBySectionsAsTheirTorsionalStiffnessesSay) {
 
 TEST(TwistedMaterial, GoesOnWithoutTwistBesideWhatIsTwisted) {
   // The rod sticks out of both clamps, and a third clamp holds none.
-  Problem problem = askew(2);
+  Problem problem = rolled_section(2);
   problem.grips[0].at = 0.2;
   problem.grips[1].at = 0.8;
   problem.grips[1].position = problem.grips[0].position + Vector3d(0.4, 0.1, 0.1);
@@ -117,7 +117,7 @@ TEST(TwistedMaterial, GoesOnWithoutTwistBesideWhatIsTwisted) {
 
 TEST(TwistedMaterial, IsThatOfARodWithMaterialDirectors) {
   // An equal second stiffness makes it a rod whose frame is among the solver's unknowns.
-  const Problem round = askew(1.5);
+  const Problem round = rolled_section(1.5);
   Problem with_directors = round;
   with_directors.bending_stiffness_2 = round.bending_stiffness;
   const Equilibrium a = solve_energy(round);

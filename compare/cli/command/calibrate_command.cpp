@@ -244,8 +244,9 @@ void add_calibrate(CLI::App& app) {
       ->group(measured);
   command
       ->add_option("--options", options->chosen,
-                   "given, or auto: the terms of natural curvature, and clamps misaligned alike or "
-                   "not, that predict shapes best that are left out (three shapes or more)")
+                   "given, or auto: the terms of natural curvature, and clamps as said, misaligned "
+                   "alike or each on its own, that predict shapes best that are left out (three "
+                   "shapes or more)")
       ->check(CLI::IsMember({"given", "auto"}))
       ->needs(shape)
       ->group(measured);

@@ -89,6 +89,10 @@ std::string words_of(const compare::FitAlternative& alternative) {
     append(out, "{}--clamp-angles \"{:.3g} deg\"", out.empty() ? "" : " ",
            alternative.direction_tolerance * 180 / std::numbers::pi);
   }
+  if (alternative.position_tolerance > 0) {
+    append(out, "{}--clamp-positions \"{:.3g} mm\"", out.empty() ? "" : " ",
+           alternative.position_tolerance * 1e3);
+  }
   if (alternative.shared_clamps) out += " --same-clamps";
   return out;
 }
@@ -261,6 +265,7 @@ Json alternatives_json(const compare::Calibration& report,
     Json one = {{"options", words_of(alternative)},
                 {"natural_curvature_terms", alternative.natural_curvature_terms},
                 {"direction_tolerance_rad", alternative.direction_tolerance},
+                {"position_tolerance_m", alternative.position_tolerance},
                 {"same_clamps", alternative.shared_clamps},
                 {"prediction_rms_m", json_of(alternative.prediction_m)},
                 {"rms_m", alternative.rms_m}};

@@ -9,6 +9,7 @@
 #include "base/display.hpp"
 #include "base/number.hpp"
 #include "base/quote.hpp"
+#include "foreign/scene_document.hpp"
 #include "format/plan_output.hpp"
 #include "polygon/self_crossing.hpp"
 #include "record/solution_fields.hpp"
@@ -204,16 +205,8 @@ Json solution_json(const compare::Solution& solution, const compare::Scene& scen
     result["assumed"] = {{"torsional_stiffness_Nm2", scene.twisting_stiffness()},
                          {"poisson_ratio", compare::assumed_poisson_ratio}};
   }
-  if (scene.layers) {
-    result["layers"] = {{"bonded_bending_stiffness_Nm2", scene.layers->bonded_bending_stiffness},
-                        {"free_bending_stiffness_Nm2", scene.layers->free_bending_stiffness},
-                        {"bonded", scene.layers->bonded}};
-  }
-  if (scene.rest_shape) {
-    result["rest_shape"] = {{"file", scene.rest_shape->file},
-                            {"largest_error_m", scene.rest_shape->largest_error},
-                            {"rms_error_m", scene.rest_shape->rms_error}};
-  }
+  if (scene.layers) result["layers"] = compare::layers_document(scene);
+  if (scene.rest_shape) result["rest_shape"] = compare::rest_shape_document(scene);
   if (solution.status == energy_model::SolveStatus::near_singular &&
       solution.model == compare::Model::energy) {
     result["neutral_directions"] = solution.neutral_directions;

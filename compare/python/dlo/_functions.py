@@ -221,7 +221,7 @@ def calibrate(
     natural_curvature: so many terms of it. clamp_angles, clamp_positions: how well the clamps are
     known (standard deviations, "5 deg", "2 mm"); each shape's own are then fitted,
     with same_clamps what all share. predict: each shape is left out in turn, and predicted. options: "auto" chooses the terms of
-    natural curvature and same_clamps that predict best ("tried" of the document). noise: standard
+    natural curvature, and clamps as said, alike or each on its own, that predict best ("tried" of the document). noise: standard
     deviation of one coordinate; None: estimated. segments: of your simulator's chain, whose springs are
     then found too ("chains" of the document). register, arc_lengths: as of check(). time, materials: as of
     solve(), of all scenes.

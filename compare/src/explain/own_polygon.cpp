@@ -18,7 +18,7 @@ namespace {
 constexpr Eigen::Index most_segments = 200;
 
 /// From a shape that is hardly that of the chain it would take more.
-constexpr int most_evaluations = 2000;
+constexpr int most_polygon_evaluations = 2000;
 
 using energy_model::JointLaw;
 
@@ -65,7 +65,7 @@ class Chain {
     problem.stiffness *= factor;
     problem.stiffnesses *= factor;
     energy_model::PolygonOptions options;
-    options.max_evaluations = most_evaluations;
+    options.max_evaluations = most_polygon_evaluations;
     options.in_stages = false;
     const energy_model::PolygonResult rest = energy_model::solve_polygon(problem, start(), options);
     if (!energy_model::succeeded(rest.status)) return std::nullopt;

@@ -17,7 +17,7 @@
 namespace dlo::compare {
 namespace {
 
-constexpr int drawn_samples = 201;
+constexpr int curve_samples = 201;
 
 /// Sense of turning, where there is one: the plane's normal.
 double signed_curvature(const std::optional<Eigen::Vector3d>& normal,
@@ -113,7 +113,7 @@ std::vector<View> views_of(const Scene& scene, const Eigen::Matrix3Xd& points) {
 }
 
 std::vector<double> drawn_arc_lengths(double length) {
-  return equal_arc_lengths(length, drawn_samples);
+  return equal_arc_lengths(length, curve_samples);
 }
 
 Series rod_series(const Reference& rod, const Scene& scene, const View& view) {

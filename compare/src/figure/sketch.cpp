@@ -11,17 +11,19 @@ namespace dlo::compare {
 namespace {
 
 /// Dots of a character.
-struct Cell {
+struct DotCell {
   int across;
   int down;
 };
 
-Cell cell_of(SketchMarks marks) { return marks == SketchMarks::braille ? Cell{2, 4} : Cell{1, 2}; }
+DotCell cell_of(SketchMarks marks) {
+  return marks == SketchMarks::braille ? DotCell{2, 4} : DotCell{1, 2};
+}
 
 /// Dots that are set or not.
 class Dots {
  public:
-  Dots(int columns, int rows, const Cell& cell)
+  Dots(int columns, int rows, const DotCell& cell)
       : cell_(cell),
         width_(columns * cell.across),
         height_(rows * cell.down),
@@ -86,7 +88,7 @@ class Dots {
             static_cast<char>(0x80U | (pattern & 0x3FU))};
   }
 
-  Cell cell_;
+  DotCell cell_;
   int width_, height_;
   std::vector<bool> set_;
 };
@@ -102,7 +104,7 @@ std::string sketch(const std::vector<SketchLine>& lines, int columns, int rows, 
     high = high.cwiseMax(line.points.rowwise().maxCoeff());
   }
   const Eigen::Vector2d extent = high - low;
-  const Cell cell = cell_of(marks);
+  const DotCell cell = cell_of(marks);
   // Dots are as far apart across as down in both kinds of character.
   const auto fitting = [](double room, double length) {
     return length > 0 ? room / length : HUGE_VAL;

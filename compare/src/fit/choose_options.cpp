@@ -46,18 +46,14 @@ class OptionsSearch {
       throw ConvergenceError("calibrate: no fit came to an end with any options that were tried");
     }
     const Trial& chosen = best();
-    MaterialFitOptions last = chosen.options;
-    last.predict = false;
-    last.chain_segments = options_.chain_segments;
-    last.profile_points = options_.profile_points;
-    MaterialFit fit = fit_material(scenes_, shapes_, last);
-    fit.prediction = chosen.fit.prediction;
+    MaterialFit fit = with_profile_and_chains(chosen);
     widen(fit, chosen);
     for (const Trial& trial : trials_) {
       fit.tried.push_back({.natural_curvature_terms = trial.options.natural_curvature_terms,
                            .direction_tolerance = trial.options.direction_tolerance,
                            .rms_m = trial.fit.rms_m,
                            .youngs_modulus = trial.fit.youngs_modulus,
+                           .position_tolerance = trial.options.position_tolerance,
                            .shared_clamps = trial.options.shared_clamps,
                            .prediction_m = trial.prediction()});
       if (&trial == &chosen) std::rotate(fit.tried.begin(), fit.tried.end() - 1, fit.tried.end());
@@ -66,6 +62,18 @@ class OptionsSearch {
   }
 
  private:
+  /// A profile and chains are those of the chosen fit alone.
+  [[nodiscard]] MaterialFit with_profile_and_chains(const Trial& chosen) const {
+    if (options_.chain_segments == 0 && options_.profile_points == 0) return chosen.fit;
+    MaterialFitOptions last = chosen.options;
+    last.predict = false;
+    last.chain_segments = options_.chain_segments;
+    last.profile_points = options_.profile_points;
+    MaterialFit fit = fit_material(scenes_, shapes_, last);
+    fit.prediction = chosen.fit.prediction;
+    return fit;
+  }
+
   void try_terms(Clamps clamps) {
     const int terms = std::max(usual_curvature_terms, options_.natural_curvature_terms);
     double least = INFINITY;

@@ -58,28 +58,6 @@ Document sections_document(const Scene& scene) {
   return result;
 }
 
-Document layers_document(const Scene& scene) {
-  if (!scene.layers) return nullptr;
-  const LayeredSection& layers = *scene.layers;
-  return {{"bound", layers.bonded ? "bonded" : "free"},
-          {"bonded_bending_stiffness_Nm2", layers.bonded_bending_stiffness},
-          {"free_bending_stiffness_Nm2", layers.free_bending_stiffness},
-          {"bonded_torsional_stiffness_Nm2", layers.bonded_torsional_stiffness},
-          {"free_torsional_stiffness_Nm2", layers.free_torsional_stiffness}};
-}
-
-Document rest_shape_document(const Scene& scene) {
-  if (!scene.rest_shape) return nullptr;
-  const RestShape& shape = *scene.rest_shape;
-  return {{"file", shape.file},
-          {"points", shape.points},
-          {"arcs", shape.arcs.size()},
-          {"largest_error_m", shape.largest_error},
-          {"rms_error_m", shape.rms_error},
-          {"begin_m", vector_document(shape.begin)},
-          {"first_frame", columns_document(shape.first_frame)}};
-}
-
 Document rod_document(const Scene& scene) {
   Document curvature = Document::array();
   if (scene.naturally_curved()) {
@@ -223,6 +201,28 @@ Document force_model_document(const Scene& scene) {
 }
 
 }  // namespace
+
+nlohmann::ordered_json layers_document(const Scene& scene) {
+  if (!scene.layers) return nullptr;
+  const LayeredSection& layers = *scene.layers;
+  return {{"bound", layers.bonded ? "bonded" : "free"},
+          {"bonded_bending_stiffness_Nm2", layers.bonded_bending_stiffness},
+          {"free_bending_stiffness_Nm2", layers.free_bending_stiffness},
+          {"bonded_torsional_stiffness_Nm2", layers.bonded_torsional_stiffness},
+          {"free_torsional_stiffness_Nm2", layers.free_torsional_stiffness}};
+}
+
+nlohmann::ordered_json rest_shape_document(const Scene& scene) {
+  if (!scene.rest_shape) return nullptr;
+  const RestShape& shape = *scene.rest_shape;
+  return {{"file", shape.file},
+          {"points", shape.points},
+          {"arcs", shape.arcs.size()},
+          {"largest_error_m", shape.largest_error},
+          {"rms_error_m", shape.rms_error},
+          {"begin_m", vector_document(shape.begin)},
+          {"first_frame", columns_document(shape.first_frame)}};
+}
 
 nlohmann::ordered_json scene_document(const Scene& scene) {
   Document grippers = Document::array();

@@ -13,6 +13,10 @@ namespace dlo::compare {
 /// discretise(), or in `refused` why there is none.
 [[nodiscard]] nlohmann::ordered_json scene_document(const Scene& scene);
 
+/// What it says of a rod's layers, and of the points of its rest shape; null without.
+[[nodiscard]] nlohmann::ordered_json layers_document(const Scene& scene);
+[[nodiscard]] nlohmann::ordered_json rest_shape_document(const Scene& scene);  ///< as above
+
 /// That document as text: what is no UTF-8 in a name becomes U+FFFD.
 [[nodiscard]] std::string scene_document_text(const Scene& scene);
 

@@ -27,13 +27,9 @@ int measured_numbers(const Aligner& aligner, bool flat) {
 /// Where a rod is looked at along its length.
 constexpr int looks = 201;
 
-/// What energy_model::Problem::confined_to_plane allows.
-bool can_be_confined(const Scene& scene) {
-  const auto frames =
-      std::count_if(scene.grippers.begin(), scene.grippers.end(),
-                    [](const Gripper& gripper) { return gripper.frame.has_value(); });
-  return scene.planar() && scene.obstacles.empty() && frames < 2;
-}
+/// What energy_model::Problem::confined_to_plane allows: a scene whose clamps twist the rod has no
+/// plane.
+bool can_be_confined(const Scene& scene) { return scene.planar() && scene.obstacles.empty(); }
 
 /// Numbers of a shape's frame.
 int numbers_of_frame(bool flat, PoseFreedom pose) {

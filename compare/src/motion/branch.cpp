@@ -18,7 +18,7 @@ namespace {
 using energy_model::Equilibrium;
 
 /// Of one frame, kept or not, and snaps of which each is looked at on its own.
-constexpr int most_steps = 96;
+constexpr int most_branch_steps = 96;
 constexpr int most_snaps = 4;
 
 /// How many of the smallest steps beyond the last shape what is extrapolated may come to zero: at a
@@ -207,7 +207,7 @@ void Branch::go_to_frame(Passage& passage) {
   int snaps = 0;
   for (int made = 0; at < 1; ++made) {
     step = std::min(step, 1 - at);
-    if (made < most_steps && step >= smallest_step) {
+    if (made < most_branch_steps && step >= smallest_step) {
       if (try_follow(scene_at(at + step), at, step, passage)) {
         at += step;
         if (++kept_in_a_row == 2) step *= 2;
@@ -219,7 +219,7 @@ void Branch::go_to_frame(Passage& passage) {
       continue;
     }
     // What is just beyond the end of the branch tells best to what shape the rod has snapped.
-    const bool near = made < most_steps && ++snaps <= most_snaps;
+    const bool near = made < most_branch_steps && ++snaps <= most_snaps;
     const double missed = near ? std::min(2 * step, 1 - at) : 1 - at;
     at += leave(at, missed, passage);
     const double bound = passage.released_bound;

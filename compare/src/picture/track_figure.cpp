@@ -18,11 +18,11 @@ namespace dlo::compare {
 namespace {
 
 constexpr std::size_t most_shapes = 9;
-constexpr double highest_strip = 420;     // [pixels]
-constexpr double label_pixels = 20;       // of a cell's time, above its shape
-constexpr double air_pixels = 10;         // around its shape
-constexpr std::size_t most_grippers = 3;  // twice as many curves have looks of their own
-constexpr int load_plot = 190;            // height [pixels]
+constexpr double highest_strip = 420;           // [pixels]
+constexpr double label_pixels = 20;             // of a cell's time, above its shape
+constexpr double air_pixels = 10;               // around its shape
+constexpr std::size_t most_drawn_grippers = 3;  // twice as many curves have looks of their own
+constexpr int load_plot = 190;                  // height [pixels]
 
 /// Frames equally far apart, the first and the last among them.
 std::vector<std::size_t> shown_frames(std::size_t count) {
@@ -232,7 +232,7 @@ Panel load_panel(const Scene& scene, const TrackShapes& shapes, const char* labe
     }
     panel.curves.push_back(std::move(curve));
   };
-  for (std::size_t i = 0; i < scene.grippers.size() && i < most_grippers; ++i) {
+  for (std::size_t i = 0; i < scene.grippers.size() && i < most_drawn_grippers; ++i) {
     add(shapes.track.frames, i, "", 2 * i);
     if (shapes.moving == nullptr) continue;
     add(shapes.moving->frames, i, ", the rod with inertia", 2 * i + 1);

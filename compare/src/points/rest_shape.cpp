@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include <utility>
 
 #include "dlo/compare/error.hpp"
+#include "points/arc_fit.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -31,249 +31,8 @@ constexpr double good_enough_share = 1e-7;
 /// The points' curve may be longer or shorter than the rod by this share.
 constexpr double length_tolerance = 0.05;
 
-/// Where a rod that has the strains of an arc is behind its begin, and its frame there.
-struct ArcPlace {
-  Vector3d point;
-  Matrix3d frame;  // d1, d2, t
-};
-
-ArcPlace along_arc(const ArcPlace& begin, const Vector2d& curvature, double s) {
-  const double rate = curvature.norm();
-  const double angle = rate * s;
-  if (!(std::abs(angle) > 1e-12)) {
-    return {begin.point + s * begin.frame.col(2), begin.frame};
-  }
-  const Vector3d axis(curvature.x() / rate, curvature.y() / rate, 0);
-  // t' = u2 d1 - u1 d2
-  const Vector3d inward(axis.y(), -axis.x(), 0);
-  const Vector3d step(inward * (2 * std::pow(std::sin(angle / 2), 2) / rate) +
-                      Vector3d::UnitZ() * (std::sin(angle) / rate));
-  return {begin.point + begin.frame * step,
-          begin.frame * Eigen::AngleAxisd(angle, axis).toRotationMatrix()};
-}
-
-/// Arcs and where they are.
-struct Arcs {
-  ArcPlace begin;
-  std::vector<RestShape::Arc> arcs;
-};
-
-/// Points of arcs at many arc lengths.
-class Trace {
- public:
-  explicit Trace(const Arcs& arcs) : arcs_(arcs.arcs) {
-    ArcPlace at = arcs.begin;
-    double before = 0;
-    for (const RestShape::Arc& arc : arcs_) {
-      begins_.push_back({before, at});
-      at = along_arc(at, arc.curvature, arc.end - before);
-      before = arc.end;
-    }
-  }
-  [[nodiscard]] ArcPlace at(double s) const {
-    const auto after = std::find_if(arcs_.begin(), std::prev(arcs_.end()),
-                                    [s](const RestShape::Arc& arc) { return s < arc.end; });
-    const Begin& begin = begins_[static_cast<std::size_t>(after - arcs_.begin())];
-    return along_arc(begin.placed, after->curvature, s - begin.s);
-  }
-
- private:
-  struct Begin {
-    double s;
-    ArcPlace placed;
-  };
-  const std::vector<RestShape::Arc>& arcs_;
-  std::vector<Begin> begins_;
-};
-
-/// Points to fit, and what is known of their arc lengths.
-struct Target {
-  Eigen::Matrix3Xd points;
-  std::vector<double> s;
-  bool knows_s = false;  // else that of inner points is that of the nearest point
-  double length = 0;
-  bool planar = false;
-  Vector3d normal;
-
-  [[nodiscard]] bool slides(Index i) const { return !knows_s && i > 0 && i + 1 < points.cols(); }
-};
-
-Vector3d arc_difference(const Target& target, Index i, const ArcPlace& at) {
-  const Vector3d d = at.point - target.points.col(i);
-  const Vector3d t = at.frame.col(2);
-  return target.slides(i) ? Vector3d(d - d.dot(t) * t) : d;
-}
-
-Eigen::VectorXd arc_residual(const Target& target, const Arcs& arcs) {
-  const Trace trace(arcs);
-  Eigen::VectorXd r(3 * target.points.cols());
-  for (Index i = 0; i < target.points.cols(); ++i) {
-    r.segment<3>(3 * i) =
-        arc_difference(target, i, trace.at(target.s[static_cast<std::size_t>(i)])) / target.length;
-  }
-  return r;
-}
-
-/// Moves the arc lengths that are not known to those of the nearest points.
-void slide_along(Target& target, const Arcs& arcs) {
-  const Trace trace(arcs);
-  for (Index i = 0; i < target.points.cols(); ++i) {
-    if (!target.slides(i)) continue;
-    double& s = target.s[static_cast<std::size_t>(i)];
-    const ArcPlace at = trace.at(s);
-    s = std::clamp(s + at.frame.col(2).dot(target.points.col(i) - at.point), 0.0, target.length);
-  }
-}
-
-/// Arcs a step of all their parameters away: rotation, position, curvatures, ends, over the length.
-Arcs stepped_arcs(const Target& target, Arcs arcs, const Eigen::VectorXd& step) {
-  Index k = 0;
-  const double l = target.length;
-  ArcPlace& begin = arcs.begin;
-  if (target.planar) {
-    begin.frame = Eigen::AngleAxisd(step[k], target.normal) * begin.frame;
-    const Vector3d across = begin.frame.col(0);
-    begin.point += l * (step[k + 1] * across + step[k + 2] * begin.frame.col(2));
-    k += 3;
-  } else {
-    const Vector3d turn = step.segment<3>(k);
-    if (turn.norm() > 0) {
-      begin.frame = Eigen::AngleAxisd(turn.norm(), turn.normalized()) * begin.frame;
-    }
-    begin.point += l * step.segment<3>(k + 3);
-    k += 6;
-  }
-  for (RestShape::Arc& arc : arcs.arcs) {
-    if (!target.planar) arc.curvature.x() += step[k++] / l;
-    arc.curvature.y() += step[k++] / l;
-  }
-  for (std::size_t i = 0; i + 1 < arcs.arcs.size(); ++i) arcs.arcs[i].end += l * step[k++];
-  return arcs;
-}
-
-Index arc_parameters(const Target& target, std::size_t arcs) {
-  const auto n = static_cast<Index>(arcs);
-  return (target.planar ? 3 + n : 6 + 2 * n) + n - 1;
-}
-
-/// Of the residual by all parameters, but for what slides: differences of the arc that a parameter
-/// belongs to, behind which the others move as a rigid body.
-Eigen::MatrixXd arc_derivative(const Target& target, const Arcs& arcs) {
-  constexpr double h = 1e-7;  // of a parameter over its unit
-  const Index count = arc_parameters(target, arcs.arcs.size());
-  const std::size_t n = arcs.arcs.size();
-  std::vector<ArcPlace> begins = {arcs.begin};
-  std::vector<double> bounds(1, 0.0);
-  for (const RestShape::Arc& arc : arcs.arcs) {
-    begins.push_back(along_arc(begins.back(), arc.curvature, arc.end - bounds.back()));
-    bounds.push_back(arc.end);
-  }
-  const Trace trace(arcs);
-  std::vector<ArcPlace> at;
-  std::vector<std::size_t> on;  // the arc of each point
-  for (const double s : target.s) {
-    at.push_back(trace.at(s));
-    const auto after = std::upper_bound(bounds.begin() + 1, bounds.end() - 1, s);
-    on.push_back(static_cast<std::size_t>(after - bounds.begin()) - 1);
-  }
-  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(3 * target.points.cols(), count);
-  Index column = 0;
-  const auto set = [&](Index i, const Eigen::Vector3d& moved) {
-    const Vector3d t = at[static_cast<std::size_t>(i)].frame.col(2);
-    J.col(column).segment<3>(3 * i) =
-        (target.slides(i) ? Vector3d(moved - moved.dot(t) * t) : moved) / target.length;
-  };
-  // Points of arcs from `first` on, of which those up to `last` are bent and the others rigid.
-  const auto move = [&](const Arcs& next, std::size_t first, std::size_t last) {
-    std::vector<ArcPlace> moved = begins;
-    if (first == 0) moved[0] = next.begin;
-    for (std::size_t k = first; k <= last; ++k) {
-      const double from = k == 0 ? 0 : next.arcs[k - 1].end;
-      moved[k + 1] = along_arc(moved[k], next.arcs[k].curvature, next.arcs[k].end - from);
-    }
-    const ArcPlace& end = moved[last + 1];
-    const Matrix3d turn = end.frame * begins[last + 1].frame.transpose();
-    for (Index i = 0; i < target.points.cols(); ++i) {
-      const auto point = static_cast<std::size_t>(i);
-      const std::size_t k = on[point];
-      if (k < first) continue;
-      const double from = k == 0 ? 0 : next.arcs[k - 1].end;
-      const Vector3d there =
-          k <= last ? along_arc(moved[k], next.arcs[k].curvature, target.s[point] - from).point
-                    : Vector3d(end.point + turn * (at[point].point - begins[last + 1].point));
-      set(i, (there - at[point].point) / h);
-    }
-  };
-  const auto next = [&] {
-    return stepped_arcs(target, arcs, h * Eigen::VectorXd::Unit(count, column));
-  };
-  const Index pose = target.planar ? 3 : 6;
-  for (; column < pose; ++column) {
-    const Arcs moved = next();
-    const Matrix3d turn = moved.begin.frame * arcs.begin.frame.transpose();
-    for (Index i = 0; i < target.points.cols(); ++i) {
-      const Vector3d& point = at[static_cast<std::size_t>(i)].point;
-      set(i, (moved.begin.point + turn * (point - arcs.begin.point) - point) / h);
-    }
-  }
-  for (std::size_t k = 0; k < n; ++k) {
-    for (int axis = target.planar ? 1 : 0; axis < 2; ++axis, ++column) move(next(), k, k);
-  }
-  for (std::size_t k = 0; k + 1 < n; ++k, ++column) move(next(), k, k + 1);
-  return J;
-}
-
-bool in_order(const Target& target, const Arcs& arcs) {
-  double before = 0;
-  const double least = 1e-4 * target.length;
-  return std::all_of(arcs.arcs.begin(), arcs.arcs.end(), [&](const RestShape::Arc& arc) {
-    const bool grows = arc.end - before >= least;
-    before = arc.end;
-    return grows;
-  });
-}
-
-/// When an iteration ends.
-struct Effort {
-  int most_steps;
-  double least_gain;  // of the sum of squares in a step, a share of it
-};
-constexpr Effort of_candidate{10, 3e-2};
-constexpr Effort of_result{30, 1e-6};
-
-/// Levenberg and Marquardt's method; arc lengths that are not known follow. Returns the sum of
-/// squares over the length's.
-double improve_arcs(Target& target, Arcs& arcs, const Effort& effort) {
-  double damping = 1e-3;
-  Eigen::VectorXd r = arc_residual(target, arcs);
-  for (int step = 0; step < effort.most_steps; ++step) {
-    const Eigen::MatrixXd J = arc_derivative(target, arcs);
-    const Eigen::MatrixXd H = J.transpose() * J;
-    const Eigen::VectorXd g = J.transpose() * r;
-    const double before = r.squaredNorm();
-    bool better = false;
-    for (int tries = 0; tries < 8 && !better; ++tries) {
-      Eigen::MatrixXd damped = H;
-      damped.diagonal() *= 1 + damping;
-      damped.diagonal().array() += 1e-14 * H.diagonal().maxCoeff();
-      const Arcs next = stepped_arcs(target, arcs, damped.ldlt().solve(-g));
-      if (in_order(target, next)) {
-        Target there = target;
-        slide_along(there, next);
-        const Eigen::VectorXd after = arc_residual(there, next);
-        if (after.squaredNorm() < before) {
-          arcs = next;
-          target = there;
-          r = after;
-          better = true;
-        }
-      }
-      damping = better ? std::max(damping / 10, 1e-12) : 8 * damping;
-    }
-    if (!better || r.squaredNorm() > (1 - effort.least_gain) * before) break;
-  }
-  return r.squaredNorm();
-}
+constexpr ArcEffort of_candidate{10, 3e-2};
+constexpr ArcEffort of_result{30, 1e-6};
 
 /// Curvature at the inner points of a polyline about directors that are transported along it.
 struct Profile {
@@ -346,7 +105,7 @@ std::vector<Index> cuts_of(const Eigen::Matrix2Xd& curvature, std::size_t most) 
   return cuts;
 }
 
-Arcs first_guess(const Target& target, const Profile& profile, std::vector<Index> cuts) {
+Arcs first_guess(const ArcTarget& target, const Profile& profile, std::vector<Index> cuts) {
   std::sort(cuts.begin(), cuts.end());
   cuts.push_back(profile.curvature.cols());
   Arcs guess;
@@ -370,7 +129,7 @@ Arcs first_guess(const Target& target, const Profile& profile, std::vector<Index
 }
 
 /// The same arcs, some cut in their middle so that there are more: those that leave most.
-Arcs cut_where_far(const Target& target, const Arcs& arcs, std::size_t count) {
+Arcs cut_where_far(const ArcTarget& target, const Arcs& arcs, std::size_t count) {
   struct Piece {
     RestShape::Arc arc;
     double begin, left;
@@ -406,7 +165,7 @@ Arcs cut_where_far(const Target& target, const Arcs& arcs, std::size_t count) {
 }
 
 /// Sets normal and planar.
-void find_points_plane(Target& target) {
+void find_points_plane(ArcTarget& target) {
   const Vector3d centre = target.points.rowwise().mean();
   const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(target.points.colwise() - centre,
                                                Eigen::ComputeFullU);
@@ -463,10 +222,10 @@ std::vector<double> all_arc_lengths(const Eigen::Matrix3Xd& points,
 }
 
 /// Of all points.
-void state_error(Target all, const Arcs& arcs, RestShape& shape) {
+void state_error(ArcTarget all, const Arcs& arcs, RestShape& shape) {
   constexpr int projections = 5;
   for (int i = 0; i < projections; ++i) slide_along(all, arcs);
-  const Trace trace(arcs);
+  const ArcTrace trace(arcs);
   double sum = 0;
   for (Index i = 0; i < all.points.cols(); ++i) {
     const double d =
@@ -484,7 +243,7 @@ double largest_part(const Eigen::VectorXd& r) {
 }
 
 /// Schwarz's criterion over the number of residuals; what rounding leaves counts as nothing.
-double arc_information(const Target& target, std::size_t arcs, double sum) {
+double arc_information(const ArcTarget& target, std::size_t arcs, double sum) {
   const auto n = static_cast<double>(target.points.cols() * (target.planar ? 1 : 2));
   constexpr double rounding = 1e-20;
   const auto p = static_cast<double>(arc_parameters(target, arcs));
@@ -504,7 +263,7 @@ RestShape fit_rest_shape(const MeasuredShape& measured, double length) {
   std::vector<Index> chosen;
   const Index fitted = std::min(count, most_fitted_points);
   for (Index k = 0; k < fitted; ++k) chosen.push_back(k * (count - 1) / (fitted - 1));
-  Target target;
+  ArcTarget target;
   target.length = length;
   target.points.resize(3, fitted);
   for (Index k = 0; k < fitted; ++k) {
@@ -534,7 +293,7 @@ RestShape fit_rest_shape(const MeasuredShape& measured, double length) {
 
   const std::vector<Index> cuts = cuts_of(profile.curvature, most_rest_arcs - 1);
   Arcs best, last;
-  Target best_target, last_target;
+  ArcTarget best_target, last_target;
   double least = std::numeric_limits<double>::infinity();
   int worse = 0;
   for (const std::size_t arcs : {1, 2, 3, 4, 6, 8, 12, 16, 24, most_rest_arcs}) {
@@ -546,10 +305,10 @@ RestShape fit_rest_shape(const MeasuredShape& measured, double length) {
     for (std::size_t k = 1; k < arcs; ++k) {
       equal.push_back(static_cast<Index>(k) * profile.curvature.cols() / static_cast<Index>(arcs));
     }
-    Target own;
+    ArcTarget own;
     Arcs guess;
     double sum = std::numeric_limits<double>::infinity();
-    const auto attempt = [&](Target there, Arcs from) {
+    const auto attempt = [&](ArcTarget there, Arcs from) {
       const double left = improve_arcs(there, from, of_candidate);
       if (!(left < sum)) return;
       sum = left;
@@ -581,7 +340,7 @@ RestShape fit_rest_shape(const MeasuredShape& measured, double length) {
                   .arcs = best.arcs,
                   .begin = best.begin.point,
                   .first_frame = best.begin.frame};
-  Target all = best_target;
+  ArcTarget all = best_target;
   all.points = given.points;
   all.s = all_arc_lengths(given.points, chosen, best_target.s);
   if (target.knows_s) {

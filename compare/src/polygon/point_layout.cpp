@@ -39,7 +39,7 @@ struct Gap {
 };
 
 /// Two grippers that are nearer than this share of the rod's length hold one point of it.
-constexpr double same_place = 1e-9;
+constexpr double same_point = 1e-9;
 
 std::string where(const Scene& scene, const Gripper& gripper) {
   return gripper.where.empty() ? scene.file : gripper.where;
@@ -130,7 +130,7 @@ std::vector<std::size_t> order_along(const Scene& scene) {
     const Gripper& b = scene.grippers[along[i + 1]];
     const double rod = b.at - a.at;
     const double apart = (b.position - a.position).norm();
-    if (!(rod > same_place * scene.length)) {
+    if (!(rod > same_point * scene.length)) {
       throw InputError(fmt::format(
           "{}: gripper.at = {} m: two grippers hold this arc length (allowed: one at each)",
           where(scene, b), b.at));

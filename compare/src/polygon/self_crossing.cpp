@@ -11,7 +11,7 @@ namespace {
 /// Along the rod, in diameters: how far apart two places are at least.
 constexpr double neighbouring = 3;
 /// Over the largest coordinate: axes that cross are this far apart by rounding.
-constexpr double rounding = 1e-12;
+constexpr double coordinate_rounding = 1e-12;
 
 /// Shares of the way along two segments at which they are nearest (Ericson, Real-Time Collision
 /// Detection, 2005, section 5.1.9).
@@ -46,7 +46,7 @@ class Crossings {
       : s_(shape.arc_length),
         points_(shape.points),
         apart_(neighbouring * diameter),
-        slack_(rounding * points_.cwiseAbs().maxCoeff()),
+        slack_(coordinate_rounding * points_.cwiseAbs().maxCoeff()),
         near_(std::max(diameter, slack_)) {
     (void)add(0, points_.cols() - 1);
   }
@@ -99,7 +99,7 @@ class Crossings {
     // Neighbours along the rod throughout.
     const double farthest =
         s_[static_cast<std::size_t>(b.end)] - s_[static_cast<std::size_t>(a.begin)];
-    if (farthest < apart_ - rounding * s_.back()) return;
+    if (farthest < apart_ - coordinate_rounding * s_.back()) return;
     const Eigen::Vector3d gap = (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0);
     if (gap.norm() > near_ + slack_) return;
     if (a.is_leaf() && b.is_leaf()) {

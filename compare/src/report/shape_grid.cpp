@@ -16,7 +16,7 @@ namespace {
 
 constexpr int rod_samples = 33;
 // Implicit steps to rest are seldom more than thirty: who needs more than this does not get there.
-constexpr long most_steps = 5000;
+constexpr long most_model_steps = 5000;
 constexpr int most_evaluations = 2000;  // an energy model's solve takes some ten
 
 /// In the clamp's plane, the clamp at the origin.
@@ -26,7 +26,7 @@ Eigen::Matrix2Xd over_length(const Eigen::Matrix3Xd& points, double length) {
 
 GridCell compare_at(const Scene& scene) {
   SolveOptions limits;
-  limits.max_steps = most_steps;
+  limits.max_steps = most_model_steps;
   limits.max_evaluations = most_evaluations;
   GridCell cell;
   try {

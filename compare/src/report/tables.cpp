@@ -15,7 +15,7 @@
 namespace dlo::compare {
 namespace {
 
-std::string millimetres(double metres) { return page_number(metres * 1e3); }
+std::string page_millimetres(double metres) { return page_number(metres * 1e3); }
 
 std::string setting_of(const Comparison& c) {
   return fmt::format("{}, {}, {}", to_string(c.settings.law), to_string(c.settings.bookkeeping),
@@ -85,7 +85,7 @@ HtmlTable scene_table(const Report& report) {
   for (const SceneReport& entry : report.scenes) {
     const Scene& scene = entry.file.scene;
     table.rows.push_back({scene.name, page_number(scene.length),
-                          scene.diameter > 0 ? millimetres(scene.diameter) : "",
+                          scene.diameter > 0 ? page_millimetres(scene.diameter) : "",
                           page_number(scene.bending_stiffness()),
                           page_number(scene.mass_per_length()), page_number(scene.gamma()),
                           hold_of(scene),
@@ -113,9 +113,9 @@ HtmlTable deviation_table(const Report& report) {
   for_each_comparison(report, [&](const Comparison& c) {
     const Deviation& d = c.deviation;
     table.rows.push_back(
-        {c.scene, setting_of(c), millimetres(d.rms_m), page_percent(d.rms_over_length),
-         page_percent(d.rms_over_movement), millimetres(d.max_m), page_number(d.max_at_m),
-         millimetres(d.tip_m), page_number(d.angle_rms_rad * 180 / std::numbers::pi),
+        {c.scene, setting_of(c), page_millimetres(d.rms_m), page_percent(d.rms_over_length),
+         page_percent(d.rms_over_movement), page_millimetres(d.max_m), page_number(d.max_at_m),
+         page_millimetres(d.tip_m), page_number(d.angle_rms_rad * 180 / std::numbers::pi),
          page_number(d.curvature_rms_per_m), page_percent(c.undeformed_rms_over_length)});
   });
   return table;
@@ -151,8 +151,8 @@ HtmlTable budget_table(const Report& report) {
         std::max_element(parts.begin(), parts.end(), [](const auto& a, const auto& b) {
           return std::abs(a.second->share) < std::abs(b.second->share);
         });
-    table.rows.push_back({c.scene, setting_of(c), millimetres(c.budget.total_m), largest->first,
-                          page_percent(largest->second->share)});
+    table.rows.push_back({c.scene, setting_of(c), page_millimetres(c.budget.total_m),
+                          largest->first, page_percent(largest->second->share)});
   });
   return table;
 }
@@ -210,7 +210,7 @@ HtmlTable modulus_table(const Report& report) {
                               {"optimum", HtmlCell::word}}};
   for_each_comparison(report, [&](const Comparison& c) {
     table.rows.push_back({c.scene, setting_of(c), page_number(c.effective_modulus.ratio),
-                          millimetres(c.effective_modulus.rms_m),
+                          page_millimetres(c.effective_modulus.rms_m),
                           page_percent(c.effective_modulus.rms_m / c.length),
                           to_string(c.effective_modulus.optimum)});
   });
@@ -347,14 +347,15 @@ HtmlTable parameter_table(const Report& report) {
   for_each_comparison(report, [&](const Comparison& c) {
     const Parameters& p = c.force.parameters;
     const bool paper = c.settings.law == BendingLaw::paper;
-    table.rows.push_back(
-        {c.scene, setting_of(c), millimetres(p.segment_length), paper ? page_number(p.c_b) : "–",
-         !paper           ? "–"
-         : c.settings.c_b ? "given"
-                          : to_string(c.settings.bending_rule),
-         page_number(p.c_c), page_number(c.force.c_F), page_number(c.force.c_h),
-         to_string(c.settings.stepper), page_number(p.point_weight), std::to_string(c.force.steps),
-         page_number(c.force.seconds * 1e3), page_number(c.energy_seconds * 1e3)});
+    table.rows.push_back({c.scene, setting_of(c), page_millimetres(p.segment_length),
+                          paper ? page_number(p.c_b) : "–",
+                          !paper           ? "–"
+                          : c.settings.c_b ? "given"
+                                           : to_string(c.settings.bending_rule),
+                          page_number(p.c_c), page_number(c.force.c_F), page_number(c.force.c_h),
+                          to_string(c.settings.stepper), page_number(p.point_weight),
+                          std::to_string(c.force.steps), page_number(c.force.seconds * 1e3),
+                          page_number(c.energy_seconds * 1e3)});
   });
   return table;
 }

@@ -22,7 +22,7 @@ namespace {
 /// Points with which starts are looked for.
 constexpr Eigen::Index most_coarse_points = 200;
 /// Share of the mean square that a step has to take away, or was the last.
-constexpr double least_gain = 1e-9;
+constexpr double least_squares_gain = 1e-9;
 /// Of a mean square: more than noise makes of the points that are left out.
 constexpr double clearly_worse = 4;
 /// Share of the rod by which a file may be shorter and is taken for all of it.
@@ -225,7 +225,7 @@ void Aligner::gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve,
     const Eigen::VectorXd move = A.ldlt().solve(b);
     if (!move.allFinite()) return;
     // Nothing to be gained but rounding; it would be tried for at every damping.
-    if (!(b.dot(move) > least_gain * placed.mean_square)) return;
+    if (!(b.dot(move) > least_squares_gain * placed.mean_square)) return;
     Eigen::Vector3d turn = Eigen::Vector3d::Zero();
     for (Eigen::Index k = 0; k < turns; ++k) turn += move[k] / length_ * axes.col(k);
     const Eigen::Matrix3d rotation =
@@ -244,7 +244,7 @@ void Aligner::gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve,
       damping *= 30;
       continue;
     }
-    const bool converged = next_cost > (1 - least_gain) * placed.mean_square;
+    const bool converged = next_cost > (1 - least_squares_gain) * placed.mean_square;
     placed = {next, std::move(next_s), next_cost};
     moved = next_moved;
     damping = std::max(damping / 10, 1e-12);

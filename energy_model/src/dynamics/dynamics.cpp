@@ -167,6 +167,8 @@ Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<co
   const MovingRod complete = completed(rod, begin);
   require(!has_couples(complete.problem), simulate_name, "torque of a load", 1,
           "0: a couple has no potential, but in a plane");
+  require(!complete.problem.confined_to_plane, simulate_name, "confined_to_plane", 1,
+          "false: solve_energy() alone confines a rod");
   const std::vector<PlacedSpan> spans = split(complete.problem);
   for (const PlacedSpan& placed : spans) {
     require_affordable(placed.span, options.terms, simulate_name);

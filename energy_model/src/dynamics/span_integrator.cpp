@@ -14,7 +14,7 @@ constexpr int stage_count = 4;
 constexpr double newton_share = 1e-4;
 constexpr double newton_most = 1e-11;
 constexpr double newton_least = 1e-14;
-constexpr int most_corrections = 40;
+constexpr int most_newton_corrections = 40;
 /// Corrections above which the next one is made with a matrix of its own.
 constexpr int slow = 8;
 /// A step is as good as impossible below this share of the time in which the rod's slowest
@@ -30,7 +30,7 @@ double just_after(double time) { return time + instant(time); }
 /// By which a sum of energies may be off, over the sum of their magnitudes: some hundred terms are
 /// added, whose rounding errors add up like a random walk. A heavy load on a soft rod has a
 /// potential of 1e6 bending energies, and no step makes this error smaller.
-constexpr double energy_rounding = 32 * std::numeric_limits<double>::epsilon();
+constexpr double relative_energy_rounding = 32 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -123,7 +123,7 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
     std::array<EnergyBalance, stage_count> powers;
     Eigen::VectorXd residual(stage_count * (n + m));
     double before = std::numeric_limits<double>::infinity();
-    for (int correction = 0; correction < most_corrections; ++correction) {
+    for (int correction = 0; correction < most_newton_corrections; ++correction) {
       const Eigen::MatrixXd v =
           (step * values.topRows(n) * rule_.inner.transpose()).colwise() + at.v;
       const Eigen::MatrixXd x = (step * v * rule_.inner.transpose()).colwise() + at.x;
@@ -252,7 +252,7 @@ bool SpanIntegrator::take_two_halves(SpanInstant& at, double step) {
   const Eigen::VectorXd change = once.x - twice.x;
   const double apart = std::sqrt(std::max(0.0, change.dot(mass_ * change)));
   const double energy = take_energy(just_before(twice.time), twice);
-  const double residual = std::abs(energy - energy_) - energy_rounding * energy_magnitude_;
+  const double residual = std::abs(energy - energy_) - relative_energy_rounding * energy_magnitude_;
   const double error = std::max(apart, residual / largest_energy_);
   constexpr double order = 2 * stage_count + 1;
   const double better = std::pow(options_.tolerance / std::max(error, 1e-300), 1 / order);

@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "base/sized_samples.hpp"
+#include "problem/rod_law.hpp"
+#include "shooting/lobatto_element.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -232,13 +234,12 @@ struct Composite {
     }
     std::erase_if(nodes, [&](double s) { return !(s >= 0 && s <= length); });
     std::sort(nodes.begin(), nodes.end());
-    constexpr std::array<double, 3> point = {-0.7745966692414834, 0, 0.7745966692414834};
-    constexpr std::array<double, 3> share = {5.0 / 18, 8.0 / 18, 5.0 / 18};
     Vector missed = at(0).point - at(length).point;
     for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
       const double h = nodes[i + 1] - nodes[i];
-      for (std::size_t q = 0; q < point.size(); ++q) {
-        missed += h * share[q] * at(nodes[i] + h * (1 + point[q]) / 2).tangent;
+      for (std::size_t q = 0; q < element_quadrature; ++q) {
+        const double s = nodes[i] + h * (1 + element_gauss[q]) / 2;
+        missed += h / 2 * element_weight[q] * at(s).tangent;
       }
     }
     return missed.norm();
@@ -271,13 +272,12 @@ class SoftLine {
     const auto at_end = [&](const Grip& grip) {
       return grip.at < negligible * l || grip.at > l * (1 - negligible);
     };
-    const auto framed = [](const Grip& grip) { return grip.frame.has_value(); };
     const std::vector<Grip>& grips = problem_.grips;
-    if (problem_.axial_stiffness || has_material_directors(problem_) ||
-        !problem_.sections.empty() || !problem_.loads.empty() || !problem_.line_loads.empty() ||
-        !(problem_.weight_per_length.norm() > 0) || problem_.obstacles.size() > 1 ||
-        grips.empty() || grips.size() > 2 || !std::ranges::all_of(grips, at_end) ||
-        std::ranges::count_if(grips, framed) > 1) {
+    if (problem_.axial_stiffness || problem_.confined_to_plane || !has_dead_loads(problem_) ||
+        has_material_directors(problem_) || !problem_.sections.empty() || !problem_.loads.empty() ||
+        !problem_.line_loads.empty() || !(problem_.weight_per_length.norm() > 0) ||
+        problem_.obstacles.size() > 1 || grips.empty() || grips.size() > 2 ||
+        !std::ranges::all_of(grips, at_end) || clamps_with_frames(problem_) > 1) {
       return false;
     }
     if (grips.size() == 1) return grips.front().direction.has_value();

@@ -183,7 +183,8 @@ bool is_taut_line(const Problem& problem) {
 
 std::optional<Equilibrium> taut_line(const Problem& problem) {
   check(problem);
-  const bool plain = problem.obstacles.empty() && !has_material_directors(problem);
+  const bool plain =
+      problem.obstacles.empty() && !has_material_directors(problem) && has_dead_loads(problem);
   if (!plain || !is_taut_line(problem)) return std::nullopt;
   return TautLine(problem).solve();
 }

@@ -12,6 +12,7 @@
 #include "exact/follow_loads.hpp"
 #include "kirchhoff/rod_span.hpp"
 #include "problem/ordered_grips.hpp"
+#include "problem/rod_law.hpp"
 #include "shooting/refine_span.hpp"
 #include "shooting/solved_rod.hpp"
 
@@ -27,11 +28,9 @@ void refuse_unfollowable(const Problem& problem) {
     require(!load.follows || !clamp_under(problem, load), "solve_exact",
             "arc length of a load that follows the rod", load.at, "that of no clamp");
   }
-  const auto held = std::count_if(problem.grips.begin(), problem.grips.end(),
-                                  [](const Grip& grip) { return grip.frame.has_value(); });
+  const int held = clamps_with_frames(problem);
   require(held <= 2 || has_material_directors(problem), "solve_exact",
-          "number of clamps that hold frames", static_cast<double>(held),
-          "<= 2 where a load has no potential");
+          "number of clamps that hold frames", held, "<= 2 where a load has no potential");
 }
 
 /// Without drag, couples, and loads that follow the rod. Material directors stay where they are:

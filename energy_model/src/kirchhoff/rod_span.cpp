@@ -12,13 +12,13 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double same_place = 1e-9;  // in l
+constexpr double same_arc_length = 1e-9;  // in l
 
 /// In units of l; what is nearly at an end of the rod is there.
 double own_arc_length(double at, double length) {
   const double s = at / length;
-  if (s < same_place) return 0;
-  return s > 1 - same_place ? 1 : s;
+  if (s < same_arc_length) return 0;
+  return s > 1 - same_arc_length ? 1 : s;
 }
 
 /// Of clamps, from grip to grip and of forces: unit, but for those of forces.
@@ -27,7 +27,7 @@ std::vector<Eigen::Vector3d> directions_of(const RodSpan& span) {
   for (const RodSpan::Clamp& clamp : span.clamps) directions.push_back(clamp.direction);
   for (const RodSpan::Hold& hold : span.holds) {
     const Eigen::Vector3d chord = hold.position - span.holds.front().position;
-    if (chord.norm() > same_place) directions.emplace_back(chord.normalized());
+    if (chord.norm() > same_arc_length) directions.emplace_back(chord.normalized());
   }
   for (const RodSpan::Load& load : span.loads) {
     if (load.couple.isZero(0) || load.follows) continue;
@@ -56,7 +56,7 @@ std::optional<Plane> plane_of(const RodSpan& span) {
   // A pinned rod without a direction of its own starts with its weight, which may be zero.
   const auto first = std::max_element(
       directions.begin(), directions.end(),
-      [](const auto& a, const auto& b) { return a.norm() < b.norm() * (1 - same_place); });
+      [](const auto& a, const auto& b) { return a.norm() < b.norm() * (1 - same_arc_length); });
   if (first->norm() == 0) *first = Eigen::Vector3d::UnitX();
   return find_plane(span.holds.front().position, *first, directions);
 }
@@ -88,7 +88,7 @@ std::vector<RodSpan::Part> parts_between(const Problem& problem, double begin, d
     const double from = std::max(own_arc_length(section.begin, l), begin);
     const double to = std::min(own_arc_length(section.end, l), end);
     // What is shorter than the distance of two places is none.
-    if (to - from < same_place) continue;
+    if (to - from < same_arc_length) continue;
     RodSection own{section.bending_stiffness / unit, section.torsional_stiffness / unit,
                    section.weight_per_length * l * l * l / unit};
     if (problem.axial_stiffness) own.stretch = unit / (*problem.axial_stiffness * l * l);
@@ -149,7 +149,7 @@ void add_loads(const Problem& problem, RodSpan& span) {
     double at = own_arc_length(load.at, l) - span.begin;
     if (at < 0 || at > span.length || clamp_under(problem, load)) continue;
     for (const RodSpan::Hold& hold : span.holds) {
-      if (std::abs(at - hold.at) < same_place) at = hold.at;
+      if (std::abs(at - hold.at) < same_arc_length) at = hold.at;
     }
     span.loads.push_back(
         {at, load.force / force_unit, load.torque / (force_unit * l), load.follows});

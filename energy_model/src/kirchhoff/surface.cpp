@@ -8,7 +8,7 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double flat = 1e-9;  // of curvature, in 1/l
+constexpr double flat_curvature = 1e-9;  // of curvature, in 1/l
 
 /// A number and its derivatives by r, a spin of R, m and n.
 using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 12, 1>>;
@@ -139,7 +139,7 @@ Surface surface_of(const obstacle::Body& body, const Eigen::Vector3d& near) {
   // Both curvatures of a ball, the one of a cylinder are one over the distance to the core.
   const double curvature =
       gap.hessian.norm() / (gap.hessian.trace() > 1.2 * gap.hessian.norm() ? std::sqrt(2.0) : 1.0);
-  if (curvature > flat) {
+  if (curvature > flat_curvature) {
     const double distance = 1 / curvature;
     surface.across = distance * gap.hessian + gap.gradient * gap.gradient.transpose();
     surface.centre = near - distance * gap.gradient;

@@ -32,9 +32,7 @@ void check_frame(const Grip& grip) {
 }
 
 void check_twist(const Problem& problem) {
-  const auto held = std::count_if(problem.grips.begin(), problem.grips.end(),
-                                  [](const Grip& grip) { return grip.frame.has_value(); });
-  if (held < 2) return;
+  if (clamps_with_frames(problem) < 2) return;
   require(problem.torsional_stiffness > 0, "Problem", "torsional_stiffness",
           problem.torsional_stiffness, "> 0 where two clamps hold the rod's frame");
 }
@@ -109,14 +107,10 @@ bool has_couples(const Problem& problem) {
 }
 
 bool has_potential(const Problem& problem) {
-  const bool dead = !problem.drag && std::none_of(problem.loads.begin(), problem.loads.end(),
-                                                  [](const Load& load) { return load.follows; });
-  if (!dead) return false;
+  if (!has_dead_loads(problem)) return false;
   if (!has_couples(problem)) return true;
-  const auto held = std::count_if(problem.grips.begin(), problem.grips.end(),
-                                  [](const Grip& grip) { return grip.frame.has_value(); });
   const std::optional<Eigen::Vector3d> normal = natural_normal(problem);
-  return held < 2 && normal && bends_in_plane(problem, *normal);
+  return clamps_with_frames(problem) < 2 && normal && bends_in_plane(problem, *normal);
 }
 
 void require_dead_loads(const Problem& problem, const char* function) {

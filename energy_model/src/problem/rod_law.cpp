@@ -74,6 +74,16 @@ bool has_two_stiffnesses(const Problem& problem) {
                      [](const Section& section) { return section.bending_stiffness_2; });
 }
 
+bool has_dead_loads(const Problem& problem) {
+  return !problem.drag && std::none_of(problem.loads.begin(), problem.loads.end(),
+                                       [](const Load& load) { return load.follows; });
+}
+
+int clamps_with_frames(const Problem& problem) {
+  return static_cast<int>(std::count_if(problem.grips.begin(), problem.grips.end(),
+                                        [](const Grip& grip) { return grip.frame.has_value(); }));
+}
+
 void require_inextensible(const Problem& problem, std::string_view function) {
   require(!problem.axial_stiffness, function, "axial_stiffness",
           problem.axial_stiffness.value_or(0),

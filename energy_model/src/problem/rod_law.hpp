@@ -36,6 +36,12 @@ struct RodPart : Section {
 /// measured in, so that a strip's scales are those of the axis about which it yields.
 [[nodiscard]] double bending_unit(const Problem& problem);
 
+/// Neither drag nor a load that follows the rod.
+[[nodiscard]] bool has_dead_loads(const Problem& problem);
+
+/// How many clamps hold the rod's frame: two twist it.
+[[nodiscard]] int clamps_with_frames(const Problem& problem);
+
 /// @throws std::invalid_argument if the rod stretches, which solve_exact() alone knows
 void require_inextensible(const Problem& problem, std::string_view function);
 

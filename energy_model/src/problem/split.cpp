@@ -263,11 +263,6 @@ constexpr const char* couples_need =
     "0, or across the plane of grips and forces, of a rod that keeps to it, without obstacles and "
     "held frames: elsewhere a couple has no potential";
 
-bool holds_frames(const Problem& problem) {
-  return std::count_if(problem.grips.begin(), problem.grips.end(),
-                       [](const Grip& grip) { return grip.frame.has_value(); }) > 1;
-}
-
 /// About the normal of the span's plane, in the order of its loads.
 void place_couples(const Problem& problem, double begin, double end, PlacedSpan& placed) {
   constexpr double rounding = 1e-9;
@@ -277,7 +272,7 @@ void place_couples(const Problem& problem, double begin, double end, PlacedSpan&
     if (!inside || load.torque.isZero(0) || clamp_under(problem, load)) continue;
     const Eigen::Vector3d own = placed.frame * load.torque;
     require(placed.span.planar && own.head<2>().norm() <= rounding * own.norm() &&
-                !holds_frames(problem) && problem.obstacles.empty(),
+                clamps_with_frames(problem) < 2 && problem.obstacles.empty(),
             "Problem", "torque of a load", load.torque.norm(), couples_need);
     // Beside those without one; loads at one place add up.
     const double s = placed.s_of(load.at, problem.length);
@@ -374,7 +369,8 @@ PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips, 
   require(!span.has_couples() || span.planar, "Problem", "torque of a load", span.total_load(),
           couples_need);
   span.confined = problem.confined_to_plane;
-  require(!span.confined || (span.planar && !holds_frames(problem) && problem.obstacles.empty()),
+  require(!span.confined ||
+              (span.planar && clamps_with_frames(problem) < 2 && problem.obstacles.empty()),
           "Problem", "confined_to_plane", 1, confined_need);
   if (clamped_begin && clamped_end) {
     placed.frames = frames_of(problem, held.front(), *held.back().grip, placed.frame);

@@ -36,7 +36,7 @@ constexpr double near_lowest = 0.5;
 /// are asked for the rod's own energy.
 constexpr double near_tie_of_polygons = 0.06;
 /// Polygons whose energies are this close, over 1 + energy, are the same.
-constexpr double same_polygon = 1e-6;
+constexpr double same_energy_of_polygons = 1e-6;
 
 constexpr const char* clear_of_obstacles = "shapes without obstacles that stay clear of them";
 constexpr const char* polygons_at_rest = "polygons at rest on the obstacles";
@@ -170,7 +170,7 @@ class ContactSearch {
       const bool known = std::any_of(polygons.begin(), polygons.end(), [&](const auto& other) {
         return other.at_rest && polygon.at_rest &&
                std::abs(other.energy - polygon.energy) <
-                   same_polygon * (1 + std::abs(other.energy));
+                   same_energy_of_polygons * (1 + std::abs(other.energy));
       });
       if (!known) polygons.push_back(std::move(polygon));
     }

@@ -86,6 +86,7 @@ class EnergySolver::State {
     const auto begin = std::chrono::steady_clock::now();
     const Deadline deadline(options_.time_limit);
     log_ = {};
+    require_dead_loads(problem, "solve_energy");
     require_inextensible(problem, "solve_energy");
     std::optional<Equilibrium> known = taut_line(problem);
     if (!known) known = soft_line_for_models(problem);

@@ -15,7 +15,7 @@ namespace {
 
 /// Arc lengths of a grip and of the end of its span, over the length, that are equal but for
 /// rounding.
-constexpr double same_place = 1e-9;
+constexpr double same_hold = 1e-9;
 
 /// 1 / GJ summed over the rod between two arc lengths.
 double torsional_compliance(const std::vector<RodPart>& parts, double begin, double end) {
@@ -49,7 +49,7 @@ void turn_to(PlacedShape& shape, double length, double arc_length, const Eigen::
 /// Where the first of the grips that twist holds d1.
 Eigen::Vector3d first_d1(const Problem& problem, double arc_length) {
   const auto grip = std::ranges::find_if(problem.grips, [&](const Grip& each) {
-    return each.frame && std::abs(each.at - arc_length) <= same_place * problem.length;
+    return each.frame && std::abs(each.at - arc_length) <= same_hold * problem.length;
   });
   return held_frame(*grip, held_d1(problem, *grip)).col(0);
 }

@@ -28,7 +28,7 @@ using std::numbers::pi;
 
 /// Turns of the end in one step [rad].
 constexpr double first_turn = 1.6;
-constexpr double longest_turn = 1.6;
+constexpr double longest_turn_step = 1.6;
 constexpr double least_turn = 1e-4;
 /// A shape that has lost its stability is left from this near to where it did.
 constexpr double turn_at_loss = 0.02;
@@ -115,7 +115,7 @@ class TwistPath {
         const bool finer = resolve();
         if (!(finer ? is_stable(here_) : stable)) leave();
         if (smooth_) turn *= 1.5;
-        turn = std::clamp(turn, -longest_turn, longest_turn);
+        turn = std::clamp(turn, -longest_turn_step, longest_turn_step);
       } else if (std::abs(turn) > least_turn) {
         turn /= 3;
       } else {

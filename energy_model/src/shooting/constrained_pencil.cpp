@@ -30,13 +30,13 @@ int count_below(const ConstrainedPencil& pencil, double mu) {
 }
 
 /// Bounds of the smallest eigenvalue, to 1 % or a tenth of what counts as zero.
-struct Bracket {
+struct EigenvalueBracket {
   double low;
   double high;
 };
 
-Bracket bracket_smallest(const ConstrainedPencil& pencil) {
-  Bracket bracket{-1, 1};
+EigenvalueBracket bracket_smallest(const ConstrainedPencil& pencil) {
+  EigenvalueBracket bracket{-1, 1};
   constexpr int most_doublings = 60;
   if (count_below(pencil, 0) > 0) {
     bracket.high = 0;
@@ -71,7 +71,7 @@ SmallestMode smallest_mode(const ConstrainedPencil& pencil,
   const int not_positive = count_below(pencil, neutral_eigenvalue);
   if (result.negative < 0 || not_positive < 0) return {.negative = -1};
   result.neutral = not_positive - result.negative;
-  const Bracket bracket = bracket_smallest(pencil);
+  const EigenvalueBracket bracket = bracket_smallest(pencil);
   // Inverse iteration from below the smallest eigenvalue.
   const double shift = bracket.low - (bracket.high - bracket.low) / 2;
   Factors factors;

@@ -10,7 +10,7 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr int most_steps = 200;
+constexpr int most_flow_steps = 200;
 constexpr int flow_iterations = 10;       // of Newton's method, which starts nearby
 constexpr double first_duration = 0.01;   // of a step, in the rod's units: it bends in about 1 / 40
 constexpr double shortest = 1e-8;         // step
@@ -81,7 +81,7 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
   double duration = first_duration;
   int departures = 0;
   int wait = 0;  // steps before the next longer one
-  for (int k = 0; k < most_steps && duration > shortest; ++k) {
+  for (int k = 0; k < most_flow_steps && duration > shortest; ++k) {
     if (options.deadline.passed()) {
       failed.message = to_string(SolveStatus::time_limit);
       break;

@@ -101,10 +101,8 @@ double energy_of_couples(const RodSpan& span, const SpanEquilibrium& equilibrium
 /// Which load it is that has none, for a message.
 std::string why_no_potential(const Problem& problem) {
   if (problem.drag) return "drag has no potential";
-  const bool follows = std::any_of(problem.loads.begin(), problem.loads.end(),
-                                   [](const Load& load) { return load.follows; });
-  return follows ? "a load that follows the rod has no potential"
-                 : "out of a plane a couple has no potential";
+  return has_dead_loads(problem) ? "out of a plane a couple has no potential"
+                                 : "a load that follows the rod has no potential";
 }
 
 /// Whether couples act where nothing says that the shape is stable: out of its span's plane.

@@ -21,7 +21,7 @@ constexpr double allowed_depth = 1e-9;   // of the tip, in l; a tenth of a conve
 constexpr Eigen::Index sampled = 129;    // points of a shape, to see where it is deepest
 constexpr Eigen::Index compared = 17;    // points of two shapes
 constexpr int most_changes = 4;
-constexpr double longest_step = 0.3;  // of tangents: further away there is another branch
+constexpr double longest_tangent_change = 0.3;  // of tangents: further away there is another branch
 
 double gamma_of(const Problem& problem) {
   const double l = problem.length;
@@ -134,7 +134,7 @@ std::optional<Equilibrium> settle(const Problem& problem, Equilibrium start,
 bool is_next(const Equilibrium& before, const Equilibrium& after, double length) {
   const std::vector<double> at = equal_arc_lengths(length, compared);
   const Eigen::Matrix3Xd change = after.sample(at).tangents - before.sample(at).tangents;
-  return change.colwise().norm().maxCoeff() < longest_step;
+  return change.colwise().norm().maxCoeff() < longest_tangent_change;
 }
 
 bool is_one_clamp_over_planes(const Problem& problem) {

@@ -41,12 +41,14 @@ Problem with_slack(const Problem& problem) {
   return result;
 }
 
-/// @throws std::invalid_argument if anything could bend or twist it
-void require_no_couples(const Problem& problem) {
+void require_energy_in_space(const Problem& problem) {
+  require(!problem.confined_to_plane, "vibrations", "confined_to_plane", 1,
+          "false: solve_energy() alone confines a rod");
   require(!has_couples(problem), "vibrations", "torque of a load", 1,
           "0: out of the plane of the rod a couple has no potential");
 }
 
+/// @throws std::invalid_argument if anything could bend or twist it
 void require_nothing_bends(const Problem& problem) {
   const char* where = "taut_vibrations";
   double weight = problem.weight_per_length.norm();
@@ -74,7 +76,7 @@ double VibrationMode::omega() const { return std::sqrt(omega_squared); }
 Vibrations vibrations(const Problem& problem, const Inertia& inertia, const Equilibrium& known,
                       const VibrationOptions& options) {
   check(problem);
-  require_no_couples(problem);
+  require_energy_in_space(problem);
   check(problem, inertia, "vibrations");
   check_options(options);
   Vibrations result;
@@ -118,7 +120,7 @@ Vibrations taut_vibrations(const Problem& problem, const Inertia& inertia, doubl
   check(slack, inertia, where);
   check_options(options);
   require(std::isfinite(tension), where, "tension", tension, "finite");
-  require_no_couples(problem);
+  require_energy_in_space(problem);
   require_nothing_bends(problem);
   if (!is_held_straight(problem)) {
     throw std::invalid_argument(std::string(where) +

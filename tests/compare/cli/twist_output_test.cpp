@@ -25,7 +25,7 @@ using nlohmann::json;
 using std::numbers::pi;
 
 /// Two clamps along x, the second of which is turned by half a turn.
-Scene twisted_scene() {
+Scene twisted_by_two_grippers() {
   Scene scene = dlo::test::heavy_scene(1, 0);
   scene.torsional_stiffness = 0.5;
   scene.grippers.push_back({.at = 1, .position = {0.8, 0, 0}, .direction = Vector3d::UnitX()});
@@ -46,7 +46,7 @@ Solution twisted_solution() {
 }
 
 TEST(TwistOutput, JsonHasAnglesTorquesAndEnergyOfWhatIsTwisted) {
-  const Scene scene = twisted_scene();
+  const Scene scene = twisted_by_two_grippers();
   const json document = dlo::cli::solution_json(twisted_solution(), scene, Plan());
   EXPECT_EQ(document.at("energy_J").at("twisting"), 2.5);
   EXPECT_EQ(document.at("energy_J").at("total"), 3.25);
@@ -64,7 +64,7 @@ TEST(TwistOutput, JsonOfARodWithoutFramesHasNoTwist) {
   Solution solution = twisted_solution();
   solution.twists.clear();
   solution.energy.twisting = 0;
-  Scene scene = twisted_scene();
+  Scene scene = twisted_by_two_grippers();
   for (dlo::compare::Gripper& gripper : scene.grippers) gripper.frame.reset();
   const json document = dlo::cli::solution_json(solution, scene, Plan());
   EXPECT_EQ(document.at("energy_J").at("twisting"), 0);
@@ -79,14 +79,14 @@ TEST(TwistOutput, JsonSaysWhatWasNeglectedInsteadOfATorqueOfNone) {
   Solution solution = twisted_solution();
   solution.twists.clear();
   solution.neglected = {"twist"};
-  const json document = dlo::cli::solution_json(solution, twisted_scene(), Plan());
+  const json document = dlo::cli::solution_json(solution, twisted_by_two_grippers(), Plan());
   EXPECT_EQ(document.at("neglected"), json({"twist"}));
   EXPECT_FALSE(document.contains("twist"));
   EXPECT_FALSE(document.at("grippers")[0].contains("axial_torque_Nm"));
 }
 
 TEST(TwistOutput, TextHasALineForEachPart) {
-  const std::string text = dlo::cli::solution_text(twisted_solution(), twisted_scene());
+  const std::string text = dlo::cli::solution_text(twisted_solution(), twisted_by_two_grippers());
   for (const char* line : {"energy     bending 1 J, twisting 2.5 J, gravity -0.25 J, load 0 J",
                            "\ntwist      3 rad, torque 1.5 Nm from s = 0 to 0.4 m\n",
                            "\ntwist      -0.5 rad, torque -0.25 Nm from s = 0.4 to 1 m\n"}) {
@@ -95,7 +95,7 @@ TEST(TwistOutput, TextHasALineForEachPart) {
 }
 
 TEST(TwistOutput, APlanTellsWhoTwistsWhat) {
-  const Scene scene = twisted_scene();
+  const Scene scene = twisted_by_two_grippers();
   const auto expect_line = [&](const Plan& plan, const std::string& line) {
     const std::string text = dlo::cli::plan_text(plan, scene);
     EXPECT_NE(text.find("\n  twist           " + line + "\n"), std::string::npos) << line << "\n"

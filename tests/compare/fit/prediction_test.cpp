@@ -21,7 +21,7 @@
 namespace dlo::compare {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
+constexpr double one_degree = std::numbers::pi / 180;
 
 struct Hangings {
   std::vector<Scene> scenes;
@@ -51,7 +51,7 @@ Hangings in_a_fixture(double noise = 0) {
   Hangings result;
   for (const double angle : {-40.0, -10.0, 20.0, 45.0}) {
     const Scene said = test::heavy_scene(20, angle);
-    Scene truth = turned(said, 0, 6 * degree);
+    Scene truth = turned(said, 0, 6 * one_degree);
     truth.natural_strain.y() = 0.8;
     result.add(said, truth, noise, random);
   }
@@ -59,14 +59,14 @@ Hangings in_a_fixture(double noise = 0) {
 }
 
 /// A wire between two misaligned clamps, bent by nature in more ways than are fitted.
-Hangings between_clamps() {
+Hangings four_between_clamps() {
   std::mt19937 random(8);
   Hangings result;
   for (int i = 0; i < 3; ++i) {
     Scene said = test::heavy_scene(200, 0);
     said.grippers.push_back(
         {.at = 1, .position = {-0.08, 0, 0}, .direction = Eigen::Vector3d::UnitX()});
-    Scene truth = turned(turned(said, 0, -15 * degree), 1, 25 * degree);
+    Scene truth = turned(turned(said, 0, -15 * one_degree), 1, 25 * one_degree);
     truth.natural_strain.y() = 1;
     truth.natural_variation = {{0, -2}, {0, 2.5}, {0, 1.5}, {0, -1}};
     result.add(said, truth, 0.006, random);
@@ -77,16 +77,16 @@ Hangings between_clamps() {
 TEST(Prediction, WhatAFixtureHasWrongIsFoundOnceAndPredictsTheShapeLeftOut) {
   const Hangings seen = in_a_fixture();
   const MaterialFitOptions options{.natural_curvature_terms = 1,
-                                   .direction_tolerance = 20 * degree,
+                                   .direction_tolerance = 20 * one_degree,
                                    .shared_clamps = true,
                                    .predict = true};
   const MaterialFit found = fit_material(seen.scenes, seen.shapes, options);
   ASSERT_EQ(found.others.size(), 2);
   EXPECT_NEAR(found.others[0].value, 0.8, 1e-4);
-  EXPECT_NEAR(found.others[1].value, 6 * degree, 1e-4);
+  EXPECT_NEAR(found.others[1].value, 6 * one_degree, 1e-4);
   EXPECT_FALSE(found.others[1].shape.has_value());
   ASSERT_EQ(found.clamps.size(), 1);
-  EXPECT_NEAR(found.clamps[0].rotation.z(), 6 * degree, 1e-4);
+  EXPECT_NEAR(found.clamps[0].rotation.z(), 6 * one_degree, 1e-4);
   ASSERT_TRUE(found.prediction.has_value());
   EXPECT_EQ(found.prediction->shapes_m.size(), 4);
   EXPECT_LT(found.prediction->rms_m, 1e-4);
@@ -98,7 +98,7 @@ TEST(Prediction, WhatEachShapeHasOfItsOwnPredictsNoOther) {
   const Hangings seen = in_a_fixture();
   const MaterialFit own = fit_material(
       seen.scenes, seen.shapes,
-      {.natural_curvature_terms = 1, .direction_tolerance = 20 * degree, .predict = true});
+      {.natural_curvature_terms = 1, .direction_tolerance = 20 * one_degree, .predict = true});
   ASSERT_TRUE(own.prediction.has_value());
   EXPECT_LT(own.rms_m, 1e-4);
   EXPECT_TRUE(own.clamps.empty());
@@ -107,7 +107,7 @@ TEST(Prediction, WhatEachShapeHasOfItsOwnPredictsNoOther) {
 }
 
 TEST(Prediction, MoreTermsOfNaturalCurvatureNeverFitWorse) {
-  const Hangings seen = between_clamps();
+  const Hangings seen = four_between_clamps();
   double before = INFINITY;
   for (int terms = 0; terms <= (test::sanitized ? 1 : 4); ++terms) {
     const MaterialFit fit =
@@ -127,7 +127,7 @@ TEST(Prediction, ChoosesTheOptionsThatTheWireWasMadeWith) {
     EXPECT_GE(other.prediction_m.value_or(0), found.tried[0].prediction_m.value_or(1) / 1.03);
   }
   ASSERT_EQ(found.clamps.size(), 1);
-  EXPECT_NEAR(found.clamps[0].rotation.z(), 6 * degree, 1 * degree);
+  EXPECT_NEAR(found.clamps[0].rotation.z(), 6 * one_degree, 1 * one_degree);
   EXPECT_TRUE(test::holds(found.youngs_modulus, seen.scenes[0].material.youngs_modulus));
 }
 

@@ -32,7 +32,7 @@ ForeignRun run_shell(const std::string& line, double time_limit = 20) {
                      24, time_limit);
 }
 
-std::string refusal_of(const std::string& with) {
+std::string refusal_of_program(const std::string& with) {
   try {
     (void)parse_foreign_program(with);
   } catch (const InputError& error) {
@@ -66,12 +66,12 @@ TEST(ForeignProgram, IsANameAndTheWordsOfACommand) {
 }
 
 TEST(ForeignProgram, BadOnesAreRefused) {
-  EXPECT_THAT(refusal_of("sim {shape}"), HasSubstr("no NAME before an ="));
+  EXPECT_THAT(refusal_of_program("sim {shape}"), HasSubstr("no NAME before an ="));
   for (const char* text : {"=sim {shape}", "a b=sim {shape}", "force=sim {shape}"}) {
-    EXPECT_THAT(refusal_of(text), HasSubstr("not such a NAME")) << text;
+    EXPECT_THAT(refusal_of_program(text), HasSubstr("not such a NAME")) << text;
   }
-  EXPECT_THAT(refusal_of("a=sim {scene}"), HasSubstr("no {shape} in the command"));
-  EXPECT_THAT(refusal_of("a='sim {shape}"), HasSubstr("is not closed"));
+  EXPECT_THAT(refusal_of_program("a=sim {scene}"), HasSubstr("no {shape} in the command"));
+  EXPECT_THAT(refusal_of_program("a='sim {shape}"), HasSubstr("is not closed"));
   EXPECT_THROW((void)parse_foreign_programs({"a=b {shape}", "a=c {shape}"}), InputError);
 }
 

@@ -14,7 +14,7 @@
 namespace dlo::compare {
 namespace {
 
-std::vector<Pose> corners() {
+std::vector<Pose> three_corners() {
   const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
   return {{0, {0, 0, 0}, x},
           {1, {0.3, 0.1, 0}, Eigen::Vector3d(1, 1, 0)},
@@ -31,7 +31,7 @@ Eigen::Vector3d turning(const Trajectory& way, double time, double step) {
 }
 
 TEST(Trajectory, MeetsItsPosesAndStandsBeforeAndAfterThem) {
-  const Trajectory way(corners());
+  const Trajectory way(three_corners());
   for (const Pose& pose : way.poses()) {
     EXPECT_LT((way.pose_at(pose.time).position - pose.position).norm(), 1e-15);
     EXPECT_LT((*way.pose_at(pose.time).direction - *pose.direction).norm(), 1e-15);
@@ -43,7 +43,7 @@ TEST(Trajectory, MeetsItsPosesAndStandsBeforeAndAfterThem) {
 
 // From both sides of a pose, by differences whose error is of first order in the step.
 TEST(Trajectory, HasContinuousRatesOfPositionAndDirection) {
-  const Trajectory way(corners());
+  const Trajectory way(three_corners());
   constexpr double step = 1e-6;
   for (const double time : {0.0, 1.0, 1.5, 3.0}) {
     EXPECT_LT((velocity(way, time, step) - velocity(way, time, -step)).norm(), 1e-5) << time;
@@ -56,7 +56,7 @@ TEST(Trajectory, HasContinuousRatesOfPositionAndDirection) {
 }
 
 TEST(Trajectory, TurnsAlongTheGreatCircle) {
-  const Trajectory way(corners());
+  const Trajectory way(three_corners());
   for (const double time : {0.2, 0.5, 0.9}) {
     const Eigen::Vector3d t = *way.pose_at(time).direction;
     EXPECT_NEAR(t.norm(), 1, 1e-15);
@@ -89,12 +89,12 @@ TEST(Trajectory, NeitherLeavesAHeldPoseNorOvershoots) {
 TEST(Trajectory, IsTheSameInTurnedAxes) {
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
-  std::vector<Pose> turned = corners();
+  std::vector<Pose> turned = three_corners();
   for (Pose& pose : turned) {
     pose.position = turn * pose.position;
     pose.direction = turn * *pose.direction;
   }
-  const Trajectory way(corners());
+  const Trajectory way(three_corners());
   const Trajectory other(turned);
   for (const double time : {0.3, 1.2, 1.4, 2.2}) {
     EXPECT_LT((other.pose_at(time).position - turn * way.pose_at(time).position).norm(), 1e-14);

@@ -93,6 +93,7 @@ struct FitAlternative {
   double direction_tolerance = 0;   ///< as in MaterialFitOptions [rad]
   double rms_m = 0;                 ///< of the distances between points and rod
   FittedValue youngs_modulus;       ///< as MaterialFit::youngs_modulus
+  double position_tolerance = 0;    ///< as in MaterialFitOptions [m]
   bool shared_clamps = false;       ///< as in MaterialFitOptions
   /// Prediction::rms_m, if it was looked at [m].
   std::optional<double> prediction_m = std::nullopt;

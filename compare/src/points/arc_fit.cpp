@@ -1,0 +1,213 @@
+#include "points/arc_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+namespace dlo::compare {
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+Vector3d arc_difference(const ArcTarget& target, Index i, const ArcPlace& at) {
+  const Vector3d d = at.point - target.points.col(i);
+  const Vector3d t = at.frame.col(2);
+  return target.slides(i) ? Vector3d(d - d.dot(t) * t) : d;
+}
+
+/// Arcs a step of all their parameters away: rotation, position, curvatures, ends, over the length.
+Arcs stepped_arcs(const ArcTarget& target, Arcs arcs, const Eigen::VectorXd& step) {
+  Index k = 0;
+  const double l = target.length;
+  ArcPlace& begin = arcs.begin;
+  if (target.planar) {
+    begin.frame = Eigen::AngleAxisd(step[k], target.normal) * begin.frame;
+    const Vector3d across = begin.frame.col(0);
+    begin.point += l * (step[k + 1] * across + step[k + 2] * begin.frame.col(2));
+    k += 3;
+  } else {
+    const Vector3d turn = step.segment<3>(k);
+    if (turn.norm() > 0) {
+      begin.frame = Eigen::AngleAxisd(turn.norm(), turn.normalized()) * begin.frame;
+    }
+    begin.point += l * step.segment<3>(k + 3);
+    k += 6;
+  }
+  for (RestShape::Arc& arc : arcs.arcs) {
+    if (!target.planar) arc.curvature.x() += step[k++] / l;
+    arc.curvature.y() += step[k++] / l;
+  }
+  for (std::size_t i = 0; i + 1 < arcs.arcs.size(); ++i) arcs.arcs[i].end += l * step[k++];
+  return arcs;
+}
+
+/// Of the residual by all parameters, but for what slides: differences of the arc that a parameter
+/// belongs to, behind which the others move as a rigid body.
+Eigen::MatrixXd arc_derivative(const ArcTarget& target, const Arcs& arcs) {
+  constexpr double h = 1e-7;  // of a parameter over its unit
+  const Index count = arc_parameters(target, arcs.arcs.size());
+  const std::size_t n = arcs.arcs.size();
+  const ArcTrace trace(arcs);
+  const std::vector<ArcPlace>& begins = trace.begins();
+  std::vector<ArcPlace> at;
+  std::vector<std::size_t> on;  // the arc of each point
+  for (const double s : target.s) {
+    at.push_back(trace.at(s));
+    on.push_back(trace.arc_of(s));
+  }
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(3 * target.points.cols(), count);
+  Index column = 0;
+  const auto set = [&](Index i, const Eigen::Vector3d& moved) {
+    const Vector3d t = at[static_cast<std::size_t>(i)].frame.col(2);
+    J.col(column).segment<3>(3 * i) =
+        (target.slides(i) ? Vector3d(moved - moved.dot(t) * t) : moved) / target.length;
+  };
+  // Points of arcs from `first` on, of which those up to `last` are bent and the others rigid.
+  const auto move = [&](const Arcs& next, std::size_t first, std::size_t last) {
+    std::vector<ArcPlace> moved = begins;
+    if (first == 0) moved[0] = next.begin;
+    for (std::size_t k = first; k <= last; ++k) {
+      const double from = k == 0 ? 0 : next.arcs[k - 1].end;
+      moved[k + 1] = along_arc(moved[k], next.arcs[k].curvature, next.arcs[k].end - from);
+    }
+    const ArcPlace& end = moved[last + 1];
+    const Matrix3d turn = end.frame * begins[last + 1].frame.transpose();
+    for (Index i = 0; i < target.points.cols(); ++i) {
+      const auto point = static_cast<std::size_t>(i);
+      const std::size_t k = on[point];
+      if (k < first) continue;
+      const double from = k == 0 ? 0 : next.arcs[k - 1].end;
+      const Vector3d there =
+          k <= last ? along_arc(moved[k], next.arcs[k].curvature, target.s[point] - from).point
+                    : Vector3d(end.point + turn * (at[point].point - begins[last + 1].point));
+      set(i, (there - at[point].point) / h);
+    }
+  };
+  const auto next = [&] {
+    return stepped_arcs(target, arcs, h * Eigen::VectorXd::Unit(count, column));
+  };
+  const Index pose = target.planar ? 3 : 6;
+  for (; column < pose; ++column) {
+    const Arcs moved = next();
+    const Matrix3d turn = moved.begin.frame * arcs.begin.frame.transpose();
+    for (Index i = 0; i < target.points.cols(); ++i) {
+      const Vector3d& point = at[static_cast<std::size_t>(i)].point;
+      set(i, (moved.begin.point + turn * (point - arcs.begin.point) - point) / h);
+    }
+  }
+  for (std::size_t k = 0; k < n; ++k) {
+    for (int axis = target.planar ? 1 : 0; axis < 2; ++axis, ++column) move(next(), k, k);
+  }
+  for (std::size_t k = 0; k + 1 < n; ++k, ++column) move(next(), k, k + 1);
+  return J;
+}
+
+bool in_order(const ArcTarget& target, const Arcs& arcs) {
+  double before = 0;
+  const double least = 1e-4 * target.length;
+  return std::all_of(arcs.arcs.begin(), arcs.arcs.end(), [&](const RestShape::Arc& arc) {
+    const bool grows = arc.end - before >= least;
+    before = arc.end;
+    return grows;
+  });
+}
+
+}  // namespace
+
+ArcPlace along_arc(const ArcPlace& begin, const Eigen::Vector2d& curvature, double s) {
+  const double rate = curvature.norm();
+  const double angle = rate * s;
+  if (!(std::abs(angle) > 1e-12)) {
+    return {begin.point + s * begin.frame.col(2), begin.frame};
+  }
+  const Vector3d axis(curvature.x() / rate, curvature.y() / rate, 0);
+  // t' = u2 d1 - u1 d2
+  const Vector3d inward(axis.y(), -axis.x(), 0);
+  const Vector3d step(inward * (2 * std::pow(std::sin(angle / 2), 2) / rate) +
+                      Vector3d::UnitZ() * (std::sin(angle) / rate));
+  return {begin.point + begin.frame * step,
+          begin.frame * Eigen::AngleAxisd(angle, axis).toRotationMatrix()};
+}
+
+ArcTrace::ArcTrace(const Arcs& arcs) : arcs_(arcs.arcs), begins_(1, arcs.begin) {
+  double before = 0;
+  begins_.reserve(arcs_.size() + 1);
+  for (const RestShape::Arc& arc : arcs_) {
+    begins_.push_back(along_arc(begins_.back(), arc.curvature, arc.end - before));
+    before = arc.end;
+  }
+}
+
+std::size_t ArcTrace::arc_of(double s) const {
+  const auto after = std::find_if(arcs_.begin(), std::prev(arcs_.end()),
+                                  [s](const RestShape::Arc& arc) { return s < arc.end; });
+  return static_cast<std::size_t>(after - arcs_.begin());
+}
+
+ArcPlace ArcTrace::at(double s) const {
+  const std::size_t k = arc_of(s);
+  return along_arc(begins_[k], arcs_[k].curvature, s - (k > 0 ? arcs_[k - 1].end : 0.0));
+}
+
+Eigen::VectorXd arc_residual(const ArcTarget& target, const Arcs& arcs) {
+  const ArcTrace trace(arcs);
+  Eigen::VectorXd r(3 * target.points.cols());
+  for (Index i = 0; i < target.points.cols(); ++i) {
+    r.segment<3>(3 * i) =
+        arc_difference(target, i, trace.at(target.s[static_cast<std::size_t>(i)])) / target.length;
+  }
+  return r;
+}
+
+void slide_along(ArcTarget& target, const Arcs& arcs) {
+  const ArcTrace trace(arcs);
+  for (Index i = 0; i < target.points.cols(); ++i) {
+    if (!target.slides(i)) continue;
+    double& s = target.s[static_cast<std::size_t>(i)];
+    const ArcPlace at = trace.at(s);
+    s = std::clamp(s + at.frame.col(2).dot(target.points.col(i) - at.point), 0.0, target.length);
+  }
+}
+
+Index arc_parameters(const ArcTarget& target, std::size_t arcs) {
+  const auto n = static_cast<Index>(arcs);
+  return (target.planar ? 3 + n : 6 + 2 * n) + n - 1;
+}
+
+double improve_arcs(ArcTarget& target, Arcs& arcs, const ArcEffort& effort) {
+  double damping = 1e-3;
+  Eigen::VectorXd r = arc_residual(target, arcs);
+  for (int step = 0; step < effort.most_steps; ++step) {
+    const Eigen::MatrixXd J = arc_derivative(target, arcs);
+    const Eigen::MatrixXd H = J.transpose() * J;
+    const Eigen::VectorXd g = J.transpose() * r;
+    const double before = r.squaredNorm();
+    bool better = false;
+    for (int tries = 0; tries < 8 && !better; ++tries) {
+      Eigen::MatrixXd damped = H;
+      damped.diagonal() *= 1 + damping;
+      damped.diagonal().array() += 1e-14 * H.diagonal().maxCoeff();
+      const Arcs next = stepped_arcs(target, arcs, damped.ldlt().solve(-g));
+      if (in_order(target, next)) {
+        ArcTarget there = target;
+        slide_along(there, next);
+        const Eigen::VectorXd after = arc_residual(there, next);
+        if (after.squaredNorm() < before) {
+          arcs = next;
+          target = there;
+          r = after;
+          better = true;
+        }
+      }
+      damping = better ? std::max(damping / 10, 1e-12) : 8 * damping;
+    }
+    if (!better || r.squaredNorm() > (1 - effort.least_gain) * before) break;
+  }
+  return r.squaredNorm();
+}
+
+}  // namespace dlo::compare
