@@ -56,6 +56,7 @@ Json moving_frame_json(const DynamicFrame& frame, bool points) {
                  {"energy_J",
                   {{"kinetic", energy.kinetic},
                    {"bending", energy.bending},
+                   {"twisting", energy.twisting},
                    {"gravity", energy.gravity},
                    {"load", energy.load},
                    {"obstacles", energy.obstacles},

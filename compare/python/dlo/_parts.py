@@ -163,7 +163,7 @@ class Gripper(Part):
     frame = _field("frame", _of("number"), "Rows d1, d2, d3 that the clamp holds, shape (3, 3).")
     quaternion = _field("quaternion", _of("number"), "The same as [w, x, y, z], shape (4,).")
     turns = _field("turns", as_it_is, "Whole turns more than the least, beside a frame.")
-    pose = _field("pose", as_it_is, "How it moves: tables of time, position and, of a clamp, direction.")
+    pose = _field("pose", as_it_is, "How it moves: tables of time, position and, of a clamp, direction and roll.")
     trajectory = _field("trajectory", as_it_is, "A CSV file of poses, beside the scene's.")
 
 

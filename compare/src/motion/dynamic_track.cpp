@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -32,26 +33,39 @@ FrameClock clock_of(const Scene& scene, const TrackOptions& options) {
 /// The scene's rod at the first frame, with its masses and the ways of its grips and obstacles.
 energy_model::MovingRod moving_rod(const Scene& scene, const std::vector<std::size_t>& obstacles,
                                    const FrameClock& clock, const RodDamping& damping) {
-  const Scene now = clock.scene(scene, 0).without_twist();
+  const Scene first = clock.scene(scene, 0);
+  const Scene now = first.holds_twist() ? first : first.without_twist();
   const double begin = clock.time(0);
   energy_model::MovingRod rod;
   rod.problem = frame_problem(now, obstacles);
   rod.inertia = scene_inertia(now);
   rod.material_damping = damping.material;
   rod.air_drag = damping.air;
-  const auto follow = [&](const Trajectory& way) {
+  const auto follow = [&](const Trajectory& way,
+                          const std::optional<Eigen::Vector3d>& rolls_about = std::nullopt) {
     for (const double time : trajectory_breaks(way, begin)) rod.breaks.push_back(time);
-    return trajectory_motion(way, begin);
+    return trajectory_motion(way, begin, rolls_about);
   };
-  for (const Gripper& gripper : scene.grippers) {
-    rod.motions.push_back(gripper.trajectory.empty() ? energy_model::standing(gripper.position)
-                                                     : follow(gripper.trajectory));
+  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+    const Gripper& gripper = scene.grippers[i];
+    const bool rolls = now.grippers[i].frame.has_value();
+    rod.motions.push_back(
+        gripper.trajectory.empty()
+            ? energy_model::standing(gripper.position)
+            : follow(gripper.trajectory, rolls ? now.grippers[i].direction : std::nullopt));
   }
   for (const std::size_t i : obstacles) {
     const Trajectory& way = scene.obstacles[i].trajectory;
     rod.obstacle_motions.push_back(way.empty() ? nullptr : follow(way));
   }
   return rod;
+}
+
+/// Whether its directions are not all the same.
+bool changes_direction(const Trajectory& way) {
+  return std::ranges::any_of(way.poses(), [&](const Pose& pose) {
+    return pose.direction && *pose.direction != *way.poses().front().direction;
+  });
 }
 
 void add_errors(const std::vector<DynamicFrame>& frames, DynamicTrack& result) {
@@ -121,15 +135,13 @@ void require_dynamic(const Scene& scene, const TrackOptions& options) {
                               "there (allowed: up to {:g} s)",
                               clock.time(0), first));
   }
-  if (scene.has_material_directors()) {
-    refuse(scene,
-           "a rod that is intrinsically curved or has two bending stiffnesses, whose twist has no "
-           "inertia in the model (allowed: round rods that are intrinsically straight)");
-  }
-  if (scene.holds_twist()) {
-    refuse(scene,
-           "clamps hold the rod's frame, and twist has no inertia in the model (allowed: at most "
-           "one frame or roll)");
+  if (scene.holds_twist() || scene.has_material_directors()) {
+    for (const Gripper& gripper : scene.grippers) {
+      if (!gripper.frame || !changes_direction(gripper.trajectory)) continue;
+      refuse(scene,
+             "a clamp that holds the rod's frame changes its direction, which leaves open how the "
+             "frame goes with it (allowed: positions and rolls that move)");
+    }
   }
   scene.require_potential("the moving rod does");
   if (scene.has_couples()) {

@@ -162,7 +162,7 @@ std::string optional_part(const SceneChoices& choices, const Scene& scene) {
 #   time = 0                  s, ms, min
 #   position = [{x:.4g}, {y:.4g}, {z:.4g}]
 #   direction = {direction}   of a clamp; in no pose: the gripper's own stays
-# or trajectory = "way.csv" beside this file: a header time,x,y,z[,dx,dy,dz], in s and m.
+# or trajectory = "way.csv" beside this file: a header time,x,y,z[,dx,dy,dz][,roll], in s, m, rad.
 
 # A part of the rod that is another one, such as a connector; one [[section]] for each. What it does
 # not say is the rod's own; torsional_stiffness too, where the rod has one.

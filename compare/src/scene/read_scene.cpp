@@ -82,9 +82,10 @@ std::optional<Eigen::Matrix3d> read_directors(StrictTable& table) {
 }
 
 /// Direction and frame of a clamp: the frame is a roll, or three directors, and there may be none.
-/// @param moving_direction  of the first of poses that have one
-void read_clamp(StrictTable& table, const std::optional<Eigen::Vector3d>& moving_direction,
-                Gripper& gripper) {
+/// The first of its poses has a direction and a roll where they have some.
+void read_clamp(StrictTable& table, Gripper& gripper) {
+  const Pose first = gripper.trajectory.empty() ? Pose() : gripper.trajectory.poses().front();
+  const std::optional<Eigen::Vector3d>& moving_direction = first.direction;
   for (const char* key : {"direction", "frame", "quaternion"}) {
     if (!moving_direction || !table.has(key)) continue;
     table.fail(key, fmt::format("given besides poses with directions (allowed: poses without "
@@ -106,7 +107,12 @@ void read_clamp(StrictTable& table, const std::optional<Eigen::Vector3d>& moving
   if (turns && !directors) {
     table.fail("turns", "needs frame or quaternion (allowed: a roll of any size, \"720 deg\")");
   }
-  if (roll) gripper.frame = FrameHold{.d1 = std::nullopt, .roll = *roll};
+  if (roll && first.roll) {
+    table.fail("roll", "given besides poses with rolls (allowed: poses without, or no roll)");
+  }
+  if (roll || first.roll) {
+    gripper.frame = FrameHold{.d1 = std::nullopt, .roll = roll ? *roll : *first.roll};
+  }
   const Eigen::Vector3d d3 = directors ? directors->col(2).normalized() : Eigen::Vector3d::Zero();
   const Eigen::Vector3d direction = moving_direction                       ? *moving_direction
                                     : directors && !table.has("direction") ? d3
@@ -119,8 +125,9 @@ void read_clamp(StrictTable& table, const std::optional<Eigen::Vector3d>& moving
                                         d3.x(), d3.y(), d3.z(), given));
   }
   const Eigen::Vector3d d1 = directors->col(0);
-  gripper.frame = FrameHold{.d1 = (d1 - d1.dot(direction) * direction).normalized(),
-                            .roll = 2 * std::numbers::pi * turns.value_or(0)};
+  gripper.frame =
+      FrameHold{.d1 = (d1 - d1.dot(direction) * direction).normalized(),
+                .roll = 2 * std::numbers::pi * turns.value_or(0) + first.roll.value_or(0)};
 }
 
 /// Where something is whose poses, if it has any, say so too: the first of them is where it is.
@@ -143,10 +150,7 @@ Gripper read_gripper(StrictTable& table, double length, const std::string& file)
   gripper.trajectory = read_trajectory(table, keys, file);
   gripper.position = read_place(table, "position", gripper.trajectory);
   if (hold == "clamp") {
-    read_clamp(
-        table,
-        gripper.trajectory.empty() ? std::nullopt : gripper.trajectory.poses().front().direction,
-        gripper);
+    read_clamp(table, gripper);
   } else {
     if (table.has("direction")) {
       table.fail("direction",

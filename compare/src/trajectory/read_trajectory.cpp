@@ -25,11 +25,13 @@ namespace {
 /// No robot's program comes near it; the memory for a pose is a hundred bytes.
 constexpr std::size_t most_poses = 1'000'000;
 
-constexpr std::array<const char*, 7> pose_columns = {"time", "x", "y", "z", "dx", "dy", "dz"};
+constexpr std::array<const char*, 8> pose_columns = {"time", "x",  "y",  "z",
+                                                     "dx",   "dy", "dz", "roll"};
+constexpr std::size_t direction_columns = 4, roll_column = 7;  // where they begin
 constexpr const char* pose_columns_allowed =
-    "(allowed: a header of time,x,y,z or time,x,y,z,dx,dy,dz in any order)";
+    "(allowed: a header of time,x,y,z with or without dx,dy,dz and roll, in any order)";
 constexpr const char* file_allowed =
-    "(allowed: a CSV file with the columns time,x,y,z or time,x,y,z,dx,dy,dz)";
+    "(allowed: a CSV file with the columns time,x,y,z with or without dx,dy,dz and roll)";
 
 /// What Trajectory says of a pose, without its own name.
 std::string problem_in(const std::invalid_argument& error) {
@@ -75,7 +77,7 @@ PoseColumns pose_columns_of(const std::vector<std::string_view>& fields, const s
     of = i;
   }
   const bool direction = columns.of[4] || columns.of[5] || columns.of[6];
-  for (std::size_t k = 0; k < (direction ? pose_columns.size() : 4); ++k) {
+  for (std::size_t k = 0; k < (direction ? roll_column : direction_columns); ++k) {
     if (columns.of[k]) continue;
     throw InputError(
         fmt::format("{}: column {} is missing {}", where, pose_columns[k], pose_columns_allowed));
@@ -95,26 +97,29 @@ Pose pose_of(const std::vector<std::string_view>& fields, const PoseColumns& col
     const std::string_view field = fields[*columns.of[k]];
     const std::optional<double> value = as_number<double>(field);
     if (!value || !std::isfinite(*value)) {
-      throw InputError(fmt::format("{}: {} = {} is not a number (allowed: finite numbers in s, m)",
-                                   where, pose_columns[k], quoted_piece(field)));
+      throw InputError(
+          fmt::format("{}: {} = {} is not a number (allowed: finite numbers in s, m, rad)", where,
+                      pose_columns[k], quoted_piece(field)));
     }
     values[k] = *value;
   }
-  Pose pose{values[0], {values[1], values[2], values[3]}, std::nullopt};
+  Pose pose{values[0], {values[1], values[2], values[3]}, std::nullopt, std::nullopt};
   if (columns.has_direction()) pose.direction = Eigen::Vector3d(values[4], values[5], values[6]);
+  if (columns.of[roll_column]) pose.roll = values[roll_column];
   return pose;
 }
 
 Trajectory read_rows(StrictTable& table, std::vector<StrictTable>& rows, const PoseKeys& keys) {
   std::vector<Pose> poses;
   std::vector<std::string> allowed{keys.position, "time"};
-  if (keys.direction) allowed.emplace_back("direction");
+  if (keys.direction) allowed.insert(allowed.end(), {"direction", "roll"});
   for (StrictTable& row : rows) {
     row.only(allowed);
     Pose pose;
     pose.time = row.number("time", Dimension::time, Range::any());
     pose.position = row.vector(keys.position, Dimension::length);
     if (keys.direction && row.has("direction")) pose.direction = keys.direction(row);
+    if (keys.direction) pose.roll = row.optional_number("roll", Dimension::angle, Range::any());
     row.finish();
     const auto wrong = [&](const char* key, const char* problem) { row.fail(key, problem); };
     if (!poses.empty()) {
@@ -123,6 +128,9 @@ Trajectory read_rows(StrictTable& table, std::vector<StrictTable>& rows, const P
       }
       if (pose.direction.has_value() != poses.front().direction.has_value()) {
         wrong("direction", "given for some poses only (allowed: for all of them or for none)");
+      }
+      if (pose.roll.has_value() != poses.front().roll.has_value()) {
+        wrong("roll", "given for some poses only (allowed: for all of them or for none)");
       }
     }
     poses.push_back(std::move(pose));
@@ -200,6 +208,9 @@ Trajectory read_trajectory(StrictTable& table, const PoseKeys& keys,
   }
   if (trajectory.poses().front().direction && !keys.direction) {
     table.fail("trajectory", "has directions (allowed here: time,x,y,z)");
+  }
+  if (trajectory.poses().front().roll && !keys.direction) {
+    table.fail("trajectory", "has rolls (allowed here: time,x,y,z)");
   }
   return trajectory;
 }

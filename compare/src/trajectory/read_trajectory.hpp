@@ -13,13 +13,14 @@ namespace dlo::compare {
 /// What the poses of a table's moving thing have.
 struct PoseKeys {
   const char* position = "position";  ///< key of where it is
-  /// Reads a pose's direction; none: it has no direction.
+  /// Reads a pose's direction; none: it has no direction, and no roll.
   std::function<Eigen::Vector3d(StrictTable&)> direction;
 };
 
-/// The poses of a table, as [[..pose]] rows of time, position and direction, or as the file that
-/// its key `trajectory` names (relative to the scene's folder): none of the two is no poses. Rows
-/// may all leave the direction out. @throws InputError naming file, line, key and what is allowed
+/// The poses of a table, as [[..pose]] rows of time, position, direction and roll, or as the file
+/// that its key `trajectory` names (relative to the scene's folder): none of the two is no poses.
+/// Rows may all leave the direction out, and the roll. @throws InputError naming file, line, key
+/// and what is allowed
 [[nodiscard]] Trajectory read_trajectory(StrictTable& table, const PoseKeys& keys,
                                          const std::string& scene_file);
 
@@ -30,8 +31,9 @@ struct PoseKeys {
                                       const std::string& name, const std::string& scene_file,
                                       const char* allowed);
 
-/// Poses of a CSV file: a header with time, x, y, z and (all or none) dx, dy, dz, in any order,
-/// then a row a pose, in s and m; empty lines and those that begin with # are passed over.
+/// Poses of a CSV file: a header with time, x, y, z, (all or none) dx, dy, dz and perhaps roll, in
+/// any order, then a row a pose, in s, m and rad; empty lines and those that begin with # are
+/// passed over.
 /// @throws InputError naming the file, the line, and what is allowed
 [[nodiscard]] Trajectory parse_trajectory(std::string_view text, const std::string& file);
 

@@ -30,6 +30,9 @@ Trajectory::Trajectory(std::vector<Pose> poses) : poses_(std::move(poses)) {
     require(std::isfinite(pose.time) && pose.position.allFinite(), i, "not finite");
     require(pose.direction.has_value() == poses_.front().direction.has_value(), i,
             "direction given for some poses only (allowed: for all or none)");
+    require(pose.roll.has_value() == poses_.front().roll.has_value(), i,
+            "roll given for some poses only (allowed: for all or none)");
+    require(std::isfinite(pose.roll.value_or(0)), i, "roll is not finite");
     if (pose.direction) {
       require(pose.direction->norm() > 0 && pose.direction->allFinite(), i,
               "direction of no length");
@@ -45,13 +48,18 @@ Trajectory::Trajectory(std::vector<Pose> poses) : poses_(std::move(poses)) {
 }
 
 Pose Trajectory::pose_at(double time) const {
-  if (!(time > begin())) return {time, poses_.front().position, poses_.front().direction};
-  if (!(time < end())) return {time, poses_.back().position, poses_.back().direction};
+  const auto standing = [time](Pose pose) {
+    pose.time = time;
+    return pose;
+  };
+  if (!(time > begin())) return standing(poses_.front());
+  if (!(time < end())) return standing(poses_.back());
   const auto next = std::upper_bound(poses_.begin(), poses_.end(), time,
                                      [](double t, const Pose& pose) { return t < pose.time; });
   const auto last = static_cast<std::size_t>(next - poses_.begin()) - 1;
   const TrajectoryLeg leg = leg_after(poses_, last);
-  Pose pose{time, leg.position(time), leg.from.direction};
+  Pose pose{time, leg.position(time), leg.from.direction, std::nullopt};
+  if (leg.from.roll) pose.roll = leg.rolled(time);
   if (!(leg.angle > 0)) return pose;
   pose.direction =
       (Eigen::AngleAxisd(leg.turned(time), leg.axis) * *leg.from.direction).normalized();

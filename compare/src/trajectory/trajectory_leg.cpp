@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 namespace dlo::compare {
 namespace {
@@ -53,14 +55,21 @@ double turning_rate(const GreatCircle& before, const GreatCircle& after, double 
   return rate * speed_share(rate, s_before, s_after);
 }
 
-Eigen::Vector3d velocity_between(const Pose& a, const Pose& b, const Pose& c) {
+/// At b, of a vector that each pose has.
+template <class Value>
+Eigen::Vector3d velocity_between(const Pose& a, const Pose& b, const Pose& c, const Value& value) {
   const double h_before = b.time - a.time;
   const double h_after = c.time - b.time;
-  const Eigen::Vector3d before = (b.position - a.position) / h_before;
-  const Eigen::Vector3d after = (c.position - b.position) / h_after;
+  const Eigen::Vector3d before = (value(b) - value(a)) / h_before;
+  const Eigen::Vector3d after = (value(c) - value(b)) / h_after;
   if (!(before.dot(after) > 0)) return Eigen::Vector3d::Zero();
   const Eigen::Vector3d v = (h_after * before + h_before * after) / (h_before + h_after);
   return v * speed_share(v.norm(), before.norm(), after.norm());
+}
+
+Eigen::Vector3d position_of(const Pose& pose) { return pose.position; }
+Eigen::Vector3d roll_of(const Pose& pose) {
+  return pose.roll.value_or(0) * Eigen::Vector3d::UnitX();
 }
 
 }  // namespace
@@ -81,6 +90,15 @@ double TrajectoryLeg::turned(double time, int derivative) const {
          std::pow(h, derivative);
 }
 
+double TrajectoryLeg::rolled(double time, int derivative) const {
+  const double h = to.time - from.time;
+  const Hermite at = hermite((time - from.time) / h, derivative);
+  const double start = derivative == 0 ? *from.roll : 0;
+  return (start + at.to * (*to.roll - *from.roll) +
+          h * (at.slope_from * roll_rate_from + at.slope_to * roll_rate_to)) /
+         std::pow(h, derivative);
+}
+
 TrajectoryLeg leg_after(const std::vector<Pose>& poses, std::size_t first) {
   const Pose& a = poses[first];
   const Pose& b = poses[first + 1];
@@ -90,8 +108,16 @@ TrajectoryLeg leg_after(const std::vector<Pose>& poses, std::size_t first) {
   TrajectoryLeg leg;
   leg.from = a;
   leg.to = b;
-  leg.velocity_from = begins ? still : velocity_between(poses[first - 1], a, b);
-  leg.velocity_to = ends ? still : velocity_between(a, b, poses[first + 2]);
+  const auto rates = [&](const auto& value) {
+    return std::pair(begins ? still : velocity_between(poses[first - 1], a, b, value),
+                     ends ? still : velocity_between(a, b, poses[first + 2], value));
+  };
+  std::tie(leg.velocity_from, leg.velocity_to) = rates(position_of);
+  if (a.roll) {
+    const auto [from, to] = rates(roll_of);
+    leg.roll_rate_from = from.x();
+    leg.roll_rate_to = to.x();
+  }
   if (!a.direction) return leg;
   const auto circle_of = [&](std::size_t i) {
     return circle_between(*poses[i].direction, *poses[i + 1].direction);

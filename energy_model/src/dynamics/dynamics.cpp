@@ -11,6 +11,7 @@
 #include "dynamics/moving_span.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/rod_law.hpp"
+#include "search/twist_path.hpp"
 #include "span/span_traits.hpp"
 #include "vibration/inertia.hpp"
 
@@ -21,6 +22,7 @@ constexpr const char* simulate_name = "simulate";
 
 /// Each grip with a motion, and the problem as it is at the begin, cut at point masses too.
 MovingRod completed(MovingRod rod, double begin) {
+  const Problem given = rod.problem;
   Problem& problem = rod.problem;
   rod.motions.resize(problem.grips.size());
   for (std::size_t i = 0; i < problem.grips.size(); ++i) {
@@ -28,7 +30,10 @@ MovingRod completed(MovingRod rod, double begin) {
     if (!rod.motions[i]) rod.motions[i] = standing(grip.position);
     const GripPose pose = rod.motions[i](begin);
     grip.position = pose.position;
-    if (grip.direction) grip.direction = (pose.turn.normalized() * *grip.direction).eval();
+    const Eigen::Quaterniond turn = pose.turn.normalized();
+    if (turn.isApprox(Eigen::Quaterniond::Identity())) continue;
+    if (grip.frame) grip.frame->d1 = turn * held_d1(given, given.grips[i]);
+    if (grip.direction) grip.direction = (turn * *grip.direction).eval();
   }
   for (const PointMass& mass : rod.inertia.point_masses) problem.loads.push_back({mass.at});
   return rod;
@@ -49,15 +54,20 @@ void check_rod(const MovingRod& rod) {
   require(rod.obstacle_motions.size() <= rod.problem.obstacles.size(), simulate_name,
           "obstacle_motions.size()", static_cast<double>(rod.obstacle_motions.size()),
           "no more than obstacles");
-  if (has_material_directors(rod.problem)) {
-    throw std::invalid_argument(
-        "simulate: natural_strains or bending_stiffness_2 given, must be a round straight rod, "
-        "because the twist of others has no inertia here");
+}
+
+/// What clamps that hold frames do at the end of a span, and material directors of a rod that has
+/// none of its own: strains of twist are then among the unknowns.
+void hold_last_frame(const Problem& problem, PlacedSpan& placed) {
+  if (!placed.frames) return;
+  Span& span = placed.span;
+  span.planar = false;
+  if (!span.has_material_directors()) {
+    span.natural.coefficients = {Eigen::Vector3d::Zero()};
+    span.stiffness[2] = problem.torsional_stiffness / bending_unit(problem);
+    span.principal_d1 = placed.frames->start_d1;
   }
-  for (const Grip& grip : rod.problem.grips) {
-    require(!grip.frame, simulate_name, "Grip::frame of the grip at", grip.at,
-            "none: the twist of a rod has no inertia here");
-  }
+  span.twist = Span::Twist{placed.frames->stiffness, held_end_d1(*placed.frames, span)};
 }
 
 void check_options(std::span<const double> times, const DynamicsOptions& options) {
@@ -138,9 +148,9 @@ void add_loads_on_clamps(const MovingRod& rod, double begin, MovingFrame& frame)
 }
 
 double of_largest(const EnergyBalance& energy, const EnergyBalance& first) {
-  return std::max({energy.kinetic, energy.bending, energy.obstacles, energy.dissipated, energy.lost,
-                   std::abs(energy.work), std::abs(energy.gravity - first.gravity),
-                   std::abs(energy.load - first.load)});
+  return std::max({energy.kinetic, energy.bending, energy.twisting, energy.obstacles,
+                   energy.dissipated, energy.lost, std::abs(energy.work),
+                   std::abs(energy.gravity - first.gravity), std::abs(energy.load - first.load)});
 }
 
 }  // namespace
@@ -183,6 +193,7 @@ Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<co
   std::vector<SpanRun> runs;
   for (std::size_t i = 0; i < spans.size(); ++i) {
     PlacedSpan placed = spans[i];
+    hold_last_frame(complete.problem, placed);
     placed.span.planar = placed.span.planar && !options.spatial;
     const auto run_span = [&] {
       return MovingSpan(complete, placed, begin).run(start, masses[i], times, options, deadline);

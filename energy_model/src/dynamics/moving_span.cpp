@@ -39,6 +39,22 @@ bool leaves_plane(const SpanDrive& drive) {
          std::any_of(drive.obstacles.begin(), drive.obstacles.end(), carries_out);
 }
 
+/// At the nodes; angles of frames are counted from the start, in steps that are small.
+StartShape start_at(const TangentField& field, const Eigen::VectorXd& nodes) {
+  constexpr Eigen::Index steps = 16;  // from node to node
+  Eigen::VectorXd s(steps * nodes.size() + 1);
+  s[0] = 0;
+  for (Eigen::Index q = 0; q < nodes.size(); ++q) {
+    s.segment(steps * q + 1, steps) =
+        Eigen::VectorXd::LinSpaced(steps + 1, s[steps * q], nodes[q]).tail(steps);
+  }
+  const StartShape all = field(s);
+  const Eigen::VectorXi at = steps * Eigen::VectorXi::LinSpaced(nodes.size(), 1, nodes.size());
+  StartShape result(all.tangents(Eigen::all, at));
+  if (all.roll.size() > 0) result.roll = all.roll(at);
+  return result;
+}
+
 }  // namespace
 
 MovingSpan::MovingSpan(const MovingRod& rod, PlacedSpan placed, double begin)
@@ -108,15 +124,18 @@ SpanDrive MovingSpan::drive(double time) const {
     const Eigen::Matrix3d turn = axes * end.turn.toRotationMatrix() * placed_.frame.transpose();
     result.end_spin = axes * end.angular_velocity * time_;
     const Eigen::Vector3d spin_rate = axes * end.angular_acceleration * (time_ * time_);
-    const Eigen::Matrix3d held =
-        frame_along(*placed_.span.end_direction, Span::d1(*placed_.span.end_direction));
-    // d1 of a planar span is across its plane.
-    for (Eigen::Index i = placed_.span.planar ? 1 : 0; i < 2; ++i) {
-      const Eigen::Vector3d across = turn * held.col(i);
+    const auto add_across = [&](const Eigen::Vector3d& held, bool of_d1) {
+      const Eigen::Vector3d across = turn * held;
       const Eigen::Vector3d rate = result.end_spin.cross(across);
       result.across_end.push_back(
-          {across, rate, spin_rate.cross(across) + result.end_spin.cross(rate)});
-    }
+          {{across, rate, spin_rate.cross(across) + result.end_spin.cross(rate)}, of_d1});
+    };
+    const Eigen::Vector3d& along = *placed_.span.end_direction;
+    const Eigen::Matrix3d held = frame_along(along, Span::d1(along));
+    // d1 of a planar span is across its plane.
+    if (!placed_.span.planar) add_across(held.col(0), false);
+    add_across(held.col(1), false);
+    if (placed_.span.twist) add_across(along.cross(placed_.span.twist->end_d1), true);
   }
   for (std::size_t i = 0; i < rod_.problem.obstacles.size(); ++i) {
     result.obstacles.push_back(place(i, seconds, axes));
@@ -147,6 +166,15 @@ std::vector<double> MovingSpan::own_breaks() const {
   return breaks;
 }
 
+/// Where no clamp says what d1 at the begin is.
+std::optional<Eigen::Vector3d> MovingSpan::first_d1(const StartingShape& start) const {
+  const Samples at = start(std::vector<double>{placed_.start});
+  if (at.d1.cols() == 0) return std::nullopt;
+  const Eigen::Vector3d tangent = placed_.frame * at.tangents.col(0);
+  return Eigen::AngleAxisd(placed_.reversed ? placed_.ahead : -placed_.ahead, tangent) *
+         (placed_.frame * at.d1.col(0));
+}
+
 SpanFrame MovingSpan::frame(SpanIntegrator& integrator, SpanDynamics& model,
                             const SpanInstant& at) const {
   SpanFrame result;
@@ -173,6 +201,9 @@ SpanFrame MovingSpan::frame(SpanIntegrator& integrator, SpanDynamics& model,
                   to_space,
                   pose(placed_.anchor_grip, seconds).position,
                   {}};
+  if (placed_.span.has_material_directors()) {
+    result.shape.ahead = [ahead = placed_.ahead](double) { return ahead; };
+  }
   return result;
 }
 
@@ -213,28 +244,34 @@ SpanRun MovingSpan::run_with(const ContactLaw& contact, const StartingShape& sta
   SpanRun result;
   Equilibrium at_rest;
   at_rest.sample = start;
-  const TangentField tangents = field_of(at_rest, placed_, length_);
-  const Eigen::Vector3d first = tangents(Eigen::VectorXd::Zero(1)).tangents.col(0);
-  SpanDynamics model(placed_.span, options.terms, first, inertia(masses), contact);
-  const Eigen::Matrix3Xd directions = tangents(model.nodes()).tangents;
-  if (placed_.span.planar && directions.row(2).cwiseAbs().maxCoeff() > motion_plane_rounding) {
+  const TangentField field = field_of(at_rest, placed_, length_);
+  const Eigen::Vector3d first = field(Eigen::VectorXd::Zero(1)).tangents.col(0);
+  Span span = placed_.span;
+  if (span.has_material_directors() && !span.planar && !span.start_direction) {
+    span.principal_d1 = first_d1(start);
+  }
+  SpanDynamics model(span, options.terms, first, inertia(masses), contact);
+  const StartShape begin = start_at(field, model.nodes());
+  if (placed_.span.planar && begin.tangents.row(2).cwiseAbs().maxCoeff() > motion_plane_rounding) {
     result.left_plane = true;
     return result;
   }
   bool left_plane = false;
-  SpanIntegrator integrator(
-      model,
-      [&](double time) {
-        SpanDrive driven = drive(time);
-        left_plane = left_plane || (placed_.span.planar && leaves_plane(driven));
-        return driven;
-      },
-      {options.tolerance, options.step / time_, rod_.material_damping > 0 || model.may_touch()});
+  SpanIntegrator integrator(model,
+                            [&](double time) {
+                              SpanDrive driven = drive(time);
+                              left_plane =
+                                  left_plane || (placed_.span.planar && leaves_plane(driven));
+                              return driven;
+                            },
+                            {options.tolerance, options.step / time_,
+                             rod_.material_damping > 0 || model.may_touch() || model.has_twist()});
   SpanInstant at;
   at.time = begin_ / time_;
-  at.x = model.fit(directions);
+  at.x = model.fit(begin);
   at.v = Eigen::VectorXd::Zero(model.size());
   result.message = integrator.project(at);
+  if (result.message.empty() && model.has_twist()) result.message = integrator.settle_twist(at);
   const auto stopped = [&] { return !result.message.empty() || left_plane; };
   if (!stopped()) {
     result.frames.push_back(frame(integrator, model, at));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -56,6 +57,7 @@ class MovingSpan {
   [[nodiscard]] SpanInertia inertia(const std::vector<PointMass>& masses) const;
   [[nodiscard]] Eigen::Matrix3d to_axes(double time) const;
   [[nodiscard]] SpanDrive drive(double time) const;
+  [[nodiscard]] std::optional<Eigen::Vector3d> first_d1(const StartingShape& start) const;
   [[nodiscard]] SpanFrame frame(SpanIntegrator& integrator, SpanDynamics& model,
                                 const SpanInstant& at) const;
   [[nodiscard]] GripPose pose(std::size_t grip, double time) const;

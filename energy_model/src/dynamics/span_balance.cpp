@@ -8,9 +8,9 @@ namespace dlo::energy_model {
 
 void add(const EnergyBalance& of, double times, EnergyBalance& to) {
   for (double EnergyBalance::*entry :
-       {&EnergyBalance::kinetic, &EnergyBalance::bending, &EnergyBalance::gravity,
-        &EnergyBalance::load, &EnergyBalance::obstacles, &EnergyBalance::dissipated,
-        &EnergyBalance::lost, &EnergyBalance::work}) {
+       {&EnergyBalance::kinetic, &EnergyBalance::bending, &EnergyBalance::twisting,
+        &EnergyBalance::gravity, &EnergyBalance::load, &EnergyBalance::obstacles,
+        &EnergyBalance::dissipated, &EnergyBalance::lost, &EnergyBalance::work}) {
     to.*entry += times * of.*entry;
   }
 }
@@ -18,7 +18,13 @@ void add(const EnergyBalance& of, double times, EnergyBalance& to) {
 EnergyBalance SpanDynamics::energies() const {
   EnergyBalance result;
   result.kinetic = masses_.dot(velocity_.rowwise().squaredNorm()) / 2;
-  result.bending = x_.cwiseProduct(elastic_).squaredNorm() / 2;
+  const Eigen::VectorXd strains = x_.cwiseProduct(elastic_);
+  result.bending = strains.squaredNorm() / 2;
+  if (has_twist()) {
+    result.kinetic += twist_inertia_.dot(v_.cwiseAbs2()) / 2;
+    result.twisting = strains.tail(frames_.columns()).squaredNorm() / 2;
+    result.bending -= result.twisting;
+  }
   const Eigen::MatrixX3d along_span = position_ * drive_.turn;
   result.gravity = -gravity_.cwiseProduct(along_span).sum();
   result.load = -loads_.cwiseProduct(along_span).sum();

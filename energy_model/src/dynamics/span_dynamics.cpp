@@ -9,6 +9,19 @@
 #include "vibration/inertia.hpp"
 
 namespace dlo::energy_model {
+namespace {
+
+/// In which twist follows what turns the ends, over the time m^(1/2) (l / EI)^(1/2) l of bending.
+/// Torsional waves of a round rod cross it in about 2 d / l of that time: this is quicker than
+/// those of any rod, so that twist is in equilibrium, and its error goes with the square.
+constexpr double twist_time = 1e-4;
+
+Moving turning(const Eigen::Vector3d& director, const FrameSpins& spins) {
+  const Eigen::Vector3d rate = spins.end_velocity.cross(director);
+  return {director, rate, spins.end_acceleration.cross(director) + spins.end_velocity.cross(rate)};
+}
+
+}  // namespace
 
 SpanDynamics::SpanDynamics(Span span, int terms, const Eigen::Vector3d& first, SpanInertia inertia,
                            const ContactLaw& contact)
@@ -21,12 +34,16 @@ SpanDynamics::SpanDynamics(Span span, int terms, const Eigen::Vector3d& first, S
       axes_(span_.planar ? 2 : 3) {
   // In the plane d1 is across it, so that the first strain bends the rod within it.
   const Eigen::Vector3d tangent = span_.start_direction.value_or(first).normalized();
-  start_frame_ = frame_along(tangent, Span::d1(tangent));
+  start_frame_ = frame_along(tangent, span_.first_d1(tangent));
   const bool free_start = !span_.start_direction;
-  frames_.reset(nodes_.pieces(), terms_, start_frame_, free_start, {});
+  frames_.reset(nodes_.pieces(), terms_, start_frame_, free_start, span_.natural);
   frames_.resize(state_);
-  // One strain in the plane, two in space.
-  elastic_ = Eigen::VectorXd::Ones((axes_ - 1) * frames_.columns());
+  const Eigen::Index fields = span_.planar ? 1 : frames_.fields();
+  elastic_ = Eigen::VectorXd::Ones(fields * frames_.columns());
+  if (fields > 2) {
+    twist_inertia_ = Eigen::VectorXd::Zero(elastic_.size());
+    twist_inertia_.tail(frames_.columns()).setConstant(twist_time * twist_time);
+  }
   for (Eigen::Index f = 0; free_start && f < elastic_.size(); f += frames_.columns()) {
     elastic_[f] = 0;
   }
@@ -38,6 +55,7 @@ SpanDynamics::SpanDynamics(Span span, int terms, const Eigen::Vector3d& first, S
   }
   constraints_ = axes_ * std::ssize(held_);
   if (span_.end_direction) constraints_ += axes_ - 1;
+  if (span_.twist) ++constraints_;
   masses_ = points_.weighed(inertia_.per_length);
   for (const PointMass& mass : inertia_.points) masses_[point_at(mass.at)] += mass.mass;
   gravity_.resize(points_.points(), 3);
@@ -55,7 +73,7 @@ SpanDynamics::SpanDynamics(Span span, int terms, const Eigen::Vector3d& first, S
 }
 
 Eigen::VectorXd SpanDynamics::full(const Eigen::Ref<const Eigen::VectorXd>& part) const {
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(2 * frames_.columns());
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(all_unknowns());
   result.head(size()) = part;
   return result;
 }
@@ -66,14 +84,14 @@ void SpanDynamics::move(const SpanDrive& drive, const Eigen::Ref<const Eigen::Ve
   drive_ = drive;
   x_ = x;
   v_ = v;
+  a_ = a;
   frames_.evaluate(full(x), state_);
   const FrameSpins spins = frames_.spins(full(v), full(a), drive.spin, drive.spin_rate, state_);
   t_ = state_.t.bottomRows(nodes().size());
   t_rate_ = cross_rows(spins.velocities, t_);
-  end_tangent_.value = state_.end_frame().col(2);
-  end_tangent_.rate = spins.end_velocity.cross(end_tangent_.value);
-  end_tangent_.acceleration = spins.end_acceleration.cross(end_tangent_.value) +
-                              spins.end_velocity.cross(end_tangent_.rate);
+  const Eigen::Matrix3d end = state_.end_frame();
+  end_d1_ = turning(end.col(0), spins);
+  end_tangent_ = turning(end.col(2), spins);
   Eigen::MatrixXd tangents(t_.rows(), 9);
   tangents << t_, t_rate_,
       cross_rows(spins.accelerations, t_) + cross_rows(spins.velocities, t_rate_);
@@ -98,7 +116,7 @@ Eigen::Vector3d SpanDynamics::multiplier_force(const Eigen::Ref<const Eigen::Vec
 
 /// Derivatives by the unknowns.
 Eigen::VectorXd SpanDynamics::pulled(const FrameGradient& f) {
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(2 * frames_.columns());
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(all_unknowns());
   frames_.pull(f, 1, state_, result);
   return result.head(size());
 }
@@ -121,16 +139,18 @@ std::vector<Eigen::Vector3d> SpanDynamics::couples(
     const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
   std::vector<Eigen::Vector3d> result(nodes_.pieces().size(), Eigen::Vector3d::Zero());
   Eigen::Index row = axes_ * std::ssize(held_);
-  for (const Moving& e : drive_.across_end) {
-    result.back() -= multipliers[row++] * end_tangent_.value.cross(e.value);
+  for (const AcrossDirector& across : drive_.across_end) {
+    result.back() -= multipliers[row++] * director(across).value.cross(across.direction.value);
   }
   return result;
 }
 
 Eigen::VectorXd SpanDynamics::residual(const Eigen::Ref<const Eigen::VectorXd>& multipliers) {
   const Eigen::MatrixX3d tangents = all_by_tangents(multipliers);
-  return elastic_.cwiseProduct(x_ + inertia_.material_damping * v_) +
-         pulled({&tangents, couples(multipliers)});
+  Eigen::VectorXd result = elastic_.cwiseProduct(x_ + inertia_.material_damping * v_) +
+                           pulled({&tangents, couples(multipliers)});
+  if (has_twist()) result += twist_inertia_.cwiseProduct(a_);
+  return result;
 }
 
 /// Of bending, of touches, and of the internal force, which keeps its direction as the tangents
@@ -140,10 +160,11 @@ Eigen::MatrixXd SpanDynamics::stiffness(const Eigen::Ref<const Eigen::VectorXd>&
   const Eigen::MatrixX3d tangents = all_by_tangents(multipliers);
   std::vector<Eigen::Matrix3d> curvatures(nodes_.pieces().size(), Eigen::Matrix3d::Zero());
   Eigen::Index row = axes_ * std::ssize(held_);
-  for (const Moving& e : drive_.across_end) {
-    curvatures.back() -= multipliers[row++] * spin_curvature(end_tangent_.value, e.value);
+  for (const AcrossDirector& across : drive_.across_end) {
+    curvatures.back() -=
+        multipliers[row++] * spin_curvature(director(across).value, across.direction.value);
   }
-  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(2 * frames_.columns(), 2 * frames_.columns());
+  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(all_unknowns(), all_unknowns());
   frames_.add_hessian({&tangents, couples(multipliers)}, curvatures, state_, hessian);
   Eigen::MatrixXd result = hessian.topLeftCorner(size(), size());
   result.diagonal() += elastic_;
@@ -176,8 +197,9 @@ Eigen::MatrixX3d SpanDynamics::constraint_residuals() const {
     result.middleRows(row, axes_) = miss.topRows(axes_);
     row += axes_;
   }
-  const Moving& t = end_tangent_;
-  for (const Moving& e : drive_.across_end) {
+  for (const AcrossDirector& across : drive_.across_end) {
+    const Moving& e = across.direction;
+    const Moving& t = director(across);
     result(row, 0) = e.value.dot(t.value);
     result(row, 1) = e.rate.dot(t.value) + e.value.dot(t.rate);
     result(row, 2) =
@@ -191,14 +213,14 @@ Eigen::MatrixXd SpanDynamics::jacobian() {
   Eigen::MatrixXd result(constraints_, size());
   Eigen::Index row = 0;
   for (const std::vector<double>& signs : signs_) {
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(3, 2 * frames_.columns());
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(3, all_unknowns());
     frames_.pull_position(signs, state_, rows);
     result.middleRows(row, axes_) = rows.topLeftCorner(axes_, size());
     row += axes_;
   }
   std::vector<Eigen::Vector3d> couples(nodes_.pieces().size(), Eigen::Vector3d::Zero());
-  for (const Moving& e : drive_.across_end) {
-    couples.back() = end_tangent_.value.cross(e.value);
+  for (const AcrossDirector& across : drive_.across_end) {
+    couples.back() = director(across).value.cross(across.direction.value);
     result.row(row++) = pulled({nullptr, couples}).transpose();
   }
   return result;
@@ -209,11 +231,14 @@ Eigen::MatrixXd SpanDynamics::mass_matrix() {
   for (const Eigen::MatrixXd& tangents : frames_.tangent_jacobian(state_)) {
     result += energy_model::mass_matrix(points_, masses_, tangents.leftCols(size()));
   }
+  if (has_twist()) result.diagonal() += twist_inertia_;
   return result;
 }
 
-Eigen::VectorXd SpanDynamics::fit(const Eigen::Matrix3Xd& tangents) const {
-  return frames_.fit(tangents).head(size());
+Eigen::VectorXd SpanDynamics::fit(const StartShape& shape) const {
+  Eigen::VectorXd x = frames_.fit(shape.tangents);
+  if (has_twist() && shape.roll.size() > 0) x = frames_.rolled(x, shape.roll);
+  return x.head(size());
 }
 
 SpanShape SpanDynamics::shape(const Eigen::VectorXd& x) const {
@@ -225,6 +250,7 @@ SpanShape SpanDynamics::shape(const Eigen::VectorXd& x) const {
   result.start_frame = start_frame_;
   result.free_start = !span_.start_direction;
   result.strains = full(x);
+  result.natural = span_.natural;
   return result;
 }
 

@@ -19,6 +19,12 @@ struct Moving {
   Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();
 };
 
+/// A direction that turns with the clamp at the end, and the director that stays across it.
+struct AcrossDirector {
+  Moving direction;
+  bool of_d1 = false;  ///< not of the tangent
+};
+
 /// What grips do with a span at one time. Own units; components along the axes that turn with the
 /// clamp at the start (the span's frame where there is none).
 struct SpanDrive {
@@ -27,8 +33,8 @@ struct SpanDrive {
   Eigen::Vector3d spin_rate = Eigen::Vector3d::Zero();  ///< and its derivative
   /// Positions, seen from where the anchor was at first: of the anchor and of Span::holds.
   std::vector<Moving> grips;
-  /// Directions across that of the clamp at the end, which the tangent there has none of.
-  std::vector<Moving> across_end;
+  /// What directors of the last cross-section have no component along, where a clamp holds it.
+  std::vector<AcrossDirector> across_end;
   Eigen::Vector3d end_spin = Eigen::Vector3d::Zero();  ///< of that clamp
   std::vector<BodyPlace> obstacles;                    ///< of the problem's
 };
@@ -50,9 +56,13 @@ void add(const EnergyBalance& of, double times, EnergyBalance& to);
 /// (RodFrames::spins()),
 ///     t' = omega x t,  t'' = alpha x t + omega x t'.
 /// Rates of vectors are those in space. What has mass are the points of a SpanReach.
+///
+/// With material directors x has the strains of twist as well. Points alone would leave those
+/// without inertia where they move nothing; theirs is T^2 per strain energy, T = twist_time.
 class SpanDynamics {
  public:
-  /// @param span   without material directors; a planar one keeps to its plane
+  /// @param span   whose Span::twist holds the last cross-section's d1, of one with material
+  ///               directors; a planar one keeps to its plane
   /// @param first  tangent at the start, of a span that no clamp holds there
   SpanDynamics(Span span, int terms, const Eigen::Vector3d& first, SpanInertia inertia,
                const ContactLaw& contact);
@@ -60,8 +70,9 @@ class SpanDynamics {
   [[nodiscard]] Eigen::Index size() const { return elastic_.size(); }
   [[nodiscard]] Eigen::Index constraints() const { return constraints_; }
   [[nodiscard]] const Eigen::VectorXd& nodes() const { return nodes_.nodes(); }
-  /// Unknowns of a shape that has nearly these tangents at the nodes, along the axes of a drive.
-  [[nodiscard]] Eigen::VectorXd fit(const Eigen::Matrix3Xd& tangents) const;
+  /// Unknowns of a shape that has nearly these tangents, and frames, at the nodes, along the axes
+  /// of a drive.
+  [[nodiscard]] Eigen::VectorXd fit(const StartShape& shape) const;
 
   /// Takes in positions, velocities and accelerations; all below is at the last one.
   void move(const SpanDrive& drive, const Eigen::Ref<const Eigen::VectorXd>& x,
@@ -95,6 +106,8 @@ class SpanDynamics {
   /// On the span, at each point within one, by the obstacle's index in the problem.
   [[nodiscard]] std::vector<std::pair<std::size_t, Eigen::Vector3d>> obstacle_forces() const;
   [[nodiscard]] bool may_touch() const { return !grid_.empty(); }
+  /// Whether strains of twist are among the unknowns, which vibrate much faster than all else.
+  [[nodiscard]] bool has_twist() const { return twist_inertia_.size() > 0; }
   /// By which it is within a rigid obstacle where it is most; 0: nowhere.
   [[nodiscard]] double depth() const;
 
@@ -102,7 +115,12 @@ class SpanDynamics {
   [[nodiscard]] SpanShape shape(const Eigen::VectorXd& x) const;
 
  private:
+  [[nodiscard]] Eigen::Index all_unknowns() const { return frames_.fields() * frames_.columns(); }
   [[nodiscard]] Eigen::VectorXd full(const Eigen::Ref<const Eigen::VectorXd>& part) const;
+  /// That an AcrossDirector speaks of.
+  [[nodiscard]] const Moving& director(const AcrossDirector& across) const {
+    return across.of_d1 ? end_d1_ : end_tangent_;
+  }
   void collect_soft_touches();
   void collect_touches();
   [[nodiscard]] Eigen::MatrixX3d at_tangents(const Touch& touch,
@@ -127,6 +145,7 @@ class SpanDynamics {
   ContactGrid grid_;
   Eigen::Index constraints_ = 0, axes_ = 3;
   Eigen::VectorXd elastic_;                 // by unknown; 0 of a free start's turn
+  Eigen::VectorXd twist_inertia_;           // the same; 0 but of twist; empty: none
   std::vector<Eigen::Index> held_;          // point of each hold
   std::vector<std::vector<double>> signs_;  // PositionOperator::signs() of each hold
   // Of the points; forces along the span's frame.
@@ -135,10 +154,10 @@ class SpanDynamics {
 
   // At the last move()
   SpanDrive drive_;
-  Eigen::VectorXd x_, v_;
+  Eigen::VectorXd x_, v_, a_;
   Eigen::MatrixX3d t_, t_rate_;                          // of the nodes
   Eigen::MatrixX3d position_, velocity_, acceleration_;  // of the points, in space
-  Moving end_tangent_;
+  Moving end_tangent_, end_d1_;
   Eigen::MatrixX3d forces_;          // of the points: inertia and drag less what pulls and yields
   std::vector<Touch> soft_touches_;  // of points, which are in forces_
   std::vector<Touch> touches_;       // of the grid's points

@@ -85,6 +85,36 @@ SpanIntegrator::Factor& SpanIntegrator::factor(const SpanInstant& at, double ste
   return *found;
 }
 
+/// Newton's matrix with those of each point of the step where it is guessed: a roll of the frame
+/// that leaves the points where they are has next to no mass, and mass matrices of other places
+/// give it some.
+SpanIntegrator::Factor& SpanIntegrator::factor_of_points(const SpanInstant& at, double step,
+                                                         const std::vector<SpanDrive>& drives,
+                                                         const Eigen::MatrixXd& guess) {
+  const Eigen::Index n = span_.size();
+  const Eigen::Index m = span_.constraints();
+  const Eigen::MatrixXd v = (step * guess.topRows(n) * rule_.inner.transpose()).colwise() + at.v;
+  const Eigen::MatrixXd x = (step * v * rule_.inner.transpose()).colwise() + at.x;
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(stage_count * (n + m), stage_count * (n + m));
+  for (Eigen::Index i = 0; i < stage_count; ++i) {
+    span_.move(drives[static_cast<std::size_t>(i)], x.col(i), v.col(i), guess.col(i).head(n));
+    mass_ = span_.mass_matrix();
+    const Eigen::MatrixXd damping = span_.damping(mass_);
+    const Eigen::MatrixXd stiffness = span_.stiffness(guess.col(i).tail(m));
+    const Eigen::MatrixXd jacobian = span_.jacobian();
+    for (Eigen::Index j = 0; j < stage_count; ++j) {
+      auto block = matrix.block(i * (n + m), j * (n + m), n, n);
+      block = step * rule_.inner(i, j) * damping + step * step * rule_.twice(i, j) * stiffness;
+      if (i == j) block += mass_;
+    }
+    matrix.block(i * (n + m), i * (n + m) + n, n, m) = -jacobian.transpose();
+    matrix.block(i * (n + m) + n, i * (n + m), m, n) = jacobian;
+  }
+  of_points_.step = step;
+  of_points_.lu.compute(matrix);
+  return of_points_;
+}
+
 /// Of a step after the last one: by its polynomials.
 Eigen::MatrixXd SpanIntegrator::predicted(const SpanInstant& at, double step,
                                           const Stages& known) const {
@@ -117,7 +147,11 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
         drive_(std::min(at.time + rule_.nodes[i] * step, just_before(at.time + step))));
   }
   for (const bool renew : {false, true}) {
-    Factor& newton = factor(at, step, renew);
+    Factor& newton =
+        span_.has_twist()
+            ? factor_of_points(at, step, drives,
+                               renew && found.values.allFinite() ? found.values : guess)
+            : factor(at, step, renew);
     found.values = guess;
     Eigen::MatrixXd& values = found.values;
     std::array<EnergyBalance, stage_count> powers;
@@ -166,7 +200,10 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
 std::string SpanIntegrator::project(SpanInstant& at) {
   if (span_.constraints() == 0) return {};
   if (mass_.size() == 0) take_mass(at.time, at);
-  const Eigen::LLT<Eigen::MatrixXd> mass(mass_);
+  // What has next to no mass is not to be moved far for nothing.
+  Eigen::MatrixXd weight = mass_;
+  if (span_.has_twist()) weight.diagonal().array() += 1;
+  const Eigen::LLT<Eigen::MatrixXd> mass(weight);
   const SpanDrive drive = drive_(just_before(at.time));
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(span_.size());
   constexpr int most_projections = 30;
@@ -192,6 +229,37 @@ std::string SpanIntegrator::project(SpanInstant& at) {
     before = residual;
   }
   return "the grips cannot be reached by the rod, or hold it straight between them";
+}
+
+std::string SpanIntegrator::settle_twist(SpanInstant& at) {
+  // A step of Euler's implicit rule from rest: what has mass moves by its acceleration times this.
+  constexpr double squared_step = 1e-8;
+  constexpr int most_settling = 50;
+  const Eigen::Index n = span_.size();
+  const Eigen::Index m = span_.constraints();
+  const SpanDrive drive = drive_(just_after(at.time));
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(n);
+  const Eigen::VectorXd begin = at.x;
+  Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(m);
+  double before = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < most_settling; ++i) {
+    span_.move(drive, at.x, zero, (at.x - begin) / squared_step);
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n + m, n + m);
+    matrix.topLeftCorner(n, n) = span_.mass_matrix() / squared_step + span_.stiffness(multipliers);
+    const Eigen::MatrixXd jacobian = span_.jacobian();
+    matrix.topRightCorner(n, m) = -jacobian.transpose();
+    matrix.bottomLeftCorner(m, n) = jacobian;
+    Eigen::VectorXd residual(n + m);
+    residual << span_.residual(multipliers), span_.constraint_residuals().col(0);
+    const Eigen::VectorXd change = matrix.partialPivLu().solve(residual);
+    const double size = change.head(n).norm();
+    if (!std::isfinite(size)) break;
+    at.x -= change.head(n);
+    multipliers -= change.tail(m);
+    if (size < newton_enough_ || (size >= before && size < 1e3 * newton_enough_)) return {};
+    before = size;
+  }
+  return "the rod's twist finds no equilibrium at the begin";
 }
 
 std::string SpanIntegrator::advance(SpanInstant& at, double until,
@@ -277,10 +345,11 @@ double SpanIntegrator::take_energy(double time, const SpanInstant& at) {
   span_.move(drive_(time), at.x, at.v, Eigen::VectorXd::Zero(span_.size()));
   const EnergyBalance energies = span_.energies();
   largest_energy_ = std::max({largest_energy_, energies.kinetic, energies.bending,
-                              energies.obstacles, options_.tolerance});
+                              energies.twisting, energies.obstacles, options_.tolerance});
   energy_magnitude_ =
-      std::max(energy_magnitude_, energies.kinetic + energies.bending + std::abs(energies.gravity) +
-                                      std::abs(energies.load) + energies.obstacles);
+      std::max(energy_magnitude_, energies.kinetic + energies.bending + energies.twisting +
+                                      std::abs(energies.gravity) + std::abs(energies.load) +
+                                      energies.obstacles);
   return energies.total() + at.done.dissipated + at.done.lost - at.done.work;
 }
 

@@ -30,7 +30,8 @@ struct IntegratorOptions {
 ///     x' = v,  M(x) v' = f(t, x, v) + G^T mu,  d^2 c / dt^2 = 0,
 /// by accelerations at the rule's points, so that of M only products are needed: Newton's method
 /// has M of an earlier step in its matrix. Where a span has constraints c, x and v are moved to
-/// them after each step by the least kinetic energy.
+/// them after each step by the least kinetic energy; with twist, by the least of that and of strain
+/// energy.
 class SpanIntegrator {
  public:
   SpanIntegrator(SpanDynamics& span, std::function<SpanDrive(double)> drive,
@@ -38,6 +39,9 @@ class SpanIntegrator {
 
   /// Moves positions and velocities to the constraints. @return why not; empty: done
   [[nodiscard]] std::string project(SpanInstant& at);
+  /// Brings what has no mass, the roll of frames about points that stay, to its equilibrium at the
+  /// begin. @return why not; empty: done
+  [[nodiscard]] std::string settle_twist(SpanInstant& at);
   /// Goes on to a time. @param expired  asked after each step. @return why not; empty: done
   [[nodiscard]] std::string advance(SpanInstant& at, double until,
                                     const std::function<bool()>& expired);
@@ -83,6 +87,9 @@ class SpanIntegrator {
   [[nodiscard]] bool take_step(SpanInstant& at, double step);
   [[nodiscard]] bool take_two_halves(SpanInstant& at, double step);
   [[nodiscard]] Factor& factor(const SpanInstant& at, double step, bool renew);
+  [[nodiscard]] Factor& factor_of_points(const SpanInstant& at, double step,
+                                         const std::vector<SpanDrive>& drives,
+                                         const Eigen::MatrixXd& guess);
   void take_mass(double time, const SpanInstant& at);
   [[nodiscard]] double take_energy(double time, const SpanInstant& at);
   [[nodiscard]] Eigen::VectorXd accelerated(double time, const SpanInstant& at,
@@ -95,6 +102,7 @@ class SpanIntegrator {
   Eigen::MatrixXd mass_;
   Eigen::MatrixXd jacobian_;
   std::vector<Factor> factors_;
+  Factor of_points_;  // of the last step with matrices of its own
   Stages last_;
   double newton_enough_;      // what a correction of a step may still move
   double next_ = first_step;  // its size

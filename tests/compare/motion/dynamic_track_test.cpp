@@ -73,6 +73,29 @@ TEST(TrajectoryMotion, HasThePosesOfItsTrajectoryAndTheirDerivatives) {
   EXPECT_LT((motion(9).position - way.poses().back().position).norm(), 1e-15);
 }
 
+TEST(TrajectoryMotion, RollsAboutTheDirectionAtEachTime) {
+  std::vector<Pose> poses = corners().poses();
+  for (std::size_t i = 0; i < poses.size(); ++i) poses[i].roll = std::vector{0.5, 2.0, 1.0, 8.0}[i];
+  const Trajectory way(poses);
+  const energy_model::GripMotion plain = trajectory_motion(way, 2);
+  const energy_model::GripMotion motion = trajectory_motion(way, 2, poses.front().direction);
+  constexpr double step = 1e-4;
+  for (const double time : {0.2, 0.7, 1.2, 1.9, 2.8}) {
+    const energy_model::GripPose pose = motion(time);
+    const Pose known = way.pose_at(2 + time);
+    const Eigen::AngleAxisd rolled(*known.roll - 0.5, *known.direction);
+    EXPECT_LT(pose.turn.angularDistance(rolled * plain(time).turn), 1e-7);
+    const energy_model::GripPose before = motion(time - step);
+    const energy_model::GripPose after = motion(time + step);
+    const Eigen::AngleAxisd turned(after.turn * before.turn.conjugate());
+    EXPECT_LT((pose.angular_velocity - turned.angle() / (2 * step) * turned.axis()).norm(), 1e-6);
+    EXPECT_LT((pose.angular_acceleration -
+               (after.angular_velocity - before.angular_velocity) / (2 * step))
+                  .norm(),
+              1e-5);
+  }
+}
+
 // What a step's end asks for, and what its begin asks for.
 TEST(TrajectoryMotion, AccelerationsJumpJustAfterAPose) {
   const energy_model::GripMotion motion = trajectory_motion(corners(), 2);
@@ -192,15 +215,42 @@ void expect_refused(const std::string& rod, const std::string& rest, const std::
 TEST(DynamicTrack, RefusesWhatARodWithInertiaCannotHave) {
   const std::string mass = "mass_per_length = 0.5\n";
   expect_refused("mass_per_length = 0\n", "", "no mass");
-  expect_refused(mass + "natural_curvature = 1\n", "", "intrinsically curved");
-  const std::string held = "direction = \"0 deg\"\nroll = \"90 deg\"\n[[gripper]]\nat = ";
-  expect_refused(mass + "torsional_stiffness = 1\n",
-                 "[[gripper]]\nat = 0.5\nposition = [0.4, 0, 0]\n" + held +
-                     "1\nposition = [0.8, 0, 0]\ndirection = \"0 deg\"\nroll = \"0 deg\"\n",
-                 "clamps hold the rod's frame");
+  const std::string pose = "[[gripper.pose]]\nposition = [0.8, 0, 0]\ndirection = ";
+  expect_refused(mass + "torsional_stiffness = 1\nnatural_curvature = 1\n",
+                 "[[gripper]]\nat = 1\nroll = \"10 deg\"\n" + pose + "\"0 deg\"\ntime = 0\n" +
+                     pose + "\"20 deg\"\ntime = 1\n",
+                 "changes its direction");
   TrackOptions late = frames_at(10);
   late.from = 0.5;
   expect_refused(mass, "", "from 0.5 s: the rod is at rest at its first pose", late);
+}
+
+// A curved wire and a straight one between two clamps, each turned by a wrist: still again, they
+// are at rest.
+TEST(DynamicTrack, AWristTurnsTheWire) {
+  const std::string wrist =
+      "[[gripper]]\nat = 0\ndirection = [1, 0, 0]\n"
+      "[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\nroll = 0\n"
+      "[[gripper.pose]]\ntime = 2\nposition = [0, 0, 0]\nroll = \"100 deg\"\n"
+      "[[gripper.pose]]\ntime = 12\nposition = [0, 0, 0]\nroll = \"100 deg\"\n";
+  const std::string other =
+      "[[gripper]]\nat = 0.5\nposition = [0.4, 0.05, 0]\ndirection = [1, 0, 0]\nroll = 0\n";
+  const std::string curved = "natural_curvature = [0, 3]\n";
+  for (const auto& [rod, rest] : {std::pair(curved, std::string()), {std::string(), other}}) {
+    const Scene scene = parse_scene(
+        "gravity = [0, 0, -9.81]\n[rod]\nlength = 0.5\nbending_stiffness = 0.005\n"
+        "torsional_stiffness = 0.004\nmass_per_length = 0.03\n" +
+            rod + wrist + rest,
+        "wrist.toml");
+    TrackOptions options = frames_at(2);
+    const DynamicTrack result = moved(scene, options, {.air = 0.3});
+    ASSERT_FALSE(result.stopped);
+    EXPECT_LT(result.energy_error, 1e-5);
+    EXPECT_GT(result.quasi_static.largest, 1e-3);
+    EXPECT_LT(result.frames.back().quasi_static_error, 1e-4);
+    EXPECT_GT((result.frames.back().points - result.frames.front().points).norm(), 0.05);
+    EXPECT_EQ(result.frames.back().energy.twisting > 1e-6, true);
+  }
 }
 
 TEST(DynamicTrack, RefusesANegativeDamping) {

@@ -96,6 +96,11 @@ TEST(MovingScene, SaysWhatIsWrongWithAPose) {
   expect_error(held_rod + two_poses + "[[gripper.pose]]\ntime = \"4 h\"\nposition = [0, 0, 0]\n",
                "unknown unit \"h\" in \"4 h\" (allowed: s, ms, min)");
   expect_error(held_rod + "hold = \"pin\"\n" + two_poses, "unknown key");
+  const std::string rolls = first + "direction = \"0 deg\"\nroll = 1\n";
+  expect_error(held_rod + rolls + "[[gripper.pose]]\ntime = 1\nposition = [0, 0, 0]\n" +
+                   "direction = \"0 deg\"\n",
+               "gripper.pose.roll: given for some poses only");
+  expect_error(held_rod + "roll = 1\n" + rolls, "gripper.roll = 1: given besides poses with rolls");
   expect_error(held_rod + "trajectory = \"none.csv\"\n", "no such file beside the scene");
   expect_error(held_rod + "trajectory = \"none.csv\"\n" + two_poses, "given besides poses");
   expect_error(held_rod + two_poses + "[track]\nframe_rate = 0\n",

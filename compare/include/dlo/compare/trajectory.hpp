@@ -11,6 +11,7 @@ struct Pose {
   double time = 0;                                     ///< [s]
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
   std::optional<Eigen::Vector3d> direction;            ///< unit; of what has one
+  std::optional<double> roll;  ///< about the direction, of a clamp that has one [rad]
 
   /// In every field.
   bool operator==(const Pose&) const = default;
@@ -29,13 +30,13 @@ struct Pose {
 ///
 /// Directions go along the great circle from pose to pose; the angle on it is cubic in time in the
 /// same way, and stands still for a moment at a pose where two great circles meet at an angle, so
-/// that the rate of turning is continuous too.
+/// that the rate of turning is continuous too. Rolls are cubic as positions along a line are.
 class Trajectory {
  public:
   /// Stands where it is; has no poses.
   Trajectory() = default;
-  /// @param poses  by growing time, one or more; either all or none has a direction, and none is
-  /// opposite to the one before
+  /// @param poses  by growing time, one or more; either all or none has a direction, likewise a
+  /// roll, and no direction is opposite to the one before
   /// @throws std::invalid_argument naming the pose if that is not so, or a number is not finite
   explicit Trajectory(std::vector<Pose> poses);
 

@@ -16,7 +16,8 @@ namespace dlo::energy_model {
 /// A rod that moves: what Problem says of it at rest, its masses, what its grips do, and what takes
 /// energy from it. Its points obey
 ///     rho A r'' + c r' = w + N_s,   M_s + t x N = 0,   M = t x (EI t_s + tau EI t_s')
-/// (primes: by time, s: by arc length), |t| = 1.
+/// (primes: by time, s: by arc length), |t| = 1. Where clamps hold frames or the rod has material
+/// directors M is of all strains u beyond the natural ones, K (u + tau u'), K = (EI, EI_2, GJ).
 struct MovingRod {
   Problem problem;  ///< loads and weight stay; poses of grips that have a motion are those of it
   Inertia inertia;  ///< what `problem`'s weights do not say
@@ -39,7 +40,8 @@ using StartingShape = std::function<Samples(std::span<const double>)>;
 /// What a moving rod has and has done, up to one time [J].
 struct EnergyBalance {
   double kinetic = 0;     ///< of the points' movement
-  double bending = 0;     ///< int 1/2 EI kappa^2 ds
+  double bending = 0;     ///< int 1/2 EI kappa^2 ds; of strains beyond the natural ones
+  double twisting = 0;    ///< int 1/2 GJ u3^2 ds, the same
   double gravity = 0;     ///< of weight and line loads; zero at the first grip at time 0
   double load = 0;        ///< of dead loads, the same
   double obstacles = 0;   ///< of the springs of what yields, and of those that stand for rigid ones
@@ -47,8 +49,10 @@ struct EnergyBalance {
   double lost = 0;        ///< since the begin, on rigid obstacles
   double work = 0;        ///< since the begin, of grips and of obstacles that move on the rod
 
-  /// kinetic + bending + gravity + load + obstacles.
-  [[nodiscard]] double total() const { return kinetic + bending + gravity + load + obstacles; }
+  /// kinetic + bending + twisting + gravity + load + obstacles.
+  [[nodiscard]] double total() const {
+    return kinetic + bending + twisting + gravity + load + obstacles;
+  }
 };
 
 /// A rod at one time.
@@ -77,8 +81,8 @@ struct [[nodiscard]] Dynamics {
   /// Largest |total - total at the begin + dissipated + lost - work| of the frames, over
   /// `largest_energy`.
   double energy_error = std::numeric_limits<double>::infinity();
-  /// Of the frames: the largest kinetic, bending, obstacles', dissipated or lost energy or work, or
-  /// change of gravity and load [J].
+  /// Of the frames: the largest kinetic, bending, twisting, obstacles', dissipated or lost energy
+  /// or work, or change of gravity and load [J].
   double largest_energy = 0;
 };
 
@@ -100,17 +104,18 @@ struct DynamicsOptions {
   double time_limit = std::numeric_limits<double>::infinity();  ///< wall time [s], > 0
 };
 
-/// Motion of an inextensible round straight rod from a shape at rest, whose strains do not change
+/// Motion of an inextensible rod from a shape at rest, whose strains do not change
 /// at first: its grips carry it along. Strains in Legendre polynomials, as in solve_energy(); by
 /// time collocation at Gauss' four points (order 8), with damping of the material or rigid
-/// obstacles Radau's IIA (order 7). Cross-sections have no inertia, so that twist does nothing.
+/// obstacles, or with twist, Radau's IIA (order 7). Cross-sections have no inertia: twist, where
+/// clamps hold frames or the rod has material directors, is in equilibrium at each time. There
+/// Samples::d1 of a frame is the material's.
 /// Rigid obstacles are stiff ones, p = k d^2 max(0, 1 + d' / u) per length at a depth d (Hunt and
 /// Crossley 1975), without friction. Method, evidence and limits: energy_model/doc/dynamics.md.
 /// @param start  held by the grips, nearly: it is moved to where they do
 /// @param times  to give frames at [s], growing; motion begins at 0, or at the first of them if
 /// that is below zero
-/// @throws std::invalid_argument if something is out of range; if the problem has frames that
-/// clamps hold, natural strains or two bending stiffnesses, whose twist has no inertia here
+/// @throws std::invalid_argument if something is out of range
 Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<const double> times,
                   const DynamicsOptions& options = {});
 
