@@ -255,6 +255,16 @@ bool StrictTable::is_table(std::string_view key) const {
   return node != nullptr && node->is_table();
 }
 
+bool StrictTable::is_text(std::string_view key) const {
+  const toml::node* node = table_.get(key);
+  return node != nullptr && node->is_string();
+}
+
+bool StrictTable::is_flag(std::string_view key) const {
+  const toml::node* node = table_.get(key);
+  return node != nullptr && node->is_boolean();
+}
+
 bool StrictTable::is_array(std::string_view key) const {
   const toml::node* node = table_.get(key);
   return node != nullptr && node->is_array();

@@ -80,6 +80,8 @@ class StrictTable {
   /// The tables of [[key]], in order.
   std::vector<StrictTable> tables(std::string_view key);
   [[nodiscard]] bool is_table(std::string_view key) const;
+  [[nodiscard]] bool is_text(std::string_view key) const;
+  [[nodiscard]] bool is_flag(std::string_view key) const;
   [[nodiscard]] bool is_array(std::string_view key) const;
   [[nodiscard]] std::vector<std::string> keys() const;
 
