@@ -119,14 +119,6 @@ std::optional<int> StrictTable::optional_integer(std::string_view key, int low, 
   return integer(key, low, high);
 }
 
-std::optional<bool> StrictTable::optional_flag(std::string_view key) {
-  const toml::node* node = find(key);
-  if (node == nullptr) return std::nullopt;
-  const std::optional<bool> value = node->value_exact<bool>();
-  if (!value) fail(key, "not a flag (allowed: true or false)");
-  return value;
-}
-
 int StrictTable::integer(std::string_view key, int low, int high) {
   const auto value = need(key).value_exact<std::int64_t>();
   if (!value || *value < low || *value > high) {

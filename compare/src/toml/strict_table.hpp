@@ -49,8 +49,6 @@ class StrictTable {
   std::string text(std::string_view key);
   std::optional<std::string> optional_text(std::string_view key);
   int integer(std::string_view key, int low, int high);
-  /// true or false; none: no key.
-  std::optional<bool> optional_flag(std::string_view key);
   /// One of `allowed`.
   std::string choice(std::string_view key, const std::vector<std::string>& allowed);
   /// Of an enumeration with a table of names.
