@@ -108,7 +108,7 @@ std::string stretch_decision_text(const compare::Solution& solution) {
       return fmt::format("auto: neglected, though it matters: model {} has none {}",
                          compare::to_string(solution.model),
                          solution.model == compare::Model::exact
-                             ? "beside obstacles or loads without a potential"
+                             ? "in this scene (stretch = true says why)"
                              : "(exact has)");
     case compare::StretchDecision::counted:
       break;

@@ -167,14 +167,19 @@ TEST(AutomaticStretch, IsSaidToMatterWhereTheModelHasNone) {
   EXPECT_EQ(with(scene, Stretch::none, Model::energy).stretch_decision, StretchDecision::given);
 }
 
-TEST(AutomaticStretch, IsNotThatOfExactBesideAnObstacle) {
-  Scene scene = line(4e5, 98);
-  scene.given_bending_stiffness = 200;
-  scene.obstacles.push_back({.body = obstacle::Body::half_space({0, 0, -4}, Vector3d::UnitZ())});
-  const Solution decided = with(scene, Stretch::automatic, Model::exact);
-  EXPECT_EQ(decided.stretch_decision, StretchDecision::not_modelled);
-  EXPECT_TRUE(neglects(decided, "stretch"));
-  EXPECT_EQ(decided.energy.stretch, 0);
+TEST(AutomaticStretch, IsNotThatOfExactBesideAnObstacleOrOfACatenary) {
+  Scene lies = line(4e5, 98);
+  lies.given_bending_stiffness = 200;
+  lies.obstacles.push_back({.body = obstacle::Body::half_space({0, 0, -4}, Vector3d::UnitZ())});
+  Scene soft = line(4e5, 98);
+  soft.given_bending_stiffness = 1e-4;
+  for (const Scene& scene : {lies, soft}) {
+    EXPECT_THROW((void)with(scene, Stretch::counted, Model::exact), InputError);
+    const Solution decided = with(scene, Stretch::automatic, Model::exact);
+    EXPECT_EQ(decided.stretch_decision, StretchDecision::not_modelled);
+    EXPECT_TRUE(neglects(decided, "stretch"));
+    expect_same(decided, with(scene, Stretch::none, Model::exact));
+  }
 }
 
 // Without stretch its weight would pull it infinitely hard, or it does not reach.
