@@ -192,6 +192,22 @@ def test_calibrate_finds_the_modulus_it_was_given(cable):
     assert "calibrated" in fit.to_toml()
 
 
+def test_calibrate_gives_each_joint_of_unequal_segments_its_spring(cable):
+    points = dlo.solve(cable, model="exact", samples=15).points
+    lengths = cable.length * numpy.array([0.05, 0.07, 0.1, 0.18, 0.25, 0.35])
+    chains = dlo.calibrate(cable, [points], segment_lengths=lengths)["chains"]
+    welded = chains[1]
+    assert welded["clamp"] == "welded" and [joint["at_m"] for joint in welded["joints"]] == pytest.approx(
+        numpy.cumsum(lengths)[:-1], abs=0.02 * cable.length)
+    found = [joint["joint_stiffness_Nm_per_rad"] for joint in welded["joints"]]
+    EI = welded["over_bending_stiffness_per_length"] * cable.bending_stiffness
+    assert found == pytest.approx(2 * EI / (lengths[:-1] + lengths[1:]), rel=1e-3)
+    with pytest.raises(dlo.InputError, match="a chain of 3 segments"):
+        dlo.calibrate(cable, [points], segment_lengths=[0.3, 0.3, 0.4])
+    with pytest.raises(dlo.InputError, match=r"a str \(allowed: a list of numbers\)"):
+        dlo.calibrate(cable, [points], segment_lengths=["1 cm"])
+
+
 def test_a_fit_of_a_stiffness_is_no_modulus(cable):
     wire = dlo.Scene(
         length=1,

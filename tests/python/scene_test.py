@@ -469,5 +469,12 @@ def test_a_line_that_stretches():
     assert dlo.Scene.from_text(line.to_toml()).stretch is True
     with pytest.raises(dlo.InputError, match="stretch"):
         dlo.solve(line)
-    with pytest.raises(dlo.InputError, match="true or false"):
+    with pytest.raises(dlo.InputError, match='allowed: true, false or "auto"'):
         line.stretch = "yes"
+    line.stretch = "auto"
+    decided = dlo.solve(line, model="exact")
+    assert line.stretch == "auto" and dlo.Scene.from_text(line.to_toml()).stretch == "auto"
+    assert decided.stretch_decision == decided.json["stretch_decision"] == "counted"
+    assert (decided.points == stretched.points).all() and (decided.tension == stretched.tension).all()
+    assert "auto: counted, as to first order it moves the points by 1.1 m" in str(decided)
+    assert dlo.solve(line).stretch_decision == "not_modelled"

@@ -32,7 +32,7 @@ struct CalibrateOptions {
   bool torsional_stiffness = false;
   std::string noise;
   int natural_curvature_terms = 0;
-  int segments = 0;
+  std::string segments;  // a number, or a file
   std::string clamp_angles;
   std::string clamp_positions;
   bool same_clamps = false;
@@ -57,6 +57,30 @@ std::optional<double> quantity_of(const char* option, const std::string& text,
     throw compare::InputError(fmt::format("{} = {}: {}", option, text, error.what()));
   }
   throw compare::InputError(fmt::format("{} = {}: out of range (allowed: > 0)", option, text));
+}
+
+/// What --segments says of a chain.
+struct ChainLayout {
+  int segments = 0;                     // equal ones
+  std::vector<double> segment_lengths;  // else [m]
+};
+
+bool is_number(const std::string& text) {
+  return !text.empty() && text.find_first_not_of("+-0123456789") == std::string::npos;
+}
+
+/// "" if it is a file, or a number in range.
+std::string check_segments(const std::string& text) {
+  if (!is_number(text)) return "";
+  std::string copy = text;
+  return CLI::Range(4, 200)(copy);
+}
+
+ChainLayout chain_layout(const CalibrateOptions& options) {
+  if (options.segments.empty()) return {};
+  if (is_number(options.segments)) return {.segments = std::stoi(options.segments)};
+  return {.segment_lengths =
+              compare::segment_lengths(options.shape_options.load(options.segments).points)};
 }
 
 std::vector<compare::Scene> load_all(const std::vector<std::string>& paths,
@@ -91,6 +115,7 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
   }
   for (const compare::Scene& scene : scenes) warn_of_friction(scene);
   using compare::Dimension;
+  const ChainLayout chain = chain_layout(options);
   const compare::MaterialFitOptions fit_options{
       .pose = options.shape_options.pose(),
       .arc_lengths = options.shape_options.arc_lengths(),
@@ -104,7 +129,8 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
       .shared_clamps = options.same_clamps,
       .predict = options.predict,
       .choose_options = options.chosen == "auto",
-      .chain_segments = options.segments,
+      .chain_segments = chain.segments,
+      .chain_segment_lengths = chain.segment_lengths,
       .profile_points = options.plot.draws() ? profile_points : 0,
       .noise = quantity_of("--noise", options.noise, Dimension::length),
       .solve = options.overrides.solve()};
@@ -125,10 +151,14 @@ void run_chains(const CalibrateOptions& options, bool format_is_given) {
     throw compare::InputError(fmt::format(
         "--segments without --shape: has no format {} (allowed: text, json, or a shape)", format));
   };
+  const ChainLayout layout = chain_layout(options);
+  const compare::SolveOptions solve = options.overrides.solve();
   std::vector<compare::ChainSprings> chains;
   for (const compare::Scene& scene : load_all(options.scenes, options.overrides)) {
     for (compare::ChainSprings& chain :
-         compare::chain_springs(scene, options.segments, options.overrides.solve())) {
+         layout.segment_lengths.empty()
+             ? compare::chain_springs(scene, layout.segments, solve)
+             : compare::chain_springs(scene, layout.segment_lengths, solve)) {
       chains.push_back(std::move(chain));
     }
   }
@@ -253,9 +283,12 @@ void add_calibrate(CLI::App& app) {
   command
       ->add_option(
           "--segments", options->segments,
-          "of your simulator's chain: the stiffness of its joints with which it comes nearest to "
-          "the rod, for three ways to hold it; with --shape: to the fitted one")
-      ->check(CLI::Range(4, 200))
+          "of your simulator's chain, 4 to 200, or a file of its points where they are unequal: "
+          "the "
+          "stiffness of its joints with which it comes nearest to the rod, for three ways to hold "
+          "it; with --shape: to the fitted one")
+      ->type_name("N|FILE")
+      ->check(check_segments)
       ->excludes(target)
       ->excludes(holdout)
       ->group(measured);
@@ -284,7 +317,7 @@ void add_calibrate(CLI::App& app) {
       "fit.svg");
   command->callback([options, command] {
     const bool format_is_given = command->count("--format") > 0;
-    if (options->shapes.empty() && options->segments > 0) {
+    if (options->shapes.empty() && !options->segments.empty()) {
       run_chains(*options, format_is_given);
     } else if (options->shapes.empty()) {
       run_force_model(*options, command->count("--points") > 0, format_is_given);

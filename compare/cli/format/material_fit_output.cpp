@@ -145,17 +145,51 @@ const char* text_of(compare::ChainClamp clamp) {
   return "clamped in the middle of a segment";
 }
 
+std::string range_text(double low, double high, const char* unit) {
+  return low == high ? fmt::format("{:.4g}{}", low, unit)
+                     : fmt::format("{:.4g} to {:.4g}{}", low, high, unit);
+}
+
+std::string lengths_text(const compare::ChainSprings& chain) {
+  const std::vector<double>& h = chain.segment_lengths;
+  if (h.empty()) return fmt::format("{:.4g} m", chain.segment_length);
+  const auto [low, high] = std::minmax_element(h.begin(), h.end());
+  return range_text(*low, *high, " m");
+}
+
+std::string stiffness_text(const compare::ChainSprings& chain) {
+  if (chain.joints.empty()) return fmt::format("{:.5g}", chain.stiffness);
+  const auto [low, high] =
+      std::minmax_element(chain.joints.begin(), chain.joints.end(),
+                          [](const auto& a, const auto& b) { return a.stiffness < b.stiffness; });
+  return range_text(low->stiffness, high->stiffness, "");
+}
+
+/// Of unequal segments each joint.
+std::string joints_text(const compare::ChainSprings& chain) {
+  if (chain.joints.empty()) return "";
+  std::string out = fmt::format("              {:>11} {:>15} {:>24}\n", "s [m]", "k [N m/rad]",
+                                "discrete elastic rods'");
+  for (const compare::ChainJoint& joint : chain.joints) {
+    append(out, "              {:11.6f} {:15.6g} {:>24}\n", joint.at, joint.stiffness,
+           joint.binormal_stiffness > 0 ? fmt::format("{:.6g}", joint.binormal_stiffness) : "-");
+  }
+  return out;
+}
+
 }  // namespace
 
 std::string chains_text(const std::vector<compare::ChainSprings>& chains) {
   std::string out;
   for (std::size_t i = 0; i < chains.size(); ++i) {
     const compare::ChainSprings& chain = chains[i];
-    append(out, "{:<11} {} segments of {:.4g} m, {}: {:.5g} N m/rad a joint, {:.4g} times EI/h\n",
-           i == 0 ? "chain" : "", chain.segments, chain.segment_length, text_of(chain.clamp),
-           chain.stiffness, chain.over_rod);
+    append(out, "{:<11} {} segments of {}, {}: {} N m/rad a joint, {:.4g} times EI/h{}\n",
+           i == 0 ? "chain" : "", chain.segments, lengths_text(chain), text_of(chain.clamp),
+           stiffness_text(chain), chain.over_rod,
+           chain.joints.empty() ? "" : ", h the mean of its two segments");
     append(out, "            ({:.4g} mm from the rod on {}, RMS)\n", chain.rms_m * 1e3,
            compare::display(chain.scene));
+    out += joints_text(chain);
     for (const compare::SimulatorParameter& parameter : compare::simulator_parameters(chain)) {
       append(out, "              {:<10} {} = {:.5g} {}\n", parameter.simulator, parameter.name,
              parameter.value, parameter.unit);
@@ -176,6 +210,15 @@ Json chains_json(const std::vector<compare::ChainSprings>& chains) {
                       {"over_bending_stiffness_per_length", chain.over_rod},
                       {"rms_m", chain.rms_m},
                       {"parameters", Json::array()}});
+    if (!chain.joints.empty()) {
+      result.back()["segment_lengths_m"] = chain.segment_lengths;
+      result.back()["joints"] =
+          json_list(chain.joints, [](const compare::ChainJoint& joint) -> Json {
+            return {{"at_m", joint.at},
+                    {"joint_stiffness_Nm_per_rad", joint.stiffness},
+                    {"binormal_stiffness_Nm_per_rad", joint.binormal_stiffness}};
+          });
+    }
     for (const compare::SimulatorParameter& parameter : compare::simulator_parameters(chain)) {
       result.back()["parameters"].push_back({{"simulator", parameter.simulator},
                                              {"name", parameter.name},

@@ -44,8 +44,13 @@ std::string twist_text(const compare::Plan& plan) {
 }
 
 std::string stretch_text(const compare::Plan& plan, const compare::Scene& scene) {
-  if (scene.stretch) return "of the scene: exact has it, chain and force by their segments";
+  if (scene.stretch == compare::Stretch::counted) {
+    return "of the scene: exact has it, chain and force by their segments";
+  }
   if (!plan.stretch) return "none";
+  if (scene.stretch == compare::Stretch::automatic) {
+    return "auto: exact has it where it matters, chain and force by their segments";
+  }
   if (!plan.twist.empty()) {
     return "no bound; with the law hooke chain and force have it and the twist";
   }

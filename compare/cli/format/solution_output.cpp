@@ -97,6 +97,33 @@ Json contacts_json(const std::vector<energy_model::ContactPart>& contacts) {
   return result;
 }
 
+/// What became of stretch = "auto".
+std::string stretch_decision_text(const compare::Solution& solution) {
+  switch (solution.stretch_decision) {
+    case compare::StretchDecision::given:
+      return "";
+    case compare::StretchDecision::below_target:
+      return "auto: neglected, as it would change shape and tension by less than the target";
+    case compare::StretchDecision::not_modelled:
+      return fmt::format("auto: neglected, though it matters: model {} has none {}",
+                         compare::to_string(solution.model),
+                         solution.model == compare::Model::exact
+                             ? "in this scene (stretch = true says why)"
+                             : "(exact has)");
+    case compare::StretchDecision::counted:
+      break;
+  }
+  const compare::StretchEffect& effect = solution.stretch;
+  if (!(effect.strain > 0)) return "auto: counted, as the grips hold the rod taut";
+  if (std::isnan(effect.moved_m)) {
+    return fmt::format("auto: counted, as without it N/EA is up to {:.2g} %", effect.strain * 100);
+  }
+  return fmt::format(
+      "auto: counted, as to first order it moves the points by {:.2g} m (RMS), the largest tension "
+      "by {:+.2g} %",
+      effect.moved_m, effect.tension * 100);
+}
+
 std::string solution_text(const compare::Solution& solution, const compare::Scene& scene) {
   std::string out;
   append(out, "scene      {}\n", compare::display(scene.name));
@@ -134,6 +161,9 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
              "first order)\n",
              solution.stretch.moved_m, solution.stretch.tension * 100);
     }
+  }
+  if (const std::string decision = stretch_decision_text(solution); !decision.empty()) {
+    append(out, "stretch    {}\n", decision);
   }
   if (const auto crossing = compare::self_crossing(solution.shape, scene.diameter)) {
     append(out,

@@ -130,6 +130,7 @@ FitDocuments calibrate_material(const std::vector<SharedScene>& scenes, const py
       .predict = what["predict"].cast<bool>(),
       .choose_options = chosen == "auto",
       .chain_segments = what["segments"].cast<int>(),
+      .chain_segment_lengths = what["segment_lengths"].cast<std::vector<double>>(),
       .noise = what["noise"].cast<std::optional<double>>(),
       .solve = solve};
   const compare::Calibration found = run_long([&](Signals& /*signals*/) {

@@ -84,6 +84,11 @@ def TEXTS(value: Any) -> Optional[str]:
     return problem and problem.replace("(allowed: ", "(allowed: a list of ").replace(" a list)", " text)")
 
 
+def NUMBERS(value: Any) -> Optional[str]:
+    problem = LIST(value) or next(filter(None, map(NUMBER, value)), None)
+    return problem and f"{problem.split(' (allowed', 1)[0]} (allowed: a list of numbers)"
+
+
 def TABLE(value: Any) -> Optional[str]:
     return None if isinstance(value, Mapping) else f"{_a(value)} (allowed: a dict)"
 

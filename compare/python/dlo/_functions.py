@@ -8,7 +8,7 @@ import numpy
 from numpy.typing import ArrayLike
 
 from . import _dlo
-from ._arguments import INTEGER, LIST, NUMBER, QUANTITY, TEXT, TRUTH, checked, require
+from ._arguments import INTEGER, LIST, NUMBER, NUMBERS, QUANTITY, TEXT, TRUTH, checked, require
 from ._documents import ForceModelFit, MaterialFit, Plan
 from ._files import FileName, file_name
 from ._scene import Quantity, Scene, SceneLike, data_of
@@ -188,6 +188,7 @@ def plan(
     options=TEXT,
     noise=QUANTITY,
     segments=INTEGER,
+    segment_lengths=NUMBERS,
     time=NUMBER,
 )
 def calibrate(
@@ -210,6 +211,7 @@ def calibrate(
     options: str = "given",
     noise: Optional[Quantity] = None,
     segments: int = 0,
+    segment_lengths: Optional[Sequence[float]] = None,
     time: Optional[float] = None,
     materials: Optional[FileName] = None,
     **limits: Any,
@@ -223,7 +225,7 @@ def calibrate(
     with same_clamps what all share. predict: each shape is left out in turn, and predicted. options: "auto" chooses the terms of
     natural curvature, and clamps as said, alike or each on its own, that predict best ("tried" of the document). noise: standard
     deviation of one coordinate; None: estimated. segments: of your simulator's chain, whose springs are
-    then found too ("chains" of the document). register, arc_lengths: as of check(). time, materials: as of
+    then found too ("chains" of the document); segment_lengths [m] where they are unequal. register, arc_lengths: as of check(). time, materials: as of
     solve(), of all scenes.
 
     Without: a ForceModelFit of the scenes. holdout: scenes that only judge. target: RMS deviation
@@ -245,6 +247,7 @@ def calibrate(
         "predict": bool(predict),
         "options": options,
         "segments": segments,
+        "segment_lengths": [] if segment_lengths is None else [float(part) for part in segment_lengths],
         "noise": None if noise is None else _si(noise, "length"),
     }
     return MaterialFit(*_dlo.calibrate_material(data, list(map(_pair, shapes)), what, limits))

@@ -83,7 +83,7 @@ class Scene(Strict):
         bending_stiffness: Optional[Union[Quantity, Sequence[Quantity]]] = None,
         mass_per_length: Optional[Quantity] = None,
         axial_stiffness: Optional[Quantity] = None,
-        stretch: Optional[bool] = None,
+        stretch: Optional[Union[bool, str]] = None,
         torsional_stiffness: Optional[Quantity] = None,
         natural_curvature: Optional[Any] = None,
         natural_twist: Optional[Quantity] = None,
@@ -333,12 +333,13 @@ class Scene(Strict):
         self._put_one("material", value)
 
     @property
-    def stretch(self) -> bool:
-        """Whether it stretches by its tension over EA; model exact alone takes it."""
-        return bool(self._rod.get("stretch", False))
+    def stretch(self) -> Union[bool, str]:
+        """Whether it stretches by its tension over EA, which model exact alone takes; "auto": where it matters."""
+        value: Union[bool, str] = self._rod.get("stretch", False)
+        return value
 
     @stretch.setter
-    def stretch(self, value: Optional[bool]) -> None:
+    def stretch(self, value: Optional[Union[bool, str]]) -> None:
         self._put_one("stretch", value)
 
     @property

@@ -84,7 +84,8 @@ std::string content_of(const Scene& scene) {
   add_named("EI_2 ", scene.given_bending_stiffness_2);
   add_named("mass ", scene.given_mass_per_length);
   add_named("EA ", scene.given_axial_stiffness);
-  if (scene.stretch) add_named("stretch ", scene.axial_stiffness());
+  if (scene.stretch == Stretch::counted) add_named("stretch ", scene.axial_stiffness());
+  if (scene.stretch == Stretch::automatic) add_named("stretch auto ", scene.axial_stiffness());
   const auto add_known = [&](const char* name, double value) {
     if (value > 0) add_named(name, value);
   };

@@ -72,6 +72,18 @@ class Chain {
     return points_ - rest.points.middleCols(before_, points_.cols());
   }
 
+  /// Sets its joints and their springs.
+  void add_springs(OwnPolygon& polygon) const {
+    const Eigen::VectorXd& h = problem_.rest_lengths;
+    for (Eigen::Index j = 0; j + 1 < h.size(); ++j) {
+      const double EI =
+          problem_.stiffnesses.size() > 0 ? problem_.stiffnesses[j] : problem_.stiffness;
+      // A hinge at the clamp is the first point's, other joints are those behind it.
+      polygon.joints.push_back(s_[static_cast<std::size_t>(j + 1 - before_)]);
+      polygon.springs.push_back(polygon.stiffness * EI / ((h[j] + h[j + 1]) / 2));
+    }
+  }
+
   [[nodiscard]] double rms_of(const Eigen::Matrix3Xd& gaps) const { return rms(s_, gaps); }
 
  private:
@@ -270,7 +282,9 @@ std::vector<OwnPolygon> own_polygons(const Scene& scene, const Shape& shape, Spr
     if (!chain.exists()) continue;
     const std::optional<OwnPolygon> one = law ? with_law(chain, clamp, springs, *law)
                                               : with_best_law(chain, clamp, springs, scene.length);
-    if (one) found.push_back(*one);
+    if (!one) continue;
+    found.push_back(*one);
+    chain.add_springs(found.back());
   }
   return found;
 }

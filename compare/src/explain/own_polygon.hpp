@@ -27,6 +27,9 @@ struct OwnPolygon {
   energy_model::JointLaw law = energy_model::JointLaw::linear;  ///< of its springs
   /// Whether with the other laws the file's points are twice as far from it or more.
   bool law_shows = false;
+  std::vector<double> joints;  ///< where its springs are: arc lengths [m]
+  std::vector<double>
+      springs;  ///< each EI over half of both its segments, times stiffness [N m/rad]
 };
 
 /// The words for a chain's clamps.

@@ -64,10 +64,14 @@ class OptionsSearch {
  private:
   /// A profile and chains are those of the chosen fit alone.
   [[nodiscard]] MaterialFit with_profile_and_chains(const Trial& chosen) const {
-    if (options_.chain_segments == 0 && options_.profile_points == 0) return chosen.fit;
+    if (options_.chain_segments == 0 && options_.chain_segment_lengths.empty() &&
+        options_.profile_points == 0) {
+      return chosen.fit;
+    }
     MaterialFitOptions last = chosen.options;
     last.predict = false;
     last.chain_segments = options_.chain_segments;
+    last.chain_segment_lengths = options_.chain_segment_lengths;
     last.profile_points = options_.profile_points;
     MaterialFit fit = fit_material(scenes_, shapes_, last);
     fit.prediction = chosen.fit.prediction;
@@ -91,6 +95,7 @@ class OptionsSearch {
     options.choose_options = false;
     options.alternatives = false;
     options.chain_segments = options.profile_points = 0;
+    options.chain_segment_lengths.clear();
     options.natural_curvature_terms = terms;
     options.shared_clamps = clamps == Clamps::alike;
     if (clamps == Clamps::as_said) {

@@ -60,6 +60,7 @@ Prediction leave_one_out(const std::vector<Scene>& scenes, const std::vector<Mea
   MaterialFitOptions same = options;
   same.alternatives = same.predict = false;
   same.chain_segments = same.profile_points = 0;
+  same.chain_segment_lengths.clear();
   Prediction result{.repeatability_m = repeatability_of(scenes, fit)};
   double squares = 0;
   double points = 0;

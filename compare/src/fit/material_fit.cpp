@@ -165,7 +165,10 @@ void add_chains(const std::vector<Scene>& scenes, const MaterialFitOptions& opti
   for (auto scene = scenes.begin(); scene != scenes.end(); ++scene) {
     if (std::find(scenes.begin(), scene, *scene) != scene) continue;
     const Scene fitted = fitted_scene(*scene, fit, scenes.front());
-    for (ChainSprings& chain : chain_springs(fitted, options.chain_segments, options.solve)) {
+    const std::vector<double>& lengths = options.chain_segment_lengths;
+    for (ChainSprings& chain : lengths.empty()
+                                   ? chain_springs(fitted, options.chain_segments, options.solve)
+                                   : chain_springs(fitted, lengths, options.solve)) {
       fit.chains.push_back(std::move(chain));
     }
   }
@@ -552,7 +555,8 @@ MaterialFit fit_material(const std::vector<Scene>& scenes, const std::vector<Mea
   if (options.choose_options) return fit_with_chosen_options(scenes, shapes, options);
   MaterialFit fit = MaterialFitter(scenes, shapes, options).run();
   if (options.predict) fit.prediction = leave_one_out(scenes, shapes, options, fit);
-  if (options.chain_segments > 0 && fit.youngs_modulus.value) add_chains(scenes, options, fit);
+  const bool of_chains = options.chain_segments > 0 || !options.chain_segment_lengths.empty();
+  if (of_chains && fit.youngs_modulus.value) add_chains(scenes, options, fit);
   return fit;
 }
 

@@ -146,7 +146,7 @@ std::vector<std::size_t> order_along(const Scene& scene) {
 }
 
 void require_slack(const Scene& scene) {
-  if (is_solved_taut(scene)) return;
+  if (scene.stretch == Stretch::counted || is_solved_taut(scene)) return;
   const std::vector<std::size_t> along = order_along(scene);
   for (std::size_t i = 0; i + 1 < along.size(); ++i) {
     const Gripper& a = scene.grippers[along[i]];

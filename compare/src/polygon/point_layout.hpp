@@ -20,8 +20,8 @@ struct Layout {
 /// key if two hold one arc length, or are further apart than the rod between them
 [[nodiscard]] std::vector<std::size_t> order_along(const Scene& scene);
 
-/// What a rod that does not stretch needs. @throws InputError as order_along, and if the rod
-/// between two grippers would be taut
+/// What a rod that does not stretch needs; of one that does the solver says it. @throws InputError
+/// as order_along, and if the rod between two grippers would be taut
 void require_slack(const Scene& scene);
 
 /// Lays out points as `discretise` says. @throws InputError as it does

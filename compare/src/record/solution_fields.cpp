@@ -85,7 +85,11 @@ std::span<const Field<SolvedShape>> solution_fields() {
       {"stretch_moves", "m", "By which stretch would move the points, RMS, to first order",
        [](S s) { return s.solution.stretch.moved_m; }, document},
       {"stretch_tension_change", "", "The same of the largest tension, over it",
-       [](S s) { return s.solution.stretch.tension; }, document}};
+       [](S s) { return s.solution.stretch.tension; }, document},
+      {"stretch_decision", "",
+       "Of a rod with stretch = \"auto\": \"counted\", \"below_target\" or \"not_modelled\"; of "
+       "others \"given\"",
+       [](S s) -> std::string { return to_string(s.solution.stretch_decision); }, document}};
   return fields;
 }
 

@@ -97,7 +97,8 @@ diameter = {diameter}  # round, solid; bending stiffness EI = E pi d^4 / 64
 # [x, y] are about d1 and d2 of the first clamp's frame, natural_twist = "90 deg/m" about the rod.
 # torsional_stiffness (GJ) is then EI / 1.3, if it is not given. Instead of these two, of a helix:
 # helix = {{ radius = "2 cm", pitch = "1 cm" }}; of points of that shape in space: rest_shape = "points.csv".
-# stretch = true lets model exact stretch it by its tension over EA: axial_stiffness = "400 kN", or E A.
+# stretch = true lets model exact stretch it by its tension over EA: axial_stiffness = "400 kN", or E A;
+# stretch = "auto" where that moves the shape or changes the tension by more than --target-error.
 # Of a cable, from the inside out, instead of diameter and material:
 # layers = [{{ outer_diameter = "2 mm", material = "copper" }}, {{ strands = 6, strand_diameter = "2 mm",
 # material = "copper" }}], and layer_bound = "free" of strands that slip on each other.

@@ -392,6 +392,21 @@ void read_rest_shape(StrictTable& rod, const std::vector<StrictTable>& sections,
   }
 }
 
+/// @param scene  its EA has been read
+void read_stretch(StrictTable& rod, Scene& scene) {
+  if (rod.is_text("stretch") && rod.text("stretch") == "auto") {
+    scene.stretch = Stretch::automatic;
+  } else if (rod.has("stretch") && !rod.is_flag("stretch")) {
+    rod.fail("stretch", "unknown (allowed: true, false or \"auto\")");
+  } else if (rod.flag("stretch")) {
+    scene.stretch = Stretch::counted;
+  }
+  if (scene.stretch != Stretch::none && !scene.known_axial_stiffness()) {
+    rod.fail("stretch",
+             "EA is not known (allowed: axial_stiffness, or material and section, or false)");
+  }
+}
+
 }  // namespace
 
 double read_arc_length(StrictTable& table, std::string_view key, double length) {
@@ -410,11 +425,7 @@ void read_rod(StrictTable& rod, std::vector<StrictTable>& sections,
           rod.optional_number("axial_stiffness", Dimension::force, Range::positive())) {
     scene.given_axial_stiffness = axial;
   }
-  scene.stretch = rod.optional_flag("stretch").value_or(false);
-  if (scene.stretch && !scene.known_axial_stiffness()) {
-    rod.fail("stretch",
-             "EA is not known (allowed: axial_stiffness, or material and section, or false)");
-  }
+  read_stretch(rod, scene);
   const std::optional<double> torsional =
       rod.optional_number("torsional_stiffness", Dimension::section_stiffness, Range::positive());
   if (torsional) scene.torsional_stiffness = torsional;

@@ -30,7 +30,7 @@ energy_model::Problem scene_problem(const Scene& scene) {
   problem.bending_stiffness = scene.bending_stiffness();
   problem.bending_stiffness_2 = scene.bending_stiffness_2();
   problem.torsional_stiffness = scene.twisting_stiffness();
-  if (scene.stretch) problem.axial_stiffness = scene.axial_stiffness();
+  if (scene.stretch == Stretch::counted) problem.axial_stiffness = scene.axial_stiffness();
   problem.weight_per_length = scene.mass_per_length() * scene.gravity;
   for (const Section& section : scene.sections) {
     // Dividing first leaves GJ as it is where EI is.

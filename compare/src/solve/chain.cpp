@@ -51,7 +51,7 @@ Solution solve_rigid_chain(const Scene& scene, const ForceModelSettings& setting
     points = points.rowwise().reverse().eval();
   }
   Solution solution = polygon_solution(scene, settings, discretisation, discretisation.rod, points);
-  if (scene.stretch) solution.neglected.emplace_back("stretch");
+  if (scene.stretch == Stretch::counted) solution.neglected.emplace_back("stretch");
   solution.status = result.status;
   solution.message = result.message;
   if (settings.joint_law) solution.energy.bending = result.bending_energy;

@@ -222,7 +222,7 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
   }
   // What stretches is planned for by the shape that does not.
   Scene inextensible = scene;
-  inextensible.stretch = false;
+  inextensible.stretch = Stretch::none;
   const PlanClock clock(options.time_limit);
   const std::vector<std::size_t> in_reach =
       obstacles_in_reach(inextensible, inextensible.force_model);
@@ -290,9 +290,10 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
     // A plan is no reason for a solve to fail.
     no_bound(fmt::format("not found out: {}", error.what()));
   }
-  plan.stretch = !scene.stretch && stretch.bound_m > options.target * inextensible.length / 10;
+  const bool counted = scene.stretch == Stretch::counted;
+  plan.stretch = !counted && stretch.bound_m > options.target * inextensible.length / 10;
   plan.neglected = {shear, polygon, inertia(inextensible, options.gripper_speed), twist};
-  if (!scene.stretch) plan.neglected.insert(plan.neglected.begin(), stretch);
+  if (!counted) plan.neglected.insert(plan.neglected.begin(), stretch);
   if (inextensible.naturally_bent()) plan.neglected.push_back(natural);
   if (friction_in_reach(inextensible)) plan.neglected.push_back(neglected_friction(plan));
   plan.moving = plan.bound("inertia") > options.target * inextensible.length;

@@ -17,6 +17,7 @@
 #include "polygon/energy_problems.hpp"
 #include "scene/reach.hpp"
 #include "solve/linking.hpp"
+#include "solve/stretch_effect.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -131,10 +132,10 @@ energy_model::Equilibrium exact_shape(const Scene& scene, const energy_model::Pr
 
 /// @throws InputError if the rod stretches, which is said of the scene's key
 void refuse_stretch(const Scene& scene) {
-  if (!scene.stretch) return;
+  if (scene.stretch != Stretch::counted) return;
   throw InputError(fmt::format(
       "{}: rod.stretch = true: model energy does not stretch (allowed: --model exact, or chain and "
-      "force, whose segments do; or stretch = false)",
+      "force, whose segments do; or stretch = false or \"auto\")",
       scene.file));
 }
 
@@ -142,6 +143,9 @@ void refuse_stretch(const Scene& scene) {
 
 energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
                                           const SolveOptions& options) {
+  if (model == Model::exact && scene.stretch == Stretch::automatic) {
+    return decide_stretch(scene, model, options).rod;
+  }
   if (model == Model::energy) scene.require_potential("the energy model does");
   if (model == Model::energy) refuse_stretch(scene);
   const energy_model::Problem problem = energy_problem(scene);

@@ -64,14 +64,12 @@ std::vector<double> all_on_rod(std::vector<double> arc_lengths, double length) {
 }
 
 /// The same, and what stretch would change of it.
-Solution told_solution(const Scene& scene, Model model,
-                       const energy_model::Equilibrium& equilibrium, const SolveOptions& options,
-                       const std::vector<double>& arc_lengths,
+Solution told_solution(const StretchedRod& of, Model model, const std::vector<double>& arc_lengths,
                        const std::vector<std::size_t>& obstacles) {
-  Solution solution = solution_of(scene, model, equilibrium, arc_lengths, obstacles);
-  if (scene.stretch) return solution;
-  solution.stretch = stretch_effect(scene, model, equilibrium, options);
-  if (matters(solution.stretch, scene, options)) solution.neglected.emplace_back("stretch");
+  Solution solution = solution_of(of.scene, model, of.rod, arc_lengths, obstacles);
+  solution.stretch = of.effect;
+  solution.stretch_decision = of.decision;
+  if (of.neglects_stretch) solution.neglected.emplace_back("stretch");
   return solution;
 }
 
@@ -132,7 +130,7 @@ Solution solution_of(const Scene& scene, Model model, const energy_model::Equili
 Solution solve(const Scene& scene, Model model, const SolveOptions& options,
                const std::vector<double>& arc_lengths) {
   if (model == Model::energy || model == Model::exact) {
-    return told_solution(scene, model, solve_reference(scene, model, options), options, arc_lengths,
+    return told_solution(decide_stretch(scene, model, options), model, arc_lengths,
                          obstacles_in_reach(scene));
   }
   Solution solution = model == Model::chain ? solve_chain(scene, scene.force_model, options)
@@ -154,8 +152,8 @@ AllSolutions solve_all(const Scene& scene, const SolveOptions& options,
   all.not_looked = std::move(search.not_looked);
   const std::vector<std::size_t> obstacles = obstacles_in_reach(scene);
   for (const energy_model::Equilibrium& state : search.equilibria) {
-    all.solutions.push_back(
-        told_solution(scene, Model::energy, state, options, arc_lengths, obstacles));
+    all.solutions.push_back(told_solution(told_of_stretch(scene, Model::energy, state, options),
+                                          Model::energy, arc_lengths, obstacles));
   }
   return all;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "dlo/compare/deviation.hpp"
@@ -79,6 +80,28 @@ void look_at_longer_rod(const Scene& scene, const Solution& own, double EA,
   }
 }
 
+/// The least slack that an estimate goes by [-].
+constexpr double taut = 1e-9;
+
+bool matters(const StretchEffect& effect, const Scene& scene, const SolveOptions& options) {
+  if (std::isnan(effect.moved_m)) {
+    // A line that sags by its slack alone is pulled less by this share.
+    return effect.strain / (2 * least_slack(scene)) > options.target;
+  }
+  return effect.moved_m > options.target * scene.length ||
+         std::abs(effect.tension) > options.target;
+}
+
+/// None: model exact does not take the scene with stretch, as beside obstacles.
+std::optional<energy_model::Equilibrium> exact_with_stretch(const Scene& scene,
+                                                            const SolveOptions& options) {
+  try {
+    return solve_reference(scene, Model::exact, options);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 StretchEffect stretch_effect(const Scene& scene, Model model, const energy_model::Equilibrium& rod,
@@ -87,7 +110,6 @@ StretchEffect stretch_effect(const Scene& scene, Model model, const energy_model
   const std::optional<double> EA = scene.known_axial_stiffness();
   if (!EA || !rod.sample) return effect;
   const double slack = least_slack(scene);
-  constexpr double taut = 1e-9;
   if (!(slack > taut)) return effect;
   if (!(most_force(scene, rod) / *EA * (1 + 1 / slack) > options.target)) return effect;
   const Solution own = solution_of(scene, model, rod, equal_arc_lengths(scene.length, rod_points),
@@ -114,13 +136,46 @@ StretchEffect stretch_effect(const Scene& scene, Model model, const energy_model
   return effect;
 }
 
-bool matters(const StretchEffect& effect, const Scene& scene, const SolveOptions& options) {
-  if (std::isnan(effect.moved_m)) {
-    // A line that sags by its slack alone is pulled less by this share.
-    return effect.strain / (2 * least_slack(scene)) > options.target;
+StretchedRod told_of_stretch(const Scene& scene, Model model, const energy_model::Equilibrium& rod,
+                             const SolveOptions& options) {
+  StretchedRod told{.scene = scene, .rod = rod};
+  told.scene.stretch = Stretch::none;
+  told.effect = stretch_effect(told.scene, model, rod, options);
+  const bool decides = scene.stretch == Stretch::automatic;
+  told.neglects_stretch =
+      matters(told.effect, scene, options) || (decides && !(least_slack(scene) > taut));
+  if (decides) {
+    told.decision =
+        told.neglects_stretch ? StretchDecision::not_modelled : StretchDecision::below_target;
   }
-  return effect.moved_m > options.target * scene.length ||
-         std::abs(effect.tension) > options.target;
+  return told;
+}
+
+StretchedRod decide_stretch(const Scene& scene, Model model, const SolveOptions& options) {
+  if (scene.stretch == Stretch::counted) {
+    return {.scene = scene, .rod = solve_reference(scene, model, options)};
+  }
+  Scene stretched = scene;
+  stretched.stretch = Stretch::counted;
+  const bool may_count = scene.stretch == Stretch::automatic && model == Model::exact;
+  if (may_count && !(least_slack(scene) > taut)) {
+    // Nothing is solved first: without stretch it may not reach.
+    return {.scene = stretched,
+            .rod = solve_reference(stretched, model, options),
+            .decision = StretchDecision::counted};
+  }
+  Scene rigid = scene;
+  rigid.stretch = Stretch::none;
+  StretchedRod told =
+      told_of_stretch(scene, model, solve_reference(rigid, model, options), options);
+  if (!may_count || !told.neglects_stretch) return told;
+  if (std::optional<energy_model::Equilibrium> rod = exact_with_stretch(stretched, options)) {
+    told.scene = stretched;
+    told.rod = *std::move(rod);
+    told.neglects_stretch = false;
+    told.decision = StretchDecision::counted;
+  }
+  return told;
 }
 
 }  // namespace dlo::compare

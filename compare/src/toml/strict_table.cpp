@@ -119,14 +119,6 @@ std::optional<int> StrictTable::optional_integer(std::string_view key, int low, 
   return integer(key, low, high);
 }
 
-std::optional<bool> StrictTable::optional_flag(std::string_view key) {
-  const toml::node* node = find(key);
-  if (node == nullptr) return std::nullopt;
-  const std::optional<bool> value = node->value_exact<bool>();
-  if (!value) fail(key, "not a flag (allowed: true or false)");
-  return value;
-}
-
 int StrictTable::integer(std::string_view key, int low, int high) {
   const auto value = need(key).value_exact<std::int64_t>();
   if (!value || *value < low || *value > high) {
@@ -253,6 +245,16 @@ std::optional<Eigen::Quaterniond> StrictTable::optional_quaternion(std::string_v
 bool StrictTable::is_table(std::string_view key) const {
   const toml::node* node = table_.get(key);
   return node != nullptr && node->is_table();
+}
+
+bool StrictTable::is_text(std::string_view key) const {
+  const toml::node* node = table_.get(key);
+  return node != nullptr && node->is_string();
+}
+
+bool StrictTable::is_flag(std::string_view key) const {
+  const toml::node* node = table_.get(key);
+  return node != nullptr && node->is_boolean();
 }
 
 bool StrictTable::is_array(std::string_view key) const {

@@ -49,8 +49,6 @@ class StrictTable {
   std::string text(std::string_view key);
   std::optional<std::string> optional_text(std::string_view key);
   int integer(std::string_view key, int low, int high);
-  /// true or false; none: no key.
-  std::optional<bool> optional_flag(std::string_view key);
   /// One of `allowed`.
   std::string choice(std::string_view key, const std::vector<std::string>& allowed);
   /// Of an enumeration with a table of names.
@@ -80,6 +78,8 @@ class StrictTable {
   /// The tables of [[key]], in order.
   std::vector<StrictTable> tables(std::string_view key);
   [[nodiscard]] bool is_table(std::string_view key) const;
+  [[nodiscard]] bool is_text(std::string_view key) const;
+  [[nodiscard]] bool is_flag(std::string_view key) const;
   [[nodiscard]] bool is_array(std::string_view key) const;
   [[nodiscard]] std::vector<std::string> keys() const;
 

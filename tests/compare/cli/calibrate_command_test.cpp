@@ -149,6 +149,28 @@ TEST_F(CalibrateCommand, TellsTheJointsOfAChain) {
   }
   EXPECT_NE(run(own).out.find("Isaac Sim  PhysicsDriveAPI:rotX stiffness = "), std::string::npos);
   expect_error(own + " --format csv", 2, {"--segments", "csv"});
+  // Of unequal segments, as a file has them, each joint has its own.
+  std::ofstream(path("joints.csv")) << "0,0,0\n0.2,0,0\n0.5,0,0\n0.6,0,0\n0.8,0,0\n1,0,0\n";
+  for (const std::string& unequal :
+       {words({"calibrate", a, "--segments", path("joints.csv")}),
+        words({"calibrate", a, "--shape", path("a.csv"), "--segments", path("joints.csv")})}) {
+    const json of = json::parse(run(unequal + " --format json").out).at("chains");
+    ASSERT_EQ(of.size(), 2U);
+    EXPECT_EQ(of[1].at("clamp"), "welded");
+    const json joints = of[1].at("joints");
+    ASSERT_EQ(joints.size(), 4U);
+    EXPECT_NEAR(joints[1].at("at_m").get<double>(), 0.5, 0.02);
+    const char* const joint = "joint_stiffness_Nm_per_rad";
+    // Between 0.3 and 0.1 m as between 0.2 and 0.2 m, but for 0.2 and 0.3 m.
+    EXPECT_NEAR(joints[1].at(joint).get<double>() / joints[3].at(joint).get<double>(), 1, 1e-3);
+    EXPECT_NEAR(joints[1].at(joint).get<double>() / joints[0].at(joint).get<double>(), 1.25, 1e-3);
+    EXPECT_TRUE(of[1].at("parameters").empty());
+    const std::string told = run(unequal).out;
+    EXPECT_NE(told.find("5 segments of 0.1 to 0.3 m, a hinge at the clamp"), std::string::npos)
+        << told;
+    EXPECT_NE(told.find("times EI/h, h the mean of its two segments"), std::string::npos);
+  }
+  expect_error(words({"calibrate", a, "--segments", path("none.csv")}), 2, {"none.csv"});
 }
 
 TEST_F(CalibrateCommand, WritesAMaterialThatScenesCanUse) {

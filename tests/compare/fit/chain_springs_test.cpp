@@ -7,9 +7,13 @@
 #include <numbers>
 #include <string>
 #include <string_view>
+#include <vector>
 
+#include "dlo/compare/error.hpp"
 #include "dlo/compare/material_fit.hpp"
+#include "dlo/compare/reference.hpp"
 #include "measured_shapes.hpp"
+#include "rolled_chain.hpp"
 #include "scenes.hpp"
 
 namespace dlo::compare {
@@ -111,6 +115,109 @@ TEST(ChainSprings, SimulatorsTakeTheSameJointEachByItsOwnNumber) {
           << name << ' ' << to_string(clamp);
     }
     EXPECT_NEAR(chain.equivalent_modulus / scene.material.youngs_modulus, chain.over_rod, 1e-9);
+  }
+}
+
+const std::vector<double>& unequal_lengths() {
+  static const std::vector<double> lengths = {0.08, 0.11, 0.05, 0.09, 0.12, 0.04,
+                                              0.13, 0.1,  0.07, 0.06, 0.15};
+  return lengths;
+}
+
+// As of beam theory above, with hinges where the segments begin: each bends by its moment over its
+// spring, EI / half of both segments, at the clamp EI / h.
+TEST(ChainSprings, OfUnequalSegmentsTheyAreThoseOfBeamTheory) {
+  Scene scene = test::heavy_scene(1e-9, 0);
+  scene.loads = {{.at = 1, .force = {0, -0.001 * scene.bending_stiffness(), 0}}};
+  const std::vector<double>& h = unequal_lengths();
+  std::vector<double> s = {0};
+  for (const double part : h) s.push_back(s.back() + part);
+  double product = 0;
+  double square = 0;
+  for (std::size_t j = 0; j < s.size(); ++j) {
+    const double rod = (3 * s[j] * s[j] - std::pow(s[j], 3)) / 6;
+    double chain = 0;
+    for (std::size_t i = 0; i < j; ++i) {
+      chain += (1 - s[i]) * (s[j] - s[i]) * (i == 0 ? h[0] : (h[i - 1] + h[i]) / 2);
+    }
+    product += rod * chain;
+    square += chain * chain;
+  }
+  const std::vector<ChainSprings> chains = chain_springs(scene, h, {});
+  ASSERT_EQ(chains.size(), 2);  // the first segment is no half
+  const ChainSprings& hinge = chains[0];
+  ASSERT_EQ(hinge.clamp, ChainClamp::hinge);
+  EXPECT_NEAR(hinge.over_rod, square / product, 1e-4);
+  ASSERT_EQ(hinge.joints.size(), h.size());
+  ASSERT_EQ(chains[1].joints.size(), h.size() - 1);
+  for (std::size_t i = 0; i < h.size(); ++i) {
+    const double mean = i == 0 ? h[0] : (h[i - 1] + h[i]) / 2;
+    const double k = hinge.over_rod * scene.bending_stiffness() / mean;
+    EXPECT_NEAR(hinge.joints[i].at, s[i], 1e-6);
+    EXPECT_NEAR(hinge.joints[i].stiffness / k, 1, 1e-6);
+    EXPECT_NEAR(hinge.joints[i].binormal_stiffness / k, 1, 1e-3);
+  }
+  EXPECT_TRUE(simulator_parameters(hinge).empty());
+}
+
+// Laid into another solver of chains the printed springs leave what is said of them, and no other
+// factor of them leaves less.
+TEST(ChainSprings, OfUnequalSegmentsTheyBringAnotherSolversChainToTheRod) {
+  const Scene scene = test::heavy_scene(12, 0);
+  const std::vector<double>& lengths = unequal_lengths();
+  const auto n = static_cast<Eigen::Index>(lengths.size());
+  const Eigen::VectorXd h = Eigen::Map<const Eigen::VectorXd>(lengths.data(), n);
+  const double w = scene.weight_per_length().norm();
+  Eigen::Matrix2Xd forces = Eigen::Matrix2Xd::Zero(2, n + 1);
+  forces.row(1).head(n) -= w * h.transpose() / 2;
+  forces.row(1).tail(n) -= w * h.transpose() / 2;
+  const std::vector<ChainSprings> chains = chain_springs(scene, lengths, {});
+  ASSERT_EQ(chains[1].clamp, ChainClamp::welded);
+  const auto far = [&](auto spring, const auto& moment, double factor) {
+    Eigen::VectorXd springs(n - 1);
+    for (Eigen::Index i = 0; i + 1 < n; ++i) {
+      springs[i] = factor * spring(chains[1].joints[static_cast<std::size_t>(i)]);
+    }
+    const Eigen::Matrix3Xd points = test::chain_at_rest(h, springs, forces, moment);
+    std::vector<double> s = {0};
+    for (const double part : lengths) s.push_back(s.back() + part);
+    // The rod's points as far from each other as the chain's, all but for their bow.
+    const Eigen::Matrix3Xd rod = solve_reference(scene, Model::energy).sample(s).points;
+    return (points - rod).norm() / std::sqrt(static_cast<double>(n + 1));
+  };
+  const auto linear = [](const ChainJoint& joint) { return joint.stiffness; };
+  const auto binormal = [](const ChainJoint& joint) { return joint.binormal_stiffness; };
+  const double own = far(linear, test::linear_moment, 1);
+  EXPECT_NEAR(own / chains[1].rms_m, 1, 0.2);
+  EXPECT_NEAR(far(binormal, test::binormal_moment, 1) / own, 1, 0.2);
+  for (const double factor : {0.9, 1.1}) {
+    EXPECT_GT(far(linear, test::linear_moment, factor), 1.2 * own) << factor;
+  }
+}
+
+// The first segment is then the half of one that goes on behind the clamp.
+TEST(ChainSprings, OfUnequalSegmentsAHalfAtTheClampIsHeldInTheMiddle) {
+  const Scene scene = test::heavy_scene(2, 0);
+  std::vector<double> lengths = unequal_lengths();
+  lengths[0] = lengths[1] / 2;
+  lengths[10] += 0.025;
+  const std::vector<ChainSprings> chains = chain_springs(scene, lengths, {});
+  ASSERT_EQ(chains.size(), 3);
+  const ChainSprings& middle = chains[2];
+  ASSERT_EQ(middle.clamp, ChainClamp::middle);
+  ASSERT_EQ(middle.joints.size(), 10);
+  const double EI = middle.over_rod * scene.bending_stiffness();
+  EXPECT_NEAR(middle.joints[0].stiffness * lengths[1] / EI, 1, 1e-3);
+  EXPECT_NEAR(middle.joints[1].stiffness * (lengths[1] + lengths[2]) / 2 / EI, 1, 1e-3);
+}
+
+TEST(ChainSprings, OfSegmentsOfAnotherRodThereAreNone) {
+  const Scene scene = test::heavy_scene(5, 0);
+  for (const std::vector<double>& wrong :
+       {std::vector<double>(3, 1.0 / 3), std::vector<double>(201, 1.0 / 201),
+        std::vector<double>(10, 0.2), std::vector<double>{0.5, 0, 0.25, 0.25},
+        std::vector<double>{}}) {
+    EXPECT_THROW((void)chain_springs(scene, wrong, {}), InputError) << wrong.size();
   }
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/plan.hpp"
@@ -81,7 +82,7 @@ TEST(StretchEffect, IsSilentWhereItDoesNotMatter) {
 TEST(StretchEffect, IsNotAskedOfARodThatStretches) {
   Scene scene = line(4e5, 98);
   scene.given_bending_stiffness = 200;
-  scene.stretch = true;
+  scene.stretch = Stretch::counted;
   const Solution solution = solve(scene, Model::exact);
   EXPECT_FALSE(neglects(solution, "stretch"));
   EXPECT_GT(solution.energy.stretch, 0);
@@ -91,6 +92,134 @@ TEST(StretchEffect, IsNotAskedOfARodThatStretches) {
   EXPECT_NEAR(solution.grippers[1].force.norm() / tension, 1, 1e-3);
 }
 
+void expect_same(const Solution& one, const Solution& other) {
+  EXPECT_EQ(one.shape.points, other.shape.points);
+  EXPECT_EQ(one.tension, other.tension);
+  EXPECT_EQ(one.energy.stretch, other.energy.stretch);
+  EXPECT_EQ(one.energy.total(), other.energy.total());
+  EXPECT_EQ(one.grippers[0].force, other.grippers[0].force);
+  EXPECT_EQ(one.grippers[0].torque, other.grippers[0].torque);
+  EXPECT_EQ(one.neglected, other.neglected);
+}
+
+Solution with(Scene scene, Stretch stretch, Model model) {
+  scene.stretch = stretch;
+  return solve(scene, model);
+}
+
+/// A steel wire of 0.2 m on a clamp, level.
+Scene cantilever() {
+  return parse_scene(R"([rod]
+length = 0.2
+diameter = "1 mm"
+material = "spring_steel"
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = "0 deg"
+)",
+                     "cantilever", materials());
+}
+
+TEST(AutomaticStretch, IsThatOfAMooringLineWhichItMoves) {
+  Scene scene = line(4e5, 98);
+  scene.given_bending_stiffness = 200;
+  const Solution decided = with(scene, Stretch::automatic, Model::exact);
+  EXPECT_EQ(decided.stretch_decision, StretchDecision::counted);
+  expect_same(decided, with(scene, Stretch::counted, Model::exact));
+  // The estimate that decided it is that of the shape without.
+  EXPECT_EQ(decided.stretch.moved_m, with(scene, Stretch::none, Model::exact).stretch.moved_m);
+  EXPECT_GT(decided.stretch.moved_m, 1e-3 * scene.length);
+  const double tension = tension_of(4e5, 20, 100, 98);
+  EXPECT_NEAR(decided.grippers[1].force.norm() / tension, 1, 1e-3);
+}
+
+TEST(AutomaticStretch, IsNeglectedByAShortCantilever) {
+  for (const Model model : {Model::energy, Model::exact}) {
+    const Solution decided = with(cantilever(), Stretch::automatic, model);
+    EXPECT_EQ(decided.stretch_decision, StretchDecision::below_target);
+    expect_same(decided, with(cantilever(), Stretch::none, model));
+  }
+}
+
+TEST(AutomaticStretch, GoesByTheTarget) {
+  // A mooring line of steel is moved by less than a permille, and by more than a millionth.
+  Scene scene = line(4e8, 96);
+  scene.given_bending_stiffness = 200;
+  scene.stretch = Stretch::automatic;
+  EXPECT_EQ(solve(scene, Model::exact).stretch_decision, StretchDecision::below_target);
+  SolveOptions strict;
+  strict.target = 1e-6;
+  const Solution decided = solve(scene, Model::exact, strict);
+  EXPECT_EQ(decided.stretch_decision, StretchDecision::counted);
+  EXPECT_GT(decided.energy.stretch, 0);
+}
+
+TEST(AutomaticStretch, IsSaidToMatterWhereTheModelHasNone) {
+  Scene scene = line(4e5, 98);
+  scene.given_bending_stiffness = 200;
+  const Solution energy = with(scene, Stretch::automatic, Model::energy);
+  EXPECT_EQ(energy.stretch_decision, StretchDecision::not_modelled);
+  expect_same(energy, with(scene, Stretch::none, Model::energy));
+  EXPECT_TRUE(neglects(energy, "stretch"));
+  scene.stretch = Stretch::automatic;
+  EXPECT_EQ(solve_all(scene).solutions[0].stretch_decision, StretchDecision::not_modelled);
+  EXPECT_EQ(with(scene, Stretch::none, Model::energy).stretch_decision, StretchDecision::given);
+}
+
+TEST(AutomaticStretch, IsNotThatOfExactBesideAnObstacleOrOfACatenary) {
+  Scene lies = line(4e5, 98);
+  lies.given_bending_stiffness = 200;
+  lies.obstacles.push_back({.body = obstacle::Body::half_space({0, 0, -4}, Vector3d::UnitZ())});
+  Scene soft = line(4e5, 98);
+  soft.given_bending_stiffness = 1e-4;
+  for (const Scene& scene : {lies, soft}) {
+    EXPECT_THROW((void)with(scene, Stretch::counted, Model::exact), InputError);
+    const Solution decided = with(scene, Stretch::automatic, Model::exact);
+    EXPECT_EQ(decided.stretch_decision, StretchDecision::not_modelled);
+    EXPECT_TRUE(neglects(decided, "stretch"));
+    expect_same(decided, with(scene, Stretch::none, Model::exact));
+  }
+}
+
+// Without stretch its weight would pull it infinitely hard, or it does not reach.
+TEST(AutomaticStretch, IsThatOfALineThatGripsHoldTaut) {
+  for (const double apart : {100.0, 100.5}) {
+    Scene scene = line(4e5, apart);
+    scene.given_bending_stiffness = 5e3;
+    EXPECT_THROW((void)with(scene, Stretch::none, Model::exact), InputError);
+    const Solution decided = with(scene, Stretch::automatic, Model::exact);
+    EXPECT_EQ(decided.stretch_decision, StretchDecision::counted);
+    expect_same(decided, with(scene, Stretch::counted, Model::exact));
+    // What its EI bears is less than a permille.
+    const double tension = tension_of(4e5, 20, 100, apart);
+    EXPECT_NEAR(decided.grippers[1].force.norm() / tension, 1, 1e-3);
+  }
+}
+
+TEST(AutomaticStretch, IsOneOfThreeWords) {
+  const auto read = [](const std::string& value) {
+    return parse_scene(
+        "[rod]\nlength = 1\nbending_stiffness = 0.1\nmass_per_length = 0.01\n"
+        "axial_stiffness = \"2 kN\"\nstretch = " +
+            value + "\n[[gripper]]\nat = 0\nposition = [0, 0, 0]\nhold = \"pin\"\n",
+        "text", materials());
+  };
+  EXPECT_EQ(read("\"auto\"").stretch, Stretch::automatic);
+  EXPECT_EQ(read("true").stretch, Stretch::counted);
+  EXPECT_EQ(read("false").stretch, Stretch::none);
+  for (const char* wrong : {"\"yes\"", "1", "\"true\""}) {
+    try {
+      (void)read(wrong);
+      FAIL() << wrong;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find("allowed: true, false or \"auto\""),
+                std::string::npos)
+          << error.what();
+    }
+  }
+}
+
 TEST(StretchEffect, NeedsAStiffnessThatIsKnown) {
   const std::string text =
       "[rod]\nlength = 1\nbending_stiffness = 0.1\nmass_per_length = 0.01\nstretch = true\n";
@@ -98,8 +227,10 @@ TEST(StretchEffect, NeedsAStiffnessThatIsKnown) {
   EXPECT_THROW((void)parse_scene(text + gripper, "text", materials()), InputError);
   const Scene scene =
       parse_scene(text + "axial_stiffness = \"2 kN\"\n" + gripper, "text", materials());
-  EXPECT_TRUE(scene.stretch);
+  EXPECT_EQ(scene.stretch, Stretch::counted);
   EXPECT_EQ(scene.axial_stiffness(), 2000);
+  const std::string open = text.substr(0, text.size() - 5) + "\"auto\"\n";
+  EXPECT_THROW((void)parse_scene(open + gripper, "text", materials()), InputError);
 }
 
 }  // namespace

@@ -43,7 +43,9 @@ struct MaterialFitOptions {
   /// Where residuals are systematic, and none of the above is fitted, it is tried what would remove
   /// them (MaterialFit::alternatives).
   bool alternatives = false;
-  int chain_segments = 0;        ///< of a chain of hinges that is to be as stiff; 0: of none
+  int chain_segments = 0;  ///< of a chain of hinges that is to be as stiff; 0: of none
+  /// Lengths of such a chain's segments where they are unequal, 4 to 200 [m]; empty: of none.
+  std::vector<double> chain_segment_lengths = {};
   int profile_points = 0;        ///< of MaterialFit::profile; 0: of none
   std::optional<double> noise;   ///< standard deviation of one coordinate [m]; else estimated
   double smallest_ratio = 1e-4;  ///< of the modulus to the scene's, where it is looked for
@@ -99,15 +101,25 @@ struct FitAlternative {
   std::optional<double> prediction_m = std::nullopt;
 };
 
-/// The springs with which a chain of equal segments comes nearest to the fitted rod in a scene.
+/// A joint of a chain of unequal segments.
+struct ChainJoint {
+  double at = 0;         ///< arc length [m]
+  double stiffness = 0;  ///< its moment over its angle [N m/rad]
+  /// The same with the energy of discrete elastic rods, as ChainSprings::binormal_stiffness.
+  double binormal_stiffness = 0;
+};
+
+/// The springs with which a chain comes nearest to the fitted rod in a scene. Between unequal
+/// segments each joint has its own, EI over half of both segments times `over_rod`.
 struct ChainSprings {
   std::string scene;                     ///< its name
   ChainClamp clamp = ChainClamp::hinge;  ///< how clamps hold it
   int segments = 0;                      ///< those at clamps held in their middle counted whole
-  double segment_length = 0;             ///< h [m]
-  double stiffness = 0;                  ///< of one joint [N m/rad], its moment over its angle
-  double over_rod = 1;                   ///< that over EI / h
-  double rms_m = 0;                      ///< of its points from the rod
+  double segment_length = 0;             ///< h [m]; of unequal ones the mean
+  /// Of one joint between segments of that length [N m/rad], its moment over its angle.
+  double stiffness = 0;
+  double over_rod = 1;  ///< that over EI / h
+  double rms_m = 0;     ///< of its points from the rod
   /// The same of a chain whose joints have the energy of discrete elastic rods,
   /// k (2 tan(angle/2))^2 / 2: their k [N m/rad].
   double binormal_stiffness = 0;
@@ -116,6 +128,9 @@ struct ChainSprings {
   double equivalent_modulus = 0;
   double mass_per_length = 0;  ///< of the scene's rod, in the mean [kg/m]
   double diameter = 0;         ///< of the scene's rod [m]; 0: not known
+  /// Of unequal segments, scaled to the rod's length [m]; empty: all are equal.
+  std::vector<double> segment_lengths;
+  std::vector<ChainJoint> joints;  ///< of unequal segments, along the rod; else empty
 };
 
 /// One number of a simulator's chain, by the name that it has there.
@@ -134,7 +149,8 @@ struct SimulatorParameter {
 /// divided), the angular drives of D6 joints in PhysX 5, and in USD for Isaac Sim, which has them
 /// per degree. Masses: the density of a capsule that weighs what its segment does, although its
 /// half-spheres reach over the segment's ends, rho = mass / (pi r^2 h + 4/3 pi r^3). Those that
-/// take a modulus or a density only if the diameter is known.
+/// take a modulus or a density only if the diameter is known. None of a chain of unequal segments,
+/// which has no one number: ChainSprings::joints has those of each joint.
 [[nodiscard]] std::vector<SimulatorParameter> simulator_parameters(const ChainSprings& chain);
 
 /// How a gripper of all scenes is held beside what they say.

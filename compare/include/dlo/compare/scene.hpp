@@ -15,6 +15,13 @@
 
 namespace dlo::compare {
 
+/// Whether a rod stretches by N / EA.
+enum class Stretch {
+  none,       ///< it keeps its length
+  counted,    ///< it does; EA is then known
+  automatic,  ///< counted where the estimate of StretchEffect says that it matters; EA is known
+};
+
 /// Keeps a clamped cross-section from rotating about its direction.
 struct FrameHold {
   /// First director of the rod's frame, unit and across the direction; none: that of the first
@@ -158,7 +165,7 @@ struct Scene {
   /// EI about d2 [N m^2], > 0, beside given_bending_stiffness, which then is about d1; none: round.
   std::optional<double> given_bending_stiffness_2;
   std::optional<double> given_axial_stiffness;  ///< EA [N], > 0; none: axial_stiffness()
-  bool stretch = false;                         ///< it stretches by N / EA; EA is then known
+  Stretch stretch = Stretch::none;              ///< of models that have it
   /// GJ [N m^2], > 0; needed where two clamps hold frames or the rod has material directors, of no
   /// effect elsewhere.
   std::optional<double> torsional_stiffness;

@@ -75,6 +75,25 @@ struct StretchEffect {
   double tension = std::numeric_limits<double>::quiet_NaN();  ///< by its largest value's share [-]
 };
 
+/// What became of the stretch of a scene that leaves it to an estimate (Stretch::automatic).
+enum class StretchDecision {
+  given,         ///< it does not leave it, or the model is chain or force, whose segments stretch
+  counted,       ///< it matters
+  below_target,  ///< it does not, and is neglected
+  not_modelled,  ///< it matters, and the model has none, or not of this scene
+};
+
+/// As JSON spells them.
+template <>
+struct Choices<StretchDecision> {
+  /// In the enumeration's order.
+  static constexpr Choice<StretchDecision> all[] = {
+      {StretchDecision::given, "given", "the scene says it"},
+      {StretchDecision::counted, "counted", "it matters"},
+      {StretchDecision::below_target, "below_target", "it does not matter"},
+      {StretchDecision::not_modelled, "not_modelled", "it matters, the model has none"}};
+};
+
 /// Turns of a part of the rod whose ends hold frames, in turns; the writhe is of that part with its
 /// ends going on straight.
 struct Linking {
@@ -115,7 +134,10 @@ struct Solution {
   /// (where it touches an obstacle that has it; of Comparison, where either model does), "stretch"
   /// (of energy and exact, where solve() finds that it matters).
   std::vector<std::string> neglected;
-  StretchEffect stretch;  ///< of energy and exact, from solve() and solve_all()
+  /// Of energy and exact, from solve() and solve_all(): of the shape without stretch, also where
+  /// that estimate made stretch count.
+  StretchEffect stretch;
+  StretchDecision stretch_decision = StretchDecision::given;  ///< likewise
   /// Smallest eigenvalue of the reduced Hessian over EI/l, where a search looked; else NaN.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   /// Of a `near_singular` one of energy: directions in which it is singular, at a fold or
