@@ -20,7 +20,7 @@
 namespace dlo::compare {
 namespace {
 
-constexpr double no_factor = std::numeric_limits<double>::quiet_NaN();
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 /// What a chain of hinges may leave of the error that it explains.
 constexpr double chain_may_leave = 0.05;
 /// What another equilibrium may leave.
@@ -98,7 +98,7 @@ class Diagnosis {
           "the hinge at the clamp has a spring of EI/h: half an element is too soft there");
     }
     if (best->law_shows && best->law == energy_model::JointLaw::linear) {
-      add("springs linear in the angle", no_factor,
+      add("springs linear in the angle", undefined,
           "springs are linear in the angle, not in 2 tan(angle/2): another error of second order");
       found_.back().defect = false;
     }
@@ -186,7 +186,7 @@ class Diagnosis {
       if (!(distance(finest().shape, rod.sample) <= may_be_left_without * error_m(finest()))) {
         return false;
       }
-      add(name, no_factor, "the shape is that of the scene without it");
+      add(name, undefined, "the shape is that of the scene without it");
       return true;
     } catch (const ConvergenceError&) {
       return false;
@@ -232,7 +232,7 @@ class Diagnosis {
       for (const energy_model::Equilibrium& state : reference_states(scene_, options_)) {
         if (!(distance(finest().shape, state.sample) <= may_be_left * error_m(finest()))) continue;
         const bool unstable = state.status == energy_model::SolveStatus::saddle;
-        add(unstable ? "unstable equilibrium" : "other equilibrium", no_factor,
+        add(unstable ? "unstable equilibrium" : "other equilibrium", undefined,
             unstable ? "the shape is an equilibrium that is unstable"
                      : "the shape is another stable equilibrium of the scene");
         return true;
@@ -277,7 +277,7 @@ class Diagnosis {
       for (const Explanation& one : all) {
         if (one.kind == ExplanationKind::discretisation) continue;
         if (!(one.rms_m <= left * check.whole_rms_m)) continue;
-        add(one.kind == ExplanationKind::file ? "file" : "scene", no_factor, one.cause);
+        add(one.kind == ExplanationKind::file ? "file" : "scene", undefined, one.cause);
         return true;
       }
     } catch (const ConvergenceError&) {
@@ -298,10 +298,10 @@ class Diagnosis {
 }  // namespace
 
 double convergence_order(const std::vector<CardShape>& shapes) {
-  if (shapes.size() < 2) return no_factor;
+  if (shapes.size() < 2) return undefined;
   const CardShape& first = shapes.front();
   const CardShape& last = shapes.back();
-  if (!(first.error > error_floor) || !(last.error > error_floor)) return no_factor;
+  if (!(first.error > error_floor) || !(last.error > error_floor)) return undefined;
   return std::log(first.error / last.error) /
          std::log(static_cast<double>(last.points) / first.points);
 }
