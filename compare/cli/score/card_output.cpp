@@ -62,8 +62,12 @@ std::string what_is_wrong(const CardScene& scene) {
     text += ": " + cause.words;
   }
   if (text.empty() && !scene.right()) {
-    text = fmt::format("{:.3g} % of l off with N = {}, the cause was not found",
-                       scene.runs.back().error * 100, scene.runs.back().points);
+    constexpr double converges = 0.8;
+    text = fmt::format("{:.3g} % of l off with N = {}, {}", scene.runs.back().error * 100,
+                       scene.runs.back().points,
+                       scene.order > converges
+                           ? fmt::format("and converges with order {:.1f}", scene.order)
+                           : "the cause was not found");
   }
   return text;
 }

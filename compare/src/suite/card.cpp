@@ -212,6 +212,7 @@ std::vector<Card> make_cards(const std::string& battery_version,
                              const std::vector<BatteryScene>& scenes,
                              const std::vector<Simulator>& simulators, const CardOptions& options) {
   std::vector<Card> cards;
+  cards.reserve(simulators.size());
   for (const Simulator& simulator : simulators) {
     cards.push_back({.simulator = simulator.name,
                      .battery_version = battery_version,
