@@ -78,7 +78,8 @@ class Diagnosis {
 
   /// @return whether the shapes are those of a chain of hinges with springs EI/h
   bool look_at_chains(bool converges) {
-    if (!(coarsest().error > error_floor)) return false;
+    // The chains do not stretch.
+    if (scene_.stretch || !(coarsest().error > error_floor)) return false;
     std::optional<OwnPolygon> best;
     for (const OwnPolygon& chain : own_polygons(scene_, coarsest().shape, Springs::as_the_rod)) {
       if (!best || chain.rms_m < best->rms_m) best = chain;
@@ -167,6 +168,7 @@ class Diagnosis {
   }
 
   bool look_at_springs() {
+    if (scene_.stretch) return false;
     const std::optional<double> coarse = spring_factor(coarsest());
     const std::optional<double> fine = coarse ? spring_factor(finest()) : std::nullopt;
     if (!fine) return false;

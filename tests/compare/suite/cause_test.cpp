@@ -13,6 +13,7 @@
 #include "dlo/compare/shape.hpp"
 #include "dlo/compare/solve.hpp"
 #include "explain/own_polygon.hpp"
+#include "suite/answer.hpp"
 #include "suite/balance.hpp"
 #include "suite/battery.hpp"
 
@@ -41,7 +42,7 @@ Shape rod_shape(const Scene& scene, int points = 65) {
 /// Of shapes at 16, 32 and 64 segments that are those of another scene.
 std::vector<Cause> causes_of_other(const Scene& scene, const Scene& other) {
   std::vector<CardShape> shapes;
-  const auto reference = dlo::compare::solve_reference(scene, Model::energy);
+  const auto reference = dlo::compare::solve_reference(scene, dlo::compare::answer_model(scene));
   for (const int points : {17, 33, 65}) {
     const Shape shape = rod_shape(other, points);
     shapes.push_back({.points = points,
@@ -104,6 +105,13 @@ TEST(Causes, NameWhatASceneHasAndAShapeHasNot) {
   Scene free = floor;
   free.obstacles.clear();
   EXPECT_EQ(causes_of_other(floor, free).at(0).name, "obstacles ignored");
+}
+
+TEST(Causes, NameStretchThatRigidSegmentsDoNotHave) {
+  const Scene cord = battery_scene("stretch_bending");
+  Scene rigid = cord;
+  rigid.stretch = false;
+  EXPECT_EQ(causes_of_other(cord, rigid).at(0).name, "stretch ignored");
 }
 
 TEST(Causes, NameAStiffnessWhereNoChainIsCompared) {
