@@ -99,6 +99,19 @@ TEST_F(SuiteCommand, OwnChainConvergesAndSaysWhatItDoesNotHave) {
   EXPECT_EQ(card.at("total").at("not_supported"), 6);  // helices and strips
 }
 
+TEST_F(SuiteCommand, IsTheSameWithOneJobAndTwo) {
+  const auto without_times = [](json card) {
+    for (json& group : card["classes"]) group.erase("wall_s");
+    card["total"].erase("wall_s");
+    for (json& scene : card["scenes"]) {
+      for (json& one : scene["runs"]) one.erase("wall_s");
+    }
+    return card;
+  };
+  const std::string scenes = "--with chain --scenes weight,twist --jobs ";
+  EXPECT_EQ(without_times(card_of(scenes + "1")), without_times(card_of(scenes + "2")));
+}
+
 TEST_F(SuiteCommand, DoesNotRunFinishedRunsAgain) {
   const std::string program =
       " --with mine='sh -c \"echo run >> " + path("runs") + "; exit 3\" {shape}'";
