@@ -6,7 +6,7 @@ const std::vector<Task>& tasks() {
   static const std::vector<Task> list = {
       {"Begin", {add_init, add_materials}},
       {"See a shape", {add_solve, add_scene}},
-      {"Is my simulator's shape right?", {add_check}},
+      {"Is my simulator's shape right?", {add_check, add_suite}},
       {"Get parameters", {add_calibrate}},
       {"How far is the force model from physics, and why?", {add_compare, add_report, add_paper}},
       {"What does accuracy cost?", {add_bench, add_stability}},

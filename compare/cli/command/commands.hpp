@@ -22,6 +22,7 @@ void add_report(CLI::App& app);
 void add_scene(CLI::App& app);
 void add_sweep(CLI::App& app);
 void add_modes(CLI::App& app);
+void add_suite(CLI::App& app);
 void add_track(CLI::App& app);
 
 /// Commands by what a user wants to do.

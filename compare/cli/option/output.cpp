@@ -60,9 +60,15 @@ bool has_long_name(const CLI::Option& option, std::initializer_list<std::string>
   });
 }
 
+/// Whether the option names a file or folder to write, whatever its value.
+bool is_written_file(const CLI::Option& option) {
+  return has_long_name(option,
+                       {"output", "junit", "paraview", "report", "markdown", "html", "write"});
+}
+
 /// Whether the option names files that are read, as far as its help says so.
 bool is_read(const CLI::Option& option) {
-  if (has_long_name(option, {"output", "junit", "plot", "paraview", "report"})) return false;
+  if (has_long_name(option, {"plot"}) || is_written_file(option)) return false;
   const OptionText text = option_text(option);
   const auto names_files = [](const std::string& word) {
     return word.starts_with("SCENE") || word.starts_with("FILE");
@@ -84,10 +90,11 @@ std::vector<std::string> input_files_but(const CLI::App& command, const CLI::Opt
 }
 
 bool is_written(const CLI::App& command, const CLI::Option& option) {
-  if (has_long_name(option, {"output", "junit", "paraview", "report"})) return true;
+  if (is_written_file(option)) return true;
   // "-" is standard output.
   if (has_long_name(option, {"plot"})) return option.results() != std::vector<std::string>{"-"};
-  return has_long_name(option, {"baseline"}) && command.count("--update") > 0;
+  return has_long_name(option, {"baseline"}) &&
+         command.get_option_no_throw("--update") != nullptr && command.count("--update") > 0;
 }
 
 void refuse_two_outputs(const std::string& option, const std::string& file,

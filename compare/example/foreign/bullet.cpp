@@ -184,6 +184,9 @@ int main(int argc, char** argv) {
     simulation.run_to_rest();
     foreign::write_shape(argv[2], chain, simulation.points());
     return 0;
+  } catch (const foreign::NotSupported& scene) {
+    std::cerr << "bullet: " << scene.what() << '\n';
+    return foreign::NotSupported::exit_status;
   } catch (const std::exception& error) {
     std::cerr << "bullet: " << error.what() << '\n';
     return 1;

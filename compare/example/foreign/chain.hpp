@@ -87,8 +87,14 @@ struct Chain {
   }
 };
 
+/// A scene that such a chain cannot be; its exit status says so to `dlo suite`.
+struct NotSupported : std::runtime_error {
+  using std::runtime_error::runtime_error;
+  static constexpr int exit_status = 3;
+};
+
 inline void refuse_unless(bool possible, const std::string& why) {
-  if (!possible) throw std::runtime_error(why);
+  if (!possible) throw NotSupported(why);
 }
 
 /// What such a chain cannot be made of is refused, not neglected.

@@ -135,6 +135,9 @@ int main(int argc, char** argv) {
     const Chain chain = foreign::read_chain(argv[1]);
     foreign::write_shape(argv[2], chain, solve(chain));
     return 0;
+  } catch (const foreign::NotSupported& scene) {
+    std::cerr << "simbody: " << scene.what() << '\n';
+    return foreign::NotSupported::exit_status;
   } catch (const std::exception& error) {
     std::cerr << "simbody: " << error.what() << '\n';
     return 1;

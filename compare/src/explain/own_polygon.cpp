@@ -198,6 +198,7 @@ std::optional<OwnPolygon> fitted(const Chain& chain, Eigen::Matrix3Xd gaps, Chai
     const std::optional<Eigen::Matrix3Xd> beside = chain.gaps(std::exp(log_factor + stride), law);
     if (!beside) return std::nullopt;
     const Eigen::Matrix3Xd slope = (*beside - gaps) / stride;
+    if (!(slope.squaredNorm() > 0)) break;  // a straight chain, whatever its springs
     const double way = std::clamp(-slope.cwiseProduct(gaps).sum() / slope.squaredNorm(), -1.0, 1.0);
     std::optional<Eigen::Matrix3Xd> next = chain.gaps(std::exp(log_factor + way), law);
     if (!next || !(chain.rms_of(*next) < chain.rms_of(gaps))) break;

@@ -112,6 +112,7 @@ ChildOutcome run_child(const std::vector<std::string>& words, const ChildFiles& 
   ::kill(-process, SIGKILL);
   int status = 0;
   while (::waitpid(process, &status, 0) < 0 && errno == EINTR) continue;
+  if (!result.too_long && WIFEXITED(status)) result.exit_status = WEXITSTATUS(status);
   result.problem = result.too_long
                        ? fmt::format("killed after the time limit of {:g} s", time_limit)
                        : problem_of(status);

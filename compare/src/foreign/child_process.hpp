@@ -10,6 +10,7 @@ struct ChildOutcome {
   double seconds = 0;     ///< wall time from its start to its end, to a percent [s]
   std::string problem;    ///< why it did not end well: a clause without its own words; or empty
   bool too_long = false;  ///< it was killed at the time limit
+  int exit_status = 0;    ///< its own; 0 too if a signal ended it
 };
 
 /// Where a program runs, and where what it writes goes.

@@ -164,13 +164,20 @@ ForeignRun run_foreign(const ForeignProgram& program, Scene scene, int points, d
   ForeignRun result;
   result.seconds = outcome.seconds;
   result.too_long = outcome.too_long;
+  const auto refuses = [&] {
+    constexpr int refusal = 3;
+    return outcome.exit_status == refusal ||
+           last_words(folder.file("stderr")).starts_with(": not supported");
+  };
   if (!outcome.problem.empty()) {
+    result.not_supported = !outcome.too_long && refuses();
     result.problem = outcome.problem + last_words(folder.file("stderr"));
     return result;
   }
   try {
     const std::string file = folder.shape_file();
     if (file.empty()) {
+      result.not_supported = refuses();
       result.problem = "wrote no shape" + last_words(folder.file("stderr"));
       return result;
     }

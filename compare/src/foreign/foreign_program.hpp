@@ -30,6 +30,9 @@ struct ForeignRun {
   double seconds = 0;                  ///< wall time of the process [s]
   std::string problem;                 ///< one line; empty if there is a shape
   bool too_long = false;               ///< it was killed at the time limit
+  /// It has no such scene: exit status 3, or no shape and a last line of standard error that begins
+  /// with "not supported".
+  bool not_supported = false;
 };
 
 /// Runs a program on a scene in a folder of its own in the system's temporary one, which is gone

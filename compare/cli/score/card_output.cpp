@@ -1,0 +1,240 @@
+#include "score/card_output.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/display.hpp"
+#include "base/quote.hpp"
+#include "option/output.hpp"
+#include "report/html.hpp"
+#include "report/style.hpp"
+
+namespace dlo::cli {
+namespace {
+
+using compare::Card;
+using compare::CardGroup;
+using compare::CardScene;
+using compare::Cause;
+using compare::RunStatus;
+
+std::string error_word(double error) {
+  return std::isfinite(error) ? fmt::format("{:.1e}", error) : "-";
+}
+
+std::string order_word(double order) {
+  return std::isfinite(order) ? fmt::format("{:.1f}", order) : "-";
+}
+
+std::string causes_words(const CardGroup& group) {
+  std::string text;
+  for (const auto& [name, count] : group.causes) {
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", name, count);
+  }
+  return text;
+}
+
+std::string summary(const Card& card) {
+  const CardGroup total = card.total();
+  std::string text = fmt::format("{} of {} scenes right", total.right, total.scenes);
+  const auto add = [&](int count, const char* what) {
+    if (count > 0) text += fmt::format(", {} {}", count, what);
+  };
+  add(total.solved - total.right, "wrong");
+  add(total.not_supported, "not supported");
+  add(total.failed, "failed");
+  return text;
+}
+
+/// What is wrong with a scene, or why it has no result; empty if it is right.
+std::string what_is_wrong(const CardScene& scene) {
+  if (scene.status() != RunStatus::solved) {
+    return fmt::format("{}: {}", compare::to_string(scene.status()),
+                       compare::display(scene.problem()));
+  }
+  std::string text;
+  for (const Cause& cause : scene.causes) {
+    text += fmt::format("{}{}", text.empty() ? "" : "; ", cause.name);
+    if (std::isfinite(cause.factor)) text += fmt::format(", {:.3g}", cause.factor);
+    text += ": " + cause.words;
+  }
+  if (text.empty() && !scene.right()) {
+    constexpr double converges = 0.8;
+    text = fmt::format("{:.3g} % of l off with N = {}, {}", scene.runs.back().error * 100,
+                       scene.runs.back().points,
+                       scene.order > converges
+                           ? fmt::format("and converges with order {:.1f}", scene.order)
+                           : "the cause was not found");
+  }
+  return text;
+}
+
+/// The scenes that are not right, those of one reason together, and what that is.
+std::vector<std::pair<std::string, std::string>> wrong_scenes(const Card& card) {
+  std::vector<std::pair<std::string, std::string>> reasons;
+  for (const CardScene& scene : card.scenes) {
+    const std::string wrong = what_is_wrong(scene);
+    if (wrong.empty()) continue;
+    const auto known = std::find_if(reasons.begin(), reasons.end(),
+                                    [&](const auto& one) { return one.second == wrong; });
+    if (known == reasons.end()) {
+      reasons.emplace_back(scene.id, wrong);
+    } else {
+      known->first += ", " + scene.id;
+    }
+  }
+  return reasons;
+}
+
+std::vector<std::string> row_of(const CardGroup& group) {
+  std::vector<std::string> row = {
+      group.name, fmt::format("{} of {}", group.right, group.scenes - group.not_supported)};
+  for (const double error : group.largest) row.push_back(error_word(error));
+  row.push_back(order_word(group.order));
+  row.push_back(fmt::format("{:.2g} s", group.seconds));
+  row.push_back(causes_words(group));
+  return row;
+}
+
+std::vector<std::string> head_of(const Card& card) {
+  std::vector<std::string> head = {"class", "right"};
+  for (const int points : card.points) head.push_back(fmt::format("N = {}", points));
+  head.insert(head.end(), {"order", "time", "causes"});
+  return head;
+}
+
+std::string markdown_row(const std::vector<std::string>& cells) {
+  return fmt::format("| {} |\n", fmt::join(cells, " | "));
+}
+
+/// As a cell of Markdown has it.
+std::string markdown_text(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '|' || c == '<' || c == '*' || c == '_' || c == '`') result += '\\';
+    result += c;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string cards_text(const std::vector<Card>& cards) {
+  std::string out;
+  for (const Card& card : cards) {
+    append(out, "{}{}: {} (suite {})\n  {:<11}{:>9}", out.empty() ? "" : "\n", card.simulator,
+           summary(card), card.battery_version, "class", "right");
+    for (const int points : card.points) append(out, "{:>9}", fmt::format("N = {}", points));
+    append(out, "{:>7}{:>11}  {}\n", "order", "time", "causes");
+    for (const CardGroup& group : card.groups()) {
+      const std::vector<std::string> row = row_of(group);
+      append(out, "  {:<11}{:>9}", row[0], row[1]);
+      for (std::size_t i = 2; i < row.size() - 3; ++i) append(out, "{:>9}", row[i]);
+      append(out, "{:>7}{:>11}  {}", row[row.size() - 3], row[row.size() - 2], row.back());
+      out.erase(out.find_last_not_of(' ') + 1);
+      out += "\n";
+    }
+    for (const auto& [scenes, wrong] : wrong_scenes(card)) append(out, "  {}: {}\n", scenes, wrong);
+  }
+  return out;
+}
+
+std::string cards_markdown(const std::vector<Card>& cards) {
+  std::string out;
+  for (const Card& card : cards) {
+    append(out, "{}**{}**: {} (suite {})\n\n", out.empty() ? "" : "\n",
+           markdown_text(card.simulator), summary(card), card.battery_version);
+    const std::vector<std::string> head = head_of(card);
+    out += markdown_row(head);
+    out += markdown_row(std::vector<std::string>(head.size(), "---"));
+    for (const CardGroup& group : card.groups()) out += markdown_row(row_of(group));
+    std::string list;
+    for (const auto& [scenes, wrong] : wrong_scenes(card)) {
+      append(list, "- `{}`: {}\n", scenes, markdown_text(wrong));
+    }
+    if (!list.empty())
+      append(out, "\n<details><summary>Scenes</summary>\n\n{}\n</details>\n", list);
+  }
+  return out;
+}
+
+std::string cards_junit(const std::vector<Card>& cards) {
+  std::string suites;
+  CardGroup all;
+  for (const Card& card : cards) {
+    std::string cases;
+    for (const CardScene& scene : card.scenes) {
+      double seconds = 0;
+      for (const compare::CardRun& run : scene.runs) seconds += run.seconds;
+      append(cases, "    <testcase classname=\"dlo.suite.{}\" name=\"{}\" time=\"{:.3f}\">",
+             compare::escape_markup(scene.group), compare::escape_markup(scene.id), seconds);
+      const std::string message = compare::escape_markup(what_is_wrong(scene));
+      if (scene.status() == RunStatus::not_supported) {
+        append(cases, "<skipped message=\"{}\"/>", message);
+      } else if (scene.status() == RunStatus::failed) {
+        append(cases, "<error type=\"failed\" message=\"{}\"/>", message);
+      } else if (!scene.right()) {
+        append(cases, "<failure type=\"wrong\" message=\"{}\"/>", message);
+      }
+      cases += "</testcase>\n";
+    }
+    const CardGroup total = card.total();
+    append(suites,
+           "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\">\n{}"
+           "  </testsuite>\n",
+           compare::escape_markup(card.simulator), total.scenes, total.solved - total.right,
+           total.failed, total.not_supported, cases);
+    all.scenes += total.scenes;
+    all.solved += total.solved - total.right;
+    all.failed += total.failed;
+  }
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites tests=\"{}\" failures=\"{}\" "
+      "errors=\"{}\">\n{}</testsuites>\n",
+      all.scenes, all.solved, all.failed, suites);
+}
+
+std::string cards_page(const std::vector<Card>& cards, const std::string& version) {
+  std::string out = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta name=\"generator\" content=\"dlo suite\">\n<link rel=\"icon\" href=\"data:,\">\n"
+      "<title>dlo suite</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n",
+      compare::report_style);
+  for (const Card& card : cards) {
+    const CardGroup total = card.total();
+    append(out, "<h1>{}</h1>\n", compare::escape_markup(card.simulator));
+    out += compare::html_badge(total.right == total.solved && total.failed == 0, summary(card));
+    compare::HtmlTable table{
+        "Largest RMS distance from the rod over its length, by classes", {}, {}};
+    for (const std::string& name : head_of(card)) table.columns.push_back({name});
+    table.columns.front().cell = compare::HtmlCell::word;
+    table.columns.back().cell = compare::HtmlCell::text;
+    for (const CardGroup& group : card.groups()) table.rows.push_back(row_of(group));
+    out += compare::to_html(table);
+    compare::HtmlTable scenes{
+        "", {{"scene", compare::HtmlCell::text}, {"what", compare::HtmlCell::text}}, {}};
+    for (const auto& [ids, wrong] : wrong_scenes(card)) scenes.rows.push_back({ids, wrong});
+    if (!scenes.rows.empty()) {
+      out += "<details><summary>Scenes that are not right, and why</summary>\n" +
+             compare::to_html(scenes) + "</details>\n";
+    }
+  }
+  return out + fmt::format("<p class=\"faint\">dlo {}</p>\n</main>\n</body>\n</html>\n",
+                           compare::escape_markup(version));
+}
+
+std::string changes_text(const std::vector<compare::GroupChange>& changes) {
+  std::string out;
+  for (const compare::GroupChange& change : changes) {
+    if (change.verdict == compare::RegressionVerdict::same) continue;
+    append(out, "{:<20} {}, {}{}{}\n", compare::to_string(change.verdict), change.simulator,
+           change.group, change.message.empty() ? "" : ": ", change.message);
+  }
+  return out.empty() ? "same in every class\n" : out;
+}
+
+}  // namespace dlo::cli

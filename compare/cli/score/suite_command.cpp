@@ -1,0 +1,155 @@
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/output_file.hpp"
+#include "command/commands.hpp"
+#include "dlo/compare/error.hpp"
+#include "format/json.hpp"
+#include "option/exit_status.hpp"
+#include "option/option_values.hpp"
+#include "option/output.hpp"
+#include "option/scene_options.hpp"
+#include "option/share.hpp"
+#include "option/terminal.hpp"
+#include "score/card_output.hpp"
+#include "suite/card_document.hpp"
+#include "suite/gate.hpp"
+#include "suite/pack.hpp"
+
+namespace dlo::cli {
+namespace {
+
+struct SuiteOptions {
+  std::string battery;
+  std::vector<std::string> scenes;
+  std::string pack;
+  std::vector<std::string> simulators;
+  compare::CardOptions card;
+  std::string markdown;
+  std::string junit;
+  std::string page;
+  std::string baseline;
+  compare::RegressionTolerance tolerance;
+  OutputOptions output;
+};
+
+void write_pack(const SuiteOptions& options, const std::string& version,
+                const std::vector<compare::BatteryScene>& scenes) {
+  compare::write_pack(options.pack, version,
+                      compare::certified_answers(scenes, options.card.threads));
+  say("{} answers in {}", scenes.size(), options.pack);
+}
+
+void write_cards(const SuiteOptions& options, const std::string& version,
+                 const std::vector<compare::BatteryScene>& scenes) {
+  const std::vector<compare::Simulator> simulators = compare::parse_simulators(options.simulators);
+  // An unreadable baseline is told before minutes of runs.
+  const std::vector<compare::Card> before = options.baseline.empty()
+                                                ? std::vector<compare::Card>{}
+                                                : compare::load_cards(options.baseline);
+  const std::vector<compare::Card> cards = with_progress("suite", [&](const auto& progress) {
+    compare::CardOptions card = options.card;
+    card.progress = progress;
+    return compare::make_cards(version, scenes, simulators, card);
+  });
+  write_output(options.output, {.text = [&] { return cards_text(cards); },
+                                .json = [&] { return json_text(compare::cards_json(cards)); }});
+  if (!options.markdown.empty()) write_output({.file = options.markdown}, cards_markdown(cards));
+  if (!options.junit.empty()) write_output({.file = options.junit}, cards_junit(cards));
+  if (!options.page.empty()) write_output({.file = options.page}, cards_page(cards, DLO_VERSION));
+  if (options.baseline.empty()) return;
+  const std::vector<compare::GroupChange> changes =
+      compare::compare_cards(before, cards, options.tolerance);
+  if (options.output.is(Format::text) && options.output.file.empty()) {
+    write_standard_output("\n" + changes_text(changes));
+  } else {
+    write_standard_error(changes_text(changes));
+  }
+  const bool worse = std::any_of(changes.begin(), changes.end(), [](const auto& change) {
+    return change.verdict == compare::RegressionVerdict::worse ||
+           change.verdict == compare::RegressionVerdict::changed;
+  });
+  if (worse) end_with(ExitStatus::outside_tolerance);
+}
+
+void run(const SuiteOptions& options) {
+  const compare::Battery battery =
+      options.battery.empty() ? compare::builtin_battery() : compare::load_battery(options.battery);
+  const std::vector<compare::BatteryScene> scenes = chosen_scenes(battery, options.scenes);
+  if (options.pack.empty() && options.simulators.empty()) {
+    throw compare::InputError(
+        "dlo suite: nothing to do (allowed: --write FOLDER, --with NAME=COMMAND, or both)");
+  }
+  if (!options.pack.empty()) write_pack(options, battery.version, scenes);
+  if (!options.simulators.empty()) write_cards(options, battery.version, scenes);
+}
+
+}  // namespace
+
+void add_suite(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("suite", "a battery of scenes with certified answers, and a score card");
+  const auto options = std::make_shared<SuiteOptions>();
+  command
+      ->add_option("--with", options->simulators,
+                   "a simulator to make the card of: NAME=COMMAND with {scene}, {points} and "
+                   "{shape}, or our own chain or force; may be given again")
+      ->type_name("NAME=COMMAND")
+      ->allow_extra_args(false);
+  command->add_option("--scenes", options->scenes, "classes, or names of scenes; none: all")
+      ->type_name("CLASS,..")
+      ->delimiter(',');
+  command
+      ->add_option("--points", options->card.points,
+                   "N of the first of three runs; the others have 2N and 4N")
+      ->check(CLI::Range(4, 10000))
+      ->capture_default_str();
+  command->add_option("--jobs", options->card.threads, "runs at a time; 0: as many as cores")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  command->add_option("--time-limit", options->card.time_limit, "of each run [s]")
+      ->check(number_between(1e-3, 1e9))
+      ->capture_default_str();
+  command
+      ->add_option("--state", options->card.state,
+                   "keep finished runs here; they are not run again")
+      ->type_name("DIR");
+  command
+      ->add_option("--baseline", options->baseline,
+                   "cards of an earlier time (JSON); exit status 1 if a class has got worse")
+      ->type_name("FILE");
+  command
+      ->add_option("--relative", options->tolerance.relative,
+                   "how much an error may grow, as a share of it such as 1%")
+      ->transform(share_up_to(1e3))
+      ->capture_default_str();
+  command
+      ->add_option("--absolute", options->tolerance.absolute,
+                   "and how much beside that, as a share of the rod's length")
+      ->transform(share_up_to(1e3))
+      ->capture_default_str();
+  command->add_option("--markdown", options->markdown, "write the cards as Markdown too")
+      ->type_name("FILE");
+  command->add_option("--junit", options->junit, "and as JUnit XML")->type_name("FILE");
+  command->add_option("--html", options->page, "and as a page with a badge")->type_name("FILE");
+  command
+      ->add_option("--write", options->pack,
+                   "write the answers as a pack: JSON with a schema, and points as CSV")
+      ->type_name("DIR");
+  command
+      ->add_option("--battery", options->battery,
+                   "a battery of your own (TOML), as data/suite/suite.toml is")
+      ->type_name("FILE");
+  add_output_options(*command, options->output, {"text", "json"});
+  command->footer(
+      "Examples:\n"
+      "  dlo suite --with chain --with force --scenes weight,ends --html card.html\n"
+      "  dlo suite --with mine='python3 mine.py {scene} {points} {shape}' --state runs --scenes "
+      "floor\n"
+      "  dlo suite --write answers --scenes floor");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,150 @@
+#include "suite/balance.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "scene/reach.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Points with what acts on each, from an end that is held.
+struct LoadedPoints {
+  Eigen::Matrix3Xd points;
+  Eigen::Matrix3Xd weights;
+  Eigen::Matrix3Xd forces;  // all others
+};
+
+LoadedPoints loaded_points(const Scene& scene, const Shape& shape) {
+  const Eigen::Index n = shape.points.cols() - 1;
+  LoadedPoints result{shape.points, Eigen::Matrix3Xd::Zero(3, n + 1),
+                      Eigen::Matrix3Xd::Zero(3, n + 1)};
+  const std::vector<double>& s = shape.arc_length;
+  const auto at = [&](Eigen::Index i) { return s[static_cast<std::size_t>(i)]; };
+  for (Eigen::Index i = 0; i <= n; ++i) {
+    const double begin = i == 0 ? 0 : (at(i - 1) + at(i)) / 2;
+    const double end = i == n ? scene.length : (at(i) + at(i + 1)) / 2;
+    result.weights.col(i) = scene.weight_between(begin, end);
+    result.forces.col(i) = scene.distributed_between(begin, end);
+  }
+  for (const PointLoad& load : scene.loads) {
+    // Between two points by the lever.
+    const auto after = std::upper_bound(s.begin() + 1, s.end() - 1, load.at);
+    const Eigen::Index i = after - s.begin();
+    const double share = std::clamp((load.at - at(i - 1)) / (at(i) - at(i - 1)), 0.0, 1.0);
+    result.forces.col(i - 1) += (1 - share) * load.force;
+    result.forces.col(i) += share * load.force;
+  }
+  return result;
+}
+
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d result;
+  result << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return result;
+}
+
+/// Curvature at a point inside, as a vector about which the tangent turns [1/m].
+Eigen::Vector3d curvature_vector(const Eigen::Matrix3Xd& points, Eigen::Index i) {
+  const Eigen::Vector3d before = points.col(i) - points.col(i - 1);
+  const Eigen::Vector3d after = points.col(i + 1) - points.col(i);
+  const Eigen::Vector3d axis = before.cross(after);
+  const double sine = axis.norm();
+  if (!(sine > 0)) return Eigen::Vector3d::Zero();
+  const double angle = std::atan2(sine, before.dot(after));
+  return axis / sine * angle * 2 / (before.norm() + after.norm());
+}
+
+/// Moments about the points inside of what acts beyond them, one below the other.
+Eigen::VectorXd moments_beyond(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& forces) {
+  const Eigen::Index n = points.cols() - 1;
+  Eigen::VectorXd moments = Eigen::VectorXd::Zero(3 * (n - 1));
+  for (Eigen::Index i = 1; i < n; ++i) {
+    for (Eigen::Index j = i + 1; j <= n; ++j) {
+      const Eigen::Vector3d arm = points.col(j) - points.col(i);
+      moments.segment<3>(3 * (i - 1)) += arm.cross(Eigen::Vector3d(forces.col(j)));
+    }
+  }
+  return moments;
+}
+
+/// What acts at the far end: nothing, a force, or a force and a torque, as columns.
+Eigen::MatrixXd moments_of_end(const Eigen::Matrix3Xd& points, Eigen::Index unknown) {
+  const Eigen::Index n = points.cols() - 1;
+  Eigen::MatrixXd columns(3 * (n - 1), unknown);
+  for (Eigen::Index i = 1; i < n; ++i) {
+    const Eigen::Index row = 3 * (i - 1);
+    const Eigen::Vector3d arm = points.col(n) - points.col(i);
+    if (unknown >= 3) columns.block<3, 3>(row, 0) = cross_matrix(arm);
+    if (unknown == 6) columns.block<3, 3>(row, 3) = Eigen::Matrix3d::Identity();
+  }
+  return columns;
+}
+
+}  // namespace
+
+std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& shape) {
+  const bool plain = scene.sections.empty() && !scene.has_material_directors() &&
+                     !scene.holds_twist() && !scene.has_couples() && !scene.stretch &&
+                     obstacles_in_reach(scene).empty();
+  constexpr Eigen::Index fewest = 6;
+  const Eigen::Index n = shape.points.cols() - 1;
+  if (!plain || n < fewest || scene.grippers.size() > 2) return std::nullopt;
+  const Gripper* first = nullptr;
+  const Gripper* last = nullptr;
+  for (const Gripper& gripper : scene.grippers) {
+    if (gripper.at != 0 && gripper.at != scene.length) return std::nullopt;
+    (gripper.at == 0 ? first : last) = &gripper;
+  }
+  LoadedPoints rod = loaded_points(scene, shape);
+  if (first == nullptr) {
+    rod = {rod.points.rowwise().reverse(), rod.weights.rowwise().reverse(),
+           rod.forces.rowwise().reverse()};
+    std::swap(first, last);
+  }
+  const Eigen::Index unknown = last == nullptr ? 0 : last->direction ? 6 : 3;
+  Eigen::VectorXd bending(3 * (n - 1));
+  // At the joints beside an end springs differ by where a clamp is thought to be.
+  const Eigen::Index from = 2;
+  const Eigen::Index to = n - 2;
+  bending.setZero();
+  for (Eigen::Index i = from; i <= to; ++i) {
+    bending.segment<3>(3 * (i - 1)) = scene.bending_stiffness() * curvature_vector(rod.points, i);
+  }
+  const auto inside = [&](const auto& rows) {
+    return rows.middleRows(3 * (from - 1), 3 * (to - from + 1)).eval();
+  };
+  bending = inside(bending);
+  if (!(bending.norm() > 0)) return std::nullopt;
+  constexpr double no_load = 1e-9;
+  const Eigen::VectorXd of_weight = inside(moments_beyond(rod.points, rod.weights));
+  const Eigen::VectorXd of_loads = inside(moments_beyond(rod.points, rod.forces));
+  const bool has_weight = of_weight.norm() > no_load * bending.norm();
+  const bool has_loads = of_loads.norm() > no_load * bending.norm();
+  if (!has_weight && !has_loads && unknown == 0) return MomentBalance{.imbalance = 1};
+  // Columns of what is found, and what stands on the other side; without loads any stiffness is as
+  // good, and without weight or without other loads one factor is the other's inverse.
+  Eigen::MatrixXd columns = inside(moments_of_end(rod.points, unknown));
+  const auto append_column = [&](const Eigen::VectorXd& column) {
+    columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
+    columns.rightCols<1>() = column;
+  };
+  const bool both = has_weight && has_loads;
+  if (both) append_column(of_weight);
+  const bool any = has_weight || has_loads;
+  if (any) append_column(-bending);
+  const Eigen::VectorXd right = !any   ? bending
+                                : both ? Eigen::VectorXd(-of_loads)
+                                       : Eigen::VectorXd(-of_weight - of_loads);
+  const Eigen::VectorXd found = columns.colPivHouseholderQr().solve(right);
+  MomentBalance result;
+  if (any) result.stiffness = found[found.size() - 1];
+  if (both) result.weight = found[found.size() - 2];
+  constexpr double least = 1e-3;
+  const double size = std::max(std::abs(result.stiffness) * bending.norm(), least * right.norm());
+  result.imbalance = (columns * found - right).norm() / size;
+  return result;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,121 @@
+#include "suite/battery.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <set>
+
+#include "base/input_file.hpp"
+#include "base/words.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "suite/suite_files.hpp"
+#include "toml/strict_table.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr const char* battery_schema = "dlo/suite/1";
+
+ClosedForm read_closed_form(StrictTable table, double length) {
+  ClosedForm result;
+  result.is = table.text("is");
+  result.at = table.number("at", Dimension::length, Range::between(0, length, "m"));
+  result.point = table.vector("point", Dimension::length);
+  table.finish();
+  return result;
+}
+
+/// @param scene_of  the scene of a file's name
+Battery read_battery(const std::string& text, const std::string& file,
+                     const std::function<Scene(const std::string& name)>& scene_of) {
+  const toml::table root = parse_toml(text, file);
+  StrictTable table(root, "", file);
+  table.only({"scene", "schema", "version"});
+  (void)table.choice("schema", {battery_schema});
+  Battery battery;
+  battery.version = table.text("version");
+  std::set<std::string> ids;
+  for (StrictTable& entry : table.tables("scene")) {
+    entry.only({"class", "closed_form", "file", "isolates"});
+    BatteryScene scene;
+    const std::string name = entry.text("file");
+    scene.id = std::filesystem::path(name).stem();
+    scene.group = entry.text("class");
+    scene.isolates = entry.text("isolates");
+    if (!ids.insert(scene.id).second) {
+      entry.fail("file", "a second scene with this name (allowed: one)");
+    }
+    scene.scene = scene_of(name);
+    if (entry.has("closed_form")) {
+      scene.closed_form = read_closed_form(entry.table("closed_form"), scene.scene.length);
+    }
+    entry.finish();
+    battery.scenes.push_back(std::move(scene));
+  }
+  table.finish();
+  if (battery.scenes.empty()) throw InputError(file + ": no scene (allowed: one or more)");
+  return battery;
+}
+
+std::string builtin_file(std::string_view name) {
+  const auto file = std::find_if(builtin::suite_files.begin(), builtin::suite_files.end(),
+                                 [&](const auto& one) { return one.name == name; });
+  if (file == builtin::suite_files.end()) {
+    throw InputError(fmt::format("data/suite/{}: not compiled into dlo", name));
+  }
+  return std::string(file->text);
+}
+
+}  // namespace
+
+const Battery& builtin_battery() {
+  static const Battery battery = read_battery(
+      builtin_file("suite.toml"), "data/suite/suite.toml", [](const std::string& name) {
+        return parse_scene(builtin_file(name), "data/suite/" + name);
+      });
+  return battery;
+}
+
+Battery load_battery(const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+  return read_battery(read_file(path), path,
+                      [&](const std::string& name) { return load_scene(folder / name); });
+}
+
+std::vector<BatteryScene> chosen_scenes(const Battery& battery,
+                                        const std::vector<std::string>& wanted) {
+  if (wanted.empty()) return battery.scenes;
+  std::vector<std::string> known;
+  for (const BatteryScene& scene : battery.scenes) {
+    if (std::find(known.begin(), known.end(), scene.group) == known.end()) {
+      known.push_back(scene.group);
+    }
+  }
+  const std::vector<std::string> groups = known;
+  for (const BatteryScene& scene : battery.scenes) known.push_back(scene.id);
+  for (const std::string& word : wanted) {
+    if (std::find(known.begin(), known.end(), word) != known.end()) continue;
+    throw InputError(
+        fmt::format("--scenes = {}: no such class or scene{} (allowed: classes {}; or "
+                    "the name of a scene)",
+                    word, did_you_mean(word, known), fmt::join(groups, ", ")));
+  }
+  std::vector<BatteryScene> result;
+  const auto is_wanted = [&](const std::string& word) {
+    return std::find(wanted.begin(), wanted.end(), word) != wanted.end();
+  };
+  for (const BatteryScene& scene : battery.scenes) {
+    if (is_wanted(scene.group) || is_wanted(scene.id)) result.push_back(scene);
+  }
+  return result;
+}
+
+std::string_view answer_schema() {
+  static const std::string text = builtin_file("schema.json");
+  return text;
+}
+
+}  // namespace dlo::compare

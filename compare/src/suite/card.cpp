@@ -1,0 +1,243 @@
+#include "suite/card.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/reference.hpp"
+#include "parallel/threads.hpp"
+#include "shape/arc_lengths.hpp"
+#include "suite/answer.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+/// The points of a whole rod in the scene's frame, from its begin: at the file's arc lengths, or at
+/// lengths along the polyline. @throws InputError if an end is not where a gripper holds it
+Shape laid_shape(const Scene& scene, const MeasuredShape& measured) {
+  Shape shape{measured.arc_length, measured.points};
+  const double length = scene.length;
+  if (shape.arc_length.empty()) {
+    shape.arc_length = lengths_along(measured.points);
+    const double whole = shape.arc_length.back();
+    for (double& s : shape.arc_length) s *= length / whole;
+  }
+  if (shape.arc_length.front() > shape.arc_length.back()) {
+    std::reverse(shape.arc_length.begin(), shape.arc_length.end());
+    shape.points = Eigen::Matrix3Xd(shape.points.rowwise().reverse());
+  }
+  const auto distance_of_ends = [&](bool reversed) {
+    double most = 0;
+    for (const Gripper& gripper : scene.grippers) {
+      if (gripper.at != 0 && gripper.at != length) continue;
+      const bool is_first = (gripper.at == 0) != reversed;
+      const Eigen::Index point = is_first ? 0 : shape.points.cols() - 1;
+      most = std::max(most, (shape.points.col(point) - gripper.position).norm());
+    }
+    return most;
+  };
+  if (distance_of_ends(true) < distance_of_ends(false)) {
+    shape.points = Eigen::Matrix3Xd(shape.points.rowwise().reverse());
+    std::reverse(shape.arc_length.begin(), shape.arc_length.end());
+    for (double& s : shape.arc_length) s = length - s;
+  }
+  for (double& s : shape.arc_length) {
+    const std::optional<double> on = on_rod(s, length);
+    if (!on) {
+      throw InputError(
+          fmt::format("s = {:g} m is not on the rod (allowed: 0 to {:g} m)", s, length));
+    }
+    s = *on;
+  }
+  constexpr double share = 0.01;
+  const double apart = distance_of_ends(false);
+  if (apart > share * length) {
+    throw InputError(
+        fmt::format("wrong end: the shape is {:.3g} m from a gripper at an end "
+                    "(allowed: {:.3g} m)",
+                    apart, share * length));
+  }
+  return shape;
+}
+
+/// The error of a run, and its shape in the scene's frame.
+void measure_run(const Scene& scene, const energy_model::Equilibrium& reference,
+                 const SimulatorRun& run, CardRun& result, std::vector<CardShape>& shapes) {
+  if (!run.shape) return;
+  try {
+    Shape shape = laid_shape(scene, *run.shape);
+    result.error = shape_deviation(scene, shape, reference.sample).rms_over_length;
+    shapes.push_back({.points = run.points, .shape = std::move(shape), .error = result.error});
+  } catch (const InputError& error) {
+    result.status = RunStatus::failed;
+    result.problem = error.what();
+  }
+}
+
+CardScene card_scene(const BatteryScene& scene, const energy_model::Equilibrium& reference,
+                     const Simulator& simulator, const CardOptions& options) {
+  CardScene result{.id = scene.id, .group = scene.group, .order = none};
+  std::vector<CardShape> shapes;
+  for (const int factor : {1, 2, 4}) {
+    const int points = factor * options.points;
+    const SimulatorRun run =
+        kept_run(options.state, scene.id, simulator, scene.scene, points, options.time_limit);
+    CardRun& entry =
+        result.runs.emplace_back(CardRun{points, run.status, run.problem, none, run.seconds});
+    measure_run(scene.scene, reference, run, entry, shapes);
+    if (entry.status == RunStatus::not_supported) break;  // nor with more points
+  }
+  result.order = convergence_order(shapes);
+  if (!shapes.empty()) {
+    result.causes = causes_of(scene.scene, reference, shapes, {.time_limit = options.time_limit});
+  }
+  return result;
+}
+
+void add_scene(CardGroup& group, const CardScene& scene) {
+  ++group.scenes;
+  const RunStatus status = scene.status();
+  ++(status == RunStatus::solved          ? group.solved
+     : status == RunStatus::not_supported ? group.not_supported
+                                          : group.failed);
+  if (scene.right()) ++group.right;
+  for (const CardRun& run : scene.runs) group.seconds += run.seconds;
+  for (const Cause& cause : scene.causes) {
+    const auto known = std::find_if(group.causes.begin(), group.causes.end(),
+                                    [&](const auto& one) { return one.first == cause.name; });
+    if (known == group.causes.end()) {
+      group.causes.emplace_back(cause.name, 1);
+    } else {
+      ++known->second;
+    }
+  }
+  if (status != RunStatus::solved) return;
+  for (std::size_t i = 0; i < group.largest.size(); ++i) {
+    group.largest[i] = std::fmax(group.largest[i], scene.runs[i].error);
+  }
+  group.order = std::fmin(group.order, scene.order);
+}
+
+}  // namespace
+
+RunStatus CardScene::status() const {
+  for (const CardRun& run : runs) {
+    if (run.status != RunStatus::solved) return run.status;
+  }
+  return RunStatus::solved;
+}
+
+std::string CardScene::problem() const {
+  for (const CardRun& run : runs) {
+    if (run.status != RunStatus::solved) return run.problem;
+  }
+  return {};
+}
+
+bool CardScene::right() const {
+  constexpr double allowed = 0.01;
+  return status() == RunStatus::solved && runs.back().error <= allowed &&
+         std::none_of(causes.begin(), causes.end(),
+                      [](const Cause& cause) { return cause.defect; });
+}
+
+std::vector<CardGroup> Card::groups() const {
+  std::vector<CardGroup> groups;
+  for (const CardScene& scene : scenes) {
+    auto group = std::find_if(groups.begin(), groups.end(),
+                              [&](const CardGroup& one) { return one.name == scene.group; });
+    if (group == groups.end()) {
+      groups.push_back({.name = scene.group,
+                        .largest = std::vector<double>(points.size(), none),
+                        .order = none});
+      group = groups.end() - 1;
+    }
+    add_scene(*group, scene);
+  }
+  return groups;
+}
+
+CardGroup Card::total() const {
+  CardGroup total{.largest = std::vector<double>(points.size(), none), .order = none};
+  for (const CardScene& scene : scenes) add_scene(total, scene);
+  return total;
+}
+
+namespace {
+
+/// One shape on its way to rest may be that of a stiffer rod. Several are not that of one rod:
+/// where a simulator does not come to rest in some scenes, and elsewhere seems to have stiffnesses
+/// that are not the same, it does not rest there either.
+void join_causes(Card& card) {
+  constexpr const char* stiffness = "bending stiffness wrong";
+  constexpr const char* unrest = "not at rest";
+  constexpr double same = 0.1;
+  double least = std::numeric_limits<double>::infinity();
+  double most = 0;
+  bool rests = true;
+  for (const CardScene& scene : card.scenes) {
+    for (const Cause& cause : scene.causes) {
+      if (cause.name == unrest) rests = false;
+      if (cause.name != stiffness) continue;
+      least = std::min(least, cause.factor);
+      most = std::max(most, cause.factor);
+    }
+  }
+  if (rests || most <= least * (1 + same)) return;
+  for (CardScene& scene : card.scenes) {
+    for (Cause& cause : scene.causes) {
+      if (cause.name != stiffness) continue;
+      cause.words += fmt::format(", but in other scenes {:.3g} to {:.3g} times", least, most);
+      cause.name = unrest;
+      cause.factor = none;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Card> make_cards(const std::string& battery_version,
+                             const std::vector<BatteryScene>& scenes,
+                             const std::vector<Simulator>& simulators, const CardOptions& options) {
+  std::vector<Card> cards;
+  cards.reserve(simulators.size());
+  for (const Simulator& simulator : simulators) {
+    cards.push_back({.simulator = simulator.name,
+                     .battery_version = battery_version,
+                     .points = {options.points, 2 * options.points, 4 * options.points},
+                     .scenes = std::vector<CardScene>(scenes.size())});
+  }
+  const auto all = static_cast<std::int64_t>(scenes.size() * simulators.size());
+  std::int64_t done = 0;
+  std::mutex telling;
+  tbb::task_arena arena(arena_threads(options.threads));
+  execute(arena, [&] {
+    tbb::parallel_for(std::size_t{0}, scenes.size(), [&](std::size_t i) {
+      const Scene& scene = scenes[i].scene;
+      const energy_model::Equilibrium reference =
+          solve_reference(scene, answer_model(scene), {.time_limit = options.time_limit});
+      for (std::size_t k = 0; k < simulators.size(); ++k) {
+        cards[k].scenes[i] = card_scene(scenes[i], reference, simulators[k], options);
+        if (!options.progress) continue;
+        const std::lock_guard lock(telling);
+        options.progress(++done, all);
+      }
+    });
+  });
+  for (Card& card : cards) join_causes(card);
+  return cards;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,327 @@
+#include "suite/cause.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/effective_modulus.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/explanation.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/shape_check.hpp"
+#include "explain/own_polygon.hpp"
+#include "suite/answer.hpp"
+#include "suite/balance.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
+/// What a chain of hinges may leave of the error that it explains.
+constexpr double chain_may_leave = 0.05;
+/// What another equilibrium may leave.
+constexpr double may_be_left = 0.1;
+/// What the scene without one of its things may leave: a shape that has hardly moved is near it.
+constexpr double may_be_left_without = 0.03;
+/// The same of shapes that converge to it.
+constexpr double may_be_left_of_way = 0.3;
+/// What one that has a fitted number may leave: a number takes away more by itself.
+constexpr double may_be_left_fitted = 0.02;
+/// The same of a cause beside a shape that is out of balance.
+constexpr double nothing_left = 2e-3;
+/// Orders of convergence of a simulator that is right, and of one that has a limit of its own.
+constexpr double second_order = 1.6;
+constexpr double no_order = 0.4;
+/// And of one that still is on its way to the rod, with boundary layers that are hardly resolved.
+constexpr double some_order = 1.2;
+/// Share of its moments by which a shape that does not rest is out of balance.
+constexpr double out_of_balance = 0.02;
+
+class Diagnosis {
+ public:
+  Diagnosis(const Scene& scene, const energy_model::Equilibrium& reference,
+            const std::vector<CardShape>& shapes, const SolveOptions& options)
+      : scene_(scene), reference_(reference), shapes_(shapes), options_(options) {}
+
+  [[nodiscard]] std::vector<Cause> run() {
+    const double order = convergence_order(shapes_);
+    const bool converges = !(finest().error > error_floor) || order > second_order;
+    if (look_at_chains(converges) || converges) return found_;
+    if (order > no_order && !stays()) return found_;  // of discretisation, without a name
+    if (look_at_neglected() || look_at_states() || look_at_springs() || look_at_rest() ||
+        look_at_stiffness()) {
+      return found_;
+    }
+    look_at_scene(may_be_left_fitted);
+    return found_;
+  }
+
+ private:
+  [[nodiscard]] const CardShape& coarsest() const { return shapes_.front(); }
+  [[nodiscard]] const CardShape& finest() const { return shapes_.back(); }
+  [[nodiscard]] double error_m(const CardShape& shape) const { return shape.error * scene_.length; }
+
+  /// Whether the error is not small and does not fall any more.
+  [[nodiscard]] bool stays() const {
+    constexpr double small = 5e-3;
+    if (shapes_.size() < 3 || finest().error < small) return false;
+    return convergence_order({shapes_.end() - 2, shapes_.end()}) < no_order;
+  }
+
+  void add(std::string name, double factor, std::string words) {
+    found_.push_back({std::move(name), factor, std::move(words)});
+  }
+
+  /// @return whether the shapes are those of a chain of hinges with springs EI/h
+  bool look_at_chains(bool converges) {
+    // The chains do not stretch.
+    if (scene_.stretch || !(coarsest().error > error_floor)) return false;
+    std::optional<OwnPolygon> best;
+    for (const OwnPolygon& chain : own_polygons(scene_, coarsest().shape, Springs::as_the_rod)) {
+      if (!best || chain.rms_m < best->rms_m) best = chain;
+    }
+    if (!best || !(best->rms_m <= chain_may_leave * error_m(coarsest()))) return false;
+    // What coarse shapes have by accident the finest one has not.
+    const std::vector<OwnPolygon> fine = own_polygons(scene_, finest().shape, Springs::as_the_rod);
+    const auto same = std::find_if(fine.begin(), fine.end(), [&](const OwnPolygon& chain) {
+      return chain.clamp == best->clamp;
+    });
+    if (same == fine.end() || !(same->rms_m <= chain_may_leave * error_m(finest()))) return false;
+    const bool is_clamped =
+        std::any_of(scene_.grippers.begin(), scene_.grippers.end(),
+                    [](const Gripper& gripper) { return gripper.direction.has_value(); });
+    constexpr double half = 0.5;
+    if (is_clamped && !converges && best->clamp == ChainClamp::welded) {
+      add("first element welded", half,
+          "the first element does not bend: half an element is too stiff at each clamp");
+    } else if (is_clamped && !converges && best->clamp == ChainClamp::hinge) {
+      add("hinge at the clamp", half,
+          "the hinge at the clamp has a spring of EI/h: half an element is too soft there");
+    }
+    if (best->law_shows && best->law == energy_model::JointLaw::linear) {
+      add("springs linear in the angle", undefined,
+          "springs are linear in the angle, not in 2 tan(angle/2): another error of second order");
+      found_.back().defect = false;
+    }
+    return true;
+  }
+
+  /// Of the springs of a chain that fits the shape best, over EI/h.
+  [[nodiscard]] std::optional<double> spring_factor(const CardShape& shape) const {
+    std::optional<OwnPolygon> best;
+    for (const OwnPolygon& chain : own_polygons(scene_, shape.shape, Springs::fitted)) {
+      if (!best || chain.rms_m < best->rms_m) best = chain;
+    }
+    if (!best || !(best->rms_m <= may_be_left_fitted * error_m(shape))) return std::nullopt;
+    return best->stiffness;
+  }
+
+  [[nodiscard]] std::optional<double> modulus_factor(const CardShape& shape) const {
+    if (scene_.stretch) return std::nullopt;
+    try {
+      const EffectiveModulus modulus =
+          fit_effective_modulus(scene_, distance_from(shape.shape), reference_, options_);
+      if (!is_identified(modulus.optimum)) return std::nullopt;
+      if (!(modulus.rms_m <= may_be_left_fitted * error_m(shape))) return std::nullopt;
+      return modulus.ratio;
+    } catch (const ConvergenceError&) {
+      return std::nullopt;
+    } catch (const InputError&) {
+      return std::nullopt;
+    }
+  }
+
+  /// Names stiffness factors of the coarsest and the finest shape.
+  void add_factors(double coarse, double fine) {
+    const double power =
+        finest().points > coarsest().points
+            ? std::log(fine / coarse) /
+                  std::log(static_cast<double>(finest().points) / coarsest().points)
+            : 0;
+    constexpr double near_power = 0.35;
+    if (std::abs(power + 1) < near_power) {
+      add("springs without 1/h", fine,
+          fmt::format("bending stiffness is {:.3g} times EI with N = {} and {:.3g} times with N = "
+                      "{}: it is not divided by the element's length",
+                      coarse, coarsest().points, fine, finest().points));
+    } else if (std::abs(power - 1) < near_power) {
+      add("springs with 1/h^2", fine,
+          fmt::format("bending stiffness is {:.3g} times EI with N = {} and {:.3g} times with N = "
+                      "{}: it is divided by the element's length twice",
+                      coarse, coarsest().points, fine, finest().points));
+    } else if (std::abs(power) < near_power) {
+      add("bending stiffness wrong", fine,
+          fmt::format("the bending stiffness is {:.3g} times the scene's{}", fine,
+                      scene_.loads.empty() && scene_.weight_per_length().norm() > 0
+                          ? fmt::format(", or the weight {:.3g} times", 1 / fine)
+                          : ""));
+    } else {
+      add("bending stiffness depends on N", fine,
+          fmt::format("bending stiffness is {:.3g} times EI with N = {} and {:.3g} times with N = "
+                      "{}",
+                      coarse, coarsest().points, fine, finest().points));
+    }
+  }
+
+  bool look_at_springs() {
+    if (scene_.stretch) return false;
+    const std::optional<double> coarse = spring_factor(coarsest());
+    const std::optional<double> fine = coarse ? spring_factor(finest()) : std::nullopt;
+    if (!fine) return false;
+    add_factors(*coarse, *fine);
+    return true;
+  }
+
+  bool look_at_stiffness() {
+    const std::optional<double> fine = modulus_factor(finest());
+    const std::optional<double> coarse = fine ? modulus_factor(coarsest()) : std::nullopt;
+    if (!coarse) return false;
+    add_factors(*coarse, *fine);
+    return true;
+  }
+
+  /// Whether the shape is that of a scene that has less.
+  bool look_at_one_neglected(const Scene& without, const std::string& name) {
+    try {
+      const energy_model::Equilibrium rod =
+          solve_reference(without, answer_model(without), options_);
+      const auto left = [&](const CardShape& shape) {
+        return distance(shape.shape, rod.sample) / scene_.length;
+      };
+      const double fine = left(finest());
+      const bool is_near = fine <= may_be_left_without * finest().error;
+      // Or they converge to that rod, and the finest one has come most of the way.
+      const bool comes_near = fine <= may_be_left_of_way * finest().error &&
+                              convergence_order({{coarsest().points, {}, left(coarsest())},
+                                                 {finest().points, {}, fine}}) > some_order;
+      if (!is_near && !comes_near) return false;
+      add(name, undefined, "the shape is that of the scene without it");
+      return true;
+    } catch (const ConvergenceError&) {
+      return false;
+    } catch (const InputError&) {
+      return false;
+    }
+  }
+
+  bool look_at_neglected() {
+    bool is_found = false;
+    const auto look = [&](bool has, const char* name, const auto& remove) {
+      if (!has || is_found) return;
+      Scene without = scene_;
+      remove(without);
+      is_found = look_at_one_neglected(without, name);
+    };
+    look(scene_.naturally_bent(), "intrinsic curvature ignored",
+         [](Scene& scene) { scene = scene.without_natural_strain(); });
+    look(scene_.holds_twist(), "twist not coupled",
+         [](Scene& scene) { scene = scene.without_twist(); });
+    look(scene_.stretch, "stretch ignored", [](Scene& scene) { scene.stretch = false; });
+    look(scene_.given_bending_stiffness_2.has_value(), "second bending stiffness ignored",
+         [](Scene& scene) { scene.given_bending_stiffness_2.reset(); });
+    look(scene_.given_bending_stiffness_2.has_value(), "first bending stiffness ignored",
+         [](Scene& scene) {
+           scene.given_bending_stiffness = scene.given_bending_stiffness_2;
+           scene.given_bending_stiffness_2.reset();
+         });
+    look(!scene_.sections.empty(), "sections ignored",
+         [](Scene& scene) { scene.sections.clear(); });
+    look(!scene_.loads.empty(), "loads ignored", [](Scene& scene) { scene.loads.clear(); });
+    look(!scene_.gravity.isZero(), "weight ignored", [](Scene& scene) { scene.gravity.setZero(); });
+    look(!scene_.obstacles.empty(), "obstacles ignored",
+         [](Scene& scene) { scene.obstacles.clear(); });
+    return is_found;
+  }
+
+  /// Whether the shape is another equilibrium of the scene.
+  bool look_at_states() {
+    constexpr double small = 1e-3;
+    if (scene_.stretch || finest().error < small) return false;
+    try {
+      for (const energy_model::Equilibrium& state : reference_states(scene_, options_)) {
+        if (!(distance(finest().shape, state.sample) <= may_be_left * error_m(finest()))) continue;
+        const bool unstable = state.status == energy_model::SolveStatus::saddle;
+        add(unstable ? "unstable equilibrium" : "other equilibrium", undefined,
+            unstable ? "the shape is an equilibrium that is unstable"
+                     : "the shape is another stable equilibrium of the scene");
+        return true;
+      }
+    } catch (const ConvergenceError&) {
+      return false;
+    }
+    return false;
+  }
+
+  bool look_at_rest() {
+    const std::optional<MomentBalance> balance = moment_balance(scene_, finest().shape);
+    if (!balance) return false;
+    constexpr double as_it_is = 0.03;
+    if (!(balance->imbalance > out_of_balance)) {
+      if (std::abs(balance->stiffness - 1) > as_it_is || std::abs(balance->weight - 1) < as_it_is) {
+        return false;
+      }
+      add("weight wrong", balance->weight,
+          fmt::format("the weight is {:.3g} times the scene's", balance->weight));
+      return true;
+    }
+    // Loads that are not the scene's are out of balance too.
+    if (look_at_scene(nothing_left)) return true;
+    add("not at rest", balance->imbalance,
+        fmt::format("no forces at its ends balance {:.2g} % of its bending moments, whatever the "
+                    "stiffness is",
+                    balance->imbalance * 100));
+    return true;
+  }
+
+  /// What `check` finds of the scene.
+  /// @param left  share of the error that it may leave
+  bool look_at_scene(double left) {
+    if (scene_.stretch) return false;
+    try {
+      const MeasuredShape shape =
+          shape_of(finest().shape.points, finest().shape.arc_length, "its shape");
+      const ShapeCheckOptions options{.modulus = ModulusSearch::no, .solve = options_};
+      const ShapeCheck check = check_shape(scene_, shape, options);
+      const std::vector<Explanation> all = explain_shape(scene_, shape, check, options);
+      for (const Explanation& one : all) {
+        if (one.kind == ExplanationKind::discretisation) continue;
+        if (!(one.rms_m <= left * check.whole_rms_m)) continue;
+        add(one.kind == ExplanationKind::file ? "file" : "scene", undefined, one.cause);
+        return true;
+      }
+    } catch (const ConvergenceError&) {
+      return false;
+    } catch (const InputError&) {
+      return false;
+    }
+    return false;
+  }
+
+  const Scene& scene_;
+  const energy_model::Equilibrium& reference_;
+  const std::vector<CardShape>& shapes_;
+  const SolveOptions& options_;
+  std::vector<Cause> found_;
+};
+
+}  // namespace
+
+double convergence_order(const std::vector<CardShape>& shapes) {
+  if (shapes.size() < 2) return undefined;
+  const CardShape& first = shapes.front();
+  const CardShape& last = shapes.back();
+  if (!(first.error > error_floor) || !(last.error > error_floor)) return undefined;
+  return std::log(first.error / last.error) /
+         std::log(static_cast<double>(last.points) / first.points);
+}
+
+std::vector<Cause> causes_of(const Scene& scene, const energy_model::Equilibrium& reference,
+                             const std::vector<CardShape>& shapes, const SolveOptions& options) {
+  return Diagnosis(scene, reference, shapes, options).run();
+}
+
+}  // namespace dlo::compare

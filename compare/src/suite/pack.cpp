@@ -1,0 +1,187 @@
+#include "suite/pack.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <filesystem>
+#include <system_error>
+
+#include "base/number.hpp"
+#include "base/output_file.hpp"
+#include "dlo/compare/solution.hpp"
+#include "record/field.hpp"
+#include "record/solution_fields.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr const char* answer_schema_name = "dlo/answer/1";
+constexpr const char* pack_schema_name = "dlo/pack/1";
+
+/// With ten significant digits, none of rounding.
+/// @param large  how large its kind can be in the scene
+double rounded(double value, double large) {
+  constexpr double rounding = 1e-11;
+  if (!std::isfinite(value)) return value;
+  if (std::abs(value) <= rounding * large) return 0;
+  return as_number<double>(fmt::format("{:.10g}", value)).value();
+}
+
+/// A bound, with two digits.
+double bound(double value) { return as_number<double>(fmt::format("{:.1e}", value)).value(); }
+
+/// A length, with twelve decimals, never -0.
+std::string decimals(double metres) {
+  std::string text = fmt::format("{:.12f}", metres);
+  if (text.find_first_not_of("-0.") == std::string::npos) text = "0.000000000000";
+  return text;
+}
+
+double place(double metres) { return as_number<double>(decimals(metres)).value(); }
+
+Json answer_vector(const Eigen::Vector3d& vector, double large) {
+  return {rounded(vector.x(), large), rounded(vector.y(), large), rounded(vector.z(), large)};
+}
+
+Json answer_point(const Eigen::Vector3d& point) {
+  return {place(point.x()), place(point.y()), place(point.z())};
+}
+
+Json answer_energies(const SceneEnergies& energy, double large) {
+  Json result = Json::object();
+  for (const auto& [name, value] : numbers_of(energy_fields(), energy)) {
+    result[name] = rounded(value, large);
+  }
+  return result;
+}
+
+Json answer_grippers(const Answer& answer, const Magnitudes& large) {
+  Json result = Json::array();
+  for (std::size_t i = 0; i < answer.first.grippers.size(); ++i) {
+    const GripperLoad& load = answer.first.grippers[i];
+    result.push_back({{"at_m", answer.of.scene.grippers[i].at},
+                      {"force_N", answer_vector(load.force, large.force)},
+                      {"force_bound_N", bound(answer.bounds.forces_N[i])},
+                      {"torque_Nm", answer_vector(load.torque, large.torque)},
+                      {"torque_bound_Nm", bound(answer.bounds.torques_Nm[i])}});
+  }
+  return result;
+}
+
+Json answer_obstacles(const Answer& answer, const Magnitudes& large) {
+  Json result = Json::array();
+  for (std::size_t i = 0; i < answer.first.obstacles.size(); ++i) {
+    Json contacts = Json::array();
+    for (const energy_model::ContactPart& part : answer.first.contacts) {
+      if (part.obstacle != i) continue;
+      contacts.push_back({{"kind", energy_model::to_string(part.kind)},
+                          {"from_m", rounded(part.begin, large.length)},
+                          {"to_m", rounded(part.end, large.length)},
+                          {"force_N", answer_vector(part.force, large.force)}});
+    }
+    result.push_back({{"force_N", answer_vector(answer.first.obstacles[i], large.force)},
+                      {"force_bound_N", bound(answer.bounds.obstacles_N[i])},
+                      {"contacts", std::move(contacts)}});
+  }
+  return result;
+}
+
+Json answer_closed_form(const Answer& answer) {
+  if (!answer.of.closed_form) return {};
+  const ClosedForm& form = *answer.of.closed_form;
+  return {{"is", form.is}, {"at_m", form.at}, {"point_m", answer_point(form.point)}};
+}
+
+/// A line for each key, and for each row of a list of lists or objects.
+void write_document(const std::filesystem::path& file, const Json& document) {
+  std::string text;
+  for (const auto& [key, value] : document.items()) {
+    text += (text.empty() ? "{\n " : ",\n ") + Json(key).dump() + ": ";
+    const bool is_list = value.is_array() && !value.empty() && value.front().is_structured();
+    if (!is_list) {
+      text += value.dump();
+      continue;
+    }
+    for (const Json& row : value) text += (&row == &value.front() ? "[\n  " : ",\n  ") + row.dump();
+    text += "]";
+  }
+  write_file(file, text + "\n}\n");
+}
+
+}  // namespace
+
+nlohmann::ordered_json answer_json(const Answer& answer) {
+  const Solution& first = answer.first;
+  const Scene& scene = answer.of.scene;
+  const Magnitudes large = magnitudes(scene);
+  Json result = {{"schema", answer_schema_name},
+                 {"id", answer.of.id},
+                 {"class", answer.of.group},
+                 {"name", scene.name},
+                 {"isolates", answer.of.isolates},
+                 {"closed_form", answer_closed_form(answer)},
+                 {"length_m", scene.length},
+                 {"gamma", rounded(scene.gamma(), 0)},
+                 {"methods", {to_string(first.model), answer.second_method}},
+                 {"status", status_name(first.status)},
+                 {"lowest", scene.stretch ? Json() : Json(answer.is_lowest)},
+                 {"smallest_eigenvalue", rounded(first.smallest_eigenvalue, 1)},
+                 {"energy", answer_energies(first.energy, large.energy)},
+                 {"energy_bound_J", bound(answer.bounds.energy_J)},
+                 {"grippers", answer_grippers(answer, large)},
+                 {"obstacles", answer_obstacles(answer, large)}};
+  constexpr double few_digits = 1e6;
+  result["other_equilibria"] = json_list(answer.others, [&](const OtherEquilibrium& other) -> Json {
+    const auto short_number = [&](double value, double of) {
+      return std::round(value / of * few_digits) / few_digits * of;
+    };
+    return {{"energy_J", rounded(short_number(other.energy_J, large.energy), large.energy)},
+            {"stable", other.stable},
+            {"apart_over_length",
+             rounded(short_number(other.apart_m, scene.length) / scene.length, 1)}};
+  });
+  result["points_bound_m"] = bound(answer.bounds.points_m);
+  result["arc_length_m"] =
+      json_list(first.shape.arc_length, [](double s) -> Json { return place(s); });
+  Json points = Json::array();
+  for (const auto& point : first.shape.points.colwise()) points.push_back(answer_point(point));
+  result["points_m"] = std::move(points);
+  return result;
+}
+
+std::string answer_csv(const Answer& answer) {
+  std::string text = "x,y,z,s\n";
+  const Shape& shape = answer.first.shape;
+  for (std::size_t i = 0; i < shape.arc_length.size(); ++i) {
+    for (const double x : shape.points.col(static_cast<Eigen::Index>(i))) text += decimals(x) + ",";
+    text += decimals(shape.arc_length[i]) + "\n";
+  }
+  return text;
+}
+
+void write_pack(const std::string& folder, const std::string& battery_version,
+                const std::vector<Answer>& answers) {
+  const std::filesystem::path path(folder);
+  std::error_code error;
+  std::filesystem::create_directories(path, error);
+  if (error) throw OutputError(fmt::format("{}: {}", folder, error.message()));
+  Json index = {{"schema", pack_schema_name},
+                {"version", battery_version},
+                {"unit", "SI"},
+                {"answers", Json::array()}};
+  for (const Answer& answer : answers) {
+    write_document(path / (answer.of.id + ".json"), answer_json(answer));
+    write_file(path / (answer.of.id + ".csv"), answer_csv(answer));
+    index["answers"].push_back(
+        {{"id", answer.of.id},
+         {"class", answer.of.group},
+         {"isolates", answer.of.isolates},
+         {"answer", answer.of.id + ".json"},
+         {"points", answer.of.id + ".csv"},
+         {"points_bound_over_length", bound(answer.bounds.points_m / answer.of.scene.length)}});
+  }
+  write_file(path / "schema.json", answer_schema());
+  write_document(path / "suite.json", index);
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/shape_file.hpp"
+#include "dlo/compare/solution.hpp"
+#include "foreign/foreign_program.hpp"
+
+namespace dlo::compare {
+
+/// What is run on the battery: a program, or one of our own polygon models.
+struct Simulator {
+  std::string name;          ///< of the program, or "chain" or "force"
+  std::optional<Model> own;  ///< none: `program`
+  ForeignProgram program;    ///< its command
+
+  /// What its results depend on, in words.
+  [[nodiscard]] std::string identity() const;
+};
+
+/// @param texts  each NAME=COMMAND as parse_foreign_program() takes it, or "chain" or "force"
+/// @throws InputError as that, or if two have the same name
+[[nodiscard]] std::vector<Simulator> parse_simulators(const std::vector<std::string>& texts);
+
+/// How a run ended.
+enum class RunStatus {
+  solved,         ///< there is a shape
+  not_supported,  ///< the simulator says that it has no such scene
+  failed,         ///< anything else
+};
+
+/// In words, for files.
+template <>
+struct Choices<RunStatus> {
+  /// In the enumeration's order.
+  static constexpr Choice<RunStatus> all[] = {{RunStatus::solved, "solved", ""},
+                                              {RunStatus::not_supported, "not supported", ""},
+                                              {RunStatus::failed, "failed", ""}};
+};
+
+/// A shape of a scene with so many points, or why there is none.
+struct SimulatorRun {
+  int points = 0;                        ///< N
+  RunStatus status = RunStatus::failed;  ///< how it ended
+  std::string problem;                   ///< one line; empty if there is a shape
+  double seconds = 0;                    ///< wall time [s]
+  std::optional<MeasuredShape> shape;    ///< of a run that is solved
+};
+
+/// Runs a simulator. @param time_limit  [s], > 0
+/// @throws OutputError as run_foreign()
+[[nodiscard]] SimulatorRun run_simulator(const Simulator& simulator, Scene scene, int points,
+                                         double time_limit);
+
+/// The same, but for a run whose result `folder` has from an earlier time: it is kept there in a
+/// file of its own, whole or not at all.
+/// @param folder  made if it is not there; empty: nothing is kept
+[[nodiscard]] SimulatorRun kept_run(const std::string& folder, const std::string& id,
+                                    const Simulator& simulator, const Scene& scene, int points,
+                                    double time_limit);
+
+}  // namespace dlo::compare

@@ -1,0 +1,153 @@
+// The battery and its certified answers.
+
+#include "suite/pack.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/shape.hpp"
+#include "dlo/compare/solve.hpp"
+#include "foreign/scene_document.hpp"
+#include "suite/answer.hpp"
+#include "suite/battery.hpp"
+
+namespace {
+
+using dlo::compare::Answer;
+using dlo::compare::BatteryScene;
+using dlo::compare::builtin_battery;
+using dlo::compare::chosen_scenes;
+using nlohmann::json;
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+json committed(const std::string& id) {
+  return json::parse(text_of(DLO_DATA "/suite/answers/" + id + ".json"));
+}
+
+Eigen::Vector3d vector_of(const json& value) {
+  return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
+}
+
+TEST(Battery, HasClassesAndALineForEachScene) {
+  std::set<std::string> groups;
+  for (const BatteryScene& scene : builtin_battery().scenes) {
+    groups.insert(scene.group);
+    EXPECT_FALSE(scene.isolates.empty()) << scene.id;
+    EXPECT_TRUE(std::filesystem::exists(DLO_DATA "/suite/scenes/" + scene.id + ".toml"));
+  }
+  EXPECT_GE(builtin_battery().scenes.size(), 40U);
+  EXPECT_GE(groups.size(), 12U);
+}
+
+TEST(Battery, IsTheOneOfItsFile) {
+  const dlo::compare::Battery read = dlo::compare::load_battery(DLO_DATA "/suite/suite.toml");
+  ASSERT_EQ(read.scenes.size(), builtin_battery().scenes.size());
+  for (std::size_t i = 0; i < read.scenes.size(); ++i) {
+    dlo::compare::Scene scene = read.scenes[i].scene;
+    scene.file = builtin_battery().scenes[i].scene.file;
+    EXPECT_EQ(dlo::compare::scene_document_text(scene),
+              dlo::compare::scene_document_text(builtin_battery().scenes[i].scene));
+  }
+}
+
+TEST(Battery, TellsAClassThatThereIsNot) {
+  EXPECT_EQ(chosen_scenes(builtin_battery(), {"weight", "floor"}).size(), 7U);
+  try {
+    (void)chosen_scenes(builtin_battery(), {"wieght"});
+    FAIL();
+  } catch (const dlo::compare::InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("did you mean weight"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(Answers, AreWhereClosedFormsSay) {
+  int forms = 0;
+  for (const BatteryScene& scene : builtin_battery().scenes) {
+    if (!scene.closed_form) continue;
+    ++forms;
+    const Eigen::Vector3d point =
+        dlo::compare::solve(scene.scene, dlo::compare::Model::energy, {}, {scene.closed_form->at})
+            .shape.points.col(0);
+    EXPECT_LT((point - scene.closed_form->point).norm(), 1e-9 * scene.scene.length) << scene.id;
+  }
+  EXPECT_GE(forms, 4);
+}
+
+TEST(Pack, CommittedAnswersAreThoseOfFreshOnesWithinTheirBounds) {
+  const std::vector<std::string> some = {"bending_large", "weight_100",    "clamps_space",
+                                         "twist_bending", "helix_hanging", "strip_oblique",
+                                         "floor",         "stretch_pins"};
+  for (const BatteryScene& scene : chosen_scenes(builtin_battery(), some)) {
+    const Answer answer = dlo::compare::certified_answer(scene);
+    const json before = committed(scene.id);
+    const json now = dlo::compare::answer_json(answer);
+    EXPECT_EQ(before["methods"], now["methods"]) << scene.id;
+    const double length = scene.scene.length;
+    const double bound = before["points_bound_m"].get<double>() + 1e-9 * length;
+    for (std::size_t i = 0; i < now["points_m"].size(); ++i) {
+      ASSERT_LT((vector_of(before["points_m"][i]) - vector_of(now["points_m"][i])).norm(), bound)
+          << scene.id;
+    }
+    for (std::size_t i = 0; i < now["grippers"].size(); ++i) {
+      const Eigen::Vector3d force = vector_of(now["grippers"][i]["force_N"]);
+      EXPECT_LT((vector_of(before["grippers"][i]["force_N"]) - force).norm(),
+                before["grippers"][i]["force_bound_N"].get<double>() + 1e-6 * force.norm())
+          << scene.id;
+    }
+  }
+}
+
+TEST(Pack, CommittedOneHasEveryScene) {
+  const json index = json::parse(text_of(DLO_DATA "/suite/answers/suite.json"));
+  EXPECT_EQ(index["version"], builtin_battery().version);
+  ASSERT_EQ(index["answers"].size(), builtin_battery().scenes.size());
+  EXPECT_EQ(text_of(DLO_DATA "/suite/answers/schema.json"), text_of(DLO_DATA "/suite/schema.json"));
+  const json required = json::parse(text_of(DLO_DATA "/suite/schema.json"))["required"];
+  std::uintmax_t bytes = 0;
+  for (std::size_t i = 0; i < index["answers"].size(); ++i) {
+    const BatteryScene& scene = builtin_battery().scenes[i];
+    EXPECT_EQ(index["answers"][i]["id"], scene.id);
+    const json answer = committed(scene.id);
+    for (const json& key : required) EXPECT_TRUE(answer.contains(key)) << scene.id << key;
+    // The chain that a rod that stretches is held against has an error of its own.
+    EXPECT_LT(answer["points_bound_m"], (scene.scene.stretch ? 2e-4 : 1e-6) * scene.scene.length);
+  }
+  for (const auto& file : std::filesystem::directory_iterator(DLO_DATA "/suite/answers")) {
+    bytes += file.file_size();
+  }
+  EXPECT_LT(bytes, 1'000'000U);
+}
+
+TEST(Pack, IsTheSameWithOneThreadAndTwo) {
+  const std::vector<BatteryScene> scenes = chosen_scenes(builtin_battery(), {"ends", "loads"});
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / "dlo_pack_of_threads";
+  for (const int threads : {1, 2}) {
+    dlo::compare::write_pack(folder / std::to_string(threads), "1",
+                             dlo::compare::certified_answers(scenes, threads));
+  }
+  int files = 0;
+  for (const auto& file : std::filesystem::directory_iterator(folder / "1")) {
+    EXPECT_EQ(text_of(file.path()), text_of(folder / "2" / file.path().filename()));
+    ++files;
+  }
+  EXPECT_EQ(files, static_cast<int>(2 * scenes.size()) + 2);
+  std::filesystem::remove_all(folder);
+}
+
+}  // namespace

@@ -1,0 +1,183 @@
+// dlo suite: score cards of simulators that are wrong on purpose.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "command_fixture.hpp"
+
+namespace {
+
+using dlo::test::Outcome;
+using nlohmann::json;
+using testing::HasSubstr;
+
+class SuiteCommand : public dlo::test::Command {
+ protected:
+  /// One of simulator.py, by its defect.
+  static std::string wrong(const std::string& defect) {
+    return " --with " + defect + "='/usr/bin/python3 " + DLO_DATA +
+           "/../tests/compare/suite/simulator.py " + defect + " {scene} {points} {shape}'";
+  }
+  void SetUp() override {
+    Command::SetUp();
+    if (run_line("[ -x /usr/bin/python3 ]").status != 0) GTEST_SKIP() << "no python3";
+  }
+  [[nodiscard]] json card_of(const std::string& arguments) const {
+    const Outcome result = run("suite --format json " + arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return json::parse(result.out).at("cards").at(0);
+  }
+  static std::set<std::string> causes(const json& card) {
+    std::set<std::string> names;
+    for (const json& scene : card.at("scenes")) {
+      for (const json& cause : scene.at("causes")) names.insert(cause.at("name"));
+    }
+    return names;
+  }
+};
+
+constexpr const char* few = " --scenes bending_large,weight_1,weight_10,payload_tip,floor";
+
+using Names = std::set<std::string>;
+
+TEST_F(SuiteCommand, FindsNoCauseInWhatIsRight) {
+  for (const char* defect : {"right", "middle"}) {
+    const json card = card_of(wrong(defect) + few);
+    EXPECT_EQ(causes(card), Names()) << card.dump(1);
+    EXPECT_EQ(card.at("total").at("right"), 4) << defect;
+    // A floor it does not have.
+    EXPECT_EQ(card.at("total").at("not_supported"), 1) << defect;
+    EXPECT_GT(card.at("total").at("smallest_order"), 1.7) << defect;
+  }
+}
+
+TEST_F(SuiteCommand, NamesWhatIsWrong) {
+  const std::pair<const char*, Names> defects[] = {{"linear", {"springs linear in the angle"}},
+                                                   {"welded", {"first element welded"}},
+                                                   {"hinge", {"hinge at the clamp"}},
+                                                   {"soft", {"bending stiffness wrong"}},
+                                                   {"no_h", {"springs without 1/h"}}};
+  for (const auto& [defect, names] : defects) {
+    const json card = card_of(wrong(defect) + " --scenes bending_large,weight_10");
+    EXPECT_EQ(causes(card), names) << card.dump(1);
+    const int right = names == Names{"springs linear in the angle"} ? 2 : 0;
+    EXPECT_EQ(card.at("total").at("right"), right) << defect;
+  }
+}
+
+TEST_F(SuiteCommand, NamesWhatIsNotAtRestThoughTipLoadsMakeItAStifferRod) {
+  const json card =
+      card_of(wrong("not_at_rest") + " --scenes bending_small,weight_1,weight_10,buckling_weight");
+  EXPECT_EQ(causes(card), Names{"not at rest"}) << card.dump(1);
+  EXPECT_GE(card.at("total").at("causes").at("not at rest"), 2) << card.dump(1);
+}
+
+TEST_F(SuiteCommand, TellsTheFactorOfACause) {
+  const json soft = card_of(wrong("soft") + " --scenes weight_10");
+  EXPECT_NEAR(soft.at("scenes").at(0).at("causes").at(0).at("factor"), 0.7, 0.01);
+  const json light = card_of(wrong("light") + " --scenes payload_tip");
+  const json& cause = light.at("scenes").at(0).at("causes").at(0);
+  EXPECT_EQ(cause.at("name"), "weight wrong");
+  EXPECT_NEAR(cause.at("factor"), 0.8, 0.01);
+  EXPECT_EQ(causes(card_of(wrong("weightless") + " --scenes weight_1,payload_tip")),
+            Names{"weight ignored"});
+}
+
+TEST_F(SuiteCommand, OwnChainConvergesAndSaysWhatItDoesNotHave) {
+  const json card = card_of("--with chain --scenes clamps,twist,contact,intrinsic,strips");
+  EXPECT_EQ(causes(card), Names()) << card.dump(1);
+  EXPECT_EQ(card.at("total").at("failed"), 0);
+  EXPECT_EQ(card.at("total").at("solved"), card.at("total").at("right"));
+  EXPECT_EQ(card.at("total").at("not_supported"), 6);  // helices and strips
+}
+
+TEST_F(SuiteCommand, IsTheSameWithOneJobAndTwo) {
+  const auto without_times = [](json card) {
+    for (json& group : card["classes"]) group.erase("wall_s");
+    card["total"].erase("wall_s");
+    for (json& scene : card["scenes"]) {
+      for (json& one : scene["runs"]) one.erase("wall_s");
+    }
+    return card;
+  };
+  const std::string scenes = "--with chain --scenes weight,twist --jobs ";
+  EXPECT_EQ(without_times(card_of(scenes + "1")), without_times(card_of(scenes + "2")));
+}
+
+TEST_F(SuiteCommand, DoesNotRunFinishedRunsAgain) {
+  const std::string program =
+      " --with mine='sh -c \"echo run >> " + path("runs") + "; exit 3\" {shape}'";
+  const std::string state = " --state " + path("state");
+  const json first = card_of(program + state + few);
+  const json second = card_of(program + state + few);
+  EXPECT_EQ(first, second);
+  EXPECT_EQ(first.at("total").at("not_supported"), 5);
+  std::string runs = read(path("runs"));
+  EXPECT_EQ(std::count(runs.begin(), runs.end(), '\n'), 5);
+  // Another command is another simulator.
+  (void)card_of(" --with mine='sh -c \"echo run >> " + path("runs") + "; exit 3\" x {shape}'" +
+                state + few);
+  runs = read(path("runs"));
+  EXPECT_EQ(std::count(runs.begin(), runs.end(), '\n'), 10);
+}
+
+TEST_F(SuiteCommand, AFailureIsNoMissingSupport) {
+  const json card = card_of(" --scenes weight_1 --with mine='sh -c \"exit 2\" {shape}'");
+  EXPECT_EQ(card.at("total").at("failed"), 1);
+  const json quiet =
+      card_of(" --scenes weight_1 --with mine='sh -c \"echo not supported: weight >&2\" {shape}'");
+  EXPECT_EQ(quiet.at("total").at("not_supported"), 1);
+}
+
+TEST_F(SuiteCommand, AnEarlierCardIsAGate) {
+  const std::string scenes = " --scenes weight_1,weight_10,bending ";
+  ASSERT_EQ(run("suite --with chain --format json -o " + path("card.json") + scenes).status, 0);
+  const std::string gate = " --baseline " + path("card.json");
+  const Outcome same = run("suite --with chain" + scenes + gate);
+  EXPECT_EQ(same.status, 0) << same.out;
+  EXPECT_THAT(same.out, HasSubstr("same in every class"));
+  std::string text = read(path("card.json"));
+  // As if the errors had been a tenth.
+  json before = json::parse(text);
+  for (json& scene : before["cards"][0]["scenes"]) {
+    for (json& one : scene["runs"])
+      one["rms_over_length"] = one["rms_over_length"].get<double>() / 10;
+  }
+  std::ofstream(path("card.json")) << before.dump();
+  const Outcome worse = run("suite --with chain" + scenes + gate);
+  EXPECT_EQ(worse.status, 1);
+  EXPECT_THAT(worse.out, HasSubstr("worse                chain, weight: error"));
+  EXPECT_EQ(run("suite --with force --scenes weight_1" + gate).status, 0);  // it is new
+  std::ofstream(path("card.json")) << "{}";
+  EXPECT_EQ(run("suite --with chain" + scenes + gate).status, 2);
+}
+
+TEST_F(SuiteCommand, WritesTheCardInEachForm) {
+  const Outcome result =
+      run("suite --with chain --scenes weight_1,strip_flat --markdown " + path("card.md") +
+          " --junit " + path("card.xml") + " --html " + path("card.html"));
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("chain: 1 of 2 scenes right, 1 not supported"));
+  EXPECT_THAT(read(path("card.md")), HasSubstr("| weight | 1 of 1 |"));
+  const std::string xml = read(path("card.xml"));
+  EXPECT_THAT(xml, HasSubstr("tests=\"2\" failures=\"0\" errors=\"0\" skipped=\"1\""));
+  EXPECT_EQ(std::system(("xmllint --noout " + path("card.xml")).c_str()), 0);
+  EXPECT_THAT(read(path("card.html")), HasSubstr("class=\"badge"));
+}
+
+TEST_F(SuiteCommand, TellsWhatItIsAskedWrongly) {
+  EXPECT_EQ(run("suite").status, 2);
+  EXPECT_THAT(run("suite --with chain --scenes wieght").err, HasSubstr("did you mean weight"));
+  EXPECT_THAT(run("suite --with energy").err, HasSubstr("NAME=COMMAND"));
+  EXPECT_THAT(run("suite --with chain --with chain").err, HasSubstr("given twice"));
+}
+
+}  // namespace
