@@ -65,13 +65,15 @@ void look_for_others(Answer& answer, const SolveOptions& options) {
 
 }  // namespace
 
-Model answer_model(const Scene& scene) { return scene.stretch ? Model::exact : Model::energy; }
+Model answer_model(const Scene& scene) {
+  return scene.stretch != Stretch::none ? Model::exact : Model::energy;
+}
 
 Answer certified_answer(const BatteryScene& scene, const SolveOptions& options) {
   const std::vector<double> s = equal_arc_lengths(scene.scene.length, answer_points);
   Answer answer{.of = scene};
   answer.first = solve(scene.scene, answer_model(scene.scene), options, s);
-  if (scene.scene.stretch) {
+  if (scene.scene.stretch != Stretch::none) {
     Scene fine = scene.scene;
     fine.force_model.points = fine_chain;
     answer.second = solve(fine, Model::chain, options, s);
@@ -81,13 +83,14 @@ Answer certified_answer(const BatteryScene& scene, const SolveOptions& options) 
     answer.second_method = to_string(Model::exact);
   }
   answer.bounds = bounds_between(answer.first, answer.second);
-  const double agree = (scene.scene.stretch ? chain_agrees : methods_agree) * scene.scene.length;
+  const double agree =
+      (scene.scene.stretch != Stretch::none ? chain_agrees : methods_agree) * scene.scene.length;
   if (!(answer.bounds.points_m <= agree)) {
     throw ConvergenceError(fmt::format("{}: {} and {} are {:.3g} m apart (allowed: {:.3g} m)",
                                        scene.id, to_string(answer.first.model),
                                        answer.second_method, answer.bounds.points_m, agree));
   }
-  if (!scene.scene.stretch) look_for_others(answer, options);
+  if (scene.scene.stretch == Stretch::none) look_for_others(answer, options);
   return answer;
 }
 

@@ -86,8 +86,8 @@ Eigen::MatrixXd moments_of_end(const Eigen::Matrix3Xd& points, Eigen::Index unkn
 
 std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& shape) {
   const bool plain = scene.sections.empty() && !scene.has_material_directors() &&
-                     !scene.holds_twist() && !scene.has_couples() && !scene.stretch &&
-                     obstacles_in_reach(scene).empty();
+                     !scene.holds_twist() && !scene.has_couples() &&
+                     scene.stretch == Stretch::none && obstacles_in_reach(scene).empty();
   constexpr Eigen::Index fewest = 6;
   const Eigen::Index n = shape.points.cols() - 1;
   if (!plain || n < fewest || scene.grippers.size() > 2) return std::nullopt;

@@ -79,7 +79,7 @@ class Diagnosis {
   /// @return whether the shapes are those of a chain of hinges with springs EI/h
   bool look_at_chains(bool converges) {
     // The chains do not stretch.
-    if (scene_.stretch || !(coarsest().error > error_floor)) return false;
+    if (scene_.stretch != Stretch::none || !(coarsest().error > error_floor)) return false;
     std::optional<OwnPolygon> best;
     for (const OwnPolygon& chain : own_polygons(scene_, coarsest().shape, Springs::as_the_rod)) {
       if (!best || chain.rms_m < best->rms_m) best = chain;
@@ -121,7 +121,7 @@ class Diagnosis {
   }
 
   [[nodiscard]] std::optional<double> modulus_factor(const CardShape& shape) const {
-    if (scene_.stretch) return std::nullopt;
+    if (scene_.stretch != Stretch::none) return std::nullopt;
     try {
       const EffectiveModulus modulus =
           fit_effective_modulus(scene_, distance_from(shape.shape), reference_, options_);
@@ -168,7 +168,7 @@ class Diagnosis {
   }
 
   bool look_at_springs() {
-    if (scene_.stretch) return false;
+    if (scene_.stretch != Stretch::none) return false;
     const std::optional<double> coarse = spring_factor(coarsest());
     const std::optional<double> fine = coarse ? spring_factor(finest()) : std::nullopt;
     if (!fine) return false;
@@ -220,7 +220,8 @@ class Diagnosis {
          [](Scene& scene) { scene = scene.without_natural_strain(); });
     look(scene_.holds_twist(), "twist not coupled",
          [](Scene& scene) { scene = scene.without_twist(); });
-    look(scene_.stretch, "stretch ignored", [](Scene& scene) { scene.stretch = false; });
+    look(scene_.stretch != Stretch::none, "stretch ignored",
+         [](Scene& scene) { scene.stretch = Stretch::none; });
     look(scene_.given_bending_stiffness_2.has_value(), "second bending stiffness ignored",
          [](Scene& scene) { scene.given_bending_stiffness_2.reset(); });
     look(scene_.given_bending_stiffness_2.has_value(), "first bending stiffness ignored",
@@ -240,7 +241,7 @@ class Diagnosis {
   /// Whether the shape is another equilibrium of the scene.
   bool look_at_states() {
     constexpr double small = 1e-3;
-    if (scene_.stretch || finest().error < small) return false;
+    if (scene_.stretch != Stretch::none || finest().error < small) return false;
     try {
       for (const energy_model::Equilibrium& state : reference_states(scene_, options_)) {
         if (!(distance(finest().shape, state.sample) <= may_be_left * error_m(finest()))) continue;
@@ -280,7 +281,7 @@ class Diagnosis {
   /// What `check` finds of the scene.
   /// @param left  share of the error that it may leave
   bool look_at_scene(double left) {
-    if (scene_.stretch) return false;
+    if (scene_.stretch != Stretch::none) return false;
     try {
       const MeasuredShape shape =
           shape_of(finest().shape.points, finest().shape.arc_length, "its shape");

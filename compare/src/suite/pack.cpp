@@ -124,7 +124,7 @@ nlohmann::ordered_json answer_json(const Answer& answer) {
                  {"gamma", rounded(scene.gamma(), 0)},
                  {"methods", {to_string(first.model), answer.second_method}},
                  {"status", status_name(first.status)},
-                 {"lowest", scene.stretch ? Json() : Json(answer.is_lowest)},
+                 {"lowest", scene.stretch != Stretch::none ? Json() : Json(answer.is_lowest)},
                  {"smallest_eigenvalue", rounded(first.smallest_eigenvalue, 1)},
                  {"energy", answer_energies(first.energy, large.energy)},
                  {"energy_bound_J", bound(answer.bounds.energy_J)},

@@ -110,7 +110,7 @@ TEST(Causes, NameWhatASceneHasAndAShapeHasNot) {
 TEST(Causes, NameStretchThatRigidSegmentsDoNotHave) {
   const Scene cord = battery_scene("stretch_bending");
   Scene rigid = cord;
-  rigid.stretch = false;
+  rigid.stretch = dlo::compare::Stretch::none;
   EXPECT_EQ(causes_of_other(cord, rigid).at(0).name, "stretch ignored");
 }
 
