@@ -469,13 +469,9 @@ TEST(Dynamics, IsTheSameInAllUnits) {
 TEST(Dynamics, RefusesWhatItDoesNotKnow) {
   const StartingShape start = straight_rod(Vector3d::UnitX());
   const std::vector<double> times = {1};
-  MovingRod framed = moving_cantilever(1);
-  framed.problem.grips[0].frame = FrameHold{};
-  EXPECT_THROW((void)simulate(framed, start, times), std::invalid_argument);
-  MovingRod curved = moving_cantilever(1);
-  curved.problem.natural_strains = {{0, 1, 0}};
-  curved.problem.torsional_stiffness = 1;
-  EXPECT_THROW((void)simulate(curved, start, times), std::invalid_argument);
+  MovingRod coupled = moving_cantilever(1);
+  coupled.problem.loads.push_back({1, Vector3d::Zero(), {0, 0, 1}});
+  EXPECT_THROW((void)simulate(coupled, start, times), std::invalid_argument);
   MovingRod damped = moving_cantilever(1);
   damped.material_damping = -1;
   EXPECT_THROW((void)simulate(damped, start, times), std::invalid_argument);

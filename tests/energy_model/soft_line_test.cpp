@@ -60,6 +60,16 @@ TEST(SoftLine, IsNoneOfLoadsWithoutAPotential) {
   EXPECT_THROW((void)solve_energy(taut), std::invalid_argument);
 }
 
+// The sanitizers tell what it would otherwise read.
+TEST(SoftLine, OutlivesItsProblem) {
+  Equilibrium kept;
+  {
+    const Problem problem = between_clamps(1e-12);
+    kept = solve_exact(problem);
+  }
+  EXPECT_EQ(lines_apart(kept, solve_exact(between_clamps(1e-12))), 0);
+}
+
 TEST(SoftLine, HasTheTensionOfTheCatenary) {
   // Of a = 0.4 from -0.3 to 0.7 of arc length.
   const double a = 0.4;

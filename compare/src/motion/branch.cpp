@@ -88,8 +88,9 @@ Work work_between(const Moment& before, const Moment& after, double step,
     const Gripper& to = after.scene.grippers[i];
     work.add(before.rod.grips[i].force, after.rod.grips[i].force, to.position - from.position);
     if (!to.direction) continue;
-    work.add(before.rod.grips[i].torque, after.rod.grips[i].torque,
-             turn_between(*from.direction, *to.direction));
+    Eigen::Vector3d turn = turn_between(*from.direction, *to.direction);
+    if (to.frame) turn += (to.frame->roll - from.frame->roll) * *to.direction;
+    work.add(before.rod.grips[i].torque, after.rod.grips[i].torque, turn);
   }
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
     const Eigen::Vector3d moved = after.scene.obstacles[obstacles[k]].body.centre() -

@@ -154,8 +154,9 @@ std::optional<Catenary> lie_between(const Vector& begin, const Vector& end, doub
 
 /// How the rod leaves a grip at one of its ends.
 struct Layer {
-  const Grip* grip = nullptr;
+  std::size_t grip = 0;  // in the problem
   bool at_end = false;
+  bool clamped = false;
   double length = 0;               // lambda
   double turn = 0;                 // phi_0; 0 of a pin
   Vector along = Vector::Zero();   // the catenary's tangent into the rod
@@ -188,7 +189,7 @@ struct Composite {
     for (const Layer& layer : layers) {
       const double sigma = layer.at_end ? length - s : s;
       if (sigma > layer_reach * layer.length) continue;
-      if (!layer.grip->direction) {
+      if (!layer.clamped) {
         place.curvature *= -std::expm1(-sigma / layer.length);
         continue;
       }
@@ -254,8 +255,11 @@ class SoftLine {
     if (!is_taken()) return std::nullopt;
     weight_ = problem_.weight_per_length.norm();
     up_ = -problem_.weight_per_length / weight_;
-    for (const Grip& grip : problem_.grips) {
-      layers_.push_back({.grip = &grip, .at_end = grip.at > problem_.length / 2});
+    for (std::size_t i = 0; i < problem_.grips.size(); ++i) {
+      const Grip& grip = problem_.grips[i];
+      layers_.push_back({.grip = i,
+                         .at_end = grip.at > problem_.length / 2,
+                         .clamped = grip.direction.has_value()});
     }
     constexpr int rounds = 12;  // each leaves a layer's share of the length of what was missed
     for (int i = 0; i < rounds; ++i) {
@@ -294,9 +298,11 @@ class SoftLine {
     return (body.centre() + body.radius() * body.normal()).dot(up_);
   }
 
+  [[nodiscard]] const Grip& grip_of(const Layer& layer) const { return problem_.grips[layer.grip]; }
+
   /// Where the asymptote of a layer leads.
-  [[nodiscard]] static Vector begin_of(const Layer& layer) {
-    return layer.grip->position - (layer.length > 0 ? layer.way(layer.turn) : Vector::Zero());
+  [[nodiscard]] Vector begin_of(const Layer& layer) const {
+    return grip_of(layer).position - (layer.length > 0 ? layer.way(layer.turn) : Vector::Zero());
   }
 
   bool find_catenary() {
@@ -336,8 +342,8 @@ class SoftLine {
     layer.length = std::sqrt(problem_.bending_stiffness / (weight_ * line_.height(at(layer))));
     layer.turn = 0;
     layer.across = layer.along.unitOrthogonal();
-    if (!layer.grip->direction) return;
-    const Vector held = sign * layer.grip->direction->normalized();
+    if (!layer.clamped) return;
+    const Vector held = sign * grip_of(layer).direction->normalized();
     const Vector across = held - held.dot(layer.along) * layer.along;
     layer.turn = std::atan2(across.norm(), held.dot(layer.along));
     if (across.norm() > 0) layer.across = across.normalized();
@@ -354,7 +360,7 @@ class SoftLine {
     for (const Layer& layer : layers_) {
       if (!(layer.turn < most_turned)) return false;
       if (!(2 * layer_reach * layer.length < problem_.length)) return false;
-      const double above = ground ? layer.grip->position.dot(up_) - *ground : 1.0;
+      const double above = ground ? grip_of(layer).position.dot(up_) - *ground : 1.0;
       if (!ground) continue;
       const bool lies_there = line_.lies(layer.at_end ? problem_.length * (1 - 1e-15) : 1e-300) ||
                               line_.own(at(layer)) == 0;
@@ -411,10 +417,9 @@ class SoftLine {
       result.energy.gravity +=
           weight_ * area *
           (-4 * std::log(std::cos(half / 2)) * layer.along - 2 * half * layer.across).dot(up_);
-      Reaction& reaction =
-          result.grips[static_cast<std::size_t>(layer.grip - problem_.grips.data())];
+      Reaction& reaction = result.grips[layer.grip];
       reaction.force = -weight_ * line_.height(at(layer)) * layer.along;
-      if (!layer.grip->direction) continue;
+      if (!layer.clamped) continue;
       const Composite::Place place = shape.at(at(layer));
       reaction.torque = (layer.at_end ? EI : -EI) * place.tangent.cross(place.curvature);
     }

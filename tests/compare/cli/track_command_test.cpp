@@ -253,11 +253,11 @@ TEST_F(TrackCommand, SaysWhatAMovingRodCannotHave) {
   const std::string swung = std::string(DLO_DATA) + "/scenes/swung_rod.toml";
   const std::string curved = scene(
       "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 1\nnatural_curvature = 1\n"
-      "[[gripper]]\nat = 0\ndirection = \"0 deg\"\n"
-      "[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\n"
-      "[[gripper.pose]]\ntime = 1\nposition = [0.1, 0, 0]\n");
+      "[[gripper]]\nat = 0\nroll = 0\n"
+      "[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\ndirection = \"0 deg\"\n"
+      "[[gripper.pose]]\ntime = 1\nposition = [0.1, 0, 0]\ndirection = \"10 deg\"\n");
   expect_error(words({"track", curved, "--frame-rate 20 --dynamic"}), 2,
-               {"--dynamic: a rod that is intrinsically curved", "allowed"});
+               {"--dynamic: a clamp that holds the rod's frame changes its direction", "allowed"});
   expect_error(words({"track", swung, "--dynamic --from 0.1"}), 2, {"from 0.1 s", "allowed"});
   expect_error(words({"track", swung, "--damping 0.1"}), 2, {"--damping", "--dynamic"});
   expect_error(words({"track", swung, "--dynamic --drag -1"}), 2, {"--drag", "-1"});

@@ -243,13 +243,14 @@ TEST(DynamicTrack, AWristTurnsTheWire) {
             rod + wrist + rest,
         "wrist.toml");
     TrackOptions options = frames_at(2);
+    options.solve.terms = 16;  // frames that roll and those that do not take other series
     const DynamicTrack result = moved(scene, options, {.air = 0.3});
     ASSERT_FALSE(result.stopped);
     EXPECT_LT(result.energy_error, 1e-5);
-    EXPECT_GT(result.quasi_static.largest, 1e-3);
-    EXPECT_LT(result.frames.back().quasi_static_error, 1e-4);
-    EXPECT_GT((result.frames.back().points - result.frames.front().points).norm(), 0.05);
-    EXPECT_EQ(result.frames.back().energy.twisting > 1e-6, true);
+    EXPECT_GT(result.quasi_static.largest, 2 * result.frames.back().quasi_static_error);
+    EXPECT_LT(result.frames.back().quasi_static_error, 1e-5);
+    EXPECT_GT((result.frames.back().points - result.frames.front().points).norm(), 0.04);
+    EXPECT_GT(result.frames.back().energy.twisting, 1e-6);
   }
 }
 
