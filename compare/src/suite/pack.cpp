@@ -37,7 +37,10 @@ std::string decimals(double metres) {
   return text;
 }
 
-double place(double metres) { return as_number<double>(decimals(metres)).value(); }
+double place(double metres) {
+  const std::string text = decimals(metres);
+  return as_number<double>(text).value();
+}
 
 Json answer_vector(const Eigen::Vector3d& vector, double large) {
   return {rounded(vector.x(), large), rounded(vector.y(), large), rounded(vector.z(), large)};

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -130,8 +131,8 @@ TEST(ChainSprings, OfUnequalSegmentsTheyAreThoseOfBeamTheory) {
   Scene scene = test::heavy_scene(1e-9, 0);
   scene.loads = {{.at = 1, .force = {0, -0.001 * scene.bending_stiffness(), 0}}};
   const std::vector<double>& h = unequal_lengths();
-  std::vector<double> s = {0};
-  for (const double part : h) s.push_back(s.back() + part);
+  std::vector<double> s(h.size() + 1, 0.0);
+  std::partial_sum(h.begin(), h.end(), s.begin() + 1);
   double product = 0;
   double square = 0;
   for (std::size_t j = 0; j < s.size(); ++j) {
