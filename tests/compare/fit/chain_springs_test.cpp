@@ -180,8 +180,8 @@ TEST(ChainSprings, OfUnequalSegmentsTheyBringAnotherSolversChainToTheRod) {
       springs[i] = factor * spring(chains[1].joints[static_cast<std::size_t>(i)]);
     }
     const Eigen::Matrix3Xd points = test::chain_at_rest(h, springs, forces, moment);
-    std::vector<double> s = {0};
-    for (const double part : lengths) s.push_back(s.back() + part);
+    std::vector<double> s(lengths.size() + 1, 0.0);
+    std::partial_sum(lengths.begin(), lengths.end(), s.begin() + 1);
     // The rod's points as far from each other as the chain's, all but for their bow.
     const Eigen::Matrix3Xd rod = solve_reference(scene, Model::energy).sample(s).points;
     return (points - rod).norm() / std::sqrt(static_cast<double>(n + 1));
