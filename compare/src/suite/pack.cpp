@@ -37,9 +37,9 @@ std::string decimals(double metres) {
   return text;
 }
 
+/// The same as a number; adding zero makes zero of -0.
 double place(double metres) {
-  const std::string text = decimals(metres);
-  return as_number<double>(text).value();
+  return as_number<double>(fmt::format("{:.12f}", metres)).value() + 0.0;
 }
 
 Json answer_vector(const Eigen::Vector3d& vector, double large) {
