@@ -80,11 +80,20 @@ TEST(TwistMotion, ARolledClampLeavesTheEquilibriumThatItHolds) {
   Problem problem = cable();
   problem.grips = {framed(0, {0, 0, 0}, Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY()),
                    framed(0.8, {0.6, 0.1, 0}, Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY())};
+  // A part that yields more to twist than it does to bending.
+  Section part;
+  part.begin = 0.3;
+  part.end = 0.5;
+  part.bending_stiffness = 0.02;
+  part.torsional_stiffness = 0.003;
+  part.weight_per_length = problem.weight_per_length;
+  problem.sections = {part};
   MovingRod rod = moving_rod(problem);
+  rod.inertia.of_sections = {rod.inertia.mass_per_length};
   rod.air_drag = 0.5;
   rod.breaks = {0, 1};
-  rod.motions = {nullptr, rolling(problem.grips[1], 2, 1)};
-  problem.grips[1].frame->roll = 2;
+  rod.motions = {nullptr, rolling(problem.grips[1], 2.8, 1)};
+  problem.grips[1].frame->roll = 2.8;
   expect_comes_to(rod, problem, "round");
 }
 

@@ -84,16 +84,7 @@ void add_regress(CLI::App& app) {
   command->add_option("--model", options->model, "force or chain")
       ->check(CLI::IsMember({"force", "chain"}))
       ->capture_default_str();
-  command
-      ->add_option("--relative", options->tolerance.relative,
-                   "how much an error may grow, as a share of it such as 1%")
-      ->transform(share_up_to(1e3))
-      ->capture_default_str();
-  command
-      ->add_option("--absolute", options->tolerance.absolute,
-                   "and how much beside that, as a share of the rod's length")
-      ->transform(share_up_to(1e3))
-      ->capture_default_str();
+  add_growth_options(*command, options->tolerance);
   add_program_options(*command, options->programs);
   options->overrides.add_to(*command);
   add_output_options(*command, options->output);

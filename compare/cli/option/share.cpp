@@ -75,6 +75,20 @@ CLI::Validator share_up_to(double high) {
                     fmt::format("1% or 0.01, 0 to {:g}", high));
 }
 
+void add_growth_options(CLI::App& command, compare::RegressionTolerance& tolerance) {
+  constexpr double most = 1e3;
+  command
+      .add_option("--relative", tolerance.relative,
+                  "how much an error may grow, as a share of it such as 1%")
+      ->transform(share_up_to(most))
+      ->capture_default_str();
+  command
+      .add_option("--absolute", tolerance.absolute,
+                  "and how much beside that, as a share of the rod's length")
+      ->transform(share_up_to(most))
+      ->capture_default_str();
+}
+
 compare::ShapeTolerance shape_tolerance(const std::string& name, const ToleranceWords& words,
                                         double length) {
   if (words.measure != "rms" && words.measure != "max") {

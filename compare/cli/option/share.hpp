@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "batch/regression.hpp"
 #include "dlo/compare/shape_verdict.hpp"
 
 namespace dlo::cli {
@@ -14,6 +15,9 @@ namespace dlo::cli {
 
 /// For an option that takes "1%" and 0.01 alike, from 0 to `high`.
 [[nodiscard]] CLI::Validator share_up_to(double high);
+
+/// --relative and --absolute: by how much an error may grow.
+void add_growth_options(CLI::App& command, compare::RegressionTolerance& tolerance);
 
 /// What a shape is held against.
 struct ToleranceWords {

@@ -120,16 +120,7 @@ void add_suite(CLI::App& app) {
       ->add_option("--baseline", options->baseline,
                    "cards of an earlier time (JSON); exit status 1 if a class has got worse")
       ->type_name("FILE");
-  command
-      ->add_option("--relative", options->tolerance.relative,
-                   "how much an error may grow, as a share of it such as 1%")
-      ->transform(share_up_to(1e3))
-      ->capture_default_str();
-  command
-      ->add_option("--absolute", options->tolerance.absolute,
-                   "and how much beside that, as a share of the rod's length")
-      ->transform(share_up_to(1e3))
-      ->capture_default_str();
+  add_growth_options(*command, options->tolerance);
   command->add_option("--markdown", options->markdown, "write the cards as Markdown too")
       ->type_name("FILE");
   command->add_option("--junit", options->junit, "and as JUnit XML")->type_name("FILE");

@@ -90,13 +90,10 @@ std::string last_words(const std::string& file) {
   }
 }
 
-/// An end that a gripper holds is where that is. Only a file that says so has less than the rod.
-void require_end(const Scene& scene, const Alignment& alignment, bool at_start) {
+void require_end(const Scene& scene, const Shape& laid, bool told, bool at_start) {
   constexpr double share = 0.01;
-  const Shape& laid = alignment.shape;
   const double end = at_start ? 0 : scene.length;
   const double outermost = at_start ? laid.arc_length.front() : laid.arc_length.back();
-  const bool told = alignment.arc_lengths == ArcLengths::file;
   const double allowed = share * scene.length + (told ? std::abs(end - outermost) : 0);
   const Eigen::Vector3d point = laid.points.col(at_start ? 0 : laid.points.cols() - 1);
   for (const Gripper& gripper : scene.grippers) {
@@ -190,11 +187,15 @@ ForeignRun run_foreign(const ForeignProgram& program, Scene scene, int points, d
   return result;
 }
 
+void require_held_ends(const Scene& scene, const Shape& laid, bool told) {
+  for (const bool at_start : {true, false}) require_end(scene, laid, told, at_start);
+}
+
 Deviation foreign_deviation(const Scene& scene, const MeasuredShape& shape,
                             const Reference& reference) {
   const Alignment alignment = align(shape, reference, scene.length);
   const Shape& laid = alignment.shape;
-  for (const bool at_start : {true, false}) require_end(scene, alignment, at_start);
+  require_held_ends(scene, laid, alignment.arc_lengths == ArcLengths::file);
   const double seen = (laid.arc_length.back() - laid.arc_length.front()) / scene.length;
   if (seen < 0.5) {
     throw InputError(fmt::format(

@@ -44,9 +44,14 @@ struct ForeignRun {
 [[nodiscard]] ForeignRun run_foreign(const ForeignProgram& program, Scene scene, int points,
                                      double time_limit);
 
+/// An end that a gripper holds is where that is: to 1 % of the length, and to what a file says that
+/// it has less than the rod.
+/// @param told  whether the arc lengths are those of a file;  @throws InputError naming the gripper
+void require_held_ends(const Scene& scene, const Shape& laid, bool told);
+
 /// Distances of a foreign shape from a reference, as `dlo check` measures a file that is the whole
-/// rod, in the scene's frame. @throws InputError if an end that a gripper holds is more than 1 % of
-/// the length from it, or the shape is less than half of the rod
+/// rod, in the scene's frame. @throws InputError as require_held_ends(), or if the shape is less
+/// than half of the rod
 [[nodiscard]] Deviation foreign_deviation(const Scene& scene, const MeasuredShape& shape,
                                           const Reference& reference);
 

@@ -17,27 +17,30 @@ constexpr double time_rounding = 1e-14;
 struct TurnedLeg {
   TrajectoryLeg leg;
   Eigen::Quaterniond first_turn;
-  /// At the begin of all legs, where rolls count.
-  std::optional<Eigen::Vector3d> first_direction;
-  double first_roll = 0;
+};
+
+/// A clamp that rolls, at the first pose.
+struct Rolling {
+  Eigen::Vector3d direction;
+  double roll;
 };
 
 /// With zero time at `begin`.
-std::vector<TurnedLeg> turned_legs(const Trajectory& way, double begin,
-                                   const std::optional<Eigen::Vector3d>& rolls_about) {
+std::vector<TurnedLeg> turned_legs(const Trajectory& way, double begin) {
   std::vector<Pose> poses = way.poses();
   for (Pose& pose : poses) pose.time -= begin;
   std::vector<TurnedLeg> result;
   Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
   for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
     const TrajectoryLeg leg = leg_after(poses, i);
-    result.push_back({leg, turn, rolls_about, poses.front().roll.value_or(0)});
+    result.push_back({leg, turn});
     turn = Eigen::Quaterniond(Eigen::AngleAxisd(leg.angle, leg.axis)) * turn;
   }
   return result;
 }
 
-energy_model::GripPose pose_on(const TurnedLeg& turned, double time) {
+energy_model::GripPose pose_on(const TurnedLeg& turned, const std::optional<Rolling>& first,
+                               double time) {
   const TrajectoryLeg& leg = turned.leg;
   energy_model::GripPose pose;
   pose.position = leg.position(time);
@@ -46,10 +49,10 @@ energy_model::GripPose pose_on(const TurnedLeg& turned, double time) {
   pose.turn = Eigen::Quaterniond(Eigen::AngleAxisd(leg.turned(time), leg.axis)) * turned.first_turn;
   pose.angular_velocity = leg.turned(time, 1) * leg.axis;
   pose.angular_acceleration = leg.turned(time, 2) * leg.axis;
-  if (!leg.from.roll || !turned.first_direction) return pose;
-  const Eigen::Vector3d about = (pose.turn * *turned.first_direction).normalized();
+  if (!first) return pose;
+  const Eigen::Vector3d about = (pose.turn * first->direction).normalized();
   const double rate = leg.rolled(time, 1);
-  pose.turn = Eigen::AngleAxisd(leg.rolled(time) - turned.first_roll, about) * pose.turn;
+  pose.turn = Eigen::AngleAxisd(leg.rolled(time) - first->roll, about) * pose.turn;
   pose.angular_acceleration +=
       leg.rolled(time, 2) * about + rate * pose.angular_velocity.cross(about);
   pose.angular_velocity += rate * about;
@@ -69,16 +72,19 @@ energy_model::GripPose standing_at(const energy_model::GripPose& end) {
 energy_model::GripMotion trajectory_motion(const Trajectory& way, double begin,
                                            const std::optional<Eigen::Vector3d>& rolls_about) {
   if (way.poses().size() == 1) return energy_model::standing(way.poses().front().position);
-  return [legs = turned_legs(way, begin, rolls_about)](double time) {
+  std::optional<Rolling> first;
+  const std::optional<double>& roll = way.poses().front().roll;
+  if (roll && rolls_about) first = Rolling{*rolls_about, *roll};
+  return [legs = turned_legs(way, begin), first](double time) {
     const double earlier = time - time_rounding * std::abs(time);
     const auto leg =
         std::lower_bound(legs.begin(), legs.end(), earlier,
                          [](const TurnedLeg& turned, double t) { return turned.leg.to.time < t; });
-    if (leg == legs.end()) return standing_at(pose_on(legs.back(), legs.back().leg.to.time));
+    if (leg == legs.end()) return standing_at(pose_on(legs.back(), first, legs.back().leg.to.time));
     if (!(earlier > leg->leg.from.time)) {
-      return standing_at(pose_on(legs.front(), legs.front().leg.from.time));
+      return standing_at(pose_on(legs.front(), first, legs.front().leg.from.time));
     }
-    return pose_on(*leg, time);
+    return pose_on(*leg, first, time);
   };
 }
 

@@ -515,7 +515,9 @@ Scene scene_at(const Scene& scene, double time, double obstacle_time) {
     const Pose pose = gripper.trajectory.pose_at(time);
     gripper.position = pose.position;
     if (pose.direction) gripper.direction = pose.direction;
-    if (pose.roll) gripper.frame->roll += *pose.roll - *gripper.trajectory.poses().front().roll;
+    if (pose.roll && gripper.frame) {
+      gripper.frame->roll += *pose.roll - *gripper.trajectory.poses().front().roll;
+    }
     gripper.trajectory = {};
   }
   for (Obstacle& obstacle : result.obstacles) {

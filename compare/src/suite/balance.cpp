@@ -11,15 +11,25 @@ namespace {
 
 /// Points with what acts on each, from an end that is held.
 struct LoadedPoints {
-  Eigen::Matrix3Xd points;
+  Shape shape;
   Eigen::Matrix3Xd weights;
   Eigen::Matrix3Xd forces;  // all others
+
+  /// The same from the other end.
+  [[nodiscard]] LoadedPoints reversed(double length) const {
+    LoadedPoints result = *this;
+    for (Eigen::Matrix3Xd* each : {&result.shape.points, &result.weights, &result.forces}) {
+      *each = each->rowwise().reverse().eval();
+    }
+    std::reverse(result.shape.arc_length.begin(), result.shape.arc_length.end());
+    for (double& s : result.shape.arc_length) s = length - s;
+    return result;
+  }
 };
 
 LoadedPoints loaded_points(const Scene& scene, const Shape& shape) {
   const Eigen::Index n = shape.points.cols() - 1;
-  LoadedPoints result{shape.points, Eigen::Matrix3Xd::Zero(3, n + 1),
-                      Eigen::Matrix3Xd::Zero(3, n + 1)};
+  LoadedPoints result{shape, Eigen::Matrix3Xd::Zero(3, n + 1), Eigen::Matrix3Xd::Zero(3, n + 1)};
   const std::vector<double>& s = shape.arc_length;
   const auto at = [&](Eigen::Index i) { return s[static_cast<std::size_t>(i)]; };
   for (Eigen::Index i = 0; i <= n; ++i) {
@@ -37,23 +47,6 @@ LoadedPoints loaded_points(const Scene& scene, const Shape& shape) {
     result.forces.col(i) += share * load.force;
   }
   return result;
-}
-
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d result;
-  result << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return result;
-}
-
-/// Curvature at a point inside, as a vector about which the tangent turns [1/m].
-Eigen::Vector3d curvature_vector(const Eigen::Matrix3Xd& points, Eigen::Index i) {
-  const Eigen::Vector3d before = points.col(i) - points.col(i - 1);
-  const Eigen::Vector3d after = points.col(i + 1) - points.col(i);
-  const Eigen::Vector3d axis = before.cross(after);
-  const double sine = axis.norm();
-  if (!(sine > 0)) return Eigen::Vector3d::Zero();
-  const double angle = std::atan2(sine, before.dot(after));
-  return axis / sine * angle * 2 / (before.norm() + after.norm());
 }
 
 /// Moments about the points inside of what acts beyond them, one below the other.
@@ -76,7 +69,9 @@ Eigen::MatrixXd moments_of_end(const Eigen::Matrix3Xd& points, Eigen::Index unkn
   for (Eigen::Index i = 1; i < n; ++i) {
     const Eigen::Index row = 3 * (i - 1);
     const Eigen::Vector3d arm = points.col(n) - points.col(i);
-    if (unknown >= 3) columns.block<3, 3>(row, 0) = cross_matrix(arm);
+    for (Eigen::Index k = 0; k < std::min<Eigen::Index>(unknown, 3); ++k) {
+      columns.block<3, 1>(row, k) = arm.cross(Eigen::Vector3d::Unit(k));
+    }
     if (unknown == 6) columns.block<3, 3>(row, 3) = Eigen::Matrix3d::Identity();
   }
   return columns;
@@ -99,8 +94,7 @@ std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& sha
   }
   LoadedPoints rod = loaded_points(scene, shape);
   if (first == nullptr) {
-    rod = {rod.points.rowwise().reverse(), rod.weights.rowwise().reverse(),
-           rod.forces.rowwise().reverse()};
+    rod = rod.reversed(scene.length);
     std::swap(first, last);
   }
   const Eigen::Index unknown = last == nullptr ? 0 : last->direction ? 6 : 3;
@@ -110,7 +104,8 @@ std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& sha
   const Eigen::Index to = n - 2;
   bending.setZero();
   for (Eigen::Index i = from; i <= to; ++i) {
-    bending.segment<3>(3 * (i - 1)) = scene.bending_stiffness() * curvature_vector(rod.points, i);
+    bending.segment<3>(3 * (i - 1)) =
+        scene.bending_stiffness() * joint_curvature(rod.shape, static_cast<std::size_t>(i));
   }
   const auto inside = [&](const auto& rows) {
     return rows.middleRows(3 * (from - 1), 3 * (to - from + 1)).eval();
@@ -118,14 +113,14 @@ std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& sha
   bending = inside(bending);
   if (!(bending.norm() > 0)) return std::nullopt;
   constexpr double no_load = 1e-9;
-  const Eigen::VectorXd of_weight = inside(moments_beyond(rod.points, rod.weights));
-  const Eigen::VectorXd of_loads = inside(moments_beyond(rod.points, rod.forces));
+  const Eigen::VectorXd of_weight = inside(moments_beyond(rod.shape.points, rod.weights));
+  const Eigen::VectorXd of_loads = inside(moments_beyond(rod.shape.points, rod.forces));
   const bool has_weight = of_weight.norm() > no_load * bending.norm();
   const bool has_loads = of_loads.norm() > no_load * bending.norm();
   if (!has_weight && !has_loads && unknown == 0) return MomentBalance{.imbalance = 1};
   // Columns of what is found, and what stands on the other side; without loads any stiffness is as
   // good, and without weight or without other loads one factor is the other's inverse.
-  Eigen::MatrixXd columns = inside(moments_of_end(rod.points, unknown));
+  Eigen::MatrixXd columns = inside(moments_of_end(rod.shape.points, unknown));
   const auto append_column = [&](const Eigen::VectorXd& column) {
     columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
     columns.rightCols<1>() = column;

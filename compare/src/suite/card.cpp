@@ -9,12 +9,13 @@
 #include <cstdint>
 #include <limits>
 #include <mutex>
-#include <optional>
 #include <utility>
 
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
+#include "dlo/compare/shape_verdict.hpp"
+#include "foreign/foreign_program.hpp"
 #include "parallel/threads.hpp"
 #include "shape/arc_lengths.hpp"
 #include "suite/answer.hpp"
@@ -25,12 +26,14 @@ namespace {
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
 /// The points of a whole rod in the scene's frame, from its begin: at the file's arc lengths, or at
-/// lengths along the polyline. @throws InputError if an end is not where a gripper holds it
+/// lengths along a curve through the points, over its length.
+/// @throws InputError if these leave the rod, or an end is not where a gripper holds it
 Shape laid_shape(const Scene& scene, const MeasuredShape& measured) {
-  Shape shape{measured.arc_length, measured.points};
   const double length = scene.length;
-  if (shape.arc_length.empty()) {
-    shape.arc_length = lengths_along(measured.points);
+  const bool told = !measured.arc_length.empty();
+  Shape shape{told ? file_arc_lengths(measured, length) : lengths_along(measured.points),
+              measured.points};
+  if (!told) {
     const double whole = shape.arc_length.back();
     for (double& s : shape.arc_length) s *= length / whole;
   }
@@ -53,22 +56,7 @@ Shape laid_shape(const Scene& scene, const MeasuredShape& measured) {
     std::reverse(shape.arc_length.begin(), shape.arc_length.end());
     for (double& s : shape.arc_length) s = length - s;
   }
-  for (double& s : shape.arc_length) {
-    const std::optional<double> on = on_rod(s, length);
-    if (!on) {
-      throw InputError(
-          fmt::format("s = {:g} m is not on the rod (allowed: 0 to {:g} m)", s, length));
-    }
-    s = *on;
-  }
-  constexpr double share = 0.01;
-  const double apart = distance_of_ends(false);
-  if (apart > share * length) {
-    throw InputError(
-        fmt::format("wrong end: the shape is {:.3g} m from a gripper at an end "
-                    "(allowed: {:.3g} m)",
-                    apart, share * length));
-  }
+  require_held_ends(scene, shape, told);
   return shape;
 }
 
@@ -147,8 +135,7 @@ std::string CardScene::problem() const {
 }
 
 bool CardScene::right() const {
-  constexpr double allowed = 0.01;
-  return status() == RunStatus::solved && runs.back().error <= allowed &&
+  return status() == RunStatus::solved && runs.back().error <= default_tolerance(1).allowed_m &&
          std::none_of(causes.begin(), causes.end(),
                       [](const Cause& cause) { return cause.defect; });
 }

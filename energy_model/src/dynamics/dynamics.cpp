@@ -179,8 +179,9 @@ Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<co
           "0: a couple has no potential, but in a plane");
   require(!complete.problem.confined_to_plane, simulate_name, "confined_to_plane", 1,
           "false: solve_energy() alone confines a rod");
-  const std::vector<PlacedSpan> spans = split(complete.problem);
-  for (const PlacedSpan& placed : spans) {
+  std::vector<PlacedSpan> spans = split(complete.problem);
+  for (PlacedSpan& placed : spans) {
+    hold_last_frame(complete.problem, placed);
     require_affordable(placed.span, options.terms, simulate_name);
   }
   const std::vector<std::vector<PointMass>> masses = masses_by_span(complete, spans);
@@ -193,7 +194,6 @@ Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<co
   std::vector<SpanRun> runs;
   for (std::size_t i = 0; i < spans.size(); ++i) {
     PlacedSpan placed = spans[i];
-    hold_last_frame(complete.problem, placed);
     placed.span.planar = placed.span.planar && !options.spatial;
     const auto run_span = [&] {
       return MovingSpan(complete, placed, begin).run(start, masses[i], times, options, deadline);

@@ -52,6 +52,20 @@ void SpanIntegrator::take_mass(double time, const SpanInstant& at) {
   jacobian_ = span_.jacobian();
 }
 
+/// The rows that one point of the rule has in Newton's matrix.
+void SpanIntegrator::place_point(Eigen::Index i, double step, const PointMatrices& at,
+                                 Eigen::MatrixXd& matrix) const {
+  const Eigen::Index n = at.mass.rows();
+  const Eigen::Index m = at.jacobian.rows();
+  for (Eigen::Index j = 0; j < stage_count; ++j) {
+    auto block = matrix.block(i * (n + m), j * (n + m), n, n);
+    block = step * rule_.inner(i, j) * at.damping + step * step * rule_.twice(i, j) * at.stiffness;
+    if (i == j) block += at.mass;
+  }
+  matrix.block(i * (n + m), i * (n + m) + n, n, m) = -at.jacobian.transpose();
+  matrix.block(i * (n + m) + n, i * (n + m), m, n) = at.jacobian;
+}
+
 SpanIntegrator::Factor& SpanIntegrator::factor(const SpanInstant& at, double step, bool renew) {
   // Steps that differ by rounding of the times are one.
   constexpr double same = 1e-9;
@@ -73,13 +87,7 @@ SpanIntegrator::Factor& SpanIntegrator::factor(const SpanInstant& at, double ste
   const Eigen::MatrixXd stiffness = span_.stiffness(multipliers);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(stage_count * (n + m), stage_count * (n + m));
   for (Eigen::Index i = 0; i < stage_count; ++i) {
-    for (Eigen::Index j = 0; j < stage_count; ++j) {
-      auto block = matrix.block(i * (n + m), j * (n + m), n, n);
-      block = step * rule_.inner(i, j) * damping + step * step * rule_.twice(i, j) * stiffness;
-      if (i == j) block += mass_;
-    }
-    matrix.block(i * (n + m), i * (n + m) + n, n, m) = -jacobian_.transpose();
-    matrix.block(i * (n + m) + n, i * (n + m), m, n) = jacobian_;
+    place_point(i, step, {mass_, damping, stiffness, jacobian_}, matrix);
   }
   found->lu.compute(matrix);
   return *found;
@@ -99,16 +107,10 @@ SpanIntegrator::Factor& SpanIntegrator::factor_of_points(const SpanInstant& at, 
   for (Eigen::Index i = 0; i < stage_count; ++i) {
     span_.move(drives[static_cast<std::size_t>(i)], x.col(i), v.col(i), guess.col(i).head(n));
     mass_ = span_.mass_matrix();
-    const Eigen::MatrixXd damping = span_.damping(mass_);
-    const Eigen::MatrixXd stiffness = span_.stiffness(guess.col(i).tail(m));
-    const Eigen::MatrixXd jacobian = span_.jacobian();
-    for (Eigen::Index j = 0; j < stage_count; ++j) {
-      auto block = matrix.block(i * (n + m), j * (n + m), n, n);
-      block = step * rule_.inner(i, j) * damping + step * step * rule_.twice(i, j) * stiffness;
-      if (i == j) block += mass_;
-    }
-    matrix.block(i * (n + m), i * (n + m) + n, n, m) = -jacobian.transpose();
-    matrix.block(i * (n + m) + n, i * (n + m), m, n) = jacobian;
+    place_point(
+        i, step,
+        {mass_, span_.damping(mass_), span_.stiffness(guess.col(i).tail(m)), span_.jacobian()},
+        matrix);
   }
   of_points_.step = step;
   of_points_.lu.compute(matrix);

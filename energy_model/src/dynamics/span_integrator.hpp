@@ -72,6 +72,13 @@ class SpanIntegrator {
     double step = 0;
     Eigen::PartialPivLU<Eigen::MatrixXd> lu;
   };
+  /// What Newton's matrix is made of; references, as long as a call.
+  struct PointMatrices {
+    const Eigen::MatrixXd& mass;
+    const Eigen::MatrixXd& damping;
+    const Eigen::MatrixXd& stiffness;
+    const Eigen::MatrixXd& jacobian;
+  };
   /// Accelerations and multipliers at the rule's points of a step.
   struct Stages {
     double step = 0;
@@ -86,6 +93,8 @@ class SpanIntegrator {
                               double enough, Stages& found);
   [[nodiscard]] bool take_step(SpanInstant& at, double step);
   [[nodiscard]] bool take_two_halves(SpanInstant& at, double step);
+  void place_point(Eigen::Index i, double step, const PointMatrices& at,
+                   Eigen::MatrixXd& matrix) const;
   [[nodiscard]] Factor& factor(const SpanInstant& at, double step, bool renew);
   [[nodiscard]] Factor& factor_of_points(const SpanInstant& at, double step,
                                          const std::vector<SpanDrive>& drives,
