@@ -1,5 +1,7 @@
+#include <malloc.h>
 #include <unistd.h>
 
+#include <climits>
 #include <csignal>
 #include <exception>
 #include <string>
@@ -31,6 +33,17 @@ ExitStatus status_of_exception() {
   }
 }
 
+/// Memory that is freed stays with the process. A solve takes and frees some megabytes of matrices;
+/// to return them to the system and take them again costs up to three times what is computed with
+/// them.
+void keep_freed_memory() {
+#ifdef __GLIBC__
+  constexpr int largest_threshold = 32 << 20;  // bytes, of those that malloc takes
+  (void)mallopt(M_MMAP_THRESHOLD, largest_threshold);
+  (void)mallopt(M_TRIM_THRESHOLD, INT_MAX);
+#endif
+}
+
 /// What no caller could catch, such as memory that a thread of the scheduler does not get, ends
 /// like anything else: with a line and a status.
 [[noreturn]] void end_uncaught() {
@@ -47,6 +60,7 @@ ExitStatus status_of_exception() {
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_freed_memory();
   dlo::cli::reserve_standard_descriptors();
   dlo::compare::remove_temporaries_at_signals();
   // A limit of a file's size is an error of its write.

@@ -37,7 +37,7 @@ struct CalibrateOptions {
   std::string clamp_positions;
   bool same_clamps = false;
   bool predict = false;
-  std::string chosen = "given";
+  std::string chosen;  // empty: as calibrate() has it
   std::vector<std::string> holdouts;
   std::optional<double> target;
   ShapeOptions shape_options;
@@ -128,7 +128,8 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
           quantity_of("--clamp-positions", options.clamp_positions, Dimension::length).value_or(0),
       .shared_clamps = options.same_clamps,
       .predict = options.predict,
-      .choose_options = options.chosen == "auto",
+      .choose_options =
+          options.chosen.empty() ? std::nullopt : std::optional(options.chosen == "auto"),
       .chain_segments = chain.segments,
       .chain_segment_lengths = chain.segment_lengths,
       .profile_points = options.plot.draws() ? profile_points : 0,
@@ -273,10 +274,12 @@ void add_calibrate(CLI::App& app) {
       ->needs(shape)
       ->group(measured);
   command
-      ->add_option("--options", options->chosen,
-                   "given, or auto: the terms of natural curvature, and clamps as said, misaligned "
-                   "alike or each on its own, that predict shapes best that are left out (three "
-                   "shapes or more)")
+      ->add_option(
+          "--options", options->chosen,
+          "given, or auto: where residuals are systematic, the terms of natural curvature, "
+          "and clamps as said, misaligned alike or each on its own, that predict shapes "
+          "best that are left out; default: auto of three shapes or more, without the "
+          "four above")
       ->check(CLI::IsMember({"given", "auto"}))
       ->needs(shape)
       ->group(measured);

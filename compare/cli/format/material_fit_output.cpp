@@ -102,9 +102,11 @@ std::string tried_text(const std::vector<compare::FitAlternative>& tried) {
   std::string out;
   for (std::size_t i = 0; i < tried.size(); ++i) {
     const std::string words = words_of(tried[i]);
-    append(out, "{} {}: predicts {:.4g} mm, residual {:.4g} mm\n",
-           i == 0 ? "chosen     " : "           ", words.empty() ? "no option" : words,
-           tried[i].prediction_m.value_or(NAN) * 1e3, tried[i].rms_m * 1e3);
+    append(out, "{} {}: {}residual {:.4g} mm{}\n", i == 0 ? "chosen     " : "           ",
+           words.empty() ? "no option" : words,
+           tried[i].prediction_m ? fmt::format("predicts {:.4g} mm, ", *tried[i].prediction_m * 1e3)
+                                 : "",
+           tried[i].rms_m * 1e3, tried.size() == 1 ? ", nothing in it is systematic" : "");
   }
   return out;
 }

@@ -112,10 +112,10 @@ FitDocuments calibrate_material(const std::vector<SharedScene>& scenes, const py
   }
   compare::SolveOptions solve = solve_options(limits);
   solve.accept_unverified = false;
-  const auto chosen = what["options"].cast<std::string>();
-  if (chosen != "given" && chosen != "auto") {
+  const auto chosen = what["options"].cast<std::optional<std::string>>();
+  if (chosen && *chosen != "given" && *chosen != "auto") {
     throw compare::InputError(
-        fmt::format("calibrate: options = '{}': unknown (allowed: given, auto)", chosen));
+        fmt::format("calibrate: options = '{}': unknown (allowed: given, auto)", *chosen));
   }
   const compare::MaterialFitOptions options{
       .pose = compare::from_name<compare::PoseFreedom>(what["pose"].cast<std::string>()),
@@ -128,7 +128,7 @@ FitDocuments calibrate_material(const std::vector<SharedScene>& scenes, const py
       .position_tolerance = what["clamp_positions"].cast<double>(),
       .shared_clamps = what["same_clamps"].cast<bool>(),
       .predict = what["predict"].cast<bool>(),
-      .choose_options = chosen == "auto",
+      .choose_options = chosen ? std::optional(*chosen == "auto") : std::nullopt,
       .chain_segments = what["segments"].cast<int>(),
       .chain_segment_lengths = what["segment_lengths"].cast<std::vector<double>>(),
       .noise = what["noise"].cast<std::optional<double>>(),

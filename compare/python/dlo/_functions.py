@@ -208,7 +208,7 @@ def calibrate(
     clamp_positions: Quantity = 0.0,
     same_clamps: bool = False,
     predict: bool = False,
-    options: str = "given",
+    options: Optional[str] = None,
     noise: Optional[Quantity] = None,
     segments: int = 0,
     segment_lengths: Optional[Sequence[float]] = None,
@@ -222,9 +222,9 @@ def calibrate(
     [m], a tuple of points and their arc lengths, or the name of a file in metres. density, torsional_stiffness: fit these as well;
     natural_curvature: so many terms of it. clamp_angles, clamp_positions: how well the clamps are
     known (standard deviations, "5 deg", "2 mm"); each shape's own are then fitted,
-    with same_clamps what all share. predict: each shape is left out in turn, and predicted. options: "auto" chooses the terms of
-    natural curvature, and clamps as said, alike or each on its own, that predict best ("tried" of the document). noise: standard
-    deviation of one coordinate; None: estimated. segments: of your simulator's chain, whose springs are
+    with same_clamps what all share. predict: each shape is left out in turn, and predicted. options: "auto": where
+    residuals are systematic, the terms of natural curvature, and clamps as said, alike or each on its own, that predict
+    best ("tried" of the document); "given"; None: "auto" of three shapes or more, without these four. noise: standard deviation of one coordinate; None: estimated. segments: of your simulator's chain, whose springs are
     then found too ("chains" of the document); segment_lengths [m] where they are unequal. register, arc_lengths: as of check(). time, materials: as of
     solve(), of all scenes.
 

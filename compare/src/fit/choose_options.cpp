@@ -7,6 +7,8 @@
 #include <optional>
 
 #include "dlo/compare/error.hpp"
+#include "fit/shape_misfit.hpp"
+#include "fit/wire_fit.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -34,6 +36,12 @@ struct Trial {
   [[nodiscard]] std::size_t numbers() const { return fit.others.size(); }
 };
 
+/// Whether something beside noise may be left.
+bool is_systematic(const MaterialFit& fit) {
+  return !fit.correlation_was_tested || fit.correlation || fit.scatter || !fit.warning.empty() ||
+         !fit.alternatives.empty();
+}
+
 class OptionsSearch {
  public:
   OptionsSearch(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
@@ -41,39 +49,56 @@ class OptionsSearch {
       : scenes_(scenes), shapes_(shapes), options_(options) {}
 
   [[nodiscard]] MaterialFit run() {
+    MaterialFitOptions as_said = with_all_outputs(options_of(0, Clamps::as_said));
+    as_said.alternatives = options_.alternatives;
+    plain_ = fit_material(scenes_, shapes_, as_said);
+    if (!is_systematic(plain_)) {
+      plain_.tried.push_back(described(as_said, plain_));
+      return plain_;
+    }
+    start_ = material_of(plain_, scenes_.front());
     for (const Clamps clamps : {Clamps::as_said, Clamps::alike, Clamps::own}) try_terms(clamps);
     if (trials_.empty()) {
       throw ConvergenceError("calibrate: no fit came to an end with any options that were tried");
     }
     const Trial& chosen = best();
-    MaterialFit fit = with_profile_and_chains(chosen);
+    MaterialFit fit = with_all_outputs(chosen);
     widen(fit, chosen);
     for (const Trial& trial : trials_) {
-      fit.tried.push_back({.natural_curvature_terms = trial.options.natural_curvature_terms,
-                           .direction_tolerance = trial.options.direction_tolerance,
-                           .rms_m = trial.fit.rms_m,
-                           .youngs_modulus = trial.fit.youngs_modulus,
-                           .position_tolerance = trial.options.position_tolerance,
-                           .shared_clamps = trial.options.shared_clamps,
-                           .prediction_m = trial.prediction()});
+      fit.tried.push_back(described(trial.options, trial.fit));
       if (&trial == &chosen) std::rotate(fit.tried.begin(), fit.tried.end() - 1, fit.tried.end());
     }
     return fit;
   }
 
  private:
-  /// A profile and chains are those of the chosen fit alone.
-  [[nodiscard]] MaterialFit with_profile_and_chains(const Trial& chosen) const {
-    if (options_.chain_segments == 0 && options_.chain_segment_lengths.empty() &&
-        options_.profile_points == 0) {
-      return chosen.fit;
-    }
-    MaterialFitOptions last = chosen.options;
+  [[nodiscard]] static FitAlternative described(const MaterialFitOptions& options,
+                                                const MaterialFit& fit) {
+    FitAlternative result{.natural_curvature_terms = options.natural_curvature_terms,
+                          .direction_tolerance = options.direction_tolerance,
+                          .rms_m = fit.rms_m,
+                          .youngs_modulus = fit.youngs_modulus,
+                          .position_tolerance = options.position_tolerance,
+                          .shared_clamps = options.shared_clamps};
+    if (fit.prediction) result.prediction_m = fit.prediction->rms_m;
+    return result;
+  }
+
+  [[nodiscard]] MaterialFitOptions with_all_outputs(MaterialFitOptions options) const {
+    options.predict = options_.predict;
+    options.chain_segments = options_.chain_segments;
+    options.chain_segment_lengths = options_.chain_segment_lengths;
+    options.profile_points = options_.profile_points;
+    return options;
+  }
+
+  /// A profile and chains are those of the chosen fit alone. Without further numbers it is the one
+  /// that has looked at all E.
+  [[nodiscard]] MaterialFit with_all_outputs(const Trial& chosen) const {
+    MaterialFitOptions last = with_all_outputs(chosen.options);
     last.predict = false;
-    last.chain_segments = options_.chain_segments;
-    last.chain_segment_lengths = options_.chain_segment_lengths;
-    last.profile_points = options_.profile_points;
-    MaterialFit fit = fit_material(scenes_, shapes_, last);
+    MaterialFit fit =
+        fits_a_wire(last) ? fit_material_from(scenes_, shapes_, last, start_) : plain_;
     fit.prediction = chosen.fit.prediction;
     return fit;
   }
@@ -91,9 +116,22 @@ class OptionsSearch {
 
   /// @return how well that predicts; none if it has no fit
   std::optional<double> predict(int terms, Clamps clamps) {
+    MaterialFitOptions options = options_of(terms, clamps);
+    options.predict = true;
+    try {
+      trials_.push_back({options, fit_material_from(scenes_, shapes_, options, start_)});
+    } catch (const ConvergenceError&) {
+      return std::nullopt;
+    } catch (const InputError&) {
+      // No clamp, no plane, other grippers, or too few points.
+      return std::nullopt;
+    }
+    return trials_.back().prediction();
+  }
+
+  [[nodiscard]] MaterialFitOptions options_of(int terms, Clamps clamps) const {
     MaterialFitOptions options = options_;
-    options.choose_options = false;
-    options.alternatives = false;
+    options.choose_options = options.alternatives = options.predict = false;
     options.chain_segments = options.profile_points = 0;
     options.chain_segment_lengths.clear();
     options.natural_curvature_terms = terms;
@@ -103,13 +141,7 @@ class OptionsSearch {
     } else if (!(options.direction_tolerance > 0)) {
       options.direction_tolerance = options.shared_clamps ? fixture_tolerance : own_tolerance;
     }
-    options.predict = true;
-    try {
-      trials_.push_back({options, fit_material(scenes_, shapes_, options)});
-    } catch (const ConvergenceError&) {
-      return std::nullopt;
-    }
-    return trials_.back().prediction();
+    return options;
   }
 
   /// The one of fewest numbers among those that predict as well as any.
@@ -156,6 +188,8 @@ class OptionsSearch {
   const std::vector<Scene>& scenes_;
   const std::vector<MeasuredShape>& shapes_;
   const MaterialFitOptions& options_;
+  MaterialFit plain_;    // without any of what is tried
+  MaterialPoint start_;  // its material
   std::vector<Trial> trials_;
 };
 

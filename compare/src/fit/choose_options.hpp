@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "dlo/compare/material_fit.hpp"
+#include "fit/shape_misfit.hpp"
 
 namespace dlo::compare {
 
@@ -14,5 +15,15 @@ namespace dlo::compare {
 [[nodiscard]] MaterialFit fit_with_chosen_options(const std::vector<Scene>& scenes,
                                                   const std::vector<MeasuredShape>& shapes,
                                                   const MaterialFitOptions& options);
+
+/// The material of a fit, identified or not, as factors on that of the first scene.
+[[nodiscard]] MaterialPoint material_of(const MaterialFit& fit, const Scene& first);
+
+/// fit_material() without its search over all E, which is the same for all numbers beside it.
+/// @param start  from where steps lead to the fit
+[[nodiscard]] MaterialFit fit_material_from(const std::vector<Scene>& scenes,
+                                            const std::vector<MeasuredShape>& shapes,
+                                            const MaterialFitOptions& options,
+                                            const MaterialPoint& start);
 
 }  // namespace dlo::compare

@@ -33,11 +33,7 @@ bool are_alike(const Scene& a, const Scene& b) {
 /// Distance of a shape from the rod of its scene (RMS) [m].
 double distance_from_rod(const Scene& scene, const MeasuredShape& shape,
                          const MaterialFitOptions& options) {
-  MeasuredShapes measured({scene}, {shape},
-                          {.pose = options.pose,
-                           .arc_lengths = options.arc_lengths,
-                           .solve = options.solve,
-                           .flat = flat_shapes(options)},
+  MeasuredShapes measured({scene}, {shape}, measured_options(options),
                           std::chrono::steady_clock::now());
   return std::sqrt(measured.alignment(0, measured.solve(0, scene, nullptr)).mean_square);
 }
@@ -56,23 +52,13 @@ std::optional<double> repeatability_of(const std::vector<Scene>& scenes, const M
 }  // namespace
 
 Prediction leave_one_out(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-                         const MaterialFitOptions& options, const MaterialFit& fit) {
-  MaterialFitOptions same = options;
-  same.alternatives = same.predict = false;
-  same.chain_segments = same.profile_points = 0;
-  same.chain_segment_lengths.clear();
+                         const MaterialFitOptions& options, const MaterialFit& fit,
+                         const PredictedScene& predicted) {
   Prediction result{.repeatability_m = repeatability_of(scenes, fit)};
   double squares = 0;
   double points = 0;
   for (std::size_t left = 0; left < scenes.size(); ++left) {
-    std::vector<Scene> other_scenes = scenes;
-    std::vector<MeasuredShape> other_shapes = shapes;
-    const auto at = static_cast<std::ptrdiff_t>(left);
-    other_scenes.erase(other_scenes.begin() + at);
-    other_shapes.erase(other_shapes.begin() + at);
-    const MaterialFit others = fit_material(other_scenes, other_shapes, same);
-    const Scene scene = fitted_scene(scenes[left], others, other_scenes.front());
-    const double rms = distance_from_rod(scene, shapes[left], options);
+    const double rms = distance_from_rod(predicted(left), shapes[left], options);
     result.shapes_m.push_back(rms);
     const auto count = static_cast<double>(shapes[left].points.cols());
     squares += rms * rms * count;
@@ -80,6 +66,19 @@ Prediction leave_one_out(const std::vector<Scene>& scenes, const std::vector<Mea
   }
   result.rms_m = std::sqrt(squares / points);
   return result;
+}
+
+Prediction leave_one_out(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
+                         const MaterialFitOptions& options, const MaterialFit& fit) {
+  MaterialFitOptions same = options;
+  same.alternatives = same.predict = false;
+  same.chain_segments = same.profile_points = 0;
+  same.chain_segment_lengths.clear();
+  return leave_one_out(scenes, shapes, options, fit, [&](std::size_t left) {
+    const std::vector<Scene> other_scenes = all_but(scenes, left);
+    const MaterialFit others = fit_material(other_scenes, all_but(shapes, left), same);
+    return fitted_scene(scenes[left], others, other_scenes.front());
+  });
 }
 
 }  // namespace dlo::compare

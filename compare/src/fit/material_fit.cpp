@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "dlo/compare/deviation.hpp"
@@ -41,6 +42,8 @@ constexpr double too_much = 0.5;
 constexpr double next_to_nothing = 0.02;
 /// Step in the logarithm of a material for derivatives; shapes are right to 1e-10 l.
 constexpr double derivative_step = 1e-3;
+/// Shapes of which each is predicted from the others.
+constexpr std::size_t fewest_predicted = 3;
 /// Of a fitted rod that is to be drawn.
 constexpr int drawn_samples = 201;
 
@@ -142,14 +145,14 @@ void require_pairs(const std::vector<Scene>& scenes, const std::vector<MeasuredS
     throw InputError(
         "calibrate: arc lengths by chord are not exact enough (allowed: auto, file, nearest)");
   }
-  if (options.shared_clamps && !options.choose_options &&
+  if (options.shared_clamps && !options.choose_options.value_or(false) &&
       !(options.direction_tolerance > 0 || options.position_tolerance > 0)) {
     throw InputError(
         "calibrate: the same clamps in all shapes, but nothing says how well they are known "
         "(allowed: with clamp angles or positions, as --clamp-angles \"5 deg\")");
   }
-  constexpr std::size_t fewest_predicted = 3;
-  if ((options.predict || options.choose_options) && shapes.size() < fewest_predicted) {
+  if ((options.predict || options.choose_options.value_or(false)) &&
+      shapes.size() < fewest_predicted) {
     throw InputError(
         fmt::format("calibrate: prediction of {} shapes, each by the others (allowed: {} or more)",
                     shapes.size(), fewest_predicted));
@@ -182,12 +185,7 @@ class MaterialFitter {
       : scenes_(scenes),
         shapes_(shapes),
         options_(options),
-        measured_(scenes, shapes,
-                  {.pose = options.pose,
-                   .arc_lengths = options.arc_lengths,
-                   .solve = options.solve,
-                   .flat = flat_shapes(options)},
-                  std::chrono::steady_clock::now()),
+        measured_(scenes, shapes, measured_options(options), std::chrono::steady_clock::now()),
         misfit_(scenes, measured_),
         forced_(std::any_of(scenes.begin(), scenes.end(), is_forced)),
         both_(options.density &&
@@ -208,8 +206,10 @@ class MaterialFitter {
     }
   }
 
-  [[nodiscard]] MaterialFit run() {
-    MaterialFit fit = all_numbers();
+  /// @param start  of a wire's numbers; none: where the material alone fits best
+  [[nodiscard]] MaterialFit run(const std::optional<MaterialPoint>& start) {
+    MaterialFit fit =
+        start && fits_a_wire(options_) ? whole_wire(*start, misfit_(*start)) : all_numbers();
     fit.equilibria = measured_.solves();
     fit.evaluations = measured_.evaluations();
     return fit;
@@ -547,17 +547,45 @@ class MaterialFitter {
   MaterialFit result_;
 };
 
+/// With prediction and chains, if they are asked for.
+MaterialFit fit_with_outputs(const std::vector<Scene>& scenes,
+                             const std::vector<MeasuredShape>& shapes,
+                             const MaterialFitOptions& options,
+                             const std::optional<MaterialPoint>& start) {
+  MaterialFit fit = MaterialFitter(scenes, shapes, options).run(start);
+  if (options.predict && !fit.prediction) {
+    fit.prediction = leave_one_out(scenes, shapes, options, fit);
+  }
+  const bool of_chains = options.chain_segments > 0 || !options.chain_segment_lengths.empty();
+  if (of_chains && fit.youngs_modulus.value) add_chains(scenes, options, fit);
+  return fit;
+}
+
 }  // namespace
+
+MaterialPoint material_of(const MaterialFit& fit, const Scene& first) {
+  MaterialPoint result;
+  if (fit.youngs_modulus.estimate) {
+    result.log_modulus = std::log(*fit.youngs_modulus.estimate / first.stiffness().value);
+  }
+  if (fit.density && fit.density->estimate) {
+    result.log_density = std::log(*fit.density->estimate / first.heaviness().value);
+  }
+  return result;
+}
 
 MaterialFit fit_material(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
                          const MaterialFitOptions& options) {
   require_pairs(scenes, shapes, options);
-  if (options.choose_options) return fit_with_chosen_options(scenes, shapes, options);
-  MaterialFit fit = MaterialFitter(scenes, shapes, options).run();
-  if (options.predict) fit.prediction = leave_one_out(scenes, shapes, options, fit);
-  const bool of_chains = options.chain_segments > 0 || !options.chain_segment_lengths.empty();
-  if (of_chains && fit.youngs_modulus.value) add_chains(scenes, options, fit);
-  return fit;
+  if (options.choose_options.value_or(false))
+    return fit_with_chosen_options(scenes, shapes, options);
+  return fit_with_outputs(scenes, shapes, options, std::nullopt);
+}
+
+MaterialFit fit_material_from(const std::vector<Scene>& scenes,
+                              const std::vector<MeasuredShape>& shapes,
+                              const MaterialFitOptions& options, const MaterialPoint& start) {
+  return fit_with_outputs(scenes, shapes, options, start);
 }
 
 Calibration calibrate(std::vector<Scene> scenes, const std::vector<MeasuredShape>& shapes,
@@ -569,6 +597,12 @@ Calibration calibrate(std::vector<Scene> scenes, const std::vector<MeasuredShape
   }
   for (const MeasuredShape& shape : shapes) result.files.push_back(shape.file);
   options.alternatives = true;
+  if (!options.choose_options) {
+    const bool nothing_given = options.natural_curvature_terms == 0 &&
+                               options.direction_tolerance == 0 &&
+                               options.position_tolerance == 0 && !options.shared_clamps;
+    options.choose_options = nothing_given && shapes.size() >= fewest_predicted;
+  }
   result.fit = fit_material(result.scenes, shapes, options);
   return result;
 }

@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <initializer_list>
 #include <optional>
@@ -12,6 +13,7 @@
 
 #include "dlo/compare/error.hpp"
 #include "fit/between_shapes.hpp"
+#include "fit/leave_one_out.hpp"
 #include "fit/log_profile.hpp"
 #include "fit/wire_errors.hpp"
 #include "fit/wire_numbers.hpp"
@@ -93,6 +95,7 @@ class WireFitter {
   WireFitter(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
              MeasuredShapes& measured, const MaterialFitOptions& options, bool density)
       : scenes_(scenes),
+        shapes_(shapes),
         options_(options),
         density_(density),
         curvature_(1 + (density ? 1 : 0) + (options.torsional_stiffness ? 1 : 0)),
@@ -118,7 +121,12 @@ class WireFitter {
     optimum_ = fit_->rods();
     unseen_ = unseen(fit_->linear(), fit_->weight(), fit_->before());
     covariance_ = covariance_of_numbers(errors_, *fit_, measured_.frame_columns(), options_.noise);
-    return result();
+    MaterialFit found = result();
+    if (options_.predict) {
+      found.prediction = leave_one_out(scenes_, shapes_, options_, found,
+                                       [this](std::size_t left) { return predicted(left); });
+    }
+    return found;
   }
 
  private:
@@ -131,12 +139,35 @@ class WireFitter {
             .highest = std::log(options_.largest_ratio)};
   }
 
+  [[noreturn]] void refuse_no_shape() const {
+    throw ConvergenceError(fmt::format("{}: the energy model has no shape beside the fitted one",
+                                       scenes_.front().file));
+  }
+
   void descend() {
-    if (!fit_->descend()) {
-      throw ConvergenceError(fmt::format("{}: the energy model has no shape beside the fitted one",
-                                         scenes_.front().file));
-    }
+    if (!fit_->descend()) refuse_no_shape();
     errors_ = errors_about(*fit_, measured_.frame_columns(), options_.noise, least_noise());
+  }
+
+  /// The scene of a shape as the fit to the others says, to which steps lead from the fit to all,
+  /// with its weights. What was the shape's own is as if nothing were known of it.
+  [[nodiscard]] Scene predicted(std::size_t left) const {
+    const std::vector<Scene> scenes = all_but(scenes_, left);
+    const std::vector<MeasuredShape> shapes = all_but(shapes_, left);
+    MeasuredShapes measured(scenes, shapes, measured_options(options_),
+                            std::chrono::steady_clock::now());
+    WireFitter others(scenes, shapes, measured, options_, density_);
+    std::vector<Eigen::Index> common;
+    for (std::size_t k = 0; k < numbers_.size(); ++k) {
+      if (numbers_[k].described.shape != left) common.push_back(static_cast<Eigen::Index>(k));
+    }
+    others.rods_.go_on_from(all_but(optimum_, left));
+    others.fit_.emplace(others.rods_, fit_->values()(common), steps());
+    others.fit_->weigh(fit_->weight());
+    if (!others.fit_->descend()) others.refuse_no_shape();
+    Eigen::VectorXd values = Eigen::VectorXd::Zero(fit_->values().size());
+    values(common) = others.fit_->values();
+    return scene_at_(left, values);
   }
 
   /// More terms of natural curvature never fit worse than fewer: each one is added where the fit
@@ -455,6 +486,7 @@ class WireFitter {
   }
 
   const std::vector<Scene>& scenes_;
+  const std::vector<MeasuredShape>& shapes_;
   const MaterialFitOptions& options_;
   bool density_;
   Eigen::Index curvature_;  // the first number that has its own value: of natural curvature, if any

@@ -19,10 +19,15 @@ struct WireNumber {
   int term = 0;  ///< of natural curvature; 0 of all other numbers
 };
 
-/// What flat shapes say. A photograph does not see the third coordinate: a fit of natural curvature
-/// would bend the rod out of the picture to come nearer in it, so it is confined.
-[[nodiscard]] inline FlatShapes flat_shapes(const MaterialFitOptions& options) {
-  return options.natural_curvature_terms > 0 ? FlatShapes::confined : FlatShapes::unmeasured;
+/// How the shapes of a fit lie on its rods. A photograph does not see the third coordinate: a fit
+/// of natural curvature would bend the rod out of the picture to come nearer in it, so it is
+/// confined.
+[[nodiscard]] inline MeasuredOptions measured_options(const MaterialFitOptions& options) {
+  return {
+      .pose = options.pose,
+      .arc_lengths = options.arc_lengths,
+      .solve = options.solve,
+      .flat = options.natural_curvature_terms > 0 ? FlatShapes::confined : FlatShapes::unmeasured};
 }
 
 /// Whether a force acts on the rod that does not grow with its stiffness: weight, a load, an

@@ -14,6 +14,7 @@
 #include "dlo/compare/material_fit.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "fit/between_shapes.hpp"
+#include "fit/leave_one_out.hpp"
 #include "measured_shapes.hpp"
 #include "polygon/energy_problems.hpp"
 #include "scenes.hpp"
@@ -129,6 +130,53 @@ TEST(Prediction, ChoosesTheOptionsThatTheWireWasMadeWith) {
   ASSERT_EQ(found.clamps.size(), 1);
   EXPECT_NEAR(found.clamps[0].rotation.z(), 6 * one_degree, 1 * one_degree);
   EXPECT_TRUE(test::holds(found.youngs_modulus, seen.scenes[0].material.youngs_modulus));
+}
+
+TEST(Prediction, StepsFromTheFitToAllLeadWhereFitsFromNothingDo) {
+  const Hangings seen = in_a_fixture(1e-3);
+  const MaterialFitOptions options{.natural_curvature_terms = 1,
+                                   .direction_tolerance = 20 * one_degree,
+                                   .shared_clamps = true,
+                                   .predict = true};
+  const MaterialFit found = fit_material(seen.scenes, seen.shapes, options);
+  const Prediction anew = leave_one_out(seen.scenes, seen.shapes, options, found);
+  ASSERT_TRUE(found.prediction.has_value());
+  // The weight of what was known before is measured anew there.
+  for (std::size_t i = 0; i < anew.shapes_m.size(); ++i) {
+    EXPECT_NEAR(found.prediction->shapes_m[i], anew.shapes_m[i], 0.02 * anew.shapes_m[i]) << i;
+  }
+}
+
+TEST(Prediction, OfThreeShapesOptionsAreChosenUnlessTheyAreGiven) {
+  const Hangings seen = in_a_fixture(1e-3);
+  const MaterialFit chosen = calibrate(seen.scenes, seen.shapes).fit;
+  ASSERT_GT(chosen.tried.size(), 1);
+  EXPECT_TRUE(chosen.tried[0].shared_clamps);
+  EXPECT_TRUE(calibrate(seen.scenes, seen.shapes, {.choose_options = false}).fit.tried.empty());
+  EXPECT_TRUE(
+      calibrate(seen.scenes, seen.shapes, {.natural_curvature_terms = 1}).fit.tried.empty());
+  Hangings two = seen;
+  two.scenes.resize(2);
+  two.shapes.resize(2);
+  EXPECT_TRUE(calibrate(two.scenes, two.shapes).fit.tried.empty());
+}
+
+TEST(Prediction, NothingIsTriedWhereNothingSystematicIsLeft) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal(0, 1e-3);
+  Hangings seen;
+  for (const double angle : {-30.0, 0.0, 30.0}) {
+    const Scene said = test::heavy_scene(20, angle);
+    seen.add(said, said, 0, random);
+    for (double& coordinate : seen.shapes.back().points.topRows<2>().reshaped()) {
+      coordinate += normal(random);
+    }
+  }
+  const MaterialFit fit = calibrate(seen.scenes, seen.shapes).fit;
+  ASSERT_EQ(fit.tried.size(), 1);
+  EXPECT_EQ(fit.tried[0].natural_curvature_terms, 0);
+  EXPECT_FALSE(fit.prediction.has_value());
+  EXPECT_TRUE(test::holds(fit.youngs_modulus, seen.scenes[0].material.youngs_modulus));
 }
 
 TEST(Prediction, RepeatabilityIsTheDistanceToTheMeanOfTheOthers) {

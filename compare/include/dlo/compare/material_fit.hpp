@@ -36,10 +36,12 @@ struct MaterialFitOptions {
   /// Each shape in turn is left out of the fit, and predicted (MaterialFit::prediction).
   bool predict = false;
   /// Terms of natural curvature, and clamps as said, misaligned alike in all shapes or each on its
-  /// own, are fitted as they predict shapes best that are left out (MaterialFit::tried). The
-  /// numbers above say up to how many terms (three at least) and how well clamps are known (if they
-  /// do not, 20 degrees of those that are alike, 5 of each shape's own). Three shapes or more.
-  bool choose_options = false;
+  /// own, are fitted as they predict shapes best that are left out (MaterialFit::tried); nothing is
+  /// tried where the fit without them leaves nothing systematic. The numbers above say up to how
+  /// many terms (three at least) and how well clamps are known (if they do not, 20 degrees of those
+  /// that are alike, 5 of each shape's own). Three shapes or more. None: calibrate() does so if
+  /// there are as many and none of these numbers is given, fit_material() does not.
+  std::optional<bool> choose_options;
   /// Where residuals are systematic, and none of the above is fitted, it is tried what would remove
   /// them (MaterialFit::alternatives).
   bool alternatives = false;
@@ -229,7 +231,7 @@ struct MaterialFit {
   std::vector<FitAlternative> alternatives;
   /// With `choose_options`: what was tried, first what was chosen: the fewest numbers among those
   /// that predict as well as any (2 %). The interval of E is widened to what those say that predict
-  /// nearly as well (10 %).
+  /// nearly as well (10 %). The only one, without a prediction, if nothing systematic was left.
   std::vector<FitAlternative> tried;
   std::vector<FittedNumber> others;  ///< those that were asked for, the wire's first
   /// Of the first scene with what was fitted of it: coefficients of P_0, P_1, .. about d1 and d2
