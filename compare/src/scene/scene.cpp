@@ -306,7 +306,7 @@ void Scene::set_rest_shape(const RestShape& shape) {
   *this = without_natural_strain();
   rest_shape = shape;
   if (shape.arcs.size() == 1) {
-    natural_strain.head<2>() = shape.arcs.front().curvature;
+    natural_strain = shape.arcs.front().strain;
     return;
   }
   std::vector<Section> all;
@@ -334,7 +334,8 @@ void Scene::set_rest_shape(const RestShape& shape) {
       // A boundary of the two that differs by rounding is one.
       constexpr double rounding = 1e-12;
       part.to = arc.end < section.to - rounding * length ? arc.end : section.to;
-      part.natural_curvature = arc.curvature;
+      part.natural_curvature = arc.strain.head<2>();
+      if (arc.strain.z() != 0) part.natural_twist = arc.strain.z();
       sections.push_back(part);
       section.from = part.to;
       if (part.to >= section.to) break;
