@@ -43,6 +43,8 @@ void promise_shape(const compare::MeasuredShape& shape) {
   promise(shape.points.allFinite(), "finite points");
   const auto count = static_cast<std::size_t>(shape.points.cols());
   promise(shape.arc_length.empty() || shape.arc_length.size() == count, "an arc length a point");
+  promise(shape.d1.cols() == 0 || shape.d1.cols() == shape.points.cols(), "a d1 a point");
+  promise(shape.d1.allFinite(), "finite d1");
 }
 
 }  // namespace

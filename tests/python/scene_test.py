@@ -143,6 +143,29 @@ def test_a_rest_shape_from_points_or_a_file_comes_back(tmp_path):
         wire.replace(helix={"radius": 1, "pitch": 1})
 
 
+def test_a_solved_shape_with_its_frames_is_a_rest_shape(tmp_path):
+    clamp = dlo.clamp(at=0, position=(0, 0, 0), frame=numpy.eye(3).tolist())
+    fields = dict(
+        length=0.3, gravity=(0, 0, 0), bending_stiffness=(1e-3, 5e-3), mass_per_length=4e-3,
+        grippers=[clamp],
+    )
+    helix = dlo.Scene(helix={"radius": 0.02, "pitch": 0.05}, **fields)
+    coil = dlo.solve(helix, samples=81)
+    frames = numpy.column_stack([coil.points, coil.d1])
+    numpy.savetxt(tmp_path / "coil.csv", frames, delimiter=",", header="x,y,z,d1_x,d1_y,d1_z", comments="")
+    for rest_shape in (frames, frames.tolist(), str(tmp_path / "coil.csv")):
+        again = dlo.Scene(rest_shape=rest_shape, **fields)
+        assert again.rest_shape_error < 1e-9
+        assert again.rest_shape_angle < 1e-7
+        shape = dlo.solve(again, samples=81)
+        numpy.testing.assert_allclose(shape.points, coil.points, atol=1e-8)
+        numpy.testing.assert_allclose(shape.d1, coil.d1, atol=1e-7)
+    assert math.isnan(helix.rest_shape_angle)
+    assert math.isnan(again.replace(rest_shape=coil.points).rest_shape_angle)
+    with pytest.raises(dlo.InputError, match="point 1: d1 = .* of norm 2"):
+        again.replace(rest_shape=frames * [1, 1, 1, 2, 2, 2])
+
+
 def test_a_helix_and_a_cable_are_keys_of_the_rod():
     spring = dlo.Scene(
         length=0.3, bending_stiffness=1e-3, mass_per_length=4e-3,

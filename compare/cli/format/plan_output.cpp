@@ -110,9 +110,11 @@ std::string layers_text(const compare::Scene& scene) {
 std::string rest_shape_text(const compare::Scene& scene) {
   if (!scene.rest_shape) return "";
   const compare::RestShape& shape = *scene.rest_shape;
-  return fmt::format("{}: {} points, within {:.2g} m of {} arc{} (RMS {:.2g} m)",
-                     compare::display(shape.file), shape.points, shape.largest_error,
-                     shape.arcs.size(), shape.arcs.size() == 1 ? "" : "s", shape.rms_error);
+  return fmt::format(
+      "{}: {} points, within {:.2g} m of {} arc{} (RMS {:.2g} m){}", compare::display(shape.file),
+      shape.points, shape.largest_error, shape.arcs.size(), shape.arcs.size() == 1 ? "" : "s",
+      shape.rms_error,
+      shape.largest_angle ? fmt::format(", d1 within {:.2g} rad", *shape.largest_angle) : "");
 }
 
 std::string plan_text(const compare::Plan& plan, const compare::Scene& scene) {

@@ -263,11 +263,20 @@ Json solution_json(const compare::Solution& solution, const compare::Scene& scen
 }
 
 std::string solution_csv(const compare::Solution& solution) {
-  std::string text = "x,y,z,s\n";
+  const bool has_frame = solution.d1.cols() > 0;
+  std::string text = has_frame ? "x,y,z,s,d1_x,d1_y,d1_z\n" : "x,y,z,s\n";
   for (std::size_t i = 0; i < solution.shape.arc_length.size(); ++i) {
-    const auto point = solution.shape.points.col(static_cast<Eigen::Index>(i));
-    for (const double value : point) text += compare::csv_number(value, 17) + ",";
-    text += compare::csv_number(solution.shape.arc_length[i], 17) + "\n";
+    const auto column = static_cast<Eigen::Index>(i);
+    for (const double value : solution.shape.points.col(column)) {
+      text += compare::csv_number(value, 17) + ",";
+    }
+    text += compare::csv_number(solution.shape.arc_length[i], 17);
+    if (has_frame) {
+      for (const double value : solution.d1.col(column)) {
+        text += "," + compare::csv_number(value, 17);
+      }
+    }
+    text += "\n";
   }
   return text;
 }

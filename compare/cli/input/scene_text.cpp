@@ -116,7 +116,8 @@ void add_rod(std::string& out, const Json& whole) {
                                     {"points", "points", ""},
                                     {"arcs", "arcs", ""},
                                     {"error up to", "largest_error_m", "m"},
-                                    {"RMS", "rms_error_m", "m"}}));
+                                    {"RMS", "rms_error_m", "m"},
+                                    {"d1 up to", "largest_angle_rad", "rad"}}));
     add_line(
         out, "  in its axes",
         quantities_text(rest, {{"begins at", "begin_m", "m"}, {"with frame", "first_frame", ""}}));

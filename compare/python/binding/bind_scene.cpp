@@ -174,6 +174,10 @@ void bind_scene(py::module_& module) {
                                return s.rest_shape ? s.rest_shape->largest_error
                                                    : std::numeric_limits<double>::quiet_NaN();
                              }))
+      .def_property_readonly("rest_shape_angle", of([](const Scene& s) {
+                               return (s.rest_shape ? s.rest_shape->largest_angle : std::nullopt)
+                                   .value_or(std::numeric_limits<double>::quiet_NaN());
+                             }))
       .def_property_readonly("force_model", settings_of)
       .def_property_readonly("track", rates_of);
   module.attr("scene_keys") = table_keys();

@@ -53,8 +53,8 @@ class Scene(Strict):
     A cable has layers instead, from the inside out, such as {"outer_diameter": "2 mm", "material": "copper"}
     or {"strands": 6, "strand_diameter": "2 mm", "material": "copper"}, and layer_bound "bonded" or "free".
     helix is {"radius": "2 cm", "pitch": "1 cm"} of the stress-free shape, pitch > 0 right-handed. rest_shape
-    is a file of its points or the points themselves [m], shape (M, 3); rest_shape_error says what arcs
-    leave of them.
+    is a file of its points or the points themselves [m], shape (M, 3); shape (M, 6) has d1 of the frame
+    there too. rest_shape_error says what arcs leave of the points, rest_shape_angle what of d1.
     force_model, medium, track: a dict, or ForceModelSettings, Medium and TrackRates. materials: a file that
     names are looked up in instead.
 
@@ -305,6 +305,9 @@ class Scene(Strict):
     natural_twist = _rod_field("natural_twist", "twist", "As given [rad/m], or None.")
     rest_shape_error = _derived(
         "rest_shape_error", "Largest distance of rest_shape's points from the rod's arcs [m]; NaN without."
+    )
+    rest_shape_angle = _derived(
+        "rest_shape_angle", "Largest angle of a given d1 from that of the rod's arcs [rad]; NaN without."
     )
     joint_stiffness = _rod_field(
         "joint_stiffness", "joint_stiffness", "Of a chain's joints, as given [N m/rad], or None."

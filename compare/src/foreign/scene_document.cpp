@@ -220,6 +220,7 @@ nlohmann::ordered_json rest_shape_document(const Scene& scene) {
           {"arcs", shape.arcs.size()},
           {"largest_error_m", shape.largest_error},
           {"rms_error_m", shape.rms_error},
+          {"largest_angle_rad", shape.largest_angle ? Document(*shape.largest_angle) : Document()},
           {"begin_m", vector_document(shape.begin)},
           {"first_frame", columns_document(shape.first_frame)}};
 }

@@ -19,7 +19,12 @@ Vector3d arc_difference(const ArcTarget& target, Index i, const ArcPlace& at) {
   return target.slides(i) ? Vector3d(d - d.dot(t) * t) : d;
 }
 
-/// Arcs a step of all their parameters away: rotation, position, curvatures, ends, over the length.
+/// About the tangent, from a given d1 to that of a frame [rad].
+double angle_of_frame(const Vector3d& given, const Matrix3d& frame) {
+  return std::atan2(-given.dot(frame.col(1)), given.dot(frame.col(0)));
+}
+
+/// Arcs a step of all their parameters away: rotation, position, strains, ends, over the length.
 Arcs stepped_arcs(const ArcTarget& target, Arcs arcs, const Eigen::VectorXd& step) {
   Index k = 0;
   const double l = target.length;
@@ -38,8 +43,9 @@ Arcs stepped_arcs(const ArcTarget& target, Arcs arcs, const Eigen::VectorXd& ste
     k += 6;
   }
   for (RestShape::Arc& arc : arcs.arcs) {
-    if (!target.planar) arc.curvature.x() += step[k++] / l;
-    arc.curvature.y() += step[k++] / l;
+    if (!target.planar) arc.strain.x() += step[k++] / l;
+    arc.strain.y() += step[k++] / l;
+    if (target.twists()) arc.strain.z() += step[k++] / l;
   }
   for (std::size_t i = 0; i + 1 < arcs.arcs.size(); ++i) arcs.arcs[i].end += l * step[k++];
   return arcs;
@@ -59,12 +65,19 @@ Eigen::MatrixXd arc_derivative(const ArcTarget& target, const Arcs& arcs) {
     at.push_back(trace.at(s));
     on.push_back(trace.arc_of(s));
   }
-  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(3 * target.points.cols(), count);
+  const Index rows = target.rows();
+  Eigen::MatrixXd J = Eigen::MatrixXd::Zero(rows * target.points.cols(), count);
   Index column = 0;
-  const auto set = [&](Index i, const Eigen::Vector3d& moved) {
-    const Vector3d t = at[static_cast<std::size_t>(i)].frame.col(2);
-    J.col(column).segment<3>(3 * i) =
-        (target.slides(i) ? Vector3d(moved - moved.dot(t) * t) : moved) / target.length;
+  const auto set = [&](Index i, const ArcPlace& there) {
+    const auto point = static_cast<std::size_t>(i);
+    const ArcPlace& here = at[point];
+    const Vector3d t = here.frame.col(2);
+    const Vector3d moved = (there.point - here.point) / h;
+    const double slide = target.slides(i) ? moved.dot(t) : 0;
+    J.col(column).segment<3>(rows * i) = (moved - slide * t) / target.length;
+    if (!target.twists()) return;
+    const double turned = there.frame.col(0).dot(here.frame.col(1)) / h;
+    J(rows * i + 3, column) = frame_lever * (turned - slide * arcs.arcs[on[point]].strain.z());
   };
   // Points of arcs from `first` on, of which those up to `last` are bent and the others rigid.
   const auto move = [&](const Arcs& next, std::size_t first, std::size_t last) {
@@ -72,7 +85,7 @@ Eigen::MatrixXd arc_derivative(const ArcTarget& target, const Arcs& arcs) {
     if (first == 0) moved[0] = next.begin;
     for (std::size_t k = first; k <= last; ++k) {
       const double from = k == 0 ? 0 : next.arcs[k - 1].end;
-      moved[k + 1] = along_arc(moved[k], next.arcs[k].curvature, next.arcs[k].end - from);
+      moved[k + 1] = along_arc(moved[k], next.arcs[k].strain, next.arcs[k].end - from);
     }
     const ArcPlace& end = moved[last + 1];
     const Matrix3d turn = end.frame * begins[last + 1].frame.transpose();
@@ -81,10 +94,9 @@ Eigen::MatrixXd arc_derivative(const ArcTarget& target, const Arcs& arcs) {
       const std::size_t k = on[point];
       if (k < first) continue;
       const double from = k == 0 ? 0 : next.arcs[k - 1].end;
-      const Vector3d there =
-          k <= last ? along_arc(moved[k], next.arcs[k].curvature, target.s[point] - from).point
-                    : Vector3d(end.point + turn * (at[point].point - begins[last + 1].point));
-      set(i, (there - at[point].point) / h);
+      set(i, k <= last ? along_arc(moved[k], next.arcs[k].strain, target.s[point] - from)
+                       : ArcPlace{end.point + turn * (at[point].point - begins[last + 1].point),
+                                  turn * at[point].frame});
     }
   };
   const auto next = [&] {
@@ -95,12 +107,12 @@ Eigen::MatrixXd arc_derivative(const ArcTarget& target, const Arcs& arcs) {
     const Arcs moved = next();
     const Matrix3d turn = moved.begin.frame * arcs.begin.frame.transpose();
     for (Index i = 0; i < target.points.cols(); ++i) {
-      const Vector3d& point = at[static_cast<std::size_t>(i)].point;
-      set(i, (moved.begin.point + turn * (point - arcs.begin.point) - point) / h);
+      const ArcPlace& here = at[static_cast<std::size_t>(i)];
+      set(i, {moved.begin.point + turn * (here.point - arcs.begin.point), turn * here.frame});
     }
   }
   for (std::size_t k = 0; k < n; ++k) {
-    for (int axis = target.planar ? 1 : 0; axis < 2; ++axis, ++column) move(next(), k, k);
+    for (Index axis = 0; axis < target.numbers(); ++axis, ++column) move(next(), k, k);
   }
   for (std::size_t k = 0; k + 1 < n; ++k, ++column) move(next(), k, k + 1);
   return J;
@@ -118,17 +130,18 @@ bool in_order(const ArcTarget& target, const Arcs& arcs) {
 
 }  // namespace
 
-ArcPlace along_arc(const ArcPlace& begin, const Eigen::Vector2d& curvature, double s) {
-  const double rate = curvature.norm();
+ArcPlace along_arc(const ArcPlace& begin, const Vector3d& strain, double s) {
+  const double rate = strain.norm();
   const double angle = rate * s;
   if (!(std::abs(angle) > 1e-12)) {
     return {begin.point + s * begin.frame.col(2), begin.frame};
   }
-  const Vector3d axis(curvature.x() / rate, curvature.y() / rate, 0);
-  // t' = u2 d1 - u1 d2
+  // The tangent rotates about the axis: what of it is along this stays, and t' = u2 d1 - u1 d2.
+  const Vector3d axis = strain / rate;
+  const Vector3d along = axis.z() * axis;
   const Vector3d inward(axis.y(), -axis.x(), 0);
   const Vector3d step(inward * (2 * std::pow(std::sin(angle / 2), 2) / rate) +
-                      Vector3d::UnitZ() * (std::sin(angle) / rate));
+                      (Vector3d::UnitZ() - along) * (std::sin(angle) / rate) + s * along);
   return {begin.point + begin.frame * step,
           begin.frame * Eigen::AngleAxisd(angle, axis).toRotationMatrix()};
 }
@@ -137,7 +150,7 @@ ArcTrace::ArcTrace(const Arcs& arcs) : arcs_(arcs.arcs), begins_(1, arcs.begin) 
   double before = 0;
   begins_.reserve(arcs_.size() + 1);
   for (const RestShape::Arc& arc : arcs_) {
-    begins_.push_back(along_arc(begins_.back(), arc.curvature, arc.end - before));
+    begins_.push_back(along_arc(begins_.back(), arc.strain, arc.end - before));
     before = arc.end;
   }
 }
@@ -150,15 +163,19 @@ std::size_t ArcTrace::arc_of(double s) const {
 
 ArcPlace ArcTrace::at(double s) const {
   const std::size_t k = arc_of(s);
-  return along_arc(begins_[k], arcs_[k].curvature, s - (k > 0 ? arcs_[k - 1].end : 0.0));
+  return along_arc(begins_[k], arcs_[k].strain, s - (k > 0 ? arcs_[k - 1].end : 0.0));
 }
 
 Eigen::VectorXd arc_residual(const ArcTarget& target, const Arcs& arcs) {
   const ArcTrace trace(arcs);
-  Eigen::VectorXd r(3 * target.points.cols());
+  const Index rows = target.rows();
+  Eigen::VectorXd r(rows * target.points.cols());
   for (Index i = 0; i < target.points.cols(); ++i) {
-    r.segment<3>(3 * i) =
-        arc_difference(target, i, trace.at(target.s[static_cast<std::size_t>(i)])) / target.length;
+    const ArcPlace at = trace.at(target.s[static_cast<std::size_t>(i)]);
+    r.segment<3>(rows * i) = arc_difference(target, i, at) / target.length;
+    if (target.twists()) {
+      r[rows * i + 3] = frame_lever * angle_of_frame(target.d1.col(i), at.frame);
+    }
   }
   return r;
 }
@@ -175,7 +192,7 @@ void slide_along(ArcTarget& target, const Arcs& arcs) {
 
 Index arc_parameters(const ArcTarget& target, std::size_t arcs) {
   const auto n = static_cast<Index>(arcs);
-  return (target.planar ? 3 + n : 6 + 2 * n) + n - 1;
+  return (target.planar ? 3 : 6) + target.numbers() * n + n - 1;
 }
 
 double improve_arcs(ArcTarget& target, Arcs& arcs, const ArcEffort& effort) {

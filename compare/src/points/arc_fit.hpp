@@ -15,7 +15,7 @@ struct ArcPlace {
 };
 
 /// @param s  arc length from the begin, negative before it
-[[nodiscard]] ArcPlace along_arc(const ArcPlace& begin, const Eigen::Vector2d& curvature, double s);
+[[nodiscard]] ArcPlace along_arc(const ArcPlace& begin, const Eigen::Vector3d& strain, double s);
 
 /// Arcs and where they are.
 struct Arcs {
@@ -40,11 +40,20 @@ class ArcTrace {
 /// Points to fit, and what is known of their arc lengths.
 struct ArcTarget {
   Eigen::Matrix3Xd points;
+  Eigen::Matrix3Xd d1;  ///< of frames there; empty: arcs have no twist
   std::vector<double> s;
   bool knows_s = false;  ///< else that of inner points is that of the nearest point
   double length = 0;
   bool planar = false;
   Eigen::Vector3d normal;  ///< of the plane, or of that which is nearest
+
+  /// Whether arcs may have a twist, which frames say.
+  [[nodiscard]] bool twists() const { return d1.cols() > 0 && !planar; }
+  /// Rows of the residual for each point.
+  [[nodiscard]] Eigen::Index rows() const { return twists() ? 4 : 3; }
+  /// How many of these are independent, as what lies along the rod says nothing; and how many
+  /// strains an arc has.
+  [[nodiscard]] Eigen::Index numbers() const { return planar ? 1 : rows() - 1; }
 
   /// Whether a point's arc length is that of the nearest point.
   [[nodiscard]] bool slides(Eigen::Index i) const {
@@ -52,7 +61,11 @@ struct ArcTarget {
   }
 };
 
-/// Of the points from the arcs over the length, three rows each.
+/// What an angle counts beside a distance over the length: as long as the shortest of equal arcs.
+inline constexpr double frame_lever = 1.0 / most_rest_arcs;
+
+/// Of the points from the arcs over the length, three rows each; with frames a fourth one, the
+/// angle of d1 times frame_lever.
 [[nodiscard]] Eigen::VectorXd arc_residual(const ArcTarget& target, const Arcs& arcs);
 
 /// Moves the arc lengths that are not known to those of the nearest points.

@@ -13,16 +13,19 @@
 namespace dlo::compare {
 namespace {
 
-/// Position of x, y, z, s among the columns.
+constexpr const char* column_names[] = {"x", "y", "z", "s", "d1_x", "d1_y", "d1_z"};
+constexpr std::size_t named_columns = std::size(column_names);
+constexpr std::size_t first_of_d1 = 4;
+constexpr const char* columns_allowed =
+    "(allowed: x,y or x,y,z or x,y,z,s, or a header with these names in any order, besides d1_x, "
+    "d1_y, d1_z, and node, id, index or point)";
+
+/// Position of the named ones among the columns.
 struct Columns {
   std::size_t count = 0;
-  std::array<std::optional<std::size_t>, 4> of;
+  std::array<std::optional<std::size_t>, named_columns> of;
 };
 
-constexpr const char* column_names[] = {"x", "y", "z", "s"};
-constexpr const char* columns_allowed =
-    "(allowed: x,y or x,y,z or x,y,z,s, or a header with these names in any order, besides node, "
-    "id, index or point)";
 /// Of a number that a row is known by. Points are in the order of their rows.
 constexpr const char* label_names[] = {"node", "id", "index", "point"};
 
@@ -82,6 +85,13 @@ Columns columns_of_header(const std::vector<std::string_view>& fields, const std
     throw InputError(fmt::format("{}: column {} is missing {}", where, columns.of[0] ? "y" : "x",
                                  columns_allowed));
   }
+  const auto of_d1 =
+      std::count_if(columns.of.begin() + first_of_d1, columns.of.end(),
+                    [](const std::optional<std::size_t>& of) { return of.has_value(); });
+  if (of_d1 % 3 != 0) {
+    throw InputError(fmt::format(
+        "{}: {} of the columns d1_x, d1_y, d1_z (allowed: all of them, or none)", where, of_d1));
+  }
   return columns;
 }
 
@@ -91,20 +101,23 @@ void add_row(const std::vector<std::string_view>& fields, const Columns& columns
     throw InputError(fmt::format("{}: {} column{} (allowed: {}, as in the first line)", where,
                                  fields.size(), fields.size() == 1 ? "" : "s", columns.count));
   }
-  std::array<double, 4> values{};
-  for (std::size_t k = 0; k < 4; ++k) {
+  std::array<double, named_columns> values{};
+  for (std::size_t k = 0; k < named_columns; ++k) {
     if (!columns.of[k]) continue;
     const std::string_view field = fields[*columns.of[k]];
     const std::optional<double> value = shape_number(field);
     if (!value) {
-      throw InputError(fmt::format(
-          "{}: {} = {} is not a number{}", where, column_names[k], quoted_piece(field),
-          field.find(',') == std::string_view::npos ? "" : " (allowed: decimal points)"));
+      throw InputError(
+          fmt::format("{}: {} = {} is not a number{}", where, column_names[k], quoted_piece(field),
+                      field.find(',') != std::string_view::npos ? " (allowed: decimal points)"
+                      : k >= first_of_d1 ? " (allowed: d1 in every row, or its columns left out)"
+                                         : ""));
     }
     values[k] = *value;
   }
   raw.points.push_back({values[0], values[1], values[2]});
   if (columns.of[3]) raw.arc_length.push_back(values[3]);
+  if (columns.of[first_of_d1]) raw.d1.push_back({values[4], values[5], values[6]});
   raw.lines.push_back(line);
   require_point_count(raw.points.size(), where);
 }

@@ -37,7 +37,8 @@ double json_number(const json& value, const std::string& where) {
   return value.get<double>();
 }
 
-void read_json_points(const json& list, const std::string& where, RawShape& raw) {
+std::vector<std::array<double, 3>> json_points(const json& list, const std::string& where) {
+  std::vector<std::array<double, 3>> points;
   if (!list.is_array()) throw InputError(fmt::format("{}: must be an array of points", where));
   require_point_count(list.size(), where);
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -54,8 +55,9 @@ void read_json_points(const json& list, const std::string& where, RawShape& raw)
     for (std::size_t k = 0; k < point.size(); ++k) {
       coordinates[k] = json_number(point[k], fmt::format("{}[{}]", at, k));
     }
-    raw.points.push_back(coordinates);
+    points.push_back(coordinates);
   }
+  return points;
 }
 
 void read_json_arc_lengths(const json& list, const std::string& where, RawShape& raw) {
@@ -74,7 +76,7 @@ RawShape read_json_shape(std::string_view text, const std::string& file, double 
   const json document = parsed(text, file);
   RawShape raw;
   if (document.is_array()) {
-    read_json_points(document, file + ": points", raw);
+    raw.points = json_points(document, file + ": points");
     return raw;
   }
   raw.in_metres = document.contains("points_m");
@@ -90,7 +92,11 @@ RawShape read_json_shape(std::string_view text, const std::string& file, double 
   if (!document.contains(points)) {
     throw InputError(fmt::format("{}: neither points_m nor points {}", file, json_allowed));
   }
-  read_json_points(document[points], fmt::format("{}: {}", file, points), raw);
+  raw.points = json_points(document[points], fmt::format("{}: {}", file, points));
+  if (document.contains("d1")) {
+    raw.d1 = json_points(document["d1"], file + ": d1");
+    require_as_many_d1(raw, file);
+  }
   if (document.contains(arc_length)) {
     read_json_arc_lengths(document[arc_length], fmt::format("{}: {}", file, arc_length), raw);
   }

@@ -33,7 +33,7 @@ class VtkReader {
       } else if (word == "METADATA") {
         skip_metadata();
       } else if (word == "POINT_DATA" || word == "CELL_DATA") {
-        if (word == "POINT_DATA") read_arc_lengths(points);
+        if (word == "POINT_DATA") read_point_data(points);
         break;
       } else if (shape_number(word)) {
         fail(fmt::format("{} where a keyword such as LINES should be", quoted_piece(word)));
@@ -123,23 +123,38 @@ class VtkReader {
     return raw;
   }
 
-  /// The array arc_length_m of a FIELD, which `dlo solve` writes; a file with it is in metres.
-  void read_arc_lengths(RawShape& raw) {
-    std::string_view word = next();
-    while (!word.empty() && word != "arc_length_m" && word != "CELL_DATA") word = next();
-    if (word != "arc_length_m") return;
-    if (next() != "1") fail("arc_length_m: must have one component");
-    if (read_count("arc_length_m: number of values", raw.points.size()) != raw.points.size()) {
-      fail(fmt::format("arc_length_m: must have {} values, one a point", raw.points.size()));
+  /// The arrays of a FIELD that `dlo solve` writes and a shape has: arc_length_m, by which a file
+  /// is in metres, and d1.
+  void read_point_data(RawShape& raw) {
+    const std::size_t count = raw.points.size();
+    for (std::string_view word = next(); !word.empty() && word != "CELL_DATA"; word = next()) {
+      if (word == "arc_length_m") {
+        if (next() != "1") fail("arc_length_m: must have one component");
+        raw.arc_length = read_array("arc_length_m", 1, count);
+        raw.in_metres = true;
+      } else if (word == "d1" && next() == "3") {
+        const std::vector<double> numbers = read_array("d1", 3, count);
+        raw.d1.clear();
+        for (std::size_t i = 0; i < count; ++i) {
+          raw.d1.push_back({numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]});
+        }
+      }
+    }
+  }
+
+  std::vector<double> read_array(const char* name, std::size_t components, std::size_t points) {
+    if (read_count(fmt::format("{}: number of values", name).c_str(), points) != points) {
+      fail(fmt::format("{}: must have {} values, one a point", name, points));
     }
     next();  // float or double
-    for (std::size_t i = 0; i < raw.points.size(); ++i) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < components * points; ++i) {
       const std::string_view number = next();
       const std::optional<double> value = shape_number(number);
-      if (!value) fail(fmt::format("arc_length_m: {} is not a number", quoted_piece(number)));
-      raw.arc_length.push_back(*value);
+      if (!value) fail(fmt::format("{}: {} is not a number", name, quoted_piece(number)));
+      values.push_back(*value);
     }
-    raw.in_metres = true;
+    return values;
   }
 
   /// Indices of the points along the polyline.
@@ -205,6 +220,7 @@ class VtkReader {
       result.points.push_back(points.points[i]);
       result.lines.push_back(points.lines[i]);
       if (!points.arc_length.empty()) result.arc_length.push_back(points.arc_length[i]);
+      if (!points.d1.empty()) result.d1.push_back(points.d1[i]);
     }
     return result;
   }

@@ -34,10 +34,12 @@ constexpr double length_tolerance = 0.05;
 constexpr ArcEffort of_candidate{10, 3e-2};
 constexpr ArcEffort of_result{30, 1e-6};
 
-/// Curvature at the inner points of a polyline about directors that are transported along it.
+/// Strain at the inner points of a polyline: about directors that are given, or transported along
+/// it.
 struct Profile {
-  Eigen::Matrix2Xd curvature;
+  Eigen::Matrix3Xd strain;
   std::vector<double> segments;  // lengths of arcs over the chords
+  Matrix3d first_frame;          // on the first chord
 };
 
 Matrix3d frame_on(const Vector3d& tangent, const Vector3d& normal) {
@@ -47,37 +49,42 @@ Matrix3d frame_on(const Vector3d& tangent, const Vector3d& normal) {
   return frame;
 }
 
-Profile profile_of(const Eigen::Matrix3Xd& points, const Vector3d& normal) {
+Profile profile_of(const ArcTarget& target) {
+  const Eigen::Matrix3Xd& points = target.points;
   const Index joints = points.cols() - 2;
   Profile profile;
-  profile.curvature.resize(2, joints);
+  profile.strain.resize(3, joints);
   const auto chord = [&](Index i) -> Vector3d { return points.col(i + 1) - points.col(i); };
-  Matrix3d frame = frame_on(chord(0).normalized(), normal);
+  const auto frame_at = [&](Index i, const Vector3d& transported) {
+    const Vector3d t = chord(i).normalized();
+    return frame_on(t, target.twists() ? Vector3d(t.cross(target.d1.col(i) + target.d1.col(i + 1)))
+                                       : transported);
+  };
+  Matrix3d frame = frame_at(0, target.normal);
+  profile.first_frame = frame;
   for (Index j = 0; j < joints; ++j) {
-    const Vector3d next = chord(j + 1);
-    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(frame.col(2), next);
-    const Eigen::AngleAxisd rotation(turn);
-    const Vector3d bend = rotation.angle() * rotation.axis();
-    const double across = (chord(j).norm() + next.norm()) / 2;
-    profile.curvature.col(j) = Vector2d(bend.dot(frame.col(0)), bend.dot(frame.col(1))) / across;
-    frame = rotation * frame;
-    frame = frame_on(next.normalized(), frame.col(1));
+    const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(frame.col(2), chord(j + 1));
+    const Matrix3d next = frame_at(j + 1, turn * frame.col(1));
+    const Eigen::AngleAxisd rotation(frame.transpose() * next);
+    const double across = (chord(j).norm() + chord(j + 1).norm()) / 2;
+    profile.strain.col(j) = rotation.angle() / across * rotation.axis();
+    frame = next;
   }
   for (Index i = 0; i <= joints; ++i) {
-    const double before = profile.curvature.col(std::max<Index>(i - 1, 0)).norm();
-    const double after = profile.curvature.col(std::min(i, joints - 1)).norm();
+    const double before = profile.strain.col(std::max<Index>(i - 1, 0)).head<2>().norm();
+    const double after = profile.strain.col(std::min(i, joints - 1)).head<2>().norm();
     const double half = std::min((before + after) / 4 * chord(i).norm(), 1.5);
     profile.segments.push_back(chord(i).norm() * (half > 1e-8 ? half / std::sin(half) : 1));
   }
   return profile;
 }
 
-/// Places to cut a profile into pieces of one curvature, that first which lowers the sum of squares
+/// Places to cut a profile into pieces of one strain, that first which lowers the sum of squares
 /// most.
-std::vector<Index> cuts_of(const Eigen::Matrix2Xd& curvature, std::size_t most) {
-  const Index n = curvature.cols();
-  Eigen::Matrix2Xd sums = Eigen::Matrix2Xd::Zero(2, n + 1);
-  for (Index j = 0; j < n; ++j) sums.col(j + 1) = sums.col(j) + curvature.col(j);
+std::vector<Index> cuts_of(const Eigen::Matrix3Xd& strain, std::size_t most) {
+  const Index n = strain.cols();
+  Eigen::Matrix3Xd sums = Eigen::Matrix3Xd::Zero(3, n + 1);
+  for (Index j = 0; j < n; ++j) sums.col(j + 1) = sums.col(j) + strain.col(j);
   // What is explained by the mean of a piece.
   const auto explained = [&](Index a, Index b) {
     return (sums.col(b) - sums.col(a)).squaredNorm() / static_cast<double>(b - a);
@@ -107,24 +114,23 @@ std::vector<Index> cuts_of(const Eigen::Matrix2Xd& curvature, std::size_t most) 
 
 Arcs first_guess(const ArcTarget& target, const Profile& profile, std::vector<Index> cuts) {
   std::sort(cuts.begin(), cuts.end());
-  cuts.push_back(profile.curvature.cols());
+  cuts.push_back(profile.strain.cols());
   Arcs guess;
   Index before = 0;
   for (const Index cut : cuts) {
     RestShape::Arc arc;
-    arc.curvature = profile.curvature.middleCols(before, cut - before).rowwise().mean();
-    if (target.planar) arc.curvature.x() = 0;
+    arc.strain = profile.strain.middleCols(before, cut - before).rowwise().mean();
+    if (target.planar) arc.strain.x() = 0;
+    if (!target.twists()) arc.strain.z() = 0;
     // Joint j is at point j + 1.
     const auto i = static_cast<std::size_t>(cut);
     arc.end = cut == cuts.back() ? target.length : (target.s[i] + target.s[i + 1]) / 2;
     guess.arcs.push_back(arc);
     before = cut;
   }
-  const Vector3d first_chord = target.points.col(1) - target.points.col(0);
-  guess.begin = {target.points.col(0), frame_on(first_chord.normalized(), target.normal)};
+  guess.begin = {target.points.col(0), profile.first_frame};
   // A chord has the direction of its arc's middle.
-  guess.begin = {guess.begin.point,
-                 along_arc(guess.begin, guess.arcs.front().curvature, -target.s[1] / 2).frame};
+  guess.begin.frame = along_arc(guess.begin, guess.arcs.front().strain, -target.s[1] / 2).frame;
   return guess;
 }
 
@@ -145,7 +151,7 @@ Arcs cut_where_far(const ArcTarget& target, const Arcs& arcs, std::size_t count)
     const double s = target.s[static_cast<std::size_t>(i)];
     const auto on = std::find_if(pieces.begin(), std::prev(pieces.end()),
                                  [s](const Piece& piece) { return s < piece.arc.end; });
-    on->left += r.segment<3>(3 * i).squaredNorm();
+    on->left += r.segment(target.rows() * i, target.rows()).squaredNorm();
   }
   while (pieces.size() < count) {
     const auto most =
@@ -195,13 +201,28 @@ void find_points_plane(ArcTarget& target) {
     if ((normal - Vector3d::Unit(axis)).norm() < plane_share) normal = Vector3d::Unit(axis);
   }
   target.normal = normal;
+  if (target.d1.cols() == 0) return;
+  const Vector3d side = first.cross(target.d1.col(0));
+  if (side.dot(normal) < 0) target.normal = -normal;
+  target.planar =
+      target.planar && (normal.transpose() * target.d1).cwiseAbs().maxCoeff() <= plane_share;
+}
+
+void require_small_turns(const ArcTarget& target, const std::string& file) {
+  for (Index i = 1; i < target.d1.cols(); ++i) {
+    if (target.d1.col(i).dot(target.d1.col(i - 1)) > 0) continue;
+    throw InputError(
+        fmt::format("{}: d1 rotates by a right angle or more to point {} of the {} that are fitted "
+                    "(allowed: less between neighbours)",
+                    file, i + 1, target.d1.cols()));
+  }
 }
 
 MeasuredShape forwards(const MeasuredShape& points) {
   const std::vector<double>& s = points.arc_length;
   if (s.empty() || s.back() > s.front()) return points;
-  return {points.file, points.points.rowwise().reverse(),
-          std::vector<double>(s.rbegin(), s.rend())};
+  return {points.file, points.points.rowwise().reverse(), std::vector<double>(s.rbegin(), s.rend()),
+          points.d1.rowwise().reverse()};
 }
 
 /// Arc lengths of all points, scaled to the rod's, of which `chosen` are known.
@@ -228,23 +249,28 @@ void state_error(ArcTarget all, const Arcs& arcs, RestShape& shape) {
   const ArcTrace trace(arcs);
   double sum = 0;
   for (Index i = 0; i < all.points.cols(); ++i) {
-    const double d =
-        (trace.at(all.s[static_cast<std::size_t>(i)]).point - all.points.col(i)).norm();
+    const ArcPlace at = trace.at(all.s[static_cast<std::size_t>(i)]);
+    const double d = (at.point - all.points.col(i)).norm();
     shape.largest_error = std::max(shape.largest_error, d);
     sum += d * d;
+    if (all.d1.cols() == 0) continue;
+    const Vector3d given = all.d1.col(i);
+    const Vector3d d1 = at.frame.col(0);
+    shape.largest_angle = std::max(shape.largest_angle.value_or(0),
+                                   std::atan2(d1.cross(given).norm(), d1.dot(given)));
   }
   shape.rms_error = std::sqrt(sum / static_cast<double>(all.points.cols()));
 }
 
-double largest_part(const Eigen::VectorXd& r) {
-  double most = 0;
-  for (Index i = 0; i + 2 < r.size(); i += 3) most = std::max(most, r.segment<3>(i).norm());
-  return most;
+/// Of a point and its frame.
+double largest_part(const ArcTarget& target, const Arcs& arcs) {
+  const Eigen::VectorXd r = arc_residual(target, arcs);
+  return r.reshaped(target.rows(), target.points.cols()).colwise().norm().maxCoeff();
 }
 
 /// Schwarz's criterion over the number of residuals; what rounding leaves counts as nothing.
 double arc_information(const ArcTarget& target, std::size_t arcs, double sum) {
-  const auto n = static_cast<double>(target.points.cols() * (target.planar ? 1 : 2));
+  const auto n = static_cast<double>(target.points.cols() * target.numbers());
   constexpr double rounding = 1e-20;
   const auto p = static_cast<double>(arc_parameters(target, arcs));
   return std::log(sum / n + rounding) + p * std::log(n) / n;
@@ -265,12 +291,11 @@ RestShape fit_rest_shape(const MeasuredShape& measured, double length) {
   for (Index k = 0; k < fitted; ++k) chosen.push_back(k * (count - 1) / (fitted - 1));
   ArcTarget target;
   target.length = length;
-  target.points.resize(3, fitted);
-  for (Index k = 0; k < fitted; ++k) {
-    target.points.col(k) = given.points.col(chosen[static_cast<std::size_t>(k)]);
-  }
+  target.points = given.points(Eigen::all, chosen);
+  if (given.d1.cols() > 0) target.d1 = given.d1(Eigen::all, chosen);
+  require_small_turns(target, given.file);
   find_points_plane(target);
-  const Profile profile = profile_of(target.points, target.normal);
+  const Profile profile = profile_of(target);
   double curve = 0;
   target.s = {0};
   for (const double segment : profile.segments) target.s.push_back(curve += segment);
@@ -291,19 +316,19 @@ RestShape fit_rest_shape(const MeasuredShape& measured, double length) {
   target.s.back() = length;
   const std::vector<double> s_before = target.s;
 
-  const std::vector<Index> cuts = cuts_of(profile.curvature, most_rest_arcs - 1);
+  const std::vector<Index> cuts = cuts_of(profile.strain, most_rest_arcs - 1);
   Arcs best, last;
   ArcTarget best_target, last_target;
   double least = std::numeric_limits<double>::infinity();
   int worse = 0;
   for (const std::size_t arcs : {1, 2, 3, 4, 6, 8, 12, 16, 24, most_rest_arcs}) {
-    const Index residuals = fitted * (target.planar ? 1 : 2);
+    const Index residuals = fitted * target.numbers();
     if (arcs > 1 && (arcs - 1 > cuts.size() || 2 * arc_parameters(target, arcs) > residuals)) break;
     // Cut at jumps of the points' curvature, which noise hides; equally; where fewer arcs are far.
     const auto end = cuts.begin() + static_cast<std::ptrdiff_t>(arcs - 1);
     std::vector<Index> equal;
     for (std::size_t k = 1; k < arcs; ++k) {
-      equal.push_back(static_cast<Index>(k) * profile.curvature.cols() / static_cast<Index>(arcs));
+      equal.push_back(static_cast<Index>(k) * profile.strain.cols() / static_cast<Index>(arcs));
     }
     ArcTarget own;
     Arcs guess;
@@ -331,7 +356,7 @@ RestShape fit_rest_shape(const MeasuredShape& measured, double length) {
     }
     constexpr int enough_worse = 3;
     if (worse == enough_worse) break;
-    if (largest_part(arc_residual(own, guess)) <= good_enough_share) break;
+    if (largest_part(own, guess) <= good_enough_share) break;
   }
   (void)improve_arcs(best_target, best, of_result);
 
@@ -342,6 +367,7 @@ RestShape fit_rest_shape(const MeasuredShape& measured, double length) {
                   .first_frame = best.begin.frame};
   ArcTarget all = best_target;
   all.points = given.points;
+  all.d1 = given.d1;
   all.s = all_arc_lengths(given.points, chosen, best_target.s);
   if (target.knows_s) {
     for (std::size_t i = 0; i < all.s.size(); ++i) {

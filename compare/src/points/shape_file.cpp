@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/input_file.hpp"
 #include "dlo/compare/error.hpp"
@@ -60,6 +61,44 @@ void require_arc_lengths(const RawShape& raw, const std::string& file, double un
   }
 }
 
+Eigen::Vector3d vector_of(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
+
+/// That each d1 is a unit vector across the rod, whose tangent the chords beside a point say but
+/// for how much they turn there.
+void require_directors(const RawShape& raw, const std::string& file) {
+  require_as_many_d1(raw, file);
+  const std::size_t count = raw.points.size();
+  const auto chord = [&](std::size_t i) -> Eigen::Vector3d {
+    return (vector_of(raw.points[i + 1]) - vector_of(raw.points[i])).normalized();
+  };
+  const auto angle = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return std::atan2(a.cross(b).norm(), a.dot(b));
+  };
+  for (std::size_t i = 0; i < raw.d1.size(); ++i) {
+    const Eigen::Vector3d d1 = vector_of(raw.d1[i]);
+    constexpr double rounding = 1e-3;
+    if (!(std::abs(d1.norm() - 1) <= rounding)) {
+      throw InputError(
+          fmt::format("{}: d1 = [{:g}, {:g}, {:g}] of norm {:.6g} (allowed: 1 within {:g})",
+                      where_point(raw, file, i), d1.x(), d1.y(), d1.z(), d1.norm(), rounding));
+    }
+    const std::size_t joint = std::clamp<std::size_t>(i, 1, std::max<std::size_t>(count - 2, 1));
+    const Eigen::Vector3d before = chord(joint - 1);
+    const Eigen::Vector3d after = count > 2 ? chord(joint) : before;
+    const Eigen::Vector3d tangent = i == 0           ? before
+                                    : i == count - 1 ? after
+                                                     : Eigen::Vector3d(before + after);
+    constexpr double right_angle = std::numbers::pi / 2;
+    const double most = right_angle / 18 + angle(before, after);
+    const double off = std::abs(angle(d1, tangent) - right_angle);
+    if (off <= most) continue;
+    throw InputError(
+        fmt::format("{}: d1 is {:.3g} degrees away from across the rod (allowed: up to "
+                    "{:.3g}, 5 and what the rod bends by there)",
+                    where_point(raw, file, i), off / right_angle * 90, most / right_angle * 90));
+  }
+}
+
 /// Length of the polyline through 64 of the points at most: few enough that noise between
 /// neighbours hardly lengthens it.
 double coarse_polyline(const RawShape& raw) {
@@ -113,12 +152,16 @@ MeasuredShape checked(const RawShape& raw, const std::string& file, double unit)
   const double metres = raw.in_metres ? 1 : unit;
   require_points(raw, file, metres);
   require_arc_lengths(raw, file, metres);
+  require_directors(raw, file);
   MeasuredShape shape;
   shape.file = file;
   shape.points.resize(3, static_cast<Eigen::Index>(raw.points.size()));
   for (std::size_t i = 0; i < raw.points.size(); ++i) {
-    const auto& [x, y, z] = raw.points[i];
-    shape.points.col(static_cast<Eigen::Index>(i)) = metres * Eigen::Vector3d(x, y, z);
+    shape.points.col(static_cast<Eigen::Index>(i)) = metres * vector_of(raw.points[i]);
+  }
+  shape.d1.resize(3, static_cast<Eigen::Index>(raw.d1.size()));
+  for (std::size_t i = 0; i < raw.d1.size(); ++i) {
+    shape.d1.col(static_cast<Eigen::Index>(i)) = vector_of(raw.d1[i]).normalized();
   }
   const double arc_metres = arc_length_unit(raw, file, metres);
   for (const double s : raw.arc_length) shape.arc_length.push_back(arc_metres * s);
@@ -132,7 +175,8 @@ MeasuredShape parse_shape(const std::string& text, const std::string& file, doub
 }
 
 MeasuredShape shape_of(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
-                       const std::vector<double>& arc_length, const std::string& name) {
+                       const std::vector<double>& arc_length, const std::string& name,
+                       const Eigen::Ref<const Eigen::Matrix3Xd>& d1) {
   require_point_count(static_cast<std::size_t>(points.cols()), name);
   RawShape raw;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
@@ -143,6 +187,7 @@ MeasuredShape shape_of(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                                  name, arc_length.size(), raw.points.size()));
   }
   raw.arc_length = arc_length;
+  for (const auto& v : d1.colwise()) raw.d1.push_back({v.x(), v.y(), v.z()});
   return checked(raw, name, 1);
 }
 

@@ -359,17 +359,16 @@ void read_natural_strains(StrictTable& rod, Scene& scene) {
 MeasuredShape read_rest_points(StrictTable& rod, const std::string& scene_file) {
   constexpr const char* key = "rest_shape";
   constexpr const char* allowed =
-      "(allowed: a file of points in m beside the scene, as CSV with the columns x,y,z, or rows "
-      "[[x, y, z], ..])";
+      "(allowed: a file of points in m beside the scene, as CSV with the columns x,y,z and, with "
+      "frames, d1_x,d1_y,d1_z, or rows [[x, y, z], ..])";
   if (!rod.is_array(key)) {
     const std::string name = rod.text(key);
     return parse_shape(read_beside(rod, key, name, scene_file, allowed), name);
   }
   constexpr std::size_t most = 10'000;
-  const std::vector<Eigen::Vector3d> rows = rod.vectors(key, Dimension::length, most);
-  Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(rows.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i) points.col(static_cast<Eigen::Index>(i)) = rows[i];
-  return shape_of(points, {}, "the points");
+  const Eigen::MatrixXd rows = rod.points(key, most);
+  return shape_of(rows.topRows<3>(), {}, "the points",
+                  rows.rows() == 6 ? Eigen::Matrix3Xd(rows.bottomRows<3>()) : Eigen::Matrix3Xd());
 }
 
 /// @param sections  the tables of the rod's sections, which have been read

@@ -246,13 +246,12 @@ void Scene::require_potential(const char* who) const {
         "solve --model exact or force)",
         file, who));
   }
-  const bool follows =
-      std::any_of(loads.begin(), loads.end(), [](const PointLoad& load) { return load.follows; });
-  if (follows) {
+  const auto follower = std::ranges::find_if(loads, &PointLoad::follows);
+  if (follower != loads.end()) {
     throw InputError(fmt::format(
-        "{}: load.follows: a load that turns with the rod, which has no potential and which {} not "
-        "take (allowed: dlo solve --model exact)",
-        file, who));
+        "{}: load.follows: the load at {:g} m turns with the rod, which has no potential and which "
+        "{} not take (allowed: dlo solve --model exact)",
+        file, follower->at, who));
   }
   if (!has_couples() || energy_model::has_potential(scene_problem(*this))) return;
   throw InputError(fmt::format(
@@ -263,11 +262,13 @@ void Scene::require_potential(const char* who) const {
 
 void Scene::require_no_couples(const char* who) const {
   require_potential(who);
-  if (!has_couples()) return;
+  const auto couple =
+      std::ranges::find_if(loads, [](const PointLoad& load) { return !load.torque.isZero(0); });
+  if (couple == loads.end()) return;
   throw InputError(
-      fmt::format("{}: load.torque: a couple, which {} not take (allowed: dlo solve --model "
-                  "energy or exact)",
-                  file, who));
+      fmt::format("{}: load.torque: the couple at {:g} m, which {} not take (allowed: dlo solve "
+                  "--model energy or exact)",
+                  file, couple->at, who));
 }
 
 double Scene::bending_compliance(double begin, double end) const {
@@ -306,7 +307,7 @@ void Scene::set_rest_shape(const RestShape& shape) {
   *this = without_natural_strain();
   rest_shape = shape;
   if (shape.arcs.size() == 1) {
-    natural_strain.head<2>() = shape.arcs.front().curvature;
+    natural_strain = shape.arcs.front().strain;
     return;
   }
   std::vector<Section> all;
@@ -334,7 +335,8 @@ void Scene::set_rest_shape(const RestShape& shape) {
       // A boundary of the two that differs by rounding is one.
       constexpr double rounding = 1e-12;
       part.to = arc.end < section.to - rounding * length ? arc.end : section.to;
-      part.natural_curvature = arc.curvature;
+      part.natural_curvature = arc.strain.head<2>();
+      if (arc.strain.z() != 0) part.natural_twist = arc.strain.z();
       sections.push_back(part);
       section.from = part.to;
       if (part.to >= section.to) break;

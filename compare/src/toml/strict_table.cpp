@@ -220,6 +220,27 @@ std::vector<Eigen::Vector3d> StrictTable::vectors(std::string_view key, Dimensio
   return vectors;
 }
 
+Eigen::MatrixXd StrictTable::points(std::string_view key, std::size_t most) {
+  const toml::array& rows = *need(key).as_array();
+  if (rows.size() < 2 || rows.size() > most) {
+    fail(key, fmt::format("{} rows (allowed: 2 to {})", rows.size(), most));
+  }
+  const toml::array* first = rows.front().as_array();
+  const bool with_vectors = first != nullptr && first->size() == 6;
+  Eigen::MatrixXd points(with_vectors ? 6 : 3, static_cast<Eigen::Index>(rows.size()));
+  constexpr const char* form =
+      "must be rows [[x, y, z], ..] of three numbers, or of six with a vector in every row";
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const toml::array* row = rows[static_cast<std::size_t>(i)].as_array();
+    if (row == nullptr || row->size() != static_cast<std::size_t>(points.rows())) fail(key, form);
+    for (Eigen::Index k = 0; k < points.rows(); ++k) {
+      points(k, i) = read_number(key, (*row)[static_cast<std::size_t>(k)],
+                                 k < 3 ? Dimension::length : Dimension::number);
+    }
+  }
+  return points;
+}
+
 std::optional<Eigen::Matrix3d> StrictTable::optional_rows(std::string_view key) {
   const toml::node* node = find(key);
   if (node == nullptr) return std::nullopt;

@@ -69,6 +69,9 @@ class StrictTable {
   std::vector<Eigen::Vector2d> pairs(std::string_view key, Dimension dimension, std::size_t most);
   /// Three numbers, or rows of three, two to `most` of them.
   std::vector<Eigen::Vector3d> vectors(std::string_view key, Dimension dimension, std::size_t most);
+  /// Columns of two to `most` rows of three lengths; or of six numbers in every row, a vector
+  /// beside each point.
+  Eigen::MatrixXd points(std::string_view key, std::size_t most);
   /// Rows of three numbers each.
   std::optional<Eigen::Matrix3d> optional_rows(std::string_view key);
   /// As it is written, of any norm.

@@ -42,7 +42,9 @@ class CalibrateCommand : public Command {
     std::ifstream stream(path("all"));
     std::ofstream shape(path(name));
     for (std::string line; std::getline(stream, line);) {
-      shape << line.substr(0, line.rfind(',')) << "\n";
+      std::size_t end = 0;
+      for (int column = 0; column < 3; ++column) end = line.find(',', end) + 1;
+      shape << line.substr(0, end - 1) << "\n";
     }
     return path(name);
   }

@@ -71,6 +71,28 @@ TEST_F(RodCommand, SolveShowsARodThatIsAboutToBuckleAndItsNeutralDirections) {
                    .contains("neutral_directions"));
 }
 
+TEST_F(RodCommand, ASolvedShapeWithFramesIsARestShape) {
+  const auto rod = [this](const std::string& rest) {
+    return scene(
+        "gravity = [0, 0, 0]\n[rod]\nlength = 0.3\nmass_per_length = 0.004\n"
+        "bending_stiffness = [1e-3, 5e-3]\n" +
+        rest +
+        "\n[[gripper]]\nat = 0\nposition = [0, 0, 0]\n"
+        "frame = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n");
+  };
+  for (const std::string format : {"csv", "vtk"}) {
+    const std::string coil = rod("helix = { radius = \"2 cm\", pitch = \"5 cm\" }");
+    ASSERT_EQ(run("solve " + coil + " --samples 81 -o " + path("coil." + format)).status, 0);
+    const Outcome again = run("solve " + rod("rest_shape = \"coil." + format + "\""));
+    ASSERT_EQ(again.status, 0) << again.err;
+    EXPECT_NE(again.out.find("m of 1 arc (RMS "), std::string::npos) << again.out;
+    EXPECT_NE(again.out.find(" m), d1 within "), std::string::npos) << again.out;
+    const json document = json::parse(run("solve --format json " + path("scene.toml")).out);
+    EXPECT_LT(document.at("rest_shape").at("largest_angle_rad").get<double>(), 1e-7);
+    EXPECT_EQ(run("check " + path("scene.toml") + " --shape " + path("coil." + format)).status, 0);
+  }
+}
+
 TEST_F(RodCommand, ComparesByTheStiffnessThatIsGiven) {
   const std::string rod = by_stiffness("0.08");
   const Outcome text = run("compare " + rod);

@@ -2,6 +2,7 @@
 
 #include "dlo/compare/rest_shape.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -20,6 +21,7 @@
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solve.hpp"
 #include "scene/scene_template.hpp"
+#include "shape/write_vtk.hpp"
 #include "trajectory/trajectory_files.hpp"
 
 namespace dlo::compare {
@@ -96,9 +98,9 @@ TEST(RestShape, ArcsAreFoundWhereTheyAre) {
     EXPECT_NEAR(shape.arcs[0].end, 0.2, 1e-8);
     EXPECT_NEAR(shape.arcs[1].end, 0.22, 1e-8);
     EXPECT_EQ(shape.arcs[2].end, shaft_length);
-    EXPECT_NEAR(shape.arcs[1].curvature.y(), 80, 1e-5);
-    EXPECT_NEAR(shape.arcs[2].curvature.y(), 40, 1e-5);
-    EXPECT_EQ(shape.arcs[1].curvature.x(), 0);
+    EXPECT_NEAR(shape.arcs[1].strain.y(), 80, 1e-5);
+    EXPECT_NEAR(shape.arcs[2].strain.y(), 40, 1e-5);
+    EXPECT_EQ(shape.arcs[1].strain.x(), 0);
     EXPECT_LT(shape.largest_error, 1e-9);
     EXPECT_EQ(shape.points, count);
   }
@@ -245,6 +247,200 @@ TEST(Helix, UnderGravityIsOneShapeOfTwoMethods) {
   EXPECT_LT((energy - exact).colwise().norm().maxCoeff(), 1e-7 * scene.length);
   // It is no rigid body.
   EXPECT_GT((energy.rightCols<1>() - on_helix(scene.length)).norm(), 1e-2 * scene.length);
+}
+
+/// d1 there, which turns from the direction to the axis by `extra` [1/m] more than the helix does.
+Eigen::Vector3d d1_on_helix(double s, double extra) {
+  const double c = helix_pitch / (2 * std::numbers::pi);
+  const double a = s / std::hypot(helix_radius, c);
+  const Eigen::Vector3d inward(-std::cos(a), -std::sin(a), 0);
+  const Eigen::Vector3d t =
+      Eigen::Vector3d(-helix_radius * std::sin(a), helix_radius * std::cos(a), c).normalized();
+  return Eigen::AngleAxisd(extra * s, t) * inward;
+}
+
+MeasuredShape framed_helix(int count, double extra) {
+  MeasuredShape shape = points_of(on_helix, helix_length, count);
+  shape.d1.resize(3, count);
+  for (int i = 0; i < count; ++i) {
+    shape.arc_length.push_back(helix_length * i / (count - 1));
+    shape.d1.col(i) = d1_on_helix(shape.arc_length.back(), extra);
+  }
+  return shape;
+}
+
+/// A flat cable at rest on that helix.
+Scene flat_helix(const RestShape& shape) {
+  Scene scene = resting_scene(shape, helix_length);
+  scene.given_bending_stiffness_2 = 5e-3;
+  return scene;
+}
+
+/// The farthest that points and d1 of a solved shape are from the helix [m, rad].
+Eigen::Vector2d away_from_helix(const Scene& scene, Model model, double extra) {
+  const Solution solution = solve(scene, model, {}, equal_arc_lengths(helix_length, 61));
+  Eigen::Vector2d most = Eigen::Vector2d::Zero();
+  for (Eigen::Index i = 0; i <= 60; ++i) {
+    const double s = solution.shape.arc_length[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d d1 = solution.d1.col(i);
+    const Eigen::Vector3d truth = d1_on_helix(s, extra);
+    most = most.cwiseMax(Eigen::Vector2d((solution.shape.points.col(i) - on_helix(s)).norm(),
+                                         std::atan2(d1.cross(truth).norm(), d1.dot(truth))));
+  }
+  return most;
+}
+
+TEST(RestFrames, OfAHelixItselfMakeItOneArc) {
+  const RestShape shape = fit_rest_shape(framed_helix(41, 0), helix_length);
+  ASSERT_EQ(shape.arcs.size(), 1);
+  EXPECT_LT((shape.arcs[0].strain - helix_strain(helix_radius, helix_pitch)).norm(), 1e-6);
+  EXPECT_LT(shape.largest_error, 1e-10);
+  EXPECT_LT(shape.largest_angle.value(), 1e-8);
+  MeasuredShape bare = framed_helix(41, 0);
+  bare.d1.resize(3, 0);
+  EXPECT_FALSE(fit_rest_shape(bare, helix_length).largest_angle);
+}
+
+TEST(RestFrames, OfAFlatSectionThatTwistsOtherwiseComeBackToTheStatedErrors) {
+  for (const double extra : {20.0, -35.0}) {
+    const RestShape shape = fit_rest_shape(framed_helix(141, extra), helix_length);
+    EXPECT_GT(shape.arcs.size(), 8);
+    const Scene scene = flat_helix(shape);
+    EXPECT_TRUE(scene.naturally_twisted());
+    for (const Model model : {Model::energy, Model::exact}) {
+      const Eigen::Vector2d away = away_from_helix(scene, model, extra);
+      EXPECT_LT(away[0], 1.1 * shape.largest_error) << to_string(model) << extra;
+      EXPECT_LT(away[1], 1.1 * shape.largest_angle.value()) << to_string(model) << extra;
+    }
+  }
+}
+
+TEST(RestFrames, ConvergeWithTheNumberOfPoints) {
+  // Arcs are as many as the points can say: 6, 12, 24. Of constant strain they leave the third
+  // power of their length of points, the second of directions.
+  std::vector<Eigen::Vector2d> away;
+  for (const int count : {22, 43, 86}) {
+    const RestShape shape = fit_rest_shape(framed_helix(count, 20), helix_length);
+    away.push_back(away_from_helix(flat_helix(shape), Model::exact, 20));
+  }
+  for (std::size_t i = 0; i + 1 < away.size(); ++i) {
+    EXPECT_GT(std::log2(away[i][0] / away[i + 1][0]), 2.9);
+    EXPECT_GT(std::log2(away[i][1] / away[i + 1][1]), 1.9);
+  }
+}
+
+TEST(RestFrames, UnderLoadAreOneShapeOfTwoMethods) {
+  Scene scene = flat_helix(fit_rest_shape(framed_helix(141, 20), helix_length));
+  scene.gravity = {0, 3, -9.81};
+  const std::vector<double> s = equal_arc_lengths(helix_length, 61);
+  const Solution energy = solve(scene, Model::energy, {}, s);
+  const Solution exact = solve(scene, Model::exact, {}, s);
+  EXPECT_LT((energy.shape.points - exact.shape.points).colwise().norm().maxCoeff(),
+            1e-7 * helix_length);
+  EXPECT_LT((energy.d1 - exact.d1).colwise().norm().maxCoeff(), 1e-6);
+  EXPECT_GT((energy.shape.points.rightCols<1>() - on_helix(helix_length)).norm(),
+            1e-2 * helix_length);
+}
+
+TEST(RestFrames, OfASolvedShapeAreReadAsItIsWritten) {
+  const Scene scene = flat_helix(fit_rest_shape(framed_helix(41, 0), helix_length));
+  const Solution solution = solve(scene, Model::exact, {}, equal_arc_lengths(helix_length, 41));
+  const RestShape again = fit_rest_shape(
+      parse_shape(vtk_polyline(solution.shape, {.d1 = solution.d1}, "a helix"), "shape.vtk"),
+      helix_length);
+  ASSERT_EQ(again.arcs.size(), 1);
+  EXPECT_LT((again.arcs[0].strain - scene.natural_strain).norm(), 1e-6);
+}
+
+TEST(RestFrames, OfEitherEndAreTheSameRod) {
+  MeasuredShape backwards = framed_helix(41, 20);
+  const RestShape forwards = fit_rest_shape(backwards, helix_length);
+  backwards.points = backwards.points.rowwise().reverse().eval();
+  backwards.d1 = backwards.d1.rowwise().reverse().eval();
+  std::reverse(backwards.arc_length.begin(), backwards.arc_length.end());
+  EXPECT_EQ(fit_rest_shape(backwards, helix_length), forwards);
+}
+
+TEST(RestFrames, InThePlaneOfTheirPointsSayTheSideOfD2) {
+  MeasuredShape points = points_of(on_shaft, shaft_length, 121);
+  for (const double side : {1, -1}) {
+    points.d1.resize(3, 121);
+    for (int i = 0; i <= 120; ++i) {
+      const Eigen::Vector3d ahead = on_shaft(shaft_length * i / 120 + 1e-8);
+      const Eigen::Vector3d behind = on_shaft(shaft_length * i / 120 - 1e-8);
+      points.d1.col(i) = side * Eigen::Vector3d::UnitZ().cross((ahead - behind).normalized());
+    }
+    const RestShape shape = fit_rest_shape(points, shaft_length);
+    ASSERT_EQ(shape.arcs.size(), 3);
+    EXPECT_EQ(shape.first_frame(2, 1), side);
+    EXPECT_NEAR(shape.arcs[1].strain.y(), side * 80, 1e-5);
+    EXPECT_EQ(shape.arcs[1].strain.x(), 0);
+    EXPECT_LT(shape.largest_angle.value(), 1e-6);
+    EXPECT_TRUE(resting_scene(shape, shaft_length).planar());
+  }
+}
+
+TEST(RestFrames, SmoothNoise) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise(0, 1);
+  MeasuredShape points = framed_helix(141, 0);
+  for (Eigen::Index i = 0; i < 141; ++i) {
+    const Eigen::Vector3d turn(noise(random), noise(random), noise(random));
+    points.points.col(i) += 1e-4 * Eigen::Vector3d(noise(random), noise(random), noise(random));
+    points.d1.col(i) = (points.d1.col(i) + 1e-2 * turn).normalized();
+  }
+  const RestShape shape = fit_rest_shape(points, helix_length);
+  EXPECT_LT(shape.arcs.size(), 4);
+  const Eigen::Vector2d away = away_from_helix(flat_helix(shape), Model::energy, 0);
+  EXPECT_LT(away[0], 3e-4);
+  EXPECT_LT(away[1], 2e-2);
+  EXPECT_GT(shape.largest_angle.value(), 1e-2);
+}
+
+TEST(RestFrames, AreRowsOfAScene) {
+  const MeasuredShape points = framed_helix(41, 0);
+  std::string rows;
+  for (Eigen::Index i = 0; i < 41; ++i) {
+    const Eigen::Vector3d p = points.points.col(i);
+    const Eigen::Vector3d d1 = points.d1.col(i);
+    rows += fmt::format("[\"{:.12f} mm\", {:.12f}, {:.12f}, {:.9f}, {:.9f}, {:.9f}],\n",
+                        1e3 * p.x(), p.y(), p.z(), d1.x(), d1.y(), d1.z());
+  }
+  const Scene scene = parse_scene(
+      "[rod]\nlength = 0.28\nbending_stiffness = 1e-3\nmass_per_length = 0.01\n"
+      "rest_shape = [" +
+          rows +
+          "]\n[[gripper]]\nat = 0\nposition = [0, 0, 0]\n"
+          "direction = \"0 deg\"\n",
+      "my.toml");
+  EXPECT_EQ(scene.rest_shape->arcs.size(), 1);
+  EXPECT_LT((scene.natural_strain - helix_strain(helix_radius, helix_pitch)).norm(), 1e-4);
+}
+
+TEST(RestFrames, SayWhatIsWrong) {
+  const auto expect = [](const std::string& text, const std::string& message) {
+    try {
+      (void)fit_rest_shape(parse_shape(text, "mine.csv"), 0.4);
+      ADD_FAILURE() << "accepted: " << text;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
+    }
+  };
+  const std::string head = "x,y,z,d1_x,d1_y,d1_z\n0,0,0,0,0,1\n0.1,0,0,0,0,1\n0.2,0,0,";
+  const std::string tail = "\n0.3,0,0,0,0,1\n0.4,0,0,0,0,1\n";
+  expect(head + "0,0,0.9" + tail,
+         "mine.csv:4: point 3: d1 = [0, 0, 0.9] of norm 0.9 (allowed: 1 within 0.001)");
+  expect(head + "0,0,nan" + tail, "mine.csv:4: point 3: d1 = [0, 0, nan]");
+  expect(head + "0.6,0,0.8" + tail,
+         "mine.csv:4: point 3: d1 is 36.9 degrees away from across the rod (allowed: up to 5,");
+  expect(head + ",," + tail, "mine.csv:4: d1_x = \"\" is not a number (allowed: d1 in every row");
+  expect(head + "0,0" + tail, "mine.csv:4: 5 columns");
+  expect(head + "0,0,-1" + tail, "mine.csv: d1 rotates by a right angle or more to point 3");
+  expect("x,y,d1_x,d1_z\n", "mine.csv:1: 2 of the columns d1_x, d1_y, d1_z (allowed: all");
+  expect(R"({"points": [[0,0],[1,0]], "d1": [[0,1]]})",
+         "d1: 1 vectors of 2 points (allowed: one a point, or none)");
+  EXPECT_NE(refusal("rest_shape = [[0,0,0,0,0,1], [0.5,0,0]]\n").find("six with a vector in every"),
+            std::string::npos);
 }
 
 TEST(Helix, IsAKeyOfTheRod) {

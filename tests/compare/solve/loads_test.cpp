@@ -240,6 +240,62 @@ TEST(Loads, WhatHasNoPotentialIsForExactWhichSaysWhatItHasChecked) {
   }
 }
 
+TEST(Loads, PolygonsNameTheOneThatTheyDoNotTake) {
+  const std::array<std::array<std::string, 2>, 2> cases = {
+      {{"torque = [0, 0, 0.1]\n",
+        "my.toml: load.torque: the couple at 0.7 m, which the polygons of models force and chain "
+        "do "
+        "not take (allowed: dlo solve --model energy or exact)"},
+       {"force = [0, 1, 0]\nfollows = true\n",
+        "my.toml: load.follows: the load at 0.7 m turns with the rod, which has no potential and "
+        "which the polygons of models force and chain do not take (allowed: dlo solve --model "
+        "exact)"}}};
+  for (const auto& [load, message] : cases) {
+    Scene scene = parse_scene(
+        thick_rod_held + "[[load]]\nat = 0.2\nforce = [0, 1, 0]\n[[load]]\nat = 0.7\n" + load,
+        "my.toml");
+    scene.force_model.law = BendingLaw::hooke;
+    for (const Model model : {Model::chain, Model::force}) {
+      try {
+        (void)solve(scene, model);
+        ADD_FAILURE() << load;
+      } catch (const InputError& error) {
+        EXPECT_EQ(error.what(), message);
+      }
+    }
+  }
+}
+
+TEST(Loads, AndOtherKeysThatSayNothingCostNoEvaluation) {
+  const auto arch = [](const std::string& of_rod, const std::string& loads) {
+    return parse_scene("[rod]\nlength = 1\ndiameter = \"6 mm\"\nmaterial = \"silicone\"\n" +
+                           of_rod +
+                           "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"20 deg\"\n"
+                           "[[gripper]]\nat = 1\nposition = [0.6, 0, 0.1]\n"
+                           "direction = \"-20 deg\"\n[[load]]\nat = 0.5\nforce = [0, -0.01, 0]\n" +
+                           loads,
+                       "my.toml");
+  };
+  const std::vector<std::array<std::string, 2>> cases = {
+      {"", "torque = [0, 0, 0]\nfollows = false\n"},
+      {"", "[[distributed_load]]\nforce_per_length = [0, 0, 0]\n"},
+      {"", "[medium]\ndensity = 1e-300\n"},
+      {"inner_diameter = 0\n", ""},
+      {"natural_curvature = [0, 0]\nnatural_twist = 0\n", ""},
+      {"stretch = false\n", ""},
+      {"stretch = \"auto\"\n", ""},
+  };
+  for (const Model model : {Model::energy, Model::exact}) {
+    const Solution plain = solve(arch("", ""), model);
+    for (const auto& [of_rod, loads] : cases) {
+      const Solution with = solve(arch(of_rod, loads), model);
+      EXPECT_EQ(with.evaluations, plain.evaluations) << to_string(model) << of_rod << loads;
+      EXPECT_EQ(with.terms, plain.terms) << to_string(model) << of_rod << loads;
+      EXPECT_LT(apart(with, plain), 1e-15) << to_string(model) << of_rod << loads;
+    }
+  }
+}
+
 TEST(Loads, DragOnSegmentsComesToTheExactShapeAtSecondOrder) {
   Scene scene = parse_scene(thick_rod_held +
                                 "[medium]\ndensity = 1000\nvelocity = [0.2, 0, 0.3]\n"

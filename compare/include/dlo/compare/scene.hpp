@@ -176,7 +176,7 @@ struct Scene {
   /// What the curvature varies by: coefficients of Legendre's P_1, P_2, .. of 2 s/l - 1 [1/m].
   std::vector<Eigen::Vector2d> natural_variation;
   /// What points in space say of the stress-free shape, where they say it: its arcs are the natural
-  /// curvature of `sections`, or natural_strain where there is one arc.
+  /// curvature and twist of `sections`, or natural_strain where there is one arc.
   std::optional<RestShape> rest_shape;
   std::vector<Gripper> grippers;                   ///< one or more, in the file's order
   std::vector<PointLoad> loads;                    ///< may be empty

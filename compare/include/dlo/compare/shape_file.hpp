@@ -12,6 +12,7 @@ struct MeasuredShape {
   std::string file;                ///< its name, for messages
   Eigen::Matrix3Xd points;         ///< in the file's order [m], 3 x M, neighbours distinct
   std::vector<double> arc_length;  ///< the file's own, growing or falling [m], M; empty without
+  Eigen::Matrix3Xd d1 = {};        ///< of the rod's frames there, of norm 1, 3 x M; empty without
 };
 
 /// Most points that a shape file may have.
@@ -21,25 +22,29 @@ inline constexpr long most_shape_points = 100'000;
 ///     CSV: x,y or x,y,z or x,y,z,s a line, or any order of these under a header with their names
 ///          (s: arc length, in the unit of the points or in metres, whichever is not less than a
 ///          fifth of the polyline). Fields are separated by commas, or else by semicolons, tabs or
-///          blanks; blank lines and lines that begin with # are skipped.
+///          blanks; blank lines and lines that begin with # are skipped. Under a header d1_x,
+///          d1_y, d1_z too.
 ///     JSON: [[x, y, z], ...], or an object with `points_m` and, if known, `arc_length_m` as `dlo
-///          solve` writes it; `points` and `arc_length` are in the unit that is given.
+///          solve` writes it; `points` and `arc_length` are in the unit that is given; `d1`,
+///          vectors as points.
 ///     VTK: legacy, ASCII, DATASET POLYDATA with POINTS and one polyline in LINES (or several that
 ///          follow on from each other); without LINES the points in their order. The point data
-///          arc_length_m of a FIELD, as `dlo solve` writes it; such a file is in metres.
+///          arc_length_m of a FIELD, as `dlo solve` writes it; such a file is in metres. Its d1.
 /// A missing z is zero.
 /// @param file  its name, for messages;  @param unit  what the file's numbers are in [m]
 /// @throws InputError naming file, line (point, in JSON), what is wrong and what is allowed; two
-/// points at least, all finite and within 1e6 m, neighbours distinct, s strictly growing or falling
+/// points at least, all finite and within 1e6 m, neighbours distinct, s strictly growing or
+/// falling, d1 of norm 1 within 1e-3 and across the chords within 5 degrees and what these bend by
 [[nodiscard]] MeasuredShape parse_shape(const std::string& text, const std::string& file,
                                         double unit = 1);
 
 /// A shape from a program's own numbers, held to the same as those of a file.
 /// @param points  [m], 3 x M;  @param arc_length  growing or falling [m], M; empty without
-/// @param name  what messages call it;  @throws InputError as parse_shape
-[[nodiscard]] MeasuredShape shape_of(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
-                                     const std::vector<double>& arc_length,
-                                     const std::string& name);
+/// @param name  what messages call it;  @param d1  3 x M; empty without
+/// @throws InputError as parse_shape
+[[nodiscard]] MeasuredShape shape_of(
+    const Eigen::Ref<const Eigen::Matrix3Xd>& points, const std::vector<double>& arc_length,
+    const std::string& name, const Eigen::Ref<const Eigen::Matrix3Xd>& d1 = Eigen::Matrix3Xd());
 
 /// Reads a shape file. @throws InputError as parse_shape, or if it cannot be read
 [[nodiscard]] MeasuredShape load_shape(const std::string& path, double unit = 1);
