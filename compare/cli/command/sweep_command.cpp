@@ -263,6 +263,8 @@ void add_sweep(CLI::App& app) {
   command->add_flag("--merge", options->merge, "put finished shards together");
   options->plot.add_to(*command, "the results over one field, or over two,", Sketches::none);
   options->scene.add_solvers_to(*command);
+  // It varies what a file says, before that is a scene.
+  command->remove_option(command->get_option("--calibrated"));
   command->footer(
       "Exit status is 0 also if rows have no result: a line on standard error counts them, their\n"
       "column status says why.\n"

@@ -469,10 +469,19 @@ std::string material_toml(const compare::Calibration& report) {
   }
   const double density = fit.density ? *fit.density->value : heaviness.value;
   const bool given = scene.given_bending_stiffness.has_value();
-  std::string out = given ? "# Written by dlo calibrate, for the table [rod] of a scene.\n"
-                          : "# Written by dlo calibrate. For dlo: --materials with this file and "
-                            "material = \"calibrated\" in the scene.\n[[material]]\nname = "
-                            "\"calibrated\"\n";
+  std::string out =
+      given ? "# Written by dlo calibrate, for --calibrated, or lines of a scene's [rod].\n"
+            : "# Written by dlo calibrate, for --calibrated, or --materials and material = "
+              "\"calibrated\" in a scene.\n";
+  if (fit.torsional_stiffness && fit.torsional_stiffness->value) {
+    append(out, "torsional_stiffness = {:.8e}  # N m^2, 95 %: {:.4g} to {:.4g}\n",
+           *fit.torsional_stiffness->value, *fit.torsional_stiffness->low,
+           *fit.torsional_stiffness->high);
+  }
+  if (!fit.natural_curvature.empty()) {
+    append(out, "natural_curvature = {}\n", natural_curvature_text(fit));
+  }
+  if (!given) out += "[[material]]\nname = \"calibrated\"\n";
   std::string value = fmt::format("{:.8e}", *E.value);
   if (scene.given_bending_stiffness_2) {
     // A fit leaves the ratio of the two as it is.
@@ -484,30 +493,14 @@ std::string material_toml(const compare::Calibration& report) {
   append(out, "{} = {:.8e}  # {}, {}\n", heaviness_key(scene).name, density, heaviness.unit,
          fit.density ? fmt::format("95 %: {:.4g} to {:.4g}", *fit.density->low, *fit.density->high)
                      : std::string("of the scene"));
-  if (fit.torsional_stiffness && fit.torsional_stiffness->value) {
-    append(out, "{}torsional_stiffness = {:.8e}  # N m^2, 95 %: {:.4g} to {:.4g}\n",
-           given ? "" : "# of the rod: ", *fit.torsional_stiffness->value,
-           *fit.torsional_stiffness->low, *fit.torsional_stiffness->high);
-  }
-  if (!fit.natural_curvature.empty()) {
-    // Of a material no shape is known: it is a line for the scene.
-    append(out, "{}natural_curvature = {}\n",
-           given ? "" : "# of the rod: ", natural_curvature_text(fit));
-  }
-  for (const compare::ClampCorrection& correction : fit.clamps) {
-    const double angle = correction.rotation.norm();
-    append(
-        out,
-        "# gripper {} of every scene: direction rotated by {:.4g} deg about {}, position moved by "
-        "{} m\n",
-        correction.gripper + 1, angle * 180 / std::numbers::pi,
-        vector_text(angle > 0 ? Eigen::Vector3d(correction.rotation / angle)
-                              : Eigen::Vector3d::UnitZ()),
-        vector_text(correction.displacement));
-  }
   append(out, "{}least squares of {} measured shape{}, noise {:.3g} m{}{}\n",
          given ? "# " : "source = \"", fit.shapes.size(), fit.shapes.size() == 1 ? "" : "s",
          fit.noise_m, fit.correlation ? ", correlated along the rod" : "", given ? "" : "\"");
+  for (const compare::ClampCorrection& correction : fit.clamps) {
+    append(out, "[[gripper]]\nnumber = {}\nrotation = {}  # rad\ndisplacement = {}  # m\n",
+           correction.gripper + 1, vector_text(correction.rotation),
+           vector_text(correction.displacement));
+  }
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 
+#include "dlo/compare/calibrated_rod.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "option/option_values.hpp"
@@ -192,6 +193,12 @@ void SceneOptions::add_materials_to(CLI::App& command) {
   command.add_option("--materials", materials_, "materials file instead of the built-in one")
       ->type_name("FILE")
       ->group("Solvers");
+  command
+      .add_option("--calibrated", calibrated_,
+                  "what dlo calibrate -o FILE.toml wrote: its rod, and how its clamps are held, in "
+                  "the place of the scene's")
+      ->type_name("FILE")
+      ->group("Solvers");
 }
 
 void SceneOptions::apply(compare::Scene& scene) const {
@@ -236,6 +243,9 @@ std::vector<compare::Material> SceneOptions::materials() const {
 
 compare::Scene SceneOptions::load(const std::string& path) const {
   compare::Scene scene = compare::load_scene(path, materials());
+  if (!calibrated_.empty()) {
+    scene = compare::calibrated_scene(std::move(scene), compare::load_calibrated_rod(calibrated_));
+  }
   apply(scene);
   if (!time_) return scene;
   if (!compare::motion_of(scene)) {

@@ -18,9 +18,9 @@ class SceneOptions {
   void add_to(CLI::App& command);
   /// The same for a scene that is looked at while it moves: no --time.
   void add_moving_to(CLI::App& command);
-  /// Only those that override [force_model], and --materials.
+  /// Only those that override [force_model], --materials and --calibrated.
   void add_settings_to(CLI::App& command);
-  /// Only those that steer the solvers, and --materials.
+  /// Only those that steer the solvers, --materials and --calibrated.
   void add_solvers_to(CLI::App& command);
 
   /// Loads a scene and applies the options. @throws compare::InputError
@@ -37,7 +37,7 @@ class SceneOptions {
   void apply(compare::Scene& scene) const;
 
   const CLI::App* command_ = nullptr;
-  std::string materials_, parameters_;
+  std::string materials_, calibrated_, parameters_;
   int points_ = 0;
   std::string law_, bookkeeping_, stepper_, bending_rule_;
   std::string c_b_, c_c_, c_F_, c_h_, l_s_, design_curvature_;

@@ -151,7 +151,11 @@ bool MeasuredShapes::is_confined(std::size_t shape, const Scene& scene) const {
 double MeasuredShapes::way_out_of_plane(std::size_t shape, const Scene& scene,
                                         const energy_model::Equilibrium& rod) {
   if (!is_confined(shape, scene)) return 0;
-  const energy_model::Equilibrium free = solve(energy_problem(scene), scene.file, &rod);
+  energy_model::Equilibrium free = solve(energy_problem(scene), scene.file, &rod);
+  // Where it would not stay it is a saddle there, to which steps from it lead back.
+  if (!energy_model::succeeded(free.status)) {
+    free = solve(energy_problem(scene), scene.file, nullptr);
+  }
   if (!energy_model::succeeded(free.status)) return 0;
   const Eigen::Vector3d normal = *scene.plane_normal();
   const Eigen::Matrix3Xd points = free.sample(equal_arc_lengths(scene.length, looks)).points;

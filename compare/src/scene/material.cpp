@@ -16,6 +16,8 @@ namespace dlo::compare {
 std::vector<Material> read_materials(const std::string& text, const std::string& file) {
   const toml::table root = parse_toml(text, file);
   StrictTable table(root, "", file);
+  // The others are of what calibrate writes, for --calibrated.
+  table.only({"gripper", "material", "natural_curvature", "torsional_stiffness"});
   std::vector<Material> result;
   for (StrictTable& entry : table.tables("material")) {
     Material material;
@@ -28,7 +30,6 @@ std::vector<Material> read_materials(const std::string& text, const std::string&
     entry.finish();
     result.push_back(std::move(material));
   }
-  table.finish();
   return result;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dlo/compare/alignment.hpp"
+#include "dlo/compare/calibrated_rod.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/scene.hpp"
@@ -154,13 +155,6 @@ struct SimulatorParameter {
 /// take a modulus or a density only if the diameter is known. None of a chain of unequal segments,
 /// which has no one number: ChainSprings::joints has those of each joint.
 [[nodiscard]] std::vector<SimulatorParameter> simulator_parameters(const ChainSprings& chain);
-
-/// How a gripper of all scenes is held beside what they say.
-struct ClampCorrection {
-  std::size_t gripper = 0;                                 ///< in the scene's order
-  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();      ///< of its direction, a vector [rad]
-  Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< of its position [m]
-};
 
 /// How far shapes are from the rod that was fitted without them (RMS) [m].
 struct Prediction {
