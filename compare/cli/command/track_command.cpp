@@ -104,7 +104,8 @@ void add_track(CLI::App& app) {
   command->add_flag("--no-force", options->no_force, "leave the force model out");
   CLI::Option* const dynamic = command->add_flag(
       "--dynamic", options->dynamic,
-      "the rod with its inertia too, from rest at the first pose; the force model against it");
+      "the rod with its inertia too, as its shapes at rest move at first; the force model against "
+      "it");
   command
       ->add_option("--damping", options->damping.material,
                    "with --dynamic: Kelvin-Voigt time tau of the material [s]")

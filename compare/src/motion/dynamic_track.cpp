@@ -20,8 +20,12 @@
 namespace dlo::compare {
 namespace {
 
-/// Of each piece, where the options leave it open.
-constexpr int usual_terms = 12;
+/// Of each piece: those that are asked for, else what is usual, and more where that stops.
+std::vector<int> terms_to_try(int asked) {
+  if (asked > 0) return {asked};
+  return {12, 16, 24, 32};
+}
+
 [[noreturn]] void refuse(const Scene& scene, const std::string& why) {
   throw InputError(fmt::format("{}: --dynamic: {}", scene.file, why));
 }
@@ -61,6 +65,17 @@ energy_model::MovingRod moving_rod(const Scene& scene, const std::vector<std::si
   return rod;
 }
 
+/// Whether something has a velocity at the begin.
+bool begins_in_motion(const energy_model::MovingRod& rod) {
+  const auto moves = [](const energy_model::GripMotion& motion) {
+    if (!motion) return false;
+    const energy_model::GripPose pose = motion(0);
+    return !pose.velocity.isZero(0) || !pose.angular_velocity.isZero(0);
+  };
+  return std::ranges::any_of(rod.motions, moves) ||
+         std::ranges::any_of(rod.obstacle_motions, moves);
+}
+
 /// Whether its directions are not all the same.
 bool changes_direction(const Trajectory& way) {
   return std::ranges::any_of(way.poses(), [&](const Pose& pose) {
@@ -91,9 +106,11 @@ void add_errors(const std::vector<DynamicFrame>& frames, DynamicTrack& result) {
 
 /// Why the simulation ended early, with what lets it go on.
 std::string why_stopped(const energy_model::Dynamics& moved) {
-  if (moved.status != energy_model::SolveStatus::time_limit) return moved.message;
+  if (moved.status != energy_model::SolveStatus::time_limit) {
+    return fmt::format("{} ({} terms; others by --terms)", moved.message, moved.terms);
+  }
   return moved.message +
-         "; a longer one lets it go on, more damping or fewer terms makes it faster";
+         "; a longer one lets it go on, more damping or another number of --terms makes it faster";
 }
 
 /// Of the frames at equal times that have the force model beside them.
@@ -127,14 +144,7 @@ DynamicFrame frame_of(const energy_model::MovingFrame& moving, const TrackFrame&
 
 }  // namespace
 
-void require_dynamic(const Scene& scene, const TrackOptions& options) {
-  const FrameClock clock = clock_of(scene, options);
-  const double first = motion_of(scene)->begin;
-  if (clock.time(0) > first) {
-    refuse(scene, fmt::format("from {:g} s: the rod is at rest at its first pose, and moves from "
-                              "there (allowed: up to {:g} s)",
-                              clock.time(0), first));
-  }
+void require_dynamic(const Scene& scene) {
   if (scene.holds_twist() || scene.has_material_directors()) {
     for (const Gripper& gripper : scene.grippers) {
       if (!gripper.frame || !changes_direction(gripper.trajectory)) continue;
@@ -152,14 +162,12 @@ void require_dynamic(const Scene& scene, const TrackOptions& options) {
 
 DynamicTrack dynamic_track(const Scene& scene, const Track& track, const TrackOptions& options,
                            const RodDamping& damping) {
-  require_dynamic(scene, options);
+  require_dynamic(scene);
   const FrameClock clock = clock_of(scene, options);
   const std::vector<std::size_t> obstacles = obstacles_ever_in_reach(scene, clock);
   DynamicTrack result;
   result.damping = damping;
   result.stopped = track.stopped;
-  result.terms = options.solve.terms > 0 ? options.solve.terms : usual_terms;
-  result.fewer_terms = std::max(1, result.terms * 2 / 3);
   const double limit = options.solve.time_limit;
   std::vector<double> times;
   for (const TrackFrame& frame : track.frames) times.push_back(frame.time - clock.time(0));
@@ -175,13 +183,24 @@ DynamicTrack dynamic_track(const Scene& scene, const Track& track, const TrackOp
       throw ConvergenceError(fmt::format("{}: at {:g} s the energy model did not converge: {}",
                                          scene.file, clock.time(0), rest.message));
     }
+    result.in_motion = begins_in_motion(rod);
     const auto simulated = [&](int terms) {
-      return energy_model::simulate(rod, rest.sample, times, {.terms = terms, .time_limit = limit});
+      return energy_model::simulate(
+          rod, rest.sample, times,
+          {.terms = terms, .in_motion = result.in_motion, .time_limit = limit});
     };
-    const auto begin = std::chrono::steady_clock::now();
-    moved = simulated(result.terms);
-    result.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    for (const int terms : terms_to_try(options.solve.terms)) {
+      if (result.terms > 0) {
+        result.too_few_terms = {result.terms, track.frames[moved.frames.size()].time};
+      }
+      const auto begin = std::chrono::steady_clock::now();
+      moved = simulated(terms);
+      result.terms = terms;
+      result.seconds =
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      if (moved.status != energy_model::SolveStatus::failed) break;
+    }
+    result.fewer_terms = std::max(1, result.terms * 2 / 3);
     coarse = simulated(result.fewer_terms);
   } catch (const std::invalid_argument& error) {
     refuse(scene, error.what());
@@ -236,7 +255,7 @@ TrackResult follow(const Scene& scene, const TrackRequest& request, const Progre
       !rate(options.rates.obstacles.value_or(1)) || options.samples < 2) {
     throw InputError("track: out of range (allowed: rates > 0, up to 1e9 Hz, samples >= 2)");
   }
-  if (request.damping) require_dynamic(scene, options);
+  if (request.damping) require_dynamic(scene);
   TrackResult result{options, {}, {}};
   result.track = track(scene, result.options, progress);
   if (request.damping) {

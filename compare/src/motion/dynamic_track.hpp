@@ -39,11 +39,18 @@ struct TrackErrors {
 /// A Track's rod with inertia.
 struct DynamicTrack {
   RodDamping damping;
+  bool in_motion = false;            ///< at the first frame, where something has a velocity
   std::vector<DynamicFrame> frames;  ///< of the track's frames, up to where it had to stop
   std::optional<TrackStop> stopped;  ///< also where the track itself has no more frames
   int terms = 0;                     ///< of each piece and field
-  long steps = 0;                    ///< of the integrator
-  double seconds = 0;                ///< what it took, without the run with fewer terms
+  /// With fewer terms, which nobody asked for, the integrator gave up.
+  struct TooFewTerms {
+    int terms = 0;
+    double time = 0;  ///< of the first frame that it did not come to [s]
+  };
+  std::optional<TooFewTerms> too_few_terms;
+  long steps = 0;      ///< of the integrator
+  double seconds = 0;  ///< what it took, without the run with fewer terms
   /// Largest residual of the energy balance, over `largest_energy`, as energy_model::Dynamics has
   /// it.
   double energy_error = 0;
@@ -61,13 +68,13 @@ struct DynamicTrack {
 };
 
 /// @throws InputError if the scene has what a rod with inertia cannot have here: twist that clamps
-/// hold, natural curvature, two bending stiffnesses, no
-/// mass; or if `options` begin after the first pose, at which the rod is at rest
-void require_dynamic(const Scene& scene, const TrackOptions& options);
+/// hold, natural curvature, two bending stiffnesses, no mass
+void require_dynamic(const Scene& scene);
 
-/// The rod of a track with inertia: from rest at its first frame, along the same trajectories,
-/// whose velocities its grips have (energy_model::simulate). What the shapes at rest and the force
-/// model's are off is measured against it.
+/// The rod of a track with inertia: along the same trajectories, whose velocities its grips have
+/// (energy_model::simulate). It begins with the shape at rest of the first frame. Where grips or
+/// obstacles move then, it is in motion as shapes at rest follow them. What the shapes at rest and
+/// the force model's are off is measured against it.
 /// @param track  of the same scene and options
 /// @throws InputError as require_dynamic(), and if the damping is out of range; ConvergenceError if
 /// there is no shape to begin with
