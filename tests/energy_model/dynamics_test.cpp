@@ -266,6 +266,27 @@ TEST(Dynamics, AFrameThatMovesEvenlyChangesNothing) {
   EXPECT_LT(moves.energy_error, 1e-8);
 }
 
+// Against a stiff rod that is carried evenly; what is along it drags nothing.
+TEST(Dynamics, SquaredDragIsAcrossTheRod) {
+  MovingRod rod = moving_cantilever(0.01);
+  rod.material_damping = 0.3;
+  rod.squared_drag = 0.1;
+  const Vector3d velocity(1, 0, 0.3);
+  rod.motions = {[velocity](double time) {
+    GripPose pose;
+    pose.position = time * velocity;
+    pose.velocity = velocity;
+    return pose;
+  }};
+  const Dynamics result = run(rod, straight_rod(Vector3d::UnitX()), {20});
+  EXPECT_LT(result.energy_error, 1e-7);
+  const Vector3d force = result.frames[0].grips[0].force;
+  const double drag = rod.squared_drag * velocity.z() * velocity.z();
+  EXPECT_NEAR(force.z(), drag, 0.01 * drag);
+  EXPECT_NEAR(force.x(), 0, 0.01 * drag);
+  EXPECT_GT(result.frames[0].energy.dissipated, 19 * drag * velocity.z());
+}
+
 // A clamp that comes nearer and turns at an even rate: from the rates of the shapes at rest the rod
 // is off them by what goes as the square of its speed, from rates of none it vibrates about them.
 TEST(Dynamics, InMotionItFollowsItsShapesAtRestFromTheBegin) {
@@ -288,7 +309,8 @@ TEST(Dynamics, InMotionItFollowsItsShapesAtRestFromTheBegin) {
       now.grips[1].position = pose.position;
       now.grips[1].direction = pose.turn * *now.grips[1].direction;
       const std::vector<double> s = {0.25, 0.5, 0.75};
-      const Eigen::Matrix3Xd apart = frame.sample(s).points - solve_energy(now, {.terms = terms}).sample(s).points;
+      const Eigen::Matrix3Xd apart =
+          frame.sample(s).points - solve_energy(now, {.terms = terms}).sample(s).points;
       off.back() = std::max(off.back(), apart.norm());
     }
   }

@@ -120,6 +120,14 @@ void add_track(CLI::App& app) {
       ->needs(dynamic)
       ->type_name("VALUE")
       ->capture_default_str();
+  command
+      ->add_option("--squared-drag", options->damping.squared,
+                   "with --dynamic: drag across the rod per length and squared velocity "
+                   "[N s^2/m^3], 1/2 rho C d")
+      ->check(number_between(0, most))
+      ->needs(dynamic)
+      ->type_name("VALUE")
+      ->capture_default_str();
   command->add_option("--samples", options->request.options.samples, "points of a frame's shape")
       ->check(CLI::Range(2, 10000))
       ->capture_default_str();

@@ -73,10 +73,14 @@ Json moving_frame_json(const DynamicFrame& frame, bool points) {
 
 std::string dynamic_text(const DynamicTrack& dynamic) {
   std::string out;
-  append(out,
-         "\ndynamic     from {}; damping {:g} s, drag {:g} N s/m^2; {} terms, {} steps, {:.3g} s\n",
-         dynamic.in_motion ? "motion with the grippers" : "rest", dynamic.damping.material,
-         dynamic.damping.air, dynamic.terms, dynamic.steps, dynamic.seconds);
+  append(
+      out,
+      "\ndynamic     from {}; damping {:g} s, drag {:g} N s/m^2{}; {} terms, {} steps, {:.3g} s\n",
+      dynamic.in_motion ? "motion with the grippers" : "rest", dynamic.damping.material,
+      dynamic.damping.air,
+      dynamic.damping.squared > 0 ? fmt::format(" and {:g} N s^2/m^3", dynamic.damping.squared)
+                                  : "",
+      dynamic.terms, dynamic.steps, dynamic.seconds);
   if (dynamic.too_few_terms) {
     append(out, "            with {} terms it stopped before {:.6g} s\n",
            dynamic.too_few_terms->terms, dynamic.too_few_terms->time);

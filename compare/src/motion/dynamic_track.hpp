@@ -7,15 +7,10 @@
 
 #include "dlo/compare/scene.hpp"
 #include "dlo/energy_model/dynamics.hpp"
+#include "motion/moving_scene.hpp"
 #include "motion/track.hpp"
 
 namespace dlo::compare {
-
-/// What takes energy from a moving rod.
-struct RodDamping {
-  double material = 0;  ///< tau of Kelvin-Voigt, M = EI (kappa + tau kappa') [s], >= 0
-  double air = 0;       ///< force per length and velocity [N s/m^2], >= 0
-};
 
 /// The moving rod at the time of a frame of a Track.
 struct DynamicFrame {
@@ -43,11 +38,6 @@ struct DynamicTrack {
   std::vector<DynamicFrame> frames;  ///< of the track's frames, up to where it had to stop
   std::optional<TrackStop> stopped;  ///< also where the track itself has no more frames
   int terms = 0;                     ///< of each piece and field
-  /// With fewer terms, which nobody asked for, the integrator gave up.
-  struct TooFewTerms {
-    int terms = 0;
-    double time = 0;  ///< of the first frame that it did not come to [s]
-  };
   std::optional<TooFewTerms> too_few_terms;
   long steps = 0;      ///< of the integrator
   double seconds = 0;  ///< what it took, without the run with fewer terms
@@ -66,10 +56,6 @@ struct DynamicTrack {
   double force_lag = std::numeric_limits<double>::quiet_NaN();  ///< as ForceTrackSummary's [s]
   double force_error_without_lag = std::numeric_limits<double>::quiet_NaN();
 };
-
-/// @throws InputError if the scene has what a rod with inertia cannot have here: twist that clamps
-/// hold, natural curvature, two bending stiffnesses, no mass
-void require_dynamic(const Scene& scene);
 
 /// The rod of a track with inertia: along the same trajectories, whose velocities its grips have
 /// (energy_model::simulate). It begins with the shape at rest of the first frame. Where grips or

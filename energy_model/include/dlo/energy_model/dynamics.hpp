@@ -15,9 +15,10 @@ namespace dlo::energy_model {
 
 /// A rod that moves: what Problem says of it at rest, its masses, what its grips do, and what takes
 /// energy from it. Its points obey
-///     rho A r'' + c r' = w + N_s,   M_s + t x N = 0,   M = t x (EI t_s + tau EI t_s')
-/// (primes: by time, s: by arc length), |t| = 1. Where clamps hold frames or the rod has material
-/// directors M is of all strains u beyond the natural ones, K (u + tau u'), K = (EI, EI_2, GJ).
+///     rho A r'' + c r' + q |v| v = w + N_s,   M_s + t x N = 0,   M = t x (EI t_s + tau EI t_s')
+/// (primes: by time, s: by arc length), |t| = 1, v = r' - (t.r') t. Where clamps hold frames or the
+/// rod has material directors M is of all strains u beyond the natural ones, K (u + tau u'), K =
+/// (EI, EI_2, GJ).
 struct MovingRod {
   Problem problem;  ///< loads and weight stay; poses of grips that have a motion are those of it
   Inertia inertia;  ///< what `problem`'s weights do not say
@@ -27,7 +28,8 @@ struct MovingRod {
   std::vector<GripMotion> obstacle_motions;
   double material_damping = 0;  ///< tau of Kelvin-Voigt [s], >= 0
   double air_drag = 0;          ///< c, force per length and velocity [N s/m^2], >= 0
-  std::vector<double> breaks;   ///< times at which a motion is not smooth [s]
+  double squared_drag = 0;     ///< q, the same across it, by the squared velocity [N s^2/m^3], >= 0
+  std::vector<double> breaks;  ///< times at which a motion is not smooth [s]
 };
 
 /// The shape that motion begins with: samples at arc lengths, of which the tangents count.
