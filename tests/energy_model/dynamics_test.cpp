@@ -266,6 +266,58 @@ TEST(Dynamics, AFrameThatMovesEvenlyChangesNothing) {
   EXPECT_LT(moves.energy_error, 1e-8);
 }
 
+// Against a stiff rod that is carried evenly; what is along it drags nothing.
+TEST(Dynamics, SquaredDragIsAcrossTheRod) {
+  MovingRod rod = moving_cantilever(0.01);
+  rod.material_damping = 0.3;
+  rod.squared_drag = 0.1;
+  const Vector3d velocity(1, 0, 0.3);
+  rod.motions = {[velocity](double time) {
+    GripPose pose;
+    pose.position = time * velocity;
+    pose.velocity = velocity;
+    return pose;
+  }};
+  const Dynamics result = run(rod, straight_rod(Vector3d::UnitX()), {20});
+  EXPECT_LT(result.energy_error, 1e-7);
+  const Vector3d force = result.frames[0].grips[0].force;
+  const double drag = rod.squared_drag * velocity.z() * velocity.z();
+  EXPECT_NEAR(force.z(), drag, 0.01 * drag);
+  EXPECT_NEAR(force.x(), 0, 0.01 * drag);
+  EXPECT_GT(result.frames[0].energy.dissipated, 19 * drag * velocity.z());
+}
+
+// A clamp that comes nearer and turns at an even rate: from the rates of the shapes at rest the rod
+// is off them by what goes as the square of its speed, from rates of none it vibrates about them.
+TEST(Dynamics, InMotionItFollowsItsShapesAtRestFromTheBegin) {
+  MovingRod rod = closed_rod(5);
+  constexpr double speed = 0.005;
+  const auto evenly = [](double time) { return MotionValue{speed * time, speed, 0}; };
+  rod.motions = {nullptr, moving(rod.problem.grips[1].position, -Vector3d::UnitX(), evenly,
+                                 Vector3d(0, 0.6, 0.8), evenly)};
+  constexpr int terms = 12;
+  const StartingShape start = solve_energy(rod.problem, {.terms = terms}).sample;
+  const std::vector<double> times = equal_times(10, 0.05);
+  std::vector<double> off;
+  for (const bool in_motion : {true, false}) {
+    const Dynamics result = run(rod, start, times, {.terms = terms, .in_motion = in_motion});
+    EXPECT_LT(result.energy_error, 1e-7);
+    off.push_back(0);
+    for (const MovingFrame& frame : result.frames) {
+      Problem now = rod.problem;
+      const GripPose pose = rod.motions[1](frame.time);
+      now.grips[1].position = pose.position;
+      now.grips[1].direction = pose.turn * *now.grips[1].direction;
+      const std::vector<double> s = {0.25, 0.5, 0.75};
+      const Eigen::Matrix3Xd apart =
+          frame.sample(s).points - solve_energy(now, {.terms = terms}).sample(s).points;
+      off.back() = std::max(off.back(), apart.norm());
+    }
+  }
+  EXPECT_LT(off[0], 0.03 * off[1]) << off[0] << " " << off[1];
+  EXPECT_GT(off[1], 1e-4);
+}
+
 // A stiff rod on a pin is a physical pendulum: from level to level in twice
 // 2 K(sin(45 deg)) (2 l / 3 g)^(1/2), and held by 5/2 of its weight at the lowest point.
 TEST(Dynamics, AStiffRodOnAPinIsAPendulum) {

@@ -104,3 +104,29 @@ def test_track_that_stops_has_what_was_before():
     with pytest.raises(dlo.ConvergenceError, match="stopped at 0.5 s") as caught:
         dlo.track(scene, frame_rate=20, force=False)
     assert caught.value.result.time.shape == (10,)
+
+
+def test_stiffness_from_a_recorded_motion(tmp_path):
+    """The markers of a moving rod, as an array and as a file."""
+    def swung(stiffness):
+        return dlo.Scene.from_text(f"""
+            rod = {{length = 0.4, bending_stiffness = {stiffness}, mass_per_length = 0.05}}
+            [[gripper]]
+            at = 0
+            direction = "-60 deg"
+            pose = [{{time = 0, position = [0, 0, 0]}}, {{time = 0.3, position = [0.1, 0.02, 0]}}]
+        """)
+
+    way = dlo.track(swung(0.02), frame_rate=40, force=False, samples=5, dynamic=True, damping=0.01)
+    rows = [
+        [time, s, *point]
+        for time, points in zip(way.time, way.moving_points)
+        for s, point in zip(way.arc_length, points)
+    ]
+    file = tmp_path / "markers.csv"
+    file.write_text("time,s,x,y,z\n" + "".join(",".join(map(repr, map(float, row))) + "\n" for row in rows))
+    for motion in (numpy.array(rows), file):
+        found = dlo.calibrate(swung(0.03), motion=motion)
+        assert abs(found.json["stiffness"]["value"] / 0.02 - 1) < 1e-3
+    with pytest.raises(dlo.InputError, match="allowed"):
+        dlo.calibrate(swung(0.03), motion=[[0.0, 1.0]])

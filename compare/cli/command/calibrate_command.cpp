@@ -20,7 +20,9 @@
 #include "option/share.hpp"
 #include "option/terminal.hpp"
 #include "picture/fit_figure.hpp"
+#include "series/motion_fit_output.hpp"
 #include "toml/quantity.hpp"
+#include "trajectory/read_markers.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -32,6 +34,7 @@ struct CalibrateOptions {
   bool torsional_stiffness = false;
   std::string noise;
   int natural_curvature_terms = 0;
+  std::string motion;
   std::string segments;  // a number, or a file
   std::string clamp_angles;
   std::string clamp_positions;
@@ -178,6 +181,26 @@ void run_chains(const CalibrateOptions& options, bool format_is_given) {
                      .toml = [&] { return refuse("toml"); }});
 }
 
+void run_motion(const CalibrateOptions& options, bool format_is_given) {
+  if (options.scenes.size() != 1) {
+    throw compare::InputError("--motion: of one scene (allowed: one SCENE)");
+  }
+  const compare::Scene scene = options.overrides.load(options.scenes.front());
+  const compare::MarkerMotion recorded = compare::load_markers(options.motion);
+  const compare::MotionFit found = with_progress("calibrate", [&](const auto& /*unknown*/) {
+    return compare::fit_motion(scene, recorded, {.solve = options.overrides.solve()});
+  });
+  const auto refuse = [](const char* format) -> std::string {
+    throw compare::InputError(
+        fmt::format("--motion: has no format {} (allowed: text, json)", format));
+  };
+  write_calibration(options.output, format_is_given,
+                    {.text = [&] { return motion_fit_text(found, scene); },
+                     .json = [&] { return json_text(motion_fit_json(found, scene)); },
+                     .csv = [&] { return refuse("csv"); },
+                     .toml = [&] { return refuse("toml"); }});
+}
+
 void run_force_model(const CalibrateOptions& options, bool points_are_given, bool format_is_given) {
   const std::vector<compare::Scene> scenes = load_all(options.scenes, options.overrides);
   const std::vector<compare::Scene> holdouts = load_all(options.holdouts, options.overrides);
@@ -206,7 +229,8 @@ void run_force_model(const CalibrateOptions& options, bool points_are_given, boo
 void add_calibrate(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "calibrate",
-      "parameters of the force model from physics, or Young's modulus from measured shapes");
+      "parameters of the force model from physics, or Young's modulus from measured shapes or a "
+      "recorded motion");
   const auto options = std::make_shared<CalibrateOptions>();
   command->add_option("SCENE", options->scenes, "scene files (TOML)")->required();
   const std::string parameters = "Parameters of the force model";
@@ -284,6 +308,15 @@ void add_calibrate(CLI::App& app) {
       ->needs(shape)
       ->group(measured);
   command
+      ->add_option("--motion", options->motion,
+                   "recorded motion of markers on the rod, a CSV file of time,s,x,y,z in s and m: "
+                   "stiffness over mass and damping")
+      ->type_name("FILE")
+      ->excludes(shape)
+      ->excludes(holdout)
+      ->excludes(target)
+      ->group("Stiffness and damping from a recorded motion");
+  command
       ->add_option(
           "--segments", options->segments,
           "of your simulator's chain, 4 to 200, or a file of its points where they are unequal: "
@@ -320,7 +353,9 @@ void add_calibrate(CLI::App& app) {
       "fit.svg");
   command->callback([options, command] {
     const bool format_is_given = command->count("--format") > 0;
-    if (options->shapes.empty() && !options->segments.empty()) {
+    if (!options->motion.empty()) {
+      run_motion(*options, format_is_given);
+    } else if (options->shapes.empty() && !options->segments.empty()) {
       run_chains(*options, format_is_given);
     } else if (options->shapes.empty()) {
       run_force_model(*options, command->count("--points") > 0, format_is_given);

@@ -104,7 +104,8 @@ void add_track(CLI::App& app) {
   command->add_flag("--no-force", options->no_force, "leave the force model out");
   CLI::Option* const dynamic = command->add_flag(
       "--dynamic", options->dynamic,
-      "the rod with its inertia too, from rest at the first pose; the force model against it");
+      "the rod with its inertia too, as its shapes at rest move at first; the force model against "
+      "it");
   command
       ->add_option("--damping", options->damping.material,
                    "with --dynamic: Kelvin-Voigt time tau of the material [s]")
@@ -115,6 +116,14 @@ void add_track(CLI::App& app) {
   command
       ->add_option("--drag", options->damping.air,
                    "with --dynamic: drag of the air per length and velocity [N s/m^2]")
+      ->check(number_between(0, most))
+      ->needs(dynamic)
+      ->type_name("VALUE")
+      ->capture_default_str();
+  command
+      ->add_option("--squared-drag", options->damping.squared,
+                   "with --dynamic: drag across the rod per length and squared velocity "
+                   "[N s^2/m^3], 1/2 rho C d")
       ->check(number_between(0, most))
       ->needs(dynamic)
       ->type_name("VALUE")

@@ -73,9 +73,18 @@ Json moving_frame_json(const DynamicFrame& frame, bool points) {
 
 std::string dynamic_text(const DynamicTrack& dynamic) {
   std::string out;
-  append(out, "\ndynamic     damping {:g} s, drag {:g} N s/m^2; {} terms, {} steps, {:.3g} s\n",
-         dynamic.damping.material, dynamic.damping.air, dynamic.terms, dynamic.steps,
-         dynamic.seconds);
+  append(
+      out,
+      "\ndynamic     from {}; damping {:g} s, drag {:g} N s/m^2{}; {} terms, {} steps, {:.3g} s\n",
+      dynamic.in_motion ? "motion with the grippers" : "rest", dynamic.damping.material,
+      dynamic.damping.air,
+      dynamic.damping.squared > 0 ? fmt::format(" and {:g} N s^2/m^3", dynamic.damping.squared)
+                                  : "",
+      dynamic.terms, dynamic.steps, dynamic.seconds);
+  if (dynamic.too_few_terms) {
+    append(out, "            with {} terms it stopped before {:.6g} s\n",
+           dynamic.too_few_terms->terms, dynamic.too_few_terms->time);
+  }
   append(
       out,
       "            energy balance: residual {:.2g} of the largest energy, {:.4g} J\n"
@@ -106,19 +115,22 @@ std::string dynamic_text(const DynamicTrack& dynamic) {
 
 Json dynamic_json(const DynamicTrack& dynamic, const compare::Track& track,
                   const TrackFrames& frames) {
-  Json result = {{"damping_s", dynamic.damping.material},
-                 {"drag_N_s_per_m2", dynamic.damping.air},
-                 {"terms", dynamic.terms},
-                 {"steps", dynamic.steps},
-                 {"run_s", dynamic.seconds},
-                 {"energy_error", dynamic.energy_error},
-                 {"largest_energy_J", dynamic.largest_energy},
-                 {"step_error_over_length", dynamic.step_error},
-                 {"deepest_contact_over_length",
-                  dynamic.deepest_contact ? Json(*dynamic.deepest_contact) : Json(nullptr)},
-                 {"fewer_terms", dynamic.fewer_terms},
-                 {"fewer_terms_change_over_length", dynamic.term_difference},
-                 {"quasi_static", errors_json(dynamic.quasi_static)}};
+  Json result = {
+      {"damping_s", dynamic.damping.material},
+      {"drag_N_s_per_m2", dynamic.damping.air},
+      {"in_motion", dynamic.in_motion},
+      {"terms", dynamic.terms},
+      {"too_few_terms", dynamic.too_few_terms ? Json(dynamic.too_few_terms->terms) : Json(nullptr)},
+      {"steps", dynamic.steps},
+      {"run_s", dynamic.seconds},
+      {"energy_error", dynamic.energy_error},
+      {"largest_energy_J", dynamic.largest_energy},
+      {"step_error_over_length", dynamic.step_error},
+      {"deepest_contact_over_length",
+       dynamic.deepest_contact ? Json(*dynamic.deepest_contact) : Json(nullptr)},
+      {"fewer_terms", dynamic.fewer_terms},
+      {"fewer_terms_change_over_length", dynamic.term_difference},
+      {"quasi_static", errors_json(dynamic.quasi_static)}};
   result["force_model"] = json_or_null(dynamic.force, [&](const TrackErrors& errors) {
     Json entry = errors_json(errors);
     entry["lag_s"] = dynamic.force_lag;

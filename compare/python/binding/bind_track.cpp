@@ -4,18 +4,23 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "bind_scene.hpp"
 #include "errors.hpp"
+#include "format/json.hpp"
 #include "long_call.hpp"
 #include "module.hpp"
 #include "motion/dynamic_track.hpp"
+#include "motion/motion_fit.hpp"
 #include "picture.hpp"
 #include "picture/track_figure.hpp"
 #include "series/dynamic_track_series.hpp"
+#include "series/motion_fit_output.hpp"
 #include "series/track_series.hpp"
 #include "solve_options.hpp"
+#include "trajectory/read_markers.hpp"
 
 namespace dlo::python {
 namespace {
@@ -56,11 +61,37 @@ py::object track(const SharedScene& shared, const std::vector<std::optional<doub
   return result;
 }
 
+/// @param rows  time, arc length, x, y, z each
+std::pair<std::string, std::string> calibrate_motion(
+    const SharedScene& shared,
+    const std::variant<py::bytes, std::vector<std::vector<double>>>& rows, const std::string& name,
+    const py::dict& limits) {
+  compare::MarkerMotion recorded{.file = name, .positions = {}};
+  if (const auto* file = std::get_if<py::bytes>(&rows)) {
+    recorded = compare::load_markers(std::string(*file));
+  } else {
+    std::string text = "time,s,x,y,z\n";
+    for (const std::vector<double>& row : std::get<1>(rows)) {
+      text += fmt::format("{}\n", fmt::join(row, ","));
+    }
+    recorded = compare::parse_markers(text, name);
+  }
+  compare::SolveOptions solve = solve_options(limits);
+  solve.accept_unverified = false;
+  const compare::MotionFit found = run_long([&](Signals& /*signals*/) {
+    return compare::fit_motion(shared->scene, recorded, {.solve = solve});
+  });
+  return {cli::motion_fit_text(found, shared->scene),
+          cli::json_text(cli::motion_fit_json(found, shared->scene))};
+}
+
 }  // namespace
 
 void bind_track(py::module_& module) {
   module.def("track", &track, py::arg("scene"), py::arg("part"), py::arg("force"),
              py::arg("damping"), py::arg("samples"), py::arg("make_result"), py::arg("limits"));
+  module.def("calibrate_motion", &calibrate_motion, py::arg("scene"), py::arg("rows"),
+             py::arg("name"), py::arg("limits"));
 }
 
 }  // namespace dlo::python

@@ -272,6 +272,12 @@ def calibrate_material(
     what: dict[str, Any],
     limits: dict[str, Any],
 ) -> tuple[str, str, str]: ...
+def calibrate_motion(
+    scene: SceneData,
+    rows: Union[bytes, Sequence[Sequence[float]]],
+    name: str,
+    limits: dict[str, Any],
+) -> tuple[str, str]: ...
 def calibrate_force_model(
     scenes: Sequence[SceneData],
     holdouts: Sequence[SceneData],

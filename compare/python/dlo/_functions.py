@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike
 
 from . import _dlo
 from ._arguments import INTEGER, LIST, NUMBER, NUMBERS, QUANTITY, TEXT, TRUTH, checked, require
-from ._documents import ForceModelFit, MaterialFit, Plan
+from ._documents import Document, ForceModelFit, MaterialFit, Plan
+from ._errors import InputError
 from ._files import FileName, file_name
 from ._scene import Quantity, Scene, SceneLike, data_of
 
@@ -212,10 +213,11 @@ def calibrate(
     noise: Optional[Quantity] = None,
     segments: int = 0,
     segment_lengths: Optional[Sequence[float]] = None,
+    motion: Optional[Union[ArrayLike, FileName]] = None,
     time: Optional[float] = None,
     materials: Optional[FileName] = None,
     **limits: Any,
-) -> Union[MaterialFit, ForceModelFit]:
+) -> Union[MaterialFit, ForceModelFit, Document]:
     """Young's modulus from measured shapes, or the force model's parameters: `dlo calibrate`.
 
     With shapes, one of each scene or several of one: a MaterialFit. A shape is an array of points
@@ -228,10 +230,20 @@ def calibrate(
     then found too ("chains" of the document); segment_lengths [m] where they are unequal. register, arc_lengths: as of check(). time, materials: as of
     solve(), of all scenes.
 
+    With motion, markers recorded on the rod of one scene that moves: a Document with stiffness over
+    mass and damping. It is an array of time [s], arc length, x, y, z [m] by row, or a file of these.
+
     Without: a ForceModelFit of the scenes. holdout: scenes that only judge. target: RMS deviation
     wanted over the length (0.001 if not given). points: N; None: as the target needs.
     """
     data = [data_of(scene, materials, time) for scene in many(scenes)]
+    if motion is not None:
+        if shapes is not None or len(data) != 1:
+            raise InputError("calibrate: motion with shapes or of several scenes (allowed: one scene)")
+        if is_file(motion):
+            return Document(*_dlo.calibrate_motion(data[0], file_name(motion, "motion"), "motion", limits))
+        rows = numpy.asarray(motion, float).tolist()
+        return Document(*_dlo.calibrate_motion(data[0], rows, "motion", limits))
     if shapes is None:
         held_out = [data_of(scene, materials, time) for scene in holdout]
         return ForceModelFit(*_dlo.calibrate_force_model(data, held_out, points, target, limits))

@@ -3,69 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
-#include "dlo/energy_model/energy.hpp"
 #include "motion/frame_clock.hpp"
-#include "motion/scene_inertia.hpp"
-#include "motion/trajectory_motion.hpp"
 #include "scene/reach.hpp"
 
 namespace dlo::compare {
 namespace {
 
-/// Of each piece, where the options leave it open.
-constexpr int usual_terms = 12;
-[[noreturn]] void refuse(const Scene& scene, const std::string& why) {
-  throw InputError(fmt::format("{}: --dynamic: {}", scene.file, why));
-}
-
 FrameClock clock_of(const Scene& scene, const TrackOptions& options) {
   return {scene, {options.from, options.to}, options.rates};
-}
-
-/// The scene's rod at the first frame, with its masses and the ways of its grips and obstacles.
-energy_model::MovingRod moving_rod(const Scene& scene, const std::vector<std::size_t>& obstacles,
-                                   const FrameClock& clock, const RodDamping& damping) {
-  const Scene first = clock.scene(scene, 0);
-  const Scene now = first.holds_twist() ? first : first.without_twist();
-  const double begin = clock.time(0);
-  energy_model::MovingRod rod;
-  rod.problem = frame_problem(now, obstacles);
-  rod.inertia = scene_inertia(now);
-  rod.material_damping = damping.material;
-  rod.air_drag = damping.air;
-  const auto follow = [&](const Trajectory& way,
-                          const std::optional<Eigen::Vector3d>& rolls_about = std::nullopt) {
-    for (const double time : trajectory_breaks(way, begin)) rod.breaks.push_back(time);
-    return trajectory_motion(way, begin, rolls_about);
-  };
-  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
-    const Gripper& gripper = scene.grippers[i];
-    const bool rolls = now.grippers[i].frame.has_value();
-    rod.motions.push_back(
-        gripper.trajectory.empty()
-            ? energy_model::standing(gripper.position)
-            : follow(gripper.trajectory, rolls ? now.grippers[i].direction : std::nullopt));
-  }
-  for (const std::size_t i : obstacles) {
-    const Trajectory& way = scene.obstacles[i].trajectory;
-    rod.obstacle_motions.push_back(way.empty() ? nullptr : follow(way));
-  }
-  return rod;
-}
-
-/// Whether its directions are not all the same.
-bool changes_direction(const Trajectory& way) {
-  return std::ranges::any_of(way.poses(), [&](const Pose& pose) {
-    return pose.direction && *pose.direction != *way.poses().front().direction;
-  });
 }
 
 void add_errors(const std::vector<DynamicFrame>& frames, DynamicTrack& result) {
@@ -87,13 +38,6 @@ void add_errors(const std::vector<DynamicFrame>& frames, DynamicTrack& result) {
   if (!(followed > 0)) return;
   force.mean /= followed;
   result.force = force;
-}
-
-/// Why the simulation ended early, with what lets it go on.
-std::string why_stopped(const energy_model::Dynamics& moved) {
-  if (moved.status != energy_model::SolveStatus::time_limit) return moved.message;
-  return moved.message +
-         "; a longer one lets it go on, more damping or fewer terms makes it faster";
 }
 
 /// Of the frames at equal times that have the force model beside them.
@@ -127,82 +71,40 @@ DynamicFrame frame_of(const energy_model::MovingFrame& moving, const TrackFrame&
 
 }  // namespace
 
-void require_dynamic(const Scene& scene, const TrackOptions& options) {
-  const FrameClock clock = clock_of(scene, options);
-  const double first = motion_of(scene)->begin;
-  if (clock.time(0) > first) {
-    refuse(scene, fmt::format("from {:g} s: the rod is at rest at its first pose, and moves from "
-                              "there (allowed: up to {:g} s)",
-                              clock.time(0), first));
-  }
-  if (scene.holds_twist() || scene.has_material_directors()) {
-    for (const Gripper& gripper : scene.grippers) {
-      if (!gripper.frame || !changes_direction(gripper.trajectory)) continue;
-      refuse(scene,
-             "a clamp that holds the rod's frame changes its direction, which leaves open how the "
-             "frame goes with it (allowed: positions and rolls that move)");
-    }
-  }
-  scene.require_potential("the moving rod does");
-  if (scene.has_couples()) {
-    refuse(scene, "a load's torque, which has no potential (allowed: forces)");
-  }
-  if (!(scene.mass() > 0)) refuse(scene, "the rod has no mass (allowed: > 0 kg)");
-}
-
 DynamicTrack dynamic_track(const Scene& scene, const Track& track, const TrackOptions& options,
                            const RodDamping& damping) {
-  require_dynamic(scene, options);
   const FrameClock clock = clock_of(scene, options);
-  const std::vector<std::size_t> obstacles = obstacles_ever_in_reach(scene, clock);
+  const MovingScene moving(scene, clock, damping, options.solve);
   DynamicTrack result;
   result.damping = damping;
+  result.in_motion = moving.in_motion();
   result.stopped = track.stopped;
-  result.terms = options.solve.terms > 0 ? options.solve.terms : usual_terms;
-  result.fewer_terms = std::max(1, result.terms * 2 / 3);
-  const double limit = options.solve.time_limit;
   std::vector<double> times;
-  for (const TrackFrame& frame : track.frames) times.push_back(frame.time - clock.time(0));
-  energy_model::Dynamics moved;
-  energy_model::Dynamics coarse;
-  try {
-    const energy_model::MovingRod rod = moving_rod(scene, obstacles, clock, damping);
-    const energy_model::Equilibrium rest =
-        energy_model::solve_energy(rod.problem, {.terms = options.solve.terms,
-                                                 .max_evaluations = options.solve.max_evaluations,
-                                                 .time_limit = limit});
-    if (!energy_model::succeeded(rest.status)) {
-      throw ConvergenceError(fmt::format("{}: at {:g} s the energy model did not converge: {}",
-                                         scene.file, clock.time(0), rest.message));
-    }
-    const auto simulated = [&](int terms) {
-      return energy_model::simulate(rod, rest.sample, times, {.terms = terms, .time_limit = limit});
-    };
-    const auto begin = std::chrono::steady_clock::now();
-    moved = simulated(result.terms);
-    result.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    coarse = simulated(result.fewer_terms);
-  } catch (const std::invalid_argument& error) {
-    refuse(scene, error.what());
-  }
+  for (const TrackFrame& frame : track.frames) times.push_back(frame.time);
+  const SimulatedMotion run = moving.run(times, options.solve.terms);
+  const energy_model::Dynamics& moved = run.moved;
+  result.terms = moved.terms;
+  result.too_few_terms = run.too_few_terms;
+  result.seconds = run.seconds;
+  result.fewer_terms = std::max(1, result.terms * 2 / 3);
+  const energy_model::Dynamics coarse = moving.run(times, result.fewer_terms).moved;
   if (moved.frames.size() < times.size()) {
-    result.stopped = {track.frames[moved.frames.size()].time, why_stopped(moved)};
+    result.stopped = {times[moved.frames.size()], run.why_stopped()};
   }
   if (moved.frames.empty()) {
-    throw ConvergenceError(fmt::format("{}: --dynamic: {}", scene.file, why_stopped(moved)));
+    throw ConvergenceError(fmt::format("{}: --dynamic: {}", scene.file, run.why_stopped()));
   }
   result.steps = moved.steps;
   result.energy_error = moved.energy_error;
   result.largest_energy = moved.largest_energy;
   result.step_error = moved.error_estimate;
-  const bool rigid = std::any_of(obstacles.begin(), obstacles.end(), [&](std::size_t i) {
-    return std::isinf(scene.obstacles[i].stiffness);
-  });
+  const bool rigid = std::ranges::any_of(
+      moving.obstacles(), [&](std::size_t i) { return std::isinf(scene.obstacles[i].stiffness); });
   if (rigid) result.deepest_contact = moved.deepest_contact / scene.length;
   for (std::size_t i = 0; i < moved.frames.size(); ++i) {
     result.frames.push_back(frame_of(moved.frames[i], track.frames[i], track.arc_length));
-    result.frames.back().obstacles = forces_of_all(scene, obstacles, moved.frames[i].obstacles);
+    result.frames.back().obstacles =
+        forces_of_all(scene, moving.obstacles(), moved.frames[i].obstacles);
   }
   const SceneEnergies& zero = track.frames.front().energy;
   const energy_model::EnergyBalance first = result.frames.front().energy;
@@ -236,7 +138,7 @@ TrackResult follow(const Scene& scene, const TrackRequest& request, const Progre
       !rate(options.rates.obstacles.value_or(1)) || options.samples < 2) {
     throw InputError("track: out of range (allowed: rates > 0, up to 1e9 Hz, samples >= 2)");
   }
-  if (request.damping) require_dynamic(scene, options);
+  if (request.damping) require_dynamic(scene);
   TrackResult result{options, {}, {}};
   result.track = track(scene, result.options, progress);
   if (request.damping) {

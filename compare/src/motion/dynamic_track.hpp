@@ -7,15 +7,10 @@
 
 #include "dlo/compare/scene.hpp"
 #include "dlo/energy_model/dynamics.hpp"
+#include "motion/moving_scene.hpp"
 #include "motion/track.hpp"
 
 namespace dlo::compare {
-
-/// What takes energy from a moving rod.
-struct RodDamping {
-  double material = 0;  ///< tau of Kelvin-Voigt, M = EI (kappa + tau kappa') [s], >= 0
-  double air = 0;       ///< force per length and velocity [N s/m^2], >= 0
-};
 
 /// The moving rod at the time of a frame of a Track.
 struct DynamicFrame {
@@ -39,11 +34,13 @@ struct TrackErrors {
 /// A Track's rod with inertia.
 struct DynamicTrack {
   RodDamping damping;
+  bool in_motion = false;            ///< at the first frame, where something has a velocity
   std::vector<DynamicFrame> frames;  ///< of the track's frames, up to where it had to stop
   std::optional<TrackStop> stopped;  ///< also where the track itself has no more frames
   int terms = 0;                     ///< of each piece and field
-  long steps = 0;                    ///< of the integrator
-  double seconds = 0;                ///< what it took, without the run with fewer terms
+  std::optional<TooFewTerms> too_few_terms;
+  long steps = 0;      ///< of the integrator
+  double seconds = 0;  ///< what it took, without the run with fewer terms
   /// Largest residual of the energy balance, over `largest_energy`, as energy_model::Dynamics has
   /// it.
   double energy_error = 0;
@@ -60,14 +57,10 @@ struct DynamicTrack {
   double force_error_without_lag = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// @throws InputError if the scene has what a rod with inertia cannot have here: twist that clamps
-/// hold, natural curvature, two bending stiffnesses, no
-/// mass; or if `options` begin after the first pose, at which the rod is at rest
-void require_dynamic(const Scene& scene, const TrackOptions& options);
-
-/// The rod of a track with inertia: from rest at its first frame, along the same trajectories,
-/// whose velocities its grips have (energy_model::simulate). What the shapes at rest and the force
-/// model's are off is measured against it.
+/// The rod of a track with inertia: along the same trajectories, whose velocities its grips have
+/// (energy_model::simulate). It begins with the shape at rest of the first frame. Where grips or
+/// obstacles move then, it is in motion as shapes at rest follow them. What the shapes at rest and
+/// the force model's are off is measured against it.
 /// @param track  of the same scene and options
 /// @throws InputError as require_dynamic(), and if the damping is out of range; ConvergenceError if
 /// there is no shape to begin with

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "trajectory/trajectory_leg.hpp"
 
@@ -19,7 +20,7 @@ struct TurnedLeg {
   Eigen::Quaterniond first_turn;
 };
 
-/// A clamp that rolls, at the first pose.
+/// A clamp that rolls, at time zero.
 struct Rolling {
   Eigen::Vector3d direction;
   double roll;
@@ -67,25 +68,31 @@ energy_model::GripPose standing_at(const energy_model::GripPose& end) {
   return pose;
 }
 
+energy_model::GripPose pose_among(const std::vector<TurnedLeg>& legs,
+                                  const std::optional<Rolling>& first, double time) {
+  const double earlier = time - time_rounding * std::abs(time);
+  const auto leg =
+      std::lower_bound(legs.begin(), legs.end(), earlier,
+                       [](const TurnedLeg& turned, double t) { return turned.leg.to.time < t; });
+  if (leg == legs.end()) return standing_at(pose_on(legs.back(), first, legs.back().leg.to.time));
+  if (!(earlier > leg->leg.from.time)) {
+    return standing_at(pose_on(legs.front(), first, legs.front().leg.from.time));
+  }
+  return pose_on(*leg, first, time);
+}
+
 }  // namespace
 
 energy_model::GripMotion trajectory_motion(const Trajectory& way, double begin,
                                            const std::optional<Eigen::Vector3d>& rolls_about) {
   if (way.poses().size() == 1) return energy_model::standing(way.poses().front().position);
+  std::vector<TurnedLeg> legs = turned_legs(way, begin);
+  const Eigen::Quaterniond before = pose_among(legs, std::nullopt, 0).turn;
+  for (TurnedLeg& turned : legs) turned.first_turn *= before.conjugate();
   std::optional<Rolling> first;
-  const std::optional<double>& roll = way.poses().front().roll;
+  const std::optional<double> roll = way.pose_at(begin).roll;
   if (roll && rolls_about) first = Rolling{*rolls_about, *roll};
-  return [legs = turned_legs(way, begin), first](double time) {
-    const double earlier = time - time_rounding * std::abs(time);
-    const auto leg =
-        std::lower_bound(legs.begin(), legs.end(), earlier,
-                         [](const TurnedLeg& turned, double t) { return turned.leg.to.time < t; });
-    if (leg == legs.end()) return standing_at(pose_on(legs.back(), first, legs.back().leg.to.time));
-    if (!(earlier > leg->leg.from.time)) {
-      return standing_at(pose_on(legs.front(), first, legs.front().leg.from.time));
-    }
-    return pose_on(*leg, first, time);
-  };
+  return [legs = std::move(legs), first](double time) { return pose_among(legs, first, time); };
 }
 
 std::vector<double> trajectory_breaks(const Trajectory& way, double begin) {

@@ -171,7 +171,7 @@ MotionReport follow(const SceneFile& file, const ReportOptions& options) {
   if (options.frame_rate) result.options.rates.frames = *options.frame_rate;
   result.track = track(scene, result.options);
   try {
-    require_dynamic(scene, result.options);
+    require_dynamic(scene);
   } catch (const InputError&) {
     return result;  // such as one with obstacles
   }

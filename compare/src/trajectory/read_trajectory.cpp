@@ -157,20 +157,26 @@ std::string read_beside(const StrictTable& table, std::string_view key, const st
   return read_file(path);
 }
 
-Trajectory parse_trajectory(std::string_view text, const std::string& file) {
-  std::optional<PoseColumns> columns;
-  std::vector<Pose> poses;
+void for_each_row(
+    std::string_view text, const std::string& file,
+    const std::function<void(const std::vector<std::string_view>&, const std::string&)>& take) {
   text = after_byte_order_mark(text);
   for (long number = 1; !text.empty(); ++number) {
     const std::size_t end = text.find('\n');
     const std::string_view line = trimmed(text.substr(0, end));
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
     if (line.empty() || line.front() == '#') continue;
-    const std::string where = fmt::format("{}:{}", file, number);
-    const std::vector<std::string_view> fields = comma_fields(line);
+    take(comma_fields(line), fmt::format("{}:{}", file, number));
+  }
+}
+
+Trajectory parse_trajectory(std::string_view text, const std::string& file) {
+  std::optional<PoseColumns> columns;
+  std::vector<Pose> poses;
+  for_each_row(text, file, [&](const auto& fields, const std::string& where) {
     if (!columns) {
       columns = pose_columns_of(fields, where);
-      continue;
+      return;
     }
     if (poses.size() == most_poses) {
       throw InputError(fmt::format("{}: more than {} poses", where, most_poses));
@@ -180,7 +186,7 @@ Trajectory parse_trajectory(std::string_view text, const std::string& file) {
       throw InputError(fmt::format("{}: time = {} is not above that of the row before", where,
                                    poses.back().time));
     }
-  }
+  });
   if (poses.empty()) throw InputError(fmt::format("{}: no poses {}", file, pose_columns_allowed));
   try {
     return Trajectory(std::move(poses));

@@ -1,6 +1,7 @@
 #include "dynamics/moving_span.hpp"
 
 #include <Eigen/Geometry>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -37,6 +38,17 @@ bool leaves_plane(const SpanDrive& drive) {
          std::any_of(drive.grips.begin(), drive.grips.end(),
                      [&](const Moving& grip) { return out(grip.rate); }) ||
          std::any_of(drive.obstacles.begin(), drive.obstacles.end(), carries_out);
+}
+
+/// Where it is, standing still.
+SpanDrive at_rest(SpanDrive drive) {
+  drive.spin = drive.spin_rate = drive.end_spin = Eigen::Vector3d::Zero();
+  for (Moving& grip : drive.grips) grip = {grip.value};
+  for (AcrossDirector& across : drive.across_end) across.direction = {across.direction.value};
+  for (BodyPlace& place : drive.obstacles) {
+    place.velocity = place.spin = Eigen::Vector3d::Zero();
+  }
+  return drive;
 }
 
 /// At the nodes; angles of frames are counted from the start, in steps that are small.
@@ -153,6 +165,7 @@ SpanInertia MovingSpan::inertia(const std::vector<PointMass>& masses) const {
   }
   result.material_damping = rod_.material_damping / time_;
   result.drag = rod_.air_drag * time_ * length_ / mass_;
+  result.squared_drag = rod_.squared_drag * length_ * length_ / mass_;
   return result;
 }
 
@@ -173,6 +186,35 @@ std::optional<Eigen::Vector3d> MovingSpan::first_d1(const StartingShape& start) 
   const Eigen::Vector3d tangent = placed_.frame * at.tangents.col(0);
   return Eigen::AngleAxisd(placed_.reversed ? placed_.ahead : -placed_.ahead, tangent) *
          (placed_.frame * at.d1.col(0));
+}
+
+/// At which the unknowns of a shape in equilibrium follow what moves: of K x' - J^T mu' + R' = 0,
+/// J x' + c' = 0, the solution of least norm, because rods on pins turn freely.
+Eigen::VectorXd MovingSpan::equilibrium_rates(SpanDynamics& model, const SpanInstant& at) const {
+  constexpr double step = 1e-5;  // of time, whose square is the error
+  const Eigen::Index n = model.size();
+  const Eigen::Index m = model.constraints();
+  const Eigen::VectorXd still = Eigen::VectorXd::Zero(n);
+  Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(m);
+  const auto residual = [&](double time) {
+    model.move(at_rest(drive(time)), at.x, still, still);
+    Eigen::VectorXd result(n + m);
+    result << model.residual(multipliers), model.constraint_residuals().col(0);
+    return result;
+  };
+  const Eigen::VectorXd unheld = residual(at.time).head(n);
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n + m, n + m);
+  matrix.bottomLeftCorner(m, n) = model.jacobian();
+  matrix.topRightCorner(n, m) = -matrix.bottomLeftCorner(m, n).transpose();
+  if (m > 0) {
+    multipliers = -matrix.topRightCorner(n, m).completeOrthogonalDecomposition().solve(unheld);
+  }
+  matrix.topLeftCorner(n, n) = model.stiffness(multipliers);
+  const Eigen::VectorXd change = (residual(at.time + step) - residual(at.time - step)) / (2 * step);
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+  constexpr double free = 1e-9;
+  solver.setThreshold(free);
+  return -solver.compute(matrix).solve(change).head(n);
 }
 
 SpanFrame MovingSpan::frame(SpanIntegrator& integrator, SpanDynamics& model,
@@ -242,9 +284,9 @@ SpanRun MovingSpan::run_with(const ContactLaw& contact, const StartingShape& sta
                              const std::vector<PointMass>& masses, std::span<const double> times,
                              const DynamicsOptions& options, const Deadline& deadline) const {
   SpanRun result;
-  Equilibrium at_rest;
-  at_rest.sample = start;
-  const TangentField field = field_of(at_rest, placed_, length_);
+  Equilibrium resting;
+  resting.sample = start;
+  const TangentField field = field_of(resting, placed_, length_);
   const Eigen::Vector3d first = field(Eigen::VectorXd::Zero(1)).tangents.col(0);
   Span span = placed_.span;
   if (span.has_material_directors() && !span.planar && !span.start_direction) {
@@ -273,6 +315,10 @@ SpanRun MovingSpan::run_with(const ContactLaw& contact, const StartingShape& sta
   result.message = integrator.project(at);
   if (result.message.empty() && model.has_twist()) result.message = integrator.settle_twist(at);
   const auto stopped = [&] { return !result.message.empty() || left_plane; };
+  if (options.in_motion && !stopped()) {
+    at.v = equilibrium_rates(model, at);
+    result.message = integrator.project(at);
+  }
   if (!stopped()) {
     result.frames.push_back(frame(integrator, model, at));
     if (model.depth() > contact.depth) result.message = "the rod begins within a rigid obstacle";

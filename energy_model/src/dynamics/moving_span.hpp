@@ -62,6 +62,7 @@ class MovingSpan {
                                 const SpanInstant& at) const;
   [[nodiscard]] GripPose pose(std::size_t grip, double time) const;
   [[nodiscard]] std::vector<double> own_breaks() const;
+  [[nodiscard]] Eigen::VectorXd equilibrium_rates(SpanDynamics& model, const SpanInstant& at) const;
   void take(const SpanIntegrator& integrator, SpanRun& run) const;
 
   const MovingRod& rod_;

@@ -102,9 +102,30 @@ void SpanDynamics::move(const SpanDrive& drive, const Eigen::Ref<const Eigen::Ve
   acceleration_ = moved.rightCols<3>().rowwise() + anchor.acceleration.transpose();
   forces_ = masses_.asDiagonal() * acceleration_;
   forces_ += (inertia_.drag * points_.weights()).asDiagonal() * velocity_;
+  drag_across();
   forces_ -= (gravity_ + loads_) * drive.turn.transpose();
   collect_soft_touches();
   collect_touches();
+}
+
+/// Adds squared drag to the forces. Points at which pieces begin and end have no length.
+void SpanDynamics::drag_across() {
+  mean_drag_ = inertia_.drag;
+  if (!(inertia_.squared_drag > 0)) return;
+  squared_drag_.setZero(points_.points(), 3);
+  double change = 0;
+  Eigen::Index node = 0;
+  for (Eigen::Index point = 0; point < points_.points(); ++point) {
+    const double weight = inertia_.squared_drag * points_.weights()[point];
+    if (!(weight > 0)) continue;
+    const Eigen::RowVector3d along = t_.row(node++);
+    const Eigen::RowVector3d across =
+        velocity_.row(point) - velocity_.row(point).dot(along) * along;
+    squared_drag_.row(point) = weight * across.norm() * across;
+    change += 2 * weight * across.norm();
+  }
+  mean_drag_ += change / span_.length;
+  forces_ += squared_drag_;
 }
 
 Eigen::Vector3d SpanDynamics::multiplier_force(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
@@ -175,7 +196,7 @@ Eigen::MatrixXd SpanDynamics::stiffness(const Eigen::Ref<const Eigen::VectorXd>&
 Eigen::MatrixXd SpanDynamics::damping(const Eigen::MatrixXd& mass) {
   // Drag acts as masses do, where those are the same all along.
   const double rod = points_.weighed(inertia_.per_length).sum();
-  Eigen::MatrixXd result = (rod > 0 ? inertia_.drag * span_.length / rod : 0) * mass;
+  Eigen::MatrixXd result = (rod > 0 ? mean_drag_ * span_.length / rod : 0) * mass;
   result.diagonal() += inertia_.material_damping * elastic_;
   add_touches(&Touch::by_rate, result);
   return result;

@@ -45,13 +45,15 @@ struct SpanInertia {
   std::vector<PointMass> points;   ///< each where a piece begins or ends
   double material_damping = 0;     ///< tau
   double drag = 0;                 ///< per length
+  double squared_drag = 0;         ///< per length, across the rod, by the squared velocity
 };
 
 /// Adds so many times each entry.
 void add(const EnergyBalance& of, double times, EnergyBalance& to);
 
 /// Equations of motion of a span in its strains x,
-///     int rho A r''.dr + c r'.dr ds + x.dx + tau x'.dx = int w.dr ds + loads + grips + obstacles,
+///     int (rho A r'' + c r' + q |v| v).dr ds + x.dx + tau x'.dx = int w.dr ds + loads + grips +
+///     obstacles,
 /// for all dx that move r, with r' and r'' from x', x'' by the spins of cross-sections
 /// (RodFrames::spins()),
 ///     t' = omega x t,  t'' = alpha x t + omega x t'.
@@ -121,6 +123,7 @@ class SpanDynamics {
   [[nodiscard]] const Moving& director(const AcrossDirector& across) const {
     return across.of_d1 ? end_d1_ : end_tangent_;
   }
+  void drag_across();
   void collect_soft_touches();
   void collect_touches();
   [[nodiscard]] Eigen::MatrixX3d at_tangents(const Touch& touch,
@@ -158,6 +161,8 @@ class SpanDynamics {
   Eigen::MatrixX3d t_, t_rate_;                          // of the nodes
   Eigen::MatrixX3d position_, velocity_, acceleration_;  // of the points, in space
   Moving end_tangent_, end_d1_;
+  Eigen::MatrixX3d squared_drag_;    // of the points; empty: none
+  double mean_drag_ = 0;             // drag and the change of squared drag, per length
   Eigen::MatrixX3d forces_;          // of the points: inertia and drag less what pulls and yields
   std::vector<Touch> soft_touches_;  // of points, which are in forces_
   std::vector<Touch> touches_;       // of the grid's points

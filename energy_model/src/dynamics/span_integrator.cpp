@@ -280,7 +280,8 @@ std::string SpanIntegrator::advance(SpanInstant& at, double until,
     const double count = std::ceil(left / (fixed ? options_.step : next_) * (1 - 1e-9));
     const double step = left / count;
     if (!fixed && step < least_step && count > 1) {
-      return "steps have become too small; more damping or fewer terms makes them longer";
+      return "steps have become too small; more damping makes them longer, or another number of "
+             "terms";
     }
     if (!(fixed ? take_step(at, step) : take_two_halves(at, step))) {
       if (fixed) return "the equations of a step are not solved";

@@ -15,9 +15,10 @@ namespace dlo::energy_model {
 
 /// A rod that moves: what Problem says of it at rest, its masses, what its grips do, and what takes
 /// energy from it. Its points obey
-///     rho A r'' + c r' = w + N_s,   M_s + t x N = 0,   M = t x (EI t_s + tau EI t_s')
-/// (primes: by time, s: by arc length), |t| = 1. Where clamps hold frames or the rod has material
-/// directors M is of all strains u beyond the natural ones, K (u + tau u'), K = (EI, EI_2, GJ).
+///     rho A r'' + c r' + q |v| v = w + N_s,   M_s + t x N = 0,   M = t x (EI t_s + tau EI t_s')
+/// (primes: by time, s: by arc length), |t| = 1, v = r' - (t.r') t. Where clamps hold frames or the
+/// rod has material directors M is of all strains u beyond the natural ones, K (u + tau u'), K =
+/// (EI, EI_2, GJ).
 struct MovingRod {
   Problem problem;  ///< loads and weight stay; poses of grips that have a motion are those of it
   Inertia inertia;  ///< what `problem`'s weights do not say
@@ -27,7 +28,8 @@ struct MovingRod {
   std::vector<GripMotion> obstacle_motions;
   double material_damping = 0;  ///< tau of Kelvin-Voigt [s], >= 0
   double air_drag = 0;          ///< c, force per length and velocity [N s/m^2], >= 0
-  std::vector<double> breaks;   ///< times at which a motion is not smooth [s]
+  double squared_drag = 0;     ///< q, the same across it, by the squared velocity [N s^2/m^3], >= 0
+  std::vector<double> breaks;  ///< times at which a motion is not smooth [s]
 };
 
 /// The shape that motion begins with: samples at arc lengths, of which the tangents count.
@@ -101,17 +103,20 @@ struct DynamicsOptions {
   /// speed of what strikes.
   double contact_depth = 1e-3;
   bool spatial = false;  ///< whether a rod whose grips and forces share a plane may leave it
+  /// Whether the rod has been in motion before: strains begin with the rates at which shapes in
+  /// equilibrium would follow the grips and obstacles. Else they do not change at first.
+  bool in_motion = false;
   double time_limit = std::numeric_limits<double>::infinity();  ///< wall time [s], > 0
 };
 
 /// Motion of an inextensible rod from a shape at rest, whose strains do not change
-/// at first: its grips carry it along. Strains in Legendre polynomials, as in solve_energy(); by
-/// time collocation at Gauss' four points (order 8), with damping of the material or rigid
-/// obstacles, or with twist, Radau's IIA (order 7). Cross-sections have no inertia: twist, where
-/// clamps hold frames or the rod has material directors, is in equilibrium at each time. There
-/// Samples::d1 of a frame is the material's.
-/// Rigid obstacles are stiff ones, p = k d^2 max(0, 1 + d' / u) per length at a depth d (Hunt and
-/// Crossley 1975), without friction. Method, evidence and limits: energy_model/doc/dynamics.md.
+/// at first (but DynamicsOptions::in_motion): its grips carry it along. Strains in Legendre
+/// polynomials, as in solve_energy(); by time collocation at Gauss' four points (order 8), with
+/// damping of the material or rigid obstacles, or with twist, Radau's IIA (order 7). Cross-sections
+/// have no inertia: twist, where clamps hold frames or the rod has material directors, is in
+/// equilibrium at each time. There Samples::d1 of a frame is the material's. Rigid obstacles are
+/// stiff ones, p = k d^2 max(0, 1 + d' / u) per length at a depth d (Hunt and Crossley 1975),
+/// without friction. Method, evidence and limits: energy_model/doc/dynamics.md.
 /// @param start  held by the grips, nearly: it is moved to where they do
 /// @param times  to give frames at [s], growing; motion begins at 0, or at the first of them if
 /// that is below zero

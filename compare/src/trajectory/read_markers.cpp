@@ -1,0 +1,78 @@
+#include "trajectory/read_markers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <tuple>
+
+#include "base/input_file.hpp"
+#include "base/number.hpp"
+#include "dlo/compare/error.hpp"
+#include "trajectory/read_trajectory.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr std::array<std::string_view, 5> marker_columns = {"time", "s", "x", "y", "z"};
+constexpr const char* marker_columns_allowed = "(allowed: a header of time,s,x,y,z in any order)";
+constexpr std::size_t most_positions = 1'000'000;
+
+/// Where each of marker_columns is among a file's.
+std::array<std::size_t, 5> marker_columns_of(const std::vector<std::string_view>& header,
+                                             const std::string& where) {
+  std::array<std::size_t, 5> columns{};
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const auto found = std::ranges::find(header, marker_columns[k]);
+    if (header.size() != columns.size() || found == header.end()) {
+      throw InputError(fmt::format("{}: not the columns of a recorded motion {}", where,
+                                   marker_columns_allowed));
+    }
+    columns[k] = static_cast<std::size_t>(found - header.begin());
+  }
+  return columns;
+}
+
+}  // namespace
+
+MarkerMotion parse_markers(std::string_view text, const std::string& file) {
+  std::optional<std::array<std::size_t, 5>> columns;
+  MarkerMotion result{.file = file, .positions = {}};
+  for_each_row(text, file, [&](const std::vector<std::string_view>& row, const std::string& where) {
+    if (!columns) {
+      columns = marker_columns_of(row, where);
+      return;
+    }
+    std::array<double, 5> values{};
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const std::optional<double> value =
+          row.size() == columns->size() ? as_number<double>(row[(*columns)[k]]) : std::nullopt;
+      if (!value || !std::isfinite(*value)) {
+        throw InputError(fmt::format("{}: {} is no number (allowed: five finite ones a row)", where,
+                                     marker_columns[k]));
+      }
+      values[k] = *value;
+    }
+    if (result.positions.size() == most_positions) {
+      throw InputError(fmt::format("{}: more than {} rows", where, most_positions));
+    }
+    result.positions.push_back({values[0], values[1], {values[2], values[3], values[4]}});
+  });
+  if (result.positions.empty()) {
+    throw InputError(fmt::format("{}: no rows {}", file, marker_columns_allowed));
+  }
+  const auto order = [](const MarkerPosition& at) { return std::tie(at.time, at.arc_length); };
+  std::ranges::sort(result.positions, {}, order);
+  const auto twice = std::ranges::adjacent_find(result.positions, {}, order);
+  if (twice != result.positions.end()) {
+    throw InputError(fmt::format("{}: the marker at s = {:g} m is twice at time = {:g} s", file,
+                                 twice->arc_length, twice->time));
+  }
+  return result;
+}
+
+MarkerMotion load_markers(const std::string& path) { return parse_markers(read_file(path), path); }
+
+}  // namespace dlo::compare
