@@ -110,12 +110,13 @@ TEST_F(CalibrateCommand, NamesWhatSystematicResidualsAskFor) {
   }
   const std::string command =
       fmt::format("calibrate {} --shape {}", fmt::join(scenes, " "), fmt::join(shapes, " "));
-  const std::string text = run(command).out;
+  const std::string given = command + " --options given";
+  const std::string text = run(given).out;
   EXPECT_NE(text.find("the residuals are systematic"), std::string::npos) << text;
   EXPECT_NE(text.find("(RMS)\n            --natural-curvature 1 would leave "), std::string::npos)
       << text;
   EXPECT_NE(text.find("the density: nothing but gravity"), std::string::npos) << text;
-  const json document = json::parse(run(command + " --format json").out);
+  const json document = json::parse(run(given + " --format json").out);
   EXPECT_GT(document.at("common_share").get<double>(), 0.6);
   const json& all = document.at("alternatives");
   const auto named = std::find_if(all.begin(), all.end(), [](const json& one) {
@@ -124,6 +125,10 @@ TEST_F(CalibrateCommand, NamesWhatSystematicResidualsAskFor) {
   ASSERT_NE(named, all.end());
   EXPECT_NEAR(named->at("youngs_modulus_Pa").get<double>(), 5e9, 5e6);
   EXPECT_LT(named->at("rms_m").get<double>(), 1e-5);
+  // Of three shapes it is chosen.
+  const json chosen = json::parse(run(command + " --format json").out);
+  EXPECT_EQ(chosen.at("tried")[0].at("options"), "--natural-curvature 1");
+  EXPECT_NEAR(chosen.at("youngs_modulus_Pa").get<double>(), 5e9, 5e6);
 }
 
 TEST_F(CalibrateCommand, TellsTheJointsOfAChain) {

@@ -6,7 +6,7 @@
 //
 // Of each wire: what was chosen, the prediction over how well the hangings repeat, and whether the
 // interval of EI holds the truth. The shares come last. Or one wire's hangings are written, one
-// more than are fitted (data/hangings is of seed 1).
+// more than are fitted (data/hangings is of seed 11).
 
 #include <fmt/format.h>
 

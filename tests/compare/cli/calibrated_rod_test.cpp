@@ -1,0 +1,96 @@
+// What a calibration writes, put into scenes.
+
+#include "dlo/compare/calibrated_rod.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <fstream>
+#include <string>
+
+#include "command_fixture.hpp"
+#include "dlo/compare/error.hpp"
+#include "scenes.hpp"
+
+namespace {
+
+using namespace dlo::compare;
+
+std::string refusal(const std::string& text, const Scene& scene = dlo::test::heavy_scene(10, 0)) {
+  try {
+    (void)calibrated_scene(scene, parse_calibrated_rod(text, "found.toml"));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(CalibratedRod, ReplacesWhatTheSceneSays) {
+  Scene scene = dlo::test::heavy_scene(10, 30);
+  scene.given_bending_stiffness = 2;
+  scene.given_mass_per_length = 1;
+  const CalibratedRod rod = parse_calibrated_rod(
+      "bending_stiffness = \"3 N m^2\"\nmass_per_length = 2\n"
+      "natural_curvature = [[0, 1], [0, -2]]\n[[gripper]]\nnumber = 1\n"
+      "rotation = [0, 0, \"15 deg\"]\ndisplacement = [\"1 mm\", 0, 0]\n",
+      "found.toml");
+  const Scene found = calibrated_scene(scene, rod);
+  EXPECT_DOUBLE_EQ(found.bending_stiffness(), 3);
+  EXPECT_DOUBLE_EQ(found.mass_per_length(), 2);
+  EXPECT_EQ(found.natural_strain.y(), 1);
+  ASSERT_EQ(found.natural_variation.size(), 1U);
+  EXPECT_EQ(found.natural_variation[0].y(), -2);
+  EXPECT_NEAR(found.grippers[0].direction->y(), std::sqrt(0.5), 1e-15);
+  EXPECT_NEAR(found.grippers[0].position.x(), 0.001, 1e-18);
+}
+
+TEST(CalibratedRod, RefusesWhatItCannotReplace) {
+  EXPECT_EQ(refusal("natural_curvature = 1\n"),
+            "found.toml: neither a [[material]] nor bending_stiffness (allowed: what dlo calibrate "
+            "-o writes)");
+  const std::string material =
+      "[[material]]\nname = \"calibrated\"\nyoungs_modulus = 1e9\ndensity = 1000\n";
+  EXPECT_EQ(refusal(material), "");
+  EXPECT_EQ(refusal(material + "[[gripper]]\nnumber = 2\nrotation = [0, 0, 1]\n"),
+            "heavy.toml: gripper 2 is corrected (allowed: 1 to 1, as many as the scene has)");
+  EXPECT_EQ(refusal("bending_stiffness = 1\nmass_per_length = 1\n"),
+            "heavy.toml: the rod is given by E, the calibrated one by EI (allowed: both alike)");
+  EXPECT_NE(refusal("bending_stiffnes = 1\n").find("bending_stiffnes"), std::string::npos);
+}
+
+class CalibratedCommand : public dlo::test::Command {};
+
+/// Clamps that point elsewhere than they were meant to, and one gripper's place, found by three
+/// shapes: what -o writes makes the scene's shape the right one.
+TEST_F(CalibratedCommand, WhatCalibrateWritesMakesTheShapeRight) {
+  const auto wire = [this](const std::string& name, const std::string& EI, const std::string& rod,
+                           double turn, double direction) {
+    std::ofstream(path(name)) << "[rod]\nlength = 1\nmass_per_length = 0.05\nbending_stiffness = "
+                              << EI << "\n"
+                              << rod << "[[gripper]]\nat = 0\nposition = [0, 0, 0]\n"
+                              << "direction = \"" << direction + turn << " deg\"\n";
+    return path(name);
+  };
+  std::string shapes;
+  std::string scenes;
+  for (const double direction : {-40.0, 10.0, 50.0}) {
+    const std::string name = std::to_string(static_cast<int>(direction));
+    const std::string truth =
+        wire("truth" + name, "0.03", "natural_curvature = 0.7\n", 8, direction);
+    ASSERT_EQ(run("solve " + truth + " --samples 30 --format csv -o " + path(name + ".csv")).status,
+              0);
+    scenes += " " + wire("said" + name, "0.05", "", 0, direction);
+    shapes += " " + path(name + ".csv");
+  }
+  const auto found = run("calibrate" + scenes + " --shape" + shapes +
+                         " --natural-curvature 1 --clamp-angles \"20 deg\" --same-clamps -o " +
+                         path("found.toml"));
+  ASSERT_EQ(found.status, 0) << found.err;
+  const std::string check = "check " + path("said50") + " --shape " + path("50.csv") +
+                            " --tolerance 0.0001 --no-explanation";
+  EXPECT_EQ(run(check).status, 1);
+  const auto calibrated = run(check + " --calibrated " + path("found.toml"));
+  EXPECT_EQ(calibrated.status, 0) << calibrated.out << calibrated.err;
+}
+
+}  // namespace
