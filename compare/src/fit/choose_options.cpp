@@ -21,6 +21,8 @@ constexpr double fixture_tolerance = 20 * std::numbers::pi / 180;
 constexpr double own_tolerance = 5 * std::numbers::pi / 180;
 /// Fewer numbers are chosen where they predict worse by no more than this share.
 constexpr double as_well = 0.02;
+/// In lengths: no shape is measured more exactly, so predictions below it are alike.
+constexpr double exactly = 1e-5;
 /// Options that predict worse by no more than this share may be right too.
 constexpr double nearly_as_well = 0.1;
 /// Terms in a row that predict no better, after which no more are tried.
@@ -144,6 +146,11 @@ class OptionsSearch {
     return options;
   }
 
+  /// The largest prediction that is as good as some.
+  [[nodiscard]] double as_good_as(double prediction) const {
+    return std::max((1 + as_well) * prediction, exactly * scenes_.front().length);
+  }
+
   /// The one of fewest numbers among those that predict as well as any.
   [[nodiscard]] const Trial& best() const {
     const auto better = [](const Trial& a, const Trial& b) {
@@ -152,7 +159,7 @@ class OptionsSearch {
     const double least = std::min_element(trials_.begin(), trials_.end(), better)->prediction();
     const Trial* result = nullptr;
     for (const Trial& trial : trials_) {
-      if (trial.prediction() > (1 + as_well) * least) continue;
+      if (trial.prediction() > as_good_as(least)) continue;
       if (result == nullptr || trial.numbers() < result->numbers()) result = &trial;
     }
     return *result;
