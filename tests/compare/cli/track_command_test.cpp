@@ -166,7 +166,8 @@ TEST_F(TrackCommand, HasTheMovingRodInEveryFormat) {
       words({"track", file, "--to 0.2 --frame-rate 50 --step-rate 3000 --dynamic --drag 0.02"});
   const Outcome text = run(track);
   ASSERT_EQ(text.status, 0) << text.err;
-  EXPECT_NE(text.out.find("dynamic     from rest; damping 0 s, drag 0.02 N s/m^2"), std::string::npos)
+  EXPECT_NE(text.out.find("dynamic     from rest; damping 0 s, drag 0.02 N s/m^2"),
+            std::string::npos)
       << text.out;
   EXPECT_NE(text.out.find("force model off the moving rod by"), std::string::npos) << text.out;
   const json document = json::parse(run(track + " --every 5 --shapes --format json").out);

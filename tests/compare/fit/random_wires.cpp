@@ -4,9 +4,9 @@
 //     dlo_random_wires WIRES SEED
 //     dlo_random_wires --write FOLDER SEED
 //
-// Of each wire: what was chosen, the prediction over how well the hangings repeat, and whether the
-// interval of EI holds the truth. The shares come last. Or one wire's hangings are written, one
-// more than are fitted (data/hangings is of seed 11).
+// Of each wire: what was chosen, the prediction over how well the mountings repeat, and whether the
+// interval of EI holds the truth. The shares come last. Or one wire's mountings are written, one
+// more than are fitted (data/mountings is of seed 11).
 
 #include <fmt/format.h>
 
@@ -31,11 +31,11 @@ namespace {
 using namespace dlo::compare;
 
 constexpr double one_degree = std::numbers::pi / 180;
-constexpr int hangings = 5;
+constexpr int mountings = 5;
 constexpr double said_stiffness = 1e-3;            // EI of the scenes [N m^2]
-constexpr double camera_tilt = 2 * one_degree;     // standard deviation, one of all hangings
-constexpr double fixture_error = 20 * one_degree;  // of a clamp, one of all hangings
-constexpr double own_error = 5 * one_degree;       // of a clamp, each hanging's own
+constexpr double camera_tilt = 2 * one_degree;     // standard deviation, one of all mountings
+constexpr double fixture_error = 20 * one_degree;  // of a clamp, one of all mountings
+constexpr double own_error = 5 * one_degree;       // of a clamp, each mounting's own
 constexpr double curvature = 2;                    // of a term of natural curvature [1/m]
 constexpr double point_error = 0.003;              // of a coordinate, correlated [m]
 constexpr double error_length = 0.2;               // of the length
@@ -80,16 +80,16 @@ Wire wire_of(unsigned seed, int count) {
     clamp.direction = turned(*clamp.direction, fixture_error * normal(random));
   }
   for (int i = 0; i < count; ++i) {
-    Scene hung = truth;
-    for (Gripper& clamp : hung.grippers) {
+    Scene mounted = truth;
+    for (Gripper& clamp : mounted.grippers) {
       clamp.direction = turned(*clamp.direction, own_error * normal(random));
     }
-    dlo::energy_model::Problem problem = energy_problem(hung);
+    dlo::energy_model::Problem problem = energy_problem(mounted);
     problem.confined_to_plane = true;
-    const std::vector<double> s = equal_arc_lengths(hung.length, 50);
+    const std::vector<double> s = equal_arc_lengths(mounted.length, 50);
     Eigen::Matrix3Xd points = dlo::energy_model::solve_energy(problem).sample(s).points;
     points = Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitZ()).matrix() * points;
-    const double length = error_length * hung.length;
+    const double length = error_length * mounted.length;
     points += dlo::test::correlated_noise(s, point_error, length, random);
     points.row(2).setZero();
     wire.scenes.push_back(said_scene(said_stiffness));
@@ -99,7 +99,7 @@ Wire wire_of(unsigned seed, int count) {
 }
 
 Outcome outcome_of(unsigned seed) {
-  const Wire wire = wire_of(seed, hangings);
+  const Wire wire = wire_of(seed, mountings);
   const double EI = wire.EI;
   const MaterialFit fit =
       calibrate(wire.scenes, wire.shapes, {.choose_options = true, .solve = {.time_limit = 100}})
@@ -127,9 +127,9 @@ Outcome outcome_of(unsigned seed) {
 
 /// The scene, which is one for all, is beside them.
 void write(const std::string& folder, unsigned seed) {
-  const Wire wire = wire_of(seed, hangings + 1);
+  const Wire wire = wire_of(seed, mountings + 1);
   for (std::size_t i = 0; i < wire.shapes.size(); ++i) {
-    std::ofstream file(fmt::format("{}/hanging_{}.csv", folder, i + 1));
+    std::ofstream file(fmt::format("{}/mounting_{}.csv", folder, i + 1));
     file << "x,y,z\n";
     for (const auto& point : wire.shapes[i].points.colwise()) {
       file << fmt::format("{:.4f},{:.4f},{:.4f}\n", point.x(), point.y(), point.z());
