@@ -270,7 +270,7 @@ TEST(Dynamics, AFrameThatMovesEvenlyChangesNothing) {
 TEST(Dynamics, SquaredDragIsAcrossTheRod) {
   MovingRod rod = moving_cantilever(0.01);
   rod.material_damping = 0.3;
-  rod.squared_drag = 0.1;
+  rod.quadratic_drag = 0.1;
   const Vector3d velocity(1, 0, 0.3);
   rod.motions = {[velocity](double time) {
     GripPose pose;
@@ -281,7 +281,7 @@ TEST(Dynamics, SquaredDragIsAcrossTheRod) {
   const Dynamics result = run(rod, straight_rod(Vector3d::UnitX()), {20});
   EXPECT_LT(result.energy_error, 1e-7);
   const Vector3d force = result.frames[0].grips[0].force;
-  const double drag = rod.squared_drag * velocity.z() * velocity.z();
+  const double drag = rod.quadratic_drag * velocity.z() * velocity.z();
   EXPECT_NEAR(force.z(), drag, 0.01 * drag);
   EXPECT_NEAR(force.x(), 0, 0.01 * drag);
   EXPECT_GT(result.frames[0].energy.dissipated, 19 * drag * velocity.z());

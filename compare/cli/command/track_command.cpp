@@ -121,7 +121,7 @@ void add_track(CLI::App& app) {
       ->type_name("VALUE")
       ->capture_default_str();
   command
-      ->add_option("--squared-drag", options->damping.squared,
+      ->add_option("--quadratic-drag", options->damping.quadratic,
                    "with --dynamic: drag across the rod per length and squared velocity "
                    "[N s^2/m^3], 1/2 rho C d")
       ->check(number_between(0, most))

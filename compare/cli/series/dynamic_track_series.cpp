@@ -78,8 +78,8 @@ std::string dynamic_text(const DynamicTrack& dynamic) {
       "\ndynamic     from {}; damping {:g} s, drag {:g} N s/m^2{}; {} terms, {} steps, {:.3g} s\n",
       dynamic.in_motion ? "motion with the grippers" : "rest", dynamic.damping.material,
       dynamic.damping.air,
-      dynamic.damping.squared > 0 ? fmt::format(" and {:g} N s^2/m^3", dynamic.damping.squared)
-                                  : "",
+      dynamic.damping.quadratic > 0 ? fmt::format(" and {:g} N s^2/m^3", dynamic.damping.quadratic)
+                                    : "",
       dynamic.terms, dynamic.steps, dynamic.seconds);
   if (dynamic.too_few_terms) {
     append(out, "            with {} terms it stopped before {:.6g} s\n",

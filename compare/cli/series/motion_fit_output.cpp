@@ -34,7 +34,7 @@ std::string motion_fit_text(const compare::MotionFit& fit, const compare::Scene&
   };
   line(fit.material, "damping", "s");
   line(fit.air, "drag", "N s/m^2");
-  line(fit.squared, "squared", "N s^2/m^3");
+  line(fit.quadratic, "quadratic", "N s^2/m^3");
   append(out, "noise       {:.4g} mm in each coordinate, estimated from the residuals\n",
          fit.noise * 1e3);
   append(out,
@@ -73,7 +73,7 @@ Json motion_fit_json(const compare::MotionFit& fit, const compare::Scene& scene)
           {"stiffness_over_mass_m4_per_s2", motion_number_json(fit.stiffness)},
           {"damping_s", optional(fit.material)},
           {"drag_N_s_per_m2", optional(fit.air)},
-          {"squared_drag_N_s2_per_m3", optional(fit.squared)},
+          {"quadratic_drag_N_s2_per_m3", optional(fit.quadratic)},
           {"noise_m", fit.noise},
           {"coordinates", fit.coordinates},
           {"effective_coordinates", fit.effective_coordinates},

@@ -27,7 +27,7 @@ constexpr int most_first_steps = 6;
 /// A number is looked for within this factor of where it begins.
 constexpr double widest_factor = 1e4;
 
-enum class Sought { stiffness, material, air, squared };
+enum class Sought { stiffness, material, air, quadratic };
 
 /// Rows of one time: indices of MarkerMotion::positions.
 struct RecordedFrame {
@@ -71,7 +71,7 @@ class MotionMisfit {
     seek(true, Sought::stiffness, 1, 1);
     seek(options.material, Sought::material, options.damping.material, light * time);
     seek(options.air, Sought::air, options.damping.air, light * drag);
-    seek(options.squared, Sought::squared, options.damping.squared,
+    seek(options.quadratic, Sought::quadratic, options.damping.quadratic,
          light * drag * time / scene.length);
     look_at(1);
   }
@@ -100,7 +100,7 @@ class MotionMisfit {
       const double at = value(i, logs[static_cast<Eigen::Index>(i)]);
       if (sought_[i] == Sought::material) result.material = at;
       if (sought_[i] == Sought::air) result.air = at;
-      if (sought_[i] == Sought::squared) result.squared = at;
+      if (sought_[i] == Sought::quadratic) result.quadratic = at;
     }
     return result;
   }
@@ -364,8 +364,8 @@ MotionFit fit_motion(const Scene& scene, const MarkerMotion& recorded,
       case Sought::air:
         result.air = found;
         break;
-      case Sought::squared:
-        result.squared = found;
+      case Sought::quadratic:
+        result.quadratic = found;
         break;
     }
   }

@@ -15,7 +15,7 @@ struct MotionFitOptions {
   RodDamping damping;  ///< what is known of it, where it is not fitted
   bool material = true;
   bool air = true;
-  bool squared = true;
+  bool quadratic = true;
   SolveOptions solve;  ///< limits of each simulation
 };
 
@@ -41,8 +41,8 @@ struct MotionFit {
   int terms = 0;
   MotionNumber stiffness;        ///< EI / (rho A), outside sections [m^4/s^2]
   MotionNumber scene_stiffness;  ///< Scene::stiffness() that goes with the scene's mass
-  std::optional<MotionNumber> material, air, squared;  ///< as RodDamping's, of the scene's mass
-  RodDamping damping;                                  ///< all of it, fitted and known
+  std::optional<MotionNumber> material, air, quadratic;  ///< as RodDamping's, of the scene's mass
+  RodDamping damping;                                    ///< all of it, fitted and known
   double noise = 0;      ///< of a coordinate, estimated from the residuals [m]
   double rms = 0;        ///< distance of markers and rod [m]
   double given_rms = 0;  ///< the same of the scene as it was given [m]

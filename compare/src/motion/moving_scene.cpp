@@ -35,7 +35,7 @@ energy_model::MovingRod moving_rod(const Scene& scene, const std::vector<std::si
   rod.inertia = scene_inertia(now);
   rod.material_damping = damping.material;
   rod.air_drag = damping.air;
-  rod.squared_drag = damping.squared;
+  rod.quadratic_drag = damping.quadratic;
   const auto follow = [&](const Trajectory& way,
                           const std::optional<Eigen::Vector3d>& rolls_about = std::nullopt) {
     for (const double time : trajectory_breaks(way, begin)) rod.breaks.push_back(time);

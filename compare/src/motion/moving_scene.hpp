@@ -14,9 +14,9 @@ namespace dlo::compare {
 
 /// What takes energy from a moving rod.
 struct RodDamping {
-  double material = 0;  ///< tau of Kelvin-Voigt, M = EI (kappa + tau kappa') [s], >= 0
-  double air = 0;       ///< force per length and velocity [N s/m^2], >= 0
-  double squared = 0;   ///< the same across the rod, and squared velocity [N s^2/m^3], >= 0
+  double material = 0;   ///< tau of Kelvin-Voigt, M = EI (kappa + tau kappa') [s], >= 0
+  double air = 0;        ///< force per length and velocity [N s/m^2], >= 0
+  double quadratic = 0;  ///< the same across the rod, and squared velocity [N s^2/m^3], >= 0
 };
 
 /// Fewer terms, which nobody asked for, with which the integrator gave up.

@@ -48,7 +48,7 @@ void check_rod(const MovingRod& rod) {
   require(known(rod.material_damping), simulate_name, "material_damping", rod.material_damping,
           ">= 0 and finite");
   require(known(rod.air_drag), simulate_name, "air_drag", rod.air_drag, ">= 0 and finite");
-  require(known(rod.squared_drag), simulate_name, "squared_drag", rod.squared_drag,
+  require(known(rod.quadratic_drag), simulate_name, "quadratic_drag", rod.quadratic_drag,
           ">= 0 and finite");
   for (const double time : rod.breaks) {
     require(std::isfinite(time), simulate_name, "breaks", time, "finite");

@@ -165,7 +165,7 @@ SpanInertia MovingSpan::inertia(const std::vector<PointMass>& masses) const {
   }
   result.material_damping = rod_.material_damping / time_;
   result.drag = rod_.air_drag * time_ * length_ / mass_;
-  result.squared_drag = rod_.squared_drag * length_ * length_ / mass_;
+  result.quadratic_drag = rod_.quadratic_drag * length_ * length_ / mass_;
   return result;
 }
 

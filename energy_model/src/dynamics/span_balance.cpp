@@ -71,8 +71,8 @@ EnergyBalance SpanDynamics::power(const std::vector<Reaction>& reactions) const 
   }
   result.dissipated = inertia_.material_damping * v_.cwiseProduct(elastic_).squaredNorm() +
                       inertia_.drag * points_.weights().dot(velocity_.rowwise().squaredNorm());
-  if (squared_drag_.size() > 0) {
-    result.dissipated += squared_drag_.cwiseProduct(velocity_).sum();
+  if (quadratic_drag_.size() > 0) {
+    result.dissipated += quadratic_drag_.cwiseProduct(velocity_).sum();
   }
   return result;
 }

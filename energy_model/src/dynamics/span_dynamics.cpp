@@ -108,24 +108,24 @@ void SpanDynamics::move(const SpanDrive& drive, const Eigen::Ref<const Eigen::Ve
   collect_touches();
 }
 
-/// Adds squared drag to the forces. Points at which pieces begin and end have no length.
+/// Adds quadratic drag to the forces. Points at which pieces begin and end have no length.
 void SpanDynamics::drag_across() {
   mean_drag_ = inertia_.drag;
-  if (!(inertia_.squared_drag > 0)) return;
-  squared_drag_.setZero(points_.points(), 3);
+  if (!(inertia_.quadratic_drag > 0)) return;
+  quadratic_drag_.setZero(points_.points(), 3);
   double change = 0;
   Eigen::Index node = 0;
   for (Eigen::Index point = 0; point < points_.points(); ++point) {
-    const double weight = inertia_.squared_drag * points_.weights()[point];
+    const double weight = inertia_.quadratic_drag * points_.weights()[point];
     if (!(weight > 0)) continue;
     const Eigen::RowVector3d along = t_.row(node++);
     const Eigen::RowVector3d across =
         velocity_.row(point) - velocity_.row(point).dot(along) * along;
-    squared_drag_.row(point) = weight * across.norm() * across;
+    quadratic_drag_.row(point) = weight * across.norm() * across;
     change += 2 * weight * across.norm();
   }
   mean_drag_ += change / span_.length;
-  forces_ += squared_drag_;
+  forces_ += quadratic_drag_;
 }
 
 Eigen::Vector3d SpanDynamics::multiplier_force(const Eigen::Ref<const Eigen::VectorXd>& multipliers,

@@ -45,7 +45,7 @@ struct SpanInertia {
   std::vector<PointMass> points;   ///< each where a piece begins or ends
   double material_damping = 0;     ///< tau
   double drag = 0;                 ///< per length
-  double squared_drag = 0;         ///< per length, across the rod, by the squared velocity
+  double quadratic_drag = 0;       ///< per length, across the rod, by the squared velocity
 };
 
 /// Adds so many times each entry.
@@ -161,8 +161,8 @@ class SpanDynamics {
   Eigen::MatrixX3d t_, t_rate_;                          // of the nodes
   Eigen::MatrixX3d position_, velocity_, acceleration_;  // of the points, in space
   Moving end_tangent_, end_d1_;
-  Eigen::MatrixX3d squared_drag_;    // of the points; empty: none
-  double mean_drag_ = 0;             // drag and the change of squared drag, per length
+  Eigen::MatrixX3d quadratic_drag_;  // of the points; empty: none
+  double mean_drag_ = 0;             // drag and the change of quadratic drag, per length
   Eigen::MatrixX3d forces_;          // of the points: inertia and drag less what pulls and yields
   std::vector<Touch> soft_touches_;  // of points, which are in forces_
   std::vector<Touch> touches_;       // of the grid's points

@@ -40,7 +40,7 @@ Recording recording(unsigned seed) {
   const double time = std::sqrt(gamma * length / 9.81);
   Recording result;
   result.stiffness = stiffness / mass_per_length;
-  result.damping = {.material = time * between(0.01, 0.03), .squared = between(0.02, 0.08)};
+  result.damping = {.material = time * between(0.01, 0.03), .quadratic = between(0.02, 0.08)};
   std::string text = fmt::format(
       "gravity = [0, 0, -9.81]\n[rod]\nlength = {}\nbending_stiffness = {}\nmass_per_length = {}\n",
       length, stiffness, mass_per_length);
@@ -74,7 +74,7 @@ Recording recording(unsigned seed) {
 
 /// What the fit is off, over what is right.
 struct FitError {
-  double stiffness = 0, material = 0, squared = 0;
+  double stiffness = 0, material = 0, quadratic = 0;
   double misfit = 0;  // residual over the noise
   bool in_interval = false;
 };
@@ -83,7 +83,7 @@ FitError error_of(const Recording& made, const MotionFit& fit) {
   const auto off = [](double value, double right) { return std::abs(value / right - 1); };
   return {off(fit.stiffness.value, made.stiffness),
           fit.material ? off(fit.material->value, made.damping.material) : 0,
-          fit.squared ? off(fit.squared->value, made.damping.squared) : 0,
+          fit.quadratic ? off(fit.quadratic->value, made.damping.quadratic) : 0,
           fit.rms / (marker_noise * std::sqrt(3)),
           made.stiffness > fit.stiffness.low && made.stiffness < fit.stiffness.high};
 }
@@ -97,7 +97,7 @@ TEST(MotionFit, FindsStiffnessAndDampingOfARecordedMotion) {
     const FitError error = error_of(made, fit);
     EXPECT_LT(error.stiffness, 0.1) << seed;
     EXPECT_LT(error.material, 0.3) << seed;
-    EXPECT_LT(error.squared, 0.3) << seed;
+    EXPECT_LT(error.quadratic, 0.3) << seed;
     EXPECT_LT(error.misfit, 1.1) << seed;
     EXPECT_NEAR(fit.noise, marker_noise, 0.1 * marker_noise) << seed;
     EXPECT_GT(fit.effective_coordinates, 0.3 * static_cast<double>(fit.coordinates)) << seed;
@@ -123,10 +123,10 @@ TEST(MotionFit, DISABLED_AllRecordings) {
     const FitError error = error_of(made, fit);
     fmt::print(
         "{:2} EI/m {:6.2f} % in {} tau {:6.1f} % q {:6.1f} % misfit {:.3f} eff {:.0f}/{} sims {}\n",
-        seed, 100 * error.stiffness, error.in_interval, 100 * error.material, 100 * error.squared,
+        seed, 100 * error.stiffness, error.in_interval, 100 * error.material, 100 * error.quadratic,
         error.misfit, fit.effective_coordinates, fit.coordinates, fit.simulations);
     std::fflush(stdout);
-    EXPECT_LT(std::max({error.stiffness / 0.1, error.material / 0.3, error.squared / 0.3,
+    EXPECT_LT(std::max({error.stiffness / 0.1, error.material / 0.3, error.quadratic / 0.3,
                         error.misfit / 1.1}),
               1);
   }

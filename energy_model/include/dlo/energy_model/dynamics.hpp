@@ -28,7 +28,7 @@ struct MovingRod {
   std::vector<GripMotion> obstacle_motions;
   double material_damping = 0;  ///< tau of Kelvin-Voigt [s], >= 0
   double air_drag = 0;          ///< c, force per length and velocity [N s/m^2], >= 0
-  double squared_drag = 0;     ///< q, the same across it, by the squared velocity [N s^2/m^3], >= 0
+  double quadratic_drag = 0;   ///< q, the same across it, by the squared velocity [N s^2/m^3], >= 0
   std::vector<double> breaks;  ///< times at which a motion is not smooth [s]
 };
 
