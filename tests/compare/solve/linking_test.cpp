@@ -56,7 +56,7 @@ TEST(Linking, AShapeThatLostTurnsIsNotVerified) {
   scene.grippers.back().frame->d1 = Eigen::Vector3d::UnitY();
   for (const Model model : {Model::energy, Model::exact}) {
     try {
-      const Solution solution = solve(scene, model);
+      const Solution solution = solve(scene, model, {.time_limit = 300});
       ASSERT_EQ(solution.linking.size(), 1U);
       const Linking& part = solution.linking.front();
       EXPECT_NEAR(part.twist + part.writhe, 2, 0.05) << to_string(model);
