@@ -6,10 +6,10 @@
 // Both sides of a ratio take turns, some milliseconds each, by the clock of this thread's computing
 // time; the ratio of a turn is that of two neighbours, and the median over the turns is taken.
 // Other programs slow both sides, but not alike: a median may miss its promise by `margin`, and it
-// has `attempts` to keep it. A loss that no noise explains fails all of them. Both sides are loops of
-// little code: what another program on the same core does to them is alike. It slows a solve, whose
-// code is much, up to three times as much as a step, so that no ratio of the two is promised; the
-// tests hold how many evaluations a solve takes.
+// has `attempts` to keep it. A loss that no noise explains fails all of them. Both sides are loops
+// of little code: what another program on the same core does to them is alike. It slows a solve,
+// whose code is much, up to three times as much as a step, so that no ratio of the two is promised;
+// the tests hold how many evaluations a solve takes.
 
 #include <algorithm>
 #include <cmath>
