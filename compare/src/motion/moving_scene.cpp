@@ -122,6 +122,7 @@ MovingScene::MovingScene(const Scene& scene, const FrameClock& clock, const RodD
 
 SimulatedMotion MovingScene::run(const std::vector<double>& times, int terms) const {
   std::vector<double> since;
+  since.reserve(times.size());
   for (const double time : times) since.push_back(time - begin_);
   SimulatedMotion result;
   for (const int tried : terms_to_try(terms)) {

@@ -28,7 +28,7 @@ struct CalibratedRod {
   std::optional<double> torsional_stiffness;  ///< GJ [N m^2]
   /// Coefficients of P_0, P_1, .. about d1 and d2 [1/m]; empty: the scene's.
   std::vector<Eigen::Vector2d> natural_curvature;
-  std::vector<ClampCorrection> clamps;
+  std::vector<ClampCorrection> clamps;  ///< of those that are held otherwise than scenes say
 };
 
 /// A scene with that in the place of its own.
