@@ -19,7 +19,8 @@ namespace dlo::compare {
 /// The material of a fit, identified or not, as factors on that of the first scene.
 [[nodiscard]] MaterialPoint material_of(const MaterialFit& fit, const Scene& first);
 
-/// fit_material() without its search over all E, which is the same for all numbers beside it.
+/// fit_material(), but where more than the material is fitted without its search over all E, which
+/// is the same for all such numbers.
 /// @param start  from where steps lead to the fit
 [[nodiscard]] MaterialFit fit_material_from(const std::vector<Scene>& scenes,
                                             const std::vector<MeasuredShape>& shapes,
