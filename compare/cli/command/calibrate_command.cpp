@@ -38,7 +38,9 @@ struct CalibrateOptions {
   std::string segments;  // a number, or a file
   std::string clamp_angles;
   std::string clamp_positions;
+  std::string clamp_rolls;
   bool same_clamps = false;
+  std::string clamp_scatter;
   bool predict = false;
   std::string chosen;  // empty: as calibrate() has it
   std::vector<std::string> holdouts;
@@ -129,7 +131,11 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
           quantity_of("--clamp-angles", options.clamp_angles, Dimension::angle).value_or(0),
       .position_tolerance =
           quantity_of("--clamp-positions", options.clamp_positions, Dimension::length).value_or(0),
+      .roll_tolerance =
+          quantity_of("--clamp-rolls", options.clamp_rolls, Dimension::angle).value_or(0),
       .shared_clamps = options.same_clamps,
+      .direction_scatter =
+          quantity_of("--clamp-scatter", options.clamp_scatter, Dimension::angle).value_or(0),
       .predict = options.predict,
       .choose_options =
           options.chosen.empty() ? std::nullopt : std::optional(options.chosen == "auto"),
@@ -285,10 +291,22 @@ void add_calibrate(CLI::App& app) {
       ->needs(shape)
       ->group(measured);
   command
+      ->add_option("--clamp-rolls", options->clamp_rolls,
+                   "the same of how they hold the wire about its tangent, in space: \"180 deg\" if "
+                   "nothing is known; each shape has its own, with --same-clamps too")
+      ->needs(shape)
+      ->group(measured);
+  command
       ->add_flag(
           "--same-clamps", options->same_clamps,
           "the clamps are misaligned alike in all shapes, as in one fixture: what is found of "
           "them is shared, and -o writes it; with --clamp-angles or --clamp-positions")
+      ->needs(shape)
+      ->group(measured);
+  command
+      ->add_option("--clamp-scatter", options->clamp_scatter,
+                   "with --same-clamps: how far each shape's own directions are from the shared "
+                   "ones, such as \"5 deg\"; they are fitted as well")
       ->needs(shape)
       ->group(measured);
   command
@@ -301,9 +319,10 @@ void add_calibrate(CLI::App& app) {
       ->add_option(
           "--options", options->chosen,
           "given, or auto: where residuals are systematic, the terms of natural curvature, "
-          "and clamps as said, misaligned alike or each on its own, that predict shapes "
+          "and clamps as said, misaligned alike, with a scatter or each on its own, that predict "
+          "shapes "
           "best that are left out; default: auto of three shapes or more, without the "
-          "four above")
+          "six above")
       ->check(CLI::IsMember({"given", "auto"}))
       ->needs(shape)
       ->group(measured);

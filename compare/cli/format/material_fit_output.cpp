@@ -94,6 +94,10 @@ std::string words_of(const compare::FitAlternative& alternative) {
            alternative.position_tolerance * 1e3);
   }
   if (alternative.shared_clamps) out += " --same-clamps";
+  if (alternative.direction_scatter > 0) {
+    append(out, " --clamp-scatter \"{:.3g} deg\"",
+           alternative.direction_scatter * 180 / std::numbers::pi);
+  }
   return out;
 }
 
@@ -312,6 +316,7 @@ Json alternatives_json(const compare::Calibration& report,
                 {"direction_tolerance_rad", alternative.direction_tolerance},
                 {"position_tolerance_m", alternative.position_tolerance},
                 {"same_clamps", alternative.shared_clamps},
+                {"direction_scatter_rad", alternative.direction_scatter},
                 {"prediction_rms_m", json_of(alternative.prediction_m)},
                 {"rms_m", alternative.rms_m}};
     add_value(one, stiffness_key(report.scenes.front()), "", alternative.youngs_modulus);

@@ -184,7 +184,9 @@ def plan(
     natural_curvature=INTEGER,
     clamp_angles=QUANTITY,
     clamp_positions=QUANTITY,
+    clamp_rolls=QUANTITY,
     same_clamps=TRUTH,
+    clamp_scatter=QUANTITY,
     predict=TRUTH,
     options=TEXT,
     noise=QUANTITY,
@@ -207,7 +209,9 @@ def calibrate(
     natural_curvature: int = 0,
     clamp_angles: Quantity = 0.0,
     clamp_positions: Quantity = 0.0,
+    clamp_rolls: Quantity = 0.0,
     same_clamps: bool = False,
+    clamp_scatter: Quantity = 0.0,
     predict: bool = False,
     options: Optional[str] = None,
     noise: Optional[Quantity] = None,
@@ -222,11 +226,11 @@ def calibrate(
 
     With shapes, one of each scene or several of one: a MaterialFit. A shape is an array of points
     [m], a tuple of points and their arc lengths, or the name of a file in metres. density, torsional_stiffness: fit these as well;
-    natural_curvature: so many terms of it. clamp_angles, clamp_positions: how well the clamps are
+    natural_curvature: so many terms of it. clamp_angles, clamp_positions, clamp_rolls: how well the clamps are
     known (standard deviations, "5 deg", "2 mm"); each shape's own are then fitted,
-    with same_clamps what all share. predict: each shape is left out in turn, and predicted. options: "auto": where
+    with same_clamps what all share, but for rolls, and with clamp_scatter each shape's own about it. predict: each shape is left out in turn, and predicted. options: "auto": where
     residuals are systematic, the terms of natural curvature, and clamps as said, alike or each on its own, that predict
-    best ("tried" of the document); "given"; None: "auto" of three shapes or more, without these four. noise: standard deviation of one coordinate; None: estimated. segments: of your simulator's chain, whose springs are
+    best ("tried" of the document); "given"; None: "auto" of three shapes or more, without these six. noise: standard deviation of one coordinate; None: estimated. segments: of your simulator's chain, whose springs are
     then found too ("chains" of the document); segment_lengths [m] where they are unequal. register, arc_lengths: as of check(). time, materials: as of
     solve(), of all scenes.
 
@@ -255,7 +259,9 @@ def calibrate(
         "natural_curvature_terms": natural_curvature,
         "clamp_angles": _si(clamp_angles, "angle"),
         "clamp_positions": _si(clamp_positions, "length"),
+        "clamp_rolls": _si(clamp_rolls, "angle"),
         "same_clamps": bool(same_clamps),
+        "clamp_scatter": _si(clamp_scatter, "angle"),
         "predict": bool(predict),
         "options": options,
         "segments": segments,

@@ -11,6 +11,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
 #include "explain/file_causes.hpp"
+#include "explain/joint_causes.hpp"
 #include "explain/own_polygon.hpp"
 #include "explain/scene_causes.hpp"
 #include "least_squares/gauss_newton.hpp"
@@ -32,8 +33,6 @@ constexpr double same_length = 1e-5;
 constexpr double least_gain = 0.1;
 /// Deviation beyond which a shape is just another one, in lengths.
 constexpr double another_shape = 0.05;
-/// Of a tolerance: how far a file is that is so far off because of how it was read, says nothing.
-constexpr double far_beyond = 10;
 /// By how much a rod that has left its plane is out of it, in lengths.
 constexpr double another_shape_out = 1e-3;
 
@@ -46,17 +45,25 @@ double price_of(double rms, int numbers, double before, double length) {
   return std::max(rms, same) * std::pow(1 / worth_of_a_number, std::max(0, numbers));
 }
 
-/// What a chain's springs are, if that shows.
-std::string and_springs(const OwnPolygon& chain) {
-  const std::string law = law_words(chain);
-  return law.empty() ? "" : ", its springs EI/h and " + law;
+/// A shape with the end of its last segment, straight on from it.
+Shape with_last_end(Shape shape, double length) {
+  const Eigen::Index count = shape.points.cols();
+  const Eigen::Vector3d end = 2 * shape.points.col(count - 1) - shape.points.col(count - 2);
+  shape.points.conservativeResize(Eigen::NoChange, count + 1);
+  shape.points.rightCols<1>() = end;
+  shape.arc_length.push_back(length);
+  return shape;
 }
 
 class Search {
  public:
   Search(const Scene& scene, const MeasuredShape& shape, const ShapeCheck& check,
          const ShapeCheckOptions& options)
-      : scene_(scene), shape_(shape), check_(check), options_(options) {
+      : scene_(scene),
+        shape_(shape),
+        check_(check),
+        options_(options),
+        curve_(check.rod.sample, scene.length) {
     align_.pose = options.pose;
     align_.arc_lengths = options.arc_lengths;
     align_.up = up_of(scene, options.pose);
@@ -68,11 +75,15 @@ class Search {
     // It fails because too little is seen.
     if (!(before_ > same_length * scene_.length)) return {};
     if (options_.pose == PoseFreedom::known) {
-      for (const FileCause& cause : file_causes(scene_, shape_, check_)) look_at(cause, rod);
+      for (const FileCause& cause : file_causes(scene_, shape_, check_)) look_at(cause);
     }
     look_at_noise();
     look_at_unstable();
     if (!is_found(0)) look_at_chains(Springs::as_the_rod);
+    if (!is_found(1) && options_.pose == PoseFreedom::known) {
+      look_at_joint_causes(scene_, shape_, [this](const FileCause& cause) { look_at(cause); });
+      look_at_chains_said_rightly();
+    }
     for (const SceneCause& cause :
          scene_causes(scene_, check_.alignment.shape, length_of_shape(), lies_in_plane())) {
       if (!is_found(static_cast<int>(cause.start.size())) && !is_over()) fit(cause, rod);
@@ -81,9 +92,17 @@ class Search {
     std::stable_sort(found_.begin(), found_.end(), [this](const auto& a, const auto& b) {
       return price(a.first) < price(b.first);
     });
+    // Several things that are wrong with a file at once are told if nothing explains more, and
+    // then none of them alone.
+    const bool is_joint = !found_.empty() && found_.front().second == joint_cause;
     std::vector<Explanation> result;
     result.reserve(found_.size());
-    for (auto& [explanation, same_as] : found_) result.push_back(std::move(explanation));
+    for (auto& [explanation, same_as] : found_) {
+      const bool is_best = result.empty();
+      if (!is_best && same_as == joint_cause) continue;
+      if (!is_best && is_joint && explanation.kind == ExplanationKind::file) continue;
+      result.push_back(std::move(explanation));
+    }
     return result;
   }
 
@@ -105,21 +124,54 @@ class Search {
     return check_.polyline_length_m * (s.back() - s.front()) / chords;
   }
 
+  /// The chains whose points a shape may have, its last end missing or not.
+  [[nodiscard]] std::vector<OwnPolygon> chains_of(const Shape& shape, Springs springs) const {
+    if (!lacks_last_end(shape)) return own_polygons(scene_, shape, springs);
+    return own_polygons(scene_, with_last_end(shape, scene_.length), springs, std::nullopt,
+                        LastPoint::missing);
+  }
+
+  [[nodiscard]] bool lacks_last_end(const Shape& shape) const {
+    const double segment = scene_.length / static_cast<double>(shape.points.cols());
+    return lacks_one_segment(shape.points, scene_.length) && shape.arc_length.front() < segment / 4;
+  }
+
+  [[nodiscard]] std::string words_of(const OwnPolygon& chain, const Shape& shape) const {
+    const bool lacks_end = lacks_last_end(shape);
+    return dlo::compare::words_of(chain.clamp, shape.points.cols() - (lacks_end ? 0 : 1)) +
+           (lacks_end ? ", its last end missing as in MuJoCo's xpos" : "");
+  }
+
   void look_at_chains(Springs springs) {
     const Shape& shape = check_.alignment.shape;
-    for (const OwnPolygon& chain : own_polygons(scene_, shape, springs)) {
-      const std::string words = words_of(chain.clamp, shape.points.cols() - 1);
+    for (const OwnPolygon& chain : chains_of(shape, springs)) {
+      const std::string words = words_of(chain, shape);
       if (springs == Springs::as_the_rod) {
         add({words + and_springs(chain), chain.rms_m, 0, ExplanationKind::discretisation,
              chain.max_m},
             words);
       } else {
         const std::string law = law_words(chain);
-        add({fmt::format("it is {}, with springs of {:.3g} times EI/h{}{}", words, chain.stiffness,
+        add({fmt::format("it is {}, with springs of {:.3g} times EI/h{}{}{}", words,
+                         chain.stiffness,
+                         is_pulled_by_weight_alone(scene_)
+                             ? fmt::format(", or the weight {:.3g} times", 1 / chain.stiffness)
+                             : "",
                          law.empty() ? "" : ", ", law),
              chain.rms_m, 1, ExplanationKind::scene},
             words);
       }
+    }
+  }
+
+  /// A chain's points in a file that says them wrongly.
+  void look_at_chains_said_rightly() {
+    if (!said_rightly_ || is_found(said_rightly_->numbers + 1)) return;
+    const Shape& shape = said_rightly_->shape;
+    for (const OwnPolygon& chain : chains_of(shape, Springs::as_the_rod)) {
+      add({said_rightly_->words + " and it is " + words_of(chain, shape) + and_springs(chain),
+           chain.rms_m, said_rightly_->numbers + 1, ExplanationKind::file, chain.max_m},
+          joint_cause);
     }
   }
 
@@ -177,31 +229,51 @@ class Search {
         .maxCoeff();
   }
 
-  void look_at(const FileCause& cause, const energy_model::Equilibrium& rod) {
+  void look_at(const FileCause& cause) {
+    if (is_over()) return;
     AlignOptions options = align_;
     options.pose = cause.pose;
     try {
       const Aligner aligner(cause.shape, scene_.length, options);
-      const Alignment laid = aligner.align(Curve(rod.sample, scene_.length));
-      const Measured measured = measure(laid, rod.sample, scene_.length);
-      Explanation explanation{cause.words, measured.rms_m, cause.numbers, ExplanationKind::file};
+      const Alignment laid = aligner.align(curve_);
+      const Measured measured = measure(laid, check_.rod.sample, scene_.length);
+      Explanation explanation{clauses_of(cause, laid), measured.rms_m, cause.numbers,
+                              ExplanationKind::file};
       // What points that are left out are blamed for has to be their own.
       if (cause.part && cause.shape.points.cols() < shape_.points.cols() &&
           !(measured.rms_m <= most_left * check_.deviation.rms_m)) {
         return;
       }
       if (!cause.part) {
-        explanation.rms_m = whole_of(measured, laid, rod.sample, scene_.length).rms_m;
+        explanation.rms_m = whole_of(measured, laid, check_.rod.sample, scene_.length).rms_m;
       }
-      if (cause.pose == PoseFreedom::translation) {
-        const Eigen::Vector3d way = laid.pose.translation * 1e3;
-        explanation.cause +=
-            fmt::format(", [{:.4g}, {:.4g}, {:.4g}] mm away", way.x(), way.y(), way.z());
+      const double price_of_this = price(explanation);
+      const bool has_all_points = cause.shape.points.cols() == shape_.points.cols();
+      if (has_all_points && explanation.rms_m <= most_left * before_ &&
+          (!said_rightly_ || price_of_this < said_rightly_->price)) {
+        said_rightly_ = {explanation.cause, laid.shape, explanation.numbers, price_of_this};
       }
       add(std::move(explanation), cause.same_as);
     } catch (const InputError&) {
       // No file, said in this way.
     }
+  }
+
+  /// All that is wrong with a file, with what was found in laying it.
+  [[nodiscard]] std::string clauses_of(const FileCause& cause, const Alignment& laid) const {
+    std::string words = cause.words;
+    const auto add_clause = [&words](const std::string& clause) {
+      words += (words.empty() ? "" : " and ") + clause;
+    };
+    if (cause.part && cause.shape.points.cols() == shape_.points.cols()) {
+      add_clause(missing_words(laid.shape.arc_length, laid.shape.points, scene_.length));
+    }
+    if (cause.pose == PoseFreedom::translation) {
+      const bool may_be_the_gripper = words.empty() && scene_.grippers.size() == 1;
+      add_clause(origin_words(laid.pose.translation));
+      if (may_be_the_gripper) words += ", or the gripper is elsewhere";
+    }
+    return words;
   }
 
   /// Of noise, neighbours have nothing in common: little is left of their mean.
@@ -299,10 +371,19 @@ class Search {
   const MeasuredShape& shape_;
   const ShapeCheck& check_;
   const ShapeCheckOptions& options_;
+  Curve curve_;  // of the rod that was compared with
   AlignOptions align_;
   double before_ = 0;
   std::vector<std::pair<Explanation, std::string>> found_;  // and what of several it is the best
   std::optional<Explanation> best_;
+  /// A shape that a file says wrongly.
+  struct SaidRightly {
+    std::string words;
+    Shape shape;  // in the scene's frame
+    int numbers;
+    double price;
+  };
+  std::optional<SaidRightly> said_rightly_;  // the best
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
@@ -327,45 +408,6 @@ std::optional<Explanation> better_than_stiffness(const ShapeCheck& check,
     }
   }
   return std::nullopt;
-}
-
-ShapeJudgement judge_with_chains(const Scene& scene, const ShapeCheck& check,
-                                 const ShapeTolerance& tolerance) {
-  ShapeJudgement result = judge(check, tolerance);
-  if (result.pass) return result;
-  const Shape& shape = check.alignment.shape;
-  for (const OwnPolygon& chain : own_polygons(scene, shape, Springs::as_the_rod)) {
-    const double distance = tolerance.largest ? chain.max_m : chain.rms_m;
-    if (!(distance <= right_chain * tolerance.allowed_m)) continue;
-    result.reason = fmt::format("right for {}, {:.3g} mm away ({})",
-                                words_of(chain.clamp, shape.points.cols() - 1) + and_springs(chain),
-                                distance * 1e3, tolerance.largest ? "largest" : "RMS") +
-                    fmt::format(", allowed {:.4g} mm = {:g} of the tolerance",
-                                right_chain * tolerance.allowed_m * 1e3, right_chain) +
-                    fmt::format("; the rod itself is {:.4g} mm = {:.3g} % of l away, all of it ",
-                                result.judged_m * 1e3, result.judged_m / check.length_m * 100) +
-                    "discretisation";
-    result.pass = true;
-    break;
-  }
-  return result;
-}
-
-ShapeJudgement with_explanation(ShapeJudgement judgement,
-                                const std::vector<Explanation>& explanations,
-                                const ShapeTolerance& tolerance) {
-  if (judgement.pass || explanations.empty()) return judgement;
-  const Explanation& best = explanations.front();
-  const bool is_misread = judgement.judged_m > far_beyond * tolerance.allowed_m;
-  if (best.kind == ExplanationKind::file && is_misread && best.rms_m <= tolerance.allowed_m) {
-    judgement.reason = fmt::format("RMS {:.4g} mm if {}; as it was read: {}", best.rms_m * 1e3,
-                                   best.cause, judgement.reason);
-    return judgement;
-  }
-  judgement.reason += fmt::format(
-      "; it would be {:.4g} mm (RMS) if {}", best.rms_m * 1e3,
-      best.kind == ExplanationKind::discretisation ? "it were " + best.cause : best.cause);
-  return judgement;
 }
 
 }  // namespace dlo::compare

@@ -9,21 +9,12 @@
 #include <utility>
 #include <vector>
 
+#include "base/number.hpp"
+#include "explain/file_axes.hpp"
 #include "shape/arc_lengths.hpp"
 
 namespace dlo::compare {
 namespace {
-
-MeasuredShape scaled(MeasuredShape shape, double factor) {
-  shape.points *= factor;
-  for (double& s : shape.arc_length) s *= factor;
-  return shape;
-}
-
-MeasuredShape turned(MeasuredShape shape, const Eigen::Matrix3d& axes) {
-  shape.points = (axes * shape.points).eval();
-  return shape;
-}
 
 MeasuredShape without(const MeasuredShape& shape, Eigen::Index first, Eigen::Index count) {
   MeasuredShape rest = shape;
@@ -35,106 +26,26 @@ MeasuredShape without(const MeasuredShape& shape, Eigen::Index first, Eigen::Ind
   return rest;
 }
 
-constexpr std::array names = {"x", "y", "z"};
-
-/// Which axis of the file is the scene's vertical, if it is another one; else what is wrong.
-std::string name_of(const Eigen::Matrix3d& axes, const Eigen::Vector3d& gravity) {
-  Eigen::Index vertical = 0;
-  if (gravity.cwiseAbs().maxCoeff(&vertical) > 0.999 * gravity.norm() && gravity.norm() > 0) {
-    for (Eigen::Index from = 0; from < 3; ++from) {
-      const double sign = axes(vertical, from) * (gravity[vertical] < 0 ? 1 : -1);
-      if (sign == 0 || (from == vertical && axes(vertical, from) > 0)) continue;
-      return fmt::format("{} is {} in the file", names[static_cast<std::size_t>(from)],
-                         sign > 0 ? "up" : "down");
-    }
-  }
-  return axes.determinant() < 0 ? "the file is mirrored" : "the file's axes are turned";
-}
-
-/// In words which of the file's axes are the scene's.
-std::string axes_text(const Eigen::Matrix3d& axes) {
-  std::string text;
-  for (Eigen::Index to = 0; to < 3; ++to) {
-    for (Eigen::Index from = 0; from < 3; ++from) {
-      const double sign = axes(to, from);
-      if (sign == 0 || (to == from && sign > 0)) continue;
-      text += fmt::format("{}the scene's {} is the file's {}{}", text.empty() ? "" : ", ",
-                          names[static_cast<std::size_t>(to)], sign < 0 ? "-" : "",
-                          names[static_cast<std::size_t>(from)]);
-    }
-  }
-  return text;
-}
-
-/// Other axes, those with the fewest changes first, of exchanged ones proper turns before mirror
-/// images.
-std::vector<Eigen::Matrix3d> other_axes() {
-  std::vector<Eigen::Matrix3d> all;
-  std::array<Eigen::Index, 3> order = {0, 1, 2};
-  do {
-    for (int signs = 0; signs < 8; ++signs) {
-      Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
-      for (Eigen::Index i = 0; i < 3; ++i) {
-        axes(i, order[static_cast<std::size_t>(i)]) = (signs >> i) % 2 == 0 ? 1 : -1;
-      }
-      if (!axes.isIdentity()) all.push_back(axes);
-    }
-  } while (std::next_permutation(order.begin(), order.end()));
-  const auto changes = [](const Eigen::Matrix3d& axes) {
-    const auto exchanged = static_cast<int>(std::lround(3 - axes.cwiseAbs().trace()));
-    const int mirrored = axes.determinant() < 0 ? 1 : 0;
-    const auto negative = static_cast<int>((axes.array() < 0).count());
-    return std::array{exchanged, exchanged > 0 ? mirrored : 0, negative};
-  };
-  std::stable_sort(all.begin(), all.end(), [&](const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
-    return changes(a) < changes(b);
-  });
-  return all;
-}
-
 void add_units(const MeasuredShape& shape, std::vector<FileCause>& causes) {
-  struct Unit {
-    const char* name;
-    double metres;
-  };
-  constexpr std::array units = {Unit{"mm", 1e-3}, Unit{"cm", 1e-2}, Unit{"inches", 0.0254},
-                                Unit{"feet", 0.3048}, Unit{"km", 1e3}};
-  for (const Unit& unit : units) {
+  for (const FileUnit& unit : file_units) {
     causes.push_back(
         {fmt::format("the file is in {}, not in metres", unit.name), scaled(shape, unit.metres)});
   }
 }
 
-/// The scene's axes as those of a picture, in which y is up or down.
-Eigen::Matrix3d picture_axes(const Eigen::Vector3d& gravity, double up) {
-  Eigen::Index vertical = 1;
-  if (gravity.norm() > 0) gravity.cwiseAbs().maxCoeff(&vertical);
-  const double against = gravity[vertical] > 0 ? -up : up;
-  Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
-  axes(vertical, 1) = against;
-  axes(vertical == 0 ? 1 : 0, 0) = 1;
-  axes(vertical == 2 ? 1 : 2, 2) = 1;
-  return axes;
-}
-
 /// A picture: of any scale, and it counts from a corner, often downwards.
 void add_pixels(const Scene& scene, const MeasuredShape& shape, std::vector<FileCause>& causes) {
   const double per_unit = scene.length / lengths_along(shape.points).back();
-  const bool other_scale = std::abs(std::log(per_unit)) > 0.1;
+  constexpr double another_scale = 0.1;
+  if (!(std::abs(std::log(per_unit)) > another_scale)) return;
   for (const double up : {-1.0, 1.0}) {
-    const Eigen::Matrix3d axes = picture_axes(scene.gravity, up);
-    if (!other_scale && axes.isIdentity()) continue;
-    const char* const direction = up < 0 ? "down" : "up";
     FileCause cause;
-    cause.words =
-        other_scale
-            ? fmt::format("the file is in pixels of {:.4g} mm, y {}, with an origin of its own",
-                          per_unit * 1e3, direction)
-            : fmt::format("y is {} in the file, which has another origin", direction);
-    cause.shape = turned(other_scale ? scaled(shape, per_unit) : shape, axes);
+    cause.words = fmt::format("the file is in pixels of {:.4g} mm, y {}", per_unit * 1e3,
+                              up < 0 ? "down" : "up");
+    cause.shape = turned(scaled(shape, per_unit), picture_axes(scene.gravity, up));
     cause.pose = PoseFreedom::translation;
-    cause.numbers = other_scale ? 2 : 1;
-    cause.same_as = other_scale ? "pixels" : "axes";
+    cause.numbers = 3;  // the scale, the axes and the origin
+    cause.same_as = "pixels";
     causes.push_back(std::move(cause));
   }
 }
@@ -193,15 +104,9 @@ void add_order(const MeasuredShape& shape, const ShapeCheck& check,
 void add_lengths(const MeasuredShape& shape, const ShapeCheck& check,
                  std::vector<FileCause>& causes) {
   const std::vector<double>& s = check.reference.arc_length;
-  constexpr double short_of = 0.99;
-  if (s.back() - s.front() < short_of * check.length_m &&
-      check.polyline_length_m < short_of * check.length_m) {
-    const std::string part = fmt::format("s = {:.4g} to {:.4g} m", s.front(), s.back());
-    causes.push_back(
-        {lacks_one_segment(shape.points, check.length_m)
-             ? fmt::format("an end point is missing, as in MuJoCo's xpos: the file has {}", part)
-             : fmt::format("the file is a part of the rod, {}: cut off", part),
-         shape, PoseFreedom::known, 0, true});
+  if (is_short(s.back() - s.front(), check.length_m) &&
+      is_short(check.polyline_length_m, check.length_m)) {
+    causes.push_back({"", shape, PoseFreedom::known, 0, true});
   }
   const Eigen::Index count = shape.points.cols();
   const Eigen::Index most = std::min<Eigen::Index>(3, count - 3);
@@ -228,12 +133,45 @@ void add_lengths(const MeasuredShape& shape, const ShapeCheck& check,
 
 }  // namespace
 
+MeasuredShape scaled(MeasuredShape shape, double factor) {
+  shape.points *= factor;
+  for (double& s : shape.arc_length) s *= factor;
+  return shape;
+}
+
+MeasuredShape turned(MeasuredShape shape, const Eigen::Matrix3d& axes) {
+  shape.points = (axes * shape.points).eval();
+  return shape;
+}
+
+bool is_short(double polyline_length, double length) { return polyline_length < 0.99 * length; }
+
+std::string missing_words(const std::vector<double>& s, const Eigen::Matrix3Xd& points,
+                          double length) {
+  if (!lacks_one_segment(points, length)) {
+    return fmt::format("the file is a part of the rod, s = {:.4g} to {:.4g} m: cut off", s.front(),
+                       s.back());
+  }
+  const double segment = length / static_cast<double>(points.cols());
+  const double first = s.front() / segment;
+  const char* const what = first < 0.25   ? "an end point is missing, as in MuJoCo's xpos"
+                           : first < 0.75 ? "the points are the middles of the rod's segments"
+                                          : "an end point is missing, the first";
+  return fmt::format("{}: the file has s = {:.4g} to {:.4g} m", what, s.front(), s.back());
+}
+
+std::string origin_words(const Eigen::Vector3d& way) {
+  const Eigen::Vector3d mm = way * 1e3;
+  const double large = mm.norm();
+  return fmt::format("the file has another origin, [{:.4g}, {:.4g}, {:.4g}] mm away",
+                     shown(mm.x(), large), shown(mm.y(), large), shown(mm.z(), large));
+}
+
 std::vector<FileCause> file_causes(const Scene& scene, const MeasuredShape& shape,
                                    const ShapeCheck& check) {
   std::vector<FileCause> causes;
-  for (const Eigen::Matrix3d& axes : other_axes()) {
-    causes.push_back({fmt::format("{} ({})", name_of(axes, scene.gravity), axes_text(axes)),
-                      turned(shape, axes)});
+  for (const FileAxes& other : other_axes(scene.gravity, shape.points)) {
+    causes.push_back({other.words, turned(shape, other.axes)});
     causes.back().same_as = "axes";
   }
   if (!shape.arc_length.empty()) {
@@ -241,10 +179,7 @@ std::vector<FileCause> file_causes(const Scene& scene, const MeasuredShape& shap
     for (double& s : against.arc_length) s = check.length_m - s;
     causes.push_back({"the file's arc lengths count from the other end", against});
   }
-  causes.push_back({scene.grippers.size() == 1
-                        ? "the file has another origin, or the gripper is elsewhere"
-                        : "the file has another origin",
-                    shape, PoseFreedom::translation, 1});
+  causes.push_back({"", shape, PoseFreedom::translation, 1});
   add_units(shape, causes);
   add_pixels(scene, shape, causes);
   add_order(shape, check, causes);

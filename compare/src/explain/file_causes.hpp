@@ -11,7 +11,7 @@ namespace dlo::compare {
 
 /// A way in which a file may say a right shape wrongly.
 struct FileCause {
-  std::string words;
+  std::string words;    ///< a clause; empty if all that is wrong is found in laying the shape
   MeasuredShape shape;  ///< the shape, said rightly
   /// What is left of the frame to find out.
   PoseFreedom pose = PoseFreedom::known;
@@ -22,7 +22,31 @@ struct FileCause {
   std::string same_as = {};
 };
 
-/// All that can be wrong with a file, in a frame that is said to be the scene's.
+/// A unit in which files are that are said to be in metres.
+struct FileUnit {
+  const char* name;
+  double metres;
+};
+inline constexpr FileUnit file_units[] = {
+    {"mm", 1e-3}, {"cm", 1e-2}, {"inches", 0.0254}, {"feet", 0.3048}, {"km", 1e3}};
+
+/// The shape with its points and arc lengths times a factor.
+[[nodiscard]] MeasuredShape scaled(MeasuredShape shape, double factor);
+/// The shape in other axes.
+[[nodiscard]] MeasuredShape turned(MeasuredShape shape, const Eigen::Matrix3d& axes);
+
+/// Whether the points are clearly shorter than the rod.
+[[nodiscard]] bool is_short(double polyline_length, double length);
+
+/// What a shape lacks of the rod at its ends, a clause.
+/// @param s  where it lies on the rod [m];  @param points  [m], 3 x M
+[[nodiscard]] std::string missing_words(const std::vector<double>& s,
+                                        const Eigen::Matrix3Xd& points, double length);
+
+/// Where another origin is, a clause. @param way  from the file's points to the scene's [m]
+[[nodiscard]] std::string origin_words(const Eigen::Vector3d& way);
+
+/// All that can be wrong with a file, in a frame that is said to be the scene's; one at a time.
 [[nodiscard]] std::vector<FileCause> file_causes(const Scene& scene, const MeasuredShape& shape,
                                                  const ShapeCheck& check);
 

@@ -9,6 +9,7 @@
 
 #include "dlo/compare/deviation.hpp"
 #include "dlo/energy_model/polygon.hpp"
+#include "dlo/obstacle/body.hpp"
 #include "scene/reach.hpp"
 
 namespace dlo::compare {
@@ -43,8 +44,8 @@ Eigen::VectorXd rest_lengths(const Eigen::Matrix3Xd& points, double length) {
 
 class Chain {
  public:
-  Chain(const Scene& scene, const Shape& shape, ChainClamp clamp)
-      : scene_(scene), points_(shape.points), clamp_(clamp) {
+  Chain(const Scene& scene, const Shape& shape, ChainClamp clamp, LastPoint last)
+      : scene_(scene), points_(shape.points), clamp_(clamp), last_(last) {
     inner_ = rest_lengths(points_, scene.length);
     s_.push_back(0);
     for (const double L : inner_) s_.push_back(s_.back() + L);
@@ -69,7 +70,9 @@ class Chain {
     options.in_stages = false;
     const energy_model::PolygonResult rest = energy_model::solve_polygon(problem, start(), options);
     if (!energy_model::succeeded(rest.status)) return std::nullopt;
-    return points_ - rest.points.middleCols(before_, points_.cols());
+    Eigen::Matrix3Xd gaps = points_ - rest.points.middleCols(before_, points_.cols());
+    if (last_ == LastPoint::missing) gaps.rightCols<1>().setZero();
+    return gaps;
   }
 
   /// Sets its joints and their springs.
@@ -165,6 +168,14 @@ class Chain {
       });
       problem_.node_forces.col(nearest - s_.begin() + before_) += load.force;
     }
+    const double h = l / static_cast<double>(n);
+    for (const std::size_t i : obstacles_in_reach(scene_)) {
+      const Obstacle& obstacle = scene_.obstacles[i];
+      const bool yields = std::isfinite(obstacle.stiffness);
+      problem_.obstacles.push_back(
+          {obstacle.body, yields ? obstacle.stiffness * h : problem_.stretch_stiffness / h,
+           obstacle::samples_per_segment(obstacle.body, h)});
+    }
   }
 
   [[nodiscard]] Eigen::Matrix3Xd start() const {
@@ -177,6 +188,7 @@ class Chain {
   const Scene& scene_;
   const Eigen::Matrix3Xd& points_;
   ChainClamp clamp_;
+  LastPoint last_;
   Eigen::VectorXd inner_;  // rest lengths of the file's own segments
   std::vector<double> s_;  // of the file's points
   energy_model::PolygonProblem problem_;
@@ -270,16 +282,20 @@ std::string law_words(const OwnPolygon& chain) {
   return "";
 }
 
+std::string and_springs(const OwnPolygon& chain) {
+  const std::string law = law_words(chain);
+  return law.empty() ? "" : ", its springs EI/h and " + law;
+}
+
 std::vector<OwnPolygon> own_polygons(const Scene& scene, const Shape& shape, Springs springs,
-                                     std::optional<JointLaw> law) {
+                                     std::optional<JointLaw> law, LastPoint last) {
   const Eigen::Index segments = shape.points.cols() - 1;
   const bool plain = scene.sections.empty() && !scene.has_material_directors() &&
-                     !scene.holds_twist() && !scene.has_couples() &&
-                     obstacles_in_reach(scene).empty();
+                     !scene.holds_twist() && !scene.has_couples();
   if (!plain || segments < 4 || segments > most_segments) return {};
   std::vector<OwnPolygon> found;
   for (const ChainClamp clamp : {ChainClamp::hinge, ChainClamp::welded, ChainClamp::middle}) {
-    Chain chain(scene, shape, clamp);
+    Chain chain(scene, shape, clamp, last);
     if (!chain.exists()) continue;
     const std::optional<OwnPolygon> one = law ? with_law(chain, clamp, springs, *law)
                                               : with_best_law(chain, clamp, springs, scene.length);

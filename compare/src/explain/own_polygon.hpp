@@ -18,6 +18,14 @@ enum class Springs {
   fitted,      ///< that fit best
 };
 
+/// Of a file's points.
+enum class LastPoint {
+  there,
+  /// Where the last segment ends is no body's begin, as in MuJoCo's xpos: the last point is taken
+  /// for the chain's, wherever that is.
+  missing,
+};
+
 /// A chain of hinges in a scene, whose points a file may have.
 struct OwnPolygon {
   ChainClamp clamp = ChainClamp::hinge;
@@ -38,15 +46,19 @@ struct OwnPolygon {
 /// The words for a chain's springs; empty if the law does not show.
 [[nodiscard]] std::string law_words(const OwnPolygon& chain);
 
+/// What a chain's springs are, to go on with after its words; empty if the law does not show.
+[[nodiscard]] std::string and_springs(const OwnPolygon& chain);
+
 /// The chains that have as many hinges as a file has points, each at rest in the scene with a
 /// spring in each hinge: with a hinge at the clamp, with its first segment welded to it, and with
 /// the clamp in the middle of a segment, where the file's first segment is half a one. None where
-/// grippers are between the file's points or the scene has what a plain chain has not.
+/// grippers are between the file's points or the scene has what a plain chain has not. Obstacles
+/// push it as they push the rod.
 /// @param shape  in the scene's frame, along the whole rod
 /// @param law  of the springs; none: of those that are Hookean for small angles that with which a
 ///             chain comes nearest, springs linear in the angle if the law does not show
 [[nodiscard]] std::vector<OwnPolygon> own_polygons(
     const Scene& scene, const Shape& shape, Springs springs,
-    std::optional<energy_model::JointLaw> law = std::nullopt);
+    std::optional<energy_model::JointLaw> law = std::nullopt, LastPoint last = LastPoint::there);
 
 }  // namespace dlo::compare

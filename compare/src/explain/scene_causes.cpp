@@ -17,11 +17,6 @@ constexpr double degree = std::numbers::pi / 180;
 
 Eigen::VectorXd zeros(Eigen::Index count) { return Eigen::VectorXd::Zero(count); }
 
-bool is_pulled_by_weight_alone(const Scene& scene) {
-  return scene.loads.empty() && scene.distributed_loads.empty() && !scene.drag &&
-         scene.weight_per_length().norm() > 0;
-}
-
 SceneCause stiffness(const Scene& scene) {
   return {zeros(1), Eigen::VectorXd::Constant(1, 0.02), 1.5,
           [scene](const Eigen::VectorXd& p) {
@@ -237,6 +232,11 @@ SceneCause twist(const Scene& scene, std::size_t last) {
 }
 
 }  // namespace
+
+bool is_pulled_by_weight_alone(const Scene& scene) {
+  return scene.loads.empty() && scene.distributed_loads.empty() && !scene.drag &&
+         scene.weight_per_length().norm() > 0;
+}
 
 std::vector<SceneCause> scene_causes(const Scene& scene, const Shape& shape, double length_of_shape,
                                      bool flat) {

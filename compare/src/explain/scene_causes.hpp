@@ -23,6 +23,10 @@ struct SceneCause {
   bool other_state = false;
 };
 
+/// Whether nothing but its weight bends the rod, so that a stiffness times a number is the weight
+/// over it.
+[[nodiscard]] bool is_pulled_by_weight_alone(const Scene& scene);
+
 /// All that can be wrong with this scene, what takes longest last.
 /// @param shape     that it is held against, in the scene's frame
 /// @param length_of_shape  along its points [m]

@@ -51,6 +51,18 @@ double variance_between(const std::vector<ShapeEstimate>& estimates, double expe
   return high;
 }
 
+/// Of a point from a polyline [m^2].
+double squared_distance(const Eigen::Vector3d& point, const Eigen::Matrix3Xd& nodes) {
+  double least = std::numeric_limits<double>::infinity();
+  for (Eigen::Index k = 0; k + 1 < nodes.cols(); ++k) {
+    const Eigen::Vector3d way = nodes.col(k + 1) - nodes.col(k);
+    const Eigen::Vector3d gap = point - nodes.col(k);
+    const double share = std::clamp(gap.dot(way) / way.squaredNorm(), 0.0, 1.0);
+    least = std::min(least, (gap - share * way).squaredNorm());
+  }
+  return least;
+}
+
 /// Linear between its places, constant beyond them.
 double interpolated(const std::vector<double>& s, const std::vector<double>& value, double at) {
   const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, at);
@@ -125,28 +137,37 @@ std::optional<double> common_share(const std::vector<AcrossRod>& shapes) {
   return common / all;
 }
 
-std::optional<double> repeatability(const std::vector<Shape>& shapes) {
+std::optional<double> repeatability(const std::vector<Shape>& shapes, ArcLengths rule) {
   std::vector<std::vector<double>> arc_lengths;
   arc_lengths.reserve(shapes.size());
   for (const Shape& one : shapes) arc_lengths.push_back(one.arc_length);
   const std::optional<Range> range = common_range(arc_lengths);
   if (!range) return std::nullopt;
-  const auto count = static_cast<double>(shapes.size());
-  double squares = 0;
-  for (int k = 0; k < places; ++k) {
-    Eigen::Matrix3Xd points(3, std::ssize(shapes));
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-      const Shape& shape = shapes[static_cast<std::size_t>(i)];
-      for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        const Eigen::VectorXd row = shape.points.row(axis);
-        points(axis, i) =
-            interpolated(shape.arc_length, {row.data(), row.data() + row.size()}, range->at(k));
+  std::vector<Eigen::Matrix3Xd> at_places;
+  at_places.reserve(shapes.size());
+  Eigen::Matrix3Xd sum = Eigen::Matrix3Xd::Zero(3, places);
+  for (const Shape& shape : shapes) {
+    Eigen::Matrix3Xd points(3, places);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      const Eigen::VectorXd row = shape.points.row(axis);
+      const std::vector<double> values(row.begin(), row.end());
+      for (int k = 0; k < places; ++k) {
+        points(axis, k) = interpolated(shape.arc_length, values, range->at(k));
       }
     }
-    // To the mean of the others it is farther than to that of all by N / (N - 1).
-    squares += (points.colwise() - points.rowwise().mean()).squaredNorm();
+    sum += points;
+    at_places.push_back(std::move(points));
   }
-  return count / (count - 1) * std::sqrt(squares / (places * count));
+  const auto count = static_cast<double>(shapes.size());
+  double squares = 0;
+  for (const Eigen::Matrix3Xd& points : at_places) {
+    const Eigen::Matrix3Xd others = (sum - points) / (count - 1);
+    for (int k = 0; k < places; ++k) {
+      squares += rule == ArcLengths::file ? (points.col(k) - others.col(k)).squaredNorm()
+                                          : squared_distance(points.col(k), others);
+    }
+  }
+  return std::sqrt(squares / (places * count));
 }
 
 double beyond_chance(double share, std::size_t shapes) {

@@ -52,9 +52,11 @@ struct AcrossRod {
 /// that have less than half of their arc lengths in common.
 [[nodiscard]] std::optional<double> common_share(const std::vector<AcrossRod>& shapes);
 
-/// Distance of each shape from the mean of the others at equal arc lengths, RMS [m]; none of fewer
-/// than two, or of those that have less than half of their arc lengths in common.
-[[nodiscard]] std::optional<double> repeatability(const std::vector<Shape>& shapes);
+/// Distance of each shape from the mean of the others, as that of a rod is measured: at equal arc
+/// lengths by `file`, else to the nearest point of the mean, RMS [m]; none of fewer than two, or of
+/// those that have less than half of their arc lengths in common.
+[[nodiscard]] std::optional<double> repeatability(const std::vector<Shape>& shapes,
+                                                  ArcLengths rule);
 
 /// Between what chance gives, 0, and all of it, 1.
 [[nodiscard]] double beyond_chance(double share, std::size_t shapes);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "dlo/compare/error.hpp"
 #include "fit/shape_misfit.hpp"
@@ -21,6 +22,9 @@ constexpr double fixture_tolerance = 20 * std::numbers::pi / 180;
 constexpr double own_tolerance = 5 * std::numbers::pi / 180;
 /// Fewer numbers are chosen where they predict worse by no more than this share.
 constexpr double as_well = 0.02;
+/// Share by which numbers of single shapes have to lower the noise of a coordinate, as it is
+/// estimated with them, to be kept.
+constexpr double clearly_less_noise = 0.05;
 /// In lengths: no shape is measured more exactly, so predictions below it are alike.
 constexpr double exactly = 1e-5;
 /// Options that predict worse by no more than this share may be right too.
@@ -28,14 +32,18 @@ constexpr double nearly_as_well = 0.1;
 /// Terms in a row that predict no better, after which no more are tried.
 constexpr int most_vain_terms = 2;
 
-enum class Clamps { as_said, alike, own };
+enum class Clamps { as_said, alike, alike_but_for_a_scatter, own };
 
 struct Trial {
   MaterialFitOptions options;
   MaterialFit fit;
 
   [[nodiscard]] double prediction() const { return fit.prediction->rms_m; }
-  [[nodiscard]] std::size_t numbers() const { return fit.others.size(); }
+  /// Numbers with which other shapes are predicted: what is a shape's own says nothing of others.
+  [[nodiscard]] std::ptrdiff_t numbers() const {
+    return std::ranges::count_if(fit.others,
+                                 [](const FittedNumber& number) { return !number.shape; });
+  }
 };
 
 /// Whether something beside noise may be left.
@@ -53,13 +61,18 @@ class OptionsSearch {
   [[nodiscard]] MaterialFit run() {
     MaterialFitOptions as_said = with_all_outputs(options_of(0, Clamps::as_said));
     as_said.alternatives = options_.alternatives;
+    as_said.predict = false;
     plain_ = fit_material(scenes_, shapes_, as_said);
+    start_ = material_of(plain_, scenes_.front());
     if (!is_systematic(plain_)) {
+      if (options_.predict) plain_.prediction = plain_prediction();
       plain_.tried.push_back(described(as_said, plain_));
       return plain_;
     }
-    start_ = material_of(plain_, scenes_.front());
-    for (const Clamps clamps : {Clamps::as_said, Clamps::alike, Clamps::own}) try_terms(clamps);
+    for (const Clamps clamps :
+         {Clamps::as_said, Clamps::alike, Clamps::alike_but_for_a_scatter, Clamps::own}) {
+      try_terms(clamps);
+    }
     if (trials_.empty()) {
       throw ConvergenceError("calibrate: no fit came to an end with any options that were tried");
     }
@@ -81,7 +94,8 @@ class OptionsSearch {
                           .rms_m = fit.rms_m,
                           .youngs_modulus = fit.youngs_modulus,
                           .position_tolerance = options.position_tolerance,
-                          .shared_clamps = options.shared_clamps};
+                          .shared_clamps = options.shared_clamps,
+                          .direction_scatter = options.direction_scatter};
     if (fit.prediction) result.prediction_m = fit.prediction->rms_m;
     return result;
   }
@@ -121,7 +135,13 @@ class OptionsSearch {
     MaterialFitOptions options = options_of(terms, clamps);
     options.predict = true;
     try {
-      trials_.push_back({options, fit_material_from(scenes_, shapes_, options, start_)});
+      if (fits_a_wire(options)) {
+        trials_.push_back({options, fit_material_from(scenes_, shapes_, options, start_)});
+      } else {
+        MaterialFit plain = plain_;
+        plain.prediction = plain_prediction();
+        trials_.push_back({options, std::move(plain)});
+      }
     } catch (const ConvergenceError&) {
       return std::nullopt;
     } catch (const InputError&) {
@@ -131,17 +151,29 @@ class OptionsSearch {
     return trials_.back().prediction();
   }
 
+  /// Of the material alone.
+  [[nodiscard]] std::optional<Prediction> plain_prediction() const {
+    MaterialFitOptions options = options_of(0, Clamps::as_said);
+    options.predict = true;
+    return fit_material_from(scenes_, shapes_, options, start_).prediction;
+  }
+
   [[nodiscard]] MaterialFitOptions options_of(int terms, Clamps clamps) const {
     MaterialFitOptions options = options_;
     options.choose_options = options.alternatives = options.predict = false;
     options.chain_segments = options.profile_points = 0;
     options.chain_segment_lengths.clear();
     options.natural_curvature_terms = terms;
-    options.shared_clamps = clamps == Clamps::alike;
+    options.shared_clamps = clamps == Clamps::alike || clamps == Clamps::alike_but_for_a_scatter;
     if (clamps == Clamps::as_said) {
       options.direction_tolerance = options.position_tolerance = 0;
     } else if (!(options.direction_tolerance > 0)) {
       options.direction_tolerance = options.shared_clamps ? fixture_tolerance : own_tolerance;
+    }
+    if (clamps != Clamps::alike_but_for_a_scatter) {
+      options.direction_scatter = 0;
+    } else if (!(options.direction_scatter > 0)) {
+      options.direction_scatter = own_tolerance;
     }
     return options;
   }
@@ -151,7 +183,8 @@ class OptionsSearch {
     return std::max((1 + as_well) * prediction, exactly * scenes_.front().length);
   }
 
-  /// The one of fewest numbers among those that predict as well as any.
+  /// The one of fewest numbers among those that predict as well as any; with as many, the one with
+  /// the fewest of single shapes, unless more of them leave clearly less noise.
   [[nodiscard]] const Trial& best() const {
     const auto better = [](const Trial& a, const Trial& b) {
       return a.prediction() < b.prediction();
@@ -160,7 +193,12 @@ class OptionsSearch {
     const Trial* result = nullptr;
     for (const Trial& trial : trials_) {
       if (trial.prediction() > as_good_as(least)) continue;
-      if (result == nullptr || trial.numbers() < result->numbers()) result = &trial;
+      const bool leaves_less_noise =
+          result != nullptr && trial.numbers() == result->numbers() &&
+          trial.fit.noise_m < (1 - clearly_less_noise) * result->fit.noise_m;
+      if (result == nullptr || trial.numbers() < result->numbers() || leaves_less_noise) {
+        result = &trial;
+      }
     }
     return *result;
   }

@@ -9,6 +9,7 @@
 #include "fit/fitted_scene.hpp"
 #include "fit/wire_numbers.hpp"
 #include "least_squares/measured_shapes.hpp"
+#include "shape/arc_lengths.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -38,6 +39,16 @@ double distance_from_rod(const Scene& scene, const MeasuredShape& shape,
   return std::sqrt(measured.alignment(0, measured.solve(0, scene, nullptr)).mean_square);
 }
 
+/// A laid shape, by lengths along its own points if they are the whole rod: where on the rod they
+/// are nearest depends on what else is fitted.
+Shape by_its_own_lengths(Shape shape, double length) {
+  const std::vector<double> s = lengths_along(shape.points);
+  constexpr double whole = 0.97;
+  if (s.back() < whole * length) return shape;
+  for (std::size_t i = 0; i < s.size(); ++i) shape.arc_length[i] = s[i] * length / s.back();
+  return shape;
+}
+
 std::optional<double> repeatability_of(const std::vector<Scene>& scenes, const MaterialFit& fit) {
   if (!std::all_of(scenes.begin(), scenes.end(),
                    [&](const Scene& scene) { return are_alike(scene, scenes.front()); })) {
@@ -45,8 +56,13 @@ std::optional<double> repeatability_of(const std::vector<Scene>& scenes, const M
   }
   std::vector<Shape> shapes;
   shapes.reserve(fit.shapes.size());
-  for (const FittedShape& shape : fit.shapes) shapes.push_back(shape.alignment.shape);
-  return repeatability(shapes);
+  for (const FittedShape& fitted : fit.shapes) {
+    const Alignment& laid = fitted.alignment;
+    shapes.push_back(laid.arc_lengths == ArcLengths::file
+                         ? laid.shape
+                         : by_its_own_lengths(laid.shape, scenes.front().length));
+  }
+  return repeatability(shapes, fit.shapes.front().alignment.arc_lengths);
 }
 
 }  // namespace

@@ -151,6 +151,11 @@ void require_pairs(const std::vector<Scene>& scenes, const std::vector<MeasuredS
         "calibrate: the same clamps in all shapes, but nothing says how well they are known "
         "(allowed: with clamp angles or positions, as --clamp-angles \"5 deg\")");
   }
+  if (options.direction_scatter > 0 && !options.shared_clamps) {
+    throw InputError(
+        "calibrate: directions that scatter about shared ones, but none are shared (allowed: with "
+        "the same clamps in all shapes, --same-clamps)");
+  }
   if ((options.predict || options.choose_options.value_or(false)) &&
       shapes.size() < fewest_predicted) {
     throw InputError(
@@ -206,10 +211,9 @@ class MaterialFitter {
     }
   }
 
-  /// @param start  of a wire's numbers; none: where the material alone fits best
+  /// @param start  of steps to all numbers; none: where the material alone fits best
   [[nodiscard]] MaterialFit run(const std::optional<MaterialPoint>& start) {
-    MaterialFit fit =
-        start && fits_a_wire(options_) ? whole_wire(*start, misfit_(*start)) : all_numbers();
+    MaterialFit fit = start ? whole_wire(*start, misfit_(*start)) : all_numbers();
     fit.equilibria = measured_.solves();
     fit.evaluations = measured_.evaluations();
     return fit;
@@ -598,9 +602,9 @@ Calibration calibrate(std::vector<Scene> scenes, const std::vector<MeasuredShape
   for (const MeasuredShape& shape : shapes) result.files.push_back(shape.file);
   options.alternatives = true;
   if (!options.choose_options) {
-    const bool nothing_given = options.natural_curvature_terms == 0 &&
-                               options.direction_tolerance == 0 &&
-                               options.position_tolerance == 0 && !options.shared_clamps;
+    const bool nothing_given =
+        options.natural_curvature_terms == 0 && options.direction_tolerance == 0 &&
+        options.position_tolerance == 0 && options.roll_tolerance == 0 && !options.shared_clamps;
     options.choose_options = nothing_given && shapes.size() >= fewest_predicted;
   }
   result.fit = fit_material(result.scenes, shapes, options);

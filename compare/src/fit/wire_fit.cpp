@@ -5,9 +5,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <initializer_list>
+#include <numbers>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -27,6 +30,10 @@ namespace {
 constexpr double own_error = 1e-8;
 /// Longest step in log E: beyond it nothing is linear.
 constexpr double longest_log_step = 1;
+/// In log E from the scene's: another one fits best without the other numbers than with them.
+constexpr double far_away = 0.7;
+/// Last step of fits from which others go on, in standard deviations.
+constexpr double coarse_step = 0.1;
 /// Correlated errors tell less than as many independent ones, which counts beside what was known
 /// before. How much less is measured from the residuals of a fit that knows it: so often, and to so
 /// much of it.
@@ -36,31 +43,12 @@ constexpr double weight_tolerance = 0.1;
 constexpr double end_tolerance = 0.05;
 constexpr int most_ends = 6;
 
-/// With its first clamp's frame said, so that it goes on holding it when it is turned out of the
-/// scene's plane.
-Scene with_said_frame(Scene scene) {
-  Scene bent = scene;
-  bent.natural_strain.y() += 1 / scene.length;
-  const Eigen::Matrix3d frame = bent.first_frame();
-  Gripper* first = nullptr;
-  for (Gripper& gripper : scene.grippers) {
-    if (gripper.direction && (first == nullptr || gripper.at < first->at)) first = &gripper;
-  }
-  if (first->frame && first->frame->d1) return scene;
-  const double roll = first->frame ? first->frame->roll : 0;
-  first->frame = FrameHold{.d1 = frame.col(0), .roll = roll};
-  return scene;
-}
-
 /// Scenes whose numbers are fitted.
 std::vector<Scene> fitted_scenes(const std::vector<Scene>& scenes, const MeasuredShapes& measured,
                                  const MaterialFitOptions& options) {
-  std::vector<Scene> result = scenes;
-  if (options.natural_curvature_terms == 0 || !(options.direction_tolerance > 0)) return result;
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    if (!measured.is_flat(i)) result[i] = with_said_frame(std::move(result[i]));
-  }
-  return result;
+  std::vector<bool> flat;
+  for (std::size_t i = 0; i < scenes.size(); ++i) flat.push_back(measured.is_flat(i));
+  return with_said_frames(scenes, flat, options);
 }
 
 /// A shape's scene at some values of a wire's numbers.
@@ -84,7 +72,8 @@ std::vector<Unknown> unknowns_of(const std::vector<WireNumber>& numbers, int ter
   for (const WireNumber& number : numbers) {
     result.push_back({.stride = number.term < std::max(1, terms) ? number.stride : 0,
                       .shape = number.described.shape,
-                      .known_before = number.described.known_before});
+                      .known_before = number.described.known_before,
+                      .longest_step = number.longest_step});
   }
   result.front().longest_step = longest_log_step;
   return result;
@@ -99,7 +88,7 @@ class WireFitter {
         options_(options),
         density_(density),
         curvature_(1 + (density ? 1 : 0) + (options.torsional_stiffness ? 1 : 0)),
-        numbers_(wire_numbers(scenes, shapes, options, density)),
+        numbers_(wire_numbers(fitted_scenes(scenes, measured, options), shapes, options, density)),
         measured_(measured),
         scene_at_(scene_at(fitted_scenes(scenes, measured, options), numbers_)),
         rods_(measured, scene_at_, unknowns_of(numbers_, options.natural_curvature_terms)) {}
@@ -109,6 +98,7 @@ class WireFitter {
     values[0] = start.log_modulus;
     if (density_) values[1] = start.log_density;
     look_for_start(values);
+    look_for_modulus(values);
     fit_fewer_terms(values);
     fit_.emplace(rods_, values, steps());
     descend();
@@ -174,7 +164,7 @@ class WireFitter {
   /// without it has led.
   void fit_fewer_terms(Eigen::VectorXd& values) {
     GaussNewtonOptions coarse = steps();
-    coarse.last_step = 0.1;
+    coarse.last_step = coarse_step;
     for (int terms = 1; terms < options_.natural_curvature_terms; ++terms) {
       FittedRods rods(measured_, scene_at_, unknowns_of(numbers_, terms));
       rods.go_on_from(rods_.rods());
@@ -185,42 +175,95 @@ class WireFitter {
     }
   }
 
+  /// Each shape's numbers and its rod, those of some that come nearest to its points.
+  struct Nearest {
+    std::vector<double> squares;
+    FittedRods::Rods rods;
+    Eigen::VectorXd values;
+
+    [[nodiscard]] double sum() const {
+      return std::accumulate(squares.begin(), squares.end(), 0.0);
+    }
+  };
+
+  void take_nearer(Nearest& nearest, const FittedRods::State& state,
+                   const Eigen::VectorXd& values) const {
+    if (nearest.squares.empty()) {
+      nearest = {state.squares, state.rods, values};
+      return;
+    }
+    for (std::size_t i = 0; i < scenes_.size(); ++i) {
+      if (!(state.squares[i] < nearest.squares[i])) continue;
+      nearest.squares[i] = state.squares[i];
+      nearest.rods[i] = state.rods[i];
+      for (std::size_t k = 0; k < numbers_.size(); ++k) {
+        const auto number = static_cast<Eigen::Index>(k);
+        if (numbers_[k].described.shape == i) nearest.values[number] = values[number];
+      }
+    }
+  }
+
   /// A rod that is intrinsically curved may hang on the other side of its clamp, and the E that
   /// fits best without that may be far away. So mean curvatures all over what is likely are gone
-  /// through from both ends, each shape following its own equilibrium, with that E and the scene's;
-  /// each shape goes on from the one of the two that is nearer to its points.
+  /// through from both ends, each shape following its own equilibrium, with that E and the scene's,
+  /// and, where it is not known how the clamp holds the rod, with angles all around; each shape
+  /// goes on from the one that is nearest to its points.
   void look_for_start(Eigen::VectorXd& start) {
     if (options_.natural_curvature_terms == 0) return;
-    constexpr double turns[] = {8, 5, 3, 1.5, 0, -1.5, -3, -5, -8};
+    constexpr std::array turns = {8.0, 5.0, 3.0, 1.5, 0.0, -1.5, -3.0, -5.0, -8.0};
+    constexpr int angles = 6;
+    const bool turns_the_rod =
+        std::ranges::any_of(numbers_, [](const WireNumber& one) { return one.turns_the_rod; });
     const Eigen::VectorXd straight = start;
     double least = INFINITY;
     FittedRods::Rods nearest;
     for (const double log_modulus : {straight[0], 0.0}) {
-      std::vector<FittedRods::State> down;
-      rods_.go_on_from(FittedRods::Rods(scenes_.size()));
-      const auto at = [&](double turn) {
-        Eigen::VectorXd values = straight;
-        values[0] = log_modulus;
-        values[curvature_] = turn / scenes_.front().length;
-        return values;
-      };
-      for (const double turn : turns) down.push_back(rods_.state(at(turn)));
-      rods_.go_on_from(FittedRods::Rods(scenes_.size()));
-      for (std::size_t k = down.size(); k-- > 0;) {
-        const FittedRods::State up = rods_.state(at(turns[k]));
-        double sum = 0;
-        for (std::size_t i = 0; i < scenes_.size(); ++i) {
-          if (up.squares[i] < down[k].squares[i]) {
-            down[k].squares[i] = up.squares[i];
-            down[k].rods[i] = up.rods[i];
+      std::vector<Nearest> found(turns.size());
+      for (int angle = 0; angle < (turns_the_rod ? angles : 1); ++angle) {
+        const auto look_at = [&](std::size_t k) {
+          Eigen::VectorXd values = straight;
+          values[0] = log_modulus;
+          values[curvature_] = turns[k] / scenes_.front().length;
+          for (std::size_t i = 0; i < numbers_.size(); ++i) {
+            if (!numbers_[i].turns_the_rod) continue;
+            values[static_cast<Eigen::Index>(i)] = 2 * std::numbers::pi * angle / angles;
           }
-          sum += down[k].squares[i];
-        }
-        if (!(sum < least)) continue;
-        least = sum;
-        nearest = down[k].rods;
-        start = at(turns[k]);
+          take_nearer(found[k], rods_.state(values), values);
+        };
+        rods_.go_on_from(FittedRods::Rods(scenes_.size()));
+        for (std::size_t k = 0; k < turns.size(); ++k) look_at(k);
+        rods_.go_on_from(FittedRods::Rods(scenes_.size()));
+        for (std::size_t k = turns.size(); k-- > 0;) look_at(k);
       }
+      // From the last one, as of two that are as near.
+      for (auto one = found.rbegin(); one != found.rend(); ++one) {
+        if (!(one->sum() < least)) continue;
+        least = one->sum();
+        nearest = one->rods;
+        start = one->values;
+      }
+    }
+    rods_.go_on_from(std::move(nearest));
+  }
+
+  /// Of a rod that is held otherwise than was said, the E that fits best with what was said may be
+  /// far away: steps begin at the scene's E as well.
+  void look_for_modulus(Eigen::VectorXd& values) {
+    if (options_.natural_curvature_terms > 0 || !(std::abs(values[0]) > far_away)) return;
+    GaussNewtonOptions coarse = steps();
+    coarse.last_step = coarse_step;
+    const Eigen::VectorXd start = values;
+    double least = INFINITY;
+    FittedRods::Rods nearest(scenes_.size());
+    for (const double log_modulus : {start[0], 0.0}) {
+      Eigen::VectorXd from = start;
+      from[0] = log_modulus;
+      rods_.go_on_from(FittedRods::Rods(scenes_.size()));
+      GaussNewton fit(rods_, from, coarse);
+      if (!fit.descend() || !(fit.variance() < least)) continue;
+      least = fit.variance();
+      nearest = fit.rods();
+      values = fit.values();
     }
     rods_.go_on_from(std::move(nearest));
   }
@@ -388,7 +431,11 @@ class WireFitter {
 
   /// What was found of clamps that are alike in all scenes.
   [[nodiscard]] std::vector<ClampCorrection> clamp_corrections() const {
-    const std::vector<Gripper> found = scene_at_(0, fit_->values()).grippers;
+    Eigen::VectorXd shared = fit_->values();
+    for (std::size_t k = 0; k < numbers_.size(); ++k) {
+      if (numbers_[k].described.shape) shared[static_cast<Eigen::Index>(k)] = 0;
+    }
+    const std::vector<Gripper> found = scene_at_(0, shared).grippers;
     std::vector<ClampCorrection> result;
     for (std::size_t i = 0; i < found.size(); ++i) {
       const Gripper& said = scenes_.front().grippers[i];
@@ -505,7 +552,8 @@ class WireFitter {
 
 bool fits_a_wire(const MaterialFitOptions& options) {
   return options.torsional_stiffness || options.natural_curvature_terms > 0 ||
-         options.direction_tolerance > 0 || options.position_tolerance > 0;
+         options.direction_tolerance > 0 || options.position_tolerance > 0 ||
+         options.roll_tolerance > 0;
 }
 
 MaterialFit fit_wire(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -23,6 +24,11 @@ constexpr double natural_turns_before = 10;
 /// What is known of GJ / EI before, as standard deviation of its logarithm: a factor of ten.
 constexpr double torsion_before = 2.3;
 
+/// Farther a roll is not linear.
+constexpr double longest_roll_step = 0.5;
+/// A roll that is known better than this is looked for from what the scene says alone.
+constexpr double unknown_roll = 0.7;
+
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
 /// The plane in which a shape's gripper may be off: the scene's, if nothing was measured out of it.
@@ -34,9 +40,12 @@ std::optional<Eigen::Vector3d> plane_of(const Scene& scene, const MeasuredShape&
 bool twists(const Scene& scene) { return scene.twisting_stiffness() > 0 && !scene.planar(); }
 
 void add_natural_curvature(std::vector<WireNumber>& numbers, const std::vector<Scene>& scenes,
-                           int terms) {
+                           const MaterialFitOptions& options) {
   const bool planar =
+      options.roll_tolerance == 0 &&
       std::all_of(scenes.begin(), scenes.end(), [](const Scene& scene) { return scene.planar(); });
+  // Where nothing is known of how the rod is turned, its mean curvature is about d2.
+  const bool turned = options.roll_tolerance > unknown_roll;
   for (const Scene& scene : scenes) {
     if (scene.rest_shape) {
       throw InputError(fmt::format(
@@ -49,9 +58,9 @@ void add_natural_curvature(std::vector<WireNumber>& numbers, const std::vector<S
     (void)bent.first_frame();
   }
   const double length = scenes.front().length;
-  for (int term = 0; term < terms; ++term) {
+  for (int term = 0; term < options.natural_curvature_terms; ++term) {
     for (const int axis : {2, 1}) {
-      if (planar && axis == 1) continue;
+      if (axis == 1 && (planar || (turned && term == 0))) continue;
       const Eigen::Vector2d about = axis == 1 ? Eigen::Vector2d::UnitX() : Eigen::Vector2d::UnitY();
       numbers.push_back({{.name = fmt::format("natural curvature{}, P_{}",
                                               planar ? "" : fmt::format(" about d{}", axis), term),
@@ -124,6 +133,49 @@ void add_positions(std::vector<WireNumber>& numbers, const Scene& scene,
   }
 }
 
+/// The first clamp along the rod; null: there is none.
+Gripper* first_clamp(Scene& scene) {
+  Gripper* first = nullptr;
+  for (Gripper& gripper : scene.grippers) {
+    if (gripper.direction && (first == nullptr || gripper.at < first->at)) first = &gripper;
+  }
+  return first;
+}
+
+/// Whether its first clamp is turned about its direction shows in no shape.
+bool is_alike_all_around(const Scene& scene, const MaterialFitOptions& options) {
+  return options.natural_curvature_terms == 0 && !scene.has_material_directors();
+}
+
+void add_rolls(std::vector<WireNumber>& numbers, Scene scene, std::size_t shape,
+               const MaterialFitOptions& options) {
+  const Gripper* const first = first_clamp(scene);
+  bool is_first = true;
+  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+    if (!scene.grippers[i].frame) continue;
+    const bool turns_the_rod = &scene.grippers[i] == first;
+    const bool is_gauge = std::exchange(is_first, false) && is_alike_all_around(scene, options);
+    if (is_gauge) continue;
+    numbers.push_back(
+        {.described = {.name = fmt::format("roll of gripper {}", i + 1),
+                       .unit = "rad",
+                       .known_before = options.roll_tolerance,
+                       .shape = shape},
+         .stride = 1e-3,
+         .change = [i](Scene& changed, double value) { changed.grippers[i].frame->roll += value; },
+         .longest_step = longest_roll_step,
+         .turns_the_rod = turns_the_rod && options.roll_tolerance > unknown_roll});
+  }
+}
+
+/// Unit, across a direction and as level as that allows.
+Eigen::Vector3d level_across(const Eigen::Vector3d& direction, const Eigen::Vector3d& gravity) {
+  const Eigen::Vector3d level = gravity.cross(direction);
+  constexpr double upright = 1e-6;
+  return level.norm() > upright * gravity.norm() ? Eigen::Vector3d(level.normalized())
+                                                 : Eigen::Vector3d(direction.unitOrthogonal());
+}
+
 /// What is wrong with clamps is the same in all scenes only if they are the same.
 void require_like_clamps(const std::vector<Scene>& scenes) {
   const std::vector<Gripper>& first = scenes.front().grippers;
@@ -162,6 +214,24 @@ std::string why_unforced(const Scene& scene) {
       scene.stiffness().name);
 }
 
+std::vector<Scene> with_said_frames(std::vector<Scene> scenes, const std::vector<bool>& flat,
+                                    const MaterialFitOptions& options) {
+  const bool turned = options.direction_tolerance > 0 || options.roll_tolerance > 0;
+  if (options.natural_curvature_terms == 0 || !turned) return scenes;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    Gripper* const first = first_clamp(scenes[i]);
+    if (flat[i] || first == nullptr || (first->frame && first->frame->d1)) continue;
+    const double roll = first->frame ? first->frame->roll : 0;
+    Scene bent = scenes[i];
+    bent.natural_strain.y() += 1 / bent.length;
+    const bool is_open = options.roll_tolerance > 0 && !bent.plane_normal();
+    const Eigen::Vector3d d1 = is_open ? level_across(*first->direction, scenes[i].gravity)
+                                       : Eigen::Vector3d(bent.first_frame().col(0));
+    first->frame = FrameHold{.d1 = d1, .roll = roll};
+  }
+  return scenes;
+}
+
 std::vector<WireNumber> wire_numbers(const std::vector<Scene>& scenes,
                                      const std::vector<MeasuredShape>& shapes,
                                      const MaterialFitOptions& options, bool density) {
@@ -178,7 +248,7 @@ std::vector<WireNumber> wire_numbers(const std::vector<Scene>& scenes,
   }
   if (options.torsional_stiffness) add_torsion(numbers, scenes);
   if (options.natural_curvature_terms > 0) {
-    add_natural_curvature(numbers, scenes, options.natural_curvature_terms);
+    add_natural_curvature(numbers, scenes, options);
   }
   const std::size_t sets = options.shared_clamps ? 1 : scenes.size();
   if (options.shared_clamps) require_like_clamps(scenes);
@@ -190,6 +260,25 @@ std::vector<WireNumber> wire_numbers(const std::vector<Scene>& scenes,
     }
     if (options.position_tolerance > 0) {
       add_positions(numbers, scenes[i], own, normal, options.position_tolerance);
+    }
+  }
+  if (options.direction_scatter > 0) {
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+      add_directions(numbers, scenes[i], i, plane_of(scenes[i], shapes[i]),
+                     options.direction_scatter);
+    }
+  }
+  if (options.roll_tolerance > 0) {
+    const std::size_t others = numbers.size();
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+      if (!plane_of(scenes[i], shapes[i])) add_rolls(numbers, scenes[i], i, options);
+    }
+    if (numbers.size() == others) {
+      throw InputError(
+          fmt::format("{}: how clamps hold the rod about its tangent is in no shape of this scene "
+                      "(allowed: two clamps that hold the rod's frame, roll or frame, or natural "
+                      "curvature of a rod in space)",
+                      scenes.front().file));
     }
   }
   return numbers;

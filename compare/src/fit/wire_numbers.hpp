@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ struct WireNumber {
   double stride = 0;  ///< of differences, in its unit; 0: it is in no shape
   std::function<void(Scene&, double)> change;
   int term = 0;  ///< of natural curvature; 0 of all other numbers
+  double longest_step = std::numeric_limits<double>::infinity();  ///< beyond it nothing is linear
+  /// How the first clamp holds a rod whose own frame shows: all angles are to be tried.
+  bool turns_the_rod = false;
 };
 
 /// How the shapes of a fit lie on its rods. A photograph does not see the third coordinate: a fit
@@ -41,11 +45,20 @@ struct WireNumber {
 /// The same but for its weight, without which it has the same ones with every density / E.
 [[nodiscard]] bool has_forces_beside_weight(const Scene& scene);
 
+/// Scenes in which the first clamp says where d1 is, so that it goes on holding it when it is
+/// turned out of the scene's plane: where the scene leaves it open but for `roll_tolerance`, d1 is
+/// level.
+/// @param flat  whose shape was measured in the scene's plane, which says where d1 is
+[[nodiscard]] std::vector<Scene> with_said_frames(std::vector<Scene> scenes,
+                                                  const std::vector<bool>& flat,
+                                                  const MaterialFitOptions& options);
+
 /// All that is to be found: first the logarithm of E over the scenes', then, with `density`, of the
 /// density, if asked for of GJ / EI, natural curvature, then each shape's own directions and
-/// positions.
+/// positions and rolls.
+/// @param scenes  with_said_frames()
 /// @throws InputError if natural curvature is asked for where no clamp or plane says about which
-/// axes, or GJ where no scene twists the rod
+/// axes, GJ where no scene twists the rod, or rolls where none is in a shape
 [[nodiscard]] std::vector<WireNumber> wire_numbers(const std::vector<Scene>& scenes,
                                                    const std::vector<MeasuredShape>& shapes,
                                                    const MaterialFitOptions& options, bool density);

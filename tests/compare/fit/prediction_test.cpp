@@ -189,8 +189,18 @@ TEST(Prediction, RepeatabilityIsTheDistanceToTheMeanOfTheOthers) {
     shapes.push_back(shape);
   }
   // Of three at 0, d and -d: 0, 3/2 d and 3/2 d.
-  EXPECT_NEAR(repeatability(shapes).value_or(0), 0.01 * std::sqrt(4.5 / 3), 1e-12);
-  EXPECT_FALSE(repeatability({shapes.front()}).has_value());
+  EXPECT_NEAR(repeatability(shapes, ArcLengths::file).value_or(0), 0.01 * std::sqrt(4.5 / 3),
+              1e-12);
+  EXPECT_FALSE(repeatability({shapes.front()}, ArcLengths::file).has_value());
+  // What slid along the rod is not seen by nearest points, what is across it as before.
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const Eigen::ArrayXd along = Eigen::Map<const Eigen::ArrayXd>(s.data(), 30);
+    shapes[i].points.row(0).array() +=
+        0.05 * static_cast<double>(i) * (along * (1 - along)).transpose();
+  }
+  EXPECT_GT(repeatability(shapes, ArcLengths::file).value_or(0), 0.0125);
+  EXPECT_NEAR(repeatability(shapes, ArcLengths::nearest).value_or(0), 0.01 * std::sqrt(4.5 / 3),
+              1e-12);
 }
 
 TEST(Prediction, RefusesWhatItCannotDo) {

@@ -31,16 +31,25 @@ struct MaterialFitOptions {
   double direction_tolerance = 0;
   /// The same of the grippers' positions along each axis [m].
   double position_tolerance = 0;
+  /// How well it is known how clamps hold the rod about its tangent: standard deviation [rad]. If it
+  /// is > 0 each shape's own rolls are fitted, in space: of clamps that hold the rod's frame, but
+  /// for the first one of a rod whose own frame is in no shape, where only the twist between clamps
+  /// is; and with natural curvature also of the first clamp of scenes that do not say its d1. It is
+  /// then in the scene's plane at roll 0, and level where there is none.
+  double roll_tolerance = 0;
   /// Clamps are misaligned alike in all shapes, as in one fixture: the numbers of their directions
   /// and positions are shared (MaterialFit::clamps). Else each shape has its own.
   bool shared_clamps = false;
+  /// With `shared_clamps`: how far each shape's own directions are from the shared ones: standard
+  /// deviation about each axis across [rad]. If it is > 0 they are fitted as well.
+  double direction_scatter = 0;
   /// Each shape in turn is left out of the fit, and predicted (MaterialFit::prediction).
   bool predict = false;
-  /// Terms of natural curvature, and clamps as said, misaligned alike in all shapes or each on its
-  /// own, are fitted as they predict shapes best that are left out (MaterialFit::tried); nothing is
-  /// tried where the fit without them leaves nothing systematic. The numbers above say up to how
-  /// many terms (three at least) and how well clamps are known (if they do not, 20 degrees of those
-  /// that are alike, 5 of each shape's own). Three shapes or more. None: calibrate() does so if
+  /// Terms of natural curvature, and clamps as said, misaligned alike in all shapes, alike but for a
+  /// scatter, or each on its own, are fitted as they predict shapes best that are left out
+  /// (MaterialFit::tried); nothing is tried where the fit without them leaves nothing systematic.
+  /// The numbers above say up to how many terms (three at least) and how well clamps are known (if
+  /// they do not, 20 degrees of those that are alike, 5 of each shape's own). Three shapes or more. None: calibrate() does so if
   /// there are as many and none of these numbers is given, fit_material() does not.
   std::optional<bool> choose_options;
   /// Where residuals are systematic, and none of the above is fitted, it is tried what would remove
@@ -100,6 +109,7 @@ struct FitAlternative {
   FittedValue youngs_modulus;       ///< as MaterialFit::youngs_modulus
   double position_tolerance = 0;    ///< as in MaterialFitOptions [m]
   bool shared_clamps = false;       ///< as in MaterialFitOptions
+  double direction_scatter = 0;     ///< as in MaterialFitOptions [rad]
   /// Prediction::rms_m, if it was looked at [m].
   std::optional<double> prediction_m = std::nullopt;
 };
@@ -160,7 +170,7 @@ struct SimulatorParameter {
 struct Prediction {
   std::vector<double> shapes_m;  ///< of each shape, by the best fit to the others
   double rms_m = 0;              ///< of all points
-  /// Of each shape from the mean of the others at equal arc lengths, as near as any rod could
+  /// Of each shape from the mean of the others, measured as from a rod, as near as any rod could
   /// predict it; none of scenes whose grippers differ by more than 2 % of the length.
   std::optional<double> repeatability_m;
 };
@@ -223,8 +233,9 @@ struct MaterialFit {
   /// Of systematic residuals (correlated along the rod, or common to all shapes): what would leave
   /// 0.7 of them or less, the least first. The interval of E holds if nothing else is wrong.
   std::vector<FitAlternative> alternatives;
-  /// With `choose_options`: what was tried, first what was chosen: the fewest numbers among those
-  /// that predict as well as any (2 %). The interval of E is widened to what those say that predict
+  /// With `choose_options`: what was tried, first what was chosen: the fewest numbers of all shapes
+  /// among those that predict as well as any (2 %), then the fewest of single shapes, unless more
+  /// of them leave 5 % less noise. The interval of E is widened to what those say that predict
   /// nearly as well (10 %). The only one, without a prediction, if nothing systematic was left.
   std::vector<FitAlternative> tried;
   std::vector<FittedNumber> others;  ///< those that were asked for, the wire's first
@@ -236,7 +247,7 @@ struct MaterialFit {
   std::optional<ScatterBetweenShapes> scatter;  ///< if there is one
   /// Of chains with as many segments as were asked for, in each different scene; none where E is
   /// not identified, or the scene has what a plain chain has not (twist, sections, natural
-  /// curvature, obstacles, a gripper between its joints).
+  /// curvature, a gripper between its joints).
   std::vector<ChainSprings> chains;
   bool noise_is_estimated = true;   ///< else it was given
   int degrees_of_freedom = 0;       ///< numbers measured less numbers fitted

@@ -1,0 +1,62 @@
+#include "explain/joint_causes.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+#include <vector>
+
+#include "explain/file_axes.hpp"
+#include "shape/arc_lengths.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// What a file's polyline may be of the rod, in the unit that it is in.
+constexpr double shortest = 0.5;
+constexpr double longest = 1.25;
+
+/// Units in which the shape is as long as the rod, or a part of it; the metre's words are empty.
+std::vector<std::pair<std::string, double>> units_for(const MeasuredShape& shape, double length) {
+  const double share = lengths_along(shape.points).back() / length;
+  std::vector<std::pair<std::string, double>> units;
+  const auto add = [&](std::string words, double metres) {
+    if (share * metres > shortest && share * metres < longest) units.emplace_back(words, metres);
+  };
+  add("", 1);
+  for (const FileUnit& unit : file_units) {
+    add(fmt::format("the file is in {}, not in metres", unit.name), unit.metres);
+  }
+  return units;
+}
+
+}  // namespace
+
+void look_at_joint_causes(const Scene& scene, const MeasuredShape& shape,
+                          const std::function<void(const FileCause&)>& look) {
+  std::vector<FileAxes> all_axes = other_axes(scene.gravity, shape.points);
+  all_axes.insert(all_axes.begin(), {Eigen::Matrix3d::Identity(), ""});
+  for (const auto& [unit, metres] : units_for(shape, scene.length)) {
+    const MeasuredShape in_metres = scaled(shape, metres);
+    const bool lacks_ends = is_short(lengths_along(in_metres.points).back(), scene.length);
+    for (const FileAxes& axes : all_axes) {
+      for (const bool part : {false, true}) {
+        if (part && !lacks_ends) continue;
+        for (const PoseFreedom pose : {PoseFreedom::known, PoseFreedom::translation}) {
+          const bool moved = pose == PoseFreedom::translation;
+          const int faults = (unit.empty() ? 0 : 1) + (axes.words.empty() ? 0 : 1) +
+                             (part ? 1 : 0) + (moved ? 1 : 0);
+          if (faults < 2) continue;
+          const char* const both = unit.empty() || axes.words.empty() ? "" : " and ";
+          look({.words = unit + both + axes.words,
+                .shape = turned(in_metres, axes.axes),
+                .pose = pose,
+                .numbers = faults - 1 + (moved ? 1 : 0),
+                .part = part,
+                .same_as = joint_cause});
+        }
+      }
+    }
+  }
+}
+
+}  // namespace dlo::compare
