@@ -14,12 +14,12 @@ using Eigen::Index;
 using Eigen::Vector3d;
 
 /// Lengths of a chain's segments are the model's to this share.
-constexpr double alike = 0.02;
+constexpr double like_the_model = 0.02;
 
 bool are_starts(const Eigen::Matrix3Xd& points, double segment) {
   const Index n = points.cols() - 1;
   const Eigen::VectorXd h = (points.rightCols(n) - points.leftCols(n)).colwise().norm();
-  return (h.array() - segment).abs().maxCoeff() <= alike * segment;
+  return (h.array() - segment).abs().maxCoeff() <= like_the_model * segment;
 }
 
 /// The end of a last segment that a gripper holds.
@@ -27,7 +27,7 @@ std::optional<Vector3d> held_end(const Scene& scene, const Vector3d& last, doubl
   for (const Gripper& gripper : scene.grippers) {
     const bool at_end = std::abs(gripper.at - scene.length) < 1e-6 * scene.length;
     const double way = (gripper.position - last).norm();
-    if (at_end && std::abs(way - segment) <= alike * segment) return gripper.position;
+    if (at_end && std::abs(way - segment) <= like_the_model * segment) return gripper.position;
   }
   return std::nullopt;
 }

@@ -15,7 +15,7 @@
 namespace dlo::compare {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
+constexpr double one_degree = std::numbers::pi / 180;
 /// No model has larger numbers, and no product of two of them overflows.
 constexpr double largest_number = 1e12;
 
@@ -25,7 +25,7 @@ std::string toml_vector(const Eigen::Vector3d& v) {
   return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x(), v.y(), v.z());
 }
 
-MjcfAttributes::MjcfAttributes(const XmlFile& xml) : xml_(xml), angle_(degree) {
+MjcfAttributes::MjcfAttributes(const XmlFile& xml) : xml_(xml), angle_(one_degree) {
   const pugi::xml_node root = xml.root();
   if (std::string_view(root.name()) != "mujoco") {
     xml_.fail(root, "is no scene (allowed: a scene as TOML, or MJCF, whose element is <mujoco>)");
@@ -46,7 +46,7 @@ MjcfAttributes::MjcfAttributes(const XmlFile& xml) : xml_(xml), angle_(degree) {
 
 void MjcfAttributes::read_compiler(const pugi::xml_node& compiler) {
   if (compiler.attribute("angle")) {
-    angle_ = choice(compiler, "angle", {"degree", "radian"}, "") == 1 ? 1 : degree;
+    angle_ = choice(compiler, "angle", {"degree", "radian"}, "") == 1 ? 1 : one_degree;
   }
   (void)choice(compiler, "coordinate", {"local"}, "");
   if (const auto order = text(compiler, "eulerseq", "")) {

@@ -204,7 +204,7 @@ class ChainFinder {
       const Vector3d t = body_of(segment).pose.linear() * segment.direction();
       if (before.norm() > 0 && before.cross(t).norm() > straight) chain_.is_curved = true;
       if (before.norm() > 0 && before.dot(t) < 0) {
-        fail(segment, "turns by more than a right angle from the one before (allowed: less)");
+        fail(segment, "is rotated by more than a right angle from the one before (allowed: less)");
       }
       before = t;
     }

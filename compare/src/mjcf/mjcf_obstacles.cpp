@@ -86,7 +86,7 @@ std::string mjcf_obstacles(const XmlFile& xml, const MjcfWorld& world, const Mjc
   const std::set<std::string> apart = excluded(xml, world, chain);
   const MjcfBody& last = world.bodies[chain.segments.back().body];
   std::string text;
-  int left_out = 0;
+  int neglected = 0;
   for (const MjcfBody& body : world.bodies) {
     if (body.moves || apart.contains(body.name)) continue;
     const bool is_segment = std::ranges::any_of(chain.segments, [&](const MjcfSegment& segment) {
@@ -103,7 +103,7 @@ std::string mjcf_obstacles(const XmlFile& xml, const MjcfWorld& world, const Mjc
                (hold.position - pose.translation()).norm() < reach_of(geom) + chain.diameter;
       });
       if (holds_it) {
-        ++left_out;
+        ++neglected;
         continue;
       }
       const std::string shape = shape_text(geom, pose);
@@ -119,9 +119,9 @@ std::string mjcf_obstacles(const XmlFile& xml, const MjcfWorld& world, const Mjc
       if (friction > 0) append(text, "friction = {:.17g}\n", friction);
     }
   }
-  if (left_out > 0) {
-    notes.push_back(fmt::format("{} geom{} around a held place {} left out", left_out,
-                                left_out == 1 ? "" : "s", left_out == 1 ? "is" : "are"));
+  if (neglected > 0) {
+    notes.push_back(fmt::format("{} geom{} around a held place {} neglected", neglected,
+                                neglected == 1 ? "" : "s", neglected == 1 ? "is" : "are"));
   }
   return text;
 }

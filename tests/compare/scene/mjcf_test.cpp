@@ -19,11 +19,11 @@
 namespace dlo::compare {
 namespace {
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
-Scene model(const std::string& name) { return load_scene(DLO_DATA "/mujoco/" + name); }
+Scene mjcf_model(const std::string& name) { return load_scene(DLO_DATA "/mujoco/" + name); }
 
-std::string text_of(const std::string& name) {
+std::string mjcf_text(const std::string& name) {
   std::ifstream stream(DLO_DATA "/mujoco/" + name);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
@@ -42,7 +42,7 @@ void expect_near(double value, double expected) {
 }
 
 TEST(Mjcf, ACompositeCableHasTheStiffnessOfItsPlugin) {
-  const Scene scene = model("composite.xml");
+  const Scene scene = mjcf_model("composite.xml");
   EXPECT_EQ(scene.name, "composite cable");
   expect_near(scene.length, 1);
   expect_near(scene.bending_stiffness(), 120e6 * pi / 4 * std::pow(0.004, 4));
@@ -61,7 +61,7 @@ TEST(Mjcf, ACompositeCableHasTheStiffnessOfItsPlugin) {
 }
 
 TEST(Mjcf, AChainOfBallJointsHasItsSpringsTimesASegment) {
-  const Scene scene = model("chain.xml");
+  const Scene scene = mjcf_model("chain.xml");
   const double EI = 120e6 * pi / 64 * std::pow(0.008, 4);
   expect_near(scene.bending_stiffness(), EI);
   expect_near(*scene.torsional_stiffness, EI);
@@ -70,7 +70,7 @@ TEST(Mjcf, AChainOfBallJointsHasItsSpringsTimesASegment) {
 }
 
 TEST(Mjcf, HingesFramesAndRadiansAreRead) {
-  const Scene scene = model("hinges.xml");
+  const Scene scene = mjcf_model("hinges.xml");
   expect_near(scene.length, 16 * 0.04);
   expect_near(scene.bending_stiffness(), 0.05 * 0.04);
   EXPECT_FALSE(scene.torsional_stiffness);
@@ -80,7 +80,7 @@ TEST(Mjcf, HingesFramesAndRadiansAreRead) {
   EXPECT_LT((*scene.grippers[0].direction - upwards).norm(), 1e-9);
   EXPECT_TRUE(scene.obstacles.empty());
   // What the geoms collide with is an obstacle.
-  std::string text = text_of("hinges.xml");
+  std::string text = mjcf_text("hinges.xml");
   for (std::size_t at = text.find(" contype=\"0\""); at != std::string::npos;
        at = text.find(" contype=\"0\"")) {
     text.erase(at, std::string(" contype=\"0\" conaffinity=\"0\"").size());
@@ -92,7 +92,7 @@ TEST(Mjcf, HingesFramesAndRadiansAreRead) {
 }
 
 TEST(Mjcf, ConstraintsAreGrippers) {
-  const Scene scene = model("two_constraints.xml");
+  const Scene scene = mjcf_model("two_constraints.xml");
   ASSERT_EQ(scene.grippers.size(), 2U);
   const Gripper& clamp = scene.grippers[0];
   const Gripper& pin = scene.grippers[1];
@@ -104,7 +104,7 @@ TEST(Mjcf, ConstraintsAreGrippers) {
   expect_near(pin.position.x(), 0.405094);
   EXPECT_FALSE(scene.naturally_bent());  // flat
   const Scene curved =
-      parse_scene(changed(text_of("two_constraints.xml"), "\"true\"/>\n      </instance>",
+      parse_scene(changed(mjcf_text("two_constraints.xml"), "\"true\"/>\n      </instance>",
                           "\"false\"/></instance>"),
                   "curved.xml");
   // An arc of 2.2 rad.
@@ -116,7 +116,7 @@ TEST(Mjcf, AWeldIsWhereItsRelposePutsTheBody) {
   // The hand is in the first body's frame at x = 0.1, turned by 90 degrees about z: that body's x
   // is the hand's -y, so that it is at (0, 0.1, 0) in the world, and points to -y.
   const Scene scene =
-      parse_scene(changed(text_of("two_constraints.xml"), weld,
+      parse_scene(changed(mjcf_text("two_constraints.xml"), weld,
                           "<weld body1=\"B_first\" body2=\"hand\" relpose=\"0.1 0 0 1 0 0 1\"/>"),
                   "moved.xml");
   EXPECT_LT((scene.grippers.at(0).position - Eigen::Vector3d(0, 0.1, 0)).norm(), 1e-9);
@@ -124,7 +124,7 @@ TEST(Mjcf, AWeldIsWhereItsRelposePutsTheBody) {
 }
 
 TEST(Mjcf, CapsCountAsMassAndNotAsLength) {
-  const Scene scene = model("capsule_caps.xml");
+  const Scene scene = mjcf_model("capsule_caps.xml");
   expect_near(scene.length, 12 * 0.04);
   expect_near(scene.mass(), 12 * 1000 * (pi * 1e-4 * 0.04 + 4 * pi / 3 * 1e-6));
   expect_near(scene.bending_stiffness(), 0.2 * 0.04);
@@ -133,7 +133,7 @@ TEST(Mjcf, CapsCountAsMassAndNotAsLength) {
 
 /// As MuJoCo 3.14 has left the chain of data/mujoco/chain.xml: data/shapes/mujoco_right.csv.
 TEST(Mjcf, MuJoCosOwnPointsPassWithoutTheirLastEnd) {
-  const Scene scene = model("chain.xml");
+  const Scene scene = mjcf_model("chain.xml");
   MeasuredShape shape = load_shape(DLO_DATA "/shapes/mujoco_right.csv");
   ASSERT_EQ(shape.points.cols(), 21);
   const Eigen::Vector3d end = shape.points.col(20);
@@ -197,7 +197,7 @@ TEST(Mjcf, WhatARodCannotSayIsNamed) {
       {"two_constraints.xml", "site2=\"hook\"", "site2=\"S_first\"", {"with itself"}},
   };
   for (const Refused& bad : cases) {
-    const std::string text = changed(text_of(bad.file), bad.piece, bad.other);
+    const std::string text = changed(mjcf_text(bad.file), bad.piece, bad.other);
     try {
       (void)parse_scene(text, "mine.xml");
       ADD_FAILURE() << "accepted: " << bad.other;
