@@ -70,4 +70,4 @@ install(DIRECTORY compare/python/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}/co
   COMPONENT command)
 install(FILES data/materials.toml data/effective_modulus.csv
   DESTINATION ${dlo_data_dir} COMPONENT command)
-install(DIRECTORY data/scenes data/shapes data/suite DESTINATION ${dlo_data_dir} COMPONENT command)
+install(DIRECTORY data/scenes data/shapes data/mujoco data/suite DESTINATION ${dlo_data_dir} COMPONENT command)

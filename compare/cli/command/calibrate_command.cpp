@@ -118,7 +118,10 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
     const std::size_t of = std::min(i, scenes.size() - 1);
     options.shape_options.require_likely_unit(shapes.back(), scenes[of].length);
   }
-  for (const compare::Scene& scene : scenes) warn_of_friction(scene);
+  for (const compare::Scene& scene : scenes) {
+    say_assumptions(scene);
+    warn_of_friction(scene);
+  }
   using compare::Dimension;
   const ChainLayout chain = chain_layout(options);
   const compare::MaterialFitOptions fit_options{

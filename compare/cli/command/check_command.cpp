@@ -112,8 +112,13 @@ void add_check(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "check", "how far a shape of your own simulator or camera is from the energy model");
   const auto options = std::make_shared<CheckOptions>();
-  command->add_option("SCENE", options->scene, "scene file (TOML)")->required();
-  command->add_option("--shape", options->shape, "CSV, JSON or legacy VTK polyline")
+  command
+      ->add_option("SCENE", options->scene,
+                   "scene file (TOML), or a MuJoCo model of a cable (MJCF)")
+      ->required();
+  command
+      ->add_option("--shape", options->shape,
+                   "CSV, JSON, VTK polyline or NumPy array (FILE.npz:KEY)")
       ->type_name("FILE")
       ->required();
   command->add_option(

@@ -55,6 +55,7 @@ void run(const CompareOptions& options) {
     ProgressBar bar("compare");
     for (const std::string& path : options.scenes) {
       const compare::Scene& scene = scenes.emplace_back(options.overrides.load(path));
+      say_assumptions(scene);
       if (options.output.is(Format::csv)) warn_of_polygons(scene);
       comparisons.push_back(compare::compare(
           scene, solve, plan,

@@ -103,6 +103,7 @@ void run(const SolveOptions& options) {
   require_format_for(options);
   options.plot.require_drawable(options.output);
   const compare::Scene scene = options.overrides.load(options.scene);
+  say_assumptions(scene);
   const auto model = compare::from_name<compare::Model>(options.model);
   constexpr int text_samples = 11;
   int samples = options.samples;

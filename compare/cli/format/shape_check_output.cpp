@@ -28,6 +28,39 @@ const char* rule_text(compare::ArcLengths rule) {
   return "nearest points, so differences along the rod do not show";
 }
 
+/// What was derived of a simulator's model.
+void add_model(std::string& out, const compare::Scene& scene) {
+  const compare::ModelChain& model = *scene.model;
+  const Eigen::Vector3d& g = scene.gravity;
+  append(out,
+         "  model           {}: {} segments of {:.4g} m, l = {:.4g} m\n"
+         "                  mass {:.4g} kg, EI = {:.4g} N m^2, ",
+         compare::display(model.words), model.segments,
+         scene.length / static_cast<double>(model.segments), scene.length, scene.mass(),
+         scene.bending_stiffness());
+  if (scene.torsional_stiffness) append(out, "GJ = {:.4g} N m^2, ", *scene.torsional_stiffness);
+  append(out, "gravity [{:g}, {:g}, {:g}] m/s^2\n", g.x(), g.y(), g.z());
+  for (const compare::Gripper& gripper : scene.grippers) {
+    append(out, "                  {} at s = {:.4g} m\n", gripper.direction ? "clamp" : "pin",
+           gripper.at);
+  }
+  for (const std::string& note : model.notes) {
+    append(out, "                  ({})\n", compare::display(note));
+  }
+}
+
+/// The same for other programs.
+Json model_json(const compare::Scene& scene) {
+  return {{"made_from", scene.model->words},
+          {"segments", scene.model->segments},
+          {"length_m", scene.length},
+          {"mass_kg", scene.mass()},
+          {"bending_stiffness_Nm2", scene.bending_stiffness()},
+          {"torsional_stiffness_Nm2",
+           scene.torsional_stiffness ? Json(*scene.torsional_stiffness) : Json()},
+          {"notes", scene.model->notes}};
+}
+
 void add_friction(std::string& out, const compare::FrictionCheck& friction) {
   append(out, "  neglected       friction that the scene has: all above is without it\n");
   const auto needed = [&] {
@@ -93,8 +126,12 @@ std::string shape_check_text(const CheckPage& page) {
   const compare::Alignment& a = c.alignment;
   const std::vector<double>& s = c.reference.arc_length;
   append(out, "{}   Gamma = {:.4g}\n", compare::display(c.scene), c.gamma);
+  if (scene.model) add_model(out, scene);
   append(out, "  shape           {}: {} points, {}\n", compare::display(c.file), s.size(),
          range_text(a, scene.length));
+  for (const std::string& note : report.notes) {
+    append(out, "                  ({})\n", compare::display(note));
+  }
   if (!c.direction_is_clear) append(out, "                  (the other direction fits as well)\n");
   append(out, "  arc lengths     {}\n", rule_text(a.arc_lengths));
   append(out,
@@ -166,6 +203,8 @@ Json shape_check_json(const compare::CheckResult& report) {
                  {"shape", c.file},
                  {"gamma", c.gamma},
                  {"points", s.size()}};
+  if (report.scene.model) result["model"] = model_json(report.scene);
+  if (!report.notes.empty()) result["notes"] = report.notes;
   result.update(to_json(c.alignment));
   result["direction_is_clear"] = c.direction_is_clear;
   result["turn_is_clear"] = c.turn_is_clear;

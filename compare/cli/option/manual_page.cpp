@@ -111,7 +111,7 @@ Scenes are explained by the comments of the file that
 writes.
 Shapes are CSV
 .Pq columns x, y, z and perhaps s ,
-JSON, or legacy VTK polylines.
+JSON, VTK polylines or NumPy arrays.
 Results are written whole or not at all; devices, pipes and links stay what they are.
 An output that is also an input is refused.
 .Sh EXIT STATUS

@@ -52,6 +52,11 @@ void warn_of_no_twist(const compare::Scene& scene, const std::string& study) {
   say("{}: the grippers hold twist, which {} neglects", scene.file, study);
 }
 
+void say_assumptions(const compare::Scene& scene) {
+  if (!scene.model) return;
+  for (const std::string& note : scene.model->notes) say("{}: {}", scene.file, note);
+}
+
 void warn_of_friction(const compare::Scene& scene) {
   if (!compare::friction_in_reach(scene)) return;
   say("{}: an obstacle in reach has friction, which all models neglect", scene.file);

@@ -58,6 +58,9 @@ class PlanOptions {
   compare::PlanOptions plan_;
 };
 
+/// Says on standard error what a scene that was made from a simulator's model takes for what.
+void say_assumptions(const compare::Scene& scene);
+
 /// Says on standard error that no model has the friction of an obstacle in reach.
 void warn_of_friction(const compare::Scene& scene);
 

@@ -22,9 +22,9 @@
 namespace dlo::python {
 namespace {
 
-SharedScene scene_from(const toml::table& root, const std::string& file,
-                       const MaterialsFile& materials) {
-  SceneData data{compare::read_scene(root, file, materials_of(materials)), {}};
+SharedScene scene_from(const compare::SceneSource& source, const MaterialsFile& materials) {
+  SceneData data{compare::read_scene(source, materials_of(materials)), {}};
+  const toml::table& root = source.root;
   if (const toml::array* obstacles = root["obstacle"].as_array()) {
     for (const toml::node& obstacle : *obstacles) {
       const bool axis = obstacle.as_table()->at_path("touches").value_or("") == std::string("axis");
@@ -36,9 +36,9 @@ SharedScene scene_from(const toml::table& root, const std::string& file,
 
 py::tuple parse_scene(const std::string& text, const std::string& file,
                       const MaterialsFile& materials) {
-  const toml::table root = compare::parse_toml(text, file);
-  SharedScene scene = scene_from(root, file, materials);
-  return py::make_tuple(std::move(scene), to_python(root));
+  const compare::SceneSource source = compare::parse_scene_source(text, file);
+  SharedScene scene = scene_from(source, materials);
+  return py::make_tuple(std::move(scene), to_python(source.root));
 }
 
 std::string toml_text(const py::dict& document) {
@@ -185,7 +185,7 @@ void bind_scene(py::module_& module) {
   module.def(
       "read_scene",
       [](const py::dict& document, const std::string& file, const MaterialsFile& materials) {
-        return scene_from(to_toml(document, ""), file, materials);
+        return scene_from({to_toml(document, ""), file, file, std::nullopt}, materials);
       },
       py::arg("document"), py::arg("file"), py::arg("materials"));
   module.def("parse_scene", &parse_scene, py::arg("text"), py::arg("file"), py::arg("materials"));

@@ -51,7 +51,8 @@ compare::MeasuredShape measured(const py::object& points, const py::object& arc_
           "arc_length: given besides the name of a file (allowed: the file's own column s)");
     }
     const auto path = points.cast<std::string>();
-    return compare::parse_shape(compare::read_file(path), compare::valid_utf8(path));
+    return compare::parse_shape(compare::read_file(compare::file_of_shape(path)),
+                                compare::valid_utf8(path));
   }
   return compare::shape_of(
       points_from(points, name),

@@ -113,12 +113,16 @@ std::string shell_word(const std::string& word) {
   return quoted + "'";
 }
 
-std::string quoted_piece(std::string_view piece) {
+std::string printable_piece(std::string_view piece) {
   constexpr std::size_t longest = 40;
   std::string shown(piece.substr(0, longest));
   std::replace_if(
       shown.begin(), shown.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return fmt::format("\"{}{}\"", shown, piece.size() > longest ? "..." : "");
+  return piece.size() > longest ? shown + "..." : shown;
+}
+
+std::string quoted_piece(std::string_view piece) {
+  return fmt::format("\"{}\"", printable_piece(piece));
 }
 
 }  // namespace dlo::compare

@@ -31,7 +31,10 @@ namespace dlo::compare {
 /// control characters or no UTF-8.
 [[nodiscard]] std::string shell_word(const std::string& word);
 
-/// A piece of a file for a message: short, in quotes, printable.
+/// A piece of a file for a message: short, printable.
+[[nodiscard]] std::string printable_piece(std::string_view piece);
+
+/// The same in quotes.
 [[nodiscard]] std::string quoted_piece(std::string_view piece);
 
 /// Formats onto the end of a text.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/number.hpp"
+#include "explain/segment_starts.hpp"
 #include "scene/reach.hpp"
 
 namespace dlo::compare {
@@ -77,11 +78,13 @@ std::string other_stiffness_within(const CheckResult& result) {
       modulus.ratio, modulus.rms_m * 1e3, at_E * 1e3);
 }
 
-CheckResult check(const Scene& scene, const MeasuredShape& shape, const CheckRequest& request) {
+CheckResult check(const Scene& scene, const MeasuredShape& given, const CheckRequest& request) {
+  const MeasuredShape shape = with_last_end(scene, given);
   CheckResult result{.scene = scene,
                      .check = check_shape(scene, shape, request.shape),
                      .tolerance = request.tolerance.value_or(default_tolerance(scene.length)),
-                     .pose = request.shape.pose};
+                     .pose = request.shape.pose,
+                     .notes = shape.notes};
   if (friction_in_reach(scene)) result.friction = check_friction(scene, result.check);
   result.judgement = judge_with_chains(scene, result.check, result.tolerance);
   const bool is_near = judge(result.check, result.tolerance).pass;

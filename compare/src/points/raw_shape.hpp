@@ -15,6 +15,7 @@ struct RawShape {
   std::vector<double> arc_length;         ///< one per point, or none
   std::vector<long> lines;  ///< of the points in the file; none where a format has no lines
   bool in_metres = false;   ///< the file itself says so
+  std::vector<std::string> notes = {};  ///< what was taken for what, for people
 };
 
 /// @throws InputError if `count` is above most_shape_points. @param where  "file" or "file:line"

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "base/number.hpp"
@@ -18,12 +19,19 @@ constexpr std::size_t named_columns = std::size(column_names);
 constexpr std::size_t first_of_d1 = 4;
 constexpr const char* columns_allowed =
     "(allowed: x,y or x,y,z or x,y,z,s, or a header with these names in any order, besides d1_x, "
-    "d1_y, d1_z, and node, id, index or point)";
+    "d1_y, d1_z, and node, id, index or point, beside which further columns are not read)";
 
 /// Position of the named ones among the columns.
 struct Columns {
   std::size_t count = 0;
   std::array<std::optional<std::size_t>, named_columns> of;
+  std::string note = {};  ///< on what is not read
+};
+
+/// A line with fields.
+struct Row {
+  long line;
+  std::vector<std::string_view> fields;
 };
 
 /// Of a number that a row is known by. Points are in the order of their rows.
@@ -43,36 +51,99 @@ char separator_of(std::string_view line) {
   return '\0';
 }
 
+/// No table of nodes comes near it.
+constexpr std::size_t most_columns = 64;
+
+/// Up to most_columns, and one more where there are more.
 std::vector<std::string_view> split_fields(std::string_view line, char separator) {
   std::vector<std::string_view> fields;
   while (true) {
     const std::size_t end = separator == '\0' ? line.find_first_of(" \t") : line.find(separator);
     fields.push_back(trimmed_field(line.substr(0, end)));
-    if (end == std::string_view::npos) return fields;
+    if (end == std::string_view::npos || fields.size() > most_columns) return fields;
     line.remove_prefix(end + 1);
     if (separator != '\0') continue;
     line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
   }
 }
 
-Columns columns_without_header(std::size_t count, const std::string& where) {
-  if (count < 2 || count > 4) {
+/// Whether the fourth column is the arc length of points in the first three: it grows, or falls, by
+/// their distances or a little more, in their unit or in metres.
+bool has_arc_length(const std::vector<std::array<double, 4>>& rows) {
+  constexpr double shortest = 0.99;
+  constexpr double longest = 1.5;
+  constexpr double units[] = {1, 1e-2, 1e-3};
+  return std::any_of(std::begin(units), std::end(units), [&](double unit) {
+    const bool growing = rows[1][3] > rows[0][3];
+    for (std::size_t i = 1; i < rows.size(); ++i) {
+      const std::array<double, 4>& a = rows[i - 1];
+      const std::array<double, 4>& b = rows[i];
+      const double chord = unit * std::hypot(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+      const double way = growing ? b[3] - a[3] : a[3] - b[3];
+      if (!(way >= shortest * chord && way <= longest * chord)) return false;
+    }
+    return true;
+  });
+}
+
+/// Whether rows without a header begin with numbers of nodes: distinct integers; where there are
+/// four columns, which may be x, y, z and s, counted from 0 or 1.
+bool begin_with_nodes(const std::vector<Row>& rows) {
+  if (rows.size() < 2 || rows.front().fields.size() < 4) return false;
+  std::vector<long> nodes;
+  std::vector<std::array<double, 4>> starts;
+  for (const Row& row : rows) {
+    const std::optional<long> node = as_number<long>(row.fields.front());
+    if (!node || row.fields.size() < 4) return false;
+    nodes.push_back(*node);
+    starts.emplace_back();
+    for (std::size_t k = 0; k < 4; ++k) {
+      starts.back()[k] = shape_number(row.fields[k]).value_or(NAN);
+    }
+  }
+  const bool is_counted =
+      (nodes.front() == 0 || nodes.front() == 1) &&
+      std::ranges::adjacent_find(nodes, [](long a, long b) { return b != a + 1; }) == nodes.end();
+  if (rows.front().fields.size() == 4) return is_counted && !has_arc_length(starts);
+  std::ranges::sort(nodes);
+  return std::ranges::adjacent_find(nodes) == nodes.end();
+}
+
+Columns columns_without_header(const std::vector<Row>& rows, const std::string& where) {
+  const std::size_t count = rows.front().fields.size();
+  Columns columns{.count = count};
+  const bool nodes = begin_with_nodes(rows);
+  if (count > most_columns || (!nodes && (count < 2 || count > 4))) {
     throw InputError(
         fmt::format("{}: {} column{} {}", where, count, count == 1 ? "" : "s", columns_allowed));
   }
-  Columns columns{.count = count};
-  for (std::size_t i = 0; i < count; ++i) columns.of[i] = i;
+  const std::size_t first = nodes ? 1 : 0;
+  const std::size_t taken = nodes ? 3 : count;
+  for (std::size_t i = 0; i < taken; ++i) columns.of[i] = first + i;
+  if (!nodes) return columns;
+  columns.note = fmt::format("a table of nodes: its columns are node, x, y, z{}",
+                             count > 4 ? ", and further ones, which are not read" : "");
   return columns;
 }
 
 Columns columns_of_header(const std::vector<std::string_view>& fields, const std::string& where) {
   Columns columns{.count = fields.size()};
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    std::string name(fields[i]);
-    std::transform(name.begin(), name.end(), name.begin(),
+  std::vector<std::string> names;
+  for (const std::string_view field : fields) {
+    names.emplace_back(field);
+    std::transform(names.back().begin(), names.back().end(), names.back().begin(),
                    [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+  }
+  const bool has_nodes = std::ranges::find_first_of(names, label_names) != names.end();
+  std::string unread;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const std::string& name = names[i];
     if (std::ranges::find(label_names, name) != std::end(label_names)) continue;
     const auto* found = std::find(std::begin(column_names), std::end(column_names), name);
+    if (found == std::end(column_names) && has_nodes) {
+      unread += (unread.empty() ? "" : ", ") + quoted_piece(fields[i]);
+      continue;
+    }
     if (found == std::end(column_names)) {
       throw InputError(
           fmt::format("{}: unknown column {} {}", where, quoted_piece(fields[i]), columns_allowed));
@@ -91,6 +162,9 @@ Columns columns_of_header(const std::vector<std::string_view>& fields, const std
   if (of_d1 % 3 != 0) {
     throw InputError(fmt::format(
         "{}: {} of the columns d1_x, d1_y, d1_z (allowed: all of them, or none)", where, of_d1));
+  }
+  if (!unread.empty()) {
+    columns.note = fmt::format("a table of nodes: the columns {} are not read", unread);
   }
   return columns;
 }
@@ -122,30 +196,40 @@ void add_row(const std::vector<std::string_view>& fields, const Columns& columns
   require_point_count(raw.points.size(), where);
 }
 
-}  // namespace
-
-RawShape read_csv_shape(std::string_view text, const std::string& file) {
-  RawShape raw;
-  std::optional<Columns> columns;
+/// Lines but for blank ones and remarks.
+std::vector<Row> rows_of(std::string_view text) {
+  std::vector<Row> rows;
   char separator = '\0';
   for (long number = 1; !text.empty(); ++number) {
     const std::size_t end = text.find('\n');
     const std::string_view line = trimmed_field(text.substr(0, end));
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
     if (line.empty() || line.front() == '#') continue;
-    const std::string where = fmt::format("{}:{}", file, number);
-    if (!columns) separator = separator_of(line);
-    const std::vector<std::string_view> fields = split_fields(line, separator);
-    if (!columns) {
-      const bool header = std::none_of(fields.begin(), fields.end(), [](std::string_view field) {
-        return shape_number(field).has_value();
-      });
-      columns =
-          header ? columns_of_header(fields, where) : columns_without_header(fields.size(), where);
-      if (header) continue;
-    }
-    add_row(fields, *columns, where, number, raw);
+    if (rows.empty()) separator = separator_of(line);
+    rows.push_back({number, split_fields(line, separator)});
+    // One more than is allowed, beside a header, is refused where it is.
+    if (rows.size() > static_cast<std::size_t>(most_shape_points) + 1) break;
   }
+  return rows;
+}
+
+}  // namespace
+
+RawShape read_csv_shape(std::string_view text, const std::string& file) {
+  RawShape raw;
+  const std::vector<Row> rows = rows_of(text);
+  if (rows.empty()) return raw;
+  const std::vector<std::string_view>& first = rows.front().fields;
+  const std::string where = fmt::format("{}:{}", file, rows.front().line);
+  const bool header = std::none_of(first.begin(), first.end(), [](std::string_view field) {
+    return shape_number(field).has_value();
+  });
+  const Columns columns =
+      header ? columns_of_header(first, where) : columns_without_header(rows, where);
+  for (std::size_t i = header ? 1 : 0; i < rows.size(); ++i) {
+    add_row(rows[i].fields, columns, fmt::format("{}:{}", file, rows[i].line), rows[i].line, raw);
+  }
+  if (!columns.note.empty()) raw.notes.push_back(columns.note);
   return raw;
 }
 

@@ -8,6 +8,7 @@
 #include "base/quote.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
+#include "points/polyline.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -40,7 +41,7 @@ class VtkReader {
       }
     }
     if (points.points.empty()) fail("no POINTS");
-    return order.empty() ? points : ordered(points, order);
+    return order.empty() ? points : in_order(points, order);
   }
 
  private:
@@ -205,24 +206,7 @@ class VtkReader {
   }
 
   void append(const std::vector<std::size_t>& cell, std::vector<std::size_t>& order) const {
-    if (cell.size() < 2) fail("a line of fewer than two points");
-    if (!order.empty() && cell.front() != order.back()) {
-      fail("several separate lines (allowed: one polyline, or lines that follow on)");
-    }
-    order.insert(order.end(), cell.begin() + (order.empty() ? 0 : 1), cell.end());
-    require_point_count(order.size(), fmt::format("{}:{}", file_, line_));
-  }
-
-  static RawShape ordered(const RawShape& points, const std::vector<std::size_t>& order) {
-    RawShape result;
-    result.in_metres = points.in_metres;
-    for (const std::size_t i : order) {
-      result.points.push_back(points.points[i]);
-      result.lines.push_back(points.lines[i]);
-      if (!points.arc_length.empty()) result.arc_length.push_back(points.arc_length[i]);
-      if (!points.d1.empty()) result.d1.push_back(points.d1[i]);
-    }
-    return result;
+    join_cell(cell, order, fmt::format("{}:{}", file_, line_));
   }
 
   std::string_view rest_;

@@ -4,14 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
+#include <system_error>
 
 #include "base/input_file.hpp"
+#include "decode/xml.hpp"
 #include "dlo/compare/error.hpp"
 #include "points/raw_shape.hpp"
 #include "points/read_csv.hpp"
 #include "points/read_json.hpp"
+#include "points/read_npy.hpp"
 #include "points/read_vtk.hpp"
+#include "points/read_vtk_xml.hpp"
+#include "points/shape_name.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -131,18 +137,17 @@ double arc_length_unit(const RawShape& raw, const std::string& file, double unit
 }
 
 RawShape read_any_shape(std::string_view text, const std::string& file, double unit) {
+  if (text.starts_with(npy_magic)) return read_npy_shape(text, file);
+  if (text.starts_with(zip_magic)) return read_npz_shape(text, file);
   text = after_byte_order_mark(text);
   const std::size_t start = text.find_first_not_of(" \t\r\n");
   if (start == std::string_view::npos) {
-    throw InputError(
-        fmt::format("{}: empty (allowed: a shape as CSV, JSON or legacy VTK polyline)", file));
+    throw InputError(fmt::format(
+        "{}: empty (allowed: a shape as CSV, JSON, a VTK polyline or a NumPy array)", file));
   }
   const std::string_view content = text.substr(start);
   if (content.starts_with("# vtk")) return read_vtk_shape(text, file);
-  if (content.starts_with("<")) {
-    throw InputError(fmt::format(
-        "{}: XML (allowed: CSV, JSON or a VTK polyline in the legacy ASCII format)", file));
-  }
+  if (looks_like_xml(content)) return read_vtk_xml_shape(text, file);
   if (content.front() == '[' || content.front() == '{') return read_json_shape(text, file, unit);
   return read_csv_shape(text, file);
 }
@@ -165,6 +170,7 @@ MeasuredShape checked(const RawShape& raw, const std::string& file, double unit)
   }
   const double arc_metres = arc_length_unit(raw, file, metres);
   for (const double s : raw.arc_length) shape.arc_length.push_back(arc_metres * s);
+  shape.notes = raw.notes;
   return shape;
 }
 
@@ -191,8 +197,13 @@ MeasuredShape shape_of(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
   return checked(raw, name, 1);
 }
 
+std::string file_of_shape(const std::string& name) {
+  std::error_code unknown;
+  return std::filesystem::exists(name, unknown) ? name : shape_name(name).file;
+}
+
 MeasuredShape load_shape(const std::string& path, double unit) {
-  return parse_shape(read_file(path), path, unit);
+  return parse_shape(read_file(file_of_shape(path)), path, unit);
 }
 
 }  // namespace dlo::compare

@@ -363,7 +363,7 @@ MeasuredShape read_rest_points(StrictTable& rod, const std::string& scene_file) 
       "frames, d1_x,d1_y,d1_z, or rows [[x, y, z], ..])";
   if (!rod.is_array(key)) {
     const std::string name = rod.text(key);
-    return parse_shape(read_beside(rod, key, name, scene_file, allowed), name);
+    return parse_shape(read_beside(rod, key, file_of_shape(name), scene_file, allowed), name);
   }
   constexpr std::size_t most = 10'000;
   const Eigen::MatrixXd rows = rod.points(key, most);

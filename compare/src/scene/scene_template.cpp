@@ -198,7 +198,9 @@ SceneTemplate::SceneTemplate(const std::string& text, std::string name,
   for (const Material& material : known_materials) {
     all += fmt::format("\n{} {} {}", material.name, material.youngs_modulus, material.density);
   }
-  toml::table root = parse_toml(text, name);
+  SceneSource source = parse_scene_source(text, name);
+  toml::table& root = source.root;
+  name = source.where;
   const auto points = root["rod"]["rest_shape"].value_exact<std::string>();
   if (points && !folder.empty()) {
     root["rod"].as_table()->insert_or_assign("rest_shape",

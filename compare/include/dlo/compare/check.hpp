@@ -35,6 +35,7 @@ struct CheckResult {
   std::optional<Explanation> supersedes_modulus;  ///< what explains it better than any stiffness
   std::optional<FrictionCheck> friction;          ///< where an obstacle in reach has friction
   PoseFreedom pose = PoseFreedom::known;          ///< what was unknown of the shape's frame
+  std::vector<std::string> notes;                 ///< what of the shape was taken for what
 
   /// Within the tolerance.
   [[nodiscard]] bool passes() const { return judgement.pass; }

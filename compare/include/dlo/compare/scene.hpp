@@ -8,6 +8,7 @@
 
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/material.hpp"
+#include "dlo/compare/model_chain.hpp"
 #include "dlo/compare/rest_shape.hpp"
 #include "dlo/compare/trajectory.hpp"
 #include "dlo/energy_model/drag.hpp"
@@ -185,6 +186,7 @@ struct Scene {
   std::vector<Obstacle> obstacles;                 ///< may be empty
   ForceModelSettings force_model;                  ///< as the file has it
   TrackRates track;                                ///< as the file has it
+  std::optional<ModelChain> model;                 ///< that the scene was made from
 
   [[nodiscard]] double cross_section() const;  ///< A [m^2]; 0 if its sizes are not known
   /// I / A of it about d1 and d2 [m^2]; 0 likewise.

@@ -12,7 +12,9 @@
 
 namespace dlo::compare {
 
-/// Reads a scene. @param file  its name, for messages and Scene::file
+/// Reads a scene: TOML, or a MuJoCo model (MJCF) of one cable, whose rod, grippers and obstacles
+/// are made a scene's; Scene::model says what was assumed.
+/// @param file  its name, for messages and Scene::file
 /// @throws InputError naming file, line, key, value and what is allowed
 [[nodiscard]] Scene parse_scene(const std::string& text, const std::string& file,
                                 const std::vector<Material>& known_materials = materials());

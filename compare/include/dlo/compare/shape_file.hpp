@@ -13,25 +13,35 @@ struct MeasuredShape {
   Eigen::Matrix3Xd points;         ///< in the file's order [m], 3 x M, neighbours distinct
   std::vector<double> arc_length;  ///< the file's own, growing or falling [m], M; empty without
   Eigen::Matrix3Xd d1 = {};        ///< of the rod's frames there, of norm 1, 3 x M; empty without
+  std::vector<std::string> notes = {};  ///< what was taken for what, for people
 };
 
 /// Most points that a shape file may have.
 inline constexpr long most_shape_points = 100'000;
 
-/// Reads a shape; the content says which of three formats it is.
+/// Reads a shape; the content says which format it is.
 ///     CSV: x,y or x,y,z or x,y,z,s a line, or any order of these under a header with their names
 ///          (s: arc length, in the unit of the points or in metres, whichever is not less than a
 ///          fifth of the polyline). Fields are separated by commas, or else by semicolons, tabs or
 ///          blanks; blank lines and lines that begin with # are skipped. Under a header d1_x,
-///          d1_y, d1_z too.
+///          d1_y, d1_z too. A table of nodes is node,x,y,z a line and whatever else, which is not
+///          read: under a header that names them, or without one where the first column is the
+///          nodes' numbers (integers; in a table of four columns counted from 0 or 1, with a
+///          fourth that is no arc length).
 ///     JSON: [[x, y, z], ...], or an object with `points_m` and, if known, `arc_length_m` as `dlo
 ///          solve` writes it; `points` and `arc_length` are in the unit that is given; `d1`,
 ///          vectors as points.
 ///     VTK: legacy, ASCII, DATASET POLYDATA with POINTS and one polyline in LINES (or several that
 ///          follow on from each other); without LINES the points in their order. The point data
 ///          arc_length_m of a FIELD, as `dlo solve` writes it; such a file is in metres. Its d1.
+///          Of the XML formats VTP and VTU likewise, their arrays as ASCII, base64 or appended,
+///          plain or packed by zlib.
+///     NumPy: an array M x 2 or M x 3, or an archive with one; of several the one that the name
+///          chooses, FILE.npz:KEY, and of frames x M x 3 the one at FILE.npy:INDEX or
+///          FILE.npz:KEY:INDEX, from 0 or, negative, from the end.
 /// A missing z is zero.
-/// @param file  its name, for messages;  @param unit  what the file's numbers are in [m]
+/// @param file  its name, for messages and to choose an array;
+/// @param unit  what the file's numbers are in [m]
 /// @throws InputError naming file, line (point, in JSON), what is wrong and what is allowed; two
 /// points at least, all finite and within 1e6 m, neighbours distinct, s strictly growing or
 /// falling, d1 of norm 1 within 1e-3 and across the chords within 5 degrees and what these bend by
@@ -46,7 +56,11 @@ inline constexpr long most_shape_points = 100'000;
     const Eigen::Ref<const Eigen::Matrix3Xd>& points, const std::vector<double>& arc_length,
     const std::string& name, const Eigen::Ref<const Eigen::Matrix3Xd>& d1 = Eigen::Matrix3Xd());
 
-/// Reads a shape file. @throws InputError as parse_shape, or if it cannot be read
+/// The file that a shape's name is of: without :KEY and :INDEX, unless a file has that name.
+[[nodiscard]] std::string file_of_shape(const std::string& name);
+
+/// Reads a shape file. @param path  a file, or an array of it as above @throws InputError as
+/// parse_shape, or if it cannot be read
 [[nodiscard]] MeasuredShape load_shape(const std::string& path, double unit = 1);
 
 }  // namespace dlo::compare

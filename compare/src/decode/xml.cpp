@@ -1,0 +1,85 @@
+#include "decode/xml.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "base/input_file.hpp"
+#include "base/quote.hpp"
+#include "dlo/compare/error.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Bodies of a chain are nested, so that it is a chain of as many; those who follow elements by
+/// recursion need it.
+constexpr int deepest_xml = 1000;
+
+/// A document type, or elements too deep; nothing if there are none.
+struct Inspector : pugi::xml_tree_walker {
+  bool for_each(pugi::xml_node& node) override {
+    const bool deep = depth() > deepest_xml;
+    if (node.type() != pugi::node_doctype && !deep) return true;
+    refused = node;
+    too_deep = deep;
+    return false;
+  }
+  pugi::xml_node refused;
+  bool too_deep = false;
+};
+
+/// Its name as a message may have it.
+std::string tag_of(const pugi::xml_node& node) {
+  return fmt::format("<{}>", printable_piece(node.name()));
+}
+
+}  // namespace
+
+XmlFile::XmlFile(std::string_view text, std::string file)
+    : file_(std::move(file)), text_(after_byte_order_mark(text)) {
+  const pugi::xml_parse_result result = document_.load_buffer(
+      text_.data(), text_.size(), pugi::parse_default | pugi::parse_doctype, pugi::encoding_utf8);
+  if (!result) {
+    throw InputError(fmt::format("{}: not well-formed XML: {}", where(result.offset),
+                                 quoted_piece(result.description())));
+  }
+  Inspector inspector;
+  document_.traverse(inspector);
+  if (inspector.too_deep) {
+    throw InputError(fmt::format("{}: elements within elements (allowed: {} levels)",
+                                 where(inspector.refused), deepest_xml));
+  }
+  if (inspector.refused) {
+    throw InputError(
+        fmt::format("{}: a document type, which could define entities (allowed: elements only)",
+                    where(inspector.refused)));
+  }
+}
+
+std::string XmlFile::where(std::ptrdiff_t offset) const {
+  const auto size = static_cast<std::ptrdiff_t>(text_.size());
+  const auto end = text_.begin() + std::clamp<std::ptrdiff_t>(offset, 0, size);
+  return fmt::format("{}:{}", file_, 1 + std::count(text_.begin(), end, '\n'));
+}
+
+std::string XmlFile::where(const pugi::xml_node& node) const { return where(node.offset_debug()); }
+
+void XmlFile::fail(const pugi::xml_node& node, const std::string& problem) const {
+  throw InputError(fmt::format("{}: {} {}", where(node), tag_of(node), problem));
+}
+
+void XmlFile::fail(const pugi::xml_node& node, const char* attribute,
+                   const std::string& problem) const {
+  const pugi::xml_attribute given = node.attribute(attribute);
+  throw InputError(fmt::format("{}: {} {}{}: {}", where(node), tag_of(node), attribute,
+                               given ? " = " + quoted_piece(given.value()) : "", problem));
+}
+
+bool looks_like_xml(std::string_view text) {
+  text = after_byte_order_mark(text);
+  const std::size_t start = text.find_first_not_of(" \t\r\n");
+  return start != std::string_view::npos && text[start] == '<';
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <pugixml.hpp>
+#include <string>
+#include <string_view>
+
+namespace dlo::compare {
+
+/// A parsed XML file, which knows the lines of its elements. It has no document type, so that no
+/// entity is defined or read from elsewhere, and no element is nested deeper than deepest_xml.
+class XmlFile {
+ public:
+  /// @param text  UTF-8, also with a byte order mark;  @param file  its name, for messages
+  /// @throws InputError naming file and line if it is not well-formed, or has a document type
+  XmlFile(std::string_view text, std::string file);
+
+  /// The outermost element.
+  [[nodiscard]] pugi::xml_node root() const { return document_.document_element(); }
+  /// "file:line" of an element.
+  [[nodiscard]] std::string where(const pugi::xml_node& node) const;
+  /// @throws InputError with where(node), its name, and the problem
+  [[noreturn]] void fail(const pugi::xml_node& node, const std::string& problem) const;
+  /// The same of an attribute: "file:line: element attribute = "value": problem".
+  [[noreturn]] void fail(const pugi::xml_node& node, const char* attribute,
+                         const std::string& problem) const;
+
+ private:
+  [[nodiscard]] std::string where(std::ptrdiff_t offset) const;
+
+  std::string file_;
+  std::string text_;
+  pugi::xml_document document_;
+};
+
+/// Whether a text, but for blanks, begins as XML does.
+[[nodiscard]] bool looks_like_xml(std::string_view text);
+
+}  // namespace dlo::compare

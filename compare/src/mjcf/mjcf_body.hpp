@@ -1,0 +1,60 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mjcf/mjcf_attributes.hpp"
+#include "mjcf/mjcf_geom.hpp"
+
+namespace dlo::compare {
+
+/// A joint of a body.
+struct MjcfJoint {
+  enum class Type { hinge, ball, free };
+  Type type = Type::hinge;
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< in the body [m]
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< of a hinge, unit, in the body
+  double stiffness = 0;                             ///< [N m/rad]
+  bool is_limited = false;                          ///< it has a range
+  pugi::xml_node node;                              ///< for messages
+};
+
+/// The plugin mujoco.elasticity.cable of a body.
+struct MjcfPlugin {
+  double bend = 0;    ///< E [Pa]
+  double twist = 0;   ///< G [Pa]
+  bool flat = false;  ///< whether the cable is straight where it is free of stress
+
+  /// In every field.
+  bool operator==(const MjcfPlugin&) const = default;
+};
+
+/// A body, in the model's reference pose.
+struct MjcfBody {
+  std::string name;
+  std::size_t parent = 0;
+  MjcfPose pose = MjcfPose::Identity();  ///< in the world
+  bool moves = false;                    ///< it, or one that it is in, has a joint
+  std::vector<MjcfJoint> joints;
+  std::vector<MjcfGeom> geoms;
+  std::optional<MjcfPlugin> plugin;
+  double mass = 0;                                   ///< of its inertial or its geoms [kg]
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of that mass, in the body [m]
+  pugi::xml_node node;                               ///< for messages
+};
+
+/// Reads a joint. @param at  of the frames around it, in the body
+[[nodiscard]] MjcfJoint read_mjcf_joint(const MjcfAttributes& attributes,
+                                        const pugi::xml_node& node, const MjcfPose& at,
+                                        const std::string& childclass);
+
+/// Reads a body's <plugin>, or a composite's.
+[[nodiscard]] MjcfPlugin read_mjcf_plugin(const MjcfAttributes& attributes,
+                                          const pugi::xml_node& node);
+
+/// Sets mass and centre from the geoms. @param inertial  the element, if there is one
+void set_mjcf_mass(const MjcfAttributes& attributes, const pugi::xml_node& inertial,
+                   MjcfBody& body);
+
+}  // namespace dlo::compare

@@ -1,0 +1,288 @@
+#include "mjcf/mjcf_chain.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "base/quote.hpp"
+#include "mjcf/mjcf_springs.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A place is on the axis if it is no farther away than this share of a segment.
+constexpr double on_axis = 1e-3;
+/// Angle between segments that are one line [rad].
+constexpr double straight = 1e-6;
+
+/// Finds the chain, segment by segment.
+class ChainFinder {
+ public:
+  ChainFinder(const XmlFile& xml, const MjcfWorld& world) : xml_(xml), world_(world) {}
+
+  [[nodiscard]] MjcfChain find() {
+    const std::vector<std::size_t> bodies = bodies_along();
+    for (std::size_t i = 0; i < bodies.size(); ++i) add_segment(bodies, i);
+    set_lengths();
+    set_mass();
+    set_diameter();
+    set_rest_shape();
+    set_joints();
+    chain_.words = world_.composite
+                       ? "a composite cable"
+                       : fmt::format("a chain of bodies with {} joints",
+                                     chain_.torsional_stiffness > 0 ? "ball" : "hinge");
+    return std::move(chain_);
+  }
+
+ private:
+  [[nodiscard]] const MjcfBody& body_of(const MjcfSegment& segment) const {
+    return world_.bodies[segment.body];
+  }
+
+  [[nodiscard]] std::string name_of(std::size_t body) const {
+    const std::string& name = world_.bodies[body].name;
+    return name.empty() ? fmt::format("body {}", body) : quoted_piece(name);
+  }
+
+  [[noreturn]] void fail(const MjcfSegment& segment, const std::string& problem) const {
+    xml_.fail(body_of(segment).node, fmt::format("{} {}", name_of(segment.body), problem));
+  }
+
+  /// Where a body's segment begins, in the body.
+  [[nodiscard]] Vector3d begin_of(std::size_t body) const {
+    const std::vector<MjcfJoint>& joints = world_.bodies[body].joints;
+    for (const MjcfJoint& joint : joints) {
+      if ((joint.place - joints.front().place).norm() <= 1e-9) continue;
+      xml_.fail(joint.node, "pos", "is another place than that of the body's joint before");
+    }
+    const bool jointed = !joints.empty() && joints.front().type != MjcfJoint::Type::free;
+    return jointed ? joints.front().place : Vector3d::Zero();
+  }
+
+  /// Those that move, from one end to the other, behind the body that holds the first if that is a
+  /// segment itself.
+  [[nodiscard]] std::vector<std::size_t> bodies_along() {
+    std::vector<std::size_t> along;
+    for (std::size_t i = 1; i < world_.bodies.size(); ++i) {
+      const MjcfBody& body = world_.bodies[i];
+      if (!body.moves) continue;
+      if (!along.empty() && body.parent != along.back()) {
+        xml_.fail(body.node, fmt::format("{} is not in {}: a branch, or a second chain (allowed: "
+                                         "one chain, each body in the one before)",
+                                         name_of(i), name_of(along.back())));
+      }
+      if (body.joints.empty() && !along.empty()) {
+        xml_.fail(body.node, fmt::format("{} has no joint: fixed to the segment before, which no "
+                                         "rod has (allowed: a ball or hinge joint)",
+                                         name_of(i)));
+      }
+      along.push_back(i);
+    }
+    if (along.empty()) {
+      xml_.fail(xml_.root(), "has no body with a joint (allowed: one cable)");
+    }
+    const std::size_t holder = world_.bodies[along.front()].parent;
+    if (holder > 0 && is_segment(holder, along)) {
+      along.insert(along.begin(), holder);
+    } else if (holder > 0) {
+      chain_.notes.push_back(
+          fmt::format("{} is taken for what the cable is fixed to, not for a "
+                      "segment of it",
+                      name_of(holder)));
+    }
+    if (along.size() < 2) {
+      xml_.fail(world_.bodies[along.front()].node,
+                "is the only body of its chain (allowed: two segments or more)");
+    }
+    return along;
+  }
+
+  /// Whether a body that does not move is the first segment: as long as the next one, with a geom
+  /// that ends at that one's joint.
+  [[nodiscard]] bool is_segment(std::size_t holder, const std::vector<std::size_t>& along) const {
+    const MjcfBody& body = world_.bodies[holder];
+    if (world_.composite && body.node == world_.composite) return true;
+    const Vector3d joint =
+        body.pose.inverse() * (world_.bodies[along.front()].pose * begin_of(along.front()));
+    const Vector3d next = along.size() > 1 ? place_in(along[1], along[0]) : joint;
+    const double h = along.size() > 1 ? (next - begin_of(along[0])).norm() : joint.norm();
+    return are_alike(joint.norm(), h) && std::ranges::any_of(body.geoms, [&](const MjcfGeom& geom) {
+             return std::min((geom.end(1) - joint).norm(), (geom.end(-1) - joint).norm()) <=
+                    0.1 * h;
+           });
+  }
+
+  /// Where a body's segment begins, in another body.
+  [[nodiscard]] Vector3d place_in(std::size_t body, std::size_t other) const {
+    return world_.bodies[other].pose.inverse() * (world_.bodies[body].pose * begin_of(body));
+  }
+
+  void add_segment(const std::vector<std::size_t>& bodies, std::size_t i) {
+    MjcfSegment segment;
+    segment.body = bodies[i];
+    segment.begin = begin_of(bodies[i]);
+    segment.at = chain_.length;
+    segment.end = i + 1 < bodies.size() ? place_in(bodies[i + 1], bodies[i]) : last_end(segment);
+    constexpr double shortest = 1e-9;
+    if (!(segment.length() > shortest)) {
+      fail(segment, "is no longer than a point: the next joint is at its own (allowed: apart)");
+    }
+    chain_.length += segment.length();
+    chain_.segments.push_back(segment);
+  }
+
+  /// The end of a geom that is farthest from the last joint.
+  [[nodiscard]] Vector3d last_end(const MjcfSegment& segment) const {
+    Vector3d farthest = segment.begin;
+    for (const MjcfGeom& geom : body_of(segment).geoms) {
+      for (const double sign : {-1.0, 1.0}) {
+        const Vector3d end = geom.end(sign);
+        if ((end - segment.begin).norm() > (farthest - segment.begin).norm()) farthest = end;
+      }
+    }
+    if (farthest == segment.begin) {
+      fail(segment,
+           "is the last one, and no geom says where it ends (allowed: a capsule, cylinder or box "
+           "from its joint to its end)");
+    }
+    return farthest;
+  }
+
+  void set_lengths() {
+    const double h = chain_.segments.front().length();
+    for (const MjcfSegment& segment : chain_.segments) {
+      if (are_alike(segment.length(), h)) continue;
+      fail(segment, fmt::format("is {:.6g} m long, and the first segment {:.6g} m (allowed: "
+                                "segments of one length)",
+                                segment.length(), h));
+    }
+  }
+
+  void set_mass() {
+    const double first = body_of(chain_.segments.front()).mass;
+    for (const MjcfSegment& segment : chain_.segments) {
+      const MjcfBody& body = body_of(segment);
+      if (!are_alike(body.mass, first)) {
+        fail(segment, fmt::format("weighs {:.6g} kg, and the first segment {:.6g} kg (allowed: "
+                                  "one mass per length)",
+                                  body.mass, first));
+      }
+      chain_.mass += body.mass;
+      const Vector3d from_begin = body.centre - segment.begin;
+      const double along = from_begin.dot(segment.direction());
+      const double across = (from_begin - along * segment.direction()).norm();
+      if (body.mass > 0 && across > on_axis * segment.length()) {
+        fail(segment, fmt::format("has its mass {:.4g} m off its axis (allowed: on it)", across));
+      }
+      const double off = along / segment.length() - 0.5;
+      if (body.mass > 0 && std::abs(off) > off_middle_) off_middle_ = std::abs(off);
+    }
+    if (off_middle_ > 1e-2) {
+      chain_.notes.push_back(fmt::format(
+          "mass is spread evenly, and was {:.2g} segments off the segments' middles", off_middle_));
+    }
+  }
+
+  void set_diameter() {
+    for (const MjcfSegment& segment : chain_.segments) {
+      for (const MjcfGeom& geom : body_of(segment).geoms) {
+        if (!geom.is_round() && geom.type != MjcfGeom::Type::sphere) return;
+        chain_.diameter = std::max(chain_.diameter, 2 * geom.size[0]);
+      }
+    }
+  }
+
+  void set_rest_shape() {
+    Vector3d before = Vector3d::Zero();
+    for (const MjcfSegment& segment : chain_.segments) {
+      const Vector3d t = body_of(segment).pose.linear() * segment.direction();
+      if (before.norm() > 0 && before.cross(t).norm() > straight) chain_.is_curved = true;
+      if (before.norm() > 0 && before.dot(t) < 0) {
+        fail(segment, "is rotated by more than a right angle from the one before (allowed: less)");
+      }
+      before = t;
+    }
+    const std::optional<MjcfPlugin>& plugin = plugin_of(chain_.segments.back());
+    if (chain_.is_curved && plugin && plugin->flat) {
+      chain_.is_curved = false;
+      chain_.notes.emplace_back("the cable is straight where it is free of stress (flat)");
+    }
+  }
+
+  [[nodiscard]] const std::optional<MjcfPlugin>& plugin_of(const MjcfSegment& segment) const {
+    return body_of(segment).plugin;
+  }
+
+  void set_joints();
+  void set_spring(const MjcfSegment& segment, const MjcfSpring& spring);
+
+  const XmlFile& xml_;
+  const MjcfWorld& world_;
+  MjcfChain chain_;
+  double off_middle_ = 0;    // of the masses, in segments
+  bool has_spring_ = false;  // one is known already
+};
+
+/// EI is a spring times the length that it stands for, half of both its segments.
+void ChainFinder::set_joints() {
+  for (std::size_t i = 1; i < chain_.segments.size(); ++i) {
+    const MjcfSegment& segment = chain_.segments[i];
+    const double h = (segment.length() + chain_.segments[i - 1].length()) / 2;
+    set_spring(segment, mjcf_spring(xml_, body_of(segment), segment.direction(), h));
+  }
+  if (!(chain_.bending_stiffness > 0)) {
+    fail(chain_.segments[1],
+         "has no spring in its joint (allowed: stiffness > 0, or the plugin "
+         "mujoco.elasticity.cable with bend > 0)");
+  }
+  chain_.spring = chain_.bending_stiffness / chain_.segments.front().length();
+  for (const MjcfSegment& segment : chain_.segments) {
+    for (const MjcfJoint& joint : body_of(segment).joints) {
+      if (!joint.is_limited) continue;
+      chain_.notes.emplace_back("limits of joints are taken for not reached");
+      return;
+    }
+  }
+}
+
+void ChainFinder::set_spring(const MjcfSegment& segment, const MjcfSpring& spring) {
+  if (!std::exchange(has_spring_, true)) {
+    chain_.bending_stiffness = spring.bending;
+    chain_.torsional_stiffness = spring.twisting;
+    chain_.hinge = spring.hinge;
+  }
+  const bool one_plane = spring.hinge.norm() > 0;
+  if (chain_.hinge.cross(spring.hinge).norm() > straight ||
+      (chain_.hinge.norm() > 0) != one_plane) {
+    xml_.fail(body_of(segment).joints.front().node, "axis",
+              "is another one than that of the joint before (allowed: the same in all bodies)");
+  }
+  if (are_alike(spring.bending, chain_.bending_stiffness) &&
+      are_alike(spring.twisting, chain_.torsional_stiffness)) {
+    return;
+  }
+  fail(segment, fmt::format("has a joint of EI = {:.6g} N m^2, and the joint before {:.6g} N m^2 "
+                            "(allowed: one stiffness)",
+                            spring.bending, chain_.bending_stiffness));
+}
+
+}  // namespace
+
+std::optional<std::size_t> MjcfChain::segment_of(std::size_t body) const {
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    if (segments[i].body == body) return i;
+  }
+  return std::nullopt;
+}
+
+MjcfChain find_mjcf_chain(const XmlFile& xml, const MjcfWorld& world) {
+  return ChainFinder(xml, world).find();
+}
+
+}  // namespace dlo::compare

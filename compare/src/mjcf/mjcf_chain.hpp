@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mjcf/mjcf_world.hpp"
+
+namespace dlo::compare {
+
+/// A body of a cable: rigid, from its joint to the next one's.
+struct MjcfSegment {
+  std::size_t body = 0;
+  Eigen::Vector3d begin = Eigen::Vector3d::Zero();  ///< in the body [m]
+  Eigen::Vector3d end = Eigen::Vector3d::Zero();    ///< in the body [m]
+  double at = 0;                                    ///< arc length of its begin [m]
+
+  [[nodiscard]] double length() const { return (end - begin).norm(); }
+  [[nodiscard]] Eigen::Vector3d direction() const { return (end - begin).normalized(); }
+};
+
+/// The cable of a model, as a rod.
+struct MjcfChain {
+  std::vector<MjcfSegment> segments;
+  double length = 0;               ///< [m]
+  double mass = 0;                 ///< [kg]
+  double bending_stiffness = 0;    ///< EI [N m^2]
+  double torsional_stiffness = 0;  ///< GJ [N m^2]; 0: none, of hinges
+  double diameter = 0;             ///< of its geoms [m]; 0: they are not round
+  double spring = 0;               ///< of a joint between two segments [N m/rad]
+  /// Axis of hinges that bend it in one plane only, in the world; zero: it bends everywhere.
+  Eigen::Vector3d hinge = Eigen::Vector3d::Zero();
+  bool is_curved = false;          ///< where it is free of stress
+  std::string words;               ///< "a composite cable", "a chain of bodies with ball joints"
+  std::vector<std::string> notes;  ///< what was assumed
+
+  /// Place in `segments`; none of a body that is not among them.
+  [[nodiscard]] std::optional<std::size_t> segment_of(std::size_t body) const;
+};
+
+/// Finds the one chain of bodies and what a rod like it has.
+/// @throws InputError naming file, line, element and attribute of what no uniform rod has
+[[nodiscard]] MjcfChain find_mjcf_chain(const XmlFile& xml, const MjcfWorld& world);
+
+}  // namespace dlo::compare

@@ -1,0 +1,169 @@
+#include "mjcf/mjcf_composite.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+#include <sstream>
+#include <utility>
+
+namespace dlo::compare {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+/// Vertices of a composite; as many bodies as elements may be nested.
+constexpr std::size_t most_vertices = 1000;
+
+/// Vertices that are written out.
+std::vector<Vector3d> given_vertices(const MjcfAttributes& attributes, const pugi::xml_node& node) {
+  const XmlFile& xml = attributes.xml();
+  const std::vector<double> v = *attributes.numbers(node, "vertex", 6, 3 * most_vertices, "");
+  if (v.size() % 3 != 0) xml.fail(node, "vertex", "(allowed: three numbers each)");
+  for (const char* other : {"count", "curve", "quat"}) {
+    if (node.attribute(other)) xml.fail(node, other, "given besides vertex (allowed: one of them)");
+  }
+  std::vector<Vector3d> points;
+  for (std::size_t i = 0; i < v.size(); i += 3) points.emplace_back(v[i], v[i + 1], v[i + 2]);
+  return points;
+}
+
+/// Which function of s each coordinate is: s, cos(s), sin(s) or 0.
+std::vector<std::string> curve_of(const XmlFile& xml, const pugi::xml_node& node) {
+  std::istringstream words(node.attribute("curve").as_string("s 0 0"));
+  std::vector<std::string> curve;
+  for (std::string word; words >> word;) {
+    if (word != "s" && word != "cos(s)" && word != "sin(s)" && word != "0") {
+      xml.fail(node, "curve", "(allowed: up to three of s, cos(s), sin(s), 0)");
+    }
+    curve.push_back(word);
+  }
+  if (curve.empty() || curve.size() > 3) {
+    xml.fail(node, "curve", "(allowed: one to three of s, cos(s), sin(s), 0)");
+  }
+  curve.resize(3, "0");
+  return curve;
+}
+
+/// Vertices on a curve: s grows to size[0], arguments to pi size[2], and the radius is size[1].
+std::vector<Vector3d> curve_vertices(const MjcfAttributes& attributes, const pugi::xml_node& node) {
+  const XmlFile& xml = attributes.xml();
+  const auto counts = attributes.numbers(node, "count", 1, 3, "");
+  const double count = counts ? counts->front() : 0;
+  if (!(count >= 3 && count <= most_vertices) || count != std::floor(count)) {
+    xml.fail(node, "count", fmt::format("(allowed: 3 to {} vertices, then 1 1)", most_vertices));
+  }
+  for (std::size_t i = 1; i < counts->size(); ++i) {
+    if ((*counts)[i] != 1) xml.fail(node, "count", "of more than one dimension (allowed: N 1 1)");
+  }
+  std::vector<double> size = attributes.numbers(node, "size", 1, 3, "").value_or(std::vector{0.0});
+  size.resize(3, 0);
+  const Quaterniond turn(attributes.pose(node, "").linear());
+  const std::vector<std::string> curve = curve_of(xml, node);
+  std::vector<Vector3d> points;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
+    const double share = static_cast<double>(i) / (count - 1);
+    const double angle = std::numbers::pi * share * size[2];
+    Vector3d point = Vector3d::Zero();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double value = curve[k] == "s"        ? share * size[0]
+                           : curve[k] == "cos(s)" ? size[1] * std::cos(angle)
+                           : curve[k] == "sin(s)" ? size[1] * std::sin(angle)
+                                                  : 0;
+      point[static_cast<Eigen::Index>(k)] = value;
+    }
+    points.push_back(turn * point);
+  }
+  return points;
+}
+
+/// x along a segment, carried on from the frame before by the least rotation.
+Quaterniond next_frame(const Quaterniond& before, const Vector3d& edge) {
+  return Quaterniond::FromTwoVectors(before * Vector3d::UnitX(), edge) * before;
+}
+
+/// What its children say of all bodies.
+struct Parts {
+  pugi::xml_node geom, joint, plugin;
+};
+
+Parts parts_of(const MjcfAttributes& attributes, const pugi::xml_node& node) {
+  Parts parts;
+  for (const pugi::xml_node& child : node.children()) {
+    const std::string_view name = child.name();
+    if (child.type() != pugi::node_element || name == "skin" || name == "site") continue;
+    attributes.require_known(child);
+    pugi::xml_node* const part = name == "geom"     ? &parts.geom
+                                 : name == "joint"  ? &parts.joint
+                                 : name == "plugin" ? &parts.plugin
+                                                    : nullptr;
+    if (part == nullptr || *part) {
+      attributes.xml().fail(child, "in a composite (allowed: one geom, joint, plugin, skin, site)");
+    }
+    *part = child;
+  }
+  if (!parts.geom) attributes.xml().fail(node, "has no <geom> (allowed: a capsule or a cylinder)");
+  return parts;
+}
+
+std::string body_name(std::size_t i, std::size_t bodies) {
+  return i == 0 ? "B_first" : i + 1 == bodies ? "B_last" : fmt::format("B_{}", i);
+}
+
+}  // namespace
+
+void add_mjcf_composite(const MjcfAttributes& attributes, const pugi::xml_node& node,
+                        const MjcfPose& at, std::size_t parent, MjcfWorld& world) {
+  const XmlFile& xml = attributes.xml();
+  attributes.require_known(node);
+  if (world.composite) xml.fail(node, "is a second one (allowed: one cable)");
+  world.composite = node;
+  if (node.attribute("type").value() != std::string_view("cable")) {
+    xml.fail(node, "type", "is no cable (allowed: cable)");
+  }
+  constexpr std::size_t none = 1;
+  constexpr std::size_t free = 2;
+  const std::size_t initial = attributes.choice(node, "initial", {"ball", "none", "free"}, "");
+  const std::vector<Vector3d> points = node.attribute("vertex") ? given_vertices(attributes, node)
+                                                                : curve_vertices(attributes, node);
+  const Vector3d offset = attributes.vector(node, "offset", "").value_or(Vector3d::Zero());
+  const Parts parts = parts_of(attributes, node);
+  const std::string prefix = node.attribute("prefix").value();
+  const std::size_t bodies = points.size() - 1;
+  Quaterniond frame = Quaterniond::Identity();
+  for (std::size_t i = 0; i < bodies; ++i) {
+    const Vector3d edge = points[i + 1] - points[i];
+    constexpr double shortest = 1e-9;
+    if (!(edge.norm() > shortest)) {
+      xml.fail(node,
+               fmt::format("has vertices {} and {} at one place (allowed: apart)", i + 1, i + 2));
+    }
+    frame = next_frame(frame, edge);
+    MjcfBody body;
+    body.name = prefix + body_name(i, bodies);
+    body.parent = i == 0 ? parent : world.bodies.size() - 1;
+    body.pose = at * MjcfPose(Eigen::Translation3d(offset + points[i]) * frame);
+    body.node = node;
+    body.geoms.push_back(read_composite_geom(attributes, parts.geom, edge.norm()));
+    if (i > 0 || initial != none) {
+      MjcfJoint joint;
+      if (parts.joint) {
+        joint = read_mjcf_joint(attributes, parts.joint, MjcfPose::Identity(), "");
+      }
+      joint.type = i == 0 && initial == free ? MjcfJoint::Type::free : MjcfJoint::Type::ball;
+      joint.node = parts.joint ? parts.joint : node;
+      body.joints.push_back(joint);
+    }
+    if (parts.plugin) body.plugin = read_mjcf_plugin(attributes, parts.plugin);
+    body.moves = world.bodies[body.parent].moves || !body.joints.empty();
+    set_mjcf_mass(attributes, {}, body);
+    world.bodies.push_back(std::move(body));
+  }
+  MjcfPose end = MjcfPose::Identity();
+  end.translation().x() = (points[bodies] - points[bodies - 1]).norm();
+  world.sites.push_back({prefix + "S_first", world.bodies.size() - bodies, MjcfPose::Identity()});
+  world.sites.push_back({prefix + "S_last", world.bodies.size() - 1, end});
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,191 @@
+#include "mjcf/mjcf_geom.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "base/number.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using Type = MjcfGeom::Type;
+using Eigen::Vector3d;
+
+constexpr double pi = std::numbers::pi;
+/// Of water, as MuJoCo has it where nothing else is said [kg/m^3].
+constexpr double default_density = 1000;
+
+Type type_of(const MjcfAttributes& attributes, const pugi::xml_node& node,
+             const std::string& childclass) {
+  constexpr Type types[] = {Type::sphere,    Type::plane, Type::capsule, Type::cylinder, Type::box,
+                            Type::ellipsoid, Type::other, Type::other,   Type::other};
+  return types[attributes.choice(
+      node, "type",
+      {"sphere", "plane", "capsule", "cylinder", "box", "ellipsoid", "hfield", "mesh", "sdf"},
+      childclass)];
+}
+
+std::size_t sizes_of(Type type) {
+  switch (type) {
+    case Type::sphere:
+      return 1;
+    case Type::capsule:
+    case Type::cylinder:
+      return 2;
+    case Type::box:
+    case Type::ellipsoid:
+      return 3;
+    case Type::plane:
+    case Type::other:
+      break;
+  }
+  return 0;
+}
+
+/// Half-sizes, of which `given` may be said by fromto instead.
+Vector3d read_size(const MjcfAttributes& attributes, const pugi::xml_node& node, Type type,
+                   std::size_t given, const std::string& childclass) {
+  Vector3d size = Vector3d::Zero();
+  const std::size_t count = sizes_of(type);
+  if (count == 0) return size;
+  const auto values = attributes.numbers(node, "size", 0, 3, childclass);
+  const std::size_t needed = count - given;
+  if (!values || values->size() < needed) {
+    attributes.xml().fail(node, "size",
+                          fmt::format("missing, or too few numbers (allowed: {}, > 0)", needed));
+  }
+  for (std::size_t i = 0; i < std::min(count, values->size()); ++i) {
+    size[static_cast<Eigen::Index>(i)] = (*values)[i];
+    if (i < needed && !((*values)[i] > 0)) {
+      attributes.xml().fail(node, "size", "(allowed: numbers > 0)");
+    }
+  }
+  return size;
+}
+
+/// Sets pose and half-length from two ends.
+void span(const MjcfAttributes& attributes, const pugi::xml_node& node, const Vector3d& from,
+          const Vector3d& to, MjcfGeom& geom) {
+  const Vector3d way = to - from;
+  constexpr double shortest = 1e-12;
+  if (!(way.norm() > shortest)) {
+    attributes.xml().fail(node, "fromto", "has no length (allowed: two points that are apart)");
+  }
+  geom.pose.linear() =
+      Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), way).toRotationMatrix();
+  geom.pose.translation() = (from + to) / 2;
+  // A box along z has its first two sizes across, as MuJoCo has it.
+  geom.size[geom.is_round() ? 1 : 2] = way.norm() / 2;
+}
+
+void read_mass(const MjcfAttributes& attributes, const std::string& childclass, MjcfGeom& geom) {
+  const pugi::xml_node& node = geom.node;
+  const std::optional<double> mass = attributes.number(node, "mass", childclass);
+  const double density = attributes.number(node, "density", childclass).value_or(default_density);
+  if (!(mass.value_or(0) >= 0)) attributes.xml().fail(node, "mass", "(allowed: 0 or more)");
+  if (!(density >= 0)) attributes.xml().fail(node, "density", "(allowed: 0 or more)");
+  if (attributes.choice(node, "shellinertia", {"false", "true"}, childclass) == 1 && !mass) {
+    attributes.xml().fail(node, "shellinertia", "of a mass that is not given (allowed: mass)");
+  }
+  geom.mass = mass.value_or(density * mjcf_volume(geom));
+}
+
+int bits_of(const MjcfAttributes& attributes, const pugi::xml_node& node, const char* attribute,
+            const std::string& childclass) {
+  const std::optional<std::string> given = attributes.text(node, attribute, childclass);
+  if (!given) return 1;
+  const std::optional<int> bits = as_number<int>(*given);
+  if (!bits) attributes.xml().fail(node, attribute, "is no integer of 32 bits");
+  return *bits;
+}
+
+void read_contact(const MjcfAttributes& attributes, const std::string& childclass, MjcfGeom& geom) {
+  geom.contype = bits_of(attributes, geom.node, "contype", childclass);
+  geom.conaffinity = bits_of(attributes, geom.node, "conaffinity", childclass);
+  const auto friction = attributes.numbers(geom.node, "friction", 1, 3, childclass);
+  if (friction) geom.friction = friction->front();
+  if (!(geom.friction >= 0)) attributes.xml().fail(geom.node, "friction", "(allowed: 0 or more)");
+}
+
+}  // namespace
+
+Vector3d MjcfGeom::end(double sign) const {
+  Eigen::Index axis = 2;
+  double half = is_round() ? size[1] : 0;
+  if (type == Type::box) half = size.maxCoeff(&axis);
+  return pose * (sign * half * Vector3d::Unit(axis));
+}
+
+double mjcf_volume(const MjcfGeom& geom) {
+  const double r = geom.size[0];
+  switch (geom.type) {
+    case Type::sphere:
+      return 4 * pi / 3 * r * r * r;
+    case Type::capsule:
+      return pi * r * r * 2 * geom.size[1] + 4 * pi / 3 * r * r * r;
+    case Type::cylinder:
+      return pi * r * r * 2 * geom.size[1];
+    case Type::box:
+      return 8 * geom.size.prod();
+    case Type::ellipsoid:
+      return 4 * pi / 3 * geom.size.prod();
+    case Type::plane:
+    case Type::other:
+      break;
+  }
+  return 0;
+}
+
+MjcfGeom read_mjcf_geom(const MjcfAttributes& attributes, const pugi::xml_node& node,
+                        const MjcfPose& at, const std::string& childclass) {
+  attributes.require_known(node);
+  MjcfGeom geom;
+  geom.node = node;
+  geom.type = type_of(attributes, node, childclass);
+  const auto ends = attributes.numbers(node, "fromto", 6, 6, childclass);
+  const bool has_ends = ends && sizes_of(geom.type) > 1;
+  if (ends && !has_ends) {
+    attributes.xml().fail(node, "fromto", "(allowed: of a capsule, cylinder, box or ellipsoid)");
+  }
+  geom.size = read_size(attributes, node, geom.type, has_ends ? 1 : 0, childclass);
+  if (has_ends) {
+    const std::vector<double>& v = *ends;
+    if (!geom.is_round()) geom.size[1] = geom.size[1] > 0 ? geom.size[1] : geom.size[0];
+    span(attributes, node, Vector3d(v[0], v[1], v[2]), Vector3d(v[3], v[4], v[5]), geom);
+  } else {
+    geom.pose = attributes.pose(node, childclass);
+  }
+  geom.pose = at * geom.pose;
+  read_mass(attributes, childclass, geom);
+  read_contact(attributes, childclass, geom);
+  return geom;
+}
+
+MjcfGeom read_composite_geom(const MjcfAttributes& attributes, const pugi::xml_node& node,
+                             double length) {
+  attributes.require_known(node);
+  constexpr const char* no_class = "";
+  for (const char* attribute :
+       {"pos", "quat", "axisangle", "euler", "xyaxes", "zaxis", "fromto", "class"}) {
+    if (node.attribute(attribute)) {
+      attributes.xml().fail(node, attribute, "of a composite's geom (allowed: none)");
+    }
+  }
+  MjcfGeom geom;
+  geom.node = node;
+  geom.type = type_of(attributes, node, no_class);
+  if (!geom.is_round()) {
+    attributes.xml().fail(node, "type",
+                          "of a composite cable whose bending is that of a round rod (allowed: "
+                          "capsule, cylinder)");
+  }
+  geom.size = read_size(attributes, node, geom.type, 1, no_class);
+  span(attributes, node, Vector3d::Zero(), length * Vector3d::UnitX(), geom);
+  read_mass(attributes, no_class, geom);
+  read_contact(attributes, no_class, geom);
+  return geom;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,252 @@
+#include "mjcf/mjcf_holds.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "base/quote.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Of a constraint: a body and a place on it.
+struct Attached {
+  std::size_t body = 0;
+  MjcfPose frame = MjcfPose::Identity();  ///< in the body
+};
+
+/// Finds what holds a chain.
+class HoldFinder {
+ public:
+  HoldFinder(const MjcfAttributes& attributes, const MjcfWorld& world, const MjcfChain& chain)
+      : attributes_(attributes), xml_(attributes.xml()), world_(world), chain_(chain) {}
+
+  [[nodiscard]] std::vector<MjcfHold> find(bool constrained, std::vector<std::string>& notes) {
+    add_first_body(notes);
+    bool is_soft = false;
+    for (const pugi::xml_node& equality : xml_.root().children("equality")) {
+      for (const pugi::xml_node& constraint : equality.children()) {
+        if (!constrained) break;
+        if (constraint.type() == pugi::node_element && add(constraint)) is_soft = true;
+      }
+    }
+    if (is_soft) notes.emplace_back("constraints, which are soft, are taken for rigid grippers");
+    if (holds_.empty()) {
+      xml_.fail(world_.bodies[chain_.segments.front().body].node,
+                "begins a cable that nothing holds (allowed: a first body without a free joint, or "
+                "weld and connect in <equality>)");
+    }
+    // In their reference poses clamps do not twist the cable against each other.
+    for (MjcfHold& hold : holds_) {
+      if (!is_turned_) hold.d1.reset();
+    }
+    return std::move(holds_);
+  }
+
+ private:
+  [[nodiscard]] const MjcfBody& body_of(std::size_t segment) const {
+    return world_.bodies[chain_.segments[segment].body];
+  }
+
+  /// Tangent that the rod has where a segment is clamped in its reference pose.
+  [[nodiscard]] Vector3d tangent(std::size_t segment) const {
+    return body_of(segment).pose.linear() * chain_.segments[segment].direction();
+  }
+
+  void add_first_body(std::vector<std::string>& notes) {
+    const MjcfSegment& first = chain_.segments.front();
+    const MjcfBody& body = body_of(0);
+    MjcfHold hold;
+    hold.position = body.pose * first.begin;
+    if (body.joints.empty()) {
+      hold.direction = tangent(0);
+      hold.d1 = reference_d1(0);
+      hold.words = "the first body is fixed";
+    } else if (body.joints.front().type == MjcfJoint::Type::free) {
+      return;
+    } else {
+      double stiffness = 0;
+      for (const MjcfJoint& joint : body.joints) stiffness = std::max(stiffness, joint.stiffness);
+      hold.words = "the first body's joint is at a fixed place";
+      if (stiffness > 0) {
+        hold.direction = tangent(0);
+        hold.words = "the first body has a joint with a spring";
+        notes.push_back(fmt::format(
+            "the spring of the first joint, {:.4g} times the others', is taken for a clamp there",
+            stiffness / chain_.spring));
+      }
+    }
+    holds_.push_back(std::move(hold));
+  }
+
+  /// @return whether it holds the chain
+  bool add(const pugi::xml_node& constraint) {
+    const std::string_view kind = constraint.name();
+    if (kind != "weld" && kind != "connect") {
+      xml_.fail(constraint,
+                "in <equality> cannot be said by a rod's scene (allowed: weld, connect)");
+    }
+    attributes_.require_known(constraint);
+    if (attributes_.choice(constraint, "active", {"true", "false"}, "") == 1) return false;
+    const bool by_sites = !constraint.attribute("site1").empty();
+    Attached first = by_sites ? site(constraint, "site1") : body(constraint, "body1");
+    Attached second = by_sites ? site(constraint, "site2") : body(constraint, "body2");
+    if (kind == "weld") {
+      weld(constraint, first, second, by_sites);
+    } else {
+      connect(constraint, first, second, by_sites);
+    }
+    return true;
+  }
+
+  [[nodiscard]] Attached body(const pugi::xml_node& constraint, const char* attribute) const {
+    const std::string_view name = constraint.attribute(attribute).value();
+    if (name.empty() && attribute == std::string_view("body2")) return {};
+    if (name == "world") return {};
+    for (std::size_t i = 1; i < world_.bodies.size() && !name.empty(); ++i) {
+      if (world_.bodies[i].name == name) return {i, MjcfPose::Identity()};
+    }
+    xml_.fail(constraint, attribute,
+              name.empty() ? "missing (allowed: a body's name)" : "no such body");
+  }
+
+  [[nodiscard]] Attached site(const pugi::xml_node& constraint, const char* attribute) const {
+    const std::string_view name = constraint.attribute(attribute).value();
+    for (const MjcfSite& site : world_.sites) {
+      if (!name.empty() && site.name == name) return {site.body, site.pose};
+    }
+    xml_.fail(constraint, attribute,
+              name.empty() ? "missing (allowed: a site's name)" : "no such site");
+  }
+
+  /// Segment of the one that is the chain's, while the other one does not move.
+  [[nodiscard]] std::size_t held_segment(const pugi::xml_node& constraint, Attached& first,
+                                         Attached& second) const {
+    const auto a = chain_.segment_of(first.body);
+    const auto b = chain_.segment_of(second.body);
+    if (a.has_value() == b.has_value()) {
+      xml_.fail(constraint, a ? "joins the cable with itself (allowed: with what does not move)"
+                              : "does not hold the cable (allowed: a body of it, and one that "
+                                "does not move)");
+    }
+    if (!a) std::swap(first, second);
+    return a ? *a : *b;
+  }
+
+  void weld(const pugi::xml_node& constraint, Attached first, Attached second, bool by_sites) {
+    const bool swapped = !chain_.segment_of(first.body);
+    const std::size_t k = held_segment(constraint, first, second);
+    const MjcfSegment& segment = chain_.segments[k];
+    MjcfPose pose = body_of(k).pose;
+    const auto relative = attributes_.numbers(constraint, "relpose", 7, 7, "");
+    const bool moved = by_sites || (relative && has_rotation(*relative));
+    if (by_sites) {
+      pose = world_.bodies[second.body].pose * second.frame * first.frame.inverse();
+    } else if (moved) {
+      // Of the second body in the first one's frame.
+      const MjcfPose way = pose_of(*relative);
+      const MjcfPose other = world_.bodies[second.body].pose;
+      pose = swapped ? other * way : other * way.inverse();
+    }
+    const bool last = k + 1 == chain_.segments.size();
+    const double share = k == 0 ? 0 : last ? 1 : 0.5;
+    MjcfHold hold;
+    hold.at = last ? chain_.length : segment.at + share * segment.length();
+    hold.position = pose * (segment.begin + share * (segment.end - segment.begin));
+    hold.direction = pose.linear() * segment.direction();
+    // What is the rod's d1 in the reference pose goes with the body.
+    hold.d1 = pose.linear() * body_of(k).pose.linear().transpose() * reference_d1(k);
+    is_turned_ = is_turned_ || moved;
+    hold.words = fmt::format("<weld> holds {}", quoted_piece(body_of(k).name));
+    add_once(constraint, std::move(hold));
+  }
+
+  void connect(const pugi::xml_node& constraint, Attached first, Attached second, bool by_sites) {
+    const bool swapped = !chain_.segment_of(first.body);
+    const Vector3d anchor =
+        by_sites ? Vector3d::Zero()
+                 : attributes_.vector(constraint, "anchor", "").value_or(Vector3d::Zero());
+    if (!by_sites && !constraint.attribute("anchor")) {
+      xml_.fail(constraint, "anchor", "missing (allowed: a place in body1)");
+    }
+    const std::size_t k = held_segment(constraint, first, second);
+    const MjcfSegment& segment = chain_.segments[k];
+    MjcfHold hold;
+    Vector3d own = anchor;
+    if (by_sites) {
+      own = first.frame.translation();
+      hold.position = world_.bodies[second.body].pose * second.frame.translation();
+    } else if (swapped) {
+      hold.position = world_.bodies[second.body].pose * anchor;
+      own = body_of(k).pose.inverse() * hold.position;
+    } else {
+      hold.position = body_of(k).pose * anchor;
+    }
+    const double along = (own - segment.begin).dot(segment.direction());
+    const double across = (own - segment.begin - along * segment.direction()).norm();
+    constexpr double on_axis = 1e-3;
+    const double slack = on_axis * segment.length();
+    if (across > slack || along < -slack || along > segment.length() + slack) {
+      xml_.fail(constraint,
+                fmt::format("holds {} at a place that is not on its segment: {:.4g} m along it, "
+                            "{:.4g} m off (allowed: 0 to {:.4g} m, 0 off)",
+                            quoted_piece(body_of(k).name), along, across, segment.length()));
+    }
+    hold.at = std::clamp(segment.at + along, 0.0, chain_.length);
+    if (hold.at > chain_.length - slack) hold.at = chain_.length;
+    if (hold.at < slack) hold.at = 0;
+    hold.words = fmt::format("<connect> holds {}", quoted_piece(body_of(k).name));
+    add_once(constraint, std::move(hold));
+  }
+
+  static bool has_rotation(const std::vector<double>& relpose) {
+    return std::any_of(relpose.begin() + 3, relpose.end(), [](double q) { return q != 0; });
+  }
+
+  static MjcfPose pose_of(const std::vector<double>& v) {
+    return MjcfPose(Eigen::Translation3d(v[0], v[1], v[2]) *
+                    Eigen::Quaterniond(v[3], v[4], v[5], v[6]).normalized());
+  }
+
+  /// Across the rod, carried along its reference pose without twist.
+  [[nodiscard]] Vector3d reference_d1(std::size_t segment) const {
+    const Vector3d first = tangent(0);
+    Vector3d d1 = first.unitOrthogonal();
+    for (std::size_t i = 1; i <= segment; ++i) {
+      d1 = Eigen::Quaterniond::FromTwoVectors(tangent(i - 1), tangent(i)) * d1;
+    }
+    return d1;
+  }
+
+  void add_once(const pugi::xml_node& constraint, MjcfHold hold) {
+    for (const MjcfHold& other : holds_) {
+      if (std::abs(other.at - hold.at) < 1e-9 * chain_.length) {
+        xml_.fail(constraint, fmt::format("holds the cable where it is held already: {} (allowed: "
+                                          "one of the two)",
+                                          other.words));
+      }
+    }
+    holds_.push_back(std::move(hold));
+  }
+
+  const MjcfAttributes& attributes_;
+  const XmlFile& xml_;
+  const MjcfWorld& world_;
+  const MjcfChain& chain_;
+  std::vector<MjcfHold> holds_;
+  bool is_turned_ = false;  // a clamp, from its reference pose
+};
+
+}  // namespace
+
+std::vector<MjcfHold> find_mjcf_holds(const MjcfAttributes& attributes, const MjcfWorld& world,
+                                      const MjcfChain& chain, bool constrained,
+                                      std::vector<std::string>& notes) {
+  return HoldFinder(attributes, world, chain).find(constrained, notes);
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,136 @@
+#include "mjcf/mjcf_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/display.hpp"
+#include "base/quote.hpp"
+#include "decode/xml.hpp"
+#include "mjcf/mjcf_attributes.hpp"
+#include "mjcf/mjcf_chain.hpp"
+#include "mjcf/mjcf_holds.hpp"
+#include "mjcf/mjcf_obstacles.hpp"
+#include "mjcf/mjcf_world.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using Eigen::Vector3d;
+
+/// What <option> says.
+struct Options {
+  Vector3d gravity = {0, 0, -9.81};
+  bool equality = true, contact = true;
+};
+
+Options read_options(const MjcfAttributes& attributes) {
+  const XmlFile& xml = attributes.xml();
+  Options options;
+  for (const pugi::xml_node& node : xml.root().children("option")) {
+    options.gravity = attributes.vector(node, "gravity", "").value_or(options.gravity);
+    const bool fluid = attributes.number(node, "density", "").value_or(0) != 0 ||
+                       attributes.number(node, "viscosity", "").value_or(0) != 0;
+    if (fluid) attributes.require_zero(node, "wind", "of a fluid drags the cable", "");
+    for (const pugi::xml_node& flag : node.children()) {
+      if (flag.type() != pugi::node_element) continue;
+      attributes.require_known(flag);
+      const auto is_off = [&](const char* name) {
+        return attributes.choice(flag, name, {"enable", "disable"}, "") == 1;
+      };
+      for (const char* name : {"passive", "spring"}) {
+        if (is_off(name)) xml.fail(flag, name, "takes the springs away (allowed: enable)");
+      }
+      if (is_off("gravity")) options.gravity.setZero();
+      if (is_off("equality") || is_off("constraint")) options.equality = false;
+      if (is_off("contact") || is_off("constraint")) options.contact = false;
+    }
+  }
+  return options;
+}
+
+/// The stress-free shape in rows of points.
+std::string rest_points(const MjcfWorld& world, const MjcfChain& chain) {
+  std::string rows;
+  for (const MjcfSegment& segment : chain.segments) {
+    rows += toml_vector(world.bodies[segment.body].pose * segment.begin) + ",\n  ";
+  }
+  const MjcfSegment& last = chain.segments.back();
+  return "[" + rows + toml_vector(world.bodies[last.body].pose * last.end) + "]";
+}
+
+/// Hinges with one axis carry what is across their plane, a rod does not.
+void require_in_plane(const XmlFile& xml, const MjcfWorld& world, const MjcfChain& chain,
+                      const Vector3d& gravity) {
+  constexpr double aligned = 1e-6;
+  if (!(std::abs(chain.hinge.dot(gravity)) > aligned * gravity.norm())) return;
+  xml.fail(world.bodies[chain.segments[1].body].joints.front().node, "axis",
+           "lets the cable bend across gravity only, whose weight the hinges carry (allowed: "
+           "gravity at a right angle to the hinges; or two hinges, or a ball)");
+}
+
+std::string grippers_text(const std::vector<MjcfHold>& holds) {
+  std::string text;
+  for (const MjcfHold& hold : holds) {
+    append(text, "\n[[gripper]]  # {}\nat = {:.17g}\nposition = {}\nhold = \"{}\"\n",
+           printable_piece(hold.words), hold.at, toml_vector(hold.position),
+           hold.direction ? "clamp" : "pin");
+    if (!hold.direction) continue;
+    if (!hold.d1) {
+      append(text, "direction = {}\n", toml_vector(*hold.direction));
+      continue;
+    }
+    append(text, "frame = [{}, {}, {}]\n", toml_vector(*hold.d1),
+           toml_vector(hold.direction->cross(*hold.d1)), toml_vector(*hold.direction));
+  }
+  return text;
+}
+
+std::string rod_text(const MjcfWorld& world, const MjcfChain& chain) {
+  std::string text = fmt::format(
+      "\n[rod]\nlength = {:.17g}\nbending_stiffness = {:.17g}\nmass_per_length = {:.17g}\n",
+      chain.length, chain.bending_stiffness, chain.mass / chain.length);
+  if (chain.torsional_stiffness > 0) {
+    append(text, "torsional_stiffness = {:.17g}\n", chain.torsional_stiffness);
+  }
+  if (chain.diameter > 0) append(text, "diameter = {:.17g}\n", chain.diameter);
+  if (chain.is_curved) append(text, "rest_shape = {}\n", rest_points(world, chain));
+  return text;
+}
+
+/// What has been derived and taken for what.
+ModelChain told(const MjcfWorld& world, const MjcfChain& chain,
+                const std::vector<std::string>& notes) {
+  ModelChain result;
+  result.words = "MJCF, " + chain.words;
+  result.segments = static_cast<Eigen::Index>(chain.segments.size());
+  result.first_body = static_cast<Eigen::Index>(chain.segments.front().body);
+  result.bodies = static_cast<Eigen::Index>(world.bodies.size());
+  result.notes = chain.notes;
+  result.notes.insert(result.notes.end(), notes.begin(), notes.end());
+  return result;
+}
+
+}  // namespace
+
+MjcfScene mjcf_scene(std::string_view text, const std::string& file) {
+  const XmlFile xml(text, file);
+  const MjcfAttributes attributes(xml);
+  Options options = read_options(attributes);
+  const MjcfWorld world = read_mjcf_world(attributes);
+  const MjcfChain chain = find_mjcf_chain(xml, world);
+  require_in_plane(xml, world, chain, options.gravity);
+  std::vector<std::string> notes;
+  const std::vector<MjcfHold> holds =
+      find_mjcf_holds(attributes, world, chain, options.equality, notes);
+  const std::string name =
+      xml.root().attribute("model").as_string(std::filesystem::path(file).stem().c_str());
+  std::string scene = fmt::format("name = {}\ngravity = {}\n", toml_string(valid_utf8(name)),
+                                  toml_vector(options.gravity));
+  scene += rod_text(world, chain) + grippers_text(holds);
+  if (options.contact) scene += mjcf_obstacles(xml, world, chain, holds, notes);
+  return {std::move(scene), told(world, chain, notes)};
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,116 @@
+#include "mjcf/mjcf_world.hpp"
+
+#include <string_view>
+#include <utility>
+
+#include "mjcf/mjcf_composite.hpp"
+#include "mjcf/mjcf_words.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Reads bodies within bodies.
+class WorldReader {
+ public:
+  explicit WorldReader(const MjcfAttributes& attributes)
+      : attributes_(attributes), xml_(attributes.xml()) {
+    world_.bodies.emplace_back();
+    world_.bodies.front().name = "world";
+    world_.bodies.front().node = xml_.root();
+  }
+
+  [[nodiscard]] MjcfWorld read() {
+    std::vector<pugi::xml_node> worlds;
+    for (const pugi::xml_node& node : xml_.root().children("worldbody")) worlds.push_back(node);
+    if (worlds.empty()) xml_.fail(xml_.root(), "has no <worldbody> (allowed: one, with a cable)");
+    for (const pugi::xml_node& node : worlds) {
+      read_children(node, {0, MjcfPose::Identity(), ""});
+    }
+    return std::move(world_);
+  }
+
+ private:
+  /// Around an element.
+  struct Around {
+    std::size_t body;
+    MjcfPose at;  ///< of frames, in the body
+    std::string childclass;
+  };
+
+  void read_children(const pugi::xml_node& parent, const Around& around) {
+    // Bodies come behind all else of the body that they are in.
+    for (const pugi::xml_node& node : parent.children()) {
+      if (node.type() == pugi::node_element) read_part(node, around);
+    }
+    for (const pugi::xml_node& node : parent.children()) {
+      const std::string_view name = node.name();
+      if (name == "body") read_body(node, around);
+      if (name == "frame") read_children(node, within(node, around));
+      if (name == "composite") {
+        add_mjcf_composite(attributes_, node, world_.bodies[around.body].pose * around.at,
+                           around.body, world_);
+      }
+    }
+  }
+
+  [[nodiscard]] Around within(const pugi::xml_node& frame, const Around& around) const {
+    attributes_.require_known(frame);
+    return {around.body, around.at * attributes_.pose(frame, around.childclass),
+            attributes_.known_class(frame, "childclass", around.childclass)};
+  }
+
+  void read_part(const pugi::xml_node& node, const Around& around) {
+    const std::string_view name = node.name();
+    MjcfBody& body = world_.bodies[around.body];
+    if (name == "body" || name == "frame" || name == "composite" || mjcf_without_effect(name)) {
+      return;
+    }
+    if (name == "geom") {
+      body.geoms.push_back(read_mjcf_geom(attributes_, node, around.at, around.childclass));
+    } else if (name == "site") {
+      attributes_.require_known(node);
+      world_.sites.push_back({node.attribute("name").value(), around.body,
+                              around.at * attributes_.pose(node, around.childclass)});
+    } else if (around.body > 0 && (name == "joint" || name == "freejoint")) {
+      body.joints.push_back(read_mjcf_joint(attributes_, node, around.at, around.childclass));
+      body.moves = true;
+    } else if (around.body > 0 && name == "plugin") {
+      body.plugin = read_mjcf_plugin(attributes_, node);
+    } else if (around.body == 0 || name != "inertial") {
+      xml_.fail(node,
+                "cannot be said by a rod's scene here, or is unknown (allowed: body, geom, "
+                "site, frame, composite, and of a body joint, inertial, plugin)");
+    }
+  }
+
+  void read_body(const pugi::xml_node& node, const Around& around) {
+    attributes_.require_known(node);
+    MjcfBody body;
+    body.name = node.attribute("name").value();
+    body.parent = around.body;
+    body.node = node;
+    body.pose =
+        world_.bodies[around.body].pose * around.at * attributes_.pose(node, around.childclass);
+    body.moves = world_.bodies[around.body].moves;
+    attributes_.require_zero(node, "gravcomp", "takes a part of the weight away", "");
+    const std::size_t index = world_.bodies.size();
+    world_.bodies.push_back(std::move(body));
+    const std::string childclass = attributes_.known_class(node, "childclass", around.childclass);
+    // What a body has is known before its mass is, and that before the bodies in it.
+    const Around inside{index, MjcfPose::Identity(), childclass};
+    read_children(node, inside);
+    set_mjcf_mass(attributes_, node.child("inertial"), world_.bodies[index]);
+  }
+
+  const MjcfAttributes& attributes_;
+  const XmlFile& xml_;
+  MjcfWorld world_;
+};
+
+}  // namespace
+
+MjcfWorld read_mjcf_world(const MjcfAttributes& attributes) {
+  return WorldReader(attributes).read();
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mjcf/mjcf_attributes.hpp"
+#include "mjcf/mjcf_body.hpp"
+
+namespace dlo::compare {
+
+/// A site of a body.
+struct MjcfSite {
+  std::string name;
+  std::size_t body = 0;
+  MjcfPose pose = MjcfPose::Identity();  ///< in the body
+};
+
+/// All bodies of a model in MuJoCo's order, the world first, composites made bodies.
+struct MjcfWorld {
+  std::vector<MjcfBody> bodies;
+  std::vector<MjcfSite> sites;
+  pugi::xml_node composite;  ///< of the cable; none if its bodies are written out
+};
+
+/// @throws InputError naming file, line, element and attribute that a rod's scene cannot say
+[[nodiscard]] MjcfWorld read_mjcf_world(const MjcfAttributes& attributes);
+
+}  // namespace dlo::compare

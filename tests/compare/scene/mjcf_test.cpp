@@ -1,0 +1,216 @@
+// Scenes made of MuJoCo's models (data/mujoco), held against what MuJoCo's documentation says of
+// their elements.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/check.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "explain/segment_starts.hpp"
+#include "scenes.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using std::numbers::pi;
+
+Scene mjcf_model(const std::string& name) { return load_scene(DLO_DATA "/mujoco/" + name); }
+
+std::string mjcf_text(const std::string& name) {
+  std::ifstream stream(DLO_DATA "/mujoco/" + name);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// With the first place of a piece, which is there, as another one.
+std::string changed(std::string text, const std::string& piece, const std::string& other) {
+  const std::size_t at = text.find(piece);
+  EXPECT_NE(at, std::string::npos) << piece;
+  if (at != std::string::npos) text.replace(at, piece.size(), other);
+  return text;
+}
+
+/// Of what files are rounded to.
+void expect_near(double value, double expected) {
+  EXPECT_NEAR(value, expected, 1e-5 * std::abs(expected));
+}
+
+TEST(Mjcf, ACompositeCableHasTheStiffnessOfItsPlugin) {
+  const Scene scene = mjcf_model("composite.xml");
+  EXPECT_EQ(scene.name, "composite cable");
+  expect_near(scene.length, 1);
+  expect_near(scene.bending_stiffness(), 120e6 * pi / 4 * std::pow(0.004, 4));
+  expect_near(*scene.torsional_stiffness, 46e6 * pi / 2 * std::pow(0.004, 4));
+  // A capsule: the cylinder between the middles of its caps, and a sphere.
+  const double capsule = pi * 0.004 * 0.004 * 0.05 + 4 * pi / 3 * std::pow(0.004, 3);
+  expect_near(scene.mass(), 20 * 1150 * capsule);
+  EXPECT_EQ(scene.gravity, Eigen::Vector3d(0, 0, -9.81));
+  ASSERT_EQ(scene.grippers.size(), 1U);
+  EXPECT_EQ(scene.grippers[0].position, Eigen::Vector3d(0, 0, 1));
+  EXPECT_LT((*scene.grippers[0].direction - Eigen::Vector3d::UnitX()).norm(), 1e-12);
+  ASSERT_TRUE(scene.model);
+  EXPECT_EQ(scene.model->segments, 20);
+  EXPECT_EQ(scene.model->first_body, 2);
+  EXPECT_EQ(scene.model->bodies, 22);
+}
+
+TEST(Mjcf, AChainOfBallJointsHasItsSpringsTimesASegment) {
+  const Scene scene = mjcf_model("chain.xml");
+  const double EI = 120e6 * pi / 64 * std::pow(0.008, 4);
+  expect_near(scene.bending_stiffness(), EI);
+  expect_near(*scene.torsional_stiffness, EI);
+  expect_near(scene.mass(), 1150 * pi * 0.004 * 0.004);
+  expect_near(scene.diameter, 0.008);
+}
+
+TEST(Mjcf, HingesFramesAndRadiansAreRead) {
+  const Scene scene = mjcf_model("hinges.xml");
+  expect_near(scene.length, 16 * 0.04);
+  expect_near(scene.bending_stiffness(), 0.05 * 0.04);
+  EXPECT_FALSE(scene.torsional_stiffness);
+  expect_near(scene.mass(), 16 * 0.0016);  // of inertial, not of the geoms
+  EXPECT_EQ(scene.grippers.at(0).position, Eigen::Vector3d(0.2, 0, 1.5));
+  const Eigen::Vector3d upwards(std::cos(pi / 6), 0, std::sin(pi / 6));
+  EXPECT_LT((*scene.grippers[0].direction - upwards).norm(), 1e-9);
+  EXPECT_TRUE(scene.obstacles.empty());
+  // What the geoms collide with is an obstacle.
+  std::string text = mjcf_text("hinges.xml");
+  for (std::size_t at = text.find(" contype=\"0\""); at != std::string::npos;
+       at = text.find(" contype=\"0\"")) {
+    text.erase(at, std::string(" contype=\"0\" conaffinity=\"0\"").size());
+  }
+  const Scene touching = parse_scene(text, "touching.xml");
+  ASSERT_EQ(touching.obstacles.size(), 1U);
+  EXPECT_EQ(touching.obstacles[0].friction, 1);  // the larger one counts
+  EXPECT_TRUE(touching.obstacles[0].body.is_half_space());
+}
+
+TEST(Mjcf, ConstraintsAreGrippers) {
+  const Scene scene = mjcf_model("two_constraints.xml");
+  ASSERT_EQ(scene.grippers.size(), 2U);
+  const Gripper& clamp = scene.grippers[0];
+  const Gripper& pin = scene.grippers[1];
+  EXPECT_EQ(clamp.at, 0);
+  EXPECT_TRUE(clamp.direction);
+  EXPECT_FALSE(clamp.frame);  // in its reference pose it holds no twist
+  EXPECT_EQ(pin.at, scene.length);
+  EXPECT_FALSE(pin.direction);
+  expect_near(pin.position.x(), 0.405094);
+  EXPECT_FALSE(scene.naturally_bent());  // flat
+  const Scene curved =
+      parse_scene(changed(mjcf_text("two_constraints.xml"), "\"true\"/>\n      </instance>",
+                          "\"false\"/></instance>"),
+                  "curved.xml");
+  // An arc of 2.2 rad.
+  EXPECT_NEAR(curved.natural_curvature().norm(), 2.2 / curved.length, 0.02 * 2.2);
+}
+
+TEST(Mjcf, AWeldIsWhereItsRelposePutsTheBody) {
+  const std::string weld = "<weld body1=\"B_first\" body2=\"hand\"/>";
+  // The hand is in the first body's frame at x = 0.1, turned by 90 degrees about z: that body's x
+  // is the hand's -y, so that it is at (0, 0.1, 0) in the world, and points to -y.
+  const Scene scene =
+      parse_scene(changed(mjcf_text("two_constraints.xml"), weld,
+                          "<weld body1=\"B_first\" body2=\"hand\" relpose=\"0.1 0 0 1 0 0 1\"/>"),
+                  "moved.xml");
+  EXPECT_LT((scene.grippers.at(0).position - Eigen::Vector3d(0, 0.1, 0)).norm(), 1e-9);
+  EXPECT_LT((*scene.grippers[0].direction - Eigen::Vector3d(0, -1, 0)).norm(), 1e-9);
+}
+
+TEST(Mjcf, CapsCountAsMassAndNotAsLength) {
+  const Scene scene = mjcf_model("capsule_caps.xml");
+  expect_near(scene.length, 12 * 0.04);
+  expect_near(scene.mass(), 12 * 1000 * (pi * 1e-4 * 0.04 + 4 * pi / 3 * 1e-6));
+  expect_near(scene.bending_stiffness(), 0.2 * 0.04);
+  EXPECT_EQ(scene.gravity, Eigen::Vector3d(2, 0, -9.6));
+}
+
+/// As MuJoCo 3.14 has left the chain of data/mujoco/chain.xml: data/shapes/mujoco_right.csv.
+TEST(Mjcf, MuJoCosOwnPointsPassWithoutTheirLastEnd) {
+  const Scene scene = mjcf_model("chain.xml");
+  MeasuredShape shape = load_shape(DLO_DATA "/shapes/mujoco_right.csv");
+  ASSERT_EQ(shape.points.cols(), 21);
+  const Eigen::Vector3d end = shape.points.col(20);
+  shape.points.conservativeResize(Eigen::NoChange, 20);
+  const MeasuredShape whole = with_last_end(scene, shape);
+  ASSERT_EQ(whole.points.cols(), 21);
+  EXPECT_EQ(whole.notes.size(), 1U);
+  // The last joint turns by a quarter of what the one before does, within its own size:
+  // w h^2 / 2 / (EI / h), with w l = 0.567 N.
+  EXPECT_LT((whole.points.col(20) - end).norm(), 0.05 * 0.567 * 0.05 * 0.05 / 2 * 0.05 / 0.02413);
+  const CheckResult result = check(scene, shape);
+  EXPECT_TRUE(result.passes()) << result.judgement.reason;
+  EXPECT_NE(result.judgement.reason.find("chain of 20 segments, welded"), std::string::npos)
+      << result.judgement.reason;
+  // All bodies of the model, the world's first: it is not at the first segment's place here.
+  MeasuredShape all = shape;
+  all.points.resize(3, 21);
+  all.points << Eigen::Vector3d(0, 0, 0.3), shape.points;
+  EXPECT_EQ(with_last_end(scene, all).points.cols(), 21);
+  EXPECT_EQ(with_last_end(scene, all).points.col(0), shape.points.col(0));
+}
+
+struct Refused {
+  const char* file;
+  std::string piece, other;
+  std::vector<std::string> message;
+};
+
+TEST(Mjcf, WhatARodCannotSayIsNamed) {
+  const std::vector<Refused> cases = {
+      {"chain.xml", "stiffness=", "stifness=", {":4: <joint>", "stifness", "stiffness?"}},
+      {"chain.xml", "<joint/><geom/>", "<joint stiffness=\"9\"/><geom/>", {"\"B_2\"", "EI = "}},
+      {"chain.xml", "type=\"ball\"", "type=\"slide\"", {"<joint> type: ", "slide", "allowed"}},
+      {"chain.xml", "<geom/>", "<geom mass=\"7\"/>", {"weighs", "kg"}},
+      {"chain.xml", "<worldbody>", "<include file=\"a.xml\"/><worldbody>", {"<include>", "follow"}},
+      {"chain.xml",
+       "<mujoco",
+       "<!DOCTYPE a [<!ENTITY b \"c\">]>\n<mujoco",
+       {":1: a document type"}},
+      {"chain.xml",
+       "<joint/><geom/>",
+       "<joint/><geom/><body pos=\"0 1 0\"><joint/></body>",
+       {"a branch"}},
+      {"chain.xml", "name=\"B_2\" pos=\"0.05", "name=\"B_2\" pos=\"0.06", {"\"B_2\"", "long"}},
+      {"chain.xml", "</worldbody>", "</worldbody><tendon/>", {"<tendon>", "allowed"}},
+      {"chain.xml", "</worldbody>", "</worldbody><actuator/>", {"<actuator>"}},
+      {"capsule_caps.xml",
+       "<body name=\"b0\" pos=\"0 0 0.6\">",
+       "<body pos=\"0 0 1\"><freejoint/>",
+       {"nothing holds"}},
+      {"hinges.xml", "<joint type=\"hinge\" axis=\"0 0 1\" stiffness=\"0.05\"/>", "", {"axis"}},
+      {"hinges.xml", "axis=\"0 1 0\"", "axis=\"1 1 0\"", {"<joint> axis = \"1 1 0\"", "oblique"}},
+      {"hinges.xml", "mass=\"0.0016\"", "mass=\"-1\"", {"<inertial> mass = \"-1\""}},
+      {"hinges.xml", "-9.81\"", "-9.81 nan\"", {"<option> gravity"}},
+      {"hinges.xml", "radian", "grad", {":3: <compiler> angle = \"grad\"", "degree, radian"}},
+      {"composite.xml", "key=\"bend\"", "key=\"bent\"", {"<config> key = \"bent\"", "bend?"}},
+      {"composite.xml", "count=\"21 1 1\"", "count=\"1e9\"", {"<composite> count", "1000"}},
+      {"composite.xml", "type=\"cable\"", "type=\"cloth\"", {"<composite> type = \"cloth\""}},
+      {"composite.xml", "bend\" value=\"120e6\"", "bend\" value=\"0\"", {"no spring"}},
+      {"two_constraints.xml", "body1=\"B_first\"", "body1=\"B_99\"", {"<weld> body1", "no such"}},
+      {"two_constraints.xml", "site2=\"hook\"", "site2=\"S_first\"", {"with itself"}},
+  };
+  for (const Refused& bad : cases) {
+    const std::string text = changed(mjcf_text(bad.file), bad.piece, bad.other);
+    try {
+      (void)parse_scene(text, "mine.xml");
+      ADD_FAILURE() << "accepted: " << bad.other;
+    } catch (const InputError& error) {
+      const std::string message = error.what();
+      EXPECT_EQ(message.rfind("mine.xml:", 0), 0U) << message;
+      EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+      for (const std::string& piece : bad.message) {
+        EXPECT_NE(message.find(piece), std::string::npos) << message << "\n  lacks " << piece;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace dlo::compare
