@@ -227,7 +227,8 @@ def suite(
         "threads": threads,
         "time_limit": float(time_limit),
     }
-    card: ScoreCard = _dlo.suite(called, name or getattr(run, "__name__", "run"), what, ScoreCard)
+    title = str(getattr(run, "__name__", "run")) if name is None else name
+    card: ScoreCard = _dlo.suite(called, title, what, ScoreCard)
     return card
 
 

@@ -16,7 +16,7 @@ struct Neighbours {
 };
 
 Neighbours neighbours(double at, Eigen::Index count) {
-  const double last = static_cast<double>(count - 1);
+  const auto last = static_cast<double>(count - 1);
   const double x = std::clamp(at, 0.0, last);
   Neighbours result;
   result.first =
