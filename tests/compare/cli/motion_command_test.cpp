@@ -123,6 +123,33 @@ TEST_F(MotionCommand, CheckRefusesBadRecordingsInOneLine) {
   expect_error(check(path("markers.csv") + " --shape x.csv"), 2, {"--motion", "--shape"});
 }
 
+TEST_F(MotionCommand, MeasuredPosesAreSmoothedBelowTheirCutoff) {
+  // A way along a line, with errors of a millimetre from row to row: at half the rate.
+  std::string rows = "time,x,y,z\n";
+  for (int k = 0; k <= 200; ++k) {
+    rows += fmt::format("{},{},0,0\n", 0.01 * k, 1e-3 * k + (k % 2 == 0 ? 1e-3 : -1e-3));
+  }
+  write("way.csv", rows);
+  const std::string rod =
+      "[rod]\nlength = 0.4\nbending_stiffness = 0.02\nmass_per_length = 0.05\n[[gripper]]\nat = 0\n"
+      "direction = 0\n";
+  const std::string way = "trajectory = \"way.csv\"\n";
+  write("smooth.toml", rod + way + "cutoff = \"5 Hz\"\n");
+  const Outcome track =
+      run(words({"track", path("smooth.toml"),
+                 "--no-force --from 0.5 --to 1.5 --frame-rate 37 --format json"}));
+  ASSERT_EQ(track.status, 0) << track.err;
+  for (const json& frame : json::parse(track.out).at("frames")) {
+    // A gain of 0.001 is left of it: 1 / (1 + (sqrt(2) - 1) / sin(pi / 20)^4).
+    EXPECT_NEAR(frame.at("grippers").at(0).at("position_m").at(0).get<double>(),
+                0.1 * frame.at("time_s").get<double>(), 2e-6);
+  }
+  write("fast.toml", rod + way + "cutoff = \"50 Hz\"\n");
+  expect_error(words({"solve", path("fast.toml")}), 2, {"gripper.cutoff = '50 Hz'", "50 Hz)"});
+  write("alone.toml", rod + "position = [0, 0, 0]\ncutoff = \"5 Hz\"\n");
+  expect_error(words({"solve", path("alone.toml")}), 2, {"gripper.cutoff", "beside trajectory"});
+}
+
 TEST_F(MotionCommand, CalibrateFindsTheStiffnessThatMovedTheMarkers) {
   write_markers("markers.csv");
   write("softer.toml", swung(0.015));
