@@ -130,3 +130,42 @@ def test_stiffness_from_a_recorded_motion(tmp_path):
         assert abs(found.json["stiffness"]["value"] / 0.02 - 1) < 1e-3
     with pytest.raises(dlo.InputError, match="allowed"):
         dlo.calibrate(swung(0.03), motion=[[0.0, 1.0]])
+
+
+def test_a_recorded_motion_is_judged(tmp_path):
+    """Of the rod with inertia: right with it, wrong without, and late."""
+    scene = dlo.Scene.from_text("""
+        rod = {length = 0.4, bending_stiffness = 0.02, mass_per_length = 0.05}
+        [[gripper]]
+        at = 0
+        direction = "-60 deg"
+        pose = [{time = 0, position = [0, 0, 0]}, {time = 0.3, position = [0.1, 0.02, 0]}]
+    """)
+    way = dlo.track(scene, frame_rate=40, force=False, samples=5, dynamic=True, damping=0.01)
+    rows = numpy.array([
+        [time, s, *point]
+        for time, points in zip(way.time, way.moving_points)
+        for s, point in zip(way.arc_length, points)
+    ])
+    right = dlo.check(scene, motion=rows, dynamic=True, damping=0.01, tolerance="0.1%")
+    assert isinstance(right, dlo.MotionCheck)
+    assert right.passed and right.rms < 1e-5 and right.largest >= right.rms
+    assert right.lag is None and right.causes == []
+    assert numpy.allclose(right.time, way.time)
+    assert right.errors.shape == way.time.shape
+    assert right["nearer"] == "with_inertia"
+    wrong = dlo.check(scene, motion=rows, damping=0.01, tolerance="0.1%")
+    assert not wrong.passed and "allowed 0.4 mm" in wrong.reason
+    assert wrong.causes[0][0] == "the rod has inertia (--dynamic)"
+    assert "verdict" in str(wrong)
+    late = rows + [0.02, 0, 0, 0, 0]
+    file = tmp_path / "late.csv"
+    file.write_text("time,s,x,y,z\n" + "".join(",".join(map(repr, map(float, row))) + "\n" for row in late))
+    for motion in (late, file):
+        found = dlo.check(scene, motion=motion, dynamic=True, damping=0.01, begin=0)
+        assert abs(found.lag - 0.02) < 1e-4
+    assert dlo.check(scene, motion=late, begin=0, explain=False).causes == []
+    with pytest.raises(dlo.InputError, match="points and motion"):
+        dlo.check(scene, [[0, 0, 0], [1, 0, 0]], motion=rows)
+    with pytest.raises(dlo.InputError, match="allowed: points, or motion"):
+        dlo.check(scene)

@@ -20,6 +20,7 @@
 #include "option/share.hpp"
 #include "option/terminal.hpp"
 #include "picture/fit_figure.hpp"
+#include "recording/recorded_frames.hpp"
 #include "series/motion_fit_output.hpp"
 #include "toml/quantity.hpp"
 #include "trajectory/read_markers.hpp"
@@ -195,7 +196,7 @@ void run_motion(const CalibrateOptions& options, bool format_is_given) {
     throw compare::InputError("--motion: of one scene (allowed: one SCENE)");
   }
   const compare::Scene scene = options.overrides.load(options.scenes.front());
-  const compare::MarkerMotion recorded = compare::load_markers(options.motion);
+  const compare::MarkerMotion recorded = compare::load_recording(options.motion, scene.length);
   const compare::MotionFit found = with_progress("calibrate", [&](const auto& /*unknown*/) {
     return compare::fit_motion(scene, recorded, {.solve = options.overrides.solve()});
   });
@@ -331,9 +332,9 @@ void add_calibrate(CLI::App& app) {
       ->group(measured);
   command
       ->add_option("--motion", options->motion,
-                   "recorded motion of markers on the rod, a CSV file of time,s,x,y,z in s and m: "
-                   "stiffness over mass and damping")
-      ->type_name("FILE")
+                   "recorded motion of the rod, a CSV file of markers, time,s,x,y,z in s and m, or "
+                   "frames as check takes them: stiffness over mass and damping")
+      ->type_name("FILE|DIR")
       ->excludes(shape)
       ->excludes(holdout)
       ->excludes(target)

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "format/json.hpp"
 #include "format/shape_check_output.hpp"
 #include "option/exit_status.hpp"
+#include "option/option_values.hpp"
 #include "option/output.hpp"
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
@@ -19,7 +21,10 @@
 #include "option/share.hpp"
 #include "option/terminal.hpp"
 #include "picture/check_figure.hpp"
+#include "recording/motion_check.hpp"
+#include "recording/recorded_frames.hpp"
 #include "report/check_page.hpp"
+#include "series/motion_check_output.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -27,6 +32,9 @@ namespace {
 struct CheckOptions {
   std::string scene;
   std::string shape;
+  std::string motion;
+  bool dynamic = false;
+  compare::MotionCheckRequest moving;
   ToleranceWords tolerance;
   bool no_modulus = false;
   bool no_explanation = false;
@@ -106,6 +114,71 @@ void run(const CheckOptions& options) {
   if (was_asked && !result.passes()) end_with(ExitStatus::outside_tolerance);
 }
 
+void run_motion(const CheckOptions& options) {
+  const compare::Scene scene = options.overrides.load(options.scene);
+  warn_of_friction(scene);
+  compare::MotionCheckRequest request = options.moving;
+  if (options.dynamic) request.model = compare::MotionModel::with_inertia;
+  if (options.no_explanation) request.explaining = compare::Explaining::no;
+  if (!options.tolerance.allowed.empty()) {
+    request.tolerance = shape_tolerance("--tolerance", options.tolerance, scene.length);
+  }
+  request.solve = options.overrides.solve();
+  const compare::MarkerMotion recorded = compare::load_recording(options.motion, scene.length);
+  const compare::MotionCheck result = with_progress("check", [&](const auto& progress) {
+    return compare::check_motion(scene, recorded, request, progress);
+  });
+  const std::string verdict =
+      verdict_word(result.passes ? "pass" : "fail", result.passes, options.output.file);
+  write_output(
+      options.output,
+      {.text = [&] { return motion_check_text(result, verdict); },
+       .json = [&] { return json_text(motion_check_json(result)); },
+       .csv = [&] { return motion_check_csv(result); },
+       .markdown = []() -> std::string {
+         throw compare::InputError("--motion: has no format markdown (allowed: text, json, csv)");
+       }});
+  if (request.tolerance && !result.passes) end_with(ExitStatus::outside_tolerance);
+}
+
+/// A recorded motion instead of a shape.
+void add_motion_to(CLI::App& command, CheckOptions& options) {
+  const std::string group = "Recorded motion";
+  CLI::Option* motion =
+      command
+          .add_option("--motion", options.motion,
+                      "instead of a shape: a CSV file of markers on the rod, time,s,x,y,z in s and "
+                      "m, a FILE.vtk.series of frames, or a folder of them")
+          ->type_name("FILE|DIR");
+  command
+      .add_flag("--dynamic", options.dynamic,
+                "with --motion: hold it against the rod with its inertia, not at rest")
+      ->needs(motion);
+  add_damping_options(command, options.moving.damping, motion);
+  const double most = std::numeric_limits<double>::max();
+  command
+      .add_option("--from", options.moving.from,
+                  "with --motion: when the rod's motion begins [s], default the recording's first "
+                  "time")
+      ->check(number_between(-most, most))
+      ->needs(motion);
+  command
+      .add_option("--frame-rate", options.moving.frame_rate,
+                  "with --motion: frames of the rod a second, between which it is interpolated; "
+                  "default as the recording and the scene need it")
+      ->check(number_between(1e-6, 1e9))
+      ->type_name("HZ")
+      ->needs(motion);
+  for (const char* name : {"--motion", "--dynamic", "--damping", "--drag", "--quadratic-drag",
+                           "--from", "--frame-rate"}) {
+    command.get_option(name)->group(group);
+  }
+  for (const char* name : {"--shape", "--min-seen", "--no-modulus", "--unit", "--register",
+                           "--arc-lengths", "--report", "--plot"}) {
+    motion->excludes(command.get_option(name));
+  }
+}
+
 }  // namespace
 
 void add_check(CLI::App& app) {
@@ -119,8 +192,7 @@ void add_check(CLI::App& app) {
   command
       ->add_option("--shape", options->shape,
                    "CSV, JSON, VTK polyline or NumPy array (FILE.npz:KEY)")
-      ->type_name("FILE")
-      ->required();
+      ->type_name("FILE");
   command->add_option(
       "--tolerance", options->tolerance.allowed,
       "the deviation allowed, 1% or 0.01 of the length or \"2 mm\"; exit status 1 beyond it. "
@@ -151,11 +223,18 @@ void add_check(CLI::App& app) {
       ->type_name("FILE");
   options->plot.add_to(*command, "the points on the rod, and their distances along it",
                        Sketches::offered);
+  add_motion_to(*command, *options);
   command->footer(
       "Example, with dlo in place of your simulator:\n"
       "  dlo solve data/scenes/cable.toml --model force --points 32 --format csv -o mine.csv\n"
       "  dlo check data/scenes/cable.toml --shape mine.csv --tolerance 1% --plot check.svg");
-  command->callback([options] { run(*options); });
+  command->callback([options] {
+    if (options->shape.empty() && options->motion.empty()) {
+      throw compare::InputError(
+          "dlo check: nothing to check (allowed: --shape FILE, --motion FILE)");
+    }
+    options->motion.empty() ? run(*options) : run_motion(*options);
+  });
 }
 
 }  // namespace dlo::cli

@@ -12,6 +12,7 @@
 #include "option/output.hpp"
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
+#include "option/share.hpp"
 #include "option/terminal.hpp"
 #include "picture/track_figure.hpp"
 #include "series/dynamic_track_series.hpp"
@@ -106,28 +107,7 @@ void add_track(CLI::App& app) {
       "--dynamic", options->dynamic,
       "the rod with its inertia too, as its shapes at rest move at first; the force model against "
       "it");
-  command
-      ->add_option("--damping", options->damping.material,
-                   "with --dynamic: Kelvin-Voigt time tau of the material [s]")
-      ->check(number_between(0, most))
-      ->needs(dynamic)
-      ->type_name("TIME")
-      ->capture_default_str();
-  command
-      ->add_option("--drag", options->damping.air,
-                   "with --dynamic: drag of the air per length and velocity [N s/m^2]")
-      ->check(number_between(0, most))
-      ->needs(dynamic)
-      ->type_name("VALUE")
-      ->capture_default_str();
-  command
-      ->add_option("--quadratic-drag", options->damping.quadratic,
-                   "with --dynamic: drag across the rod per length and squared velocity "
-                   "[N s^2/m^3], 1/2 rho C d")
-      ->check(number_between(0, most))
-      ->needs(dynamic)
-      ->type_name("VALUE")
-      ->capture_default_str();
+  add_damping_options(*command, options->damping, dynamic);
   command->add_option("--samples", options->request.options.samples, "points of a frame's shape")
       ->check(CLI::Range(2, 10000))
       ->capture_default_str();

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <utility>
 
 #include "dlo/compare/choice.hpp"
 #include "dlo/compare/error.hpp"
+#include "option/option_values.hpp"
 #include "toml/quantity.hpp"
 
 namespace dlo::cli {
@@ -87,6 +89,21 @@ void add_growth_options(CLI::App& command, compare::RegressionTolerance& toleran
                   "and how much beside that, as a share of the rod's length")
       ->transform(share_up_to(most))
       ->capture_default_str();
+}
+
+void add_damping_options(CLI::App& command, compare::RodDamping& damping, CLI::Option* needed) {
+  const std::string with = "with " + needed->get_name() + ": ";
+  const auto add = [&](const char* name, double& value, const char* what, const char* type) {
+    command.add_option(name, value, with + what)
+        ->check(number_between(0, std::numeric_limits<double>::max()))
+        ->needs(needed)
+        ->type_name(type)
+        ->capture_default_str();
+  };
+  add("--damping", damping.material, "Kelvin-Voigt time tau of the material [s]", "TIME");
+  add("--drag", damping.air, "drag of the air per length and velocity [N s/m^2]", "VALUE");
+  add("--quadratic-drag", damping.quadratic,
+      "drag across the rod per length and squared velocity [N s^2/m^3], 1/2 rho C d", "VALUE");
 }
 
 compare::ShapeTolerance shape_tolerance(const std::string& name, const ToleranceWords& words,

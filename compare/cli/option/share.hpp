@@ -6,6 +6,7 @@
 
 #include "batch/regression.hpp"
 #include "dlo/compare/shape_verdict.hpp"
+#include "motion/moving_scene.hpp"
 
 namespace dlo::cli {
 
@@ -18,6 +19,10 @@ namespace dlo::cli {
 
 /// --relative and --absolute: by how much an error may grow.
 void add_growth_options(CLI::App& command, compare::RegressionTolerance& tolerance);
+
+/// --damping, --drag and --quadratic-drag of a rod with inertia.
+/// @param needed  the option that they go with
+void add_damping_options(CLI::App& command, compare::RodDamping& damping, CLI::Option* needed);
 
 /// What a shape is held against.
 struct ToleranceWords {

@@ -32,8 +32,16 @@ INCREMENTS = (0.1, 0.05, 0.025, 0.015, 0.01, 0.005)  # largest ones of the load 
 PER_STAGE = 100  # places of the second grip between which its nodes go straight
 
 
+NOT_SUPPORTED = 3  # exit status of a scene that it does not have
+
+
 def give_up(why):
     sys.exit(f"calculix.py: {why}")
+
+
+def refuse(why):
+    print(f"calculix.py: not supported: {why}", file=sys.stderr)
+    sys.exit(NOT_SUPPORTED)
 
 
 def cross(a, b):
@@ -63,10 +71,12 @@ class Rod:
     def __init__(self, scene, points, thinner=1):
         rod, held = scene["rod"], scene["grippers"][0]
         if rod["natural_curvature_per_m"] or rod["natural_twist_rad_per_m"] or scene["obstacles"]:
-            give_up("this example has neither natural curvature nor obstacles")
+            refuse("natural curvature, obstacles")
+        if scene["distributed_loads"] or any(load["torque_Nm"] for load in scene["loads"]):
+            refuse("distributed loads, couples")
         EI, second_EI = rod["bending_stiffness_Nm2"]
         if EI != second_EI or held["hold"] != "clamp" or held["at_m"] != 0:
-            give_up("this example needs a round rod with a clamp at arc length 0")
+            refuse("other than a round rod with a clamp at arc length 0")
         self.scene, self.direction, self.origin = scene, held["direction"], held["position_m"]
         self.side = math.sqrt(12 * EI / rod["axial_stiffness_N"]) / thinner
         self.ends = self.element_ends(max(1, (points - 1) // 2))
@@ -162,7 +172,7 @@ def way_of_second_grip(rod):
     first, second = rod.scene["grippers"]
     length, direction = rod.s[-1], rod.direction
     if second["at_m"] != length or second["direction"] != direction:
-        give_up("of two grips this example needs parallel clamps at both ends of the rod")
+        refuse("two grips other than parallel clamps at both ends of the rod")
     apart = math.dist(first["position_m"], second["position_m"]) / length
     low, high = 1e-3, 2 * math.pi  # of a circle's arc that is as long as the rod
     for _ in range(60):
@@ -192,7 +202,7 @@ def loading(rod, parts, increment):
     tables = ["*AMPLITUDE,NAME=LOADS", "0.,0.", "1.,1.", "9.,1."]
     led, held, duration = [], [rod.planes[0]], 1
     if len(scene["grippers"]) > 2:
-        give_up("this example has one or two grips")
+        refuse("more than two grips")
     if len(scene["grippers"]) == 2:
         held.append(rod.planes[-1])
         way = list(way_of_second_grip(rod))

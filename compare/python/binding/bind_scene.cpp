@@ -12,6 +12,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/material.hpp"
 #include "document.hpp"
+#include "foreign/scene_document.hpp"
 #include "module.hpp"
 #include "result.hpp"
 #include "scene/read_scene.hpp"
@@ -189,6 +190,14 @@ void bind_scene(py::module_& module) {
       },
       py::arg("document"), py::arg("file"), py::arg("materials"));
   module.def("parse_scene", &parse_scene, py::arg("text"), py::arg("file"), py::arg("materials"));
+  module.def(
+      "scene_document",
+      [](const SharedScene& scene, std::optional<int> points) {
+        compare::Scene told = scene->scene;
+        if (points) told.force_model.points = *points;
+        return compare::scene_document_text(told);
+      },
+      py::arg("scene"), py::arg("points"));
   module.def("scene_at", &scene_at, py::arg("scene"), py::arg("time"));
   module.def("read_file", &compare::read_file, py::arg("path"));
   module.def("toml_text", &toml_text, py::arg("document"));

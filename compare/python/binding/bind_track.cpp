@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <array>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -14,9 +16,13 @@
 #include "module.hpp"
 #include "motion/dynamic_track.hpp"
 #include "motion/motion_fit.hpp"
+#include "option/share.hpp"
 #include "picture.hpp"
 #include "picture/track_figure.hpp"
+#include "recording/motion_check.hpp"
+#include "recording/recorded_frames.hpp"
 #include "series/dynamic_track_series.hpp"
+#include "series/motion_check_output.hpp"
 #include "series/motion_fit_output.hpp"
 #include "series/track_series.hpp"
 #include "solve_options.hpp"
@@ -61,21 +67,26 @@ py::object track(const SharedScene& shared, const std::vector<std::optional<doub
   return result;
 }
 
-/// @param rows  time, arc length, x, y, z each
-std::pair<std::string, std::string> calibrate_motion(
-    const SharedScene& shared,
-    const std::variant<py::bytes, std::vector<std::vector<double>>>& rows, const std::string& name,
-    const py::dict& limits) {
-  compare::MarkerMotion recorded{.file = name, .positions = {}};
+/// Rows of time, arc length, x, y, z, or the name of a file or folder.
+using RecordedRows = std::variant<py::bytes, std::vector<std::vector<double>>>;
+
+compare::MarkerMotion recorded_motion(const RecordedRows& rows, const std::string& name,
+                                      double length) {
   if (const auto* file = std::get_if<py::bytes>(&rows)) {
-    recorded = compare::load_markers(std::string(*file));
-  } else {
-    std::string text = "time,s,x,y,z\n";
-    for (const std::vector<double>& row : std::get<1>(rows)) {
-      text += fmt::format("{}\n", fmt::join(row, ","));
-    }
-    recorded = compare::parse_markers(text, name);
+    return compare::load_recording(std::string(*file), length);
   }
+  std::string text = "time,s,x,y,z\n";
+  for (const std::vector<double>& row : std::get<1>(rows)) {
+    text += fmt::format("{}\n", fmt::join(row, ","));
+  }
+  return compare::parse_markers(text, name);
+}
+
+std::pair<std::string, std::string> calibrate_motion(const SharedScene& shared,
+                                                     const RecordedRows& rows,
+                                                     const std::string& name,
+                                                     const py::dict& limits) {
+  const compare::MarkerMotion recorded = recorded_motion(rows, name, shared->scene.length);
   compare::SolveOptions solve = solve_options(limits);
   solve.accept_unverified = false;
   const compare::MotionFit found = run_long([&](Signals& /*signals*/) {
@@ -85,6 +96,36 @@ std::pair<std::string, std::string> calibrate_motion(
           cli::json_text(cli::motion_fit_json(found, shared->scene))};
 }
 
+/// @param part       when the rod's motion begins, and frames a second; None: as usual
+/// @param damping    of the material, of the air, of the air by the squared velocity
+/// @param tolerance  in words, what is held against it, and whether causes are looked for
+std::pair<std::string, std::string> check_motion(
+    const SharedScene& shared, const RecordedRows& rows,
+    const std::pair<std::optional<double>, std::optional<double>>& part, bool dynamic,
+    const std::array<double, 3>& damping,
+    const std::tuple<std::optional<std::string>, std::string, bool>& tolerance,
+    const py::dict& limits) {
+  const compare::Scene& scene = shared->scene;
+  compare::MotionCheckRequest request{
+      .model = dynamic ? compare::MotionModel::with_inertia : compare::MotionModel::at_rest,
+      .damping = {damping[0], damping[1], damping[2]},
+      .from = part.first,
+      .frame_rate = part.second,
+      .explaining = std::get<2>(tolerance) ? compare::Explaining::yes : compare::Explaining::no,
+      .solve = solve_options(limits)};
+  request.solve.accept_unverified = false;
+  if (const std::optional<std::string>& allowed = std::get<0>(tolerance)) {
+    request.tolerance = cli::shape_tolerance(
+        "tolerance", {*allowed, std::get<1>(tolerance), std::nullopt}, scene.length);
+  }
+  const compare::MarkerMotion recorded = recorded_motion(rows, "motion", scene.length);
+  const compare::MotionCheck found = run_long([&](Signals& signals) {
+    return compare::check_motion(scene, recorded, request,
+                                 [&](auto, auto) { signals.throw_if_stopped(); });
+  });
+  return {cli::motion_check_text(found), cli::json_text(cli::motion_check_json(found))};
+}
+
 }  // namespace
 
 void bind_track(py::module_& module) {
@@ -92,6 +133,8 @@ void bind_track(py::module_& module) {
              py::arg("damping"), py::arg("samples"), py::arg("make_result"), py::arg("limits"));
   module.def("calibrate_motion", &calibrate_motion, py::arg("scene"), py::arg("rows"),
              py::arg("name"), py::arg("limits"));
+  module.def("check_motion", &check_motion, py::arg("scene"), py::arg("rows"), py::arg("part"),
+             py::arg("dynamic"), py::arg("damping"), py::arg("tolerance"), py::arg("limits"));
 }
 
 }  // namespace dlo::python

@@ -7,7 +7,7 @@
 
 Scenes       Scene, clamp, pin, load, distributed_load, obstacle, section, materials
 One shape    solve, solve_all, check, compare, plan, calibrate
-Many         sweep, regress, report, bench, stability, modes
+Many         sweep, regress, report, bench, stability, modes, suite
 Motion       track
 In a loop    ForceModel, Batch
 Errors       InputError (a ValueError), ConvergenceError (a RuntimeError)
@@ -24,9 +24,11 @@ from ._documents import (
     ForceModelFit,
     MaterialFit,
     Modes,
+    MotionCheck,
     Plan,
     Regression,
     Report,
+    ScoreCard,
     Stability,
     Track,
 )
@@ -50,7 +52,7 @@ from ._parts import (
     section,
 )
 from ._scene import Scene, materials
-from ._studies import bench, modes, regress, report, stability, sweep, track
+from ._studies import bench, modes, regress, report, stability, suite, sweep, track
 
 __all__ = [
     "Batch",
@@ -70,11 +72,13 @@ __all__ = [
     "MaterialFit",
     "Medium",
     "Modes",
+    "MotionCheck",
     "Obstacle",
     "Plan",
     "Regression",
     "Report",
     "Scene",
+    "ScoreCard",
     "Section",
     "Solution",
     "Stability",
@@ -99,6 +103,7 @@ __all__ = [
     "solve",
     "solve_all",
     "stability",
+    "suite",
     "sweep",
     "track",
 ]

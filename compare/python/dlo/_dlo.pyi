@@ -243,6 +243,7 @@ def read_scene(document: dict[str, Any], file: str, materials: _Materials) -> Sc
 def parse_scene(
     text: str, file: str, materials: _Materials
 ) -> tuple[SceneData, dict[str, Any]]: ...
+def scene_document(scene: SceneData, points: Optional[int]) -> str: ...
 def scene_at(scene: SceneData, time: float) -> SceneData: ...
 def read_file(path: Union[str, bytes]) -> str: ...
 def toml_text(document: dict[str, Any]) -> str: ...
@@ -278,6 +279,15 @@ def calibrate_motion(
     name: str,
     limits: dict[str, Any],
 ) -> tuple[str, str]: ...
+def check_motion(
+    scene: SceneData,
+    rows: Union[bytes, Sequence[Sequence[float]]],
+    part: tuple[Optional[float], Optional[float]],
+    dynamic: bool,
+    damping: tuple[float, float, float],
+    tolerance: tuple[Optional[str], str, bool],
+    limits: dict[str, Any],
+) -> tuple[str, str]: ...
 def calibrate_force_model(
     scenes: Sequence[SceneData],
     holdouts: Sequence[SceneData],
@@ -301,6 +311,12 @@ def regress(
     what: dict[str, Any],
     make_result: Callable[[str, str, str], Any],
     limits: dict[str, Any],
+) -> Any: ...
+def suite(
+    function: Callable[[str, str, int], Any],
+    name: str,
+    what: dict[str, Any],
+    make_result: Callable[..., Any],
 ) -> Any: ...
 def report(
     scenes: Sequence[Union[str, bytes]],

@@ -147,6 +147,51 @@ class Track(Document):
         )
 
 
+class MotionCheck(Document):
+    """A recorded motion against its scene's rod; of check() with motion."""
+
+    @property
+    def passed(self) -> bool:
+        """Whether it is within the tolerance, 1 % of the length if none was given."""
+        return bool(self["verdict"] == "pass")
+
+    @property
+    def reason(self) -> str:
+        """Why, in words."""
+        return str(self["reason"])
+
+    @property
+    def rms(self) -> float:
+        """RMS distance of all points from the rod [m]."""
+        return float(self["rms_m"])
+
+    @property
+    def largest(self) -> float:
+        """Largest distance of a point [m]."""
+        return float(self["largest_m"])
+
+    @property
+    def time(self) -> NDArray[numpy.float64]:
+        """Of the frames [s], shape (F,)."""
+        return numpy.array([frame["time_s"] for frame in self["frames"]], dtype=float)
+
+    @property
+    def errors(self) -> NDArray[numpy.float64]:
+        """RMS distance of each frame's points [m], shape (F,)."""
+        return numpy.array([frame["rms_m"] for frame in self["frames"]], dtype=float)
+
+    @property
+    def lag(self) -> Optional[float]:
+        """By which the recording is late [s], where that explains much of the distance; else None."""
+        lag: Optional[float] = self["lag_s"]
+        return lag
+
+    @property
+    def causes(self) -> list[tuple[str, float]]:
+        """What would bring it nearer: (cause, RMS distance were it so [m]), the best first."""
+        return [(cause["cause"], cause["rms_m"]) for cause in self["causes"]]
+
+
 class Regression(Document):
     """Shape errors against a baseline; of regress()."""
 
@@ -169,6 +214,44 @@ class Regression(Document):
     def to_junit(self) -> str:
         """What `dlo regress --junit` writes: JUnit XML."""
         return self._junit
+
+
+class ScoreCard(Document):
+    """A simulator on the battery; of suite(). json is the document of `dlo suite --format json`, with one card."""
+
+    def __init__(self, text: str, json_text: str, markdown: str, junit: str, html: str) -> None:
+        super().__init__(text, json_text)
+        self._markdown = markdown
+        self._junit = junit
+        self._html = html
+
+    @property
+    def card(self) -> dict[str, Any]:
+        """The card itself: its scenes, classes and total."""
+        card: dict[str, Any] = self["cards"][0]
+        return card
+
+    @property
+    def right(self) -> int:
+        """Scenes that are right."""
+        return int(self.card["total"]["right"])
+
+    @property
+    def causes(self) -> dict[str, int]:
+        """What is wrong, by name, and in how many scenes."""
+        return dict(self.card["total"]["causes"])
+
+    def to_markdown(self) -> str:
+        """What `dlo suite --markdown` writes."""
+        return self._markdown
+
+    def to_junit(self) -> str:
+        """What `dlo suite --junit` writes: JUnit XML."""
+        return self._junit
+
+    def to_html(self) -> str:
+        """What `dlo suite --html` writes: a page with a badge."""
+        return self._html
 
 
 class Report:

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any, Iterable, Optional, Sequence, Union
+from typing import Any, Iterable, Optional, Sequence, Union, overload
 
 import numpy
 from numpy.typing import ArrayLike
 
 from . import _dlo
 from ._arguments import INTEGER, LIST, NUMBER, NUMBERS, QUANTITY, TEXT, TRUTH, checked, require
-from ._documents import Document, ForceModelFit, MaterialFit, Plan
+from ._documents import Document, ForceModelFit, MaterialFit, MotionCheck, Plan
 from ._errors import InputError
 from ._files import FileName, file_name
 from ._scene import Quantity, Scene, SceneLike, data_of
@@ -32,11 +32,19 @@ def many(scenes: Union[SceneLike, Iterable[SceneLike]]) -> list[SceneLike]:
 
 def _pair(shape: Any) -> tuple[Any, Any]:
     """Points and their arc lengths, or None: two points are no pair of these."""
-    if is_file(shape):
-        return file_name(shape, "shapes"), None
+    return (file_name(shape, "shapes"), None) if is_file(shape) else shape_pair(shape)
+
+
+def shape_pair(shape: Any) -> tuple[Any, Any]:
+    """The same of what is no file."""
     if isinstance(shape, tuple) and len(shape) == 2 and not _is_point(shape[0]):
         return shape[0], shape[1]
     return shape, None
+
+
+def _recorded(motion: Any) -> Any:
+    """The name of a file, or rows."""
+    return file_name(motion, "motion") if is_file(motion) else numpy.asarray(motion, float).tolist()
 
 
 def _is_point(value: Any) -> bool:
@@ -91,6 +99,16 @@ def solve_all(
     return _dlo.solve_all(data_of(scene, materials, time), samples or 0, limits)
 
 
+@overload
+def check(scene: SceneLike, points: Union[ArrayLike, FileName], **options: Any) -> _dlo.Check: ...
+
+
+@overload
+def check(
+    scene: SceneLike, points: None = None, *, motion: Union[ArrayLike, FileName], **options: Any
+) -> MotionCheck: ...
+
+
 @checked(
     tolerance=QUANTITY,
     measure=TEXT,
@@ -100,10 +118,16 @@ def solve_all(
     arc_lengths=TEXT,
     modulus=TRUTH,
     explain=TRUTH,
+    dynamic=TRUTH,
+    damping=NUMBER,
+    drag=NUMBER,
+    quadratic_drag=NUMBER,
+    begin=NUMBER,
+    frame_rate=NUMBER,
 )
 def check(
     scene: SceneLike,
-    points: Union[ArrayLike, FileName],
+    points: Optional[Union[ArrayLike, FileName]] = None,
     *,
     arc_length: Optional[ArrayLike] = None,
     tolerance: Optional[Quantity] = None,
@@ -114,9 +138,16 @@ def check(
     arc_lengths: str = "auto",
     modulus: bool = True,
     explain: bool = True,
+    motion: Optional[Union[ArrayLike, FileName]] = None,
+    dynamic: bool = False,
+    damping: float = 0.0,
+    drag: float = 0.0,
+    quadratic_drag: float = 0.0,
+    begin: Optional[float] = None,
+    frame_rate: Optional[float] = None,
     materials: Optional[FileName] = None,
     **limits: Any,
-) -> _dlo.Check:
+) -> Union[_dlo.Check, MotionCheck]:
     """How far points are from the shape that the scene's rod would take: `dlo check`.
 
     points: positions along the rod [m], shape (M, 3) or (M, 2) with z = 0; from either end, stretches
@@ -128,7 +159,24 @@ def check(
     0.2. arc_lengths: "auto",
     "file" (those given), "nearest" or "chord". modulus: look for E*/E. explain: of a shape that
     fails look for candidate causes, which takes longer than all else. materials: as of solve().
+
+    With motion in place of points a MotionCheck of a scene that moves: rows of time [s], arc length, x, y,
+    z [m], shape (R, 5), or the name of a file of markers, of a FILE.vtk.series or of a folder of frames.
+    dynamic: hold it against the rod with inertia, of that damping [s], drag [N s/m^2] and
+    quadratic_drag [N s^2/m^3], not at rest. begin: of the rod's motion [s]; None: the recording's.
+    frame_rate: of the rod [Hz]; None: as needed.
     """
+    if motion is not None:
+        if points is not None:
+            raise InputError("check: points and motion (allowed: one of them)")
+        told = (None if tolerance is None else str(tolerance), measure, bool(explain))
+        loss = (float(damping), float(drag), float(quadratic_drag))
+        part = (begin, frame_rate)
+        data = data_of(scene, materials)
+        rows = _recorded(motion)
+        return MotionCheck(*_dlo.check_motion(data, rows, part, bool(dynamic), loss, told, limits))
+    if points is None:
+        raise InputError("check: nothing to check (allowed: points, or motion)")
     asked = (None if tolerance is None else str(tolerance), measure, min_seen, bool(explain))
     data = data_of(scene, materials)
     taken: Any = file_name(points, "points") if is_file(points) else points
@@ -244,10 +292,7 @@ def calibrate(
     if motion is not None:
         if shapes is not None or len(data) != 1:
             raise InputError("calibrate: motion with shapes or of several scenes (allowed: one scene)")
-        if is_file(motion):
-            return Document(*_dlo.calibrate_motion(data[0], file_name(motion, "motion"), "motion", limits))
-        rows = numpy.asarray(motion, float).tolist()
-        return Document(*_dlo.calibrate_motion(data[0], rows, "motion", limits))
+        return Document(*_dlo.calibrate_motion(data[0], _recorded(motion), "motion", limits))
     if shapes is None:
         held_out = [data_of(scene, materials, time) for scene in holdout]
         return ForceModelFit(*_dlo.calibrate_force_model(data, held_out, points, target, limits))

@@ -165,6 +165,7 @@ class Gripper(Part):
     turns = _field("turns", as_it_is, "Whole turns more than the least, beside a frame.")
     pose = _field("pose", as_it_is, "How it moves: tables of time, position and, of a clamp, direction and roll.")
     trajectory = _field("trajectory", as_it_is, "A CSV file of poses, beside the scene's.")
+    cutoff = _field("cutoff", _of("frequency"), "Of the file's poses: what is faster is left out [Hz].")
 
 
 class Load(Part):
@@ -207,6 +208,7 @@ class Obstacle(Part):
     touches = _field("touches", lambda value: value or "surface", '"surface" or "axis" of the rod.')
     pose = _field("pose", as_it_is, "How it moves: tables of time and point.")
     trajectory = _field("trajectory", as_it_is, "A CSV file of poses, beside the scene's.")
+    cutoff = _field("cutoff", _of("frequency"), "Of the file's poses: what is faster is left out [Hz].")
 
 
 class Section(Part):

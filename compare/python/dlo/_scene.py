@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any, Callable, Iterable, Optional, Sequence, Union
 
 from . import _dlo
@@ -210,6 +211,12 @@ class Scene(Strict):
     def to_toml(self) -> str:
         """The text of a scene file."""
         return _dlo.toml_text(self._document())
+
+    def document(self, points: Optional[int] = None) -> dict[str, Any]:
+        """The scene in SI units with all that follows from it: `dlo scene --format json`. points: N of
+        the polygon in "force_model"; None: the scene's."""
+        document: dict[str, Any] = json.loads(_dlo.scene_document(self._data, points))
+        return document
 
     def copy(self) -> "Scene":
         """The same scene, to be changed on its own."""

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import itertools
 import os
-from typing import Any, Iterable, Mapping, Optional, Sequence, Union
+from typing import Any, Callable, Iterable, Mapping, Optional, Sequence, Union
 
 import numpy
 from numpy.typing import NDArray
 
 from . import _dlo
 from ._arguments import COUNT, INTEGER, LIST, NUMBER, TABLE, TEXT, TEXTS, TRUTH, checked, require
-from ._documents import Benchmark, Modes, Regression, Report, Stability, Track
+from ._documents import Benchmark, Modes, Regression, Report, ScoreCard, Stability, Track
 from ._errors import InputError
 from ._files import FileName, file_name
-from ._functions import is_file, many
-from ._scene import SceneLike, as_scene, data_of
+from ._functions import is_file, many, shape_pair
+from ._scene import Scene, SceneLike, as_scene, data_of
 
 
 def _spelled(field: str, value: Any, depth: int = 0) -> str:
@@ -189,6 +189,47 @@ def report(
     what = {"tolerance": float(tolerance), "quick": bool(quick), "threads": threads}
     made: Report = _dlo.report(files, file_name(folder, "folder"), what, call + ")", Report)
     return made
+
+
+@checked(name=TEXT, scenes=TEXTS, points=INTEGER, threads=INTEGER, time_limit=NUMBER)
+def suite(
+    run: Callable[[Scene, int], Any],
+    *,
+    name: Optional[str] = None,
+    scenes: Sequence[str] = (),
+    points: int = 16,
+    threads: int = 0,
+    time_limit: float = 60.0,
+) -> ScoreCard:
+    """The score card of a simulator that is a function: `dlo suite --with`.
+
+    run(scene, N) returns the rod at rest as points [m], shape (N, 3), as a pair of these and their arc
+    lengths [m], shape (N,), or as what has both (a dlo.Solution). N is points, then 2 and 4 times as many.
+    scene.document(N) is the scene in SI units, as programs get it. NotImplementedError says that there
+    is no such scene; any other exception is a failure, of which the card says why. It is called once at a
+    time, from any thread.
+
+    name: of the card; None: the function's. scenes: classes, or names of scenes; none: all. threads: of
+    all else; 0: all cores. time_limit: of each reference [s]; it does not end run().
+    """
+    if not callable(run):
+        raise InputError(f"run: a {type(run).__name__} (allowed: a function of a scene and a number of points)")
+
+    def called(text: str, file: str, count: int) -> Any:
+        made = run(Scene.from_text(text, file), count)
+        if hasattr(made, "points") and hasattr(made, "arc_length"):
+            return made.points, made.arc_length
+        return shape_pair(made)
+
+    what = {
+        "scenes": list(scenes),
+        "points": points,
+        "threads": threads,
+        "time_limit": float(time_limit),
+    }
+    title = str(getattr(run, "__name__", "run")) if name is None else name
+    card: ScoreCard = _dlo.suite(called, title, what, ScoreCard)
+    return card
 
 
 @checked(count=INTEGER, rate=NUMBER, damping=NUMBER, samples=INTEGER, time=NUMBER)

@@ -18,6 +18,7 @@ namespace dlo::compare {
 namespace {
 
 constexpr const char* battery_schema = "dlo/suite/1";
+constexpr std::string_view builtin_folder = "data/suite/";
 
 ClosedForm read_closed_form(StrictTable table, double length) {
   ClosedForm result;
@@ -64,7 +65,7 @@ std::string builtin_file(std::string_view name) {
   const auto file = std::find_if(builtin::suite_files.begin(), builtin::suite_files.end(),
                                  [&](const auto& one) { return one.name == name; });
   if (file == builtin::suite_files.end()) {
-    throw InputError(fmt::format("data/suite/{}: not compiled into dlo", name));
+    throw InputError(fmt::format("{}{}: not compiled into dlo", builtin_folder, name));
   }
   return std::string(file->text);
 }
@@ -74,9 +75,14 @@ std::string builtin_file(std::string_view name) {
 const Battery& builtin_battery() {
   static const Battery battery = read_battery(
       builtin_file("suite.toml"), "data/suite/suite.toml", [](const std::string& name) {
-        return parse_scene(builtin_file(name), "data/suite/" + name);
+        return parse_scene(builtin_file(name), std::string(builtin_folder) + name);
       });
   return battery;
+}
+
+std::string builtin_scene_text(const Scene& scene) {
+  const std::string_view file = scene.file;
+  return builtin_file(file.substr(std::min(file.size(), builtin_folder.size())));
 }
 
 Battery load_battery(const std::string& path) {

@@ -35,6 +35,9 @@ struct Battery {
 /// That of data/suite, which is compiled into the library.
 [[nodiscard]] const Battery& builtin_battery();
 
+/// The text of the file of one of its scenes. @throws InputError if it is none
+[[nodiscard]] std::string builtin_scene_text(const Scene& scene);
+
 /// Of a TOML file with schema = "dlo/suite/1", as data/suite/suite.toml is, and the scenes beside
 /// it. @throws InputError naming file, line, key, value and what is allowed
 [[nodiscard]] Battery load_battery(const std::string& path);

@@ -36,6 +36,7 @@ Shape laid_shape(const Scene& scene, const MeasuredShape& measured) {
   if (!told) {
     const double whole = shape.arc_length.back();
     for (double& s : shape.arc_length) s *= length / whole;
+    shape.arc_length.back() = length;  // not beyond it by rounding
   }
   if (shape.arc_length.front() > shape.arc_length.back()) {
     std::reverse(shape.arc_length.begin(), shape.arc_length.end());

@@ -16,6 +16,7 @@
 #include "explain/own_polygon.hpp"
 #include "suite/answer.hpp"
 #include "suite/balance.hpp"
+#include "suite/stiffness_cause.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -135,36 +136,9 @@ class Diagnosis {
     }
   }
 
-  /// Names stiffness factors of the coarsest and the finest shape.
   void add_factors(double coarse, double fine) {
-    const double power =
-        finest().points > coarsest().points
-            ? std::log(fine / coarse) /
-                  std::log(static_cast<double>(finest().points) / coarsest().points)
-            : 0;
-    constexpr double near_power = 0.35;
-    if (std::abs(power + 1) < near_power) {
-      add("springs without 1/h", fine,
-          fmt::format("bending stiffness is {:.3g} times EI with N = {} and {:.3g} times with N = "
-                      "{}: it is not divided by the element's length",
-                      coarse, coarsest().points, fine, finest().points));
-    } else if (std::abs(power - 1) < near_power) {
-      add("springs with 1/h^2", fine,
-          fmt::format("bending stiffness is {:.3g} times EI with N = {} and {:.3g} times with N = "
-                      "{}: it is divided by the element's length twice",
-                      coarse, coarsest().points, fine, finest().points));
-    } else if (std::abs(power) < near_power) {
-      add("bending stiffness wrong", fine,
-          fmt::format("the bending stiffness is {:.3g} times the scene's{}", fine,
-                      scene_.loads.empty() && scene_.weight_per_length().norm() > 0
-                          ? fmt::format(", or the weight {:.3g} times", 1 / fine)
-                          : ""));
-    } else {
-      add("bending stiffness depends on N", fine,
-          fmt::format("bending stiffness is {:.3g} times EI with N = {} and {:.3g} times with N = "
-                      "{}",
-                      coarse, coarsest().points, fine, finest().points));
-    }
+    found_.push_back(
+        cause_of_factors(scene_, {coarsest().points, coarse}, {finest().points, fine}));
   }
 
   bool look_at_springs() {

@@ -132,6 +132,11 @@ std::vector<Simulator> parse_simulators(const std::vector<std::string>& texts) {
 
 SimulatorRun run_simulator(const Simulator& simulator, Scene scene, int points, double time_limit) {
   scene.force_model.points = points;
+  if (simulator.function) {
+    SimulatorRun run = simulator.function(scene, points);
+    run.points = points;
+    return run;
+  }
   SimulatorRun run = simulator.own ? run_own(*simulator.own, scene, time_limit)
                                    : run_program(simulator.program, scene, points, time_limit);
   run.points = points;
@@ -140,7 +145,8 @@ SimulatorRun run_simulator(const Simulator& simulator, Scene scene, int points, 
 
 SimulatorRun kept_run(const std::string& folder, const std::string& id, const Simulator& simulator,
                       const Scene& scene, int points, double time_limit) {
-  if (folder.empty()) return run_simulator(simulator, scene, points, time_limit);
+  if (folder.empty() || simulator.function)
+    return run_simulator(simulator, scene, points, time_limit);
   const std::filesystem::path mine = std::filesystem::path(folder) / simulator.name;
   const std::filesystem::path file = mine / fmt::format("{}_{}.json", id, points);
   const std::string known = run_fingerprint(simulator, scene, points);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,20 +11,6 @@
 #include "foreign/foreign_program.hpp"
 
 namespace dlo::compare {
-
-/// What is run on the battery: a program, or one of our own polygon models.
-struct Simulator {
-  std::string name;          ///< of the program, or "chain" or "force"
-  std::optional<Model> own;  ///< none: `program`
-  ForeignProgram program;    ///< its command
-
-  /// What its results depend on, in words.
-  [[nodiscard]] std::string identity() const;
-};
-
-/// @param texts  each NAME=COMMAND as parse_foreign_program() takes it, or "chain" or "force"
-/// @throws InputError as that, or if two have the same name
-[[nodiscard]] std::vector<Simulator> parse_simulators(const std::vector<std::string>& texts);
 
 /// How a run ended.
 enum class RunStatus {
@@ -49,6 +36,22 @@ struct SimulatorRun {
   double seconds = 0;                    ///< wall time [s]
   std::optional<MeasuredShape> shape;    ///< of a run that is solved
 };
+
+/// What is run on the battery: a program, one of our own polygon models, or a function.
+struct Simulator {
+  std::string name;          ///< of the program, or "chain" or "force"
+  std::optional<Model> own;  ///< none: `program`
+  ForeignProgram program;    ///< its command
+  /// A function of this process, from any thread; its results are not kept. None: one of those.
+  std::function<SimulatorRun(const Scene& scene, int points)> function = {};
+
+  /// What its results depend on, in words.
+  [[nodiscard]] std::string identity() const;
+};
+
+/// @param texts  each NAME=COMMAND as parse_foreign_program() takes it, or "chain" or "force"
+/// @throws InputError as that, or if two have the same name
+[[nodiscard]] std::vector<Simulator> parse_simulators(const std::vector<std::string>& texts);
 
 /// Runs a simulator. @param time_limit  [s], > 0
 /// @throws OutputError as run_foreign()

@@ -17,6 +17,7 @@
 #include "base/number.hpp"
 #include "base/quote.hpp"
 #include "dlo/compare/error.hpp"
+#include "trajectory/smooth_poses.hpp"
 #include "trajectory/trajectory_files.hpp"
 
 namespace dlo::compare {
@@ -202,6 +203,11 @@ Trajectory read_trajectory(StrictTable& table, const PoseKeys& keys,
   if (name && !rows.empty()) {
     table.fail("trajectory", "given besides poses (allowed: one of trajectory and [[..pose]])");
   }
+  const std::optional<double> cutoff =
+      table.optional_number("cutoff", Dimension::frequency, Range::positive());
+  if (cutoff && !name) {
+    table.fail("cutoff", "given without a file of poses (allowed: beside trajectory)");
+  }
   if (!name) return rows.empty() ? Trajectory() : read_rows(table, rows, keys);
   Trajectory trajectory;
   try {
@@ -218,7 +224,12 @@ Trajectory read_trajectory(StrictTable& table, const PoseKeys& keys,
   if (trajectory.poses().front().roll && !keys.direction) {
     table.fail("trajectory", "has rolls (allowed here: time,x,y,z)");
   }
-  return trajectory;
+  if (!cutoff) return trajectory;
+  try {
+    return Trajectory(smooth_poses(trajectory.poses(), *cutoff));
+  } catch (const std::invalid_argument& error) {
+    table.fail("cutoff", problem_in(error));
+  }
 }
 
 }  // namespace dlo::compare

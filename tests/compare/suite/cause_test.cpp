@@ -16,6 +16,7 @@
 #include "suite/answer.hpp"
 #include "suite/balance.hpp"
 #include "suite/battery.hpp"
+#include "suite/stiffness_cause.hpp"
 
 namespace {
 
@@ -122,6 +123,25 @@ TEST(Causes, NameAStiffnessWhereNoChainIsCompared) {
   ASSERT_EQ(causes.size(), 1U);
   EXPECT_EQ(causes[0].name, "bending stiffness wrong");
   EXPECT_NEAR(causes[0].factor, 0.6, 0.01);
+}
+
+TEST(CauseOfFactors, IsWhatTheyAreAtBothNumbersOfPoints) {
+  const Scene weight = battery_scene("weight_10");
+  const auto cause = [](const Scene& scene, double coarse, double fine) {
+    return dlo::compare::cause_of_factors(scene, {17, coarse}, {65, fine});
+  };
+  // Of 16 and 64 elements.
+  const Cause caps = cause(weight, 1 / 1.1, 1 / 1.4);
+  EXPECT_EQ(caps.name, "weight with caps");
+  EXPECT_NEAR(caps.factor, 1.4, 1e-12);
+  // 4 r / (3 h) is 0.4 for h of 0.6 m / 64.
+  EXPECT_NE(caps.words.find("caps of radius 2.81 mm"), std::string::npos) << caps.words;
+  EXPECT_NE(cause(battery_scene("payload_tip"), 1 / 1.1, 1 / 1.4).name, "weight with caps");
+  EXPECT_EQ(cause(weight, 1.0 / 16, 1.0 / 64).name, "springs without 1/h");
+  EXPECT_EQ(cause(weight, 16, 64).name, "springs with 1/h^2");
+  EXPECT_EQ(cause(weight, 0.7, 0.7).name, "bending stiffness wrong");
+  EXPECT_EQ(cause(weight, 2, 1.2).name, "bending stiffness depends on N");
+  EXPECT_EQ(cause(weight, 1e-5, 2e-5).name, "bending stiffness ignored");
 }
 
 TEST(Causes, OfTheRodItselfThereAreNone) {

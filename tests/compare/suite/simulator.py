@@ -12,6 +12,8 @@
     soft           springs 0.7 EI/h
     light          0.8 of the weight
     weightless     no weight
+    caps           each element's weight has that of a ball of 0.005 l radius more, as a capsule has
+    limp           no springs
     not_at_rest    stopped on its way to rest
 
 A scene that it does not have is exit status 3.
@@ -20,11 +22,6 @@ A scene that it does not have is exit status 3.
 import json
 import math
 import sys
-
-
-def refuse(why):
-    print(f"not supported: {why}", file=sys.stderr)
-    sys.exit(3)
 
 
 def tridiagonal(lower, diagonal, right):
@@ -53,7 +50,7 @@ class Chain:
         self.origin = gripper["position_m"]
         self.clamp = math.atan2(gripper["direction"][1], gripper["direction"][0])
         length, n = rod["length_m"], points - 1
-        is_half = defect in ("middle", "linear", "weightless", "light", "soft")
+        is_half = defect in ("middle", "linear", "weightless", "light", "soft", "caps", "limp")
         h = length / (n - 0.5 if is_half else n)
         self.lengths = [h / 2 if is_half else h] + [h] * (n - 1)
         # Of the joint before each segment; the first one is at the clamp.
@@ -61,7 +58,8 @@ class Chain:
         spring = stiffness if defect == "no_h" else stiffness / h * (0.7 if defect == "soft" else 1)
         self.springs = [1e6 * spring if first is None else first * spring] + [spring] * (n - 1)
         self.is_linear = defect == "linear"
-        self.forces(scene, rod["mass_per_length_kg_per_m"], {"light": 0.8, "weightless": 0.0}.get(defect, 1.0))
+        shares = {"light": 0.8, "weightless": 0.0, "caps": 1 + 4 / 3 * 0.005 * length / h}
+        self.forces(scene, rod["mass_per_length_kg_per_m"], shares.get(defect, 1.0))
         self.relaxation = length**2 / stiffness / (math.pi / 2) ** 2
 
     def forces(self, scene, mass_per_length, share):
@@ -163,24 +161,39 @@ class Chain:
             yield x, y
 
 
-def main():
-    defect, scene, points, shape = sys.argv[1:]
-    with open(scene, encoding="utf-8") as file:
-        scene = json.load(file)
+def not_supported(scene):
+    """Why it does not have a scene; None: it has."""
     rod, grippers = scene["rod"], scene["grippers"]
     if len(grippers) != 1 or grippers[0]["at_m"] != 0 or grippers[0]["hold"] != "clamp":
-        refuse("grippers other than one clamp at the begin")
+        return "grippers other than one clamp at the begin"
     if scene["obstacles"] or rod["sections"] or scene["distributed_loads"]:
-        refuse("obstacles, sections, distributed loads")
+        return "obstacles, sections, distributed loads"
     if rod["bending_stiffness_Nm2"][0] != rod["bending_stiffness_Nm2"][1] or rod["natural_curvature_per_m"]:
-        refuse("two bending stiffnesses, natural curvature")
+        return "two bending stiffnesses, natural curvature"
     if any(load["torque_Nm"] or load["force_N"][2] for load in scene["loads"]) or scene["gravity_m_per_s2"][2]:
-        refuse("what is not in the plane")
-    chain = Chain(scene, int(points), defect)
-    angles = chain.on_the_way() if defect == "not_at_rest" else chain.rest()
-    with open(shape, "w", encoding="utf-8") as file:
+        return "what is not in the plane"
+    return None
+
+
+def shape(defect, scene, points):
+    """Rows of x, y."""
+    chain = Chain(scene, points, defect)
+    if defect == "limp":
+        return list(chain.points([-math.pi / 2] * len(chain.lengths)))
+    return list(chain.points(chain.on_the_way() if defect == "not_at_rest" else chain.rest()))
+
+
+def main():
+    defect, scene, points, shape_file = sys.argv[1:]
+    with open(scene, encoding="utf-8") as file:
+        scene = json.load(file)
+    problem = not_supported(scene)
+    if problem:
+        print(f"not supported: {problem}", file=sys.stderr)
+        sys.exit(3)
+    with open(shape_file, "w", encoding="utf-8") as file:
         file.write("x,y,z\n")
-        for x, y in chain.points(angles):
+        for x, y in shape(defect, scene, int(points)):
             file.write(f"{x:.12f},{y:.12f},0\n")
 
 

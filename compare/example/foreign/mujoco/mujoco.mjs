@@ -23,6 +23,11 @@ const fail = (why) => {
   console.error(`mujoco.mjs: ${why}`);
   process.exit(1);
 };
+/** Of a scene that it does not have: exit status 3. */
+const refuse = (why) => {
+  console.error(`mujoco.mjs: not supported: ${why}`);
+  process.exit(3);
+};
 const minus = (a, b) => a.map((x, i) => x - b[i]);
 const cross = (a, b) => [0, 1, 2].map((i) => a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]);
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -41,14 +46,16 @@ const shortestTurn = (a, b) => {
 function readChain(scene) {
   const { force_model: model, grippers, rod } = scene;
   const [first, second] = grippers;
-  if (model.refused) fail(model.refused);
+  if (model.refused) refuse(model.refused);
   if (grippers.length > 2 || grippers.some((grip) => grip.hold !== 'clamp') || first.at_m !== 0 ||
       (second && (second.at_m !== rod.length_m || minus(second.direction, first.direction).some((x) => x))))
-    fail('only a clamp at arc length 0, and a second one, parallel to it, at the end');
-  if (rod.natural_curvature_per_m.length || scene.obstacles.length) fail('only straight rods without obstacles');
+    refuse('other than a clamp at arc length 0, and a second one, parallel to it, at the end');
+  if (rod.natural_curvature_per_m.length || scene.obstacles.length) refuse('natural curvature, obstacles');
+  if (rod.bending_stiffness_Nm2[0] !== rod.bending_stiffness_Nm2[1] || scene.loads.some((load) => load.torque_Nm))
+    refuse('two bending stiffnesses, couples');
   const roll = second?.frame ? second.frame.roll_rad - first.frame.roll_rad : 0;
   const [EI, GJ] = [rod.bending_stiffness_Nm2[0], rod.torsional_stiffness_Nm2 ?? rod.bending_stiffness_Nm2[0]];
-  if (roll && (rod.sections.length || GJ > EI)) fail('twist only of a rod without sections, with GJ <= EI');
+  if (roll && (rod.sections.length || GJ > EI)) refuse('twist other than of a rod without sections, with GJ <= EI');
   // The frame that does not twist along the polygon, and then the twist spread evenly.
   const start = model.start_m;
   let along = first.direction;

@@ -1,0 +1,115 @@
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <chrono>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "array.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/shape_file.hpp"
+#include "format/json.hpp"
+#include "long_call.hpp"
+#include "module.hpp"
+#include "score/card_output.hpp"
+#include "suite/card.hpp"
+#include "suite/card_document.hpp"
+
+namespace dlo::python {
+namespace {
+
+using compare::RunStatus;
+using compare::SimulatorRun;
+
+/// The shape that a function of Python returns. @param made  points, and arc lengths or None
+compare::MeasuredShape shape_from(const py::object& made) {
+  const auto pair = made.cast<py::tuple>();
+  return compare::shape_of(
+      points_from(pair[0], "points"),
+      pair[1].is_none() ? std::vector<double>{} : values_from(pair[1], "arc_length"), "its shape");
+}
+
+std::string one_line(std::string text) { return text.substr(0, text.find('\n')); }
+
+/// A function of Python as a simulator: one call at a time, whatever thread it is from, because it
+/// need not be made for several.
+class PythonSimulator {
+ public:
+  /// @param function  of a scene's text, its file and the number of points
+  explicit PythonSimulator(py::object function) : function_(std::move(function)) {}
+
+  [[nodiscard]] SimulatorRun run(const compare::Scene& scene, int points) {
+    const std::string text = compare::builtin_scene_text(scene);
+    const std::scoped_lock one_call(calling_);
+    const py::gil_scoped_acquire python;
+    const auto begin = std::chrono::steady_clock::now();
+    SimulatorRun result = called(text, scene.file, points);
+    result.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return result;
+  }
+
+ private:
+  SimulatorRun called(const std::string& text, const std::string& file, int points) {
+    SimulatorRun result;
+    try {
+      result.shape = shape_from(function_(text, file, points));
+      result.status = RunStatus::solved;
+    } catch (py::error_already_set& error) {
+      // What is no Exception is an end, as Ctrl-C.
+      if (!error.matches(PyExc_Exception)) throw;
+      if (error.matches(PyExc_NotImplementedError)) result.status = RunStatus::not_supported;
+      result.problem = one_line(error.what());
+    } catch (const compare::InputError& error) {
+      result.problem = error.what();
+    }
+    return result;
+  }
+
+  py::object function_;
+  std::mutex calling_;
+};
+
+/// @param what  scenes, points, threads, time_limit
+/// @param make_result  of text, JSON, Markdown, JUnit XML, HTML
+py::object suite(const py::object& function, const std::string& name, const py::dict& what,
+                 const py::object& make_result) {
+  compare::CardOptions options{.points = what["points"].cast<int>(),
+                               .threads = what["threads"].cast<int>(),
+                               .time_limit = what["time_limit"].cast<double>()};
+  if (options.points < 4 || options.points > 10000 || options.threads < 0 ||
+      options.threads > 1024 || !(options.time_limit > 0)) {
+    throw compare::InputError(
+        "suite: out of range (allowed: points from 4 to 10000, threads from 0 to 1024, time_limit "
+        "> 0)");
+  }
+  PythonSimulator python(function);
+  const compare::Simulator simulator{.name = name,
+                                     .own = std::nullopt,
+                                     .program = {},
+                                     .function = [&](const compare::Scene& scene, int points) {
+                                       return python.run(scene, points);
+                                     }};
+  const compare::Battery& battery = compare::builtin_battery();
+  const auto scenes =
+      compare::chosen_scenes(battery, what["scenes"].cast<std::vector<std::string>>());
+  const std::vector<compare::Card> cards = run_long([&](Signals& signals) {
+    options.progress = [&signals](auto, auto) { signals.throw_if_stopped(); };
+    return compare::make_cards(battery.version, scenes, {simulator}, options);
+  });
+  return make_result(cli::cards_text(cards), cli::json_text(compare::cards_json(cards)),
+                     cli::cards_markdown(cards), cli::cards_junit(cards),
+                     cli::cards_page(cards, DLO_VERSION));
+}
+
+}  // namespace
+
+void bind_suite(py::module_& module) {
+  module.def("suite", &suite, py::arg("function"), py::arg("name"), py::arg("what"),
+             py::arg("make_result"));
+}
+
+}  // namespace dlo::python

@@ -1,0 +1,117 @@
+#include "recording/gripper_causes.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include "dlo/compare/error.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// By which a gripper is displaced for the differences, over the length: far above the energy
+/// model's 1e-9, far below what would bend the rod otherwise.
+constexpr double displacement_share = 1e-3;
+
+Scene displaced(Scene scene, std::size_t gripper, const Eigen::Vector3d& by) {
+  Gripper& moved = scene.grippers[gripper];
+  moved.position += by;
+  std::vector<Pose> poses = moved.trajectory.poses();
+  for (Pose& pose : poses) pose.position += by;
+  if (!poses.empty()) moved.trajectory = Trajectory(std::move(poses));
+  return scene;
+}
+
+/// Points of a scene's rod at rest, at the recording's times and arc lengths [m].
+Eigen::Matrix3Xd points_at_rest(const Scene& scene, const TrackOptions& options,
+                                const MarkerMotion& recorded) {
+  const Track moved = track(scene, options);
+  if (moved.stopped) throw ConvergenceError(moved.stopped->why);
+  std::vector<Eigen::Matrix3Xd> frames;
+  frames.reserve(moved.frames.size());
+  for (const TrackFrame& frame : moved.frames) frames.push_back(frame.shape.points);
+  const ModelMotion model(*options.from, *options.to, scene.length, std::move(frames));
+  return -motion_residuals(recorded, model);  // less the recording's
+}
+
+/// Derivatives of all coordinates by a gripper's position, 3 positions x 3 [-].
+Eigen::MatrixX3d sensitivity(const Scene& scene, const TrackOptions& options,
+                             const MarkerMotion& recorded, std::size_t gripper) {
+  const double by = displacement_share * scene.length;
+  const Eigen::Matrix3Xd here = points_at_rest(scene, options, recorded);
+  Eigen::MatrixX3d result(here.size(), 3);
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Matrix3Xd there = points_at_rest(
+        displaced(scene, gripper, by * Eigen::Vector3d::Unit(axis)), options, recorded);
+    result.col(axis) = (there - here).reshaped() / by;
+  }
+  return result;
+}
+
+MotionCause constant_cause(std::size_t gripper, const Eigen::MatrixX3d& design,
+                           const Eigen::VectorXd& residuals) {
+  const Eigen::Vector3d by = design.colPivHouseholderQr().solve(residuals);
+  const double left = (residuals - design * by).norm();
+  return {MotionCause::Kind::gripper,
+          fmt::format("gripper {} is displaced by [{:.3g}, {:.3g}, {:.3g}] mm", gripper + 1,
+                      by.x() * 1e3, by.y() * 1e3, by.z() * 1e3),
+          left / std::sqrt(static_cast<double>(residuals.size()) / 3)};
+}
+
+/// None where frames have too few points to tell.
+std::optional<MotionCause> path_cause(std::size_t gripper, const Eigen::MatrixX3d& design,
+                                      const Eigen::VectorXd& residuals,
+                                      const MarkerMotion& recorded) {
+  double left = 0;
+  double moved = 0;
+  Eigen::Index frames = 0;
+  for (std::size_t begin = 0; begin < recorded.positions.size();) {
+    std::size_t end = begin;
+    while (end < recorded.positions.size() &&
+           recorded.positions[end].time == recorded.positions[begin].time) {
+      ++end;
+    }
+    const auto first = static_cast<Eigen::Index>(3 * begin);
+    const auto rows = static_cast<Eigen::Index>(3 * (end - begin));
+    const Eigen::MatrixX3d of_frame = design.middleRows(first, rows);
+    const Eigen::VectorXd there = residuals.segment(first, rows);
+    const Eigen::Vector3d by = of_frame.colPivHouseholderQr().solve(there);
+    left += (there - of_frame * by).squaredNorm();
+    moved += by.squaredNorm();
+    ++frames;
+    begin = end;
+  }
+  const Eigen::Index freedom = residuals.size() - 3 * frames;
+  if (freedom < 3 * frames) return std::nullopt;
+  return MotionCause{MotionCause::Kind::gripper_path,
+                     fmt::format("gripper {} has another path, {:.3g} mm away (RMS)", gripper + 1,
+                                 std::sqrt(moved / static_cast<double>(frames)) * 1e3),
+                     std::sqrt(3 * left / static_cast<double>(freedom))};
+}
+
+}  // namespace
+
+std::vector<MotionCause> gripper_causes(const Scene& scene, const TrackOptions& options,
+                                        const MarkerMotion& recorded,
+                                        const Eigen::Matrix3Xd& residuals) {
+  std::vector<MotionCause> result;
+  const Eigen::VectorXd all = residuals.reshaped();
+  for (std::size_t gripper = 0; gripper < scene.grippers.size(); ++gripper) {
+    try {
+      const Eigen::MatrixX3d design = sensitivity(scene, options, recorded, gripper);
+      result.push_back(constant_cause(gripper, design, all));
+      if (auto path = path_cause(gripper, design, all, recorded)) result.push_back(*path);
+    } catch (const InputError&) {
+      continue;  // such as one that would draw the rod taut
+    } catch (const ConvergenceError&) {
+      continue;
+    }
+  }
+  return result;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,291 @@
+#include "recording/motion_check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/number.hpp"
+#include "dlo/compare/error.hpp"
+#include "motion/dynamic_track.hpp"
+#include "motion/track.hpp"
+#include "recording/gripper_causes.hpp"
+#include "recording/lag_search.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Points of the rod in each frame: cubics between them are off by 1e-10 of a smooth rod.
+constexpr int model_samples = 201;
+constexpr int fewest_frames = 4;  // that a cubic needs
+/// Frames of the model for each of the recording, which has nothing faster than half its rate.
+constexpr double frames_per_recorded = 4;
+/// The scene's own frame rate is taken up to so many frames.
+constexpr double usual_frames = 2000;
+/// Errors that are none, over the length: of the interpolation where accelerations jump.
+constexpr double no_error = 1e-5;
+/// What a path of a gripper, with three numbers a frame, may leave to be named.
+constexpr double path_may_leave = 0.35;
+
+struct RecordedTimes {
+  double first = 0, last = 0;  // [s]
+  double rate = 0;             // mean [Hz]
+};
+
+RecordedTimes times_of(const Scene& scene, const MarkerMotion& recorded) {
+  std::size_t times = 0;
+  double before = -std::numeric_limits<double>::infinity();
+  for (const MarkerPosition& at : recorded.positions) {
+    if (!on_rod(at.arc_length, scene.length)) {
+      throw InputError(fmt::format("{}: a point at s = {:g} m (allowed: 0 to the rod's {:g} m)",
+                                   recorded.file, at.arc_length, scene.length));
+    }
+    times += at.time > before ? 1 : 0;
+    before = at.time;
+  }
+  if (times < 2) throw InputError(recorded.file + ": one time only (allowed: two or more)");
+  const double first = recorded.positions.front().time;
+  return {first, before, static_cast<double>(times - 1) / (before - first)};
+}
+
+/// The rod by both models, as far as there is one.
+struct Models {
+  TrackOptions options;
+  std::optional<ModelMotion> at_rest, with_inertia;
+  std::string no_inertia;  // why
+  bool in_motion = false;  // at first
+
+  [[nodiscard]] const std::optional<ModelMotion>& of(MotionModel model) const {
+    return model == MotionModel::at_rest ? at_rest : with_inertia;
+  }
+};
+
+TrackOptions track_options(const Scene& scene, const RecordedTimes& times,
+                           const MotionCheckRequest& request) {
+  const double from = request.from.value_or(times.first);
+  if (!(from <= times.first)) {
+    throw InputError(
+        fmt::format("--from {:g}: after the recording's first time (allowed: up to {:g} s)", from,
+                    times.first));
+  }
+  // Frames of a recording that is early are those of a later rod.
+  const double to = times.last + lag_range_share * (times.last - times.first);
+  const double rate = request.frame_rate.value_or(std::max(
+      frames_per_recorded * times.rate, std::min(scene.track.frames, usual_frames / (to - from))));
+  const double frames = std::max<double>(fewest_frames, std::ceil((to - from) * rate));
+  TrackOptions options{.from = from,
+                       .to = to,
+                       .rates = scene.track,
+                       .force = ForceBeside::absent,
+                       .samples = model_samples,
+                       .solve = request.solve};
+  options.rates.frames = frames / (to - from);
+  return options;
+}
+
+/// None, and why, of frames that do not come to the recording's end.
+template <typename Frames, typename Points>
+std::optional<ModelMotion> motion_model(const Frames& frames, const Points& points_of,
+                                        const Scene& scene, const TrackOptions& options,
+                                        double last) {
+  const double step = 1 / options.rates.frames;
+  const double end = *options.from + static_cast<double>(frames.size() - 1) * step;
+  if (frames.size() < fewest_frames || end < last) return std::nullopt;
+  std::vector<Eigen::Matrix3Xd> points;
+  points.reserve(frames.size());
+  for (const auto& frame : frames) points.push_back(points_of(frame));
+  return ModelMotion(*options.from, end, scene.length, std::move(points));
+}
+
+std::string stop_text(const std::optional<TrackStop>& stop) {
+  return stop ? fmt::format("stopped at {:g} s: {}", stop->time, stop->why) : "has too few frames";
+}
+
+void add_inertia(const Scene& scene, const Track& at_rest, const MotionCheckRequest& request,
+                 double last, Models& models) {
+  try {
+    const DynamicTrack moving = dynamic_track(scene, at_rest, models.options, request.damping);
+    models.with_inertia = motion_model(
+        moving.frames, [](const DynamicFrame& frame) { return frame.points; }, scene,
+        models.options, last);
+    models.in_motion = moving.in_motion;
+    if (!models.with_inertia) models.no_inertia = stop_text(moving.stopped);
+  } catch (const InputError& error) {
+    if (request.model == MotionModel::with_inertia) throw;
+    models.no_inertia = error.what();
+  } catch (const ConvergenceError& error) {
+    if (request.model == MotionModel::with_inertia) throw;
+    models.no_inertia = error.what();
+  }
+}
+
+Models run_models(const Scene& scene, const RecordedTimes& times, const MotionCheckRequest& request,
+                  const Progress& progress) {
+  Models models{.options = track_options(scene, times, request)};
+  if (request.model == MotionModel::with_inertia) require_dynamic(scene);
+  const Track at_rest = track(scene, models.options, progress);
+  models.at_rest = motion_model(
+      at_rest.frames, [](const TrackFrame& frame) { return frame.shape.points; }, scene,
+      models.options, times.last);
+  add_inertia(scene, at_rest, request, times.last, models);
+  if (!models.of(request.model)) {
+    throw ConvergenceError(fmt::format(
+        "{}: the rod {}", scene.file,
+        request.model == MotionModel::at_rest ? stop_text(at_rest.stopped) : models.no_inertia));
+  }
+  return models;
+}
+
+/// Looks for what brings a recording nearer: the fewer numbers a cause has, the earlier, and one
+/// that has more has to leave less than those before it.
+class CauseSearch {
+ public:
+  CauseSearch(const MotionCheck& check, const Models& models, const MarkerMotion& recorded)
+      : check_(check), models_(models), recorded_(recorded), least_(check.errors.rms_m) {
+    const std::optional<TimeSpan> motion = motion_of(check.scene);
+    // What stands before the first pose has stood there before; what moves has come from somewhere.
+    if (motion && motion->begin < *models.options.from) earliest_ = *models.options.from;
+  }
+
+  /// The lag of the model that is judged.
+  [[nodiscard]] std::optional<MotionShift> lag() const {
+    return best_lag(recorded_, *models_.of(check_.model), earliest_, Displacement::none);
+  }
+
+  [[nodiscard]] std::vector<MotionCause> run(const std::optional<MotionShift>& lag) {
+    const ModelMotion& judged = *models_.of(check_.model);
+    const MotionModel other =
+        check_.model == MotionModel::at_rest ? MotionModel::with_inertia : MotionModel::at_rest;
+    const std::optional<ModelMotion>& unlike = models_.of(other);
+    const std::string what = other == MotionModel::at_rest
+                                 ? "it is quasi-static: its inertia is missing"
+                                 : "the rod has inertia (--dynamic)";
+    if (unlike) add(MotionCause::Kind::model, what, rms_of(motion_residuals(recorded_, *unlike)));
+    if (lag) add(MotionCause::Kind::lag, lag_words(*lag), lag->rms_m);
+    if (unlike) {
+      const auto late = best_lag(recorded_, *unlike, earliest_, Displacement::none);
+      if (late) add(MotionCause::Kind::model, what + ", and " + lag_words(*late), late->rms_m);
+    }
+    const MotionShift offset = best_offset(recorded_, judged);
+    add(MotionCause::Kind::offset, offset_words(offset), offset.rms_m);
+    if (const auto both = best_lag(recorded_, judged, earliest_, Displacement::constant)) {
+      add(MotionCause::Kind::offset, offset_words(*both) + ", and " + lag_words(*both),
+          both->rms_m);
+    }
+    if (!check_.passes) add_grippers(judged);
+    std::ranges::stable_sort(causes_, {}, &MotionCause::rms_m);
+    return std::move(causes_);
+  }
+
+ private:
+  static std::string lag_words(const MotionShift& shift) {
+    return fmt::format("it is {:.4g} ms {}", std::abs(shift.lag) * 1e3,
+                       shift.lag > 0 ? "late" : "early");
+  }
+  static std::string offset_words(const MotionShift& shift) {
+    return fmt::format("all of it is displaced by [{:.3g}, {:.3g}, {:.3g}] mm",
+                       shift.offset.x() * 1e3, shift.offset.y() * 1e3, shift.offset.z() * 1e3);
+  }
+  void add(MotionCause::Kind kind, std::string words, double left) {
+    const double may_leave =
+        kind == MotionCause::Kind::gripper_path ? path_may_leave : cause_may_leave;
+    // What is left already is none.
+    if (!(least_ > no_error * check_.scene.length)) return;
+    if (!(left <= may_leave * least_)) return;
+    least_ = left;
+    causes_.push_back({kind, std::move(words), left});
+  }
+  /// By shapes at rest, which the rod with inertia follows where the path is slow.
+  void add_grippers(const ModelMotion& judged) {
+    std::vector<MotionCause> found = gripper_causes(check_.scene, models_.options, recorded_,
+                                                    motion_residuals(recorded_, judged));
+    // Constant ones first, then the best.
+    std::ranges::sort(found, [](const MotionCause& a, const MotionCause& b) {
+      return a.kind != b.kind ? a.kind < b.kind : a.rms_m < b.rms_m;
+    });
+    for (MotionCause& cause : found) add(cause.kind, std::move(cause.words), cause.rms_m);
+  }
+
+  const MotionCheck& check_;
+  const Models& models_;
+  const MarkerMotion& recorded_;
+  double least_;
+  double earliest_ = -std::numeric_limits<double>::infinity();
+  std::vector<MotionCause> causes_;
+};
+
+/// That which is nearer by far.
+std::optional<MotionModel> nearer_model(const MotionCheck& check) {
+  if (check.at_rest_rms_m <= cause_may_leave * check.with_inertia_rms_m) {
+    return MotionModel::at_rest;
+  }
+  if (check.with_inertia_rms_m <= cause_may_leave * check.at_rest_rms_m) {
+    return MotionModel::with_inertia;
+  }
+  return std::nullopt;
+}
+
+void judge_motion(MotionCheck& check) {
+  const ShapeTolerance& tolerance = check.tolerance;
+  const char* measure = tolerance.largest ? "largest" : "RMS";
+  check.judged_m = tolerance.largest ? check.errors.largest_m : check.errors.rms_m;
+  check.passes = check.judged_m <= tolerance.allowed_m;
+  check.reason = fmt::format(
+      "{} {:.4g} mm, allowed {:.4g} mm = {:.3g} % of l{}", measure,
+      shown(check.judged_m, check.scene.length) * 1e3, tolerance.allowed_m * 1e3,
+      tolerance.allowed_m / check.scene.length * 100, tolerance.by_default ? ", the default" : "");
+}
+
+}  // namespace
+
+const char* to_string(MotionCause::Kind kind) {
+  switch (kind) {
+    case MotionCause::Kind::lag:
+      return "lag";
+    case MotionCause::Kind::offset:
+      return "offset";
+    case MotionCause::Kind::model:
+      return "model";
+    case MotionCause::Kind::gripper:
+      return "gripper";
+    case MotionCause::Kind::gripper_path:
+      break;
+  }
+  return "gripper_path";
+}
+
+MotionCheck check_motion(const Scene& scene, const MarkerMotion& recorded,
+                         const MotionCheckRequest& request, const Progress& progress) {
+  const RecordedTimes times = times_of(scene, recorded);
+  const Models models = run_models(scene, times, request, progress);
+  MotionCheck check{.scene = scene,
+                    .file = recorded.file,
+                    .model = request.model,
+                    .damping = request.damping,
+                    .begin = *models.options.from,
+                    .frame_rate = models.options.rates.frames,
+                    .points = recorded.positions.size(),
+                    .no_inertia = models.no_inertia,
+                    .tolerance = request.tolerance.value_or(default_tolerance(scene.length))};
+  const auto residuals = [&](MotionModel model) {
+    return motion_residuals(recorded, *models.of(model));
+  };
+  check.errors = motion_errors(recorded, residuals(check.model), scene.length);
+  check.at_rest_rms_m = models.at_rest ? rms_of(residuals(MotionModel::at_rest))
+                                       : std::numeric_limits<double>::quiet_NaN();
+  if (models.with_inertia) check.with_inertia_rms_m = rms_of(residuals(MotionModel::with_inertia));
+  check.nearer = nearer_model(check);
+  judge_motion(check);
+  if (!(check.errors.rms_m > no_error * scene.length)) return check;
+  CauseSearch search(check, models, recorded);
+  const std::optional<MotionShift> lag = search.lag();
+  if (lag && lag->rms_m <= cause_may_leave * check.errors.rms_m) {
+    check.lag = lag->lag;
+    check.lag_rms_m = lag->rms_m;
+  }
+  if (request.explaining == Explaining::yes) check.causes = search.run(lag);
+  return check;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <span>
+
+#include "record/field.hpp"
+#include "recording/motion_check.hpp"
+
+namespace dlo::compare {
+
+/// What is said of a recorded motion as a whole, in JSON.
+[[nodiscard]] std::span<const Field<MotionCheck>> motion_check_fields();
+
+}  // namespace dlo::compare

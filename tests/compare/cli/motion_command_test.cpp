@@ -1,0 +1,165 @@
+// Recorded motions through the command: check --motion and calibrate --motion.
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "command_fixture.hpp"
+
+namespace {
+
+using dlo::test::Outcome;
+using nlohmann::json;
+using testing::HasSubstr;
+
+class MotionCommand : public dlo::test::Command {
+ protected:
+  void SetUp() override {
+    Command::SetUp();
+    write("swung.toml", swung(0.02));
+  }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(path(name)) << text;
+  }
+  static std::string swung(double stiffness) {
+    return fmt::format(
+        "[rod]\nlength = 0.4\nbending_stiffness = {}\nmass_per_length = 0.05\n[[gripper]]\nat = 0\n"
+        "direction = \"-60 deg\"\npose = [{{time = 0, position = [0, 0, 0]}}, {{time = 0.3, "
+        "position = [0.1, 0.02, 0]}}]\n",
+        stiffness);
+  }
+  /// Markers at a quarter, half, three quarters and the end of the rod with inertia.
+  void write_markers(const std::string& name, double late = 0) const {
+    const Outcome track = run(words({"track", path("swung.toml"),
+                                     "--no-force --dynamic --damping 0.01 --frame-rate 40 "
+                                     "--samples 5 --shapes --format json"}));
+    ASSERT_EQ(track.status, 0) << track.err;
+    const json document = json::parse(track.out);
+    std::string text = "time,s,x,y,z\n";
+    for (const json& frame : document.at("dynamic").at("frames")) {
+      for (std::size_t i = 1; i < 5; ++i) {
+        const json& point = frame.at("points_m").at(i);
+        text += fmt::format(
+            "{:.17g},{:.17g},{:.17g},{:.17g},{:.17g}\n", frame.at("time_s").get<double>() + late,
+            document.at("arc_length_m").at(i).get<double>(), point.at(0).get<double>(),
+            point.at(1).get<double>(), point.at(2).get<double>());
+      }
+    }
+    write(name, text);
+  }
+  [[nodiscard]] std::string check(const std::string& more) const {
+    return words({"check", path("swung.toml"), "--motion", more});
+  }
+};
+
+TEST_F(MotionCommand, CheckJudgesMarkersByTheRodThatIsAsked) {
+  write_markers("markers.csv");
+  const std::string tolerance = path("markers.csv") + " --tolerance 0.1%";
+  const Outcome right = run(check(tolerance + " --dynamic --damping 0.01"));
+  EXPECT_EQ(right.status, 0) << right.out << right.err;
+  EXPECT_THAT(right.out, HasSubstr("markers         s = 0.1 m: RMS"));
+  EXPECT_THAT(right.out, HasSubstr("it has inertia"));
+  EXPECT_THAT(right.out, HasSubstr("verdict         pass: RMS"));
+  const Outcome wrong = run(check(tolerance + " --damping 0.01"));
+  EXPECT_EQ(wrong.status, 1);
+  EXPECT_THAT(wrong.out, HasSubstr("if the rod has inertia (--dynamic)"));
+  EXPECT_THAT(wrong.out, HasSubstr("verdict         fail: RMS"));
+  // Nobody asked for a tolerance.
+  EXPECT_EQ(run(check(path("markers.csv"))).status, 0);
+}
+
+TEST_F(MotionCommand, CheckTellsLagAndFramesInEveryFormat) {
+  write_markers("late.csv", 0.02);
+  const std::string late = path("late.csv") + " --dynamic --damping 0.01 --from 0";
+  EXPECT_THAT(run(check(late)).out, HasSubstr("lag             20 ms late: RMS"));
+  const json document = json::parse(run(check(late + " --format json")).out);
+  EXPECT_EQ(document.at("schema"), "dlo/motion_check/1");
+  EXPECT_EQ(document.at("model"), "with_inertia");
+  EXPECT_NEAR(document.at("lag_s").get<double>(), 0.02, 1e-4);
+  EXPECT_LT(document.at("rms_without_lag_m").get<double>(), 1e-5);
+  EXPECT_EQ(document.at("frames").size(), 13U);
+  EXPECT_EQ(document.at("causes").at(0).at("kind"), "lag");
+  EXPECT_EQ(document.at("no_inertia"), nullptr);
+  const json& worst = document.at("worst");
+  const std::string csv = run(check(late + " --format csv")).out;
+  EXPECT_EQ(csv.substr(0, csv.find('\n')), "time_s,rms_m,largest_m,largest_at_m");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 14);
+  for (const json& frame : document.at("frames")) {
+    EXPECT_LE(frame.at("rms_m").get<double>(), worst.at("rms_m").get<double>());
+  }
+}
+
+TEST_F(MotionCommand, CheckTakesTheFramesThatTrackWrites) {
+  const std::string series = path("rod.vtk.series");
+  ASSERT_EQ(
+      run(words({"track", path("swung.toml"), "--no-force --frame-rate 50 --paraview", series}))
+          .status,
+      0);
+  for (const std::string& frames : {series, path("")}) {
+    const Outcome right = run(check(frames + " --tolerance 0.01%"));
+    EXPECT_EQ(right.status, 0) << right.out << right.err;
+    EXPECT_THAT(right.out, HasSubstr("656 points at 16 times"));
+    EXPECT_THAT(right.out, HasSubstr("it is quasi-static"));
+  }
+}
+
+TEST_F(MotionCommand, CheckRefusesBadRecordingsInOneLine) {
+  write_markers("markers.csv");
+  expect_error(check(path("none.csv")), 2, {"none.csv"});
+  expect_error(words({"check", path("swung.toml")}), 2, {"--shape FILE, --motion FILE"});
+  write("table.csv", "time_s,energy_J\n0,1\n");
+  expect_error(check(path("table.csv")), 2, {"table.csv:1", "allowed: a header of time,s,x,y,z"});
+  write("far.csv", "time,s,x,y,z\n0,0.1,0,0,0\n1,0.5,0,0,0\n");
+  expect_error(check(path("far.csv")), 2, {"s = 0.5 m", "allowed: 0 to the rod's 0.4 m"});
+  write("once.csv", "time,s,x,y,z\n0,0.1,0,0,0\n");
+  expect_error(check(path("once.csv")), 2, {"once.csv", "one time only"});
+  expect_error(check(path("markers.csv") + " --from 0.2"), 2, {"--from", "allowed"});
+  expect_error(words({"check", steel(), "--motion", path("markers.csv")}), 2, {"nothing moves"});
+  expect_error(check(path("markers.csv") + " --shape x.csv"), 2, {"--motion", "--shape"});
+}
+
+TEST_F(MotionCommand, MeasuredPosesAreSmoothedBelowTheirCutoff) {
+  // A way along a line, with errors of a millimetre from row to row: at half the rate.
+  std::string rows = "time,x,y,z\n";
+  for (int k = 0; k <= 200; ++k) {
+    rows += fmt::format("{},{},0,0\n", 0.01 * k, 1e-3 * k + (k % 2 == 0 ? 1e-3 : -1e-3));
+  }
+  write("way.csv", rows);
+  const std::string rod =
+      "[rod]\nlength = 0.4\nbending_stiffness = 0.02\nmass_per_length = 0.05\n[[gripper]]\nat = 0\n"
+      "direction = 0\n";
+  const std::string way = "trajectory = \"way.csv\"\n";
+  write("smooth.toml", rod + way + "cutoff = \"5 Hz\"\n");
+  const Outcome track =
+      run(words({"track", path("smooth.toml"),
+                 "--no-force --from 0.5 --to 1.5 --frame-rate 37 --format json"}));
+  ASSERT_EQ(track.status, 0) << track.err;
+  for (const json& frame : json::parse(track.out).at("frames")) {
+    // A gain of 0.001 is left of it: 1 / (1 + (sqrt(2) - 1) / sin(pi / 20)^4).
+    EXPECT_NEAR(frame.at("grippers").at(0).at("position_m").at(0).get<double>(),
+                0.1 * frame.at("time_s").get<double>(), 2e-6);
+  }
+  write("fast.toml", rod + way + "cutoff = \"50 Hz\"\n");
+  expect_error(words({"solve", path("fast.toml")}), 2, {"gripper.cutoff = '50 Hz'", "50 Hz)"});
+  write("alone.toml", rod + "position = [0, 0, 0]\ncutoff = \"5 Hz\"\n");
+  expect_error(words({"solve", path("alone.toml")}), 2, {"gripper.cutoff", "beside trajectory"});
+}
+
+TEST_F(MotionCommand, CalibrateFindsTheStiffnessThatMovedTheMarkers) {
+  write_markers("markers.csv");
+  write("softer.toml", swung(0.015));
+  const std::string calibrate =
+      words({"calibrate", path("softer.toml"), "--motion", path("markers.csv")});
+  const json document = json::parse(run(calibrate + "--format json").out);
+  EXPECT_EQ(document.at("schema"), "dlo/motion_fit/1");
+  EXPECT_NEAR(document.at("stiffness").at("value").get<double>(), 0.02, 1e-4);
+  EXPECT_NEAR(document.at("damping_s").at("value").get<double>(), 0.01, 1e-3);
+  expect_error(calibrate + "--format csv", 2, {"--motion: has no format csv"});
+}
+
+}  // namespace

@@ -1,0 +1,251 @@
+// A recorded motion against its scene's rod: recordings of known lag, offset, noise, with inertia
+// and without, each made by another way than the check's (a solve for each time, or the simulation
+// at the recording's own times).
+
+#include "recording/motion_check.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "dlo/compare/solve.hpp"
+#include "motion/moving_scene.hpp"
+
+namespace dlo::compare {
+namespace {
+
+Scene swung_rod() { return load_scene(std::string(DLO_DATA) + "/scenes/swung_rod.toml"); }
+
+/// A cable between two clamps, one of which is led away and up.
+Scene led(const std::function<Eigen::Vector3d(double)>& error = {}) {
+  std::string text =
+      "gravity = [0, 0, -9.81]\n[rod]\nlength = 0.6\nbending_stiffness = 2e-3\n"
+      "mass_per_length = 0.05\n[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = [1, 0, 0]\n"
+      "[[gripper]]\nat = 0.6\ndirection = [1, 0, 0]\n";
+  for (int k = 0; k <= 10; ++k) {
+    const double t = 0.2 * k;
+    Eigen::Vector3d at(0.42 + 0.03 * t, 0.06 * t * t / 4, 0.05 * std::sin(t));
+    if (error) at += error(t);
+    text += fmt::format("[[gripper.pose]]\ntime = {}\nposition = [{}, {}, {}]\n", t, at.x(), at.y(),
+                        at.z());
+  }
+  return parse_scene(text, "led.toml");
+}
+
+/// Times at unequal distances, which no frames of the model have.
+std::vector<double> uneven_times(double end, int count) {
+  std::vector<double> times;
+  times.reserve(static_cast<std::size_t>(count) + 1);
+  for (int k = 0; k <= count; ++k) {
+    const double share = static_cast<double>(k) / count;
+    times.push_back(end * (share + 0.03 * std::sin(5 * std::numbers::pi * share)));
+  }
+  return times;
+}
+
+/// The rod at rest at `time - lag`, by a solve of its own for each time.
+MarkerMotion at_rest(const Scene& scene, const std::vector<double>& times,
+                     const std::vector<double>& markers, double lag = 0) {
+  MarkerMotion motion{.file = "made.csv", .positions = {}};
+  for (const double time : times) {
+    const Eigen::Matrix3Xd points =
+        solve(scene_at(scene, time - lag), Model::energy, {}, markers).shape.points;
+    for (std::size_t i = 0; i < markers.size(); ++i) {
+      motion.positions.push_back({time, markers[i], points.col(static_cast<Eigen::Index>(i))});
+    }
+  }
+  return motion;
+}
+
+/// The rod with inertia at the recording's own times, by one simulation.
+MarkerMotion with_inertia(const Scene& scene, const std::vector<double>& times,
+                          const std::vector<double>& markers, const RodDamping& damping) {
+  const FrameClock clock(scene, {times.front(), times.back()}, {.frames = 100});
+  const SimulatedMotion run = MovingScene(scene, clock, damping, {}).run(times, 0);
+  MarkerMotion motion{.file = "made.csv", .positions = {}};
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const Eigen::Matrix3Xd points = run.moved.frames.at(k).sample(markers).points;
+    for (std::size_t i = 0; i < markers.size(); ++i) {
+      motion.positions.push_back({times[k], markers[i], points.col(static_cast<Eigen::Index>(i))});
+    }
+  }
+  return motion;
+}
+
+void displace(MarkerMotion& motion, const Eigen::Vector3d& by) {
+  for (MarkerPosition& at : motion.positions) at.position += by;
+}
+
+void add_noise(MarkerMotion& motion, double deviation) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise(0, deviation);
+  for (MarkerPosition& at : motion.positions) {
+    for (double& coordinate : at.position) coordinate += noise(random);
+  }
+}
+
+const std::vector<double> five = {0.07, 0.15, 0.23, 0.31, 0.39};
+constexpr double close_to_rod = 1e-5;  // what is between frames [m]
+
+TEST(MotionCheck, TheRodAtRestPassesAtTimesBetweenTheModelsFrames) {
+  const Scene scene = swung_rod();
+  const MotionCheck check = check_motion(scene, at_rest(scene, uneven_times(0.8, 40), five));
+  EXPECT_TRUE(check.passes);
+  EXPECT_LT(check.errors.rms_m, close_to_rod);
+  EXPECT_EQ(check.errors.frames.size(), 41U);
+  EXPECT_EQ(check.points, 205U);
+  EXPECT_TRUE(check.causes.empty());
+  EXPECT_EQ(check.nearer, MotionModel::at_rest);
+  EXPECT_GT(check.with_inertia_rms_m, 0.05 * scene.length);
+  EXPECT_TRUE(check.tolerance.by_default);
+}
+
+TEST(MotionCheck, FindsTheLagOfARecording) {
+  const Scene scene = swung_rod();
+  for (const double lag : {0.03, -0.02}) {
+    const MotionCheck check = check_motion(scene, at_rest(scene, uneven_times(0.8, 40), five, lag));
+    EXPECT_FALSE(check.passes) << check.reason;
+    EXPECT_NEAR(check.lag, lag, 1e-4);
+    EXPECT_LT(check.lag_rms_m, 1e-4);
+    ASSERT_FALSE(check.causes.empty());
+    EXPECT_EQ(check.causes.front().kind, MotionCause::Kind::lag);
+    EXPECT_EQ(check.causes.size(), 1U);
+    EXPECT_EQ(check.causes.front().words, lag > 0 ? "it is 30 ms late" : "it is 20 ms early");
+  }
+}
+
+TEST(MotionCheck, FindsWhereARecordingIsDisplaced) {
+  const Scene scene = swung_rod();
+  MarkerMotion motion = at_rest(scene, uneven_times(0.8, 40), five);
+  const Eigen::Vector3d by(6e-3, -2e-3, 3e-3);
+  displace(motion, by);
+  const MotionCheck check = check_motion(scene, motion);
+  EXPECT_NEAR(check.errors.rms_m, by.norm(), close_to_rod);
+  EXPECT_NEAR(check.errors.largest_m, by.norm(), 3 * close_to_rod);
+  EXPECT_TRUE(std::isnan(check.lag));
+  ASSERT_EQ(check.causes.size(), 1U);
+  EXPECT_EQ(check.causes.front().kind, MotionCause::Kind::offset);
+  EXPECT_EQ(check.causes.front().words, "all of it is displaced by [6, -2, 3] mm");
+  MarkerMotion late = at_rest(scene, uneven_times(0.8, 40), five, 0.02);
+  displace(late, by);
+  const MotionCheck both = check_motion(scene, late);
+  ASSERT_FALSE(both.causes.empty());
+  EXPECT_EQ(both.causes.front().words,
+            "all of it is displaced by [6, -2, 3] mm, and it is 20 ms late");
+}
+
+TEST(MotionCheck, TellsWhetherARecordingHasInertia) {
+  const Scene scene = swung_rod();
+  const std::vector<double> times = uneven_times(0.8, 40);
+  const MotionCheck quasi_static =
+      check_motion(scene, at_rest(scene, times, five), {.model = MotionModel::with_inertia});
+  EXPECT_FALSE(quasi_static.passes);
+  ASSERT_EQ(quasi_static.causes.size(), 1U);
+  EXPECT_EQ(quasi_static.causes.front().words, "it is quasi-static: its inertia is missing");
+  EXPECT_LT(quasi_static.causes.front().rms_m, close_to_rod);
+  EXPECT_EQ(quasi_static.nearer, MotionModel::at_rest);
+  const RodDamping damping{.material = 0.01, .quadratic = 0.02};
+  const MarkerMotion moved = with_inertia(scene, times, five, damping);
+  const MotionCheck right =
+      check_motion(scene, moved, {.model = MotionModel::with_inertia, .damping = damping});
+  EXPECT_TRUE(right.passes);
+  EXPECT_LT(right.errors.rms_m, close_to_rod);
+  EXPECT_EQ(right.nearer, MotionModel::with_inertia);
+  EXPECT_TRUE(right.causes.empty());
+  const MotionCheck wrong = check_motion(scene, moved, {.damping = damping});
+  EXPECT_FALSE(wrong.passes);
+  ASSERT_FALSE(wrong.causes.empty());
+  EXPECT_EQ(wrong.causes.front().words, "the rod has inertia (--dynamic)");
+}
+
+TEST(MotionCheck, FindsTheLagOfARodWithInertia) {
+  const Scene scene = swung_rod();
+  const RodDamping damping{.material = 0.01};
+  MarkerMotion moved = with_inertia(scene, uneven_times(0.8, 40), five, damping);
+  for (MarkerPosition& at : moved.positions) at.time += 0.05;
+  const MotionCheck check = check_motion(
+      scene, moved, {.model = MotionModel::with_inertia, .damping = damping, .from = 0});
+  EXPECT_NEAR(check.lag, 0.05, 1e-4);
+  EXPECT_LT(check.lag_rms_m, 10 * close_to_rod);
+}
+
+TEST(MotionCheck, MeasuresNoiseAndFindsNoCauseInIt) {
+  const Scene scene = swung_rod();
+  MarkerMotion motion = at_rest(scene, uneven_times(0.8, 80), five);
+  constexpr double deviation = 1e-3;
+  add_noise(motion, deviation);
+  const MotionCheck check =
+      check_motion(scene, motion, {.tolerance = ShapeTolerance{.allowed_m = 1e-3}});
+  // Of 1215 coordinates: three standard deviations of their RMS are 6 %.
+  EXPECT_NEAR(check.errors.rms_m, deviation * std::sqrt(3), 0.06 * deviation * std::sqrt(3));
+  EXPECT_FALSE(check.passes);
+  EXPECT_TRUE(check.causes.empty()) << check.causes.front().words;
+  EXPECT_TRUE(std::isnan(check.lag));
+}
+
+TEST(MotionCheck, SaysWhichFrameAndWhichPartOfTheRod) {
+  const Scene scene = swung_rod();
+  MarkerMotion motion = at_rest(scene, uneven_times(0.8, 20), {0.05, 0.35});
+  MarkerPosition& wrong = motion.positions[2 * 13 + 1];
+  wrong.position.z() += 0.02;
+  const MotionCheck check = check_motion(scene, motion);
+  EXPECT_EQ(check.errors.worst_frame, 13U);
+  EXPECT_NEAR(check.worst().rms_m, 0.02 / std::sqrt(2), close_to_rod);
+  EXPECT_NEAR(check.worst().largest_m, 0.02, close_to_rod);
+  EXPECT_EQ(check.worst().largest_at_m, 0.35);
+  EXPECT_EQ(check.worst().time, wrong.time);
+  ASSERT_EQ(check.errors.thirds.size(), 2U);  // the middle has no marker
+  EXPECT_LT(check.errors.thirds[0].rms_m, close_to_rod);
+  EXPECT_NEAR(check.errors.thirds[1].rms_m, 0.02 / std::sqrt(21), close_to_rod);
+  ASSERT_EQ(check.errors.markers.size(), 2U);
+  EXPECT_NEAR(check.errors.markers[1].largest_m, 0.02, close_to_rod);
+  const MotionCheck by_largest = check_motion(
+      scene, motion, {.tolerance = ShapeTolerance{.allowed_m = 0.015, .largest = true}});
+  EXPECT_FALSE(by_largest.passes);
+  EXPECT_NEAR(by_largest.judged_m, 0.02, close_to_rod);
+}
+
+TEST(MotionCheck, FindsAGripperThatIsElsewhere) {
+  const std::vector<double> markers = {0.1, 0.2, 0.3, 0.4, 0.5};
+  const std::vector<double> times = uneven_times(2, 30);
+  const Scene displaced = led([](double) { return Eigen::Vector3d(4e-3, 8e-3, -6e-3); });
+  const ShapeTolerance tolerance{.allowed_m = 1e-3};
+  const MotionCheck constant =
+      check_motion(led(), at_rest(displaced, times, markers), {.tolerance = tolerance});
+  ASSERT_FALSE(constant.causes.empty());
+  EXPECT_EQ(constant.causes.front().kind, MotionCause::Kind::gripper);
+  EXPECT_EQ(constant.causes.front().words.substr(0, 24), "gripper 2 is displaced b")
+      << constant.causes.front().words;
+  EXPECT_LT(constant.causes.front().rms_m, 0.1 * constant.errors.rms_m);
+  const Scene astray = led(
+      [](double t) { return Eigen::Vector3d(0, 0.01 * std::sin(6 * t), 0.01 * std::sin(3 * t)); });
+  const MotionCheck path =
+      check_motion(led(), at_rest(astray, times, markers), {.tolerance = tolerance});
+  ASSERT_FALSE(path.causes.empty());
+  EXPECT_EQ(path.causes.front().kind, MotionCause::Kind::gripper_path);
+  EXPECT_EQ(path.causes.front().words.substr(0, 26), "gripper 2 has another path")
+      << path.causes.front().words;
+}
+
+TEST(MotionCheck, RefusesWhatIsNoRecordingOfTheRod) {
+  const Scene scene = swung_rod();
+  MarkerMotion motion = at_rest(scene, {0, 0.4}, five);
+  EXPECT_THROW((void)check_motion(scene, motion, {.from = 0.1}), InputError);
+  motion.positions.front().arc_length = 0.41;
+  EXPECT_THROW((void)check_motion(scene, motion), InputError);
+  motion = at_rest(scene, {0.4}, five);
+  EXPECT_THROW((void)check_motion(scene, motion), InputError);
+  EXPECT_THROW((void)check_motion(scene_at(scene, 0), at_rest(scene, {0, 0.4}, five)), InputError);
+}
+
+}  // namespace
+}  // namespace dlo::compare

@@ -1,0 +1,155 @@
+"""dlo.suite: simulators that are functions, right and wrong on purpose."""
+
+import importlib.util
+import json
+import os
+import pathlib
+
+import numpy
+import pytest
+
+import dlo
+
+ROOT = pathlib.Path(os.environ["DLO_ROOT"])
+SPECIFICATION = importlib.util.spec_from_file_location("simulator", ROOT / "tests/compare/suite/simulator.py")
+simulator = importlib.util.module_from_spec(SPECIFICATION)
+SPECIFICATION.loader.exec_module(simulator)
+
+FEW = ["bending_large", "weight_10", "twist_half_turn", "curved_hose", "peg"]
+
+
+def rod(scene, points):
+    return dlo.solve(scene, samples=points)
+
+
+def without(**fields):
+    """The rod of the scene without something, which the scene has to have."""
+    def run(scene, points):
+        for key in fields:
+            if getattr(scene, key) is None:
+                raise NotImplementedError(key)
+        return rod(scene.replace(**fields), points)
+
+    return run
+
+
+def polygon(scene, points):
+    scene.force_model.points = points
+    return dlo.solve(scene, "chain")
+
+
+def chain(defect):
+    def run(scene, points):
+        document = scene.document(points)
+        problem = simulator.not_supported(document)
+        if problem:
+            raise NotImplementedError(problem)
+        return simulator.shape(defect, document, points)
+
+    return run
+
+
+def without_twist(scene, points):
+    if any(gripper.roll is None for gripper in scene.grippers):
+        raise NotImplementedError("rods that are not twisted")
+    grippers = [dlo.clamp(at=g.at, position=g.position, direction=g.direction) for g in scene.grippers]
+    return rod(scene.replace(grippers=grippers), points)
+
+
+def another_equilibrium(scene, points):
+    stable = [state for state in dlo.solve_all(scene, points) if state.stable]
+    if len(stable) < 2:
+        raise NotImplementedError("scenes with one equilibrium")
+    return stable[1]
+
+
+@pytest.mark.parametrize("run", [rod, polygon, chain("right")])
+def test_no_cause_is_found_in_what_is_right(run):
+    card = dlo.suite(run, scenes=["bending_large", "weight_10", "payload_tip"], name="right")
+    assert card.causes == {}
+    assert card.right == 3
+    assert "right: 3 of 3 scenes right" in str(card)
+
+
+def test_the_rod_itself_is_right_wherever_it_is_solved():
+    card = dlo.suite(rod, scenes=FEW)
+    assert card.card["simulator"] == "rod"
+    assert card.causes == {}
+    assert card.right == len(FEW)
+
+
+@pytest.mark.parametrize(
+    "run, scenes, cause",
+    [
+        (chain("no_h"), FEW, "springs without 1/h"),
+        (chain("welded"), FEW, "first element welded"),
+        (chain("caps"), ["weight_10"], "weight with caps"),
+        (chain("limp"), ["weight_10"], "bending stiffness ignored"),
+        (without_twist, ["twist_half_turn"], "twist not coupled"),
+        (without(natural_curvature=None), ["curved_hose", "weight_10"], "intrinsic curvature ignored"),
+        (another_equilibrium, ["strip_edge_above", "weight_10"], "other equilibrium"),
+    ],
+)
+def test_what_is_wrong_is_named(run, scenes, cause):
+    card = dlo.suite(run, scenes=scenes, name="mutated")
+    assert set(card.causes) == {cause}, str(card)
+    assert card.right == 0
+
+
+def test_what_is_not_supported_is_no_failure_and_what_fails_says_why():
+    def run(scene, points):
+        if scene.loads:
+            raise NotImplementedError("loads")
+        if scene.natural_curvature is not None:
+            raise ValueError("a bad day\nand more")
+        return numpy.zeros((points, 4))
+
+    card = dlo.suite(run, scenes=["payload_tip", "curved_hose", "weight_1"])
+    by_id = {scene["id"]: scene for scene in card.card["scenes"]}
+    assert by_id["payload_tip"]["status"] == "not supported"
+    assert by_id["payload_tip"]["runs"][0]["problem"] == "NotImplementedError: loads"
+    assert by_id["curved_hose"]["runs"][0]["problem"] == "ValueError: a bad day"
+    assert by_id["weight_1"]["status"] == "failed"
+    assert "points" in by_id["weight_1"]["runs"][0]["problem"]
+
+
+def test_a_card_is_the_commands():
+    card = dlo.suite(rod, scenes=["weight_1"], points=8, threads=1)
+    assert card["schema"] == "dlo/card/1"
+    assert card.json == json.loads(card.to_json())
+    assert card.card["points"] == [8, 16, 32]
+    assert "| weight | 1 of 1 |" in card.to_markdown()
+    assert 'tests="1" failures="0"' in card.to_junit()
+    assert 'class="badge' in card.to_html()
+
+
+def test_arc_lengths_may_be_given_and_ctrl_c_ends_it():
+    def pair(scene, points):
+        shape = rod(scene, points)
+        return shape.points, shape.arc_length
+
+    assert dlo.suite(pair, scenes=["weight_1"]).right == 1
+
+    def interrupted(scene, points):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        dlo.suite(interrupted, scenes=["weight_1"], threads=1)
+
+
+def test_bad_arguments_are_told_by_name():
+    with pytest.raises(dlo.InputError, match="run: a int .allowed: a function"):
+        dlo.suite(3)
+    with pytest.raises(dlo.InputError, match="did you mean weight"):
+        dlo.suite(rod, scenes=["wieght"])
+    with pytest.raises(dlo.InputError, match="points from 4"):
+        dlo.suite(rod, points=2)
+    with pytest.raises(dlo.InputError, match="scenes = 'weight'"):
+        dlo.suite(rod, scenes="weight")
+
+
+def test_a_scene_as_a_document_has_the_polygon_that_is_asked_for():
+    scene = dlo.Scene.from_file(ROOT / "data/suite/scenes/weight_1.toml")
+    document = scene.document(9)
+    assert document["schema"] == "dlo/scene/1"
+    assert len(document["force_model"]["point_at_m"]) == 9
