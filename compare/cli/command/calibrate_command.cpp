@@ -108,24 +108,11 @@ void write_calibration(OutputOptions output, bool format_is_given, const Formats
   if (to_toml_file) write_output({}, formats.text());
 }
 
-void run_material(const CalibrateOptions& options, bool format_is_given) {
+compare::MaterialFitOptions material_options(const CalibrateOptions& options) {
   constexpr int profile_points = 41;
-  options.plot.require_drawable(options.output);
-  std::vector<compare::Scene> scenes = load_all(options.scenes, options.overrides);
-  std::vector<compare::MeasuredShape> shapes;
-  shapes.reserve(options.shapes.size());
-  for (std::size_t i = 0; i < options.shapes.size(); ++i) {
-    shapes.push_back(options.shape_options.load(options.shapes[i]));
-    const std::size_t of = std::min(i, scenes.size() - 1);
-    options.shape_options.require_likely_unit(shapes.back(), scenes[of].length);
-  }
-  for (const compare::Scene& scene : scenes) {
-    say_assumptions(scene);
-    warn_of_friction(scene);
-  }
   using compare::Dimension;
   const ChainLayout chain = chain_layout(options);
-  const compare::MaterialFitOptions fit_options{
+  return {
       .pose = options.shape_options.pose(),
       .arc_lengths = options.shape_options.arc_lengths(),
       .density = options.density,
@@ -148,8 +135,36 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
       .profile_points = options.plot.draws() ? profile_points : 0,
       .noise = quantity_of("--noise", options.noise, Dimension::length),
       .solve = options.overrides.solve()};
+}
+
+/// @param scenes  of all shapes; @param first  of the first shape, if each has its own
+std::vector<compare::MeasuredShape> load_shapes(const std::vector<std::string>& files,
+                                                const CalibrateOptions& options,
+                                                const std::vector<compare::Scene>& scenes,
+                                                std::size_t first) {
+  std::vector<compare::MeasuredShape> shapes;
+  shapes.reserve(files.size());
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    shapes.push_back(options.shape_options.load(files[i]));
+    const std::size_t of = std::min(first + i, scenes.size() - 1);
+    options.shape_options.require_likely_unit(shapes.back(), scenes[of].length);
+  }
+  return shapes;
+}
+
+void run_material(const CalibrateOptions& options, bool format_is_given) {
+  options.plot.require_drawable(options.output);
+  std::vector<compare::Scene> scenes = load_all(options.scenes, options.overrides);
+  const std::vector<compare::MeasuredShape> shapes =
+      load_shapes(options.shapes, options, scenes, 0);
+  const std::vector<compare::MeasuredShape> held_out =
+      load_shapes(options.holdouts, options, scenes, shapes.size());
+  for (const compare::Scene& scene : scenes) {
+    say_assumptions(scene);
+    warn_of_friction(scene);
+  }
   const compare::Calibration found = with_progress("calibrate", [&](const auto& /*unknown*/) {
-    return compare::calibrate(std::move(scenes), shapes, fit_options);
+    return compare::calibrate(std::move(scenes), shapes, material_options(options), held_out);
   });
   write_calibration(options.output, format_is_given,
                     {.text = [&] { return material_text(found); },
@@ -245,8 +260,11 @@ void add_calibrate(CLI::App& app) {
   command->add_option("SCENE", options->scenes, "scene files (TOML)")->required();
   const std::string parameters = "Parameters of the force model";
   CLI::Option* holdout =
-      command->add_option("--holdout", options->holdouts, "hold-out scenes: judged, not fitted")
-          ->type_name("SCENE ...")
+      command
+          ->add_option("--holdout", options->holdouts,
+                       "hold-out scenes, or with --shape shapes: judged, not fitted. Their scenes "
+                       "stand after those of the others, if each shape has its own")
+          ->type_name("FILE ...")
           ->group(parameters);
   CLI::Option* target =
       command
@@ -260,7 +278,6 @@ void add_calibrate(CLI::App& app) {
   CLI::Option* shape =
       command->add_option("--shape", options->shapes, "one per scene, or several of one scene")
           ->type_name("FILE ...")
-          ->excludes(holdout)
           ->excludes(target)
           ->group(measured);
   command->add_flag("--density", options->density, "fit the density as well")

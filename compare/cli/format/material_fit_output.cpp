@@ -365,6 +365,10 @@ std::string material_text(const compare::Calibration& report) {
   }
   append(out, "residual    {:.4g} mm between points and rod (RMS)\n", fit.rms_m * 1e3);
   if (fit.prediction) out += prediction_text(*fit.prediction);
+  for (const compare::HeldOutShape& shape : report.held_out) {
+    append(out, "held out    {} on {}: {:.4g} mm between its points and the fitted rod (RMS)\n",
+           compare::display(shape.file), compare::display(shape.scene), shape.rms_m * 1e3);
+  }
   out += tried_text(fit.tried);
   append(out, "{}", alternatives_text(report));
   for (std::size_t i = 0; i < fit.shapes.size(); ++i) {
@@ -415,6 +419,10 @@ Json material_json(const compare::Calibration& report) {
   result["not_identified"] = fit.not_identified.empty() ? Json(nullptr) : Json(fit.not_identified);
   result["warning"] = fit.warning.empty() ? Json(nullptr) : Json(fit.warning);
   result["noise_m"] = fit.noise_m;
+  for (const compare::HeldOutShape& shape : report.held_out) {
+    result["held_out"].push_back(
+        {{"file", shape.file}, {"scene", shape.scene}, {"rms_m", shape.rms_m}});
+  }
   result["noise_is_estimated"] = fit.noise_is_estimated;
   result["degrees_of_freedom"] = fit.degrees_of_freedom;
   result["errors_are_correlated"] =

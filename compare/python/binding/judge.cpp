@@ -101,16 +101,24 @@ py::object compare_scene(const SharedScene& scene, bool modulus, bool plan,
 
 using FitDocuments = std::tuple<std::string, std::string, std::string>;  // text, JSON, TOML
 
-FitDocuments calibrate_material(const std::vector<SharedScene>& scenes, const py::list& shapes,
-                                const py::dict& what, const py::dict& limits) {
-  std::vector<compare::MeasuredShape> measured_shapes;
-  for (const py::handle& entry : shapes) {
+/// @param pairs  of points, or a file's name, and arc lengths;  @param name  of the argument
+std::vector<compare::MeasuredShape> shapes_of(const py::list& pairs, const char* name) {
+  std::vector<compare::MeasuredShape> shapes;
+  for (const py::handle& entry : pairs) {
     const auto pair = entry.cast<py::tuple>();
     const bool file = py::isinstance<py::bytes>(pair[0]);
-    measured_shapes.push_back(measured(pair[0], pair[1],
-                                       file ? compare::valid_utf8(pair[0].cast<std::string>())
-                                            : fmt::format("shapes[{}]", measured_shapes.size())));
+    shapes.push_back(measured(pair[0], pair[1],
+                              file ? compare::valid_utf8(pair[0].cast<std::string>())
+                                   : fmt::format("{}[{}]", name, shapes.size())));
   }
+  return shapes;
+}
+
+FitDocuments calibrate_material(const std::vector<SharedScene>& scenes, const py::list& shapes,
+                                const py::dict& what, const py::dict& limits) {
+  const std::vector<compare::MeasuredShape> measured_shapes = shapes_of(shapes, "shapes");
+  const std::vector<compare::MeasuredShape> held_out =
+      shapes_of(what["holdout"].cast<py::list>(), "holdout");
   compare::SolveOptions solve = solve_options(limits);
   solve.accept_unverified = false;
   const auto chosen = what["options"].cast<std::optional<std::string>>();
@@ -137,7 +145,7 @@ FitDocuments calibrate_material(const std::vector<SharedScene>& scenes, const py
       .noise = what["noise"].cast<std::optional<double>>(),
       .solve = solve};
   const compare::Calibration found = run_long([&](Signals& /*signals*/) {
-    return compare::calibrate(scenes_of(scenes), measured_shapes, options);
+    return compare::calibrate(scenes_of(scenes), measured_shapes, options, held_out);
   });
   const bool told = found.fit.youngs_modulus.value.has_value();
   return {compare::to_text(found), compare::to_json(found),

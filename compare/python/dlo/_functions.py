@@ -246,7 +246,7 @@ def calibrate(
     scenes: Union[SceneLike, Iterable[SceneLike]],
     shapes: Optional[Sequence[Shape]] = None,
     *,
-    holdout: Iterable[SceneLike] = (),
+    holdout: Iterable[Union[SceneLike, Shape]] = (),
     target: Optional[float] = None,
     points: Optional[int] = None,
     register: str = "known",
@@ -276,7 +276,7 @@ def calibrate(
     [m], a tuple of points and their arc lengths, or the name of a file in metres. density, torsional_stiffness: fit these as well;
     natural_curvature: so many terms of it. clamp_angles, clamp_positions, clamp_rolls: how well the clamps are
     known (standard deviations, "5 deg", "2 mm"); each shape's own are then fitted,
-    with same_clamps what all share, but for rolls, and with clamp_scatter each shape's own about it. predict: each shape is left out in turn, and predicted. options: "auto": where
+    with same_clamps what all share, but for rolls, and with clamp_scatter each shape's own about it. predict: each shape is left out in turn, and predicted. holdout: shapes that only judge, their scenes after the others ("held_out" of the document). options: "auto": where
     residuals are systematic, the terms of natural curvature, and clamps as said, alike or each on its own, that predict
     best ("tried" of the document); "given"; None: "auto" of three shapes or more, without these six. noise: standard deviation of one coordinate; None: estimated. segments: of your simulator's chain, whose springs are
     then found too ("chains" of the document); segment_lengths [m] where they are unequal. register, arc_lengths: as of check(). time, materials: as of
@@ -308,6 +308,7 @@ def calibrate(
         "same_clamps": bool(same_clamps),
         "clamp_scatter": _si(clamp_scatter, "angle"),
         "predict": bool(predict),
+        "holdout": list(map(_pair, holdout)),
         "options": options,
         "segments": segments,
         "segment_lengths": [] if segment_lengths is None else [float(part) for part in segment_lengths],

@@ -31,14 +31,6 @@ bool are_alike(const Scene& a, const Scene& b) {
              });
 }
 
-/// Distance of a shape from the rod of its scene (RMS) [m].
-double distance_from_rod(const Scene& scene, const MeasuredShape& shape,
-                         const MaterialFitOptions& options) {
-  MeasuredShapes measured({scene}, {shape}, measured_options(options),
-                          std::chrono::steady_clock::now());
-  return std::sqrt(measured.alignment(0, measured.solve(0, scene, nullptr)).mean_square);
-}
-
 /// A laid shape, by lengths along its own points if they are the whole rod: where on the rod they
 /// are nearest depends on what else is fitted.
 Shape by_its_own_lengths(Shape shape, double length) {
@@ -66,6 +58,13 @@ std::optional<double> repeatability_of(const std::vector<Scene>& scenes, const M
 }
 
 }  // namespace
+
+double distance_from_rod(const Scene& scene, const MeasuredShape& shape,
+                         const MaterialFitOptions& options) {
+  MeasuredShapes measured({scene}, {shape}, measured_options(options),
+                          std::chrono::steady_clock::now());
+  return std::sqrt(measured.alignment(0, measured.solve(0, scene, nullptr)).mean_square);
+}
 
 Prediction leave_one_out(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
                          const MaterialFitOptions& options, const MaterialFit& fit,

@@ -9,6 +9,10 @@
 
 namespace dlo::compare {
 
+/// Distance of a shape from the rod of its scene (RMS) [m]. @throws as fit_material()
+[[nodiscard]] double distance_from_rod(const Scene& scene, const MeasuredShape& shape,
+                                       const MaterialFitOptions& options);
+
 /// The scene of a shape as the fit to all others says.
 using PredictedScene = std::function<Scene(std::size_t left)>;
 

@@ -593,12 +593,19 @@ MaterialFit fit_material_from(const std::vector<Scene>& scenes,
 }
 
 Calibration calibrate(std::vector<Scene> scenes, const std::vector<MeasuredShape>& shapes,
-                      MaterialFitOptions options) {
+                      MaterialFitOptions options, const std::vector<MeasuredShape>& held_out) {
+  const std::size_t all = shapes.size() + held_out.size();
+  if (scenes.size() == 1) scenes.resize(all, Scene(scenes.front()));
+  if (!held_out.empty() && scenes.size() != all) {
+    throw InputError(fmt::format(
+        "calibrate: {} scenes, {} shapes and {} held out (allowed: one scene, or one per shape)",
+        scenes.size(), shapes.size(), held_out.size()));
+  }
+  const auto fitted = static_cast<std::ptrdiff_t>(scenes.size() - held_out.size());
+  const std::vector<Scene> judged(scenes.begin() + fitted, scenes.end());
+  scenes.resize(static_cast<std::size_t>(fitted));
   Calibration result{.scenes = std::move(scenes),
                      .frame_was_found = options.pose != PoseFreedom::known};
-  if (result.scenes.size() == 1) {
-    result.scenes.resize(shapes.size(), Scene(result.scenes.front()));
-  }
   for (const MeasuredShape& shape : shapes) result.files.push_back(shape.file);
   options.alternatives = true;
   if (!options.choose_options) {
@@ -608,6 +615,11 @@ Calibration calibrate(std::vector<Scene> scenes, const std::vector<MeasuredShape
     options.choose_options = nothing_given && shapes.size() >= fewest_predicted;
   }
   result.fit = fit_material(result.scenes, shapes, options);
+  for (std::size_t i = 0; i < held_out.size(); ++i) {
+    const Scene scene = fitted_scene(judged[i], result.fit, result.scenes.front());
+    result.held_out.push_back(
+        {held_out[i].file, scene.name, distance_from_rod(scene, held_out[i], options)});
+  }
   return result;
 }
 

@@ -6,7 +6,11 @@
 
 #include <Eigen/Geometry>
 #include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "command_fixture.hpp"
 #include "dlo/compare/error.hpp"
@@ -58,6 +62,11 @@ TEST(CalibratedRod, RefusesWhatItCannotReplace) {
   EXPECT_NE(refusal("bending_stiffnes = 1\n").find("bending_stiffnes"), std::string::npos);
 }
 
+std::vector<std::string> split(const std::string& text) {
+  std::istringstream words(text);
+  return {std::istream_iterator<std::string>(words), {}};
+}
+
 class CalibratedCommand : public dlo::test::Command {};
 
 /// Clamps that point elsewhere than they were meant to, and one gripper's place, found by three
@@ -91,6 +100,20 @@ TEST_F(CalibratedCommand, WhatCalibrateWritesMakesTheShapeRight) {
   EXPECT_EQ(run(check).status, 1);
   const auto calibrated = run(check + " --calibrated " + path("found.toml"));
   EXPECT_EQ(calibrated.status, 0) << calibrated.out << calibrated.err;
+  // A shape that only judges is on the rod that was fitted to the others, and changes nothing.
+  const std::string options = " --natural-curvature 1 --clamp-angles \"20 deg\" --same-clamps";
+  const auto all = split(shapes);
+  const auto held_out = run("calibrate" + scenes + " --shape " + all[0] + " " + all[1] +
+                            " --holdout " + all[2] + options + " --format json");
+  ASSERT_EQ(held_out.status, 0) << held_out.err;
+  const auto document = nlohmann::json::parse(held_out.out);
+  ASSERT_EQ(document.at("held_out").size(), 1U);
+  EXPECT_EQ(document.at("held_out")[0].at("file"), all[2]);
+  EXPECT_LT(document.at("held_out")[0].at("rms_m").get<double>(), 1e-5);
+  const auto refused = run("calibrate" + scenes + " --shape " + all[0] + " --holdout " + all[2]);
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_NE(refused.err.find("3 scenes, 1 shapes and 1 held out"), std::string::npos)
+      << refused.err;
 }
 
 }  // namespace

@@ -31,11 +31,11 @@ struct MaterialFitOptions {
   double direction_tolerance = 0;
   /// The same of the grippers' positions along each axis [m].
   double position_tolerance = 0;
-  /// How well it is known how clamps hold the rod about its tangent: standard deviation [rad]. If it
-  /// is > 0 each shape's own rolls are fitted, in space: of clamps that hold the rod's frame, but
-  /// for the first one of a rod whose own frame is in no shape, where only the twist between clamps
-  /// is; and with natural curvature also of the first clamp of scenes that do not say its d1. It is
-  /// then in the scene's plane at roll 0, and level where there is none.
+  /// How well it is known how clamps hold the rod about its tangent: standard deviation [rad]. If
+  /// it is > 0 each shape's own rolls are fitted, in space: of clamps that hold the rod's frame,
+  /// but for the first one of a rod whose own frame is in no shape, where only the twist between
+  /// clamps is; and with natural curvature also of the first clamp of scenes that do not say its
+  /// d1. It is then in the scene's plane at roll 0, and level where there is none.
   double roll_tolerance = 0;
   /// Clamps are misaligned alike in all shapes, as in one fixture: the numbers of their directions
   /// and positions are shared (MaterialFit::clamps). Else each shape has its own.
@@ -45,12 +45,13 @@ struct MaterialFitOptions {
   double direction_scatter = 0;
   /// Each shape in turn is left out of the fit, and predicted (MaterialFit::prediction).
   bool predict = false;
-  /// Terms of natural curvature, and clamps as said, misaligned alike in all shapes, alike but for a
-  /// scatter, or each on its own, are fitted as they predict shapes best that are left out
+  /// Terms of natural curvature, and clamps as said, misaligned alike in all shapes, alike but for
+  /// a scatter, or each on its own, are fitted as they predict shapes best that are left out
   /// (MaterialFit::tried); nothing is tried where the fit without them leaves nothing systematic.
   /// The numbers above say up to how many terms (three at least) and how well clamps are known (if
-  /// they do not, 20 degrees of those that are alike, 5 of each shape's own). Three shapes or more. None: calibrate() does so if
-  /// there are as many and none of these numbers is given, fit_material() does not.
+  /// they do not, 20 degrees of those that are alike, 5 of each shape's own). Three shapes or more.
+  /// None: calibrate() does so if there are as many and none of these numbers is given,
+  /// fit_material() does not.
   std::optional<bool> choose_options;
   /// Where residuals are systematic, and none of the above is fitted, it is tried what would remove
   /// them (MaterialFit::alternatives).
@@ -314,18 +315,29 @@ struct MaterialFit {
                                        const std::vector<MeasuredShape>& shapes,
                                        const MaterialFitOptions& options = {});
 
+/// A shape that was not fitted, against the rod that was.
+struct HeldOutShape {
+  std::string file;   ///< its name
+  std::string scene;  ///< that of its scene
+  double rms_m = 0;   ///< distance of its points from the rod
+};
+
 /// Measured shapes of a rod and what they say of its material: what `dlo calibrate --shape` says,
 /// and Python with it.
 struct Calibration {
-  std::vector<Scene> scenes;       ///< of each shape one
-  std::vector<std::string> files;  ///< the shapes' names
-  bool frame_was_found = false;    ///< what is unknown of the shapes' frames was fitted as well
-  MaterialFit fit;                 ///< with its alternatives
+  std::vector<Scene> scenes;           ///< of each shape one
+  std::vector<std::string> files;      ///< the shapes' names
+  bool frame_was_found = false;        ///< what is unknown of the shapes' frames was fitted as well
+  MaterialFit fit;                     ///< with its alternatives
+  std::vector<HeldOutShape> held_out;  ///< in the order given
 };
 
-/// @param scenes  of each shape one, or one of them all; else as fit_material()
+/// @param scenes    of each shape one, then of each that is held out, or one of them all; else as
+///                  fit_material()
+/// @param held_out  shapes that only judge
 [[nodiscard]] Calibration calibrate(std::vector<Scene> scenes,
                                     const std::vector<MeasuredShape>& shapes,
-                                    MaterialFitOptions options = {});
+                                    MaterialFitOptions options = {},
+                                    const std::vector<MeasuredShape>& held_out = {});
 
 }  // namespace dlo::compare
