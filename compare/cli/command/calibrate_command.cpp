@@ -340,7 +340,7 @@ void add_calibrate(CLI::App& app) {
       ->add_option(
           "--options", options->chosen,
           "given, or auto: where residuals are systematic, the terms of natural curvature, "
-          "and clamps as said, misaligned alike, with a scatter or each on its own, that predict "
+          "and clamps as said, misaligned alike or each on its own, that predict "
           "shapes "
           "best that are left out; default: auto of three shapes or more, without the "
           "six above")

@@ -22,9 +22,6 @@ constexpr double fixture_tolerance = 20 * std::numbers::pi / 180;
 constexpr double own_tolerance = 5 * std::numbers::pi / 180;
 /// Fewer numbers are chosen where they predict worse by no more than this share.
 constexpr double as_well = 0.02;
-/// Share by which numbers of single shapes have to lower the noise of a coordinate, as it is
-/// estimated with them, to be kept.
-constexpr double clearly_less_noise = 0.05;
 /// In lengths: no shape is measured more exactly, so predictions below it are alike.
 constexpr double exactly = 1e-5;
 /// Options that predict worse by no more than this share may be right too.
@@ -32,18 +29,14 @@ constexpr double nearly_as_well = 0.1;
 /// Terms in a row that predict no better, after which no more are tried.
 constexpr int most_vain_terms = 2;
 
-enum class Clamps { as_said, alike, alike_but_for_a_scatter, own };
+enum class Clamps { as_said, alike, own };
 
 struct Trial {
   MaterialFitOptions options;
   MaterialFit fit;
 
   [[nodiscard]] double prediction() const { return fit.prediction->rms_m; }
-  /// Numbers with which other shapes are predicted: what is a shape's own says nothing of others.
-  [[nodiscard]] std::ptrdiff_t numbers() const {
-    return std::ranges::count_if(fit.others,
-                                 [](const FittedNumber& number) { return !number.shape; });
-  }
+  [[nodiscard]] std::size_t numbers() const { return fit.others.size(); }
 };
 
 /// Whether something beside noise may be left.
@@ -69,10 +62,7 @@ class OptionsSearch {
       plain_.tried.push_back(described(as_said, plain_));
       return plain_;
     }
-    for (const Clamps clamps :
-         {Clamps::as_said, Clamps::alike, Clamps::alike_but_for_a_scatter, Clamps::own}) {
-      try_terms(clamps);
-    }
+    for (const Clamps clamps : {Clamps::as_said, Clamps::alike, Clamps::own}) try_terms(clamps);
     if (trials_.empty()) {
       throw ConvergenceError("calibrate: no fit came to an end with any options that were tried");
     }
@@ -164,16 +154,12 @@ class OptionsSearch {
     options.chain_segments = options.profile_points = 0;
     options.chain_segment_lengths.clear();
     options.natural_curvature_terms = terms;
-    options.shared_clamps = clamps == Clamps::alike || clamps == Clamps::alike_but_for_a_scatter;
+    options.shared_clamps = clamps == Clamps::alike;
+    if (!options.shared_clamps) options.direction_scatter = 0;
     if (clamps == Clamps::as_said) {
       options.direction_tolerance = options.position_tolerance = 0;
     } else if (!(options.direction_tolerance > 0)) {
       options.direction_tolerance = options.shared_clamps ? fixture_tolerance : own_tolerance;
-    }
-    if (clamps != Clamps::alike_but_for_a_scatter) {
-      options.direction_scatter = 0;
-    } else if (!(options.direction_scatter > 0)) {
-      options.direction_scatter = own_tolerance;
     }
     return options;
   }
@@ -183,8 +169,7 @@ class OptionsSearch {
     return std::max((1 + as_well) * prediction, exactly * scenes_.front().length);
   }
 
-  /// The one of fewest numbers among those that predict as well as any; with as many, the one with
-  /// the fewest of single shapes, unless more of them leave clearly less noise.
+  /// The one of fewest numbers among those that predict as well as any.
   [[nodiscard]] const Trial& best() const {
     const auto better = [](const Trial& a, const Trial& b) {
       return a.prediction() < b.prediction();
@@ -193,12 +178,7 @@ class OptionsSearch {
     const Trial* result = nullptr;
     for (const Trial& trial : trials_) {
       if (trial.prediction() > as_good_as(least)) continue;
-      const bool leaves_less_noise =
-          result != nullptr && trial.numbers() == result->numbers() &&
-          trial.fit.noise_m < (1 - clearly_less_noise) * result->fit.noise_m;
-      if (result == nullptr || trial.numbers() < result->numbers() || leaves_less_noise) {
-        result = &trial;
-      }
+      if (result == nullptr || trial.numbers() < result->numbers()) result = &trial;
     }
     return *result;
   }

@@ -8,9 +8,8 @@
 namespace dlo::compare {
 
 /// The fit with those of the options by which each shape is predicted best from the others: so many
-/// terms of natural curvature, with clamps as said, misaligned alike in all shapes (with a scatter
-/// or without) or each on its own. Its interval of E is widened to what the options say that
-/// predict nearly as well.
+/// terms of natural curvature, with clamps as said, misaligned alike in all shapes or each on its
+/// own. Its interval of E is widened to what the options say that predict nearly as well.
 /// @param options  fit_material() has checked them
 /// @throws ConvergenceError if no options lead to a fit; what else fit_material() throws
 [[nodiscard]] MaterialFit fit_with_chosen_options(const std::vector<Scene>& scenes,

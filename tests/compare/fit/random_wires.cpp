@@ -117,8 +117,7 @@ Outcome outcome_of(unsigned seed) {
       "{:5} {} terms, clamps {}: prediction / repeatability {:.3f}, residual {:.3g} mm, EI / truth "
       "{:.3f} to {:.3f}\n",
       seed, chosen.natural_curvature_terms,
-      chosen.direction_scatter > 0     ? "alike but for a scatter"
-      : chosen.shared_clamps           ? "alike"
+      chosen.shared_clamps             ? "alike"
       : chosen.direction_tolerance > 0 ? "own"
                                        : "as said",
       ratio, fit.rms_m * 1e3, low / EI, high / EI);

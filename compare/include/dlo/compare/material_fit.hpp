@@ -45,8 +45,8 @@ struct MaterialFitOptions {
   double direction_scatter = 0;
   /// Each shape in turn is left out of the fit, and predicted (MaterialFit::prediction).
   bool predict = false;
-  /// Terms of natural curvature, and clamps as said, misaligned alike in all shapes, alike but for
-  /// a scatter, or each on its own, are fitted as they predict shapes best that are left out
+  /// Terms of natural curvature, and clamps as said, misaligned alike in all shapes or each on its
+  /// own, are fitted as they predict shapes best that are left out
   /// (MaterialFit::tried); nothing is tried where the fit without them leaves nothing systematic.
   /// The numbers above say up to how many terms (three at least) and how well clamps are known (if
   /// they do not, 20 degrees of those that are alike, 5 of each shape's own). Three shapes or more.
@@ -234,9 +234,8 @@ struct MaterialFit {
   /// Of systematic residuals (correlated along the rod, or common to all shapes): what would leave
   /// 0.7 of them or less, the least first. The interval of E holds if nothing else is wrong.
   std::vector<FitAlternative> alternatives;
-  /// With `choose_options`: what was tried, first what was chosen: the fewest numbers of all shapes
-  /// among those that predict as well as any (2 %), then the fewest of single shapes, unless more
-  /// of them leave 5 % less noise. The interval of E is widened to what those say that predict
+  /// With `choose_options`: what was tried, first what was chosen: the fewest numbers among those
+  /// that predict as well as any (2 %). The interval of E is widened to what those say that predict
   /// nearly as well (10 %). The only one, without a prediction, if nothing systematic was left.
   std::vector<FitAlternative> tried;
   std::vector<FittedNumber> others;  ///< those that were asked for, the wire's first
