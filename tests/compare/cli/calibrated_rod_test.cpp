@@ -62,7 +62,7 @@ TEST(CalibratedRod, RefusesWhatItCannotReplace) {
   EXPECT_NE(refusal("bending_stiffnes = 1\n").find("bending_stiffnes"), std::string::npos);
 }
 
-std::vector<std::string> split(const std::string& text) {
+std::vector<std::string> words_in(const std::string& text) {
   std::istringstream words(text);
   return {std::istream_iterator<std::string>(words), {}};
 }
@@ -102,7 +102,7 @@ TEST_F(CalibratedCommand, WhatCalibrateWritesMakesTheShapeRight) {
   EXPECT_EQ(calibrated.status, 0) << calibrated.out << calibrated.err;
   // A shape that only judges is on the rod that was fitted to the others, and changes nothing.
   const std::string options = " --natural-curvature 1 --clamp-angles \"20 deg\" --same-clamps";
-  const auto all = split(shapes);
+  const auto all = words_in(shapes);
   const auto held_out = run("calibrate" + scenes + " --shape " + all[0] + " " + all[1] +
                             " --holdout " + all[2] + options + " --format json");
   ASSERT_EQ(held_out.status, 0) << held_out.err;
