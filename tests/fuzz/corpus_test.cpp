@@ -25,6 +25,7 @@ void expect_promises_kept(const char* reader, void (*read)(const std::string&)) 
 
 TEST(FuzzCorpus, EveryReaderKeepsItsPromises) {
   expect_promises_kept("scene", dlo::fuzz::scene);
+  expect_promises_kept("model", dlo::fuzz::model);
   expect_promises_kept("parameters", dlo::fuzz::parameters);
   expect_promises_kept("baseline", dlo::fuzz::baseline);
   expect_promises_kept("shape", dlo::fuzz::shape);

@@ -16,6 +16,7 @@ namespace dlo::fuzz {
 namespace {
 
 constexpr const char* file = "fuzz.txt";
+constexpr const char* model_file = "fuzz.xml";
 
 void promise(bool kept, const std::string& what) {
   if (!kept) throw std::logic_error("broken promise: " + what);
@@ -47,16 +48,20 @@ void promise_shape(const compare::MeasuredShape& shape) {
   promise(shape.d1.allFinite(), "finite d1");
 }
 
-}  // namespace
-
-void scene(const std::string& text) {
+void promise_scene(const std::string& text, const char* name) {
   (void)reads(
       [&] {
-        const compare::Scene scene = compare::parse_scene(text, file);
+        const compare::Scene scene = compare::parse_scene(text, name);
         promise(scene.gamma() >= 0 && !scene.grippers.empty(), "a rod that is held");
       },
-      file);
+      name);
 }
+
+}  // namespace
+
+void scene(const std::string& text) { promise_scene(text, file); }
+
+void model(const std::string& text) { promise_scene(text, model_file); }
 
 void parameters(const std::string& text) {
   (void)reads(

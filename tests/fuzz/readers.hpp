@@ -8,9 +8,10 @@ namespace dlo::fuzz {
 /// InputError whose one line begins with the file's name. Anything else is thrown on, or is a
 /// std::logic_error that says what was broken.
 void scene(const std::string& text);
+void model(const std::string& text);       ///< MJCF
 void parameters(const std::string& text);  ///< of the force model
 void baseline(const std::string& text);    ///< what is read is written, and read again the same
-void shape(const std::string& text);       ///< CSV, JSON or VTK, in metres and in millimetres
+void shape(const std::string& text);       ///< of any kind, in metres and in millimetres
 void vary(const std::string& text);        ///< FIELD=VALUES of a sweep, and the scenes it gives
 
 }  // namespace dlo::fuzz

@@ -169,7 +169,7 @@ class Search {
     if (!said_rightly_ || is_found(said_rightly_->numbers + 1)) return;
     const Shape& shape = said_rightly_->shape;
     for (const OwnPolygon& chain : chains_of(shape, Springs::as_the_rod)) {
-      add({said_rightly_->words + " and it is " + words_of(chain, shape) + and_springs(chain),
+      add({said_rightly_->words + ", and it is " + words_of(chain, shape) + and_springs(chain),
            chain.rms_m, said_rightly_->numbers + 1, ExplanationKind::file, chain.max_m},
           joint_cause);
     }
@@ -263,7 +263,7 @@ class Search {
   [[nodiscard]] std::string clauses_of(const FileCause& cause, const Alignment& laid) const {
     std::string words = cause.words;
     const auto add_clause = [&words](const std::string& clause) {
-      words += (words.empty() ? "" : " and ") + clause;
+      words += (words.empty() ? "" : ", and ") + clause;
     };
     if (cause.part && cause.shape.points.cols() == shape_.points.cols()) {
       add_clause(missing_words(laid.shape.arc_length, laid.shape.points, scene_.length));

@@ -46,7 +46,7 @@ void look_at_joint_causes(const Scene& scene, const MeasuredShape& shape,
           const int faults = (unit.empty() ? 0 : 1) + (axes.words.empty() ? 0 : 1) +
                              (part ? 1 : 0) + (moved ? 1 : 0);
           if (faults < 2) continue;
-          const char* const both = unit.empty() || axes.words.empty() ? "" : " and ";
+          const char* const both = unit.empty() || axes.words.empty() ? "" : ", and ";
           look({.words = unit + both + axes.words,
                 .shape = turned(in_metres, axes.axes),
                 .pose = pose,
