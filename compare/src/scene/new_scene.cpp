@@ -164,7 +164,7 @@ std::string optional_part(const SceneChoices& choices, const Scene& scene) {
 #   position = [{x:.4g}, {y:.4g}, {z:.4g}]
 #   direction = {direction}   of a clamp; in no pose: the gripper's own stays
 # or trajectory = "way.csv" beside this file: a header time,x,y,z[,dx,dy,dz][,roll], in s, m, rad.
-#cutoff = "10 Hz"          of measured poses: what is faster is left out, without a lag (-3 dB there)
+# With cutoff = "10 Hz" beside it what is faster is left out, without a lag (-3 dB there).
 
 # A part of the rod that is another one, such as a connector; one [[section]] for each. What it does
 # not say is the rod's own; torsional_stiffness too, where the rod has one.

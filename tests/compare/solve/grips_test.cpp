@@ -85,6 +85,17 @@ Scene tip_on_floor() {
   return scene;
 }
 
+/// Of a scene in the plane z = 0 the image of a shape that leaves it is as low: the one that is on
+/// the side of the others' points.
+void take_image_beside(const Eigen::Matrix3Xd& points, Solution& solution) {
+  if (solution.shape.points.row(2).dot(points.row(2)) >= 0) return;
+  solution.shape.points.row(2) *= -1;
+  for (auto& gripper : solution.grippers) {
+    gripper.force.z() *= -1;
+    gripper.torque.head<2>() *= -1;
+  }
+}
+
 /// The chain's errors against the energy model, forces and torques over the largest of each.
 struct Errors {
   double segment = 0;
@@ -97,11 +108,13 @@ Errors chain_errors(Scene scene, const energy_model::Equilibrium& reference, int
   scene.force_model.points = points;
   // The energy model does not stretch; a hundred times AE stretches by less than 1e-7.
   scene.force_model.c_c = 100 * scene.axial_stiffness();
-  const Solution chain = solve_chain(scene, scene.force_model);
+  Solution chain = solve_chain(scene, scene.force_model);
+  const std::vector<double> s = chain.shape.arc_length;
+  const Eigen::Matrix3Xd expected_points = reference.sample(s).points;
+  if (scene.planar()) take_image_beside(expected_points, chain);
   Errors errors;
   errors.segment = chain.parameters.segment_length;
-  const std::vector<double>& s = chain.shape.arc_length;
-  errors.shape = rms(s, chain.shape.points - reference.sample(s).points);
+  errors.shape = rms(s, chain.shape.points - expected_points);
   double largest_force = 0;
   double largest_torque = 0;
   for (std::size_t i = 0; i < chain.grippers.size(); ++i) {
