@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Iterable, Optional, Sequence, Union, overload
+from typing import Any, Iterable, Optional, Sequence, Union, overload, cast
 
 import numpy
 from numpy.typing import ArrayLike
@@ -294,7 +294,7 @@ def calibrate(
             raise InputError("calibrate: motion with shapes or of several scenes (allowed: one scene)")
         return Document(*_dlo.calibrate_motion(data[0], _recorded(motion), "motion", limits))
     if shapes is None:
-        held_out = [data_of(scene, materials, time) for scene in holdout]
+        held_out = [data_of(cast(SceneLike, scene), materials, time) for scene in holdout]
         return ForceModelFit(*_dlo.calibrate_force_model(data, held_out, points, target, limits))
     what = {
         "pose": pose or register,

@@ -152,12 +152,12 @@ class Search {
             words);
       } else {
         const std::string law = law_words(chain);
+        const std::string weight =
+            is_pulled_by_weight_alone(scene_)
+                ? fmt::format(", or the weight {:.3g} times", 1 / chain.stiffness)
+                : "";
         add({fmt::format("it is {}, with springs of {:.3g} times EI/h{}{}{}", words,
-                         chain.stiffness,
-                         is_pulled_by_weight_alone(scene_)
-                             ? fmt::format(", or the weight {:.3g} times", 1 / chain.stiffness)
-                             : "",
-                         law.empty() ? "" : ", ", law),
+                         chain.stiffness, law.empty() ? "" : ", ", law, weight),
              chain.rms_m, 1, ExplanationKind::scene},
             words);
       }
