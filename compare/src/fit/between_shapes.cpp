@@ -76,7 +76,7 @@ double interpolated(const std::vector<double>& s, const std::vector<double>& val
 constexpr int places = 21;
 
 /// Of arc lengths that all shapes have.
-struct Range {
+struct ArcRange {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 
@@ -84,9 +84,9 @@ struct Range {
 };
 
 /// None of fewer than two shapes, or if it is less than half of the longest.
-std::optional<Range> common_range(const std::vector<std::vector<double>>& arc_lengths) {
+std::optional<ArcRange> common_range(const std::vector<std::vector<double>>& arc_lengths) {
   if (arc_lengths.size() < 2) return std::nullopt;
-  Range range;
+  ArcRange range;
   double longest = 0;
   for (const std::vector<double>& s : arc_lengths) {
     if (s.size() < 2) return std::nullopt;
@@ -120,7 +120,7 @@ std::optional<double> common_share(const std::vector<AcrossRod>& shapes) {
   std::vector<std::vector<double>> arc_lengths;
   arc_lengths.reserve(shapes.size());
   for (const AcrossRod& one : shapes) arc_lengths.push_back(one.arc_length);
-  const std::optional<Range> range = common_range(arc_lengths);
+  const std::optional<ArcRange> range = common_range(arc_lengths);
   if (!range) return std::nullopt;
   double common = 0;
   double all = 0;
@@ -141,7 +141,7 @@ std::optional<double> repeatability(const std::vector<Shape>& shapes, ArcLengths
   std::vector<std::vector<double>> arc_lengths;
   arc_lengths.reserve(shapes.size());
   for (const Shape& one : shapes) arc_lengths.push_back(one.arc_length);
-  const std::optional<Range> range = common_range(arc_lengths);
+  const std::optional<ArcRange> range = common_range(arc_lengths);
   if (!range) return std::nullopt;
   std::vector<Eigen::Matrix3Xd> at_places;
   at_places.reserve(shapes.size());
