@@ -78,18 +78,18 @@ std::string other_stiffness_within(const CheckResult& result) {
       modulus.ratio, modulus.rms_m * 1e3, at_E * 1e3);
 }
 
-CheckResult check(const Scene& scene, const MeasuredShape& given, const CheckRequest& request) {
-  const MeasuredShape shape = with_last_end(scene, given);
+CheckResult check(const Scene& scene, const MeasuredShape& shape, const CheckRequest& request) {
+  const MeasuredShape whole = with_last_end(scene, shape);
   CheckResult result{.scene = scene,
-                     .check = check_shape(scene, shape, request.shape),
+                     .check = check_shape(scene, whole, request.shape),
                      .tolerance = request.tolerance.value_or(default_tolerance(scene.length)),
                      .pose = request.shape.pose,
-                     .notes = shape.notes};
+                     .notes = whole.notes};
   if (friction_in_reach(scene)) result.friction = check_friction(scene, result.check);
   result.judgement = judge_with_chains(scene, result.check, result.tolerance);
   const bool is_near = judge(result.check, result.tolerance).pass;
   if (is_near || request.explaining == Explaining::no) return result;
-  result.explanations = explain_shape(scene, shape, result.check, request.shape);
+  result.explanations = explain_shape(scene, whole, result.check, request.shape);
   result.judgement = with_explanation(result.judgement, result.explanations, result.tolerance);
   result.supersedes_modulus = better_than_stiffness(result.check, result.explanations);
   return result;

@@ -19,7 +19,7 @@ constexpr double longest = 1.25;
 std::vector<std::pair<std::string, double>> units_for(const MeasuredShape& shape, double length) {
   const double share = lengths_along(shape.points).back() / length;
   std::vector<std::pair<std::string, double>> units;
-  const auto add = [&](std::string words, double metres) {
+  const auto add = [&](const std::string& words, double metres) {
     if (share * metres > shortest && share * metres < longest) units.emplace_back(words, metres);
   };
   add("", 1);
