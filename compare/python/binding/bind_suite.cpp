@@ -32,7 +32,7 @@ compare::MeasuredShape shape_from(const py::object& made) {
       pair[1].is_none() ? std::vector<double>{} : values_from(pair[1], "arc_length"), "its shape");
 }
 
-std::string one_line(std::string text) { return text.substr(0, text.find('\n')); }
+std::string one_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 /// A function of Python as a simulator: one call at a time, whatever thread it is from, because it
 /// need not be made for several.
