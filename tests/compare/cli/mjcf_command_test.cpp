@@ -31,7 +31,7 @@ const std::vector<std::string> models = {"composite.xml", "chain.xml", "hinges.x
 
 std::string model(const std::string& name) { return std::string(DLO_DATA) + "/mujoco/" + name; }
 
-std::string text_of(const std::string& name) {
+std::string model_text(const std::string& name) {
   std::ifstream stream(model(name));
   return {std::istreambuf_iterator<char>(stream), {}};
 }
@@ -112,7 +112,7 @@ TEST_F(MjcfCommand, FiveModelsComeToTheirVerdictInOneCommand) {
 
 TEST_F(MjcfCommand, AModelWithAnotherSpringFailsWithTheCause) {
   const std::string points = starts("chain.xml");
-  std::string text = text_of("chain.xml");
+  std::string text = model_text("chain.xml");
   const std::size_t at = text.find("stiffness=\"");
   const std::size_t end = text.find('"', at + 11);
   text.replace(at, end - at, "stiffness=\"0.96510");  // twice as stiff
@@ -174,7 +174,7 @@ TEST_F(MjcfCommand, FiftyMalformedModelsEndInOneLine) {
   int refused = 0;
   for (int i = 0; refused < 50 && i < 1000; ++i) {
     const std::string text =
-        mutated(text_of(models[static_cast<std::size_t>(i) % models.size()]), random);
+        mutated(model_text(models[static_cast<std::size_t>(i) % models.size()]), random);
     try {
       (void)compare::parse_scene(text, "a.xml");
       continue;  // such as a mutated remark
@@ -182,7 +182,7 @@ TEST_F(MjcfCommand, FiftyMalformedModelsEndInOneLine) {
       ++refused;
     }
     std::ofstream(path("mutated.xml"), std::ios::binary) << text;
-    for (const std::string command :
+    for (const std::string& command :
          {"check --shape " + path("two.csv") + " ", std::string("solve ")}) {
       const Outcome result = run(command + path("mutated.xml"));
       EXPECT_EQ(result.status, 2) << text;
