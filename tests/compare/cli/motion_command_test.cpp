@@ -139,7 +139,8 @@ TEST_F(MotionCommand, MeasuredPosesAreSmoothedBelowTheirCutoff) {
       run(words({"track", path("smooth.toml"),
                  "--no-force --from 0.5 --to 1.5 --frame-rate 37 --format json"}));
   ASSERT_EQ(track.status, 0) << track.err;
-  for (const json& frame : json::parse(track.out).at("frames")) {
+  const json document = json::parse(track.out);
+  for (const json& frame : document.at("frames")) {
     // A gain of 0.001 is left of it: 1 / (1 + (sqrt(2) - 1) / sin(pi / 20)^4).
     EXPECT_NEAR(frame.at("grippers").at(0).at("position_m").at(0).get<double>(),
                 0.1 * frame.at("time_s").get<double>(), 2e-6);
