@@ -37,8 +37,7 @@ struct SuiteOptions {
 
 void write_pack(const SuiteOptions& options, const std::string& version,
                 const std::vector<compare::BatteryScene>& scenes) {
-  compare::write_pack(options.pack, version,
-                      compare::certified_answers(scenes, options.card.threads));
+  compare::write_pack(options.pack, compare::certified_pack(version, scenes, options.card.threads));
   say("{} answers in {}", scenes.size(), options.pack);
 }
 
@@ -127,7 +126,7 @@ void add_suite(CLI::App& app) {
   command->add_option("--html", options->page, "and as a page with a badge")->type_name("FILE");
   command
       ->add_option("--write", options->pack,
-                   "write the answers as a pack: JSON with a schema, and points as CSV")
+                   "write the answers as a pack: JSON with a schema, and points as CSV and VTU")
       ->type_name("DIR");
   command
       ->add_option("--battery", options->battery,

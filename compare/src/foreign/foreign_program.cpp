@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <set>
 #include <string_view>
 #include <system_error>
@@ -25,6 +26,7 @@
 #include "foreign/child_process.hpp"
 #include "foreign/command_words.hpp"
 #include "foreign/scene_document.hpp"
+#include "recording/recorded_frames.hpp"
 #include "shape/curve.hpp"
 #include "shape/shape_measure.hpp"
 
@@ -146,10 +148,17 @@ std::vector<ForeignProgram> parse_foreign_programs(const std::vector<std::string
   return programs;
 }
 
-ForeignRun run_foreign(const ForeignProgram& program, Scene scene, int points, double time_limit) {
-  scene.force_model.points = points;
+namespace {
+
+/// The folder's name is gone when a message is read.
+constexpr const char* shape_name = "its shape";
+
+/// Runs it. @param read  takes the file that it wrote; may throw InputError
+ForeignRun run_on_document(
+    const ForeignProgram& program, const std::string& document, int points, double time_limit,
+    const std::function<void(const std::string& file, ForeignRun& result)>& read) {
   const ProgramFolder folder;
-  write_file(folder.file("scene.json"), scene_document_text(scene));
+  write_file(folder.file("scene.json"), document);
   std::vector<std::string> words;
   words.reserve(program.words.size());
   for (const std::string& word : program.words) {
@@ -178,13 +187,59 @@ ForeignRun run_foreign(const ForeignProgram& program, Scene scene, int points, d
       result.problem = "wrote no shape" + last_words(folder.file("stderr"));
       return result;
     }
-    // The folder's name is gone when the message is read.
-    constexpr const char* shape_name = "its shape";
-    result.shape = parse_shape(read_regular_file(file, shape_name), shape_name);
+    read(file, result);
   } catch (const InputError& error) {
     result.problem = error.what();
+    const std::string name = folder.file("");
+    for (std::size_t at = 0; (at = result.problem.find(name, at)) != std::string::npos;) {
+      result.problem.erase(at, name.size());
+    }
   }
   return result;
+}
+
+/// Whether a text is one shape, without times.
+bool is_shape(const std::string& text) {
+  if (text.substr(0, text.find('\n')).find("time") != std::string::npos) return false;
+  try {
+    (void)parse_shape(text, shape_name);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+void read_motion(const std::string& file, double length, ForeignRun& result) {
+  std::error_code unknown;
+  if (std::filesystem::is_directory(file, unknown) || file.ends_with(".vtk.series")) {
+    result.motion = load_recording(file, length);
+    return;
+  }
+  const std::string text = read_regular_file(file, shape_name);
+  result.not_supported = is_shape(text);
+  if (result.not_supported) {
+    result.problem = "wrote a shape at rest, no frames (time,s,x,y,z)";
+  } else {
+    result.motion = parse_markers(text, shape_name);
+  }
+}
+
+}  // namespace
+
+ForeignRun run_foreign(const ForeignProgram& program, Scene scene, int points, double time_limit) {
+  scene.force_model.points = points;
+  return run_on_document(program, scene_document_text(scene), points, time_limit,
+                         [](const std::string& file, ForeignRun& result) {
+                           result.shape =
+                               parse_shape(read_regular_file(file, shape_name), shape_name);
+                         });
+}
+
+ForeignRun run_foreign_motion(const ForeignProgram& program, const std::string& document,
+                              int points, double length, double time_limit) {
+  return run_on_document(
+      program, document, points, time_limit,
+      [length](const std::string& file, ForeignRun& result) { read_motion(file, length, result); });
 }
 
 void require_held_ends(const Scene& scene, const Shape& laid, bool told) {

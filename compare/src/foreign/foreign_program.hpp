@@ -7,6 +7,7 @@
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape_file.hpp"
+#include "trajectory/read_markers.hpp"
 
 namespace dlo::compare {
 
@@ -27,6 +28,7 @@ struct ForeignProgram {
 /// Its shape of a scene, or why there is none.
 struct ForeignRun {
   std::optional<MeasuredShape> shape;  ///< as it wrote it
+  std::optional<MarkerMotion> motion;  ///< the same, where that was asked for
   double seconds = 0;                  ///< wall time of the process [s]
   std::string problem;                 ///< one line; empty if there is a shape
   bool too_long = false;               ///< it was killed at the time limit
@@ -43,6 +45,13 @@ struct ForeignRun {
 /// @throws OutputError if that folder cannot be made or written
 [[nodiscard]] ForeignRun run_foreign(const ForeignProgram& program, Scene scene, int points,
                                      double time_limit);
+
+/// The same of a motion: {scene} has the document, and the program writes frames as
+/// load_recording() takes them. One shape that it writes is no failure: it has no motion.
+/// @param length  of the rod [m]
+[[nodiscard]] ForeignRun run_foreign_motion(const ForeignProgram& program,
+                                            const std::string& document, int points, double length,
+                                            double time_limit);
 
 /// An end that a gripper holds is where that is: to 1 % of the length, and to what a file says that
 /// it has less than the rod.

@@ -51,4 +51,28 @@ std::string vtk_polyline(const Shape& shape, const PointFields& fields, const st
   return text;
 }
 
+std::string vtu_polyline(const Shape& shape) {
+  const Eigen::Matrix3Xd& points = shape.points;
+  constexpr int polyline = 4;  // VTK_POLY_LINE
+  std::string rows;
+  std::string indices;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    rows += fmt::format("{} {} {}\n", points(0, i), points(1, i), points(2, i));
+    indices += fmt::format("{}{}", i == 0 ? "" : " ", i);
+  }
+  return fmt::format(
+      "<?xml version=\"1.0\"?>\n"
+      "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">\n"
+      "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{0}\" NumberOfCells=\"1\">\n<Points>\n"
+      "<DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\n{1}</DataArray>\n"
+      "</Points>\n<Cells>\n"
+      "<DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">\n{2}\n</DataArray>\n"
+      "<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">{0}</DataArray>\n"
+      "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">{3}</DataArray>\n"
+      "</Cells>\n<PointData>\n"
+      "<DataArray type=\"Float64\" Name=\"arc_length_m\" format=\"ascii\">\n{4}\n</DataArray>\n"
+      "</PointData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n",
+      points.cols(), rows, indices, polyline, fmt::join(shape.arc_length, " "));
+}
+
 }  // namespace dlo::compare

@@ -20,4 +20,8 @@ struct PointFields {
 [[nodiscard]] std::string vtk_polyline(const Shape& shape, const PointFields& fields,
                                        const std::string& title);
 
+/// A shape as VTK's XML file of an unstructured grid (VTU) of one polyline, in ASCII with as many
+/// digits as tell the numbers: points [m], and arc_length_m as point data.
+[[nodiscard]] std::string vtu_polyline(const Shape& shape);
+
 }  // namespace dlo::compare

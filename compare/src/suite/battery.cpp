@@ -11,6 +11,7 @@
 #include "base/words.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene_file.hpp"
+#include "dlo/compare/shape.hpp"
 #include "suite/suite_files.hpp"
 #include "toml/strict_table.hpp"
 
@@ -29,6 +30,19 @@ ClosedForm read_closed_form(StrictTable table, double length) {
   return result;
 }
 
+BatteryMotion read_motion(StrictTable table,
+                          const std::function<Scene(const std::string& name)>& scene_of) {
+  constexpr int fewest = 4;  // what cubics between frames need
+  constexpr int most = 1000;
+  table.only({"begin", "frames", "until"});
+  BatteryMotion motion;
+  motion.begin = scene_of(table.text("begin"));
+  motion.until = table.number("until", Dimension::time, Range::positive());
+  motion.frames = table.integer("frames", fewest, most);
+  table.finish();
+  return motion;
+}
+
 /// @param scene_of  the scene of a file's name
 Battery read_battery(const std::string& text, const std::string& file,
                      const std::function<Scene(const std::string& name)>& scene_of) {
@@ -40,7 +54,7 @@ Battery read_battery(const std::string& text, const std::string& file,
   battery.version = table.text("version");
   std::set<std::string> ids;
   for (StrictTable& entry : table.tables("scene")) {
-    entry.only({"class", "closed_form", "file", "isolates"});
+    entry.only({"class", "closed_form", "file", "isolates", "motion"});
     BatteryScene scene;
     const std::string name = entry.text("file");
     scene.id = std::filesystem::path(name).stem();
@@ -53,6 +67,7 @@ Battery read_battery(const std::string& text, const std::string& file,
     if (entry.has("closed_form")) {
       scene.closed_form = read_closed_form(entry.table("closed_form"), scene.scene.length);
     }
+    if (entry.has("motion")) scene.motion = read_motion(entry.table("motion"), scene_of);
     entry.finish();
     battery.scenes.push_back(std::move(scene));
   }
@@ -71,6 +86,8 @@ std::string builtin_file(std::string_view name) {
 }
 
 }  // namespace
+
+std::vector<double> BatteryMotion::times() const { return equal_arc_lengths(until, frames); }
 
 const Battery& builtin_battery() {
   static const Battery battery = read_battery(
@@ -121,6 +138,11 @@ std::vector<BatteryScene> chosen_scenes(const Battery& battery,
 
 std::string_view answer_schema() {
   static const std::string text = builtin_file("schema.json");
+  return text;
+}
+
+std::string_view motion_schema() {
+  static const std::string text = builtin_file("motion_schema.json");
   return text;
 }
 

@@ -17,12 +17,23 @@ struct ClosedForm {
   Eigen::Vector3d point;  ///< where the rod is there [m]
 };
 
+/// A motion that a scene begins: it is let go at 0 s from the equilibrium of another one.
+struct BatteryMotion {
+  Scene begin;       ///< the same rod as something holds it before, at rest
+  double until = 0;  ///< [s], > 0
+  int frames = 0;    ///< that are asked for, at equal distances from 0 to `until`
+
+  /// [s]
+  [[nodiscard]] std::vector<double> times() const;
+};
+
 /// A scene of the battery.
 struct BatteryScene {
   std::string id;                         ///< the stem of its file
   std::string group;                      ///< its class: "weight", "twist"
   std::string isolates;                   ///< one line: what it isolates
   std::optional<ClosedForm> closed_form;  ///< where there is one
+  std::optional<BatteryMotion> motion;    ///< none: it is at rest
   Scene scene;                            ///< as its file has it
 };
 
@@ -50,5 +61,6 @@ struct Battery {
 
 /// The JSON Schema of an answer.
 [[nodiscard]] std::string_view answer_schema();
+[[nodiscard]] std::string_view motion_schema();  ///< of a motion's
 
 }  // namespace dlo::compare

@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "dlo/compare/deviation.hpp"
@@ -19,6 +21,7 @@
 #include "parallel/threads.hpp"
 #include "shape/arc_lengths.hpp"
 #include "suite/answer.hpp"
+#include "suite/motion_cause.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -75,23 +78,61 @@ void measure_run(const Scene& scene, const energy_model::Equilibrium& reference,
   }
 }
 
-CardScene card_scene(const BatteryScene& scene, const energy_model::Equilibrium& reference,
-                     const Simulator& simulator, const CardOptions& options) {
+/// Runs a simulator with N, 2N and 4N points.
+/// @param measure  takes each run and its entry
+CardScene run_scene(const BatteryScene& scene, const Simulator& simulator,
+                    const CardOptions& options,
+                    const std::function<void(const SimulatorRun&, CardRun&)>& measure) {
   CardScene result{.id = scene.id, .group = scene.group, .order = none};
-  std::vector<CardShape> shapes;
   for (const int factor : {1, 2, 4}) {
     const int points = factor * options.points;
-    const SimulatorRun run =
-        kept_run(options.state, scene.id, simulator, scene.scene, points, options.time_limit);
+    const SimulatorRun run = kept_run(options.state, simulator, scene, points, options.time_limit);
     CardRun& entry =
         result.runs.emplace_back(CardRun{points, run.status, run.problem, none, run.seconds});
-    measure_run(scene.scene, reference, run, entry, shapes);
+    measure(run, entry);
     if (entry.status == RunStatus::not_supported) break;  // nor with more points
   }
+  return result;
+}
+
+CardScene card_scene(const BatteryScene& scene, const energy_model::Equilibrium& reference,
+                     const Simulator& simulator, const CardOptions& options) {
+  std::vector<CardShape> shapes;
+  CardScene result =
+      run_scene(scene, simulator, options, [&](const SimulatorRun& run, CardRun& entry) {
+        measure_run(scene.scene, reference, run, entry, shapes);
+      });
   result.order = convergence_order(shapes);
   if (!shapes.empty()) {
     result.causes = causes_of(scene.scene, reference, shapes, {.time_limit = options.time_limit});
   }
+  return result;
+}
+
+/// Motions that converge with about second order have no cause, nor those that are off by a tenth
+/// of what is right.
+constexpr double converges = 1.5;
+constexpr double hardly_off = 1e-3;
+
+CardScene card_motion(const BatteryScene& scene, const MotionReference& reference,
+                      const Simulator& simulator, const CardOptions& options) {
+  std::vector<CardShape> errors;
+  std::optional<MarkerMotion> finest;
+  CardScene result =
+      run_scene(scene, simulator, options, [&](const SimulatorRun& run, CardRun& entry) {
+        if (!run.motion) return;
+        try {
+          entry.error = motion_error(reference, *run.motion);
+          errors.push_back({.points = run.points, .shape = {}, .error = entry.error});
+          finest = run.motion;
+        } catch (const InputError& error) {
+          entry.status = RunStatus::failed;
+          entry.problem = error.what();
+        }
+      });
+  result.order = convergence_order(errors);
+  if (!finest || result.order >= converges || errors.back().error <= hardly_off) return result;
+  result.causes = motion_causes(reference, *finest);
   return result;
 }
 
@@ -194,6 +235,20 @@ void join_causes(Card& card) {
   }
 }
 
+/// Solves a scene's reference. @return what makes the card of a simulator
+std::function<CardScene(const Simulator&)> scene_judge(const BatteryScene& scene,
+                                                       const CardOptions& options) {
+  const SolveOptions solve{.time_limit = options.time_limit};
+  if (scene.motion) {
+    return [&, reference = motion_reference(scene, solve)](const Simulator& simulator) {
+      return card_motion(scene, reference, simulator, options);
+    };
+  }
+  return
+      [&, reference = solve_reference(scene.scene, answer_model(scene.scene), solve)](
+          const Simulator& simulator) { return card_scene(scene, reference, simulator, options); };
+}
+
 }  // namespace
 
 std::vector<Card> make_cards(const std::string& battery_version,
@@ -213,11 +268,9 @@ std::vector<Card> make_cards(const std::string& battery_version,
   tbb::task_arena arena(arena_threads(options.threads));
   execute(arena, [&] {
     tbb::parallel_for(std::size_t{0}, scenes.size(), [&](std::size_t i) {
-      const Scene& scene = scenes[i].scene;
-      const energy_model::Equilibrium reference =
-          solve_reference(scene, answer_model(scene), {.time_limit = options.time_limit});
+      const auto card_of = scene_judge(scenes[i], options);
       for (std::size_t k = 0; k < simulators.size(); ++k) {
-        cards[k].scenes[i] = card_scene(scenes[i], reference, simulators[k], options);
+        cards[k].scenes[i] = card_of(simulators[k]);
         if (!options.progress) continue;
         const std::lock_guard lock(telling);
         options.progress(++done, all);

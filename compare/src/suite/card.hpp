@@ -16,8 +16,9 @@ struct CardRun {
   int points = 0;                        ///< N
   RunStatus status = RunStatus::failed;  ///< how it ended
   std::string problem;                   ///< one line; empty if there is a shape
-  double error = 0;                      ///< RMS distance over length [-]; NaN without a shape
-  double seconds = 0;                    ///< wall time of the simulator [s]
+  /// RMS distance over the length, of a motion over how far the rod moves [-]; NaN without a shape
+  double error = 0;
+  double seconds = 0;  ///< wall time of the simulator [s]
 };
 
 /// A simulator on one scene.

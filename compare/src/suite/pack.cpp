@@ -11,11 +11,13 @@
 #include "dlo/compare/solution.hpp"
 #include "record/field.hpp"
 #include "record/solution_fields.hpp"
+#include "shape/write_vtk.hpp"
 
 namespace dlo::compare {
 namespace {
 
 constexpr const char* answer_schema_name = "dlo/answer/1";
+constexpr const char* motion_schema_name = "dlo/motion/1";
 constexpr const char* pack_schema_name = "dlo/pack/1";
 
 /// With ten significant digits, none of rounding.
@@ -40,6 +42,11 @@ std::string decimals(double metres) {
 /// The same as a number; adding zero makes zero of -0.
 double place(double metres) {
   return as_number<double>(fmt::format("{:.12f}", metres)).value() + 0.0;
+}
+
+/// Of a motion, whose bounds are larger.
+double motion_place(double value) {
+  return as_number<double>(fmt::format("{:.9f}", value)).value() + 0.0;
 }
 
 Json answer_vector(const Eigen::Vector3d& vector, double large) {
@@ -162,28 +169,90 @@ std::string answer_csv(const Answer& answer) {
   return text;
 }
 
-void write_pack(const std::string& folder, const std::string& battery_version,
-                const std::vector<Answer>& answers) {
+std::string answer_vtu(const Answer& answer) {
+  Shape shape = answer.first.shape;
+  shape.points = shape.points.unaryExpr(&place);
+  for (double& s : shape.arc_length) s = place(s);
+  return vtu_polyline(shape);
+}
+
+nlohmann::ordered_json motion_json(const MotionAnswer& answer) {
+  const auto places = [](const std::vector<double>& values) {
+    return json_list(values, [](double value) -> Json { return motion_place(value); });
+  };
+  Json result = {{"schema", motion_schema_name},
+                 {"id", answer.of.id},
+                 {"class", answer.of.group},
+                 {"name", answer.of.scene.name},
+                 {"isolates", answer.of.isolates},
+                 {"length_m", answer.of.scene.length},
+                 {"gamma", rounded(answer.of.scene.gamma(), 1)},
+                 {"methods", {to_string(Model::energy), answer.second_method}},
+                 {"points_bound_m", bound(answer.points_bound_m)},
+                 {"times_s", places(answer.times)},
+                 {"arc_length_m", places(answer.arc_length)}};
+  result["frames_m"] = json_list(answer.frames, [](const Eigen::Matrix3Xd& frame) -> Json {
+    Json points = Json::array();
+    for (const auto& point : frame.colwise()) {
+      points.push_back({motion_place(point.x()), motion_place(point.y()), motion_place(point.z())});
+    }
+    return points;
+  });
+  return result;
+}
+
+std::string motion_csv(const MotionAnswer& answer) {
+  std::string text = "time,s,x,y,z\n";
+  for (std::size_t k = 0; k < answer.times.size(); ++k) {
+    for (std::size_t i = 0; i < answer.arc_length.size(); ++i) {
+      const Eigen::Vector3d point = answer.frames[k].col(static_cast<Eigen::Index>(i));
+      text += fmt::format("{},{},{},{},{}\n", motion_place(answer.times[k]),
+                          motion_place(answer.arc_length[i]), motion_place(point.x()),
+                          motion_place(point.y()), motion_place(point.z()));
+    }
+  }
+  return text;
+}
+
+Pack certified_pack(const std::string& version, const std::vector<BatteryScene>& scenes,
+                    int threads, const SolveOptions& options) {
+  std::vector<BatteryScene> at_rest;
+  std::vector<BatteryScene> moving;
+  for (const BatteryScene& scene : scenes) (scene.motion ? moving : at_rest).push_back(scene);
+  return {version, certified_answers(at_rest, threads, options),
+          certified_motions(moving, threads, options)};
+}
+
+void write_pack(const std::string& folder, const Pack& pack) {
   const std::filesystem::path path(folder);
   std::error_code error;
   std::filesystem::create_directories(path, error);
   if (error) throw OutputError(fmt::format("{}: {}", folder, error.message()));
   Json index = {{"schema", pack_schema_name},
-                {"version", battery_version},
+                {"version", pack.version},
                 {"unit", "SI"},
                 {"answers", Json::array()}};
-  for (const Answer& answer : answers) {
+  const auto entry = [](const BatteryScene& scene, double points_bound) -> Json {
+    return {{"id", scene.id},
+            {"class", scene.group},
+            {"isolates", scene.isolates},
+            {"answer", scene.id + ".json"},
+            {"points", scene.id + ".csv"},
+            {"points_bound_over_length", bound(points_bound / scene.scene.length)}};
+  };
+  for (const Answer& answer : pack.answers) {
     write_document(path / (answer.of.id + ".json"), answer_json(answer));
     write_file(path / (answer.of.id + ".csv"), answer_csv(answer));
-    index["answers"].push_back(
-        {{"id", answer.of.id},
-         {"class", answer.of.group},
-         {"isolates", answer.of.isolates},
-         {"answer", answer.of.id + ".json"},
-         {"points", answer.of.id + ".csv"},
-         {"points_bound_over_length", bound(answer.bounds.points_m / answer.of.scene.length)}});
+    write_file(path / (answer.of.id + ".vtu"), answer_vtu(answer));
+    index["answers"].push_back(entry(answer.of, answer.bounds.points_m));
+  }
+  for (const MotionAnswer& answer : pack.motions) {
+    write_document(path / (answer.of.id + ".json"), motion_json(answer));
+    write_file(path / (answer.of.id + ".csv"), motion_csv(answer));
+    index["answers"].push_back(entry(answer.of, answer.points_bound_m));
   }
   write_file(path / "schema.json", answer_schema());
+  write_file(path / "motion_schema.json", motion_schema());
   write_document(path / "suite.json", index);
 }
 

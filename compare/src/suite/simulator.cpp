@@ -12,9 +12,12 @@
 #include "base/input_file.hpp"
 #include "base/output_file.hpp"
 #include "dlo/compare/error.hpp"
+#include "dlo/compare/shape.hpp"
 #include "dlo/compare/solve.hpp"
 #include "foreign/scene_document.hpp"
 #include "record/field.hpp"
+#include "released/hinge_motion.hpp"
+#include "released/released_rod.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -26,18 +29,51 @@ std::optional<Model> own_model(const std::string& text) {
   return std::nullopt;
 }
 
-SimulatorRun run_own(Model model, Scene scene, double time_limit) {
+ReleasedRod released_rod(const BatteryScene& scene) {
+  return {scene.scene, scene.motion.value().begin};
+}
+
+void solve_own(Model model, const Scene& scene, double time_limit, SimulatorRun& run) {
+  const Solution solution = solve(scene, model, {.time_limit = time_limit});
+  if (!solution.neglected.empty()) {
+    run.status = RunStatus::not_supported;
+    run.problem = fmt::format("neglects {}", fmt::join(solution.neglected, ", "));
+    return;
+  }
+  run.status = RunStatus::solved;
+  run.shape = shape_of(solution.shape.points, solution.shape.arc_length, to_string(model));
+}
+
+/// `chain` is the chain of hinges with masses in its points.
+void move_own(Model model, const BatteryScene& scene, int points, SimulatorRun& run) {
+  if (model != Model::chain) {
+    run.status = RunStatus::not_supported;
+    run.problem = fmt::format("{} has no motion here", to_string(model));
+    return;
+  }
+  const std::vector<double> times = scene.motion->times();
+  const std::vector<Eigen::Matrix3Xd> frames = hinge_motion(released_rod(scene), points - 1, times);
+  const std::vector<double> s = equal_arc_lengths(scene.scene.length, points);
+  MarkerMotion motion{.file = to_string(model), .positions = {}};
+  motion.positions.reserve(times.size() * s.size());
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      motion.positions.push_back({times[k], s[i], frames[k].col(static_cast<Eigen::Index>(i))});
+    }
+  }
+  run.motion = std::move(motion);
+  run.status = RunStatus::solved;
+}
+
+SimulatorRun run_own(Model model, BatteryScene scene, int points, double time_limit) {
   SimulatorRun run;
   const auto begin = std::chrono::steady_clock::now();
-  scene.file = "scene";  // scenes of one problem have one message
+  scene.scene.file = "scene";  // scenes of one problem have one message
   try {
-    const Solution solution = solve(scene, model, {.time_limit = time_limit});
-    if (!solution.neglected.empty()) {
-      run.status = RunStatus::not_supported;
-      run.problem = fmt::format("neglects {}", fmt::join(solution.neglected, ", "));
+    if (scene.motion) {
+      move_own(model, scene, points, run);
     } else {
-      run.status = RunStatus::solved;
-      run.shape = shape_of(solution.shape.points, solution.shape.arc_length, to_string(model));
+      solve_own(model, scene.scene, time_limit, run);
     }
   } catch (const InputError& error) {
     run.status = RunStatus::not_supported;
@@ -49,14 +85,17 @@ SimulatorRun run_own(Model model, Scene scene, double time_limit) {
   return run;
 }
 
-SimulatorRun run_program(const ForeignProgram& program, const Scene& scene, int points,
+SimulatorRun run_program(const ForeignProgram& program, const BatteryScene& scene, int points,
                          double time_limit) {
-  ForeignRun run = run_foreign(program, scene, points, time_limit);
+  ForeignRun run = scene.motion ? run_foreign_motion(program, battery_document(scene, points),
+                                                     points, scene.scene.length, time_limit)
+                                : run_foreign(program, scene.scene, points, time_limit);
   SimulatorRun result;
   result.problem = run.problem;
   result.seconds = run.seconds;
   result.shape = std::move(run.shape);
-  if (result.shape) {
+  result.motion = std::move(run.motion);
+  if (result.shape || result.motion) {
     result.status = RunStatus::solved;
   } else if (run.not_supported) {
     result.status = RunStatus::not_supported;
@@ -65,10 +104,26 @@ SimulatorRun run_program(const ForeignProgram& program, const Scene& scene, int 
 }
 
 /// What a run depends on; its own version tells files of another form.
-std::string run_fingerprint(const Simulator& simulator, Scene scene, int points) {
-  scene.force_model.points = points;
-  scene.file.clear();
-  return fingerprint("dlo/run/1\n" + simulator.identity() + "\n" + scene_document_text(scene));
+std::string run_fingerprint(const Simulator& simulator, const BatteryScene& scene, int points) {
+  return fingerprint("dlo/run/1\n" + simulator.identity() + "\n" + battery_document(scene, points));
+}
+
+/// Rows of time, arc length and position.
+Json motion_rows(const MarkerMotion& motion) {
+  return json_list(motion.positions, [](const MarkerPosition& at) -> Json {
+    return {at.time, at.arc_length, at.position.x(), at.position.y(), at.position.z()};
+  });
+}
+
+MarkerMotion motion_of_rows(const Json& rows) {
+  MarkerMotion motion{.file = "its shape", .positions = {}};
+  for (const Json& row : rows) {
+    motion.positions.push_back(
+        {row.at(0).get<double>(),
+         row.at(1).get<double>(),
+         {row.at(2).get<double>(), row.at(3).get<double>(), row.at(4).get<double>()}});
+  }
+  return motion;
 }
 
 std::optional<SimulatorRun> read_run(const std::filesystem::path& file, const std::string& known) {
@@ -82,7 +137,9 @@ std::optional<SimulatorRun> read_run(const std::filesystem::path& file, const st
     run.status = from_name<RunStatus>(document.at("status").get<std::string>());
     run.problem = document.at("problem");
     run.seconds = document.at("wall_s");
-    if (run.status == RunStatus::solved)
+    if (document.contains("motion")) {
+      run.motion = motion_of_rows(document["motion"]);
+    } else if (run.status == RunStatus::solved)
       run.shape = parse_shape(document.at("shape").dump(), "its shape");
     return run;
   } catch (const nlohmann::json::exception&) {
@@ -99,6 +156,7 @@ void write_run(const std::filesystem::path& file, const std::string& known,
                    {"status", to_string(run.status)},
                    {"problem", run.problem},
                    {"wall_s", run.seconds}};
+  if (run.motion) document["motion"] = motion_rows(*run.motion);
   if (run.shape) {
     document["shape"] = {{"points_m", points_json(run.shape->points)}};
     if (!run.shape->arc_length.empty()) document["shape"]["arc_length_m"] = run.shape->arc_length;
@@ -130,25 +188,53 @@ std::vector<Simulator> parse_simulators(const std::vector<std::string>& texts) {
   return simulators;
 }
 
-SimulatorRun run_simulator(const Simulator& simulator, Scene scene, int points, double time_limit) {
-  scene.force_model.points = points;
-  if (simulator.function) {
-    SimulatorRun run = simulator.function(scene, points);
-    run.points = points;
-    return run;
+std::string battery_document(const BatteryScene& scene, int points) {
+  Scene numbered = scene.scene;
+  numbered.force_model.points = points;
+  numbered.file.clear();
+  if (!scene.motion) return scene_document_text(numbered);
+  Json document = scene_document(numbered);
+  const std::vector<double> s = equal_arc_lengths(scene.scene.length, points);
+  Json masses = Json::array();
+  for (const PointLoad& load : scene.scene.loads) {
+    if (load.mass > 0) masses.push_back({{"at_m", load.at}, {"mass_kg", load.mass}});
   }
-  SimulatorRun run = simulator.own ? run_own(*simulator.own, scene, time_limit)
-                                   : run_program(simulator.program, scene, points, time_limit);
+  const energy_model::Samples begin = released_shape(released_rod(scene))(s);
+  document["motion"] = {{"times_s", scene.motion->times()},
+                        {"begin_arc_length_m", s},
+                        {"begin_points_m", points_json(begin.points)},
+                        {"begin_tangents", points_json(begin.tangents)},
+                        {"point_masses", std::move(masses)}};
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+SimulatorRun run_simulator(const Simulator& simulator, const BatteryScene& scene, int points,
+                           double time_limit) {
+  SimulatorRun run;
+  if (simulator.function && scene.motion) {
+    run.status = RunStatus::not_supported;
+    run.problem = "a function has no motion";
+  } else if (simulator.function) {
+    Scene numbered = scene.scene;
+    numbered.force_model.points = points;
+    run = simulator.function(numbered, points);
+  } else if (simulator.own) {
+    BatteryScene numbered = scene;
+    numbered.scene.force_model.points = points;
+    run = run_own(*simulator.own, std::move(numbered), points, time_limit);
+  } else {
+    run = run_program(simulator.program, scene, points, time_limit);
+  }
   run.points = points;
   return run;
 }
 
-SimulatorRun kept_run(const std::string& folder, const std::string& id, const Simulator& simulator,
-                      const Scene& scene, int points, double time_limit) {
+SimulatorRun kept_run(const std::string& folder, const Simulator& simulator,
+                      const BatteryScene& scene, int points, double time_limit) {
   if (folder.empty() || simulator.function)
     return run_simulator(simulator, scene, points, time_limit);
   const std::filesystem::path mine = std::filesystem::path(folder) / simulator.name;
-  const std::filesystem::path file = mine / fmt::format("{}_{}.json", id, points);
+  const std::filesystem::path file = mine / fmt::format("{}_{}.json", scene.id, points);
   const std::string known = run_fingerprint(simulator, scene, points);
   if (std::optional<SimulatorRun> run = read_run(file, known)) return std::move(*run);
   SimulatorRun run = run_simulator(simulator, scene, points, time_limit);

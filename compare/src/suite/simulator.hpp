@@ -9,6 +9,8 @@
 #include "dlo/compare/shape_file.hpp"
 #include "dlo/compare/solution.hpp"
 #include "foreign/foreign_program.hpp"
+#include "suite/battery.hpp"
+#include "trajectory/read_markers.hpp"
 
 namespace dlo::compare {
 
@@ -28,13 +30,14 @@ struct Choices<RunStatus> {
                                               {RunStatus::failed, "failed", ""}};
 };
 
-/// A shape of a scene with so many points, or why there is none.
+/// A shape or a motion of a scene with so many points, or why there is none.
 struct SimulatorRun {
   int points = 0;                        ///< N
   RunStatus status = RunStatus::failed;  ///< how it ended
   std::string problem;                   ///< one line; empty if there is a shape
   double seconds = 0;                    ///< wall time [s]
   std::optional<MeasuredShape> shape;    ///< of a run that is solved
+  std::optional<MarkerMotion> motion;    ///< in place of it, of a scene that moves
 };
 
 /// What is run on the battery: a program, one of our own polygon models, or a function.
@@ -55,14 +58,18 @@ struct Simulator {
 
 /// Runs a simulator. @param time_limit  [s], > 0
 /// @throws OutputError as run_foreign()
-[[nodiscard]] SimulatorRun run_simulator(const Simulator& simulator, Scene scene, int points,
-                                         double time_limit);
+[[nodiscard]] SimulatorRun run_simulator(const Simulator& simulator, const BatteryScene& scene,
+                                         int points, double time_limit);
 
 /// The same, but for a run whose result `folder` has from an earlier time: it is kept there in a
 /// file of its own, whole or not at all.
 /// @param folder  made if it is not there; empty: nothing is kept
-[[nodiscard]] SimulatorRun kept_run(const std::string& folder, const std::string& id,
-                                    const Simulator& simulator, const Scene& scene, int points,
-                                    double time_limit);
+[[nodiscard]] SimulatorRun kept_run(const std::string& folder, const Simulator& simulator,
+                                    const BatteryScene& scene, int points, double time_limit);
+
+/// What a program reads of a scene: scene_document(), and of one that moves also `motion`, with
+/// the times of frames that are asked for, the shape that it begins with at equal arc lengths, and
+/// the masses that hang on the rod.
+[[nodiscard]] std::string battery_document(const BatteryScene& scene, int points);
 
 }  // namespace dlo::compare

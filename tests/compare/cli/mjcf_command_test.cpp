@@ -20,7 +20,6 @@
 
 namespace {
 
-namespace compare = dlo::compare;
 namespace energy = dlo::energy_model;
 using dlo::test::Command;
 using dlo::test::Outcome;
@@ -39,7 +38,7 @@ std::string model_text(const std::string& name) {
 /// The model's segments at rest: springs linear in the angle, each segment's weight half at each of
 /// its ends, as a rigid segment's is that is uniform; where a clamp holds a body, both its ends
 /// are.
-Eigen::Matrix3Xd chain_at_rest(const compare::Scene& scene) {
+Eigen::Matrix3Xd chain_at_rest(const dlo::compare::Scene& scene) {
   const Eigen::Index n = scene.model->segments;
   const double h = scene.length / static_cast<double>(n);
   energy::PolygonProblem problem;
@@ -53,7 +52,7 @@ Eigen::Matrix3Xd chain_at_rest(const compare::Scene& scene) {
   problem.node_forces.setZero(3, n + 1);
   problem.node_forces.leftCols(n).colwise() += weight / 2;
   problem.node_forces.rightCols(n).colwise() += weight / 2;
-  for (const compare::Gripper& gripper : scene.grippers) {
+  for (const dlo::compare::Gripper& gripper : scene.grippers) {
     const auto point = static_cast<Eigen::Index>(std::lround(gripper.at / h));
     problem.held.push_back({point, gripper.position});
     if (!gripper.direction) continue;
@@ -63,7 +62,7 @@ Eigen::Matrix3Xd chain_at_rest(const compare::Scene& scene) {
   std::vector<double> s;
   for (Eigen::Index i = 0; i <= n; ++i)
     s.push_back(std::min(scene.length, static_cast<double>(i) * h));
-  const compare::Solution rod = compare::solve(scene, compare::Model::energy, {}, s);
+  const dlo::compare::Solution rod = dlo::compare::solve(scene, dlo::compare::Model::energy, {}, s);
   const energy::PolygonResult rest = energy::solve_polygon(problem, rod.shape.points, {});
   EXPECT_TRUE(energy::succeeded(rest.status)) << scene.name;
   return rest.points;
@@ -88,7 +87,7 @@ class MjcfCommand : public Command {
  protected:
   /// The places of a model's bodies at rest, without the end of the last.
   std::string starts(const std::string& name) {
-    const Eigen::Matrix3Xd points = chain_at_rest(compare::load_scene(model(name)));
+    const Eigen::Matrix3Xd points = chain_at_rest(dlo::compare::load_scene(model(name)));
     save_npy(points.leftCols(points.cols() - 1), path("xpos.npy"));
     return path("xpos.npy");
   }
@@ -176,7 +175,7 @@ TEST_F(MjcfCommand, FiftyMalformedModelsEndInOneLine) {
     const std::string text =
         mutated(model_text(models[static_cast<std::size_t>(i) % models.size()]), random);
     try {
-      (void)compare::parse_scene(text, "a.xml");
+      (void)dlo::compare::parse_scene(text, "a.xml");
       continue;  // such as a mutated remark
     } catch (const std::exception&) {
       ++refused;

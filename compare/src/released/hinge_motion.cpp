@@ -1,0 +1,214 @@
+#include "released/hinge_motion.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/shape.hpp"
+
+namespace dlo::compare {
+namespace {
+
+void require_hinges(const Scene& scene) {
+  const bool plain = scene.sections.empty() && scene.distributed_loads.empty() &&
+                     !scene.has_material_directors() && scene.stretch == Stretch::none;
+  if (plain && scene.grippers.size() == 1 && scene.grippers.front().at == 0) return;
+  throw InputError(fmt::format(
+      "{}: a moving chain of hinges (allowed: a straight, round rod of one section that one "
+      "gripper holds at s = 0)",
+      scene.file));
+}
+
+/// The chain, and its state.
+class Hinges {
+ public:
+  Hinges(const Scene& scene, const energy_model::StartingShape& start, Eigen::Index segments)
+      : clamp_(scene.grippers.front().direction),
+        stiffness_(scene.bending_stiffness()),
+        h_(scene.length / static_cast<double>(segments)),
+        mass_(Eigen::VectorXd::Zero(segments + 1)),
+        dead_(Eigen::Matrix3Xd::Zero(3, segments + 1)),
+        points_(3, segments + 1),
+        force_(3, segments + 1) {
+    const double density = scene.mass_per_length();
+    for (Eigen::Index i = 0; i <= segments; ++i) {
+      mass_(i) = density * h_ * (i == 0 || i == segments ? 0.5 : 1.0);
+      dead_.col(i) = mass_(i) * scene.gravity;
+    }
+    for (const PointLoad& load : scene.loads) {
+      const double x = load.at / h_;
+      const auto i = std::min(static_cast<Eigen::Index>(x), segments - 1);
+      const double share = x - static_cast<double>(i);
+      mass_(i) += (1 - share) * load.mass;
+      mass_(i + 1) += share * load.mass;
+      dead_.col(i) += (1 - share) * load.force;
+      dead_.col(i + 1) += share * load.force;
+    }
+    std::vector<double> middles(static_cast<std::size_t>(segments));
+    for (std::size_t i = 0; i < middles.size(); ++i) {
+      middles[i] = (static_cast<double>(i) + 0.5) * h_;
+    }
+    const Eigen::Matrix3Xd along = start(middles).tangents;
+    points_.col(0) = scene.grippers.front().position;
+    for (Eigen::Index i = 0; i < segments; ++i) {
+      points_.col(i + 1) = points_.col(i) + h_ * along.col(i);
+    }
+    before_ = points_;
+    multipliers_ = Eigen::VectorXd::Zero(segments);
+  }
+
+  [[nodiscard]] const Eigen::Matrix3Xd& points() const { return points_; }
+
+  /// @return whether the lengths could be kept
+  [[nodiscard]] bool step(double time) {
+    add_forces();
+    const Eigen::Matrix3Xd along = segments();
+    // From rest the first step is half of what the others are.
+    const double squared = time * time * (begins_ ? 0.5 : 1.0);
+    Eigen::Matrix3Xd next = begins_ ? points_ : Eigen::Matrix3Xd(2 * points_ - before_);
+    for (Eigen::Index i = 1; i < next.cols(); ++i)
+      next.col(i) += squared / mass_(i) * force_.col(i);
+    if (!keep_lengths(along, squared, next)) return false;
+    before_.swap(points_);
+    points_.swap(next);
+    begins_ = false;
+    return true;
+  }
+
+ private:
+  [[nodiscard]] Eigen::Matrix3Xd segments() const {
+    return points_.rightCols(points_.cols() - 1) - points_.leftCols(points_.cols() - 1);
+  }
+
+  /// Weight, loads and springs.
+  void add_forces() {
+    force_ = dead_;
+    const Eigen::Matrix3Xd units = segments() / h_;
+    if (clamp_) add_spring(*clamp_, units.col(0), 2 * stiffness_ / h_, 0);
+    for (Eigen::Index i = 1; i < units.cols(); ++i) {
+      add_spring(units.col(i - 1), units.col(i), stiffness_ / h_, i);
+    }
+  }
+
+  /// Of the hinge at a point, between the directions before and after it.
+  void add_spring(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double k, Eigen::Index i) {
+    const double cosine = a.dot(b);
+    const double sine = a.cross(b).norm();
+    const double ratio = sine > 0 ? std::atan2(sine, cosine) / sine : 1.0;
+    const Eigen::Vector3d after = k * ratio / h_ * (a - cosine * b);
+    force_.col(i + 1) += after;
+    force_.col(i) -= after;
+    if (i == 0) return;
+    const Eigen::Vector3d before = k * ratio / h_ * (b - cosine * a);
+    force_.col(i) += before;
+    force_.col(i - 1) -= before;
+  }
+
+  /// Newton's method for the multipliers, whose matrix is tridiagonal.
+  bool keep_lengths(const Eigen::Matrix3Xd& along, double squared, Eigen::Matrix3Xd& next) {
+    constexpr double allowed = 1e-13;  // of h^2: rounding
+    constexpr int most = 20;
+    const Eigen::Index n = along.cols();
+    Eigen::VectorXd& l = multipliers_;
+    const auto inverse = [&](Eigen::Index i) { return i == 0 ? 0.0 : squared / mass_(i); };
+    apply(along, l, squared, next);
+    Eigen::VectorXd right(n), lower(n), middle(n), upper(n);
+    for (int iteration = 0; iteration < most; ++iteration) {
+      for (Eigen::Index j = 0; j < n; ++j) {
+        const Eigen::Vector3d d = next.col(j + 1) - next.col(j);
+        right(j) = h_ * h_ - d.squaredNorm();
+        middle(j) = -2 * d.dot(along.col(j)) * (inverse(j) + inverse(j + 1));
+        lower(j) = j == 0 ? 0.0 : 2 * d.dot(along.col(j - 1)) * inverse(j);
+        upper(j) = j + 1 == n ? 0.0 : 2 * d.dot(along.col(j + 1)) * inverse(j + 1);
+      }
+      if (!right.allFinite()) return false;
+      if (right.lpNorm<Eigen::Infinity>() <= allowed * h_ * h_) return true;
+      for (Eigen::Index j = 1; j < n; ++j) {
+        const double factor = lower(j) / middle(j - 1);
+        middle(j) -= factor * upper(j - 1);
+        right(j) -= factor * right(j - 1);
+      }
+      for (Eigen::Index j = n - 1; j >= 0; --j) {
+        if (j + 1 < n) right(j) -= upper(j) * right(j + 1);
+        right(j) /= middle(j);
+      }
+      l += right;
+      apply(along, right, squared, next);
+    }
+    return false;
+  }
+
+  /// Tensions, over h, of the segments on their points.
+  void apply(const Eigen::Matrix3Xd& along, const Eigen::VectorXd& tensions, double squared,
+             Eigen::Matrix3Xd& next) const {
+    for (Eigen::Index j = 0; j < along.cols(); ++j) {
+      if (j > 0) next.col(j) += squared / mass_(j) * tensions(j) * along.col(j);
+      next.col(j + 1) -= squared / mass_(j + 1) * tensions(j) * along.col(j);
+    }
+  }
+
+  std::optional<Eigen::Vector3d> clamp_;
+  double stiffness_;
+  double h_;
+  Eigen::VectorXd mass_;
+  Eigen::Matrix3Xd dead_;
+  Eigen::Matrix3Xd points_;
+  Eigen::Matrix3Xd before_;
+  Eigen::Matrix3Xd force_;
+  Eigen::VectorXd multipliers_;
+  bool begins_ = true;
+};
+
+}  // namespace
+
+std::vector<Eigen::Matrix3Xd> hinge_motion(const ReleasedRod& rod, int segments,
+                                           const std::vector<double>& times,
+                                           const SolveOptions& options) {
+  require_hinges(rod.scene);
+  Hinges hinges(rod.scene, released_shape(rod, options), segments);
+  // Verlet's method is stable up to omega dt = 2; a chain's fastest zigzag has
+  // omega = 4 / h^2 (EI / m)^(1/2), half a mass at the tip and the clamp's spring some more.
+  constexpr double phase = 0.7;
+  const double h = rod.scene.length / segments;
+  const double longest =
+      phase * h * h / 4 * std::sqrt(rod.scene.mass_per_length() / rod.scene.bending_stiffness());
+  const double interval = times[1] - times[0];
+  const auto steps = static_cast<long>(std::ceil(interval / longest));
+  std::vector<Eigen::Matrix3Xd> frames = {hinges.points()};
+  while (frames.size() < times.size()) {
+    for (long i = 0; i < steps; ++i) {
+      if (hinges.step(interval / static_cast<double>(steps))) continue;
+      throw ConvergenceError(fmt::format("{}: a moving chain of {} hinges broke after {:g} s",
+                                         rod.scene.file, segments, times[frames.size() - 1]));
+    }
+    frames.push_back(hinges.points());
+  }
+  return frames;
+}
+
+HingeLimit hinge_limit(const ReleasedRod& rod, int segments, const std::vector<double>& times,
+                       const SolveOptions& options) {
+  const auto at_common_points = [&](int factor) {
+    std::vector<Eigen::Matrix3Xd> frames = hinge_motion(rod, factor * segments, times, options);
+    for (Eigen::Matrix3Xd& points : frames) {
+      points = Eigen::Matrix3Xd(points(Eigen::all, Eigen::seqN(0, segments + 1, factor)));
+    }
+    return frames;
+  };
+  const auto extrapolated = [](const std::vector<Eigen::Matrix3Xd>& coarse,
+                               const std::vector<Eigen::Matrix3Xd>& fine, double ratio) {
+    std::vector<Eigen::Matrix3Xd> limit = fine;
+    for (std::size_t i = 0; i < fine.size(); ++i) limit[i] += (fine[i] - coarse[i]) / (ratio - 1);
+    return limit;
+  };
+  const std::vector<Eigen::Matrix3Xd> middle = at_common_points(2);
+  const std::vector<Eigen::Matrix3Xd> first = extrapolated(at_common_points(1), middle, 4);
+  const std::vector<Eigen::Matrix3Xd> second = extrapolated(middle, at_common_points(4), 4);
+  HingeLimit result{.frames = extrapolated(first, second, 16)};
+  result.error = largest_distance(result.frames, second);
+  return result;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,188 @@
+// Scenes of the battery that move: their answers, what is wrong with a motion, and programs that
+// have one.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "command_fixture.hpp"
+#include "dlo/compare/shape.hpp"
+#include "suite/battery.hpp"
+#include "suite/motion_answer.hpp"
+#include "suite/motion_cause.hpp"
+#include "suite/pack.hpp"
+
+namespace {
+
+using dlo::compare::BatteryScene;
+using dlo::compare::Cause;
+using dlo::compare::MarkerMotion;
+using dlo::compare::MotionReference;
+using dlo::test::Outcome;
+using nlohmann::json;
+using testing::HasSubstr;
+
+BatteryScene moving_scene(const std::string& id) {
+  return chosen_scenes(dlo::compare::builtin_battery(), {id}).front();
+}
+
+json committed_motion(const std::string& id) {
+  std::ifstream stream(DLO_DATA "/suite/answers/" + id + ".json");
+  return json::parse(stream);
+}
+
+Eigen::Vector3d point_of(const json& value) {
+  return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
+}
+
+TEST(MotionAnswers, CommittedOnesAreThoseOfFreshOnesWithinTheirBounds) {
+  const json before = committed_motion("motion_release");
+  const json now = motion_json(dlo::compare::certified_motion(moving_scene("motion_release")));
+  ASSERT_EQ(before["times_s"], now["times_s"]);
+  ASSERT_EQ(before["methods"], now["methods"]);
+  const double bound = before["points_bound_m"];
+  EXPECT_LT(bound, 2e-4 * moving_scene("motion_release").scene.length);
+  for (std::size_t k = 0; k < now["frames_m"].size(); ++k) {
+    for (std::size_t i = 0; i < now["frames_m"][k].size(); ++i) {
+      ASSERT_LT((point_of(before["frames_m"][k][i]) - point_of(now["frames_m"][k][i])).norm(),
+                bound);
+    }
+  }
+}
+
+// w at the tip is a cos(omega t), to what is not linear at a = 0.01 l.
+TEST(MotionAnswers, TheVibrationHasTheFrequencyOfItsClosedForm) {
+  const json answer = committed_motion("motion_vibration");
+  constexpr double lambda = 1.8751040687119611;
+  const double l = 0.4;
+  const double omega = lambda * lambda * std::sqrt(0.01 / 0.02) / (l * l);
+  EXPECT_LT(answer["points_bound_m"], 1e-6 * l);
+  for (std::size_t k = 0; k < answer["times_s"].size(); ++k) {
+    const double time = answer["times_s"][k];
+    EXPECT_NEAR(point_of(answer["frames_m"][k].back()).y(), 0.01 * l * std::cos(omega * time),
+                2e-3 * 0.01 * l);
+  }
+}
+
+/// Of the reference itself, as it is at other times and with other motion about what is at rest.
+MarkerMotion recorded(const MotionReference& reference, double faster, double late, double decay) {
+  MarkerMotion motion{.file = "made", .positions = {}};
+  for (const double time : dlo::compare::equal_arc_lengths(reference.until, reference.frames)) {
+    for (const double s : dlo::compare::equal_arc_lengths(reference.length, 9)) {
+      const Eigen::Vector3d rest = reference.at_rest.at(0, s);
+      const Eigen::Vector3d moved = reference.motion.at(faster * time - late, s);
+      const double stays = std::isinf(decay) ? 0 : std::exp(-decay * time);
+      motion.positions.push_back({time, s, rest + stays * (moved - rest)});
+    }
+  }
+  return motion;
+}
+
+TEST(MotionCauses, NameWhatIsWrongAndNothingElse) {
+  const MotionReference reference = motion_reference(moving_scene("motion_payload"));
+  EXPECT_GT(reference.travel, 0.3 * reference.length);
+  const auto expect = [&](const MarkerMotion& motion, const std::string& name, double factor) {
+    EXPECT_GT(motion_error(reference, motion), 0.01) << name;
+    const std::vector<Cause> causes = motion_causes(reference, motion);
+    ASSERT_EQ(causes.size(), 1U) << name;
+    EXPECT_EQ(causes[0].name, name);
+    if (std::isfinite(factor)) EXPECT_NEAR(causes[0].factor, factor, 1e-2 * factor) << name;
+  };
+  expect(recorded(reference, 0.95, 0, 0), "frequency wrong", 0.95);
+  expect(recorded(reference, 1.2, 0, 0), "frequency wrong", 1.2);
+  expect(recorded(reference, 1, 0.06, 0), "late or early", 0.06 / reference.until);
+  expect(recorded(reference, 1, 0, 0.5), "damped", std::exp(-0.5 * reference.until));
+  expect(recorded(reference, 1, 0, INFINITY), "inertia ignored", NAN);
+  expect(recorded(reference, 0, 0, 0), "does not move", NAN);
+  EXPECT_LT(motion_error(reference, recorded(reference, 1, 0, 0)), 1e-9);
+  EXPECT_TRUE(motion_causes(reference, recorded(reference, 1, 0, 0)).empty());
+}
+
+class MotionSuite : public dlo::test::Command {
+ protected:
+  void SetUp() override {
+    Command::SetUp();
+    if (run_line("[ -x /usr/bin/python3 ]").status != 0) GTEST_SKIP() << "no python3";
+  }
+  /// The card of mover.py, by its defect.
+  [[nodiscard]] json scene_card(const std::string& defect, const std::string& more = "") const {
+    const Outcome result = run(
+        "suite --format json --points 6 --scenes motion_vibration --with mover='/usr/bin/python3 " +
+        std::string(DLO_DATA) + "/../tests/compare/suite/mover.py " + defect +
+        " {scene} {points} {shape}'" + more);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return json::parse(result.out).at("cards").at(0).at("scenes").at(0);
+  }
+};
+
+TEST_F(MotionSuite, AProgramWithAMotionIsJudged) {
+  for (const char* form : {"right", "folder"}) {
+    const json right = scene_card(form);
+    EXPECT_EQ(right.at("right"), true) << right.dump(1);
+    EXPECT_TRUE(right.at("causes").empty()) << right.dump(1);
+    // The linear form leaves out by how much the tip comes nearer, some 0.5 w^2 / l.
+    EXPECT_LT(right.at("runs").at(2).at("rms_over_length"), 5e-3);
+  }
+  const json heavy = scene_card("heavy");
+  EXPECT_EQ(heavy.at("right"), false);
+  ASSERT_EQ(heavy.at("causes").size(), 1U);
+  EXPECT_EQ(heavy.at("causes").at(0).at("name"), "frequency wrong");
+  EXPECT_NEAR(heavy.at("causes").at(0).at("factor"), 0.9, 1e-3);
+  EXPECT_EQ(scene_card("damped").at("causes").at(0).at("name"), "damped");
+}
+
+TEST_F(MotionSuite, OneWithoutIsNotSupportedAndHalfAMotionIsAFailure) {
+  const json none = scene_card("static");
+  EXPECT_EQ(none.at("status"), "not supported");
+  EXPECT_THAT(none.at("runs").at(0).at("problem").get<std::string>(), HasSubstr("at rest"));
+  const json half = scene_card("short");
+  EXPECT_EQ(half.at("status"), "failed");
+  EXPECT_THAT(half.at("runs").at(0).at("problem").get<std::string>(),
+              HasSubstr("5 frames from 0 to 0.2 s (allowed: 9 or more"));
+}
+
+TEST_F(MotionSuite, AFinishedMotionIsNotRunAgain) {
+  const std::string state = " --state " + path("runs");
+  const json first = scene_card("heavy", state);
+  std::filesystem::path kept = path("runs");
+  kept /= "mover/motion_vibration_6.json";
+  ASSERT_TRUE(std::filesystem::exists(kept));
+  EXPECT_EQ(scene_card("heavy", state), first);
+}
+
+TEST_F(MotionSuite, OwnChainConvergesAndForceHasNoMotion) {
+  const Outcome result =
+      run("suite --points 8 --with chain --with force --scenes motion_payload --format json");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json cards = json::parse(result.out).at("cards");
+  const json chain = cards.at(0).at("scenes").at(0);
+  EXPECT_EQ(chain.at("right"), true) << chain.dump(1);
+  EXPECT_GT(chain.at("order"), 1.3);  // of so few points
+  EXPECT_EQ(cards.at(1).at("scenes").at(0).at("status"), "not supported");
+}
+
+TEST_F(MotionSuite, ABatteryTellsWhatItsMotionLacks) {
+  std::ofstream(path("rod.toml"))
+      << "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 1\n"
+         "[[gripper]]\nat = 0\nposition = [0, 0, 0]\nhold = \"pin\"\n";
+  const auto error_of = [&](const std::string& motion) {
+    std::ofstream(path("battery.toml"))
+        << "schema = \"dlo/suite/1\"\nversion = \"1\"\n[[scene]]\nfile = \"rod.toml\"\nclass = "
+           "\"motion\"\nisolates = \"x\"\n[scene.motion]\n"
+        << motion;
+    const Outcome result = run("suite --with chain --battery " + path("battery.toml"));
+    EXPECT_EQ(result.status, 2);
+    return result.err;
+  };
+  EXPECT_THAT(error_of("begin = \"rod.toml\"\nframes = 5\n"), HasSubstr("until"));
+  EXPECT_THAT(error_of("begin = \"rod.toml\"\nuntil = \"1 s\"\nframes = 2\n"),
+              HasSubstr("battery.toml:10: scene.motion.frames"));
+}
+
+}  // namespace
