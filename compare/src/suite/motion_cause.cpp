@@ -19,7 +19,7 @@
 namespace dlo::compare {
 namespace {
 
-constexpr int reference_samples = 101;
+constexpr int points_along = 101;
 /// Frames of the model for each that is asked for: cubics between them.
 constexpr int frames_per_asked = 8;
 /// How far the model goes on, for recordings that are faster.
@@ -113,7 +113,7 @@ std::vector<std::pair<Cause, double>> fitted_causes(const MotionReference& refer
 MotionReference motion_reference(const BatteryScene& scene, const SolveOptions& options) {
   const BatteryMotion& asked = scene.motion.value();
   const double length = scene.scene.length;
-  const std::vector<double> s = equal_arc_lengths(length, reference_samples);
+  const std::vector<double> s = equal_arc_lengths(length, points_along);
   const double end = beyond * asked.until;
   const int count = static_cast<int>(std::ceil(beyond * frames_per_asked * (asked.frames - 1))) + 1;
   ReleasedMotion moved =

@@ -1,0 +1,130 @@
+// The bounds of ten answers by a third method, which made none of them: chains of hinges with N, 2N
+// and 4N points, extrapolated.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/chain.hpp"
+#include "dlo/compare/shape.hpp"
+#include "suite/battery.hpp"
+
+namespace {
+
+using dlo::compare::Scene;
+using dlo::compare::Shape;
+using nlohmann::json;
+
+/// Between the chain's own points, by Lagrange's polynomial through the six nearest: its error is
+/// far below that of the chain.
+Eigen::Matrix3Xd between(const Shape& chain, const std::vector<double>& at) {
+  constexpr Eigen::Index nodes = 6;
+  const auto count = static_cast<Eigen::Index>(chain.arc_length.size());
+  Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(at.size()));
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    const auto above = std::ranges::lower_bound(chain.arc_length, at[k]);
+    const Eigen::Index first =
+        std::clamp<Eigen::Index>((above - chain.arc_length.begin()) - nodes / 2, 0, count - nodes);
+    for (Eigen::Index i = first; i < first + nodes; ++i) {
+      double weight = 1;
+      for (Eigen::Index j = first; j < first + nodes; ++j) {
+        const double s = chain.arc_length[static_cast<std::size_t>(j)];
+        if (j != i) weight *= (at[k] - s) / (chain.arc_length[static_cast<std::size_t>(i)] - s);
+      }
+      points.col(static_cast<Eigen::Index>(k)) += weight * chain.points.col(i);
+    }
+  }
+  return points;
+}
+
+/// Without the place of a clamp: the chain's first segment there is straight, so that its other
+/// points are off the rod by h^2 / 8 of the curvature, and this one is not.
+Shape without_clamps(Shape chain, double h) {
+  std::vector<double>& s = chain.arc_length;
+  constexpr double shorter = 0.75;
+  Eigen::Index first = 0;
+  Eigen::Index count = chain.points.cols();
+  if (s[1] - s[0] < shorter * h) {
+    ++first;
+    --count;
+  }
+  if (s[s.size() - 1] - s[s.size() - 2] < shorter * h) --count;
+  chain.points = Eigen::Matrix3Xd(chain.points.middleCols(first, count));
+  s = std::vector<double>(s.begin() + first, s.begin() + first + count);
+  return chain;
+}
+
+struct Third {
+  Eigen::Matrix3Xd points;
+  double error = 0;  // what its last extrapolation has changed, largest [m]
+};
+
+/// Neville's scheme in h^2, at h = 0.
+Third third_method(Scene scene, const std::vector<double>& at) {
+  std::array<Eigen::Matrix3Xd, 3> shapes;
+  std::array<double, 3> squares{};
+  int points = 40;
+  // Springs for segments, a thousand times as stiff as usual: what they stretch is in no other
+  // error.
+  scene.force_model.c_c = 1e9 * scene.bending_stiffness() / (scene.length * scene.length);
+  for (std::size_t i = 0; i < shapes.size(); ++i, points *= 2) {
+    scene.force_model.points = points;
+    const Shape chain = solve_chain(scene, scene.force_model).shape;
+    const double h = chain.arc_length[2] - chain.arc_length[1];
+    shapes[i] = between(without_clamps(chain, h), at);
+    squares[i] = h * h;
+  }
+  const auto to_zero = [&](const Eigen::Matrix3Xd& a, double x, const Eigen::Matrix3Xd& b,
+                           double y) { return Eigen::Matrix3Xd((x * b - y * a) / (x - y)); };
+  const Eigen::Matrix3Xd first = to_zero(shapes[0], squares[0], shapes[1], squares[1]);
+  const Eigen::Matrix3Xd second = to_zero(shapes[1], squares[1], shapes[2], squares[2]);
+  Third third{to_zero(first, squares[0], second, squares[2])};
+  third.error = (third.points - second).colwise().norm().maxCoeff();
+  return third;
+}
+
+/// A scene, and the largest error that the third method may find of itself, over the length.
+struct Row {
+  const char* id;
+  double own_error;
+};
+
+class ThirdMethod : public testing::TestWithParam<Row> {};
+
+TEST_P(ThirdMethod, IsWithinTheBoundOfTheAnswerAndItsOwnError) {
+  const dlo::compare::BatteryScene scene =
+      chosen_scenes(dlo::compare::builtin_battery(), {GetParam().id}).front();
+  std::ifstream stream(std::string(DLO_DATA "/suite/answers/") + GetParam().id + ".json");
+  const json answer = json::parse(stream);
+  const auto s = answer["arc_length_m"].get<std::vector<double>>();
+  const Third third = third_method(scene.scene, s);
+  double most = 0;
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    const json& point = answer["points_m"][i];
+    const Eigen::Vector3d known(point[0].get<double>(), point[1].get<double>(),
+                                point[2].get<double>());
+    most = std::max(most, (third.points.col(static_cast<Eigen::Index>(i)) - known).norm());
+  }
+  const double length = scene.scene.length;
+  constexpr double decimals = 2e-12;  // that the file has
+  EXPECT_LE(most, answer["points_bound_m"].get<double>() + 2 * third.error + decimals);
+  EXPECT_LT(third.error, GetParam().own_error * length);
+}
+
+INSTANTIATE_TEST_SUITE_P(Answers, ThirdMethod,
+                         testing::Values(Row{"bending_small", 1e-11}, Row{"bending_large", 1e-7},
+                                         Row{"weight_1", 1e-9}, Row{"weight_10", 1e-7},
+                                         Row{"weight_100", 1e-5}, Row{"end_last", 1e-6},
+                                         Row{"payload_tip", 1e-6}, Row{"curved_arc", 1e-9},
+                                         Row{"buckling_imperfect", 1e-7}, Row{"clamps_level", 1e-5},
+                                         Row{"clamps_step", 1e-6}, Row{"clamps_space", 1e-6},
+                                         Row{"force_across", 1e-7}),
+                         [](const auto& row) { return std::string(row.param.id); });
+
+}  // namespace
