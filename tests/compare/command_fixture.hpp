@@ -10,12 +10,14 @@
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "../says.hpp"
 #include "run_command.hpp"
 #include "shell_words.hpp"
 
@@ -68,6 +70,13 @@ class Command : public testing::Test {
     return result;
   }
 
+  /// The document of a command.
+  [[nodiscard]] nlohmann::json json_of(const std::string& arguments, int status = 0) const {
+    const Outcome result = run(arguments + " --format json");
+    EXPECT_EQ(result.status, status) << arguments << "\n" << result.err;
+    return nlohmann::json::parse(result.out);
+  }
+
   /// A process of the command: for what is about processes.
   [[nodiscard]] Outcome run_process(const std::string& arguments) const {
     return run_line(std::string(DLO_COMMAND) + " " + arguments);
@@ -96,10 +105,7 @@ class Command : public testing::Test {
     EXPECT_EQ(result.status, status) << arguments << "\n" << result.err;
     EXPECT_EQ(result.out, "") << arguments;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-    for (const std::string& name : names) {
-      EXPECT_NE(result.err.find(name), std::string::npos)
-          << "no \"" << name << "\" in " << result.err;
-    }
+    EXPECT_TRUE(says(result.err, names));
   }
 
   static std::string steel() { return std::string(DLO_DATA) + "/scenes/spring_steel_175.toml"; }

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "../../says.hpp"
 #include "batch/sweep_merge.hpp"
 #include "dlo/compare/error.hpp"
 #include "sweep_scene.hpp"
@@ -25,6 +26,8 @@ using dlo::compare::Sweep;
 using dlo::compare::SweepFileOptions;
 using dlo::compare::SweepOutcome;
 using dlo::compare::write_sweep;
+using dlo::test::error_of;
+using dlo::test::says;
 using dlo::test::sweep;
 
 const std::vector<std::string> grid = {"rod.length=lin:-0.1:1:12"};
@@ -66,12 +69,8 @@ class SweepFile : public testing::Test {
     return paths;
   }
   void expect_merge_error(const std::vector<std::string>& paths, const std::string& words) const {
-    try {
-      merge_sweep(paths, path("merged.csv"));
-      ADD_FAILURE() << "merged, expected: " << words;
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
-    }
+    EXPECT_TRUE(says(error_of<InputError>([&] { return merge_sweep(paths, path("merged.csv")); }),
+                     {words}));
     EXPECT_FALSE(std::filesystem::exists(path("merged.csv")));
     EXPECT_FALSE(std::filesystem::exists(path("merged.csv.tmp")));
   }
@@ -164,13 +163,9 @@ TEST_F(SweepFile, RefusesADamagedRow) {
   const Sweep whole = sweep(grid);
   write("a.csv.part", dlo::compare::sweep_identity(whole, std::nullopt) + whole.header() +
                           whole.row(0) + whole.row(2));
-  try {
-    write_sweep(whole, std::nullopt, path("a.csv"), serial);
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("a.csv.part:4: not row 1"), std::string::npos)
-        << error.what();
-  }
+  EXPECT_TRUE(says(
+      error_of<InputError>([&] { return write_sweep(whole, std::nullopt, path("a.csv"), serial); }),
+      {"a.csv.part:4: not row 1"}));
 }
 
 TEST_F(SweepFile, IsWrittenByOneProcessAtATime) {

@@ -15,6 +15,8 @@
 namespace {
 
 using dlo::test::Outcome;
+using dlo::test::says;
+using dlo::test::says_none;
 using nlohmann::json;
 
 class ContactCommand : public dlo::test::Command {
@@ -34,7 +36,7 @@ class ContactCommand : public dlo::test::Command {
 };
 
 TEST_F(ContactCommand, CompareSaysWhatTouchesAsSolveDoes) {
-  const json solved = json::parse(run("solve --format json " + lying()).out);
+  const json solved = json_of("solve " + lying());
   const Outcome compared = run("compare --no-modulus --format json " + lying());
   ASSERT_EQ(compared.status, 0) << compared.err;
   const json document = json::parse(compared.out);
@@ -46,9 +48,8 @@ TEST_F(ContactCommand, CompareSaysWhatTouchesAsSolveDoes) {
               solved.at("contacts")[0].at("from_m").get<double>(), 1e-8);
   EXPECT_GT(document.at("cases").at(0).at("budget").at("contact_m").get<double>(), 0);
   const Outcome text = run("compare --no-modulus " + lying());
-  EXPECT_NE(text.out.find("\n                  contact  "), std::string::npos) << text.out;
-  EXPECT_NE(text.out.find("\n  contact         obstacle 2, lying from s = "), std::string::npos)
-      << text.out;
+  EXPECT_TRUE(says(text.out, {"\n                  contact  ",
+                              "\n  contact         obstacle 2, lying from s = "}));
 }
 
 // No model has friction: the shape is that without, and every command says what it left out, but
@@ -72,21 +73,17 @@ TEST_F(ContactCommand, FrictionIsLeftOutAloud) {
     EXPECT_EQ(with.at("left_out"), with.at("neglected"));
     EXPECT_EQ(with.at("points_m"), without.at("points_m"));
     EXPECT_FALSE(without.contains("neglected"));
-    EXPECT_NE(solve("text", rough).out.find("\nneglected  friction: the scene has it, model"),
-              std::string::npos);
-    EXPECT_NE(solve("csv", rough).err.find("neglects the friction"), std::string::npos);
+    EXPECT_TRUE(says(solve("text", rough).out, {"\nneglected  friction: the scene has it, model"}));
+    EXPECT_TRUE(says(solve("csv", rough).err, {"neglects the friction"}));
     EXPECT_FALSE(json::parse(solve("json", rough_below).out).contains("neglected"));
   }
   const json compared = json::parse(run("compare --no-modulus --format json " + rough).out);
   EXPECT_EQ(compared.at("cases").at(0).at("neglected"), json({"friction"}));
   const std::string told = run("compare --no-modulus " + rough).out;
-  EXPECT_NE(told.find("\n  neglected       friction that the scene has, by both models"),
-            std::string::npos)
-      << told;
-  EXPECT_EQ(told.find("by the force model: in all below"), std::string::npos) << told;
-  EXPECT_NE(run("solve --explain " + rough).out.find("friction                no bound"),
-            std::string::npos);
-  EXPECT_EQ(run("solve --explain " + rough_below).out.find("friction"), std::string::npos);
+  EXPECT_TRUE(says(told, {"\n  neglected       friction that the scene has, by both models"}));
+  EXPECT_TRUE(says_none(told, {"by the force model: in all below"}));
+  EXPECT_TRUE(says(run("solve --explain " + rough).out, {"friction                no bound"}));
+  EXPECT_TRUE(says_none(run("solve --explain " + rough_below).out, {"friction"}));
 }
 
 // A shape that friction may hold is held against the one without: it fails or passes as any other.
@@ -100,22 +97,18 @@ TEST_F(ContactCommand, CheckSaysWhatFrictionAShapeNeeds) {
   const std::string rest = " --no-modulus --tolerance 1% --shape " + mine;
   const Outcome with = run("check " + rough + rest);
   EXPECT_EQ(with.status, 0) << with.err;
-  EXPECT_NE(with.out.find("\n  neglected       friction that the scene has"), std::string::npos)
-      << with.out;
-  EXPECT_EQ(run("check " + smooth + rest).out.find("friction"), std::string::npos);
-  const json document = json::parse(run("check --format json " + rough + rest).out);
+  EXPECT_TRUE(says(with.out, {"\n  neglected       friction that the scene has"}));
+  EXPECT_TRUE(says_none(run("check " + smooth + rest).out, {"friction"}));
+  const json document = json_of("check " + rough + rest);
   EXPECT_EQ(document.at("neglected"), json({"friction"}));
   const Outcome row = run("check --format csv " + rough + rest);
-  EXPECT_NE(row.err.find("has friction"), std::string::npos);
+  EXPECT_TRUE(says(row.err, {"has friction"}));
   // Whether friction could hold the shape is told apart: this one needs none.
-  EXPECT_NE(with.out.find("\n  friction        none is needed: an equilibrium without it"),
-            std::string::npos)
-      << with.out;
+  EXPECT_TRUE(says(with.out, {"\n  friction        none is needed: an equilibrium without it"}));
   const json& friction = document.at("friction");
   EXPECT_EQ(friction.at("verdict"), "none_needed");
   EXPECT_EQ(friction.at("factor"), 0);
-  EXPECT_NE(row.out.find(",friction,friction_factor\n"), std::string::npos);
-  EXPECT_NE(row.out.find(",none_needed,0\n"), std::string::npos) << row.out;
+  EXPECT_TRUE(says(row.out, {",friction,friction_factor\n", ",none_needed,0\n"}));
 }
 
 // A cable that hangs beside a peg, a ball or a box: all models know the same bodies.
@@ -172,14 +165,14 @@ TEST_F(ContactCommand, SolveSaysWhereARodCrossesItself) {
             "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"0 deg\"\n");
   const Outcome text = run("solve " + loop);
   ASSERT_EQ(text.status, 0) << text.err;
-  const json document = json::parse(run("solve --format json " + loop).out);
+  const json document = json_of("solve " + loop);
   ASSERT_TRUE(document.contains("self_crossing")) << text.out;
-  EXPECT_NE(text.out.find("\ncrossing   at s = "), std::string::npos) << text.out;
+  EXPECT_TRUE(says(text.out, {"\ncrossing   at s = "}));
   const json& crossing = document.at("self_crossing");
   EXPECT_LT(crossing.at("distance_m").get<double>(), 2e-3);
   EXPECT_NEAR(crossing.at("s_m")[1].get<double>() - crossing.at("s_m")[0].get<double>(),
               2 * M_PI / 9, 0.02);
-  EXPECT_EQ(run("solve " + lying()).out.find("crossing"), std::string::npos);
+  EXPECT_TRUE(says_none(run("solve " + lying()).out, {"crossing"}));
 }
 
 }  // namespace
