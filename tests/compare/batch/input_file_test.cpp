@@ -12,7 +12,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <optional>
 #include <string>
@@ -27,6 +26,7 @@
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/shape_file.hpp"
+#include "folder_fixture.hpp"
 #include "scene/scene_template.hpp"
 #include "scene_text.hpp"
 
@@ -41,24 +41,7 @@ std::string input_error_of(const std::function<void()>& read) {
   return error_of<InputError>([&] { return read(); });
 }
 
-class Reading : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_ =
-        std::filesystem::temp_directory_path() / ("dlo_reading_test_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
-
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(path(name), std::ios::binary) << text;
-  }
-
- private:
-  std::filesystem::path folder_;
-};
+class Reading : public dlo::test::Folder {};
 
 /// Of every reader of a file the message for this one.
 std::vector<std::string> messages_of_all_readers(const std::string& file, const std::string& out) {

@@ -22,10 +22,7 @@ using nlohmann::json;
 
 class CheckCommand : public Command {
  protected:
-  std::string shape(const std::string& text) {
-    std::ofstream(path("shape")) << text;
-    return path("shape");
-  }
+  std::string shape(const std::string& text) { return write("shape", text); }
 };
 
 TEST_F(CheckCommand, ReadsWhatSolveWrites) {

@@ -21,13 +21,9 @@ using nlohmann::json;
 
 class ContactCommand : public dlo::test::Command {
  protected:
-  std::string scene(const std::string& name, const std::string& text) {
-    std::ofstream(path(name)) << text;
-    return path(name);
-  }
   /// A cable on a floor; a second floor is out of reach.
   std::string lying() {
-    return scene("lying.toml",
+    return write("lying.toml",
                  "[rod]\nlength = 0.6\ndiameter = \"4 mm\"\nmaterial = \"silicone\"\n"
                  "[[gripper]]\nat = 0\nposition = [0, 0.05, 0]\ndirection = \"0 deg\"\n"
                  "[[obstacle]]\npoint = [0, -9, 0]\nnormal = [0, 1, 0]\n"
@@ -58,10 +54,10 @@ TEST_F(ContactCommand, FrictionIsLeftOutAloud) {
   const std::string smooth = lying();
   std::ifstream file(smooth);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  const std::string rough = scene("rough.toml", text + "friction = 0.3\n");
+  const std::string rough = write("rough.toml", text + "friction = 0.3\n");
   const std::size_t second = text.rfind("[[obstacle]]");
   const std::string rough_below =
-      scene("below.toml", text.substr(0, second) + "friction = 0.3\n" + text.substr(second));
+      write("below.toml", text.substr(0, second) + "friction = 0.3\n" + text.substr(second));
   for (const std::string model : {"energy", "chain", "force"}) {
     SCOPED_TRACE(model);
     const auto solve = [&](const std::string& format, const std::string& of) {
@@ -90,7 +86,7 @@ TEST_F(ContactCommand, FrictionIsLeftOutAloud) {
 TEST_F(ContactCommand, CheckSaysWhatFrictionAShapeNeeds) {
   const std::string smooth = lying();
   std::ifstream file(smooth);
-  const std::string rough = scene(
+  const std::string rough = write(
       "rough.toml", std::string{std::istreambuf_iterator<char>(file), {}} + "friction = 0.3\n");
   const std::string mine = path("mine.csv");
   ASSERT_EQ(run("solve --format csv --samples 40 -o " + mine + " " + smooth).status, 0);
@@ -128,7 +124,7 @@ TEST_F(ContactCommand, AllModelsTouchTheSameBodies) {
           "[force_model]\nlaw = \"hooke\"\nbookkeeping = \"consistent\"\npoints = ";
       text.append(std::to_string(points)).append("\n[[obstacle]]\n").append(body);
       std::string line = "solve --format json --samples 13 --model ";
-      line.append(model).append(" ").append(scene("body.toml", text));
+      line.append(model).append(" ").append(write("body.toml", text));
       const Outcome outcome = run(line);
       EXPECT_EQ(outcome.status, 0) << outcome.err;
       return json::parse(outcome.out);
@@ -159,7 +155,7 @@ TEST_F(ContactCommand, AllModelsTouchTheSameBodies) {
 TEST_F(ContactCommand, SolveSaysWhereARodCrossesItself) {
   // Nothing but its own nature bends it, round by more than once.
   const std::string loop =
-      scene("loop.toml",
+      write("loop.toml",
             "gravity = [0, 0, 0]\n[rod]\nlength = 1\ndiameter = \"2 mm\"\nmaterial = \"nitinol\"\n"
             "natural_curvature = \"9 1/m\"\n"
             "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"0 deg\"\n");

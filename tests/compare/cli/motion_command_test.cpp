@@ -23,9 +23,6 @@ class MotionCommand : public dlo::test::Command {
     Command::SetUp();
     write("swung.toml", swung(0.02));
   }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(path(name)) << text;
-  }
   static std::string swung(double stiffness) {
     return fmt::format(
         "[rod]\nlength = 0.4\nbending_stiffness = {}\nmass_per_length = 0.05\n[[gripper]]\nat = 0\n"

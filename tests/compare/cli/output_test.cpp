@@ -61,19 +61,11 @@ class Output : public dlo::test::Command {
     return run_line("bash " + path("script"));
   }
 
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(path(name), std::ios::binary) << text;
-  }
-
   void write_scene(const std::string& name) const { write(name, read(steel())); }
 
   [[nodiscard]] std::vector<std::string> files() const {
-    std::vector<std::string> names;
-    for (const fs::directory_entry& entry : fs::directory_iterator(path(""))) {
-      const std::string name = entry.path().filename();
-      if (name != "script" && name != "stderr") names.push_back(name);
-    }
-    std::sort(names.begin(), names.end());
+    std::vector<std::string> names = Command::files();
+    std::erase_if(names, [](const auto& name) { return name == "script" || name == "stderr"; });
     return names;
   }
 

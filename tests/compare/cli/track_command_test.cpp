@@ -57,9 +57,6 @@ class OutputsOverInputs : public TrackCommand {
     std::filesystem::create_hard_link(path("move.csv"), path("hard.csv"));
     std::filesystem::create_symlink("move.csv", path("soft.csv"));
   }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(path(name)) << text;
-  }
   /// Refused before any work, and no file is touched.
   void expect_untouched(const std::string& command, const std::string& file,
                         const std::string& said) const {
