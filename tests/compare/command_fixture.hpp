@@ -2,20 +2,19 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <filesystem>
-#include <fstream>
 #include <initializer_list>
+#include <nlohmann/json.hpp>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "../says.hpp"
+#include "folder_fixture.hpp"
 #include "run_command.hpp"
 #include "shell_words.hpp"
 
@@ -29,24 +28,8 @@ struct Outcome {
 };
 
 /// Runs the command in a folder of its own.
-class Command : public testing::Test {
+class Command : public Folder {
  protected:
-  void SetUp() override {
-    folder_ =
-        std::filesystem::temp_directory_path() / ("dlo_command_test_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
-
-  [[nodiscard]] static std::string read(const std::string& file) {
-    std::ifstream stream(file);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    return text.str();
-  }
-
   /// Words with blanks between them.
   static std::string words(std::initializer_list<std::string> list) {
     std::string line;
@@ -54,9 +37,8 @@ class Command : public testing::Test {
     return line;
   }
 
-  std::string scene(const std::string& text) {
-    std::ofstream(path("scene.toml")) << text;
-    return path("scene.toml");
+  [[nodiscard]] std::string scene(const std::string& text) const {
+    return write("scene.toml", text);
   }
 
   /// The command within this process, which is faster; arguments that need a shell bring a process.
@@ -66,6 +48,13 @@ class Command : public testing::Test {
     Outcome result;
     result.status = cli::run_command(std::move(*list), result.out, result.err);
     return result;
+  }
+
+  /// The document of a command.
+  [[nodiscard]] nlohmann::json json_of(const std::string& arguments, int status = 0) const {
+    const Outcome result = run(arguments + " --format json");
+    EXPECT_EQ(result.status, status) << arguments << "\n" << result.err;
+    return nlohmann::json::parse(result.out);
   }
 
   /// A process of the command: for what is about processes.
@@ -96,16 +85,10 @@ class Command : public testing::Test {
     EXPECT_EQ(result.status, status) << arguments << "\n" << result.err;
     EXPECT_EQ(result.out, "") << arguments;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-    for (const std::string& name : names) {
-      EXPECT_NE(result.err.find(name), std::string::npos)
-          << "no \"" << name << "\" in " << result.err;
-    }
+    EXPECT_TRUE(says(result.err, names));
   }
 
   static std::string steel() { return std::string(DLO_DATA) + "/scenes/spring_steel_175.toml"; }
-
- private:
-  std::filesystem::path folder_;
 };
 
 }  // namespace dlo::test

@@ -4,19 +4,11 @@
 #include <vector>
 
 #include "batch/sweep.hpp"
+#include "scene_text.hpp"
 
 namespace dlo::test {
 
-inline constexpr const char* sweep_scene = R"(name = "swept"
-[rod]
-length = "50 cm"
-diameter = "2 mm"
-material = "spring_steel"
-[[gripper]]
-at = 0
-position = [0, 0, 0]
-direction = "0 deg"
-)";
+inline const std::string sweep_scene = "name = \"swept\"\n" + steel_rod + level_clamp;
 
 inline compare::Sweep sweep(const std::vector<std::string>& vary,
                             compare::SweepModel model = compare::SweepModel::energy,

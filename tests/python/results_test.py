@@ -67,7 +67,7 @@ def test_fifty_shapes_have_the_commands_verdict(root, command, tmp_path):
     random = numpy.random.default_rng(50)
     for name in ("cable", "spring_steel_175", "long_rod", "side_load", "buckling_wire"):
         scene = root / f"data/scenes/{name}.toml"
-        right = dlo.solve(scene, samples=21).points
+        right = dlo.solve(scene, samples=7).points
         length = dlo.Scene.from_file(scene).length
         for kind in range(5):
             noise = random.normal(size=right.shape) * length * (0, 1e-3, 3e-3, 1e-2, 3e-2)[kind]

@@ -106,62 +106,58 @@ def test_track_that_stops_has_what_was_before():
     assert caught.value.result.time.shape == (10,)
 
 
-def test_stiffness_from_a_recorded_motion(tmp_path):
-    """The markers of a moving rod, as an array and as a file."""
-    def swung(stiffness):
-        return dlo.Scene.from_text(f"""
-            rod = {{length = 0.4, bending_stiffness = {stiffness}, mass_per_length = 0.05}}
-            [[gripper]]
-            at = 0
-            direction = "-60 deg"
-            pose = [{{time = 0, position = [0, 0, 0]}}, {{time = 0.3, position = [0.1, 0.02, 0]}}]
-        """)
+def swung_wire(stiffness):
+    return dlo.Scene.from_text(f"""
+        rod = {{length = 0.4, bending_stiffness = {stiffness}, mass_per_length = 0.05}}
+        [[gripper]]
+        at = 0
+        direction = "-60 deg"
+        pose = [{{time = 0, position = [0, 0, 0]}}, {{time = 0.3, position = [0.1, 0.02, 0]}}]
+    """)
 
-    way = dlo.track(swung(0.02), frame_rate=40, force=False, samples=5, dynamic=True, damping=0.01)
+
+def recorded():
+    """The markers of a rod that is swung, and their times."""
+    way = dlo.track(swung_wire(0.02), frame_rate=40, force=False, samples=5, dynamic=True, damping=0.01)
     rows = [
         [time, s, *point]
         for time, points in zip(way.time, way.moving_points)
         for s, point in zip(way.arc_length, points)
     ]
-    file = tmp_path / "markers.csv"
-    file.write_text("time,s,x,y,z\n" + "".join(",".join(map(repr, map(float, row))) + "\n" for row in rows))
-    for motion in (numpy.array(rows), file):
-        found = dlo.calibrate(swung(0.03), motion=motion)
+    return numpy.array(rows), way.time
+
+
+def as_file(rows, file):
+    numpy.savetxt(file, rows, fmt="%.17g", delimiter=",", header="time,s,x,y,z", comments="")
+    return file
+
+
+def test_stiffness_from_a_recorded_motion(tmp_path):
+    rows, _ = recorded()
+    for motion in (rows, as_file(rows, tmp_path / "markers.csv")):
+        found = dlo.calibrate(swung_wire(0.021), motion=motion)
         assert abs(found.json["stiffness"]["value"] / 0.02 - 1) < 1e-3
     with pytest.raises(dlo.InputError, match="allowed"):
-        dlo.calibrate(swung(0.03), motion=[[0.0, 1.0]])
+        dlo.calibrate(swung_wire(0.03), motion=[[0.0, 1.0]])
 
 
 def test_a_recorded_motion_is_judged(tmp_path):
     """Of the rod with inertia: right with it, wrong without, and late."""
-    scene = dlo.Scene.from_text("""
-        rod = {length = 0.4, bending_stiffness = 0.02, mass_per_length = 0.05}
-        [[gripper]]
-        at = 0
-        direction = "-60 deg"
-        pose = [{time = 0, position = [0, 0, 0]}, {time = 0.3, position = [0.1, 0.02, 0]}]
-    """)
-    way = dlo.track(scene, frame_rate=40, force=False, samples=5, dynamic=True, damping=0.01)
-    rows = numpy.array([
-        [time, s, *point]
-        for time, points in zip(way.time, way.moving_points)
-        for s, point in zip(way.arc_length, points)
-    ])
+    scene = swung_wire(0.02)
+    rows, times = recorded()
     right = dlo.check(scene, motion=rows, dynamic=True, damping=0.01, tolerance="0.1%")
     assert isinstance(right, dlo.MotionCheck)
     assert right.passed and right.rms < 1e-5 and right.largest >= right.rms
     assert right.lag is None and right.causes == []
-    assert numpy.allclose(right.time, way.time)
-    assert right.errors.shape == way.time.shape
+    assert numpy.allclose(right.time, times)
+    assert right.errors.shape == times.shape
     assert right["nearer"] == "with_inertia"
     wrong = dlo.check(scene, motion=rows, damping=0.01, tolerance="0.1%")
     assert not wrong.passed and "allowed 0.4 mm" in wrong.reason
     assert wrong.causes[0][0] == "the rod has inertia (--dynamic)"
     assert "verdict" in str(wrong)
     late = rows + [0.02, 0, 0, 0, 0]
-    file = tmp_path / "late.csv"
-    file.write_text("time,s,x,y,z\n" + "".join(",".join(map(repr, map(float, row))) + "\n" for row in late))
-    for motion in (late, file):
+    for motion in (late, as_file(late, tmp_path / "late.csv")):
         found = dlo.check(scene, motion=motion, dynamic=True, damping=0.01, begin=0)
         assert abs(found.lag - 0.02) < 1e-4
     assert dlo.check(scene, motion=late, begin=0, explain=False).causes == []

@@ -42,6 +42,7 @@ struct CalibrateOptions {
   std::string clamp_rolls;
   bool same_clamps = false;
   std::string clamp_scatter;
+  std::string camera_tilt;
   bool predict = false;
   std::string chosen;  // empty: as calibrate() has it
   std::vector<std::string> holdouts;
@@ -127,6 +128,8 @@ compare::MaterialFitOptions material_options(const CalibrateOptions& options) {
       .shared_clamps = options.same_clamps,
       .direction_scatter =
           quantity_of("--clamp-scatter", options.clamp_scatter, Dimension::angle).value_or(0),
+      .camera_tilt =
+          quantity_of("--camera-tilt", options.camera_tilt, Dimension::angle).value_or(0),
       .predict = options.predict,
       .choose_options =
           options.chosen.empty() ? std::nullopt : std::optional(options.chosen == "auto"),
@@ -328,6 +331,12 @@ void add_calibrate(CLI::App& app) {
       ->add_option("--clamp-scatter", options->clamp_scatter,
                    "with --same-clamps: how far each shape's own directions are from the shared "
                    "ones, such as \"5 deg\"; they are fitted as well")
+      ->needs(shape)
+      ->group(measured);
+  command
+      ->add_option("--camera-tilt", options->camera_tilt,
+                   "how level the camera is, such as \"2 deg\" (standard deviation); one tilt of "
+                   "all shapes is fitted as well, and -o writes it")
       ->needs(shape)
       ->group(measured);
   command

@@ -98,6 +98,9 @@ std::string words_of(const compare::FitAlternative& alternative) {
     append(out, " --clamp-scatter \"{:.3g} deg\"",
            alternative.direction_scatter * 180 / std::numbers::pi);
   }
+  if (alternative.camera_tilt > 0) {
+    append(out, " --camera-tilt \"{:.3g} deg\"", alternative.camera_tilt * 180 / std::numbers::pi);
+  }
   return out;
 }
 
@@ -317,6 +320,7 @@ Json alternatives_json(const compare::Calibration& report,
                 {"position_tolerance_m", alternative.position_tolerance},
                 {"same_clamps", alternative.shared_clamps},
                 {"direction_scatter_rad", alternative.direction_scatter},
+                {"camera_tilt_rad", alternative.camera_tilt},
                 {"prediction_rms_m", json_of(alternative.prediction_m)},
                 {"rms_m", alternative.rms_m}};
     add_value(one, stiffness_key(report.scenes.front()), "", alternative.youngs_modulus);
@@ -443,6 +447,7 @@ Json material_json(const compare::Calibration& report) {
             {"rotation_rad", compare::to_json(one.rotation)},
             {"displacement_m", compare::to_json(one.displacement)}};
   });
+  result["camera_tilt_rad"] = compare::to_json(fit.camera_tilt);
   result["prediction"] = json_or_null(fit.prediction, [](const auto& found) -> Json {
     return {{"rms_m", found.rms_m},
             {"repeatability_m", json_of(found.repeatability_m)},
@@ -493,6 +498,10 @@ std::string material_toml(const compare::Calibration& report) {
   }
   if (!fit.natural_curvature.empty()) {
     append(out, "natural_curvature = {}\n", natural_curvature_text(fit));
+  }
+  if (!fit.camera_tilt.isZero(0)) {
+    append(out, "camera_tilt = {}  # rad, of the shapes' coordinates\n",
+           vector_text(fit.camera_tilt));
   }
   if (!given) out += "[[material]]\nname = \"calibrated\"\n";
   std::string value = fmt::format("{:.8e}", *E.value);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <utility>
 
 #include "base/text_limits.hpp"
 #include "dlo/compare/error.hpp"
@@ -80,7 +81,8 @@ void place_value(const py::handle& value, const Place& place, const Put& put) {
 toml::array list_from(const py::handle& list, const Place& place) {
   toml::array array;
   for (const py::handle& element : list) {
-    place_value(element, place.within(), [&array](auto&& value) { array.push_back(value); });
+    place_value(element, place.within(),
+                [&array](auto&& value) { array.push_back(std::forward<decltype(value)>(value)); });
   }
   return array;
 }
@@ -98,8 +100,9 @@ toml::table table_from(const py::dict& document, const Place& place) {
     }
     const std::string name = text_from(key, place.path);
     const std::string path = place.path.empty() ? name : fmt::format("{}.{}", place.path, name);
-    place_value(value, place.within(path),
-                [&](auto&& placed) { table.insert_or_assign(name, placed); });
+    place_value(value, place.within(path), [&](auto&& placed) {
+      table.insert_or_assign(name, std::forward<decltype(placed)>(placed));
+    });
   }
   return table;
 }

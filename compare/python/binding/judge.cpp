@@ -138,6 +138,7 @@ FitDocuments calibrate_material(const std::vector<SharedScene>& scenes, const py
       .roll_tolerance = what["clamp_rolls"].cast<double>(),
       .shared_clamps = what["same_clamps"].cast<bool>(),
       .direction_scatter = what["clamp_scatter"].cast<double>(),
+      .camera_tilt = what["camera_tilt"].cast<double>(),
       .predict = what["predict"].cast<bool>(),
       .choose_options = chosen ? std::optional(*chosen == "auto") : std::nullopt,
       .chain_segments = what["segments"].cast<int>(),

@@ -235,6 +235,7 @@ def plan(
     clamp_rolls=QUANTITY,
     same_clamps=TRUTH,
     clamp_scatter=QUANTITY,
+    camera_tilt=QUANTITY,
     predict=TRUTH,
     options=TEXT,
     noise=QUANTITY,
@@ -260,6 +261,7 @@ def calibrate(
     clamp_rolls: Quantity = 0.0,
     same_clamps: bool = False,
     clamp_scatter: Quantity = 0.0,
+    camera_tilt: Quantity = 0.0,
     predict: bool = False,
     options: Optional[str] = None,
     noise: Optional[Quantity] = None,
@@ -276,7 +278,7 @@ def calibrate(
     [m], a tuple of points and their arc lengths, or the name of a file in metres. density, torsional_stiffness: fit these as well;
     natural_curvature: so many terms of it. clamp_angles, clamp_positions, clamp_rolls: how well the clamps are
     known (standard deviations, "5 deg", "2 mm"); each shape's own are then fitted,
-    with same_clamps what all share, but for rolls, and with clamp_scatter each shape's own about it. predict: each shape is left out in turn, and predicted. holdout: shapes that only judge, their scenes after the others ("held_out" of the document). options: "auto": where
+    with same_clamps what all share, but for rolls, and with clamp_scatter each shape's own about it. camera_tilt: how level the camera is; one tilt of all shapes is then fitted. predict: each shape is left out in turn, and predicted. holdout: shapes that only judge, their scenes after the others ("held_out" of the document). options: "auto": where
     residuals are systematic, the terms of natural curvature, and clamps as said, alike or each on its own, that predict
     best ("tried" of the document); "given"; None: "auto" of three shapes or more, without these six. noise: standard deviation of one coordinate; None: estimated. segments: of your simulator's chain, whose springs are
     then found too ("chains" of the document); segment_lengths [m] where they are unequal. register, arc_lengths: as of check(). time, materials: as of
@@ -307,6 +309,7 @@ def calibrate(
         "clamp_rolls": _si(clamp_rolls, "angle"),
         "same_clamps": bool(same_clamps),
         "clamp_scatter": _si(clamp_scatter, "angle"),
+        "camera_tilt": _si(camera_tilt, "angle"),
         "predict": bool(predict),
         "holdout": list(map(_pair, holdout)),
         "options": options,

@@ -10,6 +10,7 @@
 #include "dlo/compare/error.hpp"
 #include "fit/shape_misfit.hpp"
 #include "fit/wire_fit.hpp"
+#include "fit/wire_numbers.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -20,8 +21,10 @@ constexpr int usual_curvature_terms = 3;
 /// has its own they are like each other.
 constexpr double fixture_tolerance = 20 * std::numbers::pi / 180;
 constexpr double own_tolerance = 5 * std::numbers::pi / 180;
+/// How level a camera is where the options do not say.
+constexpr double usual_tilt = 2 * std::numbers::pi / 180;
 /// Fewer numbers are chosen where they predict worse by no more than this share.
-constexpr double as_well = 0.02;
+constexpr double as_well = 0.01;
 /// In lengths: no shape is measured more exactly, so predictions below it are alike.
 constexpr double exactly = 1e-5;
 /// Options that predict worse by no more than this share may be right too.
@@ -37,6 +40,7 @@ struct Trial {
 
   [[nodiscard]] double prediction() const { return fit.prediction->rms_m; }
   [[nodiscard]] std::size_t numbers() const { return fit.others.size(); }
+  [[nodiscard]] int terms() const { return options.natural_curvature_terms; }
 };
 
 /// Whether something beside noise may be left.
@@ -85,7 +89,8 @@ class OptionsSearch {
                           .youngs_modulus = fit.youngs_modulus,
                           .position_tolerance = options.position_tolerance,
                           .shared_clamps = options.shared_clamps,
-                          .direction_scatter = options.direction_scatter};
+                          .direction_scatter = options.direction_scatter,
+                          .camera_tilt = options.camera_tilt};
     if (fit.prediction) result.prediction_m = fit.prediction->rms_m;
     return result;
   }
@@ -113,7 +118,8 @@ class OptionsSearch {
     const int terms = std::max(usual_curvature_terms, options_.natural_curvature_terms);
     double least = INFINITY;
     int vain = 0;
-    for (int term = 0; term <= terms && vain < most_vain_terms; ++term) {
+    const int most_vain = clamps == Clamps::alike ? terms : most_vain_terms;
+    for (int term = 0; term <= terms && vain < most_vain; ++term) {
       const std::optional<double> prediction = predict(term, clamps);
       vain = prediction && *prediction < (1 - as_well) * least ? 0 : vain + 1;
       least = std::min(least, prediction.value_or(INFINITY));
@@ -155,7 +161,16 @@ class OptionsSearch {
     options.chain_segment_lengths.clear();
     options.natural_curvature_terms = terms;
     options.shared_clamps = clamps == Clamps::alike;
-    if (!options.shared_clamps) options.direction_scatter = 0;
+    if (!options.shared_clamps) {
+      options.direction_scatter = 0;
+    } else if (!(options.direction_scatter > 0)) {
+      options.direction_scatter = own_tolerance;
+    }
+    // A tilted camera is what tells a fixture's clamps from the wire's natural curvature.
+    if (options.shared_clamps && !(options.camera_tilt > 0) &&
+        why_no_camera_tilt(scenes_, shapes_).empty()) {
+      options.camera_tilt = usual_tilt;
+    }
     if (clamps == Clamps::as_said) {
       options.direction_tolerance = options.position_tolerance = 0;
     } else if (!(options.direction_tolerance > 0)) {
@@ -183,26 +198,22 @@ class OptionsSearch {
     return *result;
   }
 
-  /// The interval under one model knows nothing of the others: what the estimates of those that
-  /// predict nearly as well differ from the chosen one adds to its square, in the mean.
+  /// The interval under one model knows nothing of the others: it holds that of the most terms of
+  /// natural curvature that predict nearly as well. Whether a wire has fewer is not identifiable
+  /// from shapes that are predicted alike, and E is another one where it has.
   void widen(MaterialFit& fit, const Trial& chosen) const {
     FittedValue& E = fit.youngs_modulus;
     if (!E.estimate || !E.low || !E.high) return;
-    constexpr double deviations = 1.96;
-    const double own = std::log(*E.high / *E.low) / 2;
-    double squares = 0;
-    int count = 0;
+    const Trial* most = &chosen;
     for (const Trial& trial : trials_) {
       const FittedValue& other = trial.fit.youngs_modulus;
       if (trial.prediction() > (1 + nearly_as_well) * chosen.prediction()) continue;
-      if (!other.estimate || !other.low || !other.high) continue;
-      squares += std::pow(deviations * std::log(*other.estimate / *E.estimate), 2);
-      ++count;
+      if (!other.low || !other.high) continue;
+      if (trial.terms() > most->terms()) most = &trial;
     }
-    const double wide = count > 0 ? std::sqrt(own * own + squares / count) : 0;
-    if (!(wide > own)) return;
-    E.low = *E.low * std::exp(own - wide);
-    E.high = *E.high * std::exp(wide - own);
+    if (most == &chosen) return;
+    E.low = std::min(*E.low, *most->fit.youngs_modulus.low);
+    E.high = std::max(*E.high, *most->fit.youngs_modulus.high);
     if (std::log(*E.high / *E.low) <= std::log(options_.identified_within)) return;
     E.value.reset();
     if (fit.not_identified.empty()) {

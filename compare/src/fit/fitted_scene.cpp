@@ -9,7 +9,8 @@ namespace dlo::compare {
 Scene fitted_scene(Scene scene, const MaterialFit& fit, const Scene& first) {
   CalibratedRod rod{.by_stiffness = scene.given_bending_stiffness.has_value(),
                     .natural_curvature = fit.natural_curvature,
-                    .clamps = fit.clamps};
+                    .clamps = fit.clamps,
+                    .camera_tilt = fit.camera_tilt};
   if (fit.youngs_modulus.estimate) {
     rod.stiffness =
         scene.stiffness().value * *fit.youngs_modulus.estimate / first.stiffness().value;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "fit/between_shapes.hpp"
@@ -60,20 +61,30 @@ std::optional<double> repeatability_of(const std::vector<Scene>& scenes, const M
 }  // namespace
 
 double distance_from_rod(const Scene& scene, const MeasuredShape& shape,
-                         const MaterialFitOptions& options) {
+                         const MaterialFitOptions& options,
+                         const energy_model::Equilibrium* known) {
   MeasuredShapes measured({scene}, {shape}, measured_options(options),
                           std::chrono::steady_clock::now());
-  return std::sqrt(measured.alignment(0, measured.solve(0, scene, nullptr)).mean_square);
+  double square = measured.alignment(0, measured.solve(0, scene, nullptr)).mean_square;
+  if (known != nullptr) {
+    const energy_model::Equilibrium near = measured.solve(0, scene, known);
+    if (energy_model::succeeded(near.status)) {
+      square = std::min(square, measured.alignment(0, near).mean_square);
+    }
+  }
+  return std::sqrt(square);
 }
 
 Prediction leave_one_out(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
                          const MaterialFitOptions& options, const MaterialFit& fit,
-                         const PredictedScene& predicted) {
+                         const Predict& predict) {
   Prediction result{.repeatability_m = repeatability_of(scenes, fit)};
   double squares = 0;
   double points = 0;
   for (std::size_t left = 0; left < scenes.size(); ++left) {
-    const double rms = distance_from_rod(predicted(left), shapes[left], options);
+    const PredictedScene predicted = predict(left);
+    const double rms = distance_from_rod(predicted.scene, shapes[left], options,
+                                         predicted.known ? &*predicted.known : nullptr);
     result.shapes_m.push_back(rms);
     const auto count = static_cast<double>(shapes[left].points.cols());
     squares += rms * rms * count;
@@ -89,10 +100,10 @@ Prediction leave_one_out(const std::vector<Scene>& scenes, const std::vector<Mea
   same.alternatives = same.predict = false;
   same.chain_segments = same.profile_points = 0;
   same.chain_segment_lengths.clear();
-  return leave_one_out(scenes, shapes, options, fit, [&](std::size_t left) {
+  return leave_one_out(scenes, shapes, options, fit, [&](std::size_t left) -> PredictedScene {
     const std::vector<Scene> other_scenes = all_but(scenes, left);
     const MaterialFit others = fit_material(other_scenes, all_but(shapes, left), same);
-    return fitted_scene(scenes[left], others, other_scenes.front());
+    return {fitted_scene(scenes[left], others, other_scenes.front()), std::nullopt};
   });
 }
 

@@ -108,8 +108,9 @@ class WireFitter {
       fit_->weigh(weight);
       descend();
     }
-    optimum_ = fit_->rods();
     unseen_ = unseen(fit_->linear(), fit_->weight(), fit_->before());
+    if (!unseen_[0]) go_to_likely_modulus();
+    optimum_ = fit_->rods();
     covariance_ = covariance_of_numbers(errors_, *fit_, measured_.frame_columns(), options_.noise);
     MaterialFit found = result();
     if (options_.predict) {
@@ -139,9 +140,36 @@ class WireFitter {
     errors_ = errors_about(*fit_, measured_.frame_columns(), options_.noise, least_noise());
   }
 
+  /// From the least deviance to the E that is likeliest whatever the other numbers are. The two
+  /// differ by how much more a stiffer rod lets the shapes tell of its clamps.
+  void go_to_likely_modulus() {
+    marginal_slope_ = fit_->marginal_slope();
+    const double variance = fit_->covariance_of_numbers()(0, 0);
+    const double step =
+        std::clamp(-marginal_slope_ * variance / 2, -longest_log_step, longest_log_step);
+    if (std::abs(step) <= steps().last_step * std::sqrt(variance)) return;
+    GaussNewtonOptions held = steps();
+    held.lowest = held.highest =
+        std::clamp(fit_->values()[0] + step, std::log(options_.smallest_ratio),
+                   std::log(options_.largest_ratio));
+    rods_.go_on_from(fit_->rods());
+    GaussNewton there(rods_, fit_->values_beside(held.lowest), held);
+    there.weigh(fit_->weight());
+    if (!there.descend()) refuse_no_shape();
+    fit_.emplace(std::move(there));
+    errors_ = errors_about(*fit_, measured_.frame_columns(), options_.noise, least_noise());
+  }
+
+  /// Twice the logarithm of how much less likely another E is, whatever the other numbers are.
+  [[nodiscard]] double unlikelihood(double log_modulus) {
+    rods_.go_on_from(optimum_);
+    return fit_->profile(log_modulus) - fit_->deviance() +
+           marginal_slope_ * (log_modulus - fit_->values()[0]);
+  }
+
   /// The scene of a shape as the fit to the others says, to which steps lead from the fit to all,
   /// with its weights. What was the shape's own is as if nothing were known of it.
-  [[nodiscard]] Scene predicted(std::size_t left) const {
+  [[nodiscard]] PredictedScene predicted(std::size_t left) const {
     const std::vector<Scene> scenes = all_but(scenes_, left);
     const std::vector<MeasuredShape> shapes = all_but(shapes_, left);
     MeasuredShapes measured(scenes, shapes, measured_options(options_),
@@ -157,7 +185,7 @@ class WireFitter {
     if (!others.fit_->descend()) others.refuse_no_shape();
     Eigen::VectorXd values = Eigen::VectorXd::Zero(fit_->values().size());
     values(common) = others.fit_->values();
-    return scene_at_(left, values);
+    return {scene_at_(left, values), optimum_[left]};
   }
 
   /// More terms of natural curvature never fit worse than fewer: each one is added where the fit
@@ -290,7 +318,6 @@ class WireFitter {
   [[nodiscard]] std::optional<double> end(double side) {
     if (unseen_[0]) return std::nullopt;
     const double wanted = quantile() * correlated_width();
-    const double least = fit_->deviance();
     const double linear = quantile() * std::sqrt(covariance_(0, 0));
     const double farthest = side > 0 ? std::log(options_.largest_ratio) - fit_->values()[0]
                                      : fit_->values()[0] - std::log(options_.smallest_ratio);
@@ -298,8 +325,7 @@ class WireFitter {
     double distance = linear;
     for (int i = 0; i < most_ends; ++i) {
       if (!(distance < farthest)) return std::nullopt;
-      rods_.go_on_from(optimum_);
-      const double excess = fit_->profile(fit_->values()[0] + side * distance) - least;
+      const double excess = unlikelihood(fit_->values()[0] + side * distance);
       const double reached = std::sqrt(std::max(0.0, excess));
       if (!(reached < jump * wanted)) return linear;
       if (std::abs(reached - wanted) <= end_tolerance * wanted) break;
@@ -380,14 +406,11 @@ class WireFitter {
     const auto logarithm = [unit](const std::optional<double>& value) {
       return value ? std::optional(std::log(*value / unit)) : std::nullopt;
     };
-    const double least = fit_->deviance();
     for (const double x :
          drawn_logarithms(logarithm(fit.youngs_modulus.low), fit_->values()[0],
                           logarithm(fit.youngs_modulus.high), options_.profile_points)) {
-      rods_.go_on_from(optimum_);
       // The interval's ends are `widening` times as far away as where the deviance has its limit.
-      const double excess =
-          fit_->profile(fit_->values()[0] + (x - fit_->values()[0]) / widening) - least;
+      const double excess = unlikelihood(fit_->values()[0] + (x - fit_->values()[0]) / widening);
       const double limit = quantile() * correlated_width();
       fit.profile.push_back({unit * std::exp(x), excess / (limit * limit)});
     }
@@ -398,19 +421,19 @@ class WireFitter {
     fit.warning += what;
   }
 
-  /// Clamps that are not known as well as was said.
+  /// Clamps, or a camera, that are not known as well as was said.
   static void note_contradicted_tolerances(MaterialFit& fit) {
     constexpr double likely = 2.5;  // standard deviations
     const auto excess = [](const FittedNumber& number) {
-      const bool is_clamp = number.unit == "rad" || number.unit == "m";
-      return is_clamp ? std::abs(number.value) / number.known_before : 0;
+      const bool is_said = number.unit == "rad" || number.unit == "m";
+      return is_said ? std::abs(number.value) / number.known_before : 0;
     };
     const auto farthest = std::max_element(
         fit.others.begin(), fit.others.end(),
         [&](const FittedNumber& a, const FittedNumber& b) { return excess(a) < excess(b); });
     if (farthest == fit.others.end() || !(excess(*farthest) > likely)) return;
-    warn(fit, fmt::format("the shapes contradict how well clamps are said to be known: {} is off "
-                          "by {:.2g} times that; say less",
+    warn(fit, fmt::format("the shapes contradict how well it is said to be known: {} is off by "
+                          "{:.2g} times that; say less",
                           farthest->name, excess(*farthest)));
   }
 
@@ -433,7 +456,8 @@ class WireFitter {
   [[nodiscard]] std::vector<ClampCorrection> clamp_corrections() const {
     Eigen::VectorXd shared = fit_->values();
     for (std::size_t k = 0; k < numbers_.size(); ++k) {
-      if (numbers_[k].described.shape) shared[static_cast<Eigen::Index>(k)] = 0;
+      if (numbers_[k].described.shape || numbers_[k].camera_axis)
+        shared[static_cast<Eigen::Index>(k)] = 0;
     }
     const std::vector<Gripper> found = scene_at_(0, shared).grippers;
     std::vector<ClampCorrection> result;
@@ -448,6 +472,18 @@ class WireFitter {
       result.push_back(correction);
     }
     return result;
+  }
+
+  /// What was found of the camera, all axes together: a rotation vector.
+  [[nodiscard]] Eigen::Vector3d camera_tilt() const {
+    Eigen::Quaterniond tilt = Eigen::Quaterniond::Identity();
+    for (std::size_t k = 0; k < numbers_.size(); ++k) {
+      const std::optional<Eigen::Vector3d>& axis = numbers_[k].camera_axis;
+      const double angle = fit_->values()[static_cast<Eigen::Index>(k)];
+      if (axis) tilt = Eigen::AngleAxisd(angle, *axis) * tilt;
+    }
+    const Eigen::AngleAxisd whole(tilt);
+    return whole.angle() * whole.axis();
   }
 
   [[nodiscard]] MaterialFit result() {
@@ -508,6 +544,7 @@ class WireFitter {
                                    found.natural_variation.end());
     }
     if (options_.shared_clamps) fit.clamps = clamp_corrections();
+    fit.camera_tilt = camera_tilt();
     fit.noise_m = std::sqrt(errors_.variance);
     fit.noise_is_estimated = !options_.noise;
     fit.degrees_of_freedom = static_cast<int>(fit_->freedom());
@@ -543,6 +580,7 @@ class WireFitter {
   FittedRods rods_;
   std::optional<GaussNewton> fit_;
   WireErrors errors_;
+  double marginal_slope_ = 0;   // see GaussNewton::marginal_slope()
   Eigen::MatrixXd covariance_;  // of the numbers, under these errors
   FittedRods::Rods optimum_;
   std::vector<bool> unseen_;  // of the numbers, see unseen()
@@ -553,7 +591,7 @@ class WireFitter {
 bool fits_a_wire(const MaterialFitOptions& options) {
   return options.torsional_stiffness || options.natural_curvature_terms > 0 ||
          options.direction_tolerance > 0 || options.position_tolerance > 0 ||
-         options.roll_tolerance > 0;
+         options.roll_tolerance > 0 || options.camera_tilt > 0;
 }
 
 MaterialFit fit_wire(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,

@@ -176,6 +176,27 @@ Eigen::Vector3d level_across(const Eigen::Vector3d& direction, const Eigen::Vect
                                                  : Eigen::Vector3d(direction.unitOrthogonal());
 }
 
+/// About the normal of the shapes' plane, else about all level axes.
+void add_camera_tilt(std::vector<WireNumber>& numbers, const std::vector<Scene>& scenes,
+                     const std::vector<MeasuredShape>& shapes, double tolerance) {
+  if (const std::string why = why_no_camera_tilt(scenes, shapes); !why.empty()) {
+    throw InputError(why);
+  }
+  const Eigen::Matrix3Xd ways =
+      ways_across(scenes.front().gravity.normalized(), plane_of(scenes.front(), shapes.front()));
+  for (const Eigen::Vector3d axis : ways.colwise()) {
+    numbers.push_back(
+        {.described = {.name = fmt::format("camera tilt about [{:.3g}, {:.3g}, {:.3g}]", axis.x(),
+                                           axis.y(), axis.z()),
+                       .unit = "rad",
+                       .known_before = tolerance,
+                       .shape = std::nullopt},
+         .stride = 1e-3,
+         .change = [axis](Scene& scene, double value) { turn_scene(scene, value * axis); },
+         .camera_axis = axis});
+  }
+}
+
 /// What is wrong with clamps is the same in all scenes only if they are the same.
 void require_like_clamps(const std::vector<Scene>& scenes) {
   const std::vector<Gripper>& first = scenes.front().grippers;
@@ -212,6 +233,31 @@ std::string why_unforced(const Scene& scene) {
       "{0} is not identifiable from these shapes: neither weight nor a load or yielding obstacle "
       "acts on the rod, so its shapes are the same with any {0} (a known load would identify it)",
       scene.stiffness().name);
+}
+
+std::string why_no_camera_tilt(const std::vector<Scene>& scenes,
+                               const std::vector<MeasuredShape>& shapes) {
+  const Scene& first = scenes.front();
+  const std::optional<Eigen::Vector3d> normal = plane_of(first, shapes.front());
+  constexpr double parallel = 1e-6;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    if (!is_bent_by_weight_alone(scenes[i])) {
+      return fmt::format(
+          "{}: a camera's tilt of a rod without weight, or with loads, a stream, obstacles or "
+          "grippers that move (allowed: a rod that its weight alone bends)",
+          scenes[i].file);
+    }
+    const std::optional<Eigen::Vector3d> other = plane_of(scenes[i], shapes[i]);
+    const bool in_one_plane = other.has_value() == normal.has_value() &&
+                              (!normal || normal->cross(*other).norm() < parallel);
+    if (!in_one_plane || !scenes[i].gravity.isApprox(first.gravity, parallel)) {
+      return fmt::format(
+          "{}: not the plane or gravity of {}, so one camera's tilt is not that of both (allowed: "
+          "shapes in one plane, or all in space, under one gravity)",
+          scenes[i].file, first.file);
+    }
+  }
+  return "";
 }
 
 std::vector<Scene> with_said_frames(std::vector<Scene> scenes, const std::vector<bool>& flat,
@@ -281,6 +327,8 @@ std::vector<WireNumber> wire_numbers(const std::vector<Scene>& scenes,
                       scenes.front().file));
     }
   }
+  // The last one: what is wrong with clamps is said in the scene's coordinates.
+  if (options.camera_tilt > 0) add_camera_tilt(numbers, scenes, shapes, options.camera_tilt);
   return numbers;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,6 +23,7 @@ struct WireNumber {
   double longest_step = std::numeric_limits<double>::infinity();  ///< beyond it nothing is linear
   /// How the first clamp holds a rod whose own frame shows: all angles are to be tried.
   bool turns_the_rod = false;
+  std::optional<Eigen::Vector3d> camera_axis = std::nullopt;  ///< of a camera's tilt, unit
 };
 
 /// How the shapes of a fit lie on its rods. A photograph does not see the third coordinate: a fit
@@ -45,6 +48,11 @@ struct WireNumber {
 /// The same but for its weight, without which it has the same ones with every density / E.
 [[nodiscard]] bool has_forces_beside_weight(const Scene& scene);
 
+/// Why shapes do not have a camera's tilt in common, naming file and what is allowed; empty: they
+/// may.
+[[nodiscard]] std::string why_no_camera_tilt(const std::vector<Scene>& scenes,
+                                             const std::vector<MeasuredShape>& shapes);
+
 /// Scenes in which the first clamp says where d1 is, so that it goes on holding it when it is
 /// turned out of the scene's plane: where the scene leaves it open but for `roll_tolerance`, d1 is
 /// level.
@@ -55,10 +63,11 @@ struct WireNumber {
 
 /// All that is to be found: first the logarithm of E over the scenes', then, with `density`, of the
 /// density, if asked for of GJ / EI, natural curvature, then each shape's own directions and
-/// positions and rolls.
+/// positions and rolls, and the camera's tilt.
 /// @param scenes  with_said_frames()
 /// @throws InputError if natural curvature is asked for where no clamp or plane says about which
-/// axes, GJ where no scene twists the rod, or rolls where none is in a shape
+/// axes, GJ where no scene twists the rod, rolls where none is in a shape, or a tilt where
+/// why_no_camera_tilt()
 [[nodiscard]] std::vector<WireNumber> wire_numbers(const std::vector<Scene>& scenes,
                                                    const std::vector<MeasuredShape>& shapes,
                                                    const MaterialFitOptions& options, bool density);

@@ -55,8 +55,8 @@ ClampCorrection read_correction(StrictTable& entry) {
 CalibratedRod parse_calibrated_rod(const std::string& text, const std::string& file) {
   const toml::table root = parse_toml(text, file);
   StrictTable table(root, "", file);
-  table.only({"bending_stiffness", "gripper", "mass_per_length", "material", "natural_curvature",
-              "torsional_stiffness"});
+  table.only({"bending_stiffness", "camera_tilt", "gripper", "mass_per_length", "material",
+              "natural_curvature", "torsional_stiffness"});
   CalibratedRod rod;
   read_calibrated_material(table, rod);
   read_calibrated_stiffness(table, rod);
@@ -70,6 +70,8 @@ CalibratedRod parse_calibrated_rod(const std::string& text, const std::string& f
   if (table.has("natural_curvature")) {
     rod.natural_curvature = table.pairs("natural_curvature", Dimension::curvature, most_terms);
   }
+  rod.camera_tilt =
+      table.optional_vector("camera_tilt", Dimension::angle).value_or(rod.camera_tilt);
   for (StrictTable& entry : table.tables("gripper")) rod.clamps.push_back(read_correction(entry));
   table.finish();
   return rod;
@@ -108,6 +110,14 @@ Scene calibrated_scene(Scene scene, const CalibratedRod& rod) {
     if (gripper.direction) turn_clamp(gripper, correction.rotation);
     gripper.position += correction.displacement;
   }
+  if (rod.camera_tilt.isZero(0)) return scene;
+  if (!is_bent_by_weight_alone(scene)) {
+    throw InputError(fmt::format(
+        "{}: the calibrated rod was seen by a tilted camera, camera_tilt, which turns scenes that "
+        "weight alone bends (allowed: those, or no camera_tilt)",
+        scene.file));
+  }
+  turn_scene(scene, rod.camera_tilt);
   return scene;
 }
 

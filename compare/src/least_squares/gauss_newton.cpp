@@ -123,9 +123,29 @@ Eigen::VectorXd GaussNewton::next_step() const {
   return share * step;
 }
 
+double GaussNewton::marginal_slope() {
+  const Eigen::Index others = before_.size() - 1;
+  const double away = std::sqrt(posterior_(0, 0)) / 2;
+  if (others == 0 || !(away > 0) || !std::isfinite(away)) return 0;
+  double difference = 0;
+  for (const double side : {1.0, -1.0}) {
+    rods_.go_on_from(here_);
+    const std::optional<std::vector<ResidualSeries>> series =
+        rods_.residuals(values_beside(values_[0] + side * away), FittedRods::Columns::all);
+    if (!series) return 0;
+    const LinearFit there = linear_fit(*series, {}, rods_.measured().frame_columns());
+    difference += side * log_determinant(there, weight(), before_);
+  }
+  return difference / (2 * away);
+}
+
+Eigen::VectorXd GaussNewton::values_beside(double first) const {
+  return values_ + posterior_.col(0) / posterior_(0, 0) * (first - values_[0]);
+}
+
 double GaussNewton::profile(double first) {
   const Eigen::Index others = before_.size() - 1;
-  Eigen::VectorXd values = values_ + posterior_.col(0) / posterior_(0, 0) * (first - values_[0]);
+  Eigen::VectorXd values = values_beside(first);
   double least = deviance_at(values);
   if (others == 0) return least;
   LinearFit chord = linear_;

@@ -52,6 +52,16 @@ class GaussNewton {
   /// Sum of squares over the weight, and of what was known before.
   [[nodiscard]] double deviance() const;
 
+  /// The first number at some value, the others where the deviance is then least to first order.
+  [[nodiscard]] Eigen::VectorXd values_beside(double first) const;
+
+  /// How twice the logarithm of the probability of a first number, summed over all values that the
+  /// others may have, falls with it beside the deviance (Laplace's approximation: the logarithm of
+  /// the determinant of their second derivatives). The more a larger first number lets points tell
+  /// the others, the less room these have: the least deviance alone is then at too large a one.
+  /// 0 without others, or where a shape has no equilibrium beside the values.
+  [[nodiscard]] double marginal_slope();
+
   /// Least deviance over all other numbers with the first at some value, by chords of the
   /// derivatives at the values; infinite where there is no shape.
   [[nodiscard]] double profile(double first);

@@ -89,6 +89,13 @@ Eigen::VectorXd slope(const LinearFit& fit, double variance, const Eigen::Vector
   return fit.design.transpose() * fit.residual / variance - before.cwiseAbs2().cwiseProduct(values);
 }
 
+double log_determinant(const LinearFit& fit, double variance, const Eigen::VectorXd& before) {
+  const Eigen::Index others = before.size() - 1;
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> information(
+      information_of(fit, variance, before).bottomRightCorner(others, others));
+  return information.matrixQR().diagonal().head(information.rank()).array().abs().log().sum();
+}
+
 Eigen::VectorXd step_of_others(const LinearFit& fit, double variance, const Eigen::VectorXd& before,
                                const Eigen::VectorXd& slope, double held) {
   const Eigen::Index others = before.size() - 1;

@@ -53,6 +53,11 @@ struct VarianceEstimate {
 [[nodiscard]] Eigen::VectorXd slope(const LinearFit& fit, double variance,
                                     const Eigen::VectorXd& before, const Eigen::VectorXd& values);
 
+/// Logarithm of the determinant of half the deviance's second derivatives by all numbers but the
+/// first, of those that the points or what was known before tell.
+[[nodiscard]] double log_determinant(const LinearFit& fit, double variance,
+                                     const Eigen::VectorXd& before);
+
 /// Step of all numbers but the first to the least deviance, with the first moved by `held`.
 /// @param slope  as above, of all
 [[nodiscard]] Eigen::VectorXd step_of_others(const LinearFit& fit, double variance,

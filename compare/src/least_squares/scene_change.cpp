@@ -1,6 +1,7 @@
 #include "least_squares/scene_change.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 namespace dlo::compare {
 
@@ -27,6 +28,25 @@ void turn_clamp(Gripper& clamp, const Eigen::Vector3d& turn) {
   const Eigen::AngleAxisd rotation(angle, turn / angle);
   clamp.direction = rotation * *clamp.direction;
   if (clamp.frame && clamp.frame->d1) clamp.frame->d1 = rotation * *clamp.frame->d1;
+}
+
+bool is_bent_by_weight_alone(const Scene& scene) {
+  const bool moves = std::ranges::any_of(
+      scene.grippers, [](const Gripper& gripper) { return !gripper.trajectory.empty(); });
+  return scene.weight_per_length().norm() > 0 && scene.loads.empty() &&
+         scene.distributed_loads.empty() && !scene.drag && scene.obstacles.empty() && !moves;
+}
+
+void turn_scene(Scene& scene, const Eigen::Vector3d& turn) {
+  const double angle = turn.norm();
+  if (!(angle > 0)) return;
+  const Eigen::AngleAxisd rotation(angle, turn / angle);
+  const Eigen::Vector3d about = scene.grippers.front().position;
+  scene.gravity = rotation * scene.gravity;
+  for (Gripper& gripper : scene.grippers) {
+    gripper.position = about + rotation * (gripper.position - about);
+    if (gripper.direction) turn_clamp(gripper, turn);
+  }
 }
 
 void bend_by_nature(Scene& scene, std::size_t term, const Eigen::Vector2d& curvature) {

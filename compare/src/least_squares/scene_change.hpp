@@ -19,6 +19,14 @@ namespace dlo::compare {
 /// @param turn  rotation vector [rad]
 void turn_clamp(Gripper& clamp, const Eigen::Vector3d& turn);
 
+/// Whether there are no loads, streams, obstacles or grippers that move.
+[[nodiscard]] bool is_bent_by_weight_alone(const Scene& scene);
+
+/// Turns a scene as a whole, about its first gripper: grippers and gravity. So it lies in the
+/// coordinates of a camera that is not level.
+/// @param scene  is_bent_by_weight_alone();  @param turn  rotation vector [rad]
+void turn_scene(Scene& scene, const Eigen::Vector3d& turn);
+
 /// Adds to the natural curvature about d1 and d2 [1/m].
 /// @param term  0: to its mean; k: to its coefficient of Legendre's P_k of 2 s/l - 1
 void bend_by_nature(Scene& scene, std::size_t term, const Eigen::Vector2d& curvature);

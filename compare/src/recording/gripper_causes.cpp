@@ -26,28 +26,28 @@ Scene displaced(Scene scene, std::size_t gripper, const Eigen::Vector3d& by) {
   return scene;
 }
 
-/// Points of a scene's rod at rest, at the recording's times and arc lengths [m].
-Eigen::Matrix3Xd points_at_rest(const Scene& scene, const TrackOptions& options,
-                                const MarkerMotion& recorded) {
+/// Residuals of a scene's rod at rest [m].
+Eigen::Matrix3Xd residuals_at_rest(const Scene& scene, const TrackOptions& options,
+                                   const MarkerMotion& recorded) {
   const Track moved = track(scene, options);
   if (moved.stopped) throw ConvergenceError(moved.stopped->why);
   std::vector<Eigen::Matrix3Xd> frames;
   frames.reserve(moved.frames.size());
   for (const TrackFrame& frame : moved.frames) frames.push_back(frame.shape.points);
   const ModelMotion model(*options.from, *options.to, scene.length, std::move(frames));
-  return -motion_residuals(recorded, model);  // less the recording's
+  return motion_residuals(recorded, model);
 }
 
 /// Derivatives of all coordinates by a gripper's position, 3 positions x 3 [-].
 Eigen::MatrixX3d sensitivity(const Scene& scene, const TrackOptions& options,
-                             const MarkerMotion& recorded, std::size_t gripper) {
+                             const MarkerMotion& recorded, std::size_t gripper,
+                             const Eigen::Matrix3Xd& here) {
   const double by = displacement_share * scene.length;
-  const Eigen::Matrix3Xd here = points_at_rest(scene, options, recorded);
   Eigen::MatrixX3d result(here.size(), 3);
   for (int axis = 0; axis < 3; ++axis) {
-    const Eigen::Matrix3Xd there = points_at_rest(
+    const Eigen::Matrix3Xd there = residuals_at_rest(
         displaced(scene, gripper, by * Eigen::Vector3d::Unit(axis)), options, recorded);
-    result.col(axis) = (there - here).reshaped() / by;
+    result.col(axis) = (here - there).reshaped() / by;
   }
   return result;
 }
@@ -96,13 +96,14 @@ std::optional<MotionCause> path_cause(std::size_t gripper, const Eigen::MatrixX3
 }  // namespace
 
 std::vector<MotionCause> gripper_causes(const Scene& scene, const TrackOptions& options,
-                                        const MarkerMotion& recorded,
+                                        const MarkerMotion& recorded, const ModelMotion& at_rest,
                                         const Eigen::Matrix3Xd& residuals) {
   std::vector<MotionCause> result;
+  const Eigen::Matrix3Xd here = motion_residuals(recorded, at_rest);
   const Eigen::VectorXd all = residuals.reshaped();
   for (std::size_t gripper = 0; gripper < scene.grippers.size(); ++gripper) {
     try {
-      const Eigen::MatrixX3d design = sensitivity(scene, options, recorded, gripper);
+      const Eigen::MatrixX3d design = sensitivity(scene, options, recorded, gripper, here);
       result.push_back(constant_cause(gripper, design, all));
       if (auto path = path_cause(gripper, design, all, recorded)) result.push_back(*path);
     } catch (const InputError&) {

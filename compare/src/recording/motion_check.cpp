@@ -198,8 +198,10 @@ class CauseSearch {
   }
   /// By shapes at rest, which the rod with inertia follows where the path is slow.
   void add_grippers(const ModelMotion& judged) {
-    std::vector<MotionCause> found = gripper_causes(check_.scene, models_.options, recorded_,
-                                                    motion_residuals(recorded_, judged));
+    if (!models_.at_rest) return;
+    std::vector<MotionCause> found =
+        gripper_causes(check_.scene, models_.options, recorded_, *models_.at_rest,
+                       motion_residuals(recorded_, judged));
     // Constant ones first, then the best.
     std::ranges::sort(found, [](const MotionCause& a, const MotionCause& b) {
       return a.kind != b.kind ? a.kind < b.kind : a.rms_m < b.rms_m;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "../../says.hpp"
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
@@ -25,6 +26,9 @@ using dlo::compare::judge_regression;
 using dlo::compare::read_baseline;
 using dlo::compare::RegressionResult;
 using dlo::compare::RegressionVerdict;
+using dlo::test::error_of;
+using dlo::test::says;
+using dlo::test::says_none;
 
 BaselineCase entry(const std::string& scene, double error, int points = 16) {
   BaselineCase result;
@@ -62,12 +66,7 @@ TEST(Baseline, ReadsBackWhatItWritesInAnyOrder) {
 TEST(Baseline, MalformedOnesNameFileLineKeyAndWhatIsAllowed) {
   const std::string good = baseline_text({entry("a", 0.1)});
   const auto message = [](const std::string& text) -> std::string {
-    try {
-      (void)read_baseline(text, "b.toml");
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "no error";
+    return error_of<InputError>([&] { return read_baseline(text, "b.toml"); });
   };
   const auto changed = [&](const std::string& from, const std::string& to) {
     std::string text = good;
@@ -75,10 +74,8 @@ TEST(Baseline, MalformedOnesNameFileLineKeyAndWhatIsAllowed) {
     return message(text);
   };
   const auto expect = [](const std::string& text, const std::vector<std::string>& words) {
-    EXPECT_EQ(text.find('\n'), std::string::npos) << text;
-    for (const std::string& word : words) {
-      EXPECT_NE(text.find(word), std::string::npos) << "no " << word << " in " << text;
-    }
+    EXPECT_TRUE(says_none(text, {"\n"}));
+    EXPECT_TRUE(says(text, words));
   };
   expect(message(""), {"b.toml", "schema", "missing"});
   expect(message(std::string(40, '\0')), {"b.toml", "not valid TOML"});
@@ -273,11 +270,9 @@ TEST(Regression, JunitCountsAndEscapes) {
   const std::string xml = dlo::compare::junit_xml(
       judge_regression({entry("a<b> & \"c\"\x01", 0.1), entry("e", 0.1)},
                        {{entry("e", 0.2), ""}, {entry("f", 0), "no <rest>\nhere"}}));
-  EXPECT_NE(xml.find("tests=\"3\" failures=\"2\" errors=\"1\""), std::string::npos) << xml;
-  EXPECT_NE(xml.find("a&lt;b&gt; &amp; &quot;c&quot;  (force"), std::string::npos) << xml;
-  EXPECT_NE(xml.find("<error type=\"not solved\" message=\"no &lt;rest&gt; here\"/>"),
-            std::string::npos)
-      << xml;
+  EXPECT_TRUE(says(
+      xml, {"tests=\"3\" failures=\"2\" errors=\"1\"", "a&lt;b&gt; &amp; &quot;c&quot;  (force",
+            "<error type=\"not solved\" message=\"no &lt;rest&gt; here\"/>"}));
 }
 
 }  // namespace

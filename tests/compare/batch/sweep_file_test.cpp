@@ -3,17 +3,16 @@
 #include "batch/sweep_file.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include "../../says.hpp"
 #include "batch/sweep_merge.hpp"
 #include "dlo/compare/error.hpp"
+#include "folder_fixture.hpp"
 #include "sweep_scene.hpp"
 
 namespace {
@@ -25,37 +24,14 @@ using dlo::compare::Sweep;
 using dlo::compare::SweepFileOptions;
 using dlo::compare::SweepOutcome;
 using dlo::compare::write_sweep;
+using dlo::test::error_of;
+using dlo::test::says;
 using dlo::test::sweep;
 
 const std::vector<std::string> grid = {"rod.length=lin:-0.1:1:12"};
 
-class SweepFile : public testing::Test {
+class SweepFile : public dlo::test::Folder {
  protected:
-  void SetUp() override {
-    folder_ =
-        std::filesystem::temp_directory_path() / ("dlo_sweep_test_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
-  [[nodiscard]] std::string read(const std::string& name) const {
-    std::ifstream stream(path(name), std::ios::binary);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    return text.str();
-  }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(path(name), std::ios::binary) << text;
-  }
-  [[nodiscard]] std::vector<std::string> files() const {
-    std::vector<std::string> names;
-    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
-      names.push_back(entry.path().filename());
-    }
-    std::sort(names.begin(), names.end());
-    return names;
-  }
   /// Writes shards 1 to n of a sweep; their paths.
   [[nodiscard]] std::vector<std::string> shards(const Sweep& whole, std::int64_t n) const {
     std::vector<std::string> paths;
@@ -66,20 +42,13 @@ class SweepFile : public testing::Test {
     return paths;
   }
   void expect_merge_error(const std::vector<std::string>& paths, const std::string& words) const {
-    try {
-      merge_sweep(paths, path("merged.csv"));
-      ADD_FAILURE() << "merged, expected: " << words;
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
-    }
+    EXPECT_TRUE(says(error_of<InputError>([&] { return merge_sweep(paths, path("merged.csv")); }),
+                     {words}));
     EXPECT_FALSE(std::filesystem::exists(path("merged.csv")));
     EXPECT_FALSE(std::filesystem::exists(path("merged.csv.tmp")));
   }
 
   static inline const SweepFileOptions serial{.threads = 1};
-
- private:
-  std::filesystem::path folder_;
 };
 
 TEST_F(SweepFile, IsHeaderAndRowsAndNothingElseIsLeft) {
@@ -90,14 +59,14 @@ TEST_F(SweepFile, IsHeaderAndRowsAndNothingElseIsLeft) {
   EXPECT_EQ(outcome.without_result, 2);  // lengths -0.1 and 0
   std::string expected = whole.header();
   for (std::int64_t row = 0; row < 12; ++row) expected += whole.row(row);
-  EXPECT_EQ(read("a.csv"), expected);
+  EXPECT_EQ(read(path("a.csv")), expected);
   EXPECT_EQ(files(), std::vector<std::string>{"a.csv"});
 }
 
 TEST_F(SweepFile, GoesOnFromEveryPlaceAtWhichAKillCanCutIt) {
   const Sweep whole = sweep(grid);
   write_sweep(whole, std::nullopt, path("a.csv"), serial);
-  const std::string expected = read("a.csv");
+  const std::string expected = read(path("a.csv"));
   const std::string part = dlo::compare::sweep_identity(whole, std::nullopt) + expected;
   for (std::size_t size = 0; size <= part.size(); ++size) {
     // Inside lines some places stand for all; around line ends every one counts.
@@ -105,7 +74,7 @@ TEST_F(SweepFile, GoesOnFromEveryPlaceAtWhichAKillCanCutIt) {
     if (newline > size + 1 && size % 17 != 0) continue;
     write("b.csv.part", part.substr(0, size));
     const SweepOutcome outcome = write_sweep(whole, std::nullopt, path("b.csv"), serial);
-    ASSERT_EQ(read("b.csv"), expected) << "cut at " << size;
+    ASSERT_EQ(read(path("b.csv")), expected) << "cut at " << size;
     ASSERT_EQ(outcome.rows, 12);
     ASSERT_EQ(outcome.without_result, 2);
     const auto lines = std::count(part.begin(), part.begin() + static_cast<long>(size), '\n');
@@ -117,7 +86,7 @@ TEST_F(SweepFile, GoesOnFromEveryPlaceAtWhichAKillCanCutIt) {
 TEST_F(SweepFile, ComputesARowThatLacksSomethingAgain) {
   const Sweep whole = sweep(grid);
   write_sweep(whole, std::nullopt, path("a.csv"), serial);
-  const std::string expected = read("a.csv");
+  const std::string expected = read(path("a.csv"));
   const std::string begun = dlo::compare::sweep_identity(whole, std::nullopt) + whole.header();
   std::string kept;
   for (std::int64_t row = 0; row < 12; ++row) {
@@ -128,7 +97,7 @@ TEST_F(SweepFile, ComputesARowThatLacksSomethingAgain) {
     for (std::size_t size = 0; size <= most; size += row == 6 || size + 5 > most ? 1 : 7) {
       write("b.csv.part", begun + kept + line.substr(0, size) + "\n");
       ASSERT_EQ(write_sweep(whole, std::nullopt, path("b.csv"), serial).found, row) << size;
-      ASSERT_EQ(read("b.csv"), expected) << line.substr(0, size);
+      ASSERT_EQ(read(path("b.csv")), expected) << line.substr(0, size);
     }
     kept += line;
   }
@@ -143,7 +112,7 @@ TEST_F(SweepFile, RefusesAPartOfAnotherSweepUnlessToldToRestart) {
   for (const std::string& text : foreign) {
     write("a.csv.part", text);
     EXPECT_THROW(write_sweep(whole, std::nullopt, path("a.csv"), serial), InputError) << text;
-    EXPECT_EQ(read("a.csv.part"), text);
+    EXPECT_EQ(read(path("a.csv.part")), text);
   }
   EXPECT_EQ(write_sweep(whole, std::nullopt, path("a.csv"), {.threads = 1, .restart = true}).rows,
             12);
@@ -164,13 +133,9 @@ TEST_F(SweepFile, RefusesADamagedRow) {
   const Sweep whole = sweep(grid);
   write("a.csv.part", dlo::compare::sweep_identity(whole, std::nullopt) + whole.header() +
                           whole.row(0) + whole.row(2));
-  try {
-    write_sweep(whole, std::nullopt, path("a.csv"), serial);
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("a.csv.part:4: not row 1"), std::string::npos)
-        << error.what();
-  }
+  EXPECT_TRUE(says(
+      error_of<InputError>([&] { return write_sweep(whole, std::nullopt, path("a.csv"), serial); }),
+      {"a.csv.part:4: not row 1"}));
 }
 
 TEST_F(SweepFile, IsWrittenByOneProcessAtATime) {
@@ -195,7 +160,7 @@ TEST_F(SweepFile, ShardsMergeToWhatOneRunWrites) {
     const SweepOutcome outcome = merge_sweep(paths, path("b.csv"));
     EXPECT_EQ(outcome.rows, 12);
     EXPECT_EQ(outcome.without_result, 2);
-    EXPECT_EQ(read("b.csv"), read("a.csv")) << n;
+    EXPECT_EQ(read(path("b.csv")), read(path("a.csv"))) << n;
     for (const std::string& file : paths) std::filesystem::remove(file);
   }
 }
@@ -203,9 +168,9 @@ TEST_F(SweepFile, ShardsMergeToWhatOneRunWrites) {
 TEST_F(SweepFile, AFinishedShardIsLeftAsItIs) {
   const Sweep whole = sweep(grid);
   (void)shards(whole, 2);
-  const std::string before = read("1.csv");
+  const std::string before = read(path("1.csv"));
   EXPECT_EQ(write_sweep(whole, Shard{1, 2, ""}, path("1.csv"), serial).found, 6);
-  EXPECT_EQ(read("1.csv"), before);
+  EXPECT_EQ(read(path("1.csv")), before);
   EXPECT_THROW(write_sweep(whole, Shard{2, 2, ""}, path("1.csv"), serial), InputError);
   EXPECT_EQ(files(), (std::vector<std::string>{"1.csv", "2.csv"}));
 }
@@ -227,7 +192,7 @@ TEST_F(SweepFile, MergeRefusesGapsDuplicatesAndOtherSweeps) {
 TEST_F(SweepFile, MergeRefusesFilesThatAreNoWholeShard) {
   const Sweep whole = sweep(grid);
   const std::vector<std::string> paths = shards(whole, 2);
-  const std::string good = read("2.csv");
+  const std::string good = read(path("2.csv"));
   const auto damaged = [&](const std::string& text, const std::string& words) {
     write("2.csv", text);
     expect_merge_error(paths, words);

@@ -12,6 +12,9 @@
 
 namespace {
 
+using dlo::test::says;
+using dlo::test::says_none;
+
 namespace compare = dlo::compare;
 using dlo::test::Command;
 using dlo::test::Outcome;
@@ -19,10 +22,7 @@ using nlohmann::json;
 
 class CheckCommand : public Command {
  protected:
-  std::string shape(const std::string& text) {
-    std::ofstream(path("shape")) << text;
-    return path("shape");
-  }
+  std::string shape(const std::string& text) { return write("shape", text); }
 };
 
 TEST_F(CheckCommand, ReadsWhatSolveWrites) {
@@ -32,10 +32,7 @@ TEST_F(CheckCommand, ReadsWhatSolveWrites) {
         run(words({"solve", steel(), "--model exact --samples 9 --format", format, "-o", file}))
             .status,
         0);
-    const Outcome result =
-        run(words({"check", steel(), "--shape", file, "--tolerance 0.01% --format json"}));
-    ASSERT_EQ(result.status, 0) << result.err;
-    const json document = json::parse(result.out);
+    const json document = json_of(words({"check", steel(), "--shape", file, "--tolerance 0.01%"}));
     EXPECT_EQ(document.at("schema"), "dlo/check/1");
     EXPECT_EQ(document.at("verdict"), "pass");
     EXPECT_EQ(document.at("tolerance").at("allowed_m"), 0.5 * 0.0001);
@@ -60,22 +57,21 @@ TEST_F(CheckCommand, ExitStatusIsTheVerdict) {
   EXPECT_EQ(failed.status, 1);
   EXPECT_EQ(failed.err, "");
   EXPECT_EQ(json::parse(failed.out).at("verdict"), "fail");
-  EXPECT_NE(run(check + " --tolerance 1%").out.find("fail: RMS 106.2 mm, allowed 5 mm"),
-            std::string::npos);
+  EXPECT_TRUE(says(run(check + " --tolerance 1%").out, {"fail: RMS 106.2 mm, allowed 5 mm"}));
 }
 
 TEST_F(CheckCommand, WithoutAToleranceTheVerdictIsOfOnePercent) {
   const std::string file = path("chain.csv");
   ASSERT_EQ(run("solve " + steel() + " --model chain --format csv -o " + file).status, 0);
   const std::string check = "check " + steel() + " --shape " + file;
-  const json by_default = json::parse(run(check + " --format json").out);
-  const json asked = json::parse(run(check + " --tolerance 1% --format json").out);
+  const json by_default = json_of(check);
+  const json asked = json_of(check + " --tolerance 1%", 1);
   EXPECT_EQ(by_default.at("verdict"), "fail");
   EXPECT_EQ(by_default.at("tolerance").at("default"), true);
   EXPECT_EQ(asked.at("tolerance").at("default"), false);
   EXPECT_EQ(by_default.at("tolerance").at("allowed_m"), asked.at("tolerance").at("allowed_m"));
   EXPECT_EQ(by_default.at("explanations"), asked.at("explanations"));
-  EXPECT_NE(run(check).out.find("allowed 5 mm = 1 % of l, the default"), std::string::npos);
+  EXPECT_TRUE(says(run(check).out, {"allowed 5 mm = 1 % of l, the default"}));
 }
 
 // A chain's points are explained by its springs, not by another material: one line says so.
@@ -83,11 +79,11 @@ TEST_F(CheckCommand, AModulusThatIsSupersededIsNoOptimum) {
   const std::string file = path("chain.csv");
   ASSERT_EQ(run("solve " + steel() + " --model chain --format csv -o " + file).status, 0);
   const std::string check = "check " + steel() + " --tolerance 1% --shape " + file;
-  const json document = json::parse(run(check + " --format json").out);
+  const json document = json_of(check, 1);
   ASSERT_FALSE(document.at("superseded_by").is_null()) << document.dump();
   const std::string text = run(check).out;
-  EXPECT_NE(text.find("  E*/E            no measure of the material: "), std::string::npos) << text;
-  EXPECT_EQ(text.find("optimum"), std::string::npos) << text;
+  EXPECT_TRUE(says(text, {"  E*/E            no measure of the material: "}));
+  EXPECT_TRUE(says_none(text, {"optimum"}));
 }
 
 TEST_F(CheckCommand, APassBesideAnotherStiffnessSaysWhyBothHold) {
@@ -106,11 +102,10 @@ bending_stiffness = )";
   const std::string soft = scene(rod + "0.5\n");
   const std::string words = "E*/E = 1.2 is no contradiction: ";
   const std::string wide = run("check " + soft + " --tolerance 10% --shape " + file).out;
-  EXPECT_NE(wide.find(words), std::string::npos) << wide;
-  EXPECT_NE(wide.find("verdict         pass"), std::string::npos) << wide;
+  EXPECT_TRUE(says(wide, {words, "verdict         pass"}));
   // Where it fails, E* is the explanation.
   const std::string narrow = run("check " + soft + " --tolerance 0.1% --shape " + file).out;
-  EXPECT_EQ(narrow.find(words), std::string::npos) << narrow;
+  EXPECT_TRUE(says_none(narrow, {words}));
 }
 
 TEST_F(CheckCommand, TheReportIsOnePage) {
@@ -126,15 +121,12 @@ TEST_F(CheckCommand, TheReportIsOnePage) {
       0);
   ASSERT_EQ(run(check + compare::shell_word(solved)).status, 0);
   const std::string html = read(page);
-  EXPECT_NE(html.find("<p class=\"badge fail\">"), std::string::npos);
-  EXPECT_NE(html.find("a&lt;b&gt;&amp;.csv is 106.2"), std::string::npos);
-  EXPECT_EQ(html.find("a<b>"), std::string::npos);
-  EXPECT_NE(html.find("It would be "), std::string::npos) << "the cause";
-  for (const char* network : {"src=\"http", "href=\"http", "@import", "url("}) {
-    EXPECT_EQ(html.find(network), std::string::npos) << network;
-  }
+  EXPECT_TRUE(says(html, {"<p class=\"badge fail\">", "a&lt;b&gt;&amp;.csv is 106.2"}));
+  EXPECT_TRUE(says_none(html, {"a<b>"}));
+  EXPECT_TRUE(says(html, {"It would be "})) << "the cause";
+  EXPECT_TRUE(says_none(html, {"src=\"http", "href=\"http", "@import", "url("}));
   ASSERT_EQ(run(check + compare::shell_word(solved) + " --tolerance 30%").status, 0);
-  EXPECT_NE(read(page).find("<p class=\"badge pass\">"), std::string::npos);
+  EXPECT_TRUE(says(read(page), {"<p class=\"badge pass\">"}));
   // Over one of its inputs it is not written.
   EXPECT_EQ(run("check " + steel() + " --shape " + compare::shell_word(solved) + " --report " +
                 compare::shell_word(solved))
@@ -149,8 +141,7 @@ TEST_F(CheckCommand, MarkdownIsASummary) {
   const std::string check = "check " + steel() + " --format markdown --shape " + quoted;
   const std::string summary = run(check + " --tolerance 1%").out;
   EXPECT_TRUE(summary.starts_with("### \u274c fail: ")) << summary;
-  EXPECT_NE(summary.find("RMS 106.2 mm, allowed 5 mm = 1 % of l"), std::string::npos) << summary;
-  EXPECT_NE(summary.find("a\\|b\\*.csv |\n"), std::string::npos) << summary;
+  EXPECT_TRUE(says(summary, {"RMS 106.2 mm, allowed 5 mm = 1 % of l", "a\\|b\\*.csv |\n"}));
   EXPECT_TRUE(run(check + " --tolerance 30%").out.starts_with("### \u2705 pass: "));
 }
 
@@ -163,7 +154,7 @@ TEST_F(CheckCommand, EveryFormatHasTheSameDeviation) {
   const std::string header = csv.out.substr(0, csv.out.find('\n'));
   const std::string row = csv.out.substr(csv.out.find('\n') + 1);
   EXPECT_EQ(compare::fields_of(header), compare::fields_of(row));
-  EXPECT_NE(run(check).out.find("RMS 106.2 mm = 21.23 % of l"), std::string::npos);
+  EXPECT_TRUE(says(run(check).out, {"RMS 106.2 mm = 21.23 % of l"}));
 }
 
 TEST_F(CheckCommand, AHookPastTheTipFailsAndIsNamed) {
@@ -171,14 +162,11 @@ TEST_F(CheckCommand, AHookPastTheTipFailsAndIsNamed) {
   const Outcome result = run(words(
       {"check", data + "check_hang.toml", "--shape", data + "check_hook.csv", "--tolerance 1%"}));
   EXPECT_EQ(result.status, 1) << result.out;
-  EXPECT_NE(result.out.find("longer than the rod by 509.9 mm past arc length l: the points there "
-                            "turn away from it"),
-            std::string::npos)
-      << result.out;
-  EXPECT_NE(result.out.find("tip 509.9 mm"), std::string::npos) << result.out;
-  EXPECT_NE(result.out.find("E*/E            not determined: the shape does not change with E"),
-            std::string::npos)
-      << result.out;
+  EXPECT_TRUE(
+      says(result.out,
+           {"longer than the rod by 509.9 mm past arc length l: the points there "
+            "turn away from it",
+            "tip 509.9 mm", "E*/E            not determined: the shape does not change with E"}));
 }
 
 TEST_F(CheckCommand, AStretchedOrCutRopeFailsAndIsNamed) {
@@ -192,27 +180,24 @@ TEST_F(CheckCommand, AStretchedOrCutRopeFailsAndIsNamed) {
   EXPECT_EQ(run(check + hanging(1)).status, 0);
   const Outcome stretched = run(check + hanging(1.1));
   EXPECT_EQ(stretched.status, 1);
-  EXPECT_NE(
-      stretched.out.find("longer than the rod by 100 mm past arc length l: stretched by 10 %"),
-      std::string::npos)
-      << stretched.out;
-  EXPECT_NE(stretched.out.find("tip 100 mm"), std::string::npos) << stretched.out;
+  EXPECT_TRUE(
+      says(stretched.out,
+           {"longer than the rod by 100 mm past arc length l: stretched by 10 %", "tip 100 mm"}));
   const Outcome cut = run(check + hanging(0.8));
   EXPECT_EQ(cut.status, 1);
-  EXPECT_NE(cut.out.find("shorter than the rod by 200 mm"), std::string::npos) << cut.out;
-  EXPECT_NE(cut.out.find(", with s = 0.8 to 1 m, which the file does not have"), std::string::npos)
-      << cut.out;
+  EXPECT_TRUE(says(cut.out, {"shorter than the rod by 200 mm",
+                             ", with s = 0.8 to 1 m, which the file does not have"}));
   const Outcome part = run(check + hanging(0.8) + " --min-seen 70%");
   EXPECT_EQ(part.status, 0) << part.out;
-  EXPECT_NE(part.out.find("not judged: s = 0.8 to 1 m"), std::string::npos) << part.out;
+  EXPECT_TRUE(says(part.out, {"not judged: s = 0.8 to 1 m"}));
 }
 
 TEST_F(CheckCommand, AShapeAsLongAsTheRodIsNotCalledShorter) {
   // Straight down, half a metre as the rod that is held level.
   const std::string file = shape("x,y\n0,0\n0,-0.125\n0,-0.25\n0,-0.375\n0,-0.5\n");
   const std::string text = run("check " + steel() + " --no-modulus --shape " + file).out;
-  EXPECT_EQ(text.find("shorter than the rod"), std::string::npos) << text;
-  EXPECT_NE(text.find("(as long as the rod, but "), std::string::npos) << text;
+  EXPECT_TRUE(says_none(text, {"shorter than the rod"}));
+  EXPECT_TRUE(says(text, {"(as long as the rod, but "}));
 }
 
 TEST_F(CheckCommand, WhatIsNotThereIsEmptyOrNull) {
@@ -222,8 +207,8 @@ TEST_F(CheckCommand, WhatIsNotThereIsEmptyOrNull) {
                             shape("x,y\n0,0\n0,-0.4\n0,-0.8\n") + " --tolerance 1% --format";
   for (const std::string modulus : {"", "--no-modulus"}) {
     const Outcome csv = run(words({check, "csv", modulus}));
-    EXPECT_EQ(csv.out.find("nan"), std::string::npos) << csv.out;
-    EXPECT_NE(csv.out.find(",,"), std::string::npos);
+    EXPECT_TRUE(says_none(csv.out, {"nan"}));
+    EXPECT_TRUE(says(csv.out, {",,"}));
     const json document = json::parse(run(words({check, "json", modulus})).out);
     EXPECT_TRUE(document.at("deviation").at("tip_m").is_null());
     EXPECT_TRUE(document.at("effective_modulus_ratio").is_null());
@@ -232,9 +217,8 @@ TEST_F(CheckCommand, WhatIsNotThereIsEmptyOrNull) {
     EXPECT_EQ(document.at("why_no_effective_modulus"),
               modulus.empty() ? "the shape does not change with E" : "skipped");
   }
-  EXPECT_NE(
-      run(words({check, "text --no-modulus"})).out.find("E*/E            not determined: skipped"),
-      std::string::npos);
+  EXPECT_TRUE(says(run(words({check, "text --no-modulus"})).out,
+                   {"E*/E            not determined: skipped"}));
   // Both ends held, without gravity
   const std::string held = scene(R"(gravity = [0, 0, 0]
 [rod]
@@ -252,8 +236,7 @@ direction = [1, 0, 0]
 )");
   const Outcome compared = run("compare " + held + " --no-modulus --format csv");
   EXPECT_EQ(compared.status, 0) << compared.err;
-  EXPECT_EQ(compared.out.find("nan"), std::string::npos) << compared.out;
-  EXPECT_EQ(compared.out.find("inf"), std::string::npos) << compared.out;
+  EXPECT_TRUE(says_none(compared.out, {"nan", "inf"}));
   const std::string row = compared.out.substr(compared.out.find('\n') + 1);
   EXPECT_EQ(std::count(row.begin(), row.end(), ','),
             std::count(compared.out.begin(),
@@ -275,15 +258,14 @@ TEST_F(CheckCommand, TheStateIsSaidOnceInWords) {
   const std::string file = path("solved.csv");
   ASSERT_EQ(run("solve " + steel() + " --model exact --format csv -o " + file).status, 0);
   const std::string one = run("check " + steel() + " --no-modulus --shape " + file).out;
-  EXPECT_NE(one.find("the only stable one found, -0.00293052 J; no other equilibrium found\n"),
-            std::string::npos)
-      << one;
-  EXPECT_EQ(one.find("number"), std::string::npos) << one;
+  EXPECT_TRUE(
+      says(one, {"the only stable one found, -0.00293052 J; no other equilibrium found\n"}));
+  EXPECT_TRUE(says_none(one, {"number"}));
 }
 
 TEST_F(CheckCommand, ChordLengthsAreOfferedWhereTheyWork) {
-  EXPECT_NE(run("check --help").out.find("chord"), std::string::npos);
-  EXPECT_EQ(run("calibrate --help").out.find("chord"), std::string::npos);
+  EXPECT_TRUE(says(run("check --help").out, {"chord"}));
+  EXPECT_TRUE(says_none(run("calibrate --help").out, {"chord"}));
   expect_error("calibrate " + steel() + " --shape x.csv --arc-lengths chord", 2,
                {"--arc-lengths", "chord", "nearest"});
 }
@@ -310,7 +292,7 @@ TEST_F(CheckCommand, ShapesComeInAnyUnitAndFrame) {
   EXPECT_EQ(run(check + " --unit mm").status, 1);
   EXPECT_EQ(run(check + " --unit cm --register").status, 1);
   const Outcome text = run(check + " --unit mm --register");
-  EXPECT_NE(text.out.find("found (rigid): rotated by"), std::string::npos) << text.out;
+  EXPECT_TRUE(says(text.out, {"found (rigid): rotated by"}));
 }
 
 TEST_F(CheckCommand, AWrongUnitIsNoPass) {
@@ -326,15 +308,13 @@ TEST_F(CheckCommand, AWrongUnitIsNoPass) {
   const std::string check = "check " + steel() + " --shape " + shape(points);
   const Outcome wrong = run(check + " --unit mm --tolerance 1%");
   EXPECT_EQ(wrong.status, 1);
-  EXPECT_NE(wrong.out.find("as it was read: only 0."), std::string::npos) << wrong.out;
-  EXPECT_NE(wrong.out.find("of the rod: --unit m?"), std::string::npos) << wrong.out;
-  EXPECT_EQ(wrong.out.find("from arc length 0 to l"), std::string::npos) << wrong.out;
-  const json document = json::parse(run(check + " --unit mm --tolerance 1% --format json").out);
+  EXPECT_TRUE(says(wrong.out, {"as it was read: only 0.", "of the rod: --unit m?"}));
+  EXPECT_TRUE(says_none(wrong.out, {"from arc length 0 to l"}));
+  const json document = json_of(check + " --unit mm --tolerance 1%", 1);
   EXPECT_EQ(document.at("verdict"), "fail");
   EXPECT_LT(document.at("seen").at("share").get<double>(), 0.01);
-  EXPECT_NE(document.at("reason").get<std::string>().find("seen"), std::string::npos);
-  EXPECT_NE(run(check + " --unit mm --tolerance 1% --format csv").out.find(",fail,"),
-            std::string::npos);
+  EXPECT_TRUE(says(document.at("reason").get<std::string>(), {"seen"}));
+  EXPECT_TRUE(says(run(check + " --unit mm --tolerance 1% --format csv").out, {",fail,"}));
   EXPECT_EQ(run(check + " --unit mm --tolerance 1% --min-seen 0.01%").status, 0);
   EXPECT_EQ(run(check + " --tolerance 1%").status, 0);
   // Files with arc lengths say that they are too long, others fail and give a hint.
@@ -349,13 +329,13 @@ TEST_F(CheckCommand, AWrongUnitIsNoPass) {
     millimetres += std::to_string(1e3 * x) + "," + std::to_string(1e3 * y) + ",0\n";
   }
   const Outcome large = run("check " + steel() + " --shape " + shape(millimetres));
-  EXPECT_NE(large.out.find("times the rod: --unit mm?"), std::string::npos) << large.out;
+  EXPECT_TRUE(says(large.out, {"times the rod: --unit mm?"}));
 }
 
 TEST_F(CheckCommand, SeenRangeAndDirectionAreSaid) {
   const std::string file = shape("x,y,s\n-0.1,0,0.1\n-0.3,0,0.3\n-0.4,-0.01,0.4\n");
   const std::string check = "check " + steel() + " --shape " + file;
-  EXPECT_NE(run(check).out.find("3 points, from s = 0.1 to 0.4 m"), std::string::npos);
+  EXPECT_TRUE(says(run(check).out, {"3 points, from s = 0.1 to 0.4 m"}));
   EXPECT_EQ(run(check + " --tolerance \"1 m\" --min-seen 59%").status, 0);
   EXPECT_EQ(run(check + " --tolerance \"1 m\" --min-seen 61%").status, 1);
   for (const std::string share : {"0", "100%", "x"}) {
@@ -386,7 +366,7 @@ TEST_F(CheckCommand, BadInputIsOneLineAndStatusTwo) {
 TEST_F(CheckCommand, HelpHasAnExample) {
   const Outcome help = run("check --help");
   EXPECT_EQ(help.status, 0);
-  EXPECT_NE(help.out.find("dlo check data/scenes"), std::string::npos);
+  EXPECT_TRUE(says(help.out, {"dlo check data/scenes"}));
 }
 
 }  // namespace

@@ -9,22 +9,17 @@
 #include <string>
 
 #include "command_fixture.hpp"
+#include "scene_text.hpp"
 
 namespace {
 
 using dlo::test::Command;
 using dlo::test::Outcome;
+using dlo::test::says;
+using dlo::test::says_none;
 using nlohmann::json;
 
-constexpr const char* good = R"([rod]
-length = "50 cm"
-diameter = "2 mm"
-material = "spring_steel"
-[[gripper]]
-at = 0
-position = [0, 0, 0]
-direction = "-175 deg"
-)";
+const std::string good = dlo::test::steel_rod + dlo::test::gripper_text("direction = \"-175 deg\"");
 
 TEST_F(Command, SolveWritesTheContractsJsonForEveryModel) {
   for (const std::string model : {"energy", "chain", "exact", "force"}) {
@@ -53,17 +48,9 @@ TEST_F(Command, SolveWritesTheContractsJsonForEveryModel) {
   }
 }
 
-constexpr const char* two_grippers = R"(
-gravity = [0, -9.81, 0]
-[rod]
-length = "50 cm"
-diameter = "2 mm"
-material = "spring_steel"
-[[gripper]]
-at = 0
-position = [0, 0, 0]
-direction = "30 deg"
-[[gripper]]
+const std::string two_grippers = "gravity = [0, -9.81, 0]\n" + dlo::test::steel_rod +
+                                 dlo::test::gripper_text("direction = \"30 deg\"") +
+                                 R"([[gripper]]
 at = "40 cm"
 position = [0.3, 0.05, 0.1]
 hold = "pin"
@@ -80,10 +67,8 @@ points = 40
 TEST_F(Command, SolvesSeveralGrippersWithTheModelsForAnyScene) {
   std::vector<double> middle;
   for (const std::string model : {"energy", "chain", "force"}) {
-    const Outcome result =
-        run("solve " + scene(two_grippers) + " --model " + model + " --samples 11 --format json");
-    ASSERT_EQ(result.status, 0) << result.err;
-    const json document = json::parse(result.out);
+    const json document =
+        json_of("solve " + scene(two_grippers) + " --model " + model + " --samples 11");
     EXPECT_EQ(document.at("arc_length_m").back(), 0.5);
     ASSERT_EQ(document.at("grippers").size(), 2U);
     ASSERT_EQ(document.at("obstacles").size(), 1U);
@@ -102,14 +87,12 @@ TEST_F(Command, SolvesSeveralGrippersWithTheModelsForAnyScene) {
 }
 
 TEST_F(Command, CompareTakesSeveralGrippers) {
-  const Outcome result = run("compare " + scene(two_grippers) + " --format json");
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json entry = json::parse(result.out).at("cases")[0];
+  const json entry = json_of("compare " + scene(two_grippers)).at("cases")[0];
   EXPECT_LT(entry.at("deviation").at("rms_over_length").get<double>(), 1e-3);
   EXPECT_TRUE(entry.at("undeformed_rms_over_length").is_null());
   const Outcome text = run("compare " + scene(two_grippers));
   ASSERT_EQ(text.status, 0) << text.err;
-  EXPECT_EQ(text.out.find("nan"), std::string::npos) << text.out;
+  EXPECT_TRUE(says_none(text.out, {"nan"}));
 }
 
 TEST_F(Command, TooFewPointsForTheGrippersIsBadInput) {
@@ -178,7 +161,7 @@ normal = [0, 1, 0]
   };
   const json exact = solved("exact");
   const json energy = solved("energy");
-  EXPECT_EQ(run("solve " + floor + " --model exact").out.find("solver     0"), std::string::npos);
+  EXPECT_TRUE(says_none(run("solve " + floor + " --model exact").out, {"solver     0"}));
   for (const char* key : {"from_m", "to_m"}) {
     EXPECT_NEAR(exact.at("contacts")[0].at(key).get<double>(),
                 energy.at("contacts")[0].at(key).get<double>(), 1e-7);
@@ -187,7 +170,7 @@ normal = [0, 1, 0]
   for (std::size_t k = 0; k < 3; ++k) {
     EXPECT_NEAR(last[k].get<double>(), energy.at("points_m").back()[k].get<double>(), 1e-8);
   }
-  const std::string ball = std::string(good) + R"([[obstacle]]
+  const std::string ball = good + R"([[obstacle]]
 shape = "sphere"
 point = [0, -0.2, 0]
 radius = 0.1
@@ -216,8 +199,8 @@ point = [0, 0.06, 0]
 axis = [0, 0, 1]
 radius = "30 mm"
 )");
-  const json energy = json::parse(run("solve " + peg + " --format json").out);
-  const json exact = json::parse(run("solve " + peg + " --model exact --format json").out);
+  const json energy = json_of("solve " + peg);
+  const json exact = json_of("solve " + peg + " --model exact");
   ASSERT_FALSE(energy.at("contacts").empty());
   EXPECT_EQ(exact.at("contacts").size(), energy.at("contacts").size());
   for (std::size_t i = 0; i < energy.at("points_m").size(); ++i) {
@@ -226,14 +209,13 @@ radius = "30 mm"
                   energy.at("points_m")[i][k].get<double>(), 5e-9);
     }
   }
-  EXPECT_NE(run("solve " + peg + " --model exact").out.find("energy model says touches"),
-            std::string::npos);
+  EXPECT_TRUE(says(run("solve " + peg + " --model exact").out, {"energy model says touches"}));
 }
 
 TEST_F(Command, SolveMatchesTheReferenceValuesOfThePapersRod) {
   std::ifstream stream(std::string(DLO_DATA) + "/reference/reference_values.json");
   const json expected = json::parse(stream).at("paper_rod").at("E=210GPa,phi=-175");
-  const json document = json::parse(run("solve " + steel() + " --samples 17 --format json").out);
+  const json document = json_of("solve " + steel() + " --samples 17");
   for (std::size_t i = 0; i < 17; ++i) {
     EXPECT_NEAR(document.at("points_m")[i][0].get<double>(), expected.at("x_m")[i].get<double>(),
                 5e-9);
@@ -250,9 +232,7 @@ TEST_F(Command, SolveWritesCsvThatStartsWithItsHeader) {
 }
 
 TEST_F(Command, CompareWritesTheContractsJson) {
-  const Outcome result = run("compare " + steel() + " " + scene(good) + " --format json");
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json document = json::parse(result.out);
+  const json document = json_of("compare " + steel() + " " + scene(good));
   EXPECT_EQ(document.at("schema"), "dlo/compare/1");
   ASSERT_EQ(document.at("cases").size(), 2U);
   const json& paper = document.at("cases")[0];
@@ -272,7 +252,7 @@ TEST_F(Command, CompareWritesTheContractsJson) {
 }
 
 TEST_F(Command, ExplainSaysWhenTheSceneMovesAndWhyThereIsNoN) {
-  const std::string moving = scene(std::string(good) + R"([[obstacle]]
+  const std::string moving = scene(good + R"([[obstacle]]
 normal = [0, 1, 0]
 [[obstacle.pose]]
 time = 0
@@ -283,28 +263,22 @@ point = [0, -0.2, 0]
 )");
   const Outcome text = run("solve " + moving + " --explain");
   ASSERT_EQ(text.status, 0) << text.err;
-  EXPECT_NE(text.out.find("static: the scene as it is at 0 s; it moves from 0 to 2 s"),
-            std::string::npos)
-      << text.out;
-  EXPECT_NE(text.out.find("not determined for 0.1 % of l: the rod touches an obstacle"),
-            std::string::npos)
-      << text.out;
+  EXPECT_TRUE(says(text.out, {"static: the scene as it is at 0 s; it moves from 0 to 2 s",
+                              "not determined for 0.1 % of l: the rod touches an obstacle"}));
 }
 
 TEST_F(Command, ExplainShowsThePlanThatJsonAlwaysHas) {
-  const std::string far = scene(std::string(good) + R"([[obstacle]]
+  const std::string far = scene(good + R"([[obstacle]]
 point = [0, -0.6, 0]
 normal = [0, 1, 0]
 )");
   for (const std::string command : {"solve ", "compare "}) {
-    EXPECT_EQ(run(command + far).out.find("neglected"), std::string::npos);
+    EXPECT_TRUE(says_none(run(command + far).out, {"neglected"}));
     const Outcome text = run(command + far + " --explain --target-error 1e-4");
     ASSERT_EQ(text.status, 0) << text.err;
-    for (const char* expected : {"planar", "static", "clamp - free", "out of reach", "stretch",
-                                 "shear", "at most", "0.01 % of l"}) {
-      EXPECT_NE(text.out.find(expected), std::string::npos) << expected << "\n" << text.out;
-    }
-    const json document = json::parse(run(command + far + " --format json").out);
+    EXPECT_TRUE(says(text.out, {"planar", "static", "clamp - free", "out of reach", "stretch",
+                                "shear", "at most", "0.01 % of l"}));
+    const json document = json_of(command + far);
     const json& plan =
         command == "solve " ? document.at("plan") : document.at("cases")[0].at("plan");
     EXPECT_EQ(plan.at("geometry"), "planar");
@@ -319,10 +293,10 @@ normal = [0, 1, 0]
 
 TEST_F(Command, CompareIsReadableAsTextAndCsv) {
   const Outcome text = run("compare " + steel());
-  EXPECT_NE(text.out.find("E*/E"), std::string::npos);
+  EXPECT_TRUE(says(text.out, {"E*/E"}));
   const Outcome csv = run("compare " + steel() + " --format csv");
   EXPECT_EQ(csv.out.substr(0, 10), "scene,law,");
-  EXPECT_NE(csv.out.find("\"spring steel, -175 deg\""), std::string::npos);
+  EXPECT_TRUE(says(csv.out, {"\"spring steel, -175 deg\""}));
 }
 
 TEST_F(Command, PaperPrintsTablesShapesAndTheModulus) {
@@ -344,16 +318,12 @@ TEST_F(Command, PaperPrintsTablesShapesAndTheModulus) {
   const Outcome text = run("paper");
   EXPECT_EQ(text.status, 0) << text.err;
   EXPECT_EQ(text.err, "");
-  for (const char* expected :
-       {"3776.21457", "3574.96", "659734", "1/3", "spring steel, -215 deg", "116121", "34389"}) {
-    EXPECT_NE(text.out.find(expected), std::string::npos) << expected;
-  }
+  EXPECT_TRUE(says(text.out, {"3776.21457", "3574.96", "659734", "1/3", "spring steel, -215 deg",
+                              "116121", "34389"}));
 }
 
 TEST_F(Command, StabilityWritesTheContractsJsonAndFailsForNothingButAutoAndImplicit) {
-  const Outcome result = run("stability --case crossed --max-steps 2000 --format json");
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json document = json::parse(result.out);
+  const json document = json_of("stability --case crossed --max-steps 2000");
   EXPECT_EQ(document.at("schema"), "dlo/stability/1");
   ASSERT_EQ(document.at("cases").size(), 7U);
   const json& last = document.at("cases")[4];
@@ -369,9 +339,9 @@ TEST_F(Command, StabilityWritesTheContractsJsonAndFailsForNothingButAutoAndImpli
   EXPECT_EQ(run("stability --case crossed --stepper auto --max-steps-auto 100").status, 1);
   const Outcome refused = run("stability --case \"pulled too far\" --stepper auto");
   const Outcome no_number = run("stability --case \"pulled too far\" --stepper auto --format csv");
-  EXPECT_NE(no_number.out.find("\npulled too far,auto,refused,0,,false,"), std::string::npos);
+  EXPECT_TRUE(says(no_number.out, {"\npulled too far,auto,refused,0,,false,"}));
   EXPECT_EQ(refused.status, 0);
-  EXPECT_NE(refused.out.find("allowed: no more than the 0.5 m of rod"), std::string::npos);
+  EXPECT_TRUE(says(refused.out, {"allowed: no more than the 0.5 m of rod"}));
   EXPECT_EQ(run("stability --case crossed --stepper auto --format csv").out.substr(0, 13),
             "case,stepper,");
 }
@@ -380,7 +350,7 @@ TEST_F(Command, StabilityMapTakesAScene) {
   const std::string small = " --columns 2 --rows 8 --map-steps 2000";
   const Outcome text = run("stability --map cF-ch" + small);
   EXPECT_EQ(text.status, 0) << text.err;
-  EXPECT_NE(text.out.find("predicted"), std::string::npos);
+  EXPECT_TRUE(says(text.out, {"predicted"}));
   const Outcome csv = run("stability " + scene(good) + " --map cF-cc --format csv" + small);
   EXPECT_EQ(std::count(csv.out.begin(), csv.out.end(), '\n'), 1 + 2 * 8) << csv.err;
   const json document = json::parse(run("stability --map cF-cc --format json" + small).out);
@@ -394,7 +364,7 @@ TEST_F(Command, StabilityMapTakesAScene) {
 
 TEST_F(Command, BenchWritesRowsAndAnswers) {
   const std::string arguments = "bench " + steel() + " --seconds 0.5 --repeats 1";
-  const json document = json::parse(run(arguments + " --format json").out);
+  const json document = json_of(arguments);
   EXPECT_EQ(document.at("schema"), "dlo/bench/2");
   // How many fit into half a second is the machine's affair; what does not is named.
   EXPECT_GT(document.at("runs").size() + document.at("skipped").size(), 5U);
@@ -407,7 +377,7 @@ TEST_F(Command, BenchWritesRowsAndAnswers) {
   }
   EXPECT_EQ(document.at("answers")[0].at("static").size(), 4U);
   EXPECT_EQ(run(arguments + " --format csv").out.substr(0, 11), "scene,kind,");
-  EXPECT_NE(run(arguments).out.find("What to use"), std::string::npos);
+  EXPECT_TRUE(says(run(arguments).out, {"What to use"}));
   expect_error("bench --seconds 0", 2, {"--seconds"});
   expect_error("bench " + path("missing.toml"), 2, {"missing.toml"});
 }
@@ -473,7 +443,7 @@ TEST_F(Command, OutputThatCannotBeWrittenLeavesTheOldFileAlone) {
   expect_error("solve " + steel() + " -o " + path("no/such/folder/x.json"), 2,
                {"no/such/folder/x.json", "cannot be written"});
   EXPECT_EQ(run("solve " + steel() + " -o " + output).status, 0);
-  EXPECT_NE(read(output).find("\"gamma\""), std::string::npos);
+  EXPECT_TRUE(says(read(output), {"\"gamma\""}));
   std::filesystem::create_symlink("kept.json", path("link.json"));
   EXPECT_EQ(run("solve " + steel() + " --format csv -o " + path("link.json")).status, 0);
   EXPECT_TRUE(std::filesystem::is_symlink(path("link.json")));
@@ -508,7 +478,7 @@ TEST_F(Command, NoOptionIsLeftOutInSilence) {
   }
   const Outcome warned = run("solve " + steel() + " --points 9 --law hooke");
   EXPECT_EQ(warned.status, 0);
-  EXPECT_NE(warned.err.find("--points, --law: no effect"), std::string::npos) << warned.err;
+  EXPECT_TRUE(says(warned.err, {"--points, --law: no effect"}));
   EXPECT_EQ(run("solve " + steel() + " --points 9 --model chain").err, "");
   EXPECT_EQ(run("solve " + steel()).err, "");
 }
@@ -525,16 +495,15 @@ TEST_F(Command, HelpIsACommandAndUnknownOptionsAreNamed) {
 
 TEST_F(Command, SolveSaysWhichGripperHoldsAndPrintsNoMinusZero) {
   const std::string text = run("solve " + scene(good)).out;
-  EXPECT_NE(text.find("gripper 1 at s = 0 m (clamp): force ["), std::string::npos) << text;
-  EXPECT_EQ(text.find("-0 J"), std::string::npos) << text;
-  EXPECT_EQ(text.find("-0.00000000"), std::string::npos) << text;
+  EXPECT_TRUE(says(text, {"gripper 1 at s = 0 m (clamp): force ["}));
+  EXPECT_TRUE(says_none(text, {"-0 J", "-0.00000000"}));
 }
 
 TEST_F(Command, HelpHasAnExample) {
   for (const std::string command : {"solve", "compare", "paper", "bench", "stability"}) {
     const Outcome help = run(command + " --help");
     EXPECT_EQ(help.status, 0);
-    EXPECT_NE(help.out.find("Example"), std::string::npos) << command;
+    EXPECT_TRUE(says(help.out, {"Example"})) << command;
   }
   EXPECT_EQ(run("--version").status, 0);
 }

@@ -15,17 +15,15 @@
 namespace {
 
 using dlo::test::Outcome;
+using dlo::test::says;
+using dlo::test::says_none;
 using nlohmann::json;
 
 class ContactCommand : public dlo::test::Command {
  protected:
-  std::string scene(const std::string& name, const std::string& text) {
-    std::ofstream(path(name)) << text;
-    return path(name);
-  }
   /// A cable on a floor; a second floor is out of reach.
   std::string lying() {
-    return scene("lying.toml",
+    return write("lying.toml",
                  "[rod]\nlength = 0.6\ndiameter = \"4 mm\"\nmaterial = \"silicone\"\n"
                  "[[gripper]]\nat = 0\nposition = [0, 0.05, 0]\ndirection = \"0 deg\"\n"
                  "[[obstacle]]\npoint = [0, -9, 0]\nnormal = [0, 1, 0]\n"
@@ -34,7 +32,7 @@ class ContactCommand : public dlo::test::Command {
 };
 
 TEST_F(ContactCommand, CompareSaysWhatTouchesAsSolveDoes) {
-  const json solved = json::parse(run("solve --format json " + lying()).out);
+  const json solved = json_of("solve " + lying());
   const Outcome compared = run("compare --no-modulus --format json " + lying());
   ASSERT_EQ(compared.status, 0) << compared.err;
   const json document = json::parse(compared.out);
@@ -46,9 +44,8 @@ TEST_F(ContactCommand, CompareSaysWhatTouchesAsSolveDoes) {
               solved.at("contacts")[0].at("from_m").get<double>(), 1e-8);
   EXPECT_GT(document.at("cases").at(0).at("budget").at("contact_m").get<double>(), 0);
   const Outcome text = run("compare --no-modulus " + lying());
-  EXPECT_NE(text.out.find("\n                  contact  "), std::string::npos) << text.out;
-  EXPECT_NE(text.out.find("\n  contact         obstacle 2, lying from s = "), std::string::npos)
-      << text.out;
+  EXPECT_TRUE(says(text.out, {"\n                  contact  ",
+                              "\n  contact         obstacle 2, lying from s = "}));
 }
 
 // No model has friction: the shape is that without, and every command says what it left out, but
@@ -57,10 +54,10 @@ TEST_F(ContactCommand, FrictionIsLeftOutAloud) {
   const std::string smooth = lying();
   std::ifstream file(smooth);
   const std::string text{std::istreambuf_iterator<char>(file), {}};
-  const std::string rough = scene("rough.toml", text + "friction = 0.3\n");
+  const std::string rough = write("rough.toml", text + "friction = 0.3\n");
   const std::size_t second = text.rfind("[[obstacle]]");
   const std::string rough_below =
-      scene("below.toml", text.substr(0, second) + "friction = 0.3\n" + text.substr(second));
+      write("below.toml", text.substr(0, second) + "friction = 0.3\n" + text.substr(second));
   for (const std::string model : {"energy", "chain", "force"}) {
     SCOPED_TRACE(model);
     const auto solve = [&](const std::string& format, const std::string& of) {
@@ -72,50 +69,42 @@ TEST_F(ContactCommand, FrictionIsLeftOutAloud) {
     EXPECT_EQ(with.at("left_out"), with.at("neglected"));
     EXPECT_EQ(with.at("points_m"), without.at("points_m"));
     EXPECT_FALSE(without.contains("neglected"));
-    EXPECT_NE(solve("text", rough).out.find("\nneglected  friction: the scene has it, model"),
-              std::string::npos);
-    EXPECT_NE(solve("csv", rough).err.find("neglects the friction"), std::string::npos);
+    EXPECT_TRUE(says(solve("text", rough).out, {"\nneglected  friction: the scene has it, model"}));
+    EXPECT_TRUE(says(solve("csv", rough).err, {"neglects the friction"}));
     EXPECT_FALSE(json::parse(solve("json", rough_below).out).contains("neglected"));
   }
   const json compared = json::parse(run("compare --no-modulus --format json " + rough).out);
   EXPECT_EQ(compared.at("cases").at(0).at("neglected"), json({"friction"}));
   const std::string told = run("compare --no-modulus " + rough).out;
-  EXPECT_NE(told.find("\n  neglected       friction that the scene has, by both models"),
-            std::string::npos)
-      << told;
-  EXPECT_EQ(told.find("by the force model: in all below"), std::string::npos) << told;
-  EXPECT_NE(run("solve --explain " + rough).out.find("friction                no bound"),
-            std::string::npos);
-  EXPECT_EQ(run("solve --explain " + rough_below).out.find("friction"), std::string::npos);
+  EXPECT_TRUE(says(told, {"\n  neglected       friction that the scene has, by both models"}));
+  EXPECT_TRUE(says_none(told, {"by the force model: in all below"}));
+  EXPECT_TRUE(says(run("solve --explain " + rough).out, {"friction                no bound"}));
+  EXPECT_TRUE(says_none(run("solve --explain " + rough_below).out, {"friction"}));
 }
 
 // A shape that friction may hold is held against the one without: it fails or passes as any other.
 TEST_F(ContactCommand, CheckSaysWhatFrictionAShapeNeeds) {
   const std::string smooth = lying();
   std::ifstream file(smooth);
-  const std::string rough = scene(
+  const std::string rough = write(
       "rough.toml", std::string{std::istreambuf_iterator<char>(file), {}} + "friction = 0.3\n");
   const std::string mine = path("mine.csv");
   ASSERT_EQ(run("solve --format csv --samples 40 -o " + mine + " " + smooth).status, 0);
   const std::string rest = " --no-modulus --tolerance 1% --shape " + mine;
   const Outcome with = run("check " + rough + rest);
   EXPECT_EQ(with.status, 0) << with.err;
-  EXPECT_NE(with.out.find("\n  neglected       friction that the scene has"), std::string::npos)
-      << with.out;
-  EXPECT_EQ(run("check " + smooth + rest).out.find("friction"), std::string::npos);
-  const json document = json::parse(run("check --format json " + rough + rest).out);
+  EXPECT_TRUE(says(with.out, {"\n  neglected       friction that the scene has"}));
+  EXPECT_TRUE(says_none(run("check " + smooth + rest).out, {"friction"}));
+  const json document = json_of("check " + rough + rest);
   EXPECT_EQ(document.at("neglected"), json({"friction"}));
   const Outcome row = run("check --format csv " + rough + rest);
-  EXPECT_NE(row.err.find("has friction"), std::string::npos);
+  EXPECT_TRUE(says(row.err, {"has friction"}));
   // Whether friction could hold the shape is told apart: this one needs none.
-  EXPECT_NE(with.out.find("\n  friction        none is needed: an equilibrium without it"),
-            std::string::npos)
-      << with.out;
+  EXPECT_TRUE(says(with.out, {"\n  friction        none is needed: an equilibrium without it"}));
   const json& friction = document.at("friction");
   EXPECT_EQ(friction.at("verdict"), "none_needed");
   EXPECT_EQ(friction.at("factor"), 0);
-  EXPECT_NE(row.out.find(",friction,friction_factor\n"), std::string::npos);
-  EXPECT_NE(row.out.find(",none_needed,0\n"), std::string::npos) << row.out;
+  EXPECT_TRUE(says(row.out, {",friction,friction_factor\n", ",none_needed,0\n"}));
 }
 
 // A cable that hangs beside a peg, a ball or a box: all models know the same bodies.
@@ -135,7 +124,7 @@ TEST_F(ContactCommand, AllModelsTouchTheSameBodies) {
           "[force_model]\nlaw = \"hooke\"\nbookkeeping = \"consistent\"\npoints = ";
       text.append(std::to_string(points)).append("\n[[obstacle]]\n").append(body);
       std::string line = "solve --format json --samples 13 --model ";
-      line.append(model).append(" ").append(scene("body.toml", text));
+      line.append(model).append(" ").append(write("body.toml", text));
       const Outcome outcome = run(line);
       EXPECT_EQ(outcome.status, 0) << outcome.err;
       return json::parse(outcome.out);
@@ -166,20 +155,20 @@ TEST_F(ContactCommand, AllModelsTouchTheSameBodies) {
 TEST_F(ContactCommand, SolveSaysWhereARodCrossesItself) {
   // Nothing but its own nature bends it, round by more than once.
   const std::string loop =
-      scene("loop.toml",
+      write("loop.toml",
             "gravity = [0, 0, 0]\n[rod]\nlength = 1\ndiameter = \"2 mm\"\nmaterial = \"nitinol\"\n"
             "natural_curvature = \"9 1/m\"\n"
             "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"0 deg\"\n");
   const Outcome text = run("solve " + loop);
   ASSERT_EQ(text.status, 0) << text.err;
-  const json document = json::parse(run("solve --format json " + loop).out);
+  const json document = json_of("solve " + loop);
   ASSERT_TRUE(document.contains("self_crossing")) << text.out;
-  EXPECT_NE(text.out.find("\ncrossing   at s = "), std::string::npos) << text.out;
+  EXPECT_TRUE(says(text.out, {"\ncrossing   at s = "}));
   const json& crossing = document.at("self_crossing");
   EXPECT_LT(crossing.at("distance_m").get<double>(), 2e-3);
   EXPECT_NEAR(crossing.at("s_m")[1].get<double>() - crossing.at("s_m")[0].get<double>(),
               2 * M_PI / 9, 0.02);
-  EXPECT_EQ(run("solve " + lying()).out.find("crossing"), std::string::npos);
+  EXPECT_TRUE(says_none(run("solve " + lying()).out, {"crossing"}));
 }
 
 }  // namespace

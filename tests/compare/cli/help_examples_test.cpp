@@ -14,6 +14,7 @@ namespace {
 
 using dlo::test::Command;
 using dlo::test::Outcome;
+using dlo::test::says;
 
 class Reference : public Command {
  protected:
@@ -127,7 +128,7 @@ TEST_F(Reference, ManualPageIsWellFormedAndKnowsEveryOption) {
   EXPECT_EQ(page.status, 0);
   for (const std::string section :
        {"NAME", "SYNOPSIS", "COMMANDS", "ENVIRONMENT", "FILES", "EXIT STATUS", "EXAMPLES"}) {
-    EXPECT_NE(page.out.find("\n.Sh " + section + "\n"), std::string::npos) << section;
+    EXPECT_TRUE(says(page.out, {"\n.Sh " + section + "\n"})) << section;
   }
   if (bash("command -v mandoc").status != 0) GTEST_SKIP() << "no mandoc";
   const Outcome lint = bash("dlo --man-page >dlo.1; mandoc -Tlint -Wwarning dlo.1");
@@ -135,7 +136,7 @@ TEST_F(Reference, ManualPageIsWellFormedAndKnowsEveryOption) {
   const std::string shown = bash("mandoc -Tascii dlo.1 | sed 's/.\x08//g'").out;
   for (const std::string& command : commands()) {
     for (const std::string& option : options_of(command)) {
-      EXPECT_NE(shown.find(option), std::string::npos) << command << " " << option;
+      EXPECT_TRUE(says(shown, {option})) << command;
     }
   }
 }
@@ -209,7 +210,7 @@ TEST_F(Reference, ZshCompletesCommandsOptionsChoicesAndFiles) {
     ASSERT_NE(begin, std::string::npos) << command;
     const std::string its = text.substr(begin, text.find(";;", begin) - begin);
     for (const std::string& option : options_of(command)) {
-      EXPECT_NE(its.find(option), std::string::npos) << command << " " << option;
+      EXPECT_TRUE(says(its, {option})) << command;
     }
   }
 }

@@ -24,6 +24,7 @@ using dlo::compare::scene_text;
 using dlo::compare::SceneChoices;
 using dlo::test::Command;
 using dlo::test::Outcome;
+using dlo::test::says;
 using nlohmann::json;
 
 /// The optional paragraphs of a scene file, without the # of their lines.
@@ -64,7 +65,7 @@ TEST_F(Command, InitWritesASceneThatSolves) {
   const std::string file = path("cable.toml");
   const Outcome result = run("init " + file + " --length 2m --diameter '6 mm' --material silicone");
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_NE(result.out.find("dlo solve " + file), std::string::npos);
+  EXPECT_TRUE(says(result.out, {"dlo solve " + file}));
   const Scene scene = dlo::compare::load_scene(file);
   EXPECT_EQ(scene.name, "cable");
   EXPECT_EQ(scene.length, 2);
@@ -100,8 +101,8 @@ TEST_F(Command, InitWritesASceneWithZUp) {
   const Eigen::Vector3d direction = *y.grippers.front().direction;
   EXPECT_TRUE(z.grippers.front().direction->isApprox(
       Eigen::Vector3d(direction.x(), 0, direction.y()), 1e-12));
-  const json at_y = json::parse(run("solve " + path("y.toml") + " --format json").out);
-  const json at_z = json::parse(run("solve " + path("z.toml") + " --format json").out);
+  const json at_y = json_of("solve " + path("y.toml"));
+  const json at_z = json_of("solve " + path("z.toml"));
   const auto tip = [](const json& shape, int axis) {
     return shape.at("points_m").back().at(static_cast<std::size_t>(axis)).get<double>();
   };
@@ -113,7 +114,7 @@ TEST_F(Command, InitWritesASceneWithZUp) {
     all += paragraph;
     EXPECT_NO_THROW((void)parse_scene(text + paragraph, "z.toml")) << paragraph;
   }
-  EXPECT_NE(all.find("normal = [0, 0, 1]"), std::string::npos) << all;
+  EXPECT_TRUE(says(all, {"normal = [0, 0, 1]"}));
   expect_error("init " + path("x.toml") + " --up x", 2, {"--up", "y", "z"});
 }
 
@@ -219,14 +220,14 @@ TEST(SceneText, ExplainsEveryKeyThatAScenesTablesKnow) {
 TEST_F(Command, MaterialsListsEveryMaterialWithValues) {
   const Outcome text = run("materials");
   EXPECT_EQ(text.status, 0);
-  const nlohmann::json document = nlohmann::json::parse(run("materials --format json").out);
+  const nlohmann::json document = json_of("materials");
   EXPECT_EQ(document.at("schema"), "dlo/materials/1");
   const auto& known = dlo::compare::materials();
   ASSERT_EQ(document.at("materials").size(), known.size());
   for (std::size_t i = 0; i < known.size(); ++i) {
     EXPECT_EQ(document["materials"][i]["youngs_modulus_Pa"], known[i].youngs_modulus);
     EXPECT_EQ(document["materials"][i]["density_kg_per_m3"], known[i].density);
-    EXPECT_NE(("\n" + text.out).find("\n" + known[i].name + " "), std::string::npos);
+    EXPECT_TRUE(says(("\n" + text.out), {"\n" + known[i].name + " "}));
   }
 }
 

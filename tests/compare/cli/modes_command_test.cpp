@@ -11,6 +11,7 @@ namespace {
 
 using dlo::test::Command;
 using dlo::test::Outcome;
+using dlo::test::says;
 using nlohmann::json;
 
 class ModesCommand : public Command {
@@ -22,9 +23,8 @@ TEST_F(ModesCommand, TellsFrequenciesInEveryFormat) {
   const std::string modes = words({"modes", cable(), "--count 3 --samples 11"});
   const Outcome text = run(modes);
   ASSERT_EQ(text.status, 0) << text.err;
-  EXPECT_NE(text.out.find("mode 1      0.608202 Hz, out; polygon 0.60"), std::string::npos);
-  EXPECT_NE(text.out.find("stable from"), std::string::npos);
-  const json document = json::parse(run(modes + " --format json").out);
+  EXPECT_TRUE(says(text.out, {"mode 1      0.608202 Hz, out; polygon 0.60", "stable from"}));
+  const json document = json_of(modes);
   EXPECT_EQ(document.at("schema"), "dlo/modes/1");
   ASSERT_EQ(document.at("modes").size(), 3U);
   const json& first = document.at("modes")[0];
@@ -34,8 +34,7 @@ TEST_F(ModesCommand, TellsFrequenciesInEveryFormat) {
   EXPECT_TRUE(first.at("stepped").is_null());
   const std::string csv = run(modes + " --format csv").out;
   EXPECT_EQ(csv.substr(0, 18), "mode,frequency_Hz,");
-  const json stepped =
-      json::parse(run(modes + " --stepper dynamic --format json").out).at("modes")[0];
+  const json stepped = json_of(modes + " --stepper dynamic").at("modes")[0];
   EXPECT_EQ(stepped.at("stepped").at("damping_ratio").get<double>(), 1);
 }
 

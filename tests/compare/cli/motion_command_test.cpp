@@ -23,9 +23,6 @@ class MotionCommand : public dlo::test::Command {
     Command::SetUp();
     write("swung.toml", swung(0.02));
   }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(path(name)) << text;
-  }
   static std::string swung(double stiffness) {
     return fmt::format(
         "[rod]\nlength = 0.4\nbending_stiffness = {}\nmass_per_length = 0.05\n[[gripper]]\nat = 0\n"
@@ -135,11 +132,8 @@ TEST_F(MotionCommand, MeasuredPosesAreSmoothedBelowTheirCutoff) {
       "direction = 0\n";
   const std::string way = "trajectory = \"way.csv\"\n";
   write("smooth.toml", rod + way + "cutoff = \"5 Hz\"\n");
-  const Outcome track =
-      run(words({"track", path("smooth.toml"),
-                 "--no-force --from 0.5 --to 1.5 --frame-rate 37 --format json"}));
-  ASSERT_EQ(track.status, 0) << track.err;
-  const json document = json::parse(track.out);
+  const json document = json_of(
+      words({"track", path("smooth.toml"), "--no-force --from 0.5 --to 1.5 --frame-rate 37"}));
   for (const json& frame : document.at("frames")) {
     // A gain of 0.001 is left of it: 1 / (1 + (sqrt(2) - 1) / sin(pi / 20)^4).
     EXPECT_NEAR(frame.at("grippers").at(0).at("position_m").at(0).get<double>(),

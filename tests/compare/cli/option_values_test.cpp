@@ -7,11 +7,14 @@
 #include <vector>
 
 #include "command_fixture.hpp"
+#include "scene_text.hpp"
 
 namespace {
 
 using dlo::test::Command;
 using dlo::test::Outcome;
+using dlo::test::says;
+using dlo::test::says_none;
 
 /// Words of lines that begin with two blanks, of one kind.
 std::vector<std::string> first_words(const std::string& help, const std::string& start) {
@@ -86,19 +89,11 @@ TEST_F(Command, NumbersOfOptionsAreInTheirRange) {
   expect_error(solve + "--c-c nan", 2, {"--c-c", "nan", "not finite"});
   expect_error(solve + "--c-c 1e400", 2, {"--c-c", "too large"});
   expect_error("solve " + steel() + " --samples 1000001", 2, {"--samples", "2 to 1000000"});
-  EXPECT_NE(run("solve --help").out.find("0.001 to 1e+09"), std::string::npos);
+  EXPECT_TRUE(says(run("solve --help").out, {"0.001 to 1e+09"}));
 }
 
-constexpr const char* rod_of = R"(gravity = [0, -9.81, 0]
-[rod]
-length = "50 cm"
-diameter = "2 mm"
-material = "spring_steel"
-[[gripper]]
-at = 0
-position = [0, 0, 0]
-direction = "0 deg"
-)";
+const std::string rod_of =
+    "gravity = [0, -9.81, 0]\n" + dlo::test::steel_rod + dlo::test::level_clamp;
 
 TEST_F(Command, ContradictoryGripsNameFileLineAndKeyWithEveryModel) {
   const auto with_pin = [&](const std::string& at, const std::string& x) {
@@ -142,7 +137,7 @@ TEST_F(Command, AModelThatDoesNotTakeASceneSaysWhichDoes) {
   const std::string file = scene(soft);
   expect_error("solve " + file + " --model exact", 2,
                {"scene.toml: rod: model exact", "must be <= 1e6"});
-  EXPECT_EQ(run("solve " + file + " --model exact").err.find("solve_exact"), std::string::npos);
+  EXPECT_TRUE(says_none(run("solve " + file + " --model exact").err, {"solve_exact"}));
 }
 
 TEST_F(Command, TheOnlyStableStateIsNotNumberedAsWell) {
@@ -151,8 +146,8 @@ TEST_F(Command, TheOnlyStableStateIsNotNumberedAsWell) {
                "{ youngs_modulus = \"0.8 GPa\", density = 7850 }");
   const Outcome result = run("compare " + scene(soft));
   ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_EQ(result.out.find("number 1 of 1"), std::string::npos) << result.out;
-  EXPECT_NE(result.out.find("the only stable one found"), std::string::npos) << result.out;
+  EXPECT_TRUE(says_none(result.out, {"number 1 of 1"}));
+  EXPECT_TRUE(says(result.out, {"the only stable one found"}));
 }
 
 }  // namespace

@@ -28,8 +28,12 @@
 #include "dlo/compare/error.hpp"
 #include "format/json.hpp"
 #include "format/solution_output.hpp"
+#include "scene_text.hpp"
 
 namespace {
+
+using dlo::test::says;
+using dlo::test::says_none;
 
 namespace fs = std::filesystem;
 
@@ -41,16 +45,8 @@ using dlo::compare::OutputTarget;
 using dlo::compare::valid_utf8;
 using dlo::test::Outcome;
 
-constexpr const char* held_at_both_ends = R"(name = "both ends"
-[rod]
-length = "50 cm"
-diameter = "2 mm"
-material = "spring_steel"
-[[gripper]]
-at = 0
-position = [0, 0, 0]
-direction = "0 deg"
-[[gripper]]
+const std::string held_at_both_ends =
+    "name = \"both ends\"\n" + dlo::test::steel_rod + dlo::test::level_clamp + R"([[gripper]]
 at = "50 cm"
 position = [0.45, 0, 0]
 direction = "0 deg"
@@ -65,19 +61,11 @@ class Output : public dlo::test::Command {
     return run_line("bash " + path("script"));
   }
 
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(path(name), std::ios::binary) << text;
-  }
-
   void write_scene(const std::string& name) const { write(name, read(steel())); }
 
   [[nodiscard]] std::vector<std::string> files() const {
-    std::vector<std::string> names;
-    for (const fs::directory_entry& entry : fs::directory_iterator(path(""))) {
-      const std::string name = entry.path().filename();
-      if (name != "script" && name != "stderr") names.push_back(name);
-    }
-    std::sort(names.begin(), names.end());
+    std::vector<std::string> names = Command::files();
+    std::erase_if(names, [](const auto& name) { return name == "script" || name == "stderr"; });
     return names;
   }
 
@@ -102,8 +90,7 @@ TEST_F(Output, ThatIsLostOnStandardOutputIsAnError) {
       const Outcome result = bash(words({"$dlo", arguments, lost}));
       EXPECT_EQ(result.status, 5) << arguments << lost;
       EXPECT_TRUE(one_line(result.err)) << arguments << lost << "\n" << result.err;
-      EXPECT_NE(result.err.find("standard output: cannot be written"), std::string::npos)
-          << result.err;
+      EXPECT_TRUE(says(result.err, {"standard output: cannot be written"}));
     }
   }
   EXPECT_EQ(bash("$dlo solve cable.toml -o shape.csv >&-").status, 0);
@@ -112,8 +99,7 @@ TEST_F(Output, ThatIsLostOnStandardOutputIsAnError) {
   // SIGXFSZ would end it by a signal; the file keeps what it had.
   const Outcome limited = bash("ulimit -f 1; $dlo solve cable.toml --samples 9999 -o shape.csv");
   EXPECT_EQ(limited.status, 5);
-  EXPECT_NE(limited.err.find("shape.csv: cannot be written (File too large)"), std::string::npos)
-      << limited.err;
+  EXPECT_TRUE(says(limited.err, {"shape.csv: cannot be written (File too large)"}));
   EXPECT_EQ(read(path("shape.csv")).substr(0, 8), "x,y,z,s\n");
   EXPECT_EQ(files(), (std::vector<std::string>{"cable.toml", "mine.toml", "shape.csv"}));
 }
@@ -252,7 +238,7 @@ TEST_F(Output, AnInputIsNeverWrittenOver) {
   expect_error(words({"report", path(""), "-o", path("")}), 2, {"-o", "is read too"});
   const Outcome appended = bash("$dlo solve scene.toml >>scene.toml");
   EXPECT_EQ(appended.status, 2);
-  EXPECT_NE(appended.err.find("standard output"), std::string::npos) << appended.err;
+  EXPECT_TRUE(says(appended.err, {"standard output"}));
   EXPECT_EQ(read(scene), text);
   // A baseline that is written anew is its own input.
   EXPECT_EQ(run("regress " + scene + " --update --baseline " + path("base.toml")).status, 0);
@@ -375,10 +361,8 @@ TEST_F(Output, OutOfThreadsIsALineAndAStatus) {
 
 TEST_F(Output, HelpAndManualPageSayEveryExitStatus) {
   const std::string help = run("--help").out;
-  for (const std::string part :
-       {"0 good", "1 outside", "2 bad usage", "3 a solver", "4 out of memory", "5 an output"}) {
-    EXPECT_NE(help.find(part), std::string::npos) << part;
-  }
+  EXPECT_TRUE(says(help, {"0 good", "1 outside", "2 bad usage", "3 a solver", "4 out of memory",
+                          "5 an output"}));
   const std::string page = run("--man-page").out;
   const std::size_t section = page.find(".Sh EXIT STATUS");
   for (const std::string item : {".It 0", ".It 1", ".It 2", ".It 3", ".It 4", ".It 5"}) {
@@ -540,14 +524,14 @@ TEST_F(Output, NamesThatAreNoTextBreakNoFormat) {
     EXPECT_FALSE(nlohmann::json::parse(json.out, nullptr, false).is_discarded()) << command;
     const std::string text = bash("$dlo " + command).out;
     EXPECT_EQ(text.find_first_of("\x1b\xff"), std::string::npos) << text;
-    EXPECT_NE(text.find("w\xef\xbf\xbd?[31mire"), std::string::npos) << text;
+    EXPECT_TRUE(says(text, {"w\xef\xbf\xbd?[31mire"}));
   }
   // A baseline holds the name that its scene has the next time.
   const std::string regress = "$dlo regress " + scene + " --baseline b.toml --junit j.xml";
   ASSERT_EQ(bash(regress + " --update").status, 0);
   const Outcome again = bash(regress);
   EXPECT_EQ(again.status, 0) << again.out << again.err;
-  EXPECT_NE(again.out.find("1 same"), std::string::npos) << again.out;
+  EXPECT_TRUE(says(again.out, {"1 same"}));
   EXPECT_EQ(again.out.find_first_of("\x1b\xff"), std::string::npos) << again.out;
   const std::string junit = read(path("j.xml"));
   EXPECT_EQ(valid_utf8(junit), junit);
@@ -570,10 +554,9 @@ TEST_F(Output, TextHoldsNoControlCharactersOfNames) {
       EXPECT_EQ(display(std::regex_replace(text, std::regex("\n"), " ")),
                 std::regex_replace(text, std::regex("\n"), " "))
           << command;
-      EXPECT_EQ(text.find("\n  verdict  pass"), std::string::npos) << command;
+      EXPECT_TRUE(says_none(text, {"\n  verdict  pass"})) << command;
     }
-    EXPECT_NE((result.out + result.err).find("a?[31m??"), std::string::npos)
-        << command << result.out;
+    EXPECT_TRUE(says(result.out + result.err, {"a?[31m??"})) << command;
   }
 }
 

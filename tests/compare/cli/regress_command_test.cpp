@@ -10,8 +10,12 @@
 
 #include "command_fixture.hpp"
 #include "dlo/compare/deviation.hpp"
+#include "scene_text.hpp"
 
 namespace {
+
+using dlo::test::says;
+using dlo::test::says_none;
 
 class RegressCommand : public dlo::test::Command {
  protected:
@@ -60,7 +64,7 @@ TEST_F(RegressCommand, UpdateLeavesABaselineThatHasChangedSinceItWasRead) {
   const dlo::test::Outcome late =
       run(arguments_ + steel() + " --with \"m=sh " + path("meanwhile.sh") + " {shape}\" --update");
   EXPECT_EQ(late.status, 5) << late.out;
-  EXPECT_NE(late.err.find("b.toml: left as it is: another process"), std::string::npos) << late.err;
+  EXPECT_TRUE(says(late.err, {"b.toml: left as it is: another process"}));
   EXPECT_EQ(run(arguments_ + other).out.substr(0, 5), "same ");
   EXPECT_FALSE(std::filesystem::exists(path("b.toml.lock")));
 }
@@ -71,9 +75,7 @@ TEST_F(RegressCommand, AProgramThatIsNotGivenIsAskedFor) {
   ASSERT_EQ(run(arguments_ + steel() + with + " --update").status, 0);
   const dlo::test::Outcome result = run(arguments_ + steel());
   EXPECT_EQ(result.status, 1);
-  EXPECT_NE(result.out.find("in the baseline, of a program: --with mine='COMMAND' runs it"),
-            std::string::npos)
-      << result.out;
+  EXPECT_TRUE(says(result.out, {"in the baseline, of a program: --with mine='COMMAND' runs it"}));
   EXPECT_EQ(run(arguments_ + steel() + with).status, 0);
 }
 
@@ -81,10 +83,10 @@ TEST_F(RegressCommand, UpdateSaysWhatItDid) {
   const std::string other = std::string(DLO_DATA) + "/scenes/spring_steel_135.toml";
   EXPECT_EQ(run(arguments_ + steel() + " --update").out.substr(0, 5), "same ");
   const std::string both = run(arguments_ + steel() + " " + other + " --update").out;
-  EXPECT_EQ(both.find("--update adds it"), std::string::npos) << both;
-  EXPECT_NE(both.find("added "), std::string::npos) << both;
+  EXPECT_TRUE(says_none(both, {"--update adds it"}));
+  EXPECT_TRUE(says(both, {"added "}));
   const std::string removed = run(arguments_ + steel() + " --update").out;
-  EXPECT_NE(removed.find("removed "), std::string::npos) << removed;
+  EXPECT_TRUE(says(removed, {"removed "}));
   set("rms_over_length", "0.3");
   EXPECT_EQ(run(arguments_ + steel() + " --update").out.substr(0, 8), "changed ");
 }
@@ -93,13 +95,13 @@ TEST_F(RegressCommand, AWorseErrorFailsAndABetterOneIsReported) {
   set("rms_over_length", "0.2");
   dlo::test::Outcome result = run(arguments_ + steel());
   EXPECT_EQ(result.status, 1);
-  EXPECT_NE(result.out.find("(baseline 20 %) worse"), std::string::npos) << result.out;
+  EXPECT_TRUE(says(result.out, {"(baseline 20 %) worse"}));
   EXPECT_EQ(run(arguments_ + steel() + " --relative 0.1").status, 0);
   EXPECT_EQ(run(arguments_ + steel() + " --absolute 0.02").status, 0);
   set("rms_over_length", "0.3");
   result = run(arguments_ + steel());
   EXPECT_EQ(result.status, 0);
-  EXPECT_NE(result.out.find("1 better"), std::string::npos) << result.out;
+  EXPECT_TRUE(says(result.out, {"1 better"}));
 }
 
 TEST_F(RegressCommand, AMissingBaselineOrCaseOnEitherSideFails) {
@@ -109,33 +111,30 @@ TEST_F(RegressCommand, AMissingBaselineOrCaseOnEitherSideFails) {
   const std::string other = std::string(DLO_DATA) + "/scenes/spring_steel_135.toml";
   const dlo::test::Outcome added = run(arguments_ + steel() + " " + other);
   EXPECT_EQ(added.status, 1);
-  EXPECT_NE(added.out.find("1 not in the baseline"), std::string::npos) << added.out;
+  EXPECT_TRUE(says(added.out, {"1 not in the baseline"}));
   const dlo::test::Outcome changed = run(arguments_ + steel() + " --points 20");
   EXPECT_EQ(changed.status, 1);
-  EXPECT_NE(changed.out.find("N = 20 (baseline N = 16): RMS"), std::string::npos) << changed.out;
-  EXPECT_NE(changed.out.find("\n1 changed\n"), std::string::npos) << changed.out;
+  EXPECT_TRUE(says(changed.out, {"N = 20 (baseline N = 16): RMS", "\n1 changed\n"}));
 }
 
 TEST_F(RegressCommand, AnotherSceneOfTheSameNameIsChanged) {
   std::string text = read(steel());
-  ASSERT_NE(text.find("\n[rod]"), std::string::npos);
+  ASSERT_TRUE(says(text, {"\n[rod]"}));
   text.replace(text.find("\n[rod]"), 6, "\n[[load]]\nat = 0.5\nforce = [0, 1e-9, 0]\n[rod]");
   const dlo::test::Outcome result = run(arguments_ + scene(text));
   EXPECT_EQ(result.status, 1) << result.err;
   EXPECT_EQ(result.out.substr(0, 8), "changed ") << result.out;
-  EXPECT_NE(result.out.find("another than the baseline's: RMS"), std::string::npos) << result.out;
+  EXPECT_TRUE(says(result.out, {"another than the baseline's: RMS"}));
   // Written in another way it is the same scene.
   std::string same = read(steel());
-  ASSERT_NE(same.find("\"50 cm\""), std::string::npos);
+  ASSERT_TRUE(says(same, {"\"50 cm\""}));
   same.replace(same.find("\"50 cm\""), 7, "0.5");
   EXPECT_EQ(run(arguments_ + scene(same)).status, 0);
 }
 
 TEST_F(RegressCommand, TakesPercentAndSharesAlikeAndOnePercentByDefault) {
-  const double rms = nlohmann::json::parse(run(arguments_ + steel() + " --format json").out)
-                         .at("cases")[0]
-                         .at("measured")
-                         .at("rms_over_length");
+  const double rms =
+      json_of(arguments_ + steel()).at("cases")[0].at("measured").at("rms_over_length");
   const auto status = [&](double before, const std::string& options) {
     set("rms_over_length", std::to_string(before));
     return run(arguments_ + steel() + options).status;
@@ -157,7 +156,7 @@ TEST_F(RegressCommand, WhatIsNotSolvedIsStatusThreeAndUpdatesNothing) {
   for (const std::string update : {"", " --update"}) {
     const dlo::test::Outcome result = run(arguments_ + steel() + " --max-evaluations 1" + update);
     EXPECT_EQ(result.status, 3);
-    EXPECT_NE(result.out.find("did not converge"), std::string::npos) << result.out;
+    EXPECT_TRUE(says(result.out, {"did not converge"}));
     EXPECT_EQ(read(path("b.toml")), before);
   }
 }
@@ -176,33 +175,25 @@ TEST_F(RegressCommand, BadInputIsOneLineAndStatusTwo) {
 
 TEST_F(RegressCommand, WritesJunitThatAnXmlReaderTakes) {
   set("tip_over_length", "0.1");
-  const std::string strange = scene(R"(name = "<&>'\" \u0001 caf\u00e9"
-[rod]
-length = "50 cm"
-diameter = "2 mm"
-material = "spring_steel"
-[[gripper]]
-at = 0
-position = [0, 0, 0]
-direction = "0 deg"
-)");
+  const std::string strange = scene("name = \"<&>'\\\" \\u0001 caf\\u00e9\"\n" +
+                                    dlo::test::steel_rod + dlo::test::level_clamp);
   EXPECT_EQ(run(arguments_ + steel() + " " + strange + " --junit " + path("j.xml")).status, 1);
   EXPECT_EQ(junit("string(/testsuites/testsuite/@tests)"), "2\n");
   EXPECT_EQ(junit("string(/testsuites/testsuite/@failures)"), "2\n");
   EXPECT_EQ(junit("count(//testcase/failure)"), "2\n");
   EXPECT_EQ(junit("string(//testcase[failure/@type=\"not in the baseline\"]/@name)"),
             "<&>'\"   caf\xc3\xa9 (chain, law hooke, bookkeeping consistent, N = 16)\n");
-  EXPECT_NE(junit("string(//failure[@type=\"worse\"]/@message)").find("tip"), std::string::npos);
+  EXPECT_TRUE(says(junit("string(//failure[@type=\"worse\"]/@message)"), {"tip"}));
 }
 
 TEST_F(RegressCommand, PrintsJsonAndCsv) {
-  const auto document = nlohmann::json::parse(run(arguments_ + steel() + " --format json").out);
+  const auto document = json_of(arguments_ + steel());
   EXPECT_EQ(document.at("schema"), "dlo/regress/1");
   EXPECT_EQ(document.at("verdict"), "pass");
   EXPECT_EQ(document.at("cases")[0].at("verdict"), "same");
   EXPECT_GT(document.at("cases")[0].at("measured").at("rms_over_length").get<double>(), 0.1);
   EXPECT_EQ(run(arguments_ + steel() + " --format csv").out.substr(0, 13), "case,verdict,");
-  EXPECT_NE(run("regress --help").out.find("Example:"), std::string::npos);
+  EXPECT_TRUE(says(run("regress --help").out, {"Example:"}));
 }
 
 }  // namespace

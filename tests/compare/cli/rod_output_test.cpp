@@ -14,6 +14,8 @@
 namespace {
 
 using dlo::test::Outcome;
+using dlo::test::says;
+using dlo::test::says_none;
 using nlohmann::json;
 
 class RodCommand : public dlo::test::Command {
@@ -33,17 +35,14 @@ TEST_F(RodCommand, SolveSaysThatTheTorsionalStiffnessIsAssumed) {
   for (const std::string model : {"energy", "chain"}) {
     const Outcome text = run("solve --explain --model " + model + " " + hose());
     ASSERT_EQ(text.status, 0) << text.err;
-    for (const char* line : {"\nassumed    torsional stiffness GJ = EI / 1.3 = 0.06154 N m^2",
-                             "  assumed         torsional stiffness"}) {
-      EXPECT_NE(text.out.find(line), std::string::npos) << text.out;
-    }
-    const json document =
-        json::parse(run("solve --format json --model " + model + " " + hose()).out);
+    EXPECT_TRUE(says(text.out, {"\nassumed    torsional stiffness GJ = EI / 1.3 = 0.06154 N m^2",
+                                "  assumed         torsional stiffness"}));
+    const json document = json_of("solve --model " + model + " " + hose());
     const json& assumed = document.at("assumed");
     EXPECT_NEAR(assumed.at("torsional_stiffness_Nm2").get<double>(), 0.08 / 1.3, 1e-15);
     EXPECT_EQ(assumed.at("poisson_ratio"), 0.3);
   }
-  const json straight = json::parse(run("solve --format json " + by_stiffness("0.08")).out);
+  const json straight = json_of("solve " + by_stiffness("0.08"));
   EXPECT_FALSE(straight.contains("assumed"));
 }
 
@@ -58,17 +57,14 @@ TEST_F(RodCommand, SolveShowsARodThatIsAboutToBuckleAndItsNeutralDirections) {
   const Outcome text = run("solve " + file);
   EXPECT_EQ(text.status, 3);
   const std::string why = "next to a fold or bifurcation: 2 neutral directions";
-  EXPECT_NE(text.out.find("model      energy, " + why + "\n"), std::string::npos) << text.out;
-  EXPECT_NE(text.err.find(why), std::string::npos) << text.err;
-  const Outcome document = run("solve --format json " + file);
-  EXPECT_EQ(document.status, 3);
-  const json result = json::parse(document.out);
+  EXPECT_TRUE(says(text.out, {"model      energy, " + why + "\n"}));
+  EXPECT_TRUE(says(text.err, {why}));
+  const json result = json_of("solve " + file, 3);
   EXPECT_EQ(result.at("status"), "near_singular");
   EXPECT_EQ(result.at("converged"), false);
   EXPECT_EQ(result.at("neutral_directions"), 2);
   EXPECT_GT(result.at("error_estimate_over_length").get<double>(), 0);
-  EXPECT_FALSE(json::parse(run("solve --format json " + by_stiffness("0.08")).out)
-                   .contains("neutral_directions"));
+  EXPECT_FALSE(json_of("solve " + by_stiffness("0.08")).contains("neutral_directions"));
 }
 
 TEST_F(RodCommand, ASolvedShapeWithFramesIsARestShape) {
@@ -85,9 +81,8 @@ TEST_F(RodCommand, ASolvedShapeWithFramesIsARestShape) {
     ASSERT_EQ(run("solve " + coil + " --samples 81 -o " + path("coil." + format)).status, 0);
     const Outcome again = run("solve " + rod("rest_shape = \"coil." + format + "\""));
     ASSERT_EQ(again.status, 0) << again.err;
-    EXPECT_NE(again.out.find("m of 1 arc (RMS "), std::string::npos) << again.out;
-    EXPECT_NE(again.out.find(" m), d1 within "), std::string::npos) << again.out;
-    const json document = json::parse(run("solve --format json " + path("scene.toml")).out);
+    EXPECT_TRUE(says(again.out, {"m of 1 arc (RMS ", " m), d1 within "}));
+    const json document = json_of("solve " + path("scene.toml"));
     EXPECT_LT(document.at("rest_shape").at("largest_angle_rad").get<double>(), 1e-7);
     EXPECT_EQ(run("check " + path("scene.toml") + " --shape " + path("coil." + format)).status, 0);
   }
@@ -97,11 +92,10 @@ TEST_F(RodCommand, ComparesByTheStiffnessThatIsGiven) {
   const std::string rod = by_stiffness("0.08");
   const Outcome text = run("compare " + rod);
   ASSERT_EQ(text.status, 0) << text.err;
-  EXPECT_NE(text.out.find("  EI*/EI          1.0"), std::string::npos) << text.out;
-  EXPECT_EQ(text.out.find("  E*/E"), std::string::npos);
+  EXPECT_TRUE(says(text.out, {"  EI*/EI          1.0"}));
+  EXPECT_TRUE(says_none(text.out, {"  E*/E"}));
   ASSERT_EQ(run("solve " + rod + " --format csv -o " + path("shape.csv")).status, 0);
-  const json check =
-      json::parse(run("check " + rod + " --shape " + path("shape.csv") + " --format json").out);
+  const json check = json_of("check " + rod + " --shape " + path("shape.csv"));
   EXPECT_NEAR(check.at("effective_bending_stiffness_Nm2").get<double>(), 0.08, 1e-6);
   EXPECT_FALSE(check.contains("effective_modulus_Pa"));
 }
@@ -114,7 +108,7 @@ TEST_F(RodCommand, CalibrateFindsTheStiffnessThatIsGiven) {
   const Outcome text = run(calibrate);
   ASSERT_EQ(text.status, 0) << text.err;
   EXPECT_EQ(text.out.rfind("EI          0.08 N m^2, 95 %", 0), 0U) << text.out;
-  const json document = json::parse(run(calibrate + " --format json").out);
+  const json document = json_of(calibrate);
   EXPECT_NEAR(document.at("bending_stiffness_Nm2").get<double>(), 0.08, 1e-6);
   EXPECT_LE(document.at("interval_95_Nm2")[0].get<double>(), 0.0800001);
   EXPECT_FALSE(document.contains("youngs_modulus_Pa"));
@@ -132,23 +126,19 @@ TEST_F(RodCommand, CalibrateFindsTheStiffnessThatIsGiven) {
 TEST_F(RodCommand, AModelWithoutNaturalCurvatureSaysSoAndWhatItCosts) {
   const std::string paper = hose() + " --law paper";
   const Outcome chain = run("solve --model chain " + paper);
-  EXPECT_NE(chain.out.find("neglected  natural curvature: the scene has it, model chain"),
-            std::string::npos)
-      << chain.out;
-  EXPECT_NE(
-      run("compare --no-modulus --format csv " + paper)
-          .err.find("intrinsically curved, which models chain and force neglect with the law"),
-      std::string::npos);
-  EXPECT_NE(
+  EXPECT_TRUE(says(chain.out, {"neglected  natural curvature: the scene has it, model chain"}));
+  EXPECT_TRUE(says(run("compare --no-modulus --format csv " + paper).err,
+                   {"intrinsically curved, which models chain and force neglect with the law"}));
+  EXPECT_TRUE(says(
       run("sweep --model chain --vary force_model.law=paper --vary rod.natural_curvature=0,1 " +
           hose())
-          .err.find("intrinsically curved"),
-      std::string::npos);
+          .err,
+      {"intrinsically curved"}));
   EXPECT_EQ(run("sweep --model chain --vary rod.natural_curvature=0,1 " + hose()).err, "");
   EXPECT_EQ(run("stability --map cF-cc --columns 2 --rows 2 --map-steps 100 " + hose()).status, 0);
   const Outcome text = run("compare --no-modulus " + paper);
   ASSERT_EQ(text.status, 0) << text.err;
-  EXPECT_NE(text.out.find("neglected       natural curvature"), std::string::npos) << text.out;
+  EXPECT_TRUE(says(text.out, {"neglected       natural curvature"}));
   const json entry =
       json::parse(run("compare --no-modulus --format json " + paper).out).at("cases")[0];
   EXPECT_EQ(entry.at("neglected"), json({"natural curvature"}));

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command_fixture.hpp"
+#include "scene_text.hpp"
 
 namespace {
 
@@ -12,16 +13,8 @@ using dlo::test::Command;
 using dlo::test::Outcome;
 using nlohmann::json;
 
-constexpr const char* short_rod = R"(gravity = [0, -9.81, 0]
-[rod]
-length = "50 cm"
-diameter = "2 mm"
-material = "spring_steel"
-[[gripper]]
-at = 0
-position = [0, 0, 0]
-direction = "0 deg"
-[force_model]
+const std::string short_rod =
+    "gravity = [0, -9.81, 0]\n" + dlo::test::steel_rod + dlo::test::level_clamp + R"([force_model]
 points = 8
 c_c = 660
 )";

@@ -8,6 +8,8 @@ namespace {
 
 using dlo::test::Command;
 using dlo::test::Outcome;
+using dlo::test::says;
+using dlo::test::says_none;
 
 class Terminal : public Command {
  protected:
@@ -37,12 +39,10 @@ TEST_F(Terminal, ProgressIsShownAndErased) {
   const std::string grid =
       "sweep " + steel() + " --vary gamma=log:0.1:1:40 --threads 2 --restart -o ";
   const std::string text = seen("TERM=xterm", grid + path("a.csv"));
-  EXPECT_NE(text.find("sweep ["), std::string::npos) << text;
-  EXPECT_NE(text.find("100 %, 40 of 40"), std::string::npos) << text;
-  EXPECT_NE(text.find(erased), std::string::npos) << text;
+  EXPECT_TRUE(says(text, {"sweep [", "100 %, 40 of 40", erased}));
   // Nothing is left behind the last erasure but script's own last line.
   const std::string rest = text.substr(text.rfind(erased) + 4);
-  EXPECT_EQ(rest.find("sweep"), std::string::npos) << rest;
+  EXPECT_TRUE(says_none(rest, {"sweep"}));
   // The result is the same without a terminal, where there is no progress.
   const Outcome quiet = run(grid + path("b.csv"));
   EXPECT_EQ(quiet.err, "");
@@ -60,18 +60,18 @@ TEST_F(Terminal, LongCommandsShowProgressAndEraseIt) {
 
 TEST_F(Terminal, ADumbTerminalGetsPlainText) {
   const std::string text = seen("TERM=dumb", "compare " + steel() + " " + steel());
-  EXPECT_EQ(text.find('\x1b'), std::string::npos) << text;
+  EXPECT_TRUE(says_none(text, {"\x1b"}));
 }
 
 TEST_F(Terminal, ColoursAreForTerminalsThatWantThem) {
   ASSERT_EQ(run("solve " + steel() + " --format csv -o " + path("s.csv")).status, 0);
   const std::string check = "check " + steel() + " --tolerance 1% --shape " + path("s.csv");
   const std::string green = "\x1b[32mpass\x1b[0m";
-  EXPECT_NE(seen("TERM=xterm", check).find(green), std::string::npos);
-  EXPECT_EQ(seen("TERM=xterm NO_COLOR=1", check).find(green), std::string::npos);
-  EXPECT_NE(seen("TERM=xterm NO_COLOR=", check).find(green), std::string::npos);
-  EXPECT_EQ(seen("TERM=dumb", check).find('\x1b'), std::string::npos);
-  EXPECT_EQ(run(check).out.find('\x1b'), std::string::npos);
+  EXPECT_TRUE(says(seen("TERM=xterm", check), {green}));
+  EXPECT_TRUE(says_none(seen("TERM=xterm NO_COLOR=1", check), {green}));
+  EXPECT_TRUE(says(seen("TERM=xterm NO_COLOR=", check), {green}));
+  EXPECT_TRUE(says_none(seen("TERM=dumb", check), {"\x1b"}));
+  EXPECT_TRUE(says_none(run(check).out, {"\x1b"}));
   (void)seen("TERM=xterm", check + " -o " + path("check.txt"));
   EXPECT_EQ(read(path("check.txt")), run(check).out);
 }

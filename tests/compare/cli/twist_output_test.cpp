@@ -20,6 +20,8 @@ using dlo::compare::Plan;
 using dlo::compare::Scene;
 using dlo::compare::Solution;
 using dlo::test::Outcome;
+using dlo::test::says;
+using dlo::test::says_none;
 using Eigen::Vector3d;
 using nlohmann::json;
 using std::numbers::pi;
@@ -72,7 +74,7 @@ TEST(TwistOutput, JsonOfARodWithoutFramesHasNoTwist) {
   EXPECT_FALSE(document.at("grippers")[0].contains("axial_torque_Nm"));
   EXPECT_FALSE(document.at("plan").contains("twist"));
   const std::string text = dlo::cli::solution_text(solution, scene);
-  EXPECT_EQ(text.find("twist"), std::string::npos) << text;
+  EXPECT_TRUE(says_none(text, {"twist"}));
 }
 
 TEST(TwistOutput, JsonSaysWhatWasNeglectedInsteadOfATorqueOfNone) {
@@ -87,22 +89,19 @@ TEST(TwistOutput, JsonSaysWhatWasNeglectedInsteadOfATorqueOfNone) {
 
 TEST(TwistOutput, TextHasALineForEachPart) {
   const std::string text = dlo::cli::solution_text(twisted_solution(), twisted_by_two_grippers());
-  for (const char* line : {"energy     bending 1 J, twisting 2.5 J, gravity -0.25 J, load 0 J",
-                           "\ntwist      3 rad, torque 1.5 Nm from s = 0 to 0.4 m\n",
-                           "\ntwist      -0.5 rad, torque -0.25 Nm from s = 0.4 to 1 m\n"}) {
-    EXPECT_NE(text.find(line), std::string::npos) << line << "\n" << text;
-  }
+  EXPECT_TRUE(says(text, {"energy     bending 1 J, twisting 2.5 J, gravity -0.25 J, load 0 J",
+                          "\ntwist      3 rad, torque 1.5 Nm from s = 0 to 0.4 m\n",
+                          "\ntwist      -0.5 rad, torque -0.25 Nm from s = 0.4 to 1 m\n"}));
 }
 
 TEST(TwistOutput, APlanTellsWhoTwistsWhat) {
   const Scene scene = twisted_by_two_grippers();
   const auto expect_line = [&](const Plan& plan, const std::string& line) {
     const std::string text = dlo::cli::plan_text(plan, scene);
-    EXPECT_NE(text.find("\n  twist           " + line + "\n"), std::string::npos) << line << "\n"
-                                                                                  << text;
+    EXPECT_TRUE(says(text, {"\n  twist           " + line + "\n"})) << line;
   };
   Plan plan;
-  EXPECT_EQ(dlo::cli::plan_text(plan, scene).find("twist"), std::string::npos);
+  EXPECT_TRUE(says_none(dlo::cli::plan_text(plan, scene), {"twist"}));
   plan.frame_held = true;
   expect_line(plan, "no: one gripper alone holds the frame, and the rod turns with it");
   plan.twist = {{.begin = 0, .end = 0.4, .turn = pi}, {.begin = 0.4, .end = 1, .turn = 1e-15}};
@@ -129,26 +128,24 @@ TEST_F(TwistCommand, ModelsThatHaveNoTwistSaySo) {
     const std::string solve = "solve " + wire() + " --law paper --model " + model;
     const Outcome text = run(solve);
     ASSERT_EQ(text.status, 0) << text.err;
-    EXPECT_NE(text.out.find("neglected  twist: the scene has it, model " + model),
-              std::string::npos)
-        << text.out;
+    EXPECT_TRUE(says(text.out, {"neglected  twist: the scene has it, model " + model}));
     EXPECT_EQ(text.err, "");
-    EXPECT_EQ(json::parse(run(solve + " --format json").out).at("neglected"), json({"twist"}));
+    EXPECT_EQ(json_of(solve).at("neglected"), json({"twist"}));
     const Outcome csv = run(solve + " --format csv");
-    EXPECT_NE(csv.err.find("model " + model + " neglects the twist"), std::string::npos);
+    EXPECT_TRUE(says(csv.err, {"model " + model + " neglects the twist"}));
   }
 }
 
 TEST_F(TwistCommand, ModelsOfThePolygonHaveItWithTheLawHooke) {
-  const json rod = json::parse(run("solve --format json " + wire()).out);
+  const json rod = json_of("solve " + wire());
   const double torque = rod.at("twist").at("parts")[0].at("torque_Nm").get<double>();
   for (const std::string model : {"chain", "force"}) {
     const std::string solve = "solve --points 60 --model " + model + " " + wire();
     const Outcome text = run(solve);
     ASSERT_EQ(text.status, 0) << text.err;
-    EXPECT_EQ(text.out.find("neglected"), std::string::npos) << text.out;
-    EXPECT_NE(text.out.find("\ntwist      "), std::string::npos) << text.out;
-    const json document = json::parse(run(solve + " --format json").out);
+    EXPECT_TRUE(says_none(text.out, {"neglected"}));
+    EXPECT_TRUE(says(text.out, {"\ntwist      "}));
+    const json document = json_of(solve);
     EXPECT_FALSE(document.contains("neglected"));
     const json& part = document.at("twist").at("parts")[0];
     EXPECT_NEAR(part.at("torque_Nm").get<double>(), torque, 0.01 * torque);
@@ -166,25 +163,21 @@ TEST_F(TwistCommand, CommandsThatUseThemSaySo) {
       "compare --no-modulus --law paper --format csv ",
       "regress --update --law paper --baseline " + path("b.toml") + " "};
   for (const std::string& command : commands) {
-    EXPECT_NE(run(command + wire()).err.find(note), std::string::npos) << command;
+    EXPECT_TRUE(says(run(command + wire()).err, {note})) << command;
   }
   EXPECT_EQ(run("sweep --vary rod.torsional_stiffness=0.01 " + wire()).err, "");
   // These have none with any law.
   const std::string map = "stability --map cF-cc --columns 2 --rows 4 --map-steps 500 ";
-  EXPECT_NE(run(map + wire()).err.find("the grippers hold twist, which the map neglects"),
-            std::string::npos);
-  EXPECT_NE(run("bench --seconds 0.1 --repeats 1 " + wire())
-                .err.find("the grippers hold twist, which tracking by the force model neglects"),
-            std::string::npos);
+  EXPECT_TRUE(says(run(map + wire()).err, {"the grippers hold twist, which the map neglects"}));
+  EXPECT_TRUE(says(run("bench --seconds 0.1 --repeats 1 " + wire()).err,
+                   {"the grippers hold twist, which tracking by the force model neglects"}));
 }
 
 TEST_F(TwistCommand, AComparisonSaysThatTheForceModelHasNone) {
   const Outcome text = run("compare --no-modulus --law paper " + wire());
   ASSERT_EQ(text.status, 0) << text.err;
-  EXPECT_NE(text.out.find("neglected       twist that the scene has, by the force model"),
-            std::string::npos)
-      << text.out;
-  EXPECT_NE(text.out.find("\n                  twist            "), std::string::npos) << text.out;
+  EXPECT_TRUE(says(text.out, {"neglected       twist that the scene has, by the force model",
+                              "\n                  twist            "}));
   const json document =
       json::parse(run("compare --no-modulus --law paper --format json " + wire()).out);
   EXPECT_EQ(document.at("cases")[0].at("neglected"), json({"twist"}));
@@ -197,17 +190,13 @@ TEST_F(TwistCommand, AComparisonSaysThatTheForceModelHasNone) {
 TEST_F(TwistCommand, ExplainTellsTheAngle) {
   const Outcome text = run("solve --explain " + wire());
   ASSERT_EQ(text.status, 0) << text.err;
-  for (const char* expected :
-       {"twist           yes: the grippers turn it by 180 degrees from 0 to 0.5 m",
-        "degrees stay as twist", "distance from the lowest shape without it", "spatial"}) {
-    EXPECT_NE(text.out.find(expected), std::string::npos) << expected << "\n" << text.out;
-  }
+  EXPECT_TRUE(says(
+      text.out, {"twist           yes: the grippers turn it by 180 degrees from 0 to 0.5 m",
+                 "degrees stay as twist", "distance from the lowest shape without it", "spatial"}));
 }
 
 TEST_F(TwistCommand, TheEnergyModelGivesTorqueAndEnergyOfTheTwist) {
-  const Outcome result = run("solve --format json " + wire());
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json document = json::parse(result.out);
+  const json document = json_of("solve " + wire());
   EXPECT_FALSE(document.contains("neglected"));
   const json& part = document.at("twist").at("parts")[0];
   // Bending out of its plane the wire turns a part of the half turn into writhe.

@@ -10,93 +10,30 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <cmath>
 #include <cstdlib>
 #include <exception>
 #include <fstream>
-#include <numbers>
-#include <random>
 #include <string>
 #include <vector>
 
-#include "../measured_shapes.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/material_fit.hpp"
-#include "dlo/energy_model/energy.hpp"
-#include "polygon/energy_problems.hpp"
+#include "random_wire.hpp"
 
 namespace {
 
 using namespace dlo::compare;
+using dlo::test::Wire;
+using dlo::test::wire_of;
 
-constexpr double one_degree = std::numbers::pi / 180;
 constexpr int mountings = 5;
-constexpr double said_stiffness = 1e-3;            // EI of the scenes [N m^2]
-constexpr double camera_tilt = 2 * one_degree;     // standard deviation, one of all mountings
-constexpr double fixture_error = 20 * one_degree;  // of a clamp, one of all mountings
-constexpr double own_error = 5 * one_degree;       // of a clamp, each mounting's own
-constexpr double curvature = 2;                    // of a term of natural curvature [1/m]
-constexpr double point_error = 0.003;              // of a coordinate, correlated [m]
-constexpr double error_length = 0.2;               // of the length
-
-Scene said_scene(double EI) {
-  Scene scene;
-  scene.name = scene.file = "wire";
-  scene.length = 1.5;
-  scene.given_bending_stiffness = EI;
-  scene.given_mass_per_length = 0.0215;
-  scene.gravity = {0, -9.81, 0};
-  scene.grippers = {{.at = 0, .position = {0, 0, 0}, .direction = Eigen::Vector3d::UnitX()},
-                    {.at = 1.5, .position = {-0.12, 0, 0}, .direction = Eigen::Vector3d::UnitX()}};
-  return scene;
-}
-
-Eigen::Vector3d turned(const Eigen::Vector3d& vector, double angle) {
-  return Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * vector;
-}
 
 struct Outcome {
   bool predicted = false;
   bool held = false;
   bool chosen_as_made = false;
 };
-
-struct Wire {
-  double EI = 0;
-  std::vector<Scene> scenes;
-  std::vector<MeasuredShape> shapes;
-};
-
-Wire wire_of(unsigned seed, int count) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> normal;
-  Wire wire{.EI = said_stiffness * std::exp(0.3 * normal(random))};
-  Scene truth = said_scene(wire.EI);
-  truth.natural_strain.y() = curvature * normal(random);
-  truth.natural_variation = {{0, curvature * normal(random)}, {0, curvature * normal(random)}};
-  const double tilt = camera_tilt * normal(random);
-  for (Gripper& clamp : truth.grippers) {
-    clamp.direction = turned(*clamp.direction, fixture_error * normal(random));
-  }
-  for (int i = 0; i < count; ++i) {
-    Scene mounted = truth;
-    for (Gripper& clamp : mounted.grippers) {
-      clamp.direction = turned(*clamp.direction, own_error * normal(random));
-    }
-    dlo::energy_model::Problem problem = energy_problem(mounted);
-    problem.confined_to_plane = true;
-    const std::vector<double> s = equal_arc_lengths(mounted.length, 50);
-    Eigen::Matrix3Xd points = dlo::energy_model::solve_energy(problem).sample(s).points;
-    points = Eigen::AngleAxisd(tilt, Eigen::Vector3d::UnitZ()).matrix() * points;
-    const double length = error_length * mounted.length;
-    points += dlo::test::correlated_noise(s, point_error, length, random);
-    points.row(2).setZero();
-    wire.scenes.push_back(said_scene(said_stiffness));
-    wire.shapes.push_back({"seen", points, {}});
-  }
-  return wire;
-}
 
 Outcome outcome_of(unsigned seed) {
   const Wire wire = wire_of(seed, mountings);

@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "../../says.hpp"
 #include "dlo/compare/error.hpp"
 
 namespace dlo::compare {
 namespace {
 
+using test::error_of;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -28,12 +30,9 @@ TEST(CommandWords, NothingIsExpanded) {
 
 TEST(CommandWords, WhatIsNotClosedIsRefused) {
   for (const char* command : {"sim 'a", "sim \"a", "sim \"a\\", "sim a\\", "", "  \n"}) {
-    try {
-      (void)words_of(command);
-      ADD_FAILURE() << command;
-    } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("--with x: the command ")) << command;
-    }
+    EXPECT_THAT(error_of<InputError>([&] { return words_of(command); }),
+                HasSubstr("--with x: the command "))
+        << command;
   }
 }
 

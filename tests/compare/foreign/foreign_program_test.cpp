@@ -10,6 +10,7 @@
 #include <fstream>
 #include <string>
 
+#include "../../says.hpp"
 #include "base/input_file.hpp"
 #include "base/temporary_path.hpp"
 #include "dlo/compare/error.hpp"
@@ -20,6 +21,7 @@
 namespace dlo::compare {
 namespace {
 
+using test::error_of;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -33,12 +35,7 @@ ForeignRun run_shell(const std::string& line, double time_limit = 20) {
 }
 
 std::string refusal_of_program(const std::string& with) {
-  try {
-    (void)parse_foreign_program(with);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
+  return error_of<InputError>([&] { return parse_foreign_program(with); });
 }
 
 /// Runs with a temporary folder of its own, to see what stays in it.

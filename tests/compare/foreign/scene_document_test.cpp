@@ -8,18 +8,20 @@
 
 #include "command_fixture.hpp"
 #include "dlo/compare/scene_file.hpp"
+#include "scene_text.hpp"
 
 namespace dlo::compare {
 namespace {
 
 using nlohmann::ordered_json;
+using test::level_clamp;
+using test::says;
+using test::says_none;
 
 ordered_json document_of(const std::string& text) {
   return scene_document(parse_scene(text, "scene.toml"));
 }
 
-const std::string level_clamp =
-    "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"0 deg\"\n";
 const std::string spliced = R"(
 [rod]
 length = "80 cm"
@@ -92,7 +94,7 @@ TEST(SceneDocument, SaysWhyThereIsNoPolygon) {
   const ordered_json document = document_of(
       "[rod]\nlength = 1\nbending_stiffness = [1e-3, 2e-3]\nmass_per_length = 0.1\n" + level_clamp);
   const ordered_json& model = document.at("force_model");
-  EXPECT_NE(model.at("refused").get<std::string>().find("two values"), std::string::npos);
+  EXPECT_TRUE(says(model.at("refused").get<std::string>(), {"two values"}));
   EXPECT_FALSE(model.contains("segment_m"));
   EXPECT_EQ(document.at("rod").at("bending_stiffness_Nm2"), ordered_json({1e-3, 2e-3}));
   EXPECT_TRUE(document.at("rod").at("torsional_stiffness_is_assumed"));
@@ -159,9 +161,8 @@ TEST_F(SceneCommand, WritesTheDocumentAndTheSameForPeople) {
   scene.force_model.points = 8;
   EXPECT_EQ(document, ordered_json::parse(scene_document_text(scene)));
   const dlo::test::Outcome text = run("scene " + twisted);
-  EXPECT_NE(text.out.find("GJ 0.00793 N m^2"), std::string::npos) << text.out;
-  EXPECT_NE(text.out.find("frame held: roll 3.14159 rad"), std::string::npos) << text.out;
-  EXPECT_EQ(text.out.find("null"), std::string::npos) << text.out;
+  EXPECT_TRUE(says(text.out, {"GJ 0.00793 N m^2", "frame held: roll 3.14159 rad"}));
+  EXPECT_TRUE(says_none(text.out, {"null"}));
   expect_error("scene --format csv " + twisted, 2, {"--format", "csv"});
 }
 

@@ -62,13 +62,13 @@ TEST(ShapeCheck, FindsTheModulusInAnyFrameFromEitherEnd) {
 // along the rod: a wrong shape could be moved along it until its points lie past an end.
 TEST(ShapeCheck, AFrameByNearestPointsIsNeverWorseThanByLengthsAlongThePoints) {
   std::mt19937 random(20);
-  for (const double direction : {0.0, 60.0, -80.0}) {
-    const Scene scene = heavy_scene(140, direction);
+  for (const auto& [gamma, direction] : {std::pair(140.0, 0.0), {40.0, 60.0}, {40.0, -80.0}}) {
+    const Scene scene = heavy_scene(gamma, direction);
     for (const double stiffer : {0.5, 1.5, 3.0}) {
       if (test::sanitized && stiffer != 1.5) continue;
       Scene other = scene;
       other.material.youngs_modulus *= stiffer;
-      for (const int count : {9, 40}) {
+      for (const int count : {9, 20}) {
         const Eigen::Matrix3Xd points = exact_shape(other, equal_arc_lengths(1, count)).points;
         for (const double noise : {0.0, 5e-3}) {
           for (const double stretch : {0.98, 1.0, 1.03}) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "../../says.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "motion/frame_clock.hpp"
@@ -17,6 +18,7 @@ namespace {
 
 using energy_model::ContactKind;
 using energy_model::ContactPart;
+using test::says;
 
 TrackOptions at_rate(double rate) {
   TrackOptions options;
@@ -244,7 +246,7 @@ TEST(Track, StopsWhereGrippersAreFartherApartThanTheRod) {
   ASSERT_TRUE(result.stopped);
   // Half of the way at half of the time.
   EXPECT_NEAR(result.stopped->time, 0.5, 0.03);
-  EXPECT_NE(result.stopped->why.find("rod between them"), std::string::npos) << result.stopped->why;
+  EXPECT_TRUE(says(result.stopped->why, {"rod between them"}));
   EXPECT_GE(result.frames.size(), 19U);
   EXPECT_LT(result.frames.back().time, result.stopped->time);
 }

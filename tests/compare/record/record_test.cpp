@@ -24,6 +24,8 @@ using dlo::compare::Solution;
 using dlo::compare::SolvedShape;
 using dlo::test::Command;
 using dlo::test::Outcome;
+using dlo::test::says;
+using dlo::test::says_none;
 
 class Record : public Command {
  protected:
@@ -79,7 +81,7 @@ TEST_F(Record, ANumberOfAShapeStandsInEachCommandsOutput) {
     EXPECT_NEAR(std::stod(in_first_row(tracked, number.key())), value, 1e-6) << number.key();
     EXPECT_TRUE(std::isfinite(std::stod(in_first_row(swept, number.key())))) << number.key();
     if ((number.places & dlo::compare::in_text) != 0) {
-      EXPECT_NE(text.find(std::string(number.words)), std::string::npos) << number.key();
+      EXPECT_TRUE(says(text, {std::string(number.words)})) << number.key();
     }
     ++places;
   }
@@ -88,12 +90,12 @@ TEST_F(Record, ANumberOfAShapeStandsInEachCommandsOutput) {
   EXPECT_NEAR(solved.at("link_turns").get<double>(), 0.5, 1e-3);
   EXPECT_NEAR(solved.at("twist_turns").get<double>() + solved.at("writhe_turns").get<double>(), 0.5,
               1e-3);
-  EXPECT_NE(text.find("turns      0.500 = twist "), std::string::npos) << text;
+  EXPECT_TRUE(says(text, {"turns      0.500 = twist "}));
 }
 
 TEST_F(Record, AShapeWithoutFramesHasNoTurns) {
   const std::string rod = std::string(DLO_DATA) + "/scenes/spring_steel_175.toml";
-  EXPECT_EQ(out(words({"solve", rod, "--format json"})).find("turns"), std::string::npos);
+  EXPECT_TRUE(says_none(out(words({"solve", rod, "--format json"})), {"turns"}));
   EXPECT_EQ(out(words({"sweep", rod, "--vary gamma=1"})).substr(0, 66),
             "row,gamma,tip_x_m,tip_y_m,tip_z_m,energy_J,evaluations,terms,statu");
 }

@@ -5,32 +5,25 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 
+#include "../../says.hpp"
 #include "dlo/compare/error.hpp"
+#include "folder_fixture.hpp"
 #include "shape/write_vtk.hpp"
 
 namespace dlo::compare {
 namespace {
 
+using test::error_of;
+using test::says_none;
+
 namespace fs = std::filesystem;
 
-class RecordedFrames : public testing::Test {
+class RecordedFrames : public test::Folder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / fmt::format("dlo_recorded_frames_{}", ::getpid());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(path(name)) << text;
-  }
   /// A line of three points from (0, height, 0), 1 m long.
   void write_frame(const std::string& name, double height, const std::string& title) const {
     Shape shape{{0, 0.25, 1}, Eigen::Matrix3Xd::Zero(3, 3)};
@@ -39,19 +32,11 @@ class RecordedFrames : public testing::Test {
     write(name, vtk_polyline(shape, {}, title));
   }
   void expect_refused(const std::string& name, const std::string& words) const {
-    try {
-      (void)load_recording(path(name), 1);
-      ADD_FAILURE() << name << " is taken";
-    } catch (const InputError& error) {
-      const std::string message = error.what();
-      EXPECT_THAT(message, testing::HasSubstr(words));
-      EXPECT_THAT(message, testing::HasSubstr("(allowed: "));
-      EXPECT_EQ(message.find('\n'), std::string::npos);
-    }
+    const std::string message = error_of<InputError>([&] { return load_recording(path(name), 1); });
+    EXPECT_THAT(message, testing::HasSubstr(words));
+    EXPECT_THAT(message, testing::HasSubstr("(allowed: "));
+    EXPECT_TRUE(says_none(message, {"\n"}));
   }
-
- private:
-  fs::path folder_;
 };
 
 TEST_F(RecordedFrames, OfASeriesHaveItsTimes) {

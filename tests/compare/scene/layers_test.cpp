@@ -7,14 +7,18 @@
 #include <string>
 #include <vector>
 
+#include "../../says.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/material.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solve.hpp"
+#include "scene_text.hpp"
 
 namespace dlo::compare {
 namespace {
+
+using test::says;
 
 double disc_moment(double diameter) { return std::numbers::pi * std::pow(diameter, 4) / 64; }
 
@@ -57,7 +61,7 @@ TEST(Layers, SixStrandsAboutOneHaveTheirSteinerTerm) {
 }
 
 const std::string cable_head = "[rod]\nlength = 0.5\n";
-const std::string cable_tail = "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"0 deg\"\n";
+const std::string cable_tail = test::level_clamp;
 const std::string cable_layers =
     "layers = [{ strands = 1, strand_diameter = \"1 mm\", material = \"copper\" },\n"
     "          { strands = 6, strand_diameter = \"1 mm\", material = \"copper\" },\n"
@@ -90,16 +94,11 @@ TEST(Layers, ScaleWithTheModulus) {
 }
 
 TEST(Layers, SayWhatIsWrong) {
-  const auto refusal = [](const std::string& rod) -> std::string {
-    try {
-      (void)parse_scene(cable_head + rod + cable_tail, "my.toml");
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "no error";
+  const auto refusal = [](const std::string& rod) {
+    return test::scene_error(cable_head + rod + cable_tail);
   };
   const auto expect = [&](const std::string& rod, const std::string& message) {
-    EXPECT_NE(refusal(rod).find(message), std::string::npos) << refusal(rod);
+    EXPECT_TRUE(says(refusal(rod), {message}));
   };
   const std::string core = "{ outer_diameter = 1e-3, material = \"copper\" }";
   expect("layers = [" + core + ", " + core + "]\n", "layer 2: outer_diameter");

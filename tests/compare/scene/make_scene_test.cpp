@@ -6,10 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "../../says.hpp"
 #include "dlo/compare.hpp"
 
 namespace dlo::compare {
 namespace {
+
+using test::error_of;
+using test::says;
 
 const std::string text = R"(name = "led over a peg"
 gravity = [0, 0, "-9.81 m/s^2"]
@@ -76,12 +80,7 @@ Scene without_lines(Scene scene) {
 
 template <typename Make>
 std::string refusal_of(const Make& make) {
-  try {
-    (void)make();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return error_of<InputError>([&] { return make(); });
 }
 
 TEST(MakeScene, IsTheSceneOfAFileWithTheSameFields) {
@@ -125,8 +124,8 @@ TEST(MakeScene, RefusesWhatAFileMayNotSayInTheSameWords) {
     const std::string of_code = refusal_of([&] { return make_scene(made); });
     // But for the line, from the key on.
     const std::string key = field.field.substr(field.field.rfind('.') + 1);
-    ASSERT_NE(of_file.find(key), std::string::npos) << of_file;
-    ASSERT_NE(of_code.find(key), std::string::npos) << of_code;
+    ASSERT_TRUE(says(of_file, {key}));
+    ASSERT_TRUE(says(of_code, {key}));
     EXPECT_EQ(of_code.substr(of_code.find(key)), of_file.substr(of_file.find(key)));
     EXPECT_EQ(of_code.rfind("scene", 0), 0U) << of_code;
   }
@@ -135,9 +134,8 @@ TEST(MakeScene, RefusesWhatAFileMayNotSayInTheSameWords) {
 TEST(MakeScene, SaysWhichElementIsMissing) {
   std::vector<SceneField> made = fields;
   made.push_back({"gripper.4.at", 0});
-  EXPECT_NE(refusal_of([&] { return make_scene(made); }).find("allowed: 0 to 1"),
-            std::string::npos);
-  EXPECT_NE(refusal_of([] { return make_scene({}); }).find("rod"), std::string::npos);
+  EXPECT_TRUE(says(refusal_of([&] { return make_scene(made); }), {"allowed: 0 to 1"}));
+  EXPECT_TRUE(says(refusal_of([] { return make_scene({}); }), {"rod"}));
 }
 
 // As a sum of segments rounds it.
@@ -148,8 +146,7 @@ TEST(ArcLengths, ARoundingBeyondAnEndAreThatEnd) {
   rounded.push_back({"gripper.0.at", -1e-8});
   EXPECT_EQ(make_scene(rounded).grippers[0].at, 0);
   rounded.push_back({"gripper.1.at", 0.3001});
-  EXPECT_NE(refusal_of([&] { return make_scene(rounded); }).find("allowed: 0 to 0.3 m"),
-            std::string::npos);
+  EXPECT_TRUE(says(refusal_of([&] { return make_scene(rounded); }), {"allowed: 0 to 0.3 m"}));
   EXPECT_EQ(*on_rod(0.3 + 1e-8, 0.3), 0.3);
   EXPECT_FALSE(on_rod(0.3 + 1e-6, 0.3));
   EXPECT_FALSE(on_rod(std::nan(""), 0.3));
@@ -168,14 +165,14 @@ TEST(ArcLengths, ARoundingBeyondAnEndAreThatEnd) {
 TEST(Documents, AreOfEveryResult) {
   const Scene wire = copper_wire();
   const Solution solution = solve(wire, Model::energy);
-  EXPECT_NE(to_text(solution, wire).find("model      energy"), std::string::npos);
-  EXPECT_NE(to_json(solution, wire).find("\"plan\""), std::string::npos);
+  EXPECT_TRUE(says(to_text(solution, wire), {"model      energy"}));
+  EXPECT_TRUE(says(to_json(solution, wire), {"\"plan\""}));
   const CheckResult judged = check(
       wire, shape_of(solution.shape.points, solution.shape.arc_length, "mine"),
       {.tolerance = ShapeTolerance{.allowed_m = 1e-3}, .shape = {.modulus = ModulusSearch::no}});
   EXPECT_TRUE(judged.passes());
-  EXPECT_NE(to_text(judged).find("verdict         pass"), std::string::npos);
-  EXPECT_NE(to_json(judged).find("\"verdict\": \"pass\""), std::string::npos);
+  EXPECT_TRUE(says(to_text(judged), {"verdict         pass"}));
+  EXPECT_TRUE(says(to_json(judged), {"\"verdict\": \"pass\""}));
 }
 
 }  // namespace

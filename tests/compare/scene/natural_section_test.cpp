@@ -6,15 +6,20 @@
 #include <string>
 #include <vector>
 
+#include "../../says.hpp"
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solve.hpp"
+#include "scene_text.hpp"
 
 namespace dlo::compare {
 namespace {
+
+using test::says;
+using test::scene_error;
 
 const std::string wire_head = R"(gravity = [0, 0, 0]
 [rod]
@@ -31,11 +36,7 @@ from = "220 mm"
 to = "240 mm"
 natural_curvature = "40 1/m"
 )";
-const std::string wire_clamp = R"([[gripper]]
-at = 0
-position = [0, 0, 0]
-direction = "0 deg"
-)";
+const std::string wire_clamp = test::level_clamp;
 
 Scene guide_wire() { return parse_scene(wire_head + wire_arcs + wire_clamp, "my.toml"); }
 
@@ -101,25 +102,15 @@ TEST(NaturalSection, MayBeTwistedOrBentAboutBothAxes) {
 }
 
 TEST(NaturalSection, SaysWhatIsWrong) {
-  const auto refusal = [](const std::string& text) -> std::string {
-    try {
-      (void)parse_scene(text, "my.toml");
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "no error";
-  };
-  const std::string pin = "[[gripper]]\nat = 0\nposition = [0, 0, 0]\nhold = \"pin\"\n";
-  EXPECT_NE(refusal(wire_head + wire_arcs + pin).find("section.natural_curvature"),
-            std::string::npos);
-  EXPECT_NE(refusal(wire_head + wire_arcs + pin).find("no gripper holds the rod's frame"),
-            std::string::npos);
-  const std::string empty = refusal(wire_head + "[[section]]\nfrom = 0\nto = 0.1\n" + wire_clamp);
-  EXPECT_NE(empty.find("one of the five or more"), std::string::npos) << empty;
-  const std::string rows = refusal(
+  EXPECT_TRUE(says(scene_error(wire_head + wire_arcs + test::first_pin),
+                   {"section.natural_curvature", "no gripper holds the rod's frame"}));
+  const std::string empty =
+      scene_error(wire_head + "[[section]]\nfrom = 0\nto = 0.1\n" + wire_clamp);
+  EXPECT_TRUE(says(empty, {"one of the five or more"}));
+  const std::string rows = scene_error(
       wire_head + "[[section]]\nfrom = 0\nto = 0.1\nnatural_curvature = [[0, 1], [0, 2]]\n" +
       wire_clamp);
-  EXPECT_NE(rows.find("section.natural_curvature"), std::string::npos) << rows;
+  EXPECT_TRUE(says(rows, {"section.natural_curvature"}));
 }
 
 }  // namespace

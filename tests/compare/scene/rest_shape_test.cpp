@@ -15,17 +15,22 @@
 #include <string>
 #include <vector>
 
+#include "../../says.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solve.hpp"
 #include "scene/scene_template.hpp"
+#include "scene_text.hpp"
 #include "shape/write_vtk.hpp"
 #include "trajectory/trajectory_files.hpp"
 
 namespace dlo::compare {
 namespace {
+
+using test::error_of;
+using test::says;
 
 constexpr double shaft_length = 0.24;
 
@@ -173,7 +178,7 @@ TEST(RestShape, IsReadFromAFileOrRows) {
   const std::string head =
       "gravity = [0, 0, 0]\n[rod]\nlength = \"240 mm\"\nbending_stiffness = 1e-3\n"
       "mass_per_length = 0.01\n";
-  const std::string clamp = "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"0 deg\"\n";
+  const std::string clamp = test::level_clamp;
   const std::string file = folder + "rest_scene.toml";
   const std::string text = head + "rest_shape = \"rest_points.csv\"\n" + clamp;
   std::ofstream(file) << text;
@@ -187,19 +192,13 @@ TEST(RestShape, IsReadFromAFileOrRows) {
 }
 
 std::string refusal(const std::string& rod) {
-  try {
-    (void)parse_scene("[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 1\n" + rod +
-                          "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"0 deg\"\n",
-                      "my.toml");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return test::scene_error("[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 1\n" + rod +
+                           test::level_clamp);
 }
 
 TEST(RestShape, SaysWhatIsWrong) {
   const auto expect = [](const std::string& rod, const std::string& message) {
-    EXPECT_NE(refusal(rod).find(message), std::string::npos) << refusal(rod);
+    EXPECT_TRUE(says(refusal(rod), {message}));
   };
   expect("rest_shape = \"none.csv\"\n", "no such file beside the scene");
   expect("rest_shape = [[0, 0, 0], [0.5, 0, 0]]\n", "2 points (allowed: 5 or more");
@@ -409,9 +408,7 @@ TEST(RestFrames, AreRowsOfAScene) {
   const Scene scene = parse_scene(
       "[rod]\nlength = 0.28\nbending_stiffness = 1e-3\nmass_per_length = 0.01\n"
       "rest_shape = [" +
-          rows +
-          "]\n[[gripper]]\nat = 0\nposition = [0, 0, 0]\n"
-          "direction = \"0 deg\"\n",
+          rows + "]\n" + test::level_clamp,
       "my.toml");
   EXPECT_EQ(scene.rest_shape->arcs.size(), 1);
   EXPECT_LT((scene.natural_strain - helix_strain(helix_radius, helix_pitch)).norm(), 1e-4);
@@ -419,12 +416,9 @@ TEST(RestFrames, AreRowsOfAScene) {
 
 TEST(RestFrames, SayWhatIsWrong) {
   const auto expect = [](const std::string& text, const std::string& message) {
-    try {
-      (void)fit_rest_shape(parse_shape(text, "mine.csv"), 0.4);
-      ADD_FAILURE() << "accepted: " << text;
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
-    }
+    EXPECT_TRUE(says(
+        error_of<InputError>([&] { return fit_rest_shape(parse_shape(text, "mine.csv"), 0.4); }),
+        {message}));
   };
   const std::string head = "x,y,z,d1_x,d1_y,d1_z\n0,0,0,0,0,1\n0.1,0,0,0,0,1\n0.2,0,0,";
   const std::string tail = "\n0.3,0,0,0,0,1\n0.4,0,0,0,0,1\n";
@@ -439,15 +433,15 @@ TEST(RestFrames, SayWhatIsWrong) {
   expect("x,y,d1_x,d1_z\n", "mine.csv:1: 2 of the columns d1_x, d1_y, d1_z (allowed: all");
   expect(R"({"points": [[0,0],[1,0]], "d1": [[0,1]]})",
          "d1: 1 vectors of 2 points (allowed: one a point, or none)");
-  EXPECT_NE(refusal("rest_shape = [[0,0,0,0,0,1], [0.5,0,0]]\n").find("six with a vector in every"),
-            std::string::npos);
+  EXPECT_TRUE(
+      says(refusal("rest_shape = [[0,0,0,0,0,1], [0.5,0,0]]\n"), {"six with a vector in every"}));
 }
 
 TEST(Helix, IsAKeyOfTheRod) {
   const Scene scene = parse_scene(
       "[rod]\nlength = 0.3\nbending_stiffness = 1e-3\nmass_per_length = 0.01\n"
-      "helix = { radius = \"2 cm\", pitch = \"-1 cm\" }\n"
-      "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"0 deg\"\n",
+      "helix = { radius = \"2 cm\", pitch = \"-1 cm\" }\n" +
+          test::level_clamp,
       "my.toml");
   EXPECT_EQ(scene.natural_strain, helix_strain(0.02, -0.01));
   EXPECT_LT(scene.natural_strain.z(), 0);

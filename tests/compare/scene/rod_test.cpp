@@ -7,15 +7,21 @@
 #include <string>
 #include <vector>
 
+#include "../../says.hpp"
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "polygon/energy_problems.hpp"
 #include "scene/scene_template.hpp"
+#include "scene_text.hpp"
 
 namespace dlo::compare {
 namespace {
+
+using test::first_pin;
+using test::says;
+using test::scene_error;
 
 const std::string by_stiffness = R"([rod]
 length = "2 m"
@@ -27,26 +33,12 @@ length = "2 m"
 diameter = "2 mm"
 material = "spring_steel"
 )";
-const std::string clamp = R"([[gripper]]
-at = 0
-position = [0, 0, 0]
-direction = "0 deg"
-)";
+const std::string clamp = test::level_clamp;
 
 Scene scene_of(const std::string& text) { return parse_scene(text, "my.toml"); }
 
-std::string refusal_of(const std::string& text) {
-  try {
-    (void)scene_of(text);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 void expect_message(const std::string& text, const std::vector<std::string>& parts) {
-  const std::string said = refusal_of(text);
-  for (const std::string& part : parts) EXPECT_NE(said.find(part), std::string::npos) << said;
+  EXPECT_TRUE(says(scene_error(text), parts));
 }
 
 TEST(ScenesRod, IsGivenByItsStiffnessAndItsMass) {
@@ -260,8 +252,7 @@ TEST(ScenesNaturalCurvature, VariesAlongTheRodAsALegendreSeries) {
 
 TEST(ScenesNaturalCurvature, NeedsAClampThatSaysAboutWhichAxis) {
   const std::string curved = by_stiffness + "natural_curvature = 2\n";
-  const std::string pin = "[[gripper]]\nat = 0\nposition = [0, 0, 0]\nhold = \"pin\"\n";
-  expect_message(curved + pin, {"my.toml:5: rod.natural_curvature", "hold = \"clamp\""});
+  expect_message(curved + first_pin, {"my.toml:5: rod.natural_curvature", "hold = \"clamp\""});
   const std::string sideways = "[[load]]\nat = 2\nforce = [0, 0, 1]\n";
   expect_message(curved + clamp + sideways,
                  {"my.toml:6", "natural_curvature", "no plane", "frame or quaternion"});
@@ -344,20 +335,12 @@ TEST(ScenesStrip, IsRefusedWithWhatIsAllowed) {
   expect_message(rod("[1, -1]"), {"my.toml:3: rod.bending_stiffness", "> 0", "d1 and about d2"});
   expect_message(rod("[1, 2, 3]"), {"my.toml:3: rod.bending_stiffness", "two in brackets"});
   expect_message(rod("[1, \"2 N\"]"), {"my.toml:3: rod.bending_stiffness", "N m^2"});
-  const std::string pin = "[[gripper]]\nat = 0\nposition = [0, 0, 0]\nhold = \"pin\"\n";
-  expect_message(flat + pin, {"my.toml:3: rod.bending_stiffness", "hold = \"clamp\""});
+  expect_message(flat + first_pin, {"my.toml:3: rod.bending_stiffness", "hold = \"clamp\""});
   expect_message(flat + clamp + "[[load]]\nat = 2\nforce = [0, 0, 1]\n",
                  {"my.toml:5", "rod.bending_stiffness", "no plane", "frame or quaternion"});
   const Scene scene = scene_of(flat + clamp);
-  try {
-    (void)discretise(scene, scene.force_model);
-    ADD_FAILURE() << "a polygon was made";
-  } catch (const InputError& error) {
-    const std::string said = error.what();
-    for (const char* part : {"my.toml", "rod.bending_stiffness", "two values", "allowed here"}) {
-      EXPECT_NE(said.find(part), std::string::npos) << said;
-    }
-  }
+  EXPECT_TRUE(says(error_of<InputError>([&] { return discretise(scene, scene.force_model); }),
+                   {"my.toml", "rod.bending_stiffness", "two values", "allowed here"}));
 }
 
 TEST(ScenesStrip, IsVariedInBothAndKeepsTheRatioOfItsTorsion) {

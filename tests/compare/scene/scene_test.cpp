@@ -4,31 +4,25 @@
 
 #include <cmath>
 
+#include "../../says.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene_file.hpp"
+#include "scene_text.hpp"
 
 namespace dlo::compare {
 namespace {
 
-const std::string good_rod = R"([rod]
-length = "50 cm"
-diameter = "2 mm"
-material = "spring_steel"
-)";
+using test::error_of;
+using test::says;
+using test::says_none;
+using test::scene_error;
+
+const std::string good_rod = test::steel_rod;
 const std::string good_gripper = R"([[gripper]]
 at = 0
 position = [0, "10 mm", 0]
 direction = "-175 deg"
 )";
-
-std::string message(const std::string& text) {
-  try {
-    (void)parse_scene(text, "my.toml");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 TEST(Scene, ReadsTheDesignsExample) {
   const Scene scene = parse_scene(R"(name = "example"
@@ -151,11 +145,9 @@ TEST(Scene, ErrorsNameFileLineKeyValueAndWhatIsAllowed) {
       {"gripper = 3\n" + good_rod, {"my.toml:1", "gripper", "[[gripper]]"}},
   };
   for (const BadScene& bad : cases) {
-    const std::string text = message(bad.text);
-    for (const std::string& name : bad.named) {
-      EXPECT_NE(text.find(name), std::string::npos) << "no \"" << name << "\" in: " << text;
-    }
-    EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+    const std::string text = scene_error(bad.text);
+    EXPECT_TRUE(says(text, bad.named));
+    EXPECT_TRUE(says_none(text, {"\n"}));
   }
 }
 
@@ -179,17 +171,13 @@ TEST(Scene, NamesAnUnknownKeyBeforeTheOneThatIsMissingForIt) {
       {"thread = 1\n" + good_gripper, "thread = 1"},
   };
   for (const auto& [text, key] : cases) {
-    EXPECT_NE(message(text).find(key + ": unknown key"), std::string::npos) << message(text);
+    EXPECT_TRUE(says(scene_error(text), {key + ": unknown key"}));
   }
 }
 
 TEST(Scene, MissingFileIsNamed) {
-  try {
-    (void)load_scene("no/such/scene.toml");
-    FAIL() << "no error";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("no/such/scene.toml"), std::string::npos);
-  }
+  EXPECT_TRUE(says(error_of<InputError>([&] { return load_scene("no/such/scene.toml"); }),
+                   {"no/such/scene.toml"}));
 }
 
 TEST(Materials, AreTheOnesOfTheDataFile) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "../../says.hpp"
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/deviation.hpp"
@@ -20,6 +21,7 @@ namespace dlo::compare {
 namespace {
 
 using test::heavy_scene;
+using test::says;
 
 /// A random rod and its right shape.
 struct Right {
@@ -168,7 +170,7 @@ TEST_P(AnyRightShape, AStretchedPartShows) {
     EXPECT_FALSE(passes(check, 0.01));
     if (!column_s()) {
       EXPECT_NEAR(check.excess_m, 0.03, bow);
-      EXPECT_NE(check.hint.find("stretched by 3"), std::string::npos) << check.hint;
+      EXPECT_TRUE(says(check.hint, {"stretched by 3"}));
     }
   });
 }
@@ -188,12 +190,11 @@ TEST_P(AnyRightShape, ACutFileIsNamed) {
       EXPECT_GT(check.whole_rms_m, 0.5 * std::sqrt(std::pow(1 - seen, 3) / 3));
       const ShapeJudgement whole = judge(check, {.allowed_m = 0.0015});
       EXPECT_FALSE(whole.pass) << kept;
-      EXPECT_NE(whole.reason.find("to 1 m, which the file does not have"), std::string::npos)
-          << whole.reason;
+      EXPECT_TRUE(says(whole.reason, {"to 1 m, which the file does not have"}));
       const ShapeJudgement part =
           judge(check, {.allowed_m = 0.0015, .least_seen_share = 0.2, .part = true});
       EXPECT_TRUE(part.pass) << part.reason;
-      EXPECT_NE(part.reason.find("not judged: s = "), std::string::npos) << part.reason;
+      EXPECT_TRUE(says(part.reason, {"not judged: s = "}));
     }
   });
 }
@@ -207,9 +208,8 @@ TEST_P(AnyRightShape, PartsThatThePointsDoNotDetermineAreNamed) {
   EXPECT_LT(check.whole_max_m, 1e-7);
   const ShapeJudgement judgement = judge(check, {.allowed_m = 0.01});
   EXPECT_FALSE(judgement.pass);
-  EXPECT_NE(judgement.reason.find("do not determine the rod at s = 0.02 to 1 m"), std::string::npos)
-      << judgement.reason;
-  EXPECT_NE(judgement.reason.find("only 2 % of the rod is seen"), std::string::npos);
+  EXPECT_TRUE(says(judgement.reason,
+                   {"do not determine the rod at s = 0.02 to 1 m", "only 2 % of the rod is seen"}));
   EXPECT_FALSE(judge(check, {.allowed_m = 0.01, .least_seen_share = 0.1, .part = true}).pass);
   EXPECT_TRUE(judge(check, {.allowed_m = 0.01, .least_seen_share = 0.01, .part = true}).pass);
 }
@@ -232,8 +232,7 @@ TEST(ShapeMeasure, PointsPastTheTipCount) {
       EXPECT_EQ(check.worst_point, 22);
       // Spread evenly the excess is 0.1 s.
       EXPECT_GT(check.deviation.rms_m, 0.05);
-      EXPECT_NE(check.hint.find(way == t ? "stretched by 10 %" : "turn away"), std::string::npos)
-          << check.hint;
+      EXPECT_TRUE(says(check.hint, {way == t ? "stretched by 10 %" : "turn away"}));
     }
   }
 }
@@ -284,7 +283,7 @@ TEST(ShapeJudgement, LessThanHalfOfTheRodIsNeverAPass) {
   EXPECT_TRUE(judge(seen(0.501), {.allowed_m = 0.01, .part = true}).pass);
   const ShapeJudgement less = judge(seen(0.499), {.allowed_m = 0.01, .part = true});
   EXPECT_FALSE(less.pass);
-  EXPECT_NE(less.reason.find("only 49.9 % of the rod is seen, needed 50 %"), std::string::npos);
+  EXPECT_TRUE(says(less.reason, {"only 49.9 % of the rod is seen, needed 50 %"}));
 }
 
 TEST(ShapeJudgement, HoldsWhatIsMissingAgainstTheWholeRodOnly) {

@@ -13,6 +13,9 @@
 namespace dlo {
 namespace {
 
+using test::says;
+using test::says_none;
+
 /// What a run has to give.
 enum class Demand {
   end,       ///< an equilibrium, or one line of an error with status 2 or 3
@@ -59,16 +62,15 @@ TEST_P(FormerFailure, EndsWithAnEquilibriumOrACleanError) {
                                           : test::sanitized ? " --time-limit 300"
                                                             : " --time-limit 20"));
   if (result.status == 0) {
-    EXPECT_NE(result.out.find("\nmodel      " + std::string(run.model) + ", "), std::string::npos)
-        << result.out;
-    EXPECT_EQ(result.out.find("nan"), std::string::npos) << result.out;
+    EXPECT_TRUE(says(result.out, {"\nmodel      " + std::string(run.model) + ", "}));
+    EXPECT_TRUE(says_none(result.out, {"nan"}));
   } else {
     // Not -1, a signal; not 4, a mistake of ours.
     EXPECT_TRUE(result.status == 2 || result.status == 3) << result.status << "\n" << result.err;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
     // Of a failure there is nothing to see but a shape that says what is wrong with it.
     if (!result.out.empty()) {
-      EXPECT_NE(result.out.find("not verified"), std::string::npos) << result.out;
+      EXPECT_TRUE(says(result.out, {"not verified"}));
       const bool says = result.out.find("the contacts did not converge") != std::string::npos ||
                         result.out.find("the curvature is not resolved by") != std::string::npos;
       EXPECT_TRUE(says) << result.out;

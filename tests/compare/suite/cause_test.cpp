@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "../../says.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/shape.hpp"
@@ -29,6 +30,7 @@ using dlo::compare::Model;
 using dlo::compare::moment_balance;
 using dlo::compare::Scene;
 using dlo::compare::Shape;
+using dlo::test::says;
 
 Scene battery_scene(const std::string& id) {
   return chosen_scenes(builtin_battery(), {id})[0].scene;
@@ -135,7 +137,7 @@ TEST(CauseOfFactors, IsWhatTheyAreAtBothNumbersOfPoints) {
   EXPECT_EQ(caps.name, "weight with caps");
   EXPECT_NEAR(caps.factor, 1.4, 1e-12);
   // 4 r / (3 h) is 0.4 for h of 0.6 m / 64.
-  EXPECT_NE(caps.words.find("caps of radius 2.81 mm"), std::string::npos) << caps.words;
+  EXPECT_TRUE(says(caps.words, {"caps of radius 2.81 mm"}));
   EXPECT_NE(cause(battery_scene("payload_tip"), 1 / 1.1, 1 / 1.4).name, "weight with caps");
   EXPECT_EQ(cause(weight, 1.0 / 16, 1.0 / 64).name, "springs without 1/h");
   EXPECT_EQ(cause(weight, 16, 64).name, "springs with 1/h^2");

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "../../says.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape.hpp"
 #include "dlo/compare/shape_file.hpp"
@@ -26,6 +27,8 @@ using dlo::compare::Answer;
 using dlo::compare::BatteryScene;
 using dlo::compare::builtin_battery;
 using dlo::compare::chosen_scenes;
+using dlo::test::error_of;
+using dlo::test::says;
 using nlohmann::json;
 
 std::string text_of(const std::filesystem::path& file) {
@@ -67,13 +70,9 @@ TEST(Battery, IsTheOneOfItsFile) {
 
 TEST(Battery, TellsAClassThatThereIsNot) {
   EXPECT_EQ(chosen_scenes(builtin_battery(), {"weight", "floor"}).size(), 7U);
-  try {
-    (void)chosen_scenes(builtin_battery(), {"wieght"});
-    FAIL();
-  } catch (const dlo::compare::InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("did you mean weight"), std::string::npos)
-        << error.what();
-  }
+  EXPECT_TRUE(says(error_of<dlo::compare::InputError>(
+                       [&] { return chosen_scenes(builtin_battery(), {"wieght"}); }),
+                   {"did you mean weight"}));
 }
 
 TEST(Answers, AreWhereClosedFormsSay) {

@@ -4,10 +4,14 @@
 
 #include <string>
 
+#include "../../says.hpp"
 #include "dlo/compare/error.hpp"
 
 namespace dlo::compare {
 namespace {
+
+using test::error_of;
+using test::says;
 
 TEST(ReadMarkers, TakesRowsAndColumnsInAnyOrder) {
   const MarkerMotion read = parse_markers(
@@ -20,12 +24,7 @@ TEST(ReadMarkers, TakesRowsAndColumnsInAnyOrder) {
 
 TEST(ReadMarkers, SaysWhatIsWrongAndWhere) {
   const auto expect_refused = [](const std::string& text, const std::string& why) {
-    try {
-      (void)parse_markers(text, "m.csv");
-      ADD_FAILURE() << why;
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
-    }
+    EXPECT_TRUE(says(error_of<InputError>([&] { return parse_markers(text, "m.csv"); }), {why}));
   };
   expect_refused("time,x,y,z\n0,1,2,3\n", "m.csv:1: not the columns");
   expect_refused("time,s,x,y,z\n", "m.csv: no rows");

@@ -29,11 +29,14 @@ struct CalibratedRod {
   /// Coefficients of P_0, P_1, .. about d1 and d2 [1/m]; empty: the scene's.
   std::vector<Eigen::Vector2d> natural_curvature;
   std::vector<ClampCorrection> clamps;  ///< of those that are held otherwise than scenes say
+  /// By what shapes are turned in the coordinates in which they were measured, about the first
+  /// gripper, gravity with them: a rotation vector [rad].
+  Eigen::Vector3d camera_tilt = Eigen::Vector3d::Zero();
 };
 
 /// A scene with that in the place of its own.
 /// @throws InputError if the scene is given by E and that by EI or the reverse, or has not as many
-/// grippers
+/// grippers, or with `camera_tilt` if more than weight acts on its rod or something moves
 [[nodiscard]] Scene calibrated_scene(Scene scene, const CalibratedRod& rod);
 
 /// @throws InputError naming file, line, key and what is allowed

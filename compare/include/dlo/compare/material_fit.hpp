@@ -43,15 +43,20 @@ struct MaterialFitOptions {
   /// With `shared_clamps`: how far each shape's own directions are from the shared ones: standard
   /// deviation about each axis across [rad]. If it is > 0 they are fitted as well.
   double direction_scatter = 0;
+  /// How level the camera is: standard deviation of its tilt about the normal of the shapes' plane,
+  /// in space about each level axis [rad]. If it is > 0 one tilt of all shapes is fitted, of scenes
+  /// where weight alone bends the rod (MaterialFit::camera_tilt).
+  double camera_tilt = 0;
   /// Each shape in turn is left out of the fit, and predicted (MaterialFit::prediction).
   bool predict = false;
   /// Terms of natural curvature, and clamps as said, misaligned alike in all shapes or each on its
   /// own, are fitted as they predict shapes best that are left out
   /// (MaterialFit::tried); nothing is tried where the fit without them leaves nothing systematic.
   /// The numbers above say up to how many terms (three at least) and how well clamps are known (if
-  /// they do not, 20 degrees of those that are alike, 5 of each shape's own). Three shapes or more.
-  /// None: calibrate() does so if there are as many and none of these numbers is given,
-  /// fit_material() does not.
+  /// they do not, 20 degrees of those that are alike, with a scatter of 5 and a camera that is
+  /// level to 2; 5 of each shape's own). The interval of E holds that of the most terms that
+  /// predict nearly as well. Three shapes or more. None: calibrate() does so if there are as many
+  /// and none of these numbers is given, fit_material() does not.
   std::optional<bool> choose_options;
   /// Where residuals are systematic, and none of the above is fitted, it is tried what would remove
   /// them (MaterialFit::alternatives).
@@ -111,6 +116,7 @@ struct FitAlternative {
   double position_tolerance = 0;    ///< as in MaterialFitOptions [m]
   bool shared_clamps = false;       ///< as in MaterialFitOptions
   double direction_scatter = 0;     ///< as in MaterialFitOptions [rad]
+  double camera_tilt = 0;           ///< as in MaterialFitOptions [rad]
   /// Prediction::rms_m, if it was looked at [m].
   std::optional<double> prediction_m = std::nullopt;
 };
@@ -242,9 +248,10 @@ struct MaterialFit {
   /// Of the first scene with what was fitted of it: coefficients of P_0, P_1, .. about d1 and d2
   /// [1/m]; empty if it was not asked for.
   std::vector<Eigen::Vector2d> natural_curvature;
-  std::vector<ClampCorrection> clamps;          ///< with `shared_clamps`
-  std::optional<Prediction> prediction;         ///< if it was asked for
-  std::optional<ScatterBetweenShapes> scatter;  ///< if there is one
+  std::vector<ClampCorrection> clamps;                    ///< with `shared_clamps`
+  Eigen::Vector3d camera_tilt = Eigen::Vector3d::Zero();  ///< as in CalibratedRod [rad]
+  std::optional<Prediction> prediction;                   ///< if it was asked for
+  std::optional<ScatterBetweenShapes> scatter;            ///< if there is one
   /// Of chains with as many segments as were asked for, in each different scene; none where E is
   /// not identified, or the scene has what a plain chain has not (twist, sections, natural
   /// curvature, a gripper between its joints).

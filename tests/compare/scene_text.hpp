@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include "../says.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/scene_file.hpp"
+
+namespace dlo::test {
+
+/// A gripper at the rod's begin and the origin. @param held  a direction or `hold = "pin"`
+inline std::string gripper_text(const std::string& held) {
+  return "[[gripper]]\nat = 0\nposition = [0, 0, 0]\n" + held + "\n";
+}
+
+inline const std::string level_clamp = gripper_text("direction = \"0 deg\"");
+inline const std::string first_pin = gripper_text("hold = \"pin\"");
+
+/// A steel wire of half a metre, without what holds it.
+inline const std::string steel_rod =
+    "[rod]\nlength = \"50 cm\"\ndiameter = \"2 mm\"\nmaterial = \"spring_steel\"\n";
+
+/// What is wrong with a scene's text, or "no error".
+inline std::string scene_error(const std::string& text) {
+  return error_of<compare::InputError>([&] { return compare::parse_scene(text, "my.toml"); });
+}
+
+}  // namespace dlo::test

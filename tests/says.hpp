@@ -1,0 +1,43 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace dlo::test {
+
+/// Whether a text has each of these parts; if not, which it lacks.
+inline testing::AssertionResult says(const std::string& text,
+                                     const std::vector<std::string>& parts) {
+  for (const std::string& part : parts) {
+    if (text.find(part) == std::string::npos) {
+      return testing::AssertionFailure() << "no \"" << part << "\" in " << text;
+    }
+  }
+  return testing::AssertionSuccess();
+}
+
+/// Whether a text has none of these parts; if not, which it has.
+inline testing::AssertionResult says_none(const std::string& text,
+                                          const std::vector<std::string>& parts) {
+  for (const std::string& part : parts) {
+    if (text.find(part) != std::string::npos) {
+      return testing::AssertionFailure() << "\"" << part << "\" in " << text;
+    }
+  }
+  return testing::AssertionSuccess();
+}
+
+/// What an error says that ends some work; "no error" if none does. Others go on to the test.
+template <typename Error, typename Work>
+std::string error_of(const Work& work) {
+  try {
+    (void)work();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+}  // namespace dlo::test
