@@ -105,8 +105,9 @@ void write_calibration(OutputOptions output, bool format_is_given, const Formats
     const std::string format = format_of_file(output.file, {"json", "csv", "toml"});
     if (!format.empty()) output.format = format;
   }
-  write_output(output, formats);
+  // What was found is said even if it is nothing to write.
   if (to_toml_file) write_output({}, formats.text());
+  write_output(output, formats);
 }
 
 compare::MaterialFitOptions material_options(const CalibrateOptions& options) {

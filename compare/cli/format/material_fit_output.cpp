@@ -21,10 +21,13 @@ std::string number(const std::optional<double>& value, const char* none) {
   return value ? fmt::format("{:.4g}", *value) : std::string(none);
 }
 
+std::string interval_text(const FittedValue& value) {
+  return fmt::format("95 %: {} to {}", number(value.low, "..."), number(value.high, "..."));
+}
+
 std::string value_text(const FittedValue& value, const char* unit) {
   const std::string_view blank = *unit == '\0' ? "" : " ";
-  const std::string interval = fmt::format("95 %: {} to {}{}{}", number(value.low, "..."),
-                                           number(value.high, "..."), blank, unit);
+  const std::string interval = fmt::format("{}{}{}", interval_text(value), blank, unit);
   if (!value.low && !value.high) return "not identified";
   if (!value.value) return "not identified, " + interval;
   return fmt::format("{:.5g}{}{}, {}", *value.value, blank, unit, interval);
@@ -472,7 +475,10 @@ Json material_json(const compare::Calibration& report) {
 std::string material_toml(const compare::Calibration& report) {
   const compare::MaterialFit& fit = report.fit;
   const FittedValue& E = fit.youngs_modulus;
-  if (!E.value || (fit.density && !fit.density->value)) {
+  const bool identified = E.value && (!fit.density || fit.density->value);
+  // Numbers that are no material may still predict shapes, all together.
+  const bool predicts = fit.prediction && E.estimate && (!fit.density || fit.density->estimate);
+  if (!identified && !predicts) {
     throw compare::InputError("calibrate: no material to write, " + fit.not_identified);
   }
   const compare::Scene& scene = report.scenes.front();
@@ -485,16 +491,21 @@ std::string material_toml(const compare::Calibration& report) {
                     "mass_per_length, or with neither; -o FILE.json)",
                     stiffness.name, heaviness.name));
   }
-  const double density = fit.density ? *fit.density->value : heaviness.value;
+  const double density = fit.density ? *fit.density->estimate : heaviness.value;
   const bool given = scene.given_bending_stiffness.has_value();
   std::string out =
       given ? "# Written by dlo calibrate, for --calibrated, or lines of a scene's [rod].\n"
             : "# Written by dlo calibrate, for --calibrated, or --materials and material = "
               "\"calibrated\" in a scene.\n";
+  if (!identified) {
+    append(out,
+           "# For shapes like these, of which one is predicted from the others to {:.4g} mm. No "
+           "material: {}.\n",
+           fit.prediction->rms_m * 1000, fit.not_identified);
+  }
   if (fit.torsional_stiffness && fit.torsional_stiffness->value) {
-    append(out, "torsional_stiffness = {:.8e}  # N m^2, 95 %: {:.4g} to {:.4g}\n",
-           *fit.torsional_stiffness->value, *fit.torsional_stiffness->low,
-           *fit.torsional_stiffness->high);
+    append(out, "torsional_stiffness = {:.8e}  # N m^2, {}\n", *fit.torsional_stiffness->value,
+           interval_text(*fit.torsional_stiffness));
   }
   if (!fit.natural_curvature.empty()) {
     append(out, "natural_curvature = {}\n", natural_curvature_text(fit));
@@ -504,17 +515,16 @@ std::string material_toml(const compare::Calibration& report) {
            vector_text(fit.camera_tilt));
   }
   if (!given) out += "[[material]]\nname = \"calibrated\"\n";
-  std::string value = fmt::format("{:.8e}", *E.value);
+  std::string value = fmt::format("{:.8e}", *E.estimate);
   if (scene.given_bending_stiffness_2) {
     // A fit leaves the ratio of the two as it is.
     const double ratio = *scene.given_bending_stiffness_2 / *scene.given_bending_stiffness;
-    value = fmt::format("[{}, {:.8e}]", value, ratio * *E.value);
+    value = fmt::format("[{}, {:.8e}]", value, ratio * *E.estimate);
   }
-  append(out, "{} = {}  # {}, 95 %: {:.4g} to {:.4g}\n", stiffness_key(scene).name, value,
-         stiffness.unit, *E.low, *E.high);
+  append(out, "{} = {}  # {}, {}\n", stiffness_key(scene).name, value, stiffness.unit,
+         interval_text(E));
   append(out, "{} = {:.8e}  # {}, {}\n", heaviness_key(scene).name, density, heaviness.unit,
-         fit.density ? fmt::format("95 %: {:.4g} to {:.4g}", *fit.density->low, *fit.density->high)
-                     : std::string("of the scene"));
+         fit.density ? interval_text(*fit.density) : std::string("of the scene"));
   append(out, "{}least squares of {} measured shape{}, noise {:.3g} m{}{}\n",
          given ? "# " : "source = \"", fit.shapes.size(), fit.shapes.size() == 1 ? "" : "s",
          fit.noise_m, fit.correlation ? ", correlated along the rod" : "", given ? "" : "\"");

@@ -57,9 +57,12 @@ class OptionsSearch {
 
   [[nodiscard]] MaterialFit run() {
     MaterialFitOptions as_said = with_all_outputs(options_of(0, Clamps::as_said));
-    as_said.alternatives = options_.alternatives;
     as_said.predict = false;
     plain_ = fit_material(scenes_, shapes_, as_said);
+    if (options_.alternatives && !is_systematic(plain_)) {
+      as_said.alternatives = true;
+      plain_ = fit_material(scenes_, shapes_, as_said);
+    }
     start_ = material_of(plain_, scenes_.front());
     if (!is_systematic(plain_)) {
       if (options_.predict) plain_.prediction = plain_prediction();

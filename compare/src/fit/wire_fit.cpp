@@ -95,7 +95,7 @@ class WireFitter {
 
   [[nodiscard]] MaterialFit run(const MaterialPoint& start) {
     Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(numbers_.size()));
-    values[0] = start.log_modulus;
+    if (start.log_modulus > lowest()) values[0] = start.log_modulus;
     if (density_) values[1] = start.log_density;
     look_for_start(values);
     look_for_modulus(values);
@@ -126,8 +126,17 @@ class WireFitter {
   [[nodiscard]] GaussNewtonOptions steps() const {
     return {.noise = options_.noise,
             .least_noise = least_noise(),
-            .lowest = std::log(options_.smallest_ratio),
+            .lowest = lowest(),
             .highest = std::log(options_.largest_ratio)};
+  }
+
+  /// Of log E. The weight makes a rope of a softer rod, whose shape does not tell E; at least two
+  /// decades are looked at.
+  [[nodiscard]] double lowest() const {
+    constexpr double ropes_load = 1e5;  // w l^3 / (EI)
+    double load = 0;
+    for (const Scene& scene : scenes_) load = std::max(load, scene.gamma());
+    return std::max(std::log(options_.smallest_ratio), std::log(std::min(load / ropes_load, 1e-2)));
   }
 
   [[noreturn]] void refuse_no_shape() const {
@@ -149,9 +158,7 @@ class WireFitter {
         std::clamp(-marginal_slope_ * variance / 2, -longest_log_step, longest_log_step);
     if (std::abs(step) <= steps().last_step * std::sqrt(variance)) return;
     GaussNewtonOptions held = steps();
-    held.lowest = held.highest =
-        std::clamp(fit_->values()[0] + step, std::log(options_.smallest_ratio),
-                   std::log(options_.largest_ratio));
+    held.lowest = held.highest = std::clamp(fit_->values()[0] + step, held.lowest, held.highest);
     rods_.go_on_from(fit_->rods());
     GaussNewton there(rods_, fit_->values_beside(held.lowest), held);
     there.weigh(fit_->weight());
@@ -320,7 +327,7 @@ class WireFitter {
     const double wanted = quantile() * correlated_width();
     const double linear = quantile() * std::sqrt(covariance_(0, 0));
     const double farthest = side > 0 ? std::log(options_.largest_ratio) - fit_->values()[0]
-                                     : fit_->values()[0] - std::log(options_.smallest_ratio);
+                                     : fit_->values()[0] - lowest();
     constexpr double jump = 4;
     double distance = linear;
     for (int i = 0; i < most_ends; ++i) {
@@ -357,7 +364,7 @@ class WireFitter {
                                        std::optional<double> above) const {
     FittedValue value{.estimate = unit * std::exp(log_value)};
     // An end farther away than E is looked for is no bound.
-    const double farthest = std::log(options_.largest_ratio / options_.smallest_ratio);
+    const double farthest = std::log(options_.largest_ratio) - lowest();
     if (below && !(*below < farthest)) below.reset();
     if (above && !(*above < farthest)) above.reset();
     if (below) value.low = unit * std::exp(log_value - *below);

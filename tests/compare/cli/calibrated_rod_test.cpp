@@ -5,9 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <numbers>
+#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -65,28 +68,31 @@ std::vector<std::string> words_in(const std::string& text) {
   return {std::istream_iterator<std::string>(words), {}};
 }
 
-class CalibratedCommand : public dlo::test::Command {};
+class CalibratedCommand : public dlo::test::Command {
+ protected:
+  /// A scene's file.
+  std::string wire(const std::string& name, const std::string& EI, const std::string& rod,
+                   double direction) {
+    std::ofstream(path(name)) << "[rod]\nlength = 1\nmass_per_length = 0.05\nbending_stiffness = "
+                              << EI << "\n"
+                              << rod << "[[gripper]]\nat = 0\nposition = [0, 0, 0]\n"
+                              << "direction = \"" << direction << " deg\"\n";
+    return path(name);
+  }
+};
 
 /// Clamps that point elsewhere than they were meant to, and one gripper's place, found by three
 /// shapes: what -o writes makes the scene's shape the right one.
 TEST_F(CalibratedCommand, WhatCalibrateWritesMakesTheShapeRight) {
-  const auto wire = [this](const std::string& name, const std::string& EI, const std::string& rod,
-                           double turn, double direction) {
-    std::ofstream(path(name)) << "[rod]\nlength = 1\nmass_per_length = 0.05\nbending_stiffness = "
-                              << EI << "\n"
-                              << rod << "[[gripper]]\nat = 0\nposition = [0, 0, 0]\n"
-                              << "direction = \"" << direction + turn << " deg\"\n";
-    return path(name);
-  };
   std::string shapes;
   std::string scenes;
   for (const double direction : {-40.0, 10.0, 50.0}) {
     const std::string name = std::to_string(static_cast<int>(direction));
     const std::string truth =
-        wire("truth" + name, "0.03", "natural_curvature = 0.7\n", 8, direction);
+        wire("truth" + name, "0.03", "natural_curvature = 0.7\n", direction + 8);
     ASSERT_EQ(run("solve " + truth + " --samples 30 --format csv -o " + path(name + ".csv")).status,
               0);
-    scenes += " " + wire("said" + name, "0.05", "", 0, direction);
+    scenes += " " + wire("said" + name, "0.05", "", direction);
     shapes += " " + path(name + ".csv");
   }
   const auto found = run("calibrate" + scenes + " --shape" + shapes +
@@ -111,6 +117,35 @@ TEST_F(CalibratedCommand, WhatCalibrateWritesMakesTheShapeRight) {
   const auto refused = run("calibrate" + scenes + " --shape " + all[0] + " --holdout " + all[2]);
   EXPECT_EQ(refused.status, 2);
   EXPECT_TRUE(says(refused.err, {"3 scenes, 1 shapes and 1 held out"}));
+}
+
+/// A wire so stiff that its shapes tell no EI is predicted by what was found all the same.
+TEST_F(CalibratedCommand, WhatIsNoMaterialIsWrittenIfItPredicts) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> error(0, 1e-3);
+  std::string words = "calibrate";
+  std::string shapes = " --shape";
+  for (const double direction : {-40.0, 10.0, 50.0}) {
+    const std::string name = std::to_string(static_cast<int>(direction));
+    words += " " + wire(name + ".toml", "20", "", direction);
+    shapes += " " + path(name + ".csv");
+    std::ofstream points(path(name + ".csv"));
+    points << "x,y\n";
+    const double angle = (direction + 8) * std::numbers::pi / 180;  // as if nothing bent it
+    for (int i = 0; i <= 20; ++i) {
+      points << 0.05 * i * std::cos(angle) + error(random) << ","
+             << 0.05 * i * std::sin(angle) + error(random) << "\n";
+    }
+  }
+  words += shapes + " --natural-curvature 1 --clamp-angles \"20 deg\" --same-clamps";
+  expect_error(words + " --format toml", 2, {"no material to write", "not identifiable"});
+  const auto found = run(words + " --predict -o " + path("found.toml"));
+  ASSERT_EQ(found.status, 0) << found.err;
+  EXPECT_TRUE(says(found.out, {"EI          not identified"}));
+  EXPECT_TRUE(says(read(path("found.toml")), {"No material: EI is not identifiable"}));
+  const auto check = run("check " + path("10.toml") + " --shape " + path("10.csv") +
+                         " --tolerance 0.002 --no-explanation --calibrated " + path("found.toml"));
+  EXPECT_EQ(check.status, 0) << check.out << check.err;
 }
 
 }  // namespace

@@ -64,10 +64,13 @@ struct MaterialFitOptions {
   int chain_segments = 0;  ///< of a chain of hinges that is to be as stiff; 0: of none
   /// Lengths of such a chain's segments where they are unequal, 4 to 200 [m]; empty: of none.
   std::vector<double> chain_segment_lengths = {};
-  int profile_points = 0;        ///< of MaterialFit::profile; 0: of none
-  std::optional<double> noise;   ///< standard deviation of one coordinate [m]; else estimated
-  double smallest_ratio = 1e-4;  ///< of the modulus to the scene's, where it is looked for
-  double largest_ratio = 1e4;    ///< the upper end of that range
+  int profile_points = 0;       ///< of MaterialFit::profile; 0: of none
+  std::optional<double> noise;  ///< standard deviation of one coordinate [m]; else estimated
+  /// Of the modulus to the scene's, where it is looked for. With what makes a wire another one than
+  /// a straight rod in right clamps it is looked for up to w l^3 / (EI) = 1e5, or to 100 times the
+  /// scene's if that is more.
+  double smallest_ratio = 1e-4;
+  double largest_ratio = 1e4;  ///< the upper end of that range
   /// A number counts as identified only if its interval's ends are within this factor of each
   /// other.
   double identified_within = 4;
