@@ -15,7 +15,7 @@ from ._documents import Benchmark, Modes, Regression, Report, ScoreCard, Stabili
 from ._errors import InputError
 from ._files import FileName, file_name
 from ._functions import is_file, many, shape_pair
-from ._scene import Scene, SceneLike, as_scene, data_of
+from ._scene import Calibrated, Scene, SceneLike, as_scene, data_of
 
 
 def _spelled(field: str, value: Any, depth: int = 0) -> str:
@@ -133,18 +133,20 @@ def regress(
     programs: Sequence[str] = (),
     time: Optional[float] = None,
     materials: Optional[FileName] = None,
+    calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> Regression:
     """Shape errors against a baseline under version control: `dlo regress`.
 
     baseline: a file's name; update: write it anew, of these scenes and no others. model: "force" or
     "chain". An error may change by relative of it and absolute of the rod's length. programs: somebody
-    else's, "NAME=COMMAND" as the command's --with. time, materials: as of solve().
+    else's, "NAME=COMMAND" as the command's --with. time, materials,
+    calibrated: as of solve().
 
     Raises InputError, or ConvergenceError where a scene of an update is not solved and the baseline is
     left as it was.
     """
-    data = [data_of(scene, materials, time) for scene in many(scenes)]
+    data = [data_of(scene, materials, time, calibrated) for scene in many(scenes)]
     what = {
         "model": model,
         "programs": list(programs),
@@ -242,16 +244,17 @@ def modes(
     samples: int = 41,
     time: Optional[float] = None,
     materials: Optional[FileName] = None,
+    calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> Modes:
     """Natural frequencies about a scene's shape: `dlo modes`.
 
     count: of modes, the slowest ones. rate: steps of the force model a second. damping: ratio of the
-    slowest mode that the material has [-]. samples: points of each mode's shape. time, materials: as
-    of solve().
+    slowest mode that the material has [-]. samples: points of each mode's shape. time, materials,
+    calibrated: as of solve().
     """
     found: Modes = _dlo.modes(
-        data_of(scene, materials, time), count, rate, damping, samples, Modes, limits
+        data_of(scene, materials, time, calibrated), count, rate, damping, samples, Modes, limits
     )
     return found
 
@@ -282,6 +285,7 @@ def track(
     drag: float = 0.0,
     samples: int = 41,
     materials: Optional[FileName] = None,
+    calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> Track:
     """The rod of a scene that moves, at rest at every time: `dlo track`.
@@ -290,7 +294,7 @@ def track(
     step_rate: frames, moves of obstacles and steps of the force model a second; None: as the scene
     says. force: the force model beside it. dynamic: the rod with inertia too, from rest at the first
     pose; damping: its material's Kelvin-Voigt time [s], drag: the air's force per length and velocity
-    [N s/m^2]. samples: M points of each frame. materials: as of solve().
+    [N s/m^2]. samples: M points of each frame. materials, calibrated: as of solve().
 
     Raises InputError, or ConvergenceError where it had to stop, whose result is what was before.
     """
@@ -298,6 +302,6 @@ def track(
         raise InputError("track: damping and drag are those of a rod with inertia (allowed: dynamic=True)")
     part = [begin, end, frame_rate, obstacle_rate, step_rate]
     loss = (damping, drag) if dynamic else None
-    data = data_of(scene, materials)
+    data = data_of(scene, materials, None, calibrated)
     found: Track = _dlo.track(data, part, bool(force), loss, samples, Track, limits)
     return found
