@@ -13,9 +13,10 @@ from . import _dlo
 from ._arguments import COUNT, INTEGER, LIST, NUMBER, TABLE, TEXT, TEXTS, TRUTH, checked, require
 from ._documents import Benchmark, Modes, Regression, Report, ScoreCard, Stability, Track
 from ._errors import InputError
-from ._files import FileName, file_name
+from ._files import FileName, file_name, file_text
 from ._functions import is_file, many, shape_pair
 from ._scene import Calibrated, Scene, SceneLike, as_scene, data_of
+from ._time_limit import within
 
 
 def _spelled(field: str, value: Any, depth: int = 0) -> str:
@@ -193,7 +194,24 @@ def report(
     return made
 
 
-@checked(name=TEXT, scenes=TEXTS, points=INTEGER, threads=INTEGER, time_limit=NUMBER)
+def _card_text(baseline: Optional[Union[ScoreCard, FileName]]) -> Optional[tuple[str, str]]:
+    """Text and name of an earlier card."""
+    if isinstance(baseline, ScoreCard):
+        return baseline.to_json(), "baseline"
+    if baseline is None:
+        return None
+    return file_text(file_name(baseline, "baseline", "a dlo.ScoreCard, or the name of its file"))
+
+
+@checked(
+    name=TEXT,
+    scenes=TEXTS,
+    points=INTEGER,
+    threads=INTEGER,
+    time_limit=NUMBER,
+    relative=NUMBER,
+    absolute=NUMBER,
+)
 def suite(
     run: Callable[[Scene, int], Any],
     *,
@@ -202,6 +220,10 @@ def suite(
     points: int = 16,
     threads: int = 0,
     time_limit: float = 60.0,
+    state: Optional[FileName] = None,
+    baseline: Optional[Union[ScoreCard, FileName]] = None,
+    relative: float = 0.01,
+    absolute: float = 1e-6,
 ) -> ScoreCard:
     """The score card of a simulator that is a function: `dlo suite --with`.
 
@@ -212,13 +234,19 @@ def suite(
     time, from any thread.
 
     name: of the card; None: the function's. scenes: classes, or names of scenes; none: all. threads: of
-    all else; 0: all cores. time_limit: of each reference [s]; it does not end run().
+    all else; 0: all cores. time_limit: of each run, and of each reference [s]. A run is ended between two
+    instructions of Python, so that a longer call of C ends first; it is then a failure.
+    state: a folder that keeps finished runs by name, scene and N; they are not run again. Name another one
+    if the function has changed. baseline: an earlier card, or the file of its JSON; the ScoreCard then
+    passes or fails. An error may grow by relative of it and absolute of the rod's length.
     """
     if not callable(run):
         raise InputError(f"run: a {type(run).__name__} (allowed: a function of a scene and a number of points)")
 
+    limited = within(float(time_limit), run)
+
     def called(text: str, file: str, count: int) -> Any:
-        made = run(Scene.from_text(text, file), count)
+        made = limited(Scene.from_text(text, file), count)
         if hasattr(made, "points") and hasattr(made, "arc_length"):
             return made.points, made.arc_length
         return shape_pair(made)
@@ -228,6 +256,10 @@ def suite(
         "points": points,
         "threads": threads,
         "time_limit": float(time_limit),
+        "state": b"" if state is None else file_name(state, "state", "the name of a folder"),
+        "baseline": _card_text(baseline),
+        "relative": float(relative),
+        "absolute": float(absolute),
     }
     title = str(getattr(run, "__name__", "run")) if name is None else name
     card: ScoreCard = _dlo.suite(called, title, what, ScoreCard)
