@@ -224,7 +224,7 @@ void read_motion(const std::string& file, double length, ForeignRun& result) {
   if (result.not_supported) {
     result.problem = "wrote a shape at rest, no frames (time,s,x,y,z)";
   } else {
-    result.motion = parse_markers(text, shape_name);
+    result.motion = parse_recording(text, shape_name, length);
   }
 }
 
