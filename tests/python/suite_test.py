@@ -4,6 +4,7 @@ import importlib.util
 import json
 import os
 import pathlib
+import time
 
 import numpy
 import pytest
@@ -137,7 +138,82 @@ def test_arc_lengths_may_be_given_and_ctrl_c_ends_it():
         dlo.suite(interrupted, scenes=["weight_1"], threads=1)
 
 
-def test_bad_arguments_are_told_by_name():
+def test_finished_runs_are_not_run_again(tmp_path):
+    calls = []
+
+    def counted(scene, points):
+        calls.append((scene.name, points))
+        if len(calls) == 5:
+            raise KeyboardInterrupt
+        if scene.loads:
+            raise NotImplementedError("loads")
+        return rod(scene, points)
+
+    few = ["weight_1", "payload_tip", "weight_10"]
+    options = {"scenes": few, "points": 8, "threads": 1, "state": tmp_path / "runs"}
+    with pytest.raises(KeyboardInterrupt):
+        dlo.suite(counted, **options)
+    first = dlo.suite(counted, **options)
+    # Three runs of two scenes, one of that which is not supported, and the one that was interrupted.
+    assert len(calls) == 3 + 3 + 1 + 1
+    assert sorted(path.name for path in (tmp_path / "runs/counted").iterdir()) == sorted(
+        [f"{scene}_{points}.json" for scene in few[::2] for points in (8, 16, 32)] + ["payload_tip_8.json"])
+    again = dlo.suite(counted, **options)
+    assert len(calls) == 8 and again.json == first.json  # the times too are those that were kept
+    dlo.suite(counted, **{**options, "name": "another", "scenes": ["weight_1"]})
+    assert len(calls) == 11
+
+
+def test_an_earlier_card_is_a_gate_as_the_commands(tmp_path):
+    options = {"scenes": ["weight"], "points": 8, "name": "mine"}
+    before = dlo.suite(polygon, **options)
+    assert before.passed is None and before.reason is None
+    same = dlo.suite(polygon, baseline=before, **options)
+    assert same.passed and same.reason == "same in every class"
+    assert str(same).endswith("\n\nsame in every class\n")
+    (tmp_path / "card.json").write_text(before.to_json())
+    better = dlo.suite(rod, baseline=tmp_path / "card.json", **options)
+    assert better.passed and better.reason.split()[:2] == ["better", "mine,"]
+    worse = dlo.suite(chain("welded"), baseline=tmp_path / "card.json", **options)
+    assert worse.passed is False and "first element welded" in worse.reason
+    assert repr(worse).startswith("<dlo.ScoreCard fail: worse")
+    # Errors are shares of the length, below 1.
+    lenient = dlo.suite(rod, baseline=before, absolute=1, **options)
+    assert lenient.reason == "same in every class"
+
+
+def test_a_run_ends_at_the_time_limit():
+    def endless(scene, points):
+        while True:
+            try:
+                sum(range(points))
+            except Exception:  # nor does that go on
+                continue
+
+    card = dlo.suite(endless, scenes=["weight_1"], time_limit=0.5)
+    assert [run["status"] for run in card.card["scenes"][0]["runs"]] == 3 * ["failed"]
+    assert card.card["scenes"][0]["runs"][0]["problem"] == "TimeoutError: ended after the time limit of 0.5 s"
+
+
+def test_what_returns_after_the_time_limit_is_late():
+    def slept(scene, points):
+        time.sleep(1)  # in C, which is not ended
+        return rod(scene, points)
+
+    def swallowed(scene, points):
+        try:
+            while True:
+                sum(range(points))
+        except BaseException:
+            return rod(scene, points)
+
+    for run in (slept, swallowed):
+        card = dlo.suite(run, scenes=["weight_1"], time_limit=0.5)
+        assert card.card["total"]["failed"] == 1
+        assert "ended after the time limit" in card.card["scenes"][0]["runs"][0]["problem"]
+
+
+def test_bad_arguments_are_told_by_name(tmp_path):
     with pytest.raises(dlo.InputError, match="run: a int .allowed: a function"):
         dlo.suite(3)
     with pytest.raises(dlo.InputError, match="did you mean weight"):
@@ -146,6 +222,17 @@ def test_bad_arguments_are_told_by_name():
         dlo.suite(rod, points=2)
     with pytest.raises(dlo.InputError, match="scenes = 'weight'"):
         dlo.suite(rod, scenes="weight")
+    with pytest.raises(dlo.InputError, match="name = .../rod.: no folder of state"):
+        dlo.suite(rod, name="../rod", state=tmp_path)
+    with pytest.raises(dlo.InputError, match="relative and absolute >= 0"):
+        dlo.suite(rod, baseline=dlo.suite(rod, scenes=["weight_1"]), relative=float("nan"))
+    (tmp_path / "card.json").write_text("{}")
+    with pytest.raises(dlo.InputError, match="card.json: no cards"):
+        dlo.suite(rod, baseline=tmp_path / "card.json")
+    with pytest.raises(dlo.InputError, match="baseline: a int .allowed: a dlo.ScoreCard, or the name"):
+        dlo.suite(rod, baseline=3)
+    with pytest.raises(dlo.InputError, match="state: a int .allowed: the name of a folder"):
+        dlo.suite(rod, state=3)
 
 
 def test_a_scene_as_a_document_has_the_polygon_that_is_asked_for():

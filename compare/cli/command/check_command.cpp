@@ -148,7 +148,8 @@ void add_motion_to(CLI::App& command, CheckOptions& options) {
       command
           .add_option("--motion", options.motion,
                       "instead of a shape: a CSV file of markers on the rod, time,s,x,y,z in s and "
-                      "m, a FILE.vtk.series of frames, or a folder of them")
+                      "m, a FILE.vtk.series of frames, a folder of them, or a FILE.npz with t and "
+                      "points")
           ->type_name("FILE|DIR");
   command
       .add_flag("--dynamic", options.dynamic,

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -66,11 +65,7 @@ void write_cards(const SuiteOptions& options, const std::string& version,
   } else {
     write_standard_error(changes_text(changes));
   }
-  const bool worse = std::any_of(changes.begin(), changes.end(), [](const auto& change) {
-    return change.verdict == compare::RegressionVerdict::worse ||
-           change.verdict == compare::RegressionVerdict::changed;
-  });
-  if (worse) end_with(ExitStatus::outside_tolerance);
+  if (!compare::passes(changes)) end_with(ExitStatus::outside_tolerance);
 }
 
 void run(const SuiteOptions& options) {

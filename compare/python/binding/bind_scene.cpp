@@ -9,6 +9,7 @@
 #include "array.hpp"
 #include "base/input_file.hpp"
 #include "base/words.hpp"
+#include "dlo/compare/calibrated_rod.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/material.hpp"
 #include "document.hpp"
@@ -114,6 +115,13 @@ SharedScene scene_at(const SharedScene& data, double time) {
       SceneData{compare::scene_at(data->scene, time), data->obstacle_offsets});
 }
 
+SharedScene calibrated_scene(const SharedScene& data, const std::string& text,
+                             const std::string& file) {
+  return std::make_shared<SceneData>(
+      SceneData{compare::calibrated_scene(data->scene, compare::parse_calibrated_rod(text, file)),
+                data->obstacle_offsets});
+}
+
 py::dict table_keys() {
   py::dict keys;
   for (const compare::SceneTable& table : compare::scene_tables()) {
@@ -199,6 +207,8 @@ void bind_scene(py::module_& module) {
       },
       py::arg("scene"), py::arg("points"));
   module.def("scene_at", &scene_at, py::arg("scene"), py::arg("time"));
+  module.def("calibrated_scene", &calibrated_scene, py::arg("scene"), py::arg("text"),
+             py::arg("file"));
   module.def("read_file", &compare::read_file, py::arg("path"));
   module.def("toml_text", &toml_text, py::arg("document"));
   module.def("quantity", &quantity, py::arg("text"), py::arg("dimension"));

@@ -9,14 +9,17 @@
 #include <vector>
 
 #include "array.hpp"
+#include "base/quote.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
+#include "foreign/foreign_program.hpp"
 #include "format/json.hpp"
 #include "long_call.hpp"
 #include "module.hpp"
 #include "score/card_output.hpp"
 #include "suite/card.hpp"
 #include "suite/card_document.hpp"
+#include "suite/gate.hpp"
 
 namespace dlo::python {
 namespace {
@@ -73,19 +76,52 @@ class PythonSimulator {
   std::mutex calling_;
 };
 
-/// @param what  scenes, points, threads, time_limit
-/// @param make_result  of text, JSON, Markdown, JUnit XML, HTML
-py::object suite(const py::object& function, const std::string& name, const py::dict& what,
-                 const py::object& make_result) {
+/// @throws compare::InputError naming what is out of range
+compare::CardOptions card_options(const py::dict& what, const std::string& name) {
   compare::CardOptions options{.points = what["points"].cast<int>(),
                                .threads = what["threads"].cast<int>(),
-                               .time_limit = what["time_limit"].cast<double>()};
+                               .time_limit = what["time_limit"].cast<double>(),
+                               .state = what["state"].cast<std::string>()};
   if (options.points < 4 || options.points > 10000 || options.threads < 0 ||
       options.threads > 1024 || !(options.time_limit > 0)) {
     throw compare::InputError(
         "suite: out of range (allowed: points from 4 to 10000, threads from 0 to 1024, time_limit "
         "> 0)");
   }
+  if (!options.state.empty() && !compare::is_program_name(name)) {
+    throw compare::InputError(
+        fmt::format("suite: name = {}: no folder of state (allowed: letters, digits and _.-+)",
+                    compare::quoted_piece(name)));
+  }
+  return options;
+}
+
+/// An earlier card, and how much an error may grow.
+struct Gate {
+  std::vector<compare::Card> before;
+  compare::RegressionTolerance tolerance;
+};
+
+/// @throws compare::InputError naming what is out of range, or the file of the card
+std::optional<Gate> gate_of(const py::dict& what) {
+  const auto baseline = what["baseline"].cast<std::optional<std::pair<std::string, std::string>>>();
+  if (!baseline) return std::nullopt;
+  const compare::RegressionTolerance tolerance{.relative = what["relative"].cast<double>(),
+                                               .absolute = what["absolute"].cast<double>()};
+  if (!(tolerance.relative >= 0) || !(tolerance.absolute >= 0)) {
+    throw compare::InputError("suite: out of range (allowed: relative and absolute >= 0)");
+  }
+  return Gate{compare::parse_cards(baseline->first, baseline->second), tolerance};
+}
+
+/// @param what  scenes, points, threads, time_limit, state, baseline, relative, absolute
+/// @param make_result  of text, JSON, Markdown, JUnit XML, HTML, what has changed, whether it
+/// passes
+py::object suite(const py::object& function, const std::string& name, const py::dict& what,
+                 const py::object& make_result) {
+  compare::CardOptions options = card_options(what, name);
+  // An unreadable baseline is told before minutes of runs.
+  const std::optional<Gate> gate = gate_of(what);
   PythonSimulator python(function);
   const compare::Simulator simulator{.name = name,
                                      .own = std::nullopt,
@@ -100,9 +136,17 @@ py::object suite(const py::object& function, const std::string& name, const py::
     options.progress = [&signals](auto, auto) { signals.throw_if_stopped(); };
     return compare::make_cards(battery.version, scenes, {simulator}, options);
   });
-  return make_result(cli::cards_text(cards), cli::json_text(compare::cards_json(cards)),
-                     cli::cards_markdown(cards), cli::cards_junit(cards),
-                     cli::cards_page(cards, DLO_VERSION));
+  std::string text = cli::cards_text(cards);
+  std::optional<std::string> changed;
+  std::optional<bool> passes;
+  if (gate) {
+    const auto changes = compare::compare_cards(gate->before, cards, gate->tolerance);
+    changed = cli::changes_text(changes);
+    passes = compare::passes(changes);
+    text += "\n" + *changed;
+  }
+  return make_result(text, cli::json_text(compare::cards_json(cards)), cli::cards_markdown(cards),
+                     cli::cards_junit(cards), cli::cards_page(cards, DLO_VERSION), changed, passes);
 }
 
 }  // namespace

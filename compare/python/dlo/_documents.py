@@ -219,11 +219,32 @@ class Regression(Document):
 class ScoreCard(Document):
     """A simulator on the battery; of suite(). json is the document of `dlo suite --format json`, with one card."""
 
-    def __init__(self, text: str, json_text: str, markdown: str, junit: str, html: str) -> None:
+    def __init__(
+        self,
+        text: str,
+        json_text: str,
+        markdown: str,
+        junit: str,
+        html: str,
+        changes: Optional[str] = None,
+        passed: Optional[bool] = None,
+    ) -> None:
         super().__init__(text, json_text)
         self._markdown = markdown
         self._junit = junit
         self._html = html
+        self._changes = changes
+        self._passed = passed
+
+    @property
+    def passed(self) -> Optional[bool]:
+        """Whether no class has got worse than the baseline's; None without one."""
+        return self._passed
+
+    @property
+    def reason(self) -> Optional[str]:
+        """A line for each class that has changed; None without a baseline."""
+        return None if self._changes is None else self._changes.rstrip("\n")
 
     @property
     def card(self) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from ._arguments import INTEGER, LIST, NUMBER, NUMBERS, QUANTITY, TEXT, TRUTH, c
 from ._documents import Document, ForceModelFit, MaterialFit, MotionCheck, Plan
 from ._errors import InputError
 from ._files import FileName, file_name
-from ._scene import Quantity, Scene, SceneLike, data_of
+from ._scene import Calibrated, Quantity, Scene, SceneLike, data_of
 
 Shape = Union[ArrayLike, tuple[ArrayLike, ArrayLike], FileName]
 """Points [m], shape (M, 3) or (M, 2), or a pair of these and their arc lengths [m], shape (M,), or the
@@ -67,6 +67,7 @@ def solve(
     *,
     time: Optional[float] = None,
     materials: Optional[FileName] = None,
+    calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> _dlo.Solution:
     """The shape of a scene's rod: `dlo solve`.
@@ -75,12 +76,13 @@ def solve(
     polygon) or "force" (the force model, stepped to rest). samples: M points at equal arc lengths
     from 0 to l; None: 101 of energy and exact, the polygon's own points else. time: of a scene that
     moves, as it is then [s]; None: at the first pose. materials: a file in which the name of a
-    material is looked up instead. limits: time_limit [s], terms, max_evaluations, max_steps,
-    rest_tolerance.
+    material is looked up instead. calibrated: a MaterialFit of calibrate(), or a file that
+    `dlo calibrate -o` wrote: its rod, and how clamps and camera are held, in the place of the scene's.
+    limits: time_limit [s], terms, max_evaluations, max_steps, rest_tolerance.
 
     Raises InputError, or ConvergenceError, whose result is the shape so far or None.
     """
-    return _dlo.solve(data_of(scene, materials, time), model, samples or 0, limits)
+    return _dlo.solve(data_of(scene, materials, time, calibrated), model, samples or 0, limits)
 
 
 @checked(samples=INTEGER, time=NUMBER)
@@ -90,13 +92,14 @@ def solve_all(
     *,
     time: Optional[float] = None,
     materials: Optional[FileName] = None,
+    calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> _dlo.Equilibria:
     """Every equilibrium that the energy model finds, with its stability: `dlo solve --all`.
 
-    time, materials: as of solve().
+    time, materials, calibrated: as of solve().
     """
-    return _dlo.solve_all(data_of(scene, materials, time), samples or 0, limits)
+    return _dlo.solve_all(data_of(scene, materials, time, calibrated), samples or 0, limits)
 
 
 @overload
@@ -146,6 +149,7 @@ def check(
     begin: Optional[float] = None,
     frame_rate: Optional[float] = None,
     materials: Optional[FileName] = None,
+    calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> Union[_dlo.Check, MotionCheck]:
     """How far points are from the shape that the scene's rod would take: `dlo check`.
@@ -158,10 +162,12 @@ def check(
     the points' frame, "known" (nothing), "translation", "upright" or "rigid"; pose: its name before
     0.2. arc_lengths: "auto",
     "file" (those given), "nearest" or "chord". modulus: look for E*/E. explain: of a shape that
-    fails look for candidate causes, which takes longer than all else. materials: as of solve().
+    fails look for candidate causes, which takes longer than all else. materials,
+    calibrated: as of solve().
 
     With motion in place of points a MotionCheck of a scene that moves: rows of time [s], arc length, x, y,
-    z [m], shape (R, 5), or the name of a file of markers, of a FILE.vtk.series or of a folder of frames.
+    z [m], shape (R, 5), or the name of a file of markers, of a FILE.vtk.series, of a folder of frames, or of
+    a FILE.npz with t [s], shape (T,), points [m], shape (T, n, 3), and if known s [m], shape (n,).
     dynamic: hold it against the rod with inertia, of that damping [s], drag [N s/m^2] and
     quadratic_drag [N s^2/m^3], not at rest. begin: of the rod's motion [s]; None: the recording's.
     frame_rate: of the rod [Hz]; None: as needed.
@@ -172,13 +178,13 @@ def check(
         told = (None if tolerance is None else str(tolerance), measure, bool(explain))
         loss = (float(damping), float(drag), float(quadratic_drag))
         part = (begin, frame_rate)
-        data = data_of(scene, materials)
+        data = data_of(scene, materials, None, calibrated)
         rows = _recorded(motion)
         return MotionCheck(*_dlo.check_motion(data, rows, part, bool(dynamic), loss, told, limits))
     if points is None:
         raise InputError("check: nothing to check (allowed: points, or motion)")
     asked = (None if tolerance is None else str(tolerance), measure, min_seen, bool(explain))
-    data = data_of(scene, materials)
+    data = data_of(scene, materials, None, calibrated)
     taken: Any = file_name(points, "points") if is_file(points) else points
     return _dlo.check(data, taken, arc_length, asked, pose or register, arc_lengths, bool(modulus), limits)
 
@@ -191,14 +197,15 @@ def compare(
     plan: bool = False,
     time: Optional[float] = None,
     materials: Optional[FileName] = None,
+    calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> _dlo.Comparison:
     """How far the force model is from the energy model, and why: `dlo compare`.
 
     modulus: look for E*/E. plan: make a plan too, as `dlo compare --explain` does, at the cost of some
-    ten solves. time, materials: as of solve().
+    ten solves. time, materials, calibrated: as of solve().
     """
-    return _dlo.compare(data_of(scene, materials, time), bool(modulus), bool(plan), limits)
+    return _dlo.compare(data_of(scene, materials, time, calibrated), bool(modulus), bool(plan), limits)
 
 
 @checked(target=NUMBER, gripper_speed=NUMBER, time_limit=NUMBER, time=NUMBER)
@@ -210,13 +217,14 @@ def plan(
     time_limit: float = 5.0,
     time: Optional[float] = None,
     materials: Optional[FileName] = None,
+    calibrated: Optional[Calibrated] = None,
 ) -> Plan:
     """What a scene needs, and bounds of what is neglected: `dlo solve --explain`.
 
     target: wanted RMS error over the rod's length. gripper_speed: how fast a gripper moves [m/s].
-    time_limit: of all that the plan solves [s]. time, materials: as of solve().
+    time_limit: of all that the plan solves [s]. time, materials, calibrated: as of solve().
     """
-    return Plan(*_dlo.plan(data_of(scene, materials, time), target, gripper_speed, time_limit))
+    return Plan(*_dlo.plan(data_of(scene, materials, time, calibrated), target, gripper_speed, time_limit))
 
 
 @checked(
@@ -270,6 +278,7 @@ def calibrate(
     motion: Optional[Union[ArrayLike, FileName]] = None,
     time: Optional[float] = None,
     materials: Optional[FileName] = None,
+    calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> Union[MaterialFit, ForceModelFit, Document]:
     """Young's modulus from measured shapes, or the force model's parameters: `dlo calibrate`.
@@ -281,8 +290,8 @@ def calibrate(
     with same_clamps what all share, but for rolls, and with clamp_scatter each shape's own about it. camera_tilt: how level the camera is; one tilt of all shapes is then fitted. predict: each shape is left out in turn, and predicted. holdout: shapes that only judge, their scenes after the others ("held_out" of the document). options: "auto": where
     residuals are systematic, the terms of natural curvature, and clamps as said, alike or each on its own, that predict
     best ("tried" of the document); "given"; None: "auto" of three shapes or more, without these six. noise: standard deviation of one coordinate; None: estimated. segments: of your simulator's chain, whose springs are
-    then found too ("chains" of the document); segment_lengths [m] where they are unequal. register, arc_lengths: as of check(). time, materials: as of
-    solve(), of all scenes.
+    then found too ("chains" of the document); segment_lengths [m] where they are unequal. register, arc_lengths: as of check(). time, materials,
+    calibrated: as of solve(), of all scenes.
 
     With motion, markers recorded on the rod of one scene that moves: a Document with stiffness over
     mass and damping. It is an array of time [s], arc length, x, y, z [m] by row, or a file of these.
@@ -290,13 +299,13 @@ def calibrate(
     Without: a ForceModelFit of the scenes. holdout: scenes that only judge. target: RMS deviation
     wanted over the length (0.001 if not given). points: N; None: as the target needs.
     """
-    data = [data_of(scene, materials, time) for scene in many(scenes)]
+    data = [data_of(scene, materials, time, calibrated) for scene in many(scenes)]
     if motion is not None:
         if shapes is not None or len(data) != 1:
             raise InputError("calibrate: motion with shapes or of several scenes (allowed: one scene)")
         return Document(*_dlo.calibrate_motion(data[0], _recorded(motion), "motion", limits))
     if shapes is None:
-        held_out = [data_of(cast(SceneLike, scene), materials, time) for scene in holdout]
+        held_out = [data_of(cast(SceneLike, scene), materials, time, calibrated) for scene in holdout]
         return ForceModelFit(*_dlo.calibrate_force_model(data, held_out, points, target, limits))
     what = {
         "pose": pose or register,

@@ -164,7 +164,7 @@ class Gripper(Part):
     quaternion = _field("quaternion", _of("number"), "The same as [w, x, y, z], shape (4,).")
     turns = _field("turns", as_it_is, "Whole turns more than the least, beside a frame.")
     pose = _field("pose", as_it_is, "How it moves: tables of time, position and, of a clamp, direction and roll.")
-    trajectory = _field("trajectory", as_it_is, "A CSV file of poses, beside the scene's.")
+    trajectory = _field("trajectory", as_it_is, "A CSV file of poses, or of two markers, beside the scene's.")
     cutoff = _field("cutoff", _of("frequency"), "Of the file's poses: what is faster is left out [Hz].")
 
 

@@ -7,6 +7,7 @@ from typing import Any, Callable, Iterable, Optional, Sequence, Union
 
 from . import _dlo
 from ._arguments import LIST, TABLE, TEXT, Strict, require
+from ._documents import MaterialFit
 from ._errors import InputError
 from ._files import FileName, Materials, file_name, file_text, materials_file
 from ._parts import (
@@ -29,6 +30,9 @@ from ._parts import (
 
 SceneLike = Union["Scene", FileName]
 """A scene, or the name of a scene file."""
+
+Calibrated = Union[MaterialFit, FileName]
+"""What calibrate() found of a rod and its fixture, or the name of a file of it."""
 
 
 _ROD_KEYS = tuple(_dlo.scene_keys["rod"])
@@ -426,10 +430,19 @@ def as_scene(scene: SceneLike, materials: Optional[FileName] = None) -> Scene:
 
 
 def data_of(
-    scene: SceneLike, materials: Optional[FileName] = None, time: Optional[float] = None
+    scene: SceneLike,
+    materials: Optional[FileName] = None,
+    time: Optional[float] = None,
+    calibrated: Optional[Calibrated] = None,
 ) -> _dlo.SceneData:
-    """What the extension takes. time: of a scene that moves, as it is then [s]."""
+    """What the extension takes. time: of a scene that moves, as it is then [s]. calibrated: in the place of
+    its rod and clamps."""
     data = as_scene(scene, materials)._data
+    if isinstance(calibrated, MaterialFit):
+        data = _dlo.calibrated_scene(data, calibrated.to_toml(), "calibrated")
+    elif calibrated is not None:
+        name = file_name(calibrated, "calibrated", "a dlo.MaterialFit, or the name of its file")
+        data = _dlo.calibrated_scene(data, *file_text(name))
     return data if time is None else _dlo.scene_at(data, time)
 
 

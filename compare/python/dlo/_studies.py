@@ -13,9 +13,10 @@ from . import _dlo
 from ._arguments import COUNT, INTEGER, LIST, NUMBER, TABLE, TEXT, TEXTS, TRUTH, checked, require
 from ._documents import Benchmark, Modes, Regression, Report, ScoreCard, Stability, Track
 from ._errors import InputError
-from ._files import FileName, file_name
+from ._files import FileName, file_name, file_text
 from ._functions import is_file, many, shape_pair
-from ._scene import Scene, SceneLike, as_scene, data_of
+from ._scene import Calibrated, Scene, SceneLike, as_scene, data_of
+from ._time_limit import within
 
 
 def _spelled(field: str, value: Any, depth: int = 0) -> str:
@@ -133,18 +134,20 @@ def regress(
     programs: Sequence[str] = (),
     time: Optional[float] = None,
     materials: Optional[FileName] = None,
+    calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> Regression:
     """Shape errors against a baseline under version control: `dlo regress`.
 
     baseline: a file's name; update: write it anew, of these scenes and no others. model: "force" or
     "chain". An error may change by relative of it and absolute of the rod's length. programs: somebody
-    else's, "NAME=COMMAND" as the command's --with. time, materials: as of solve().
+    else's, "NAME=COMMAND" as the command's --with. time, materials,
+    calibrated: as of solve().
 
     Raises InputError, or ConvergenceError where a scene of an update is not solved and the baseline is
     left as it was.
     """
-    data = [data_of(scene, materials, time) for scene in many(scenes)]
+    data = [data_of(scene, materials, time, calibrated) for scene in many(scenes)]
     what = {
         "model": model,
         "programs": list(programs),
@@ -191,7 +194,24 @@ def report(
     return made
 
 
-@checked(name=TEXT, scenes=TEXTS, points=INTEGER, threads=INTEGER, time_limit=NUMBER)
+def _card_text(baseline: Optional[Union[ScoreCard, FileName]]) -> Optional[tuple[str, str]]:
+    """Text and name of an earlier card."""
+    if isinstance(baseline, ScoreCard):
+        return baseline.to_json(), "baseline"
+    if baseline is None:
+        return None
+    return file_text(file_name(baseline, "baseline", "a dlo.ScoreCard, or the name of its file"))
+
+
+@checked(
+    name=TEXT,
+    scenes=TEXTS,
+    points=INTEGER,
+    threads=INTEGER,
+    time_limit=NUMBER,
+    relative=NUMBER,
+    absolute=NUMBER,
+)
 def suite(
     run: Callable[[Scene, int], Any],
     *,
@@ -200,6 +220,10 @@ def suite(
     points: int = 16,
     threads: int = 0,
     time_limit: float = 60.0,
+    state: Optional[FileName] = None,
+    baseline: Optional[Union[ScoreCard, FileName]] = None,
+    relative: float = 0.01,
+    absolute: float = 1e-6,
 ) -> ScoreCard:
     """The score card of a simulator that is a function: `dlo suite --with`.
 
@@ -210,13 +234,19 @@ def suite(
     time, from any thread.
 
     name: of the card; None: the function's. scenes: classes, or names of scenes; none: all. threads: of
-    all else; 0: all cores. time_limit: of each reference [s]; it does not end run().
+    all else; 0: all cores. time_limit: of each run, and of each reference [s]. A run is ended between two
+    instructions of Python, so that a longer call of C ends first; it is then a failure.
+    state: a folder that keeps finished runs by name, scene and N; they are not run again. Name another one
+    if the function has changed. baseline: an earlier card, or the file of its JSON; the ScoreCard then
+    passes or fails. An error may grow by relative of it and absolute of the rod's length.
     """
     if not callable(run):
         raise InputError(f"run: a {type(run).__name__} (allowed: a function of a scene and a number of points)")
 
+    limited = within(float(time_limit), run)
+
     def called(text: str, file: str, count: int) -> Any:
-        made = run(Scene.from_text(text, file), count)
+        made = limited(Scene.from_text(text, file), count)
         if hasattr(made, "points") and hasattr(made, "arc_length"):
             return made.points, made.arc_length
         return shape_pair(made)
@@ -226,6 +256,10 @@ def suite(
         "points": points,
         "threads": threads,
         "time_limit": float(time_limit),
+        "state": b"" if state is None else file_name(state, "state", "the name of a folder"),
+        "baseline": _card_text(baseline),
+        "relative": float(relative),
+        "absolute": float(absolute),
     }
     title = str(getattr(run, "__name__", "run")) if name is None else name
     card: ScoreCard = _dlo.suite(called, title, what, ScoreCard)
@@ -242,16 +276,17 @@ def modes(
     samples: int = 41,
     time: Optional[float] = None,
     materials: Optional[FileName] = None,
+    calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> Modes:
     """Natural frequencies about a scene's shape: `dlo modes`.
 
     count: of modes, the slowest ones. rate: steps of the force model a second. damping: ratio of the
-    slowest mode that the material has [-]. samples: points of each mode's shape. time, materials: as
-    of solve().
+    slowest mode that the material has [-]. samples: points of each mode's shape. time, materials,
+    calibrated: as of solve().
     """
     found: Modes = _dlo.modes(
-        data_of(scene, materials, time), count, rate, damping, samples, Modes, limits
+        data_of(scene, materials, time, calibrated), count, rate, damping, samples, Modes, limits
     )
     return found
 
@@ -282,6 +317,7 @@ def track(
     drag: float = 0.0,
     samples: int = 41,
     materials: Optional[FileName] = None,
+    calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> Track:
     """The rod of a scene that moves, at rest at every time: `dlo track`.
@@ -290,7 +326,7 @@ def track(
     step_rate: frames, moves of obstacles and steps of the force model a second; None: as the scene
     says. force: the force model beside it. dynamic: the rod with inertia too, from rest at the first
     pose; damping: its material's Kelvin-Voigt time [s], drag: the air's force per length and velocity
-    [N s/m^2]. samples: M points of each frame. materials: as of solve().
+    [N s/m^2]. samples: M points of each frame. materials, calibrated: as of solve().
 
     Raises InputError, or ConvergenceError where it had to stop, whose result is what was before.
     """
@@ -298,6 +334,6 @@ def track(
         raise InputError("track: damping and drag are those of a rod with inertia (allowed: dynamic=True)")
     part = [begin, end, frame_rate, obstacle_rate, step_rate]
     loss = (damping, drag) if dynamic else None
-    data = data_of(scene, materials)
+    data = data_of(scene, materials, None, calibrated)
     found: Track = _dlo.track(data, part, bool(force), loss, samples, Track, limits)
     return found

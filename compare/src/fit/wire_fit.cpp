@@ -130,7 +130,7 @@ class WireFitter {
             .highest = std::log(options_.largest_ratio)};
   }
 
-  /// Of log E. The weight makes a rope of a softer rod, whose shape does not tell E; at least two
+  /// Of log E. Weight makes a rope of a softer rod, whose shape is the same with any E; at least two
   /// decades are looked at.
   [[nodiscard]] double lowest() const {
     constexpr double ropes_load = 1e5;  // w l^3 / (EI)

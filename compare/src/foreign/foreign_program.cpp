@@ -110,15 +110,19 @@ void require_end(const Scene& scene, const Shape& laid, bool told, bool at_start
 
 }  // namespace
 
+bool is_program_name(const std::string& name) {
+  constexpr std::string_view letters =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-+";
+  return !name.empty() && name != "." && name != ".." &&
+         name.find_first_not_of(letters) == std::string::npos;
+}
+
 ForeignProgram parse_foreign_program(const std::string& text) {
   const std::size_t equals = text.find('=');
   const std::string name = text.substr(0, equals);
-  constexpr std::string_view letters =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-+";
   const std::vector<std::string> models = names<Model>();
   const bool ours = std::find(models.begin(), models.end(), name) != models.end();
-  if (equals == std::string::npos || name.empty() || ours ||
-      name.find_first_not_of(letters) != std::string::npos) {
+  if (equals == std::string::npos || ours || !is_program_name(name)) {
     throw InputError(
         fmt::format("--with = {}: {} (allowed: NAME=COMMAND, NAME of letters, digits and _.-+, not "
                     "energy, chain, exact or force)",
@@ -220,7 +224,7 @@ void read_motion(const std::string& file, double length, ForeignRun& result) {
   if (result.not_supported) {
     result.problem = "wrote a shape at rest, no frames (time,s,x,y,z)";
   } else {
-    result.motion = parse_markers(text, shape_name);
+    result.motion = parse_recording(text, shape_name, length);
   }
 }
 

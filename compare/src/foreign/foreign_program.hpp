@@ -17,6 +17,9 @@ struct ForeignProgram {
   std::vector<std::string> words;  ///< of its command, with {scene}, {points} and {shape}
 };
 
+/// Whether a name is of letters, digits and "_.-+", so that a folder may have it.
+[[nodiscard]] bool is_program_name(const std::string& name);
+
 /// @param text  "NAME=COMMAND", split as command_words() does
 /// @throws InputError, also if {shape} is missing
 [[nodiscard]] ForeignProgram parse_foreign_program(const std::string& text);

@@ -3,13 +3,10 @@
 #include <string>
 #include <string_view>
 
+#include "decode/npy_array.hpp"
 #include "points/raw_shape.hpp"
 
 namespace dlo::compare {
-
-/// How NumPy's files begin (numpy.lib.format), and zip archives.
-inline constexpr std::string_view npy_magic = "\x93NUMPY";
-inline constexpr std::string_view zip_magic = "PK\x03\x04";
 
 /// Reads a shape as NumPy saves an array: M x 2 or M x 3 of any integers or of 32 or 64 bit
 /// floating-point numbers, in any order of bytes and axes; of frames x M x 3 the one that the

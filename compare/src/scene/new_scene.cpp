@@ -164,6 +164,7 @@ std::string optional_part(const SceneChoices& choices, const Scene& scene) {
 #   position = [{x:.4g}, {y:.4g}, {z:.4g}]
 #   direction = {direction}   of a clamp; in no pose: the gripper's own stays
 # or trajectory = "way.csv" beside this file: a header time,x,y,z[,dx,dy,dz][,roll], in s, m, rad.
+# Or of two markers on the gripper: time,s,x,y,z, s where they are along the rod, straight there.
 # With cutoff = "10 Hz" beside it what is faster is left out, without a lag (-3 dB there).
 
 # A part of the rod that is another one, such as a connector; one [[section]] for each. What it does

@@ -145,7 +145,7 @@ Gripper read_gripper(StrictTable& table, double length, const std::string& file)
   table.only(scene_keys("gripper"));
   gripper.at = read_arc_length(table, "at", length);
   const std::string hold = table.has("hold") ? table.choice("hold", {"clamp", "pin"}) : "clamp";
-  PoseKeys keys;
+  PoseKeys keys{.direction = nullptr, .at = gripper.at};
   if (hold == "clamp") keys.direction = read_direction;
   gripper.trajectory = read_trajectory(table, keys, file);
   gripper.position = read_place(table, "position", gripper.trajectory);

@@ -93,4 +93,11 @@ std::vector<GroupChange> compare_cards(const std::vector<Card>& before,
   return changes;
 }
 
+bool passes(const std::vector<GroupChange>& changes) {
+  return std::none_of(changes.begin(), changes.end(), [](const GroupChange& change) {
+    return change.verdict == RegressionVerdict::worse ||
+           change.verdict == RegressionVerdict::changed;
+  });
+}
+
 }  // namespace dlo::compare

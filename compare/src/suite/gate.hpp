@@ -23,4 +23,7 @@ struct GroupChange {
                                                      const std::vector<Card>& now,
                                                      const RegressionTolerance& tolerance = {});
 
+/// Whether no class is worse, and none has other scenes than the earlier card.
+[[nodiscard]] bool passes(const std::vector<GroupChange>& changes);
+
 }  // namespace dlo::compare

@@ -167,6 +167,7 @@ void write_run(const std::filesystem::path& file, const std::string& known,
 }  // namespace
 
 std::string Simulator::identity() const {
+  if (function) return fmt::format("function {}", name);
   return own ? fmt::format("model {}", to_string(*own))
              : fmt::format("command {}", Json(program.words).dump());
 }
@@ -231,8 +232,7 @@ SimulatorRun run_simulator(const Simulator& simulator, const BatteryScene& scene
 
 SimulatorRun kept_run(const std::string& folder, const Simulator& simulator,
                       const BatteryScene& scene, int points, double time_limit) {
-  if (folder.empty() || simulator.function)
-    return run_simulator(simulator, scene, points, time_limit);
+  if (folder.empty()) return run_simulator(simulator, scene, points, time_limit);
   const std::filesystem::path mine = std::filesystem::path(folder) / simulator.name;
   const std::filesystem::path file = mine / fmt::format("{}_{}.json", scene.id, points);
   const std::string known = run_fingerprint(simulator, scene, points);

@@ -42,10 +42,10 @@ struct SimulatorRun {
 
 /// What is run on the battery: a program, one of our own polygon models, or a function.
 struct Simulator {
-  std::string name;          ///< of the program, or "chain" or "force"
+  std::string name;          ///< of the program or function, or "chain" or "force"
   std::optional<Model> own;  ///< none: `program`
   ForeignProgram program;    ///< its command
-  /// A function of this process, from any thread; its results are not kept. None: one of those.
+  /// A function of this process, from any thread. None: one of those.
   std::function<SimulatorRun(const Scene& scene, int points)> function = {};
 
   /// What its results depend on, in words.

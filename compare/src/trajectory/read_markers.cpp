@@ -8,7 +8,6 @@
 #include <optional>
 #include <tuple>
 
-#include "base/input_file.hpp"
 #include "base/number.hpp"
 #include "dlo/compare/error.hpp"
 #include "trajectory/read_trajectory.hpp"
@@ -72,7 +71,5 @@ MarkerMotion parse_markers(std::string_view text, const std::string& file) {
   }
   return result;
 }
-
-MarkerMotion load_markers(const std::string& path) { return parse_markers(read_file(path), path); }
 
 }  // namespace dlo::compare

@@ -25,7 +25,4 @@ struct MarkerMotion {
 /// @throws InputError naming the file, the line, and what is allowed
 [[nodiscard]] MarkerMotion parse_markers(std::string_view text, const std::string& file);
 
-/// Of a file. @throws InputError as parse_markers(), or if it cannot be read
-[[nodiscard]] MarkerMotion load_markers(const std::string& path);
-
 }  // namespace dlo::compare

@@ -17,6 +17,8 @@
 #include "base/number.hpp"
 #include "base/quote.hpp"
 #include "dlo/compare/error.hpp"
+#include "trajectory/marker_poses.hpp"
+#include "trajectory/read_markers.hpp"
 #include "trajectory/smooth_poses.hpp"
 #include "trajectory/trajectory_files.hpp"
 
@@ -32,7 +34,9 @@ constexpr std::size_t direction_columns = 4, roll_column = 7;  // where they beg
 constexpr const char* pose_columns_allowed =
     "(allowed: a header of time,x,y,z with or without dx,dy,dz and roll, in any order)";
 constexpr const char* file_allowed =
-    "(allowed: a CSV file with the columns time,x,y,z with or without dx,dy,dz and roll)";
+    "(allowed: a CSV file with the columns time,x,y,z with or without dx,dy,dz and roll, or, of "
+    "two "
+    "markers on a gripper, time,s,x,y,z)";
 
 /// What Trajectory says of a pose, without its own name.
 std::string problem_in(const std::invalid_argument& error) {
@@ -143,6 +147,25 @@ Trajectory read_rows(StrictTable& table, std::vector<StrictTable>& rows, const P
   }
 }
 
+/// Whether a file's rows are of markers, which have arc lengths.
+bool is_of_markers(std::string_view text, const std::string& file) {
+  std::optional<bool> found;
+  for_each_row(text, file, [&found](const auto& fields, const std::string& /*where*/) {
+    if (!found) found = std::find(fields.begin(), fields.end(), "s") != fields.end();
+  });
+  return found.value_or(false);
+}
+
+/// Poses of a file. @throws std::invalid_argument as smooth_poses()
+std::vector<Pose> file_poses(const std::string& text, const std::string& file, const PoseKeys& keys,
+                             std::optional<double> cutoff) {
+  if (keys.at && is_of_markers(text, file)) {
+    return poses_of_markers(parse_markers(text, file), *keys.at, cutoff);
+  }
+  const Trajectory given = parse_trajectory(text, file);
+  return cutoff ? smooth_poses(given.poses(), *cutoff) : given.poses();
+}
+
 }  // namespace
 
 std::string read_beside(const StrictTable& table, std::string_view key, const std::string& name,
@@ -211,12 +234,14 @@ Trajectory read_trajectory(StrictTable& table, const PoseKeys& keys,
   if (!name) return rows.empty() ? Trajectory() : read_rows(table, rows, keys);
   Trajectory trajectory;
   try {
-    trajectory =
-        parse_trajectory(read_beside(table, "trajectory", *name, scene_file, file_allowed), *name);
+    const std::string text = read_beside(table, "trajectory", *name, scene_file, file_allowed);
+    trajectory = Trajectory(file_poses(text, *name, keys, cutoff));
   } catch (const InputError& error) {
     // One that the table has made says where it is already.
     if (std::string_view(error.what()).starts_with(scene_file)) throw;
     table.fail("trajectory", error.what());
+  } catch (const std::invalid_argument& error) {
+    table.fail(cutoff ? "cutoff" : "trajectory", problem_in(error));
   }
   if (trajectory.poses().front().direction && !keys.direction) {
     table.fail("trajectory", "has directions (allowed here: time,x,y,z)");
@@ -224,12 +249,7 @@ Trajectory read_trajectory(StrictTable& table, const PoseKeys& keys,
   if (trajectory.poses().front().roll && !keys.direction) {
     table.fail("trajectory", "has rolls (allowed here: time,x,y,z)");
   }
-  if (!cutoff) return trajectory;
-  try {
-    return Trajectory(smooth_poses(trajectory.poses(), *cutoff));
-  } catch (const std::invalid_argument& error) {
-    table.fail("cutoff", problem_in(error));
-  }
+  return trajectory;
 }
 
 }  // namespace dlo::compare

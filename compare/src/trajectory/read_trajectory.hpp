@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,10 +17,14 @@ struct PoseKeys {
   const char* position = "position";  ///< key of where it is
   /// Reads a pose's direction; none: it has no direction, and no roll.
   std::function<Eigen::Vector3d(StrictTable&)> direction;
+  /// Arc length at which it holds the rod [m], whose file may be of markers; none: it is no
+  /// gripper.
+  std::optional<double> at = std::nullopt;
 };
 
 /// The poses of a table, as [[..pose]] rows of time, position, direction and roll, or as the file
-/// that its key `trajectory` names (relative to the scene's folder): none of the two is no poses.
+/// that its key `trajectory` names (relative to the scene's folder), of poses or of two markers on
+/// a gripper (poses_of_markers()): none of the two is no poses.
 /// Rows may all leave the direction out, and the roll. @throws InputError naming file, line, key
 /// and what is allowed
 [[nodiscard]] Trajectory read_trajectory(StrictTable& table, const PoseKeys& keys,

@@ -64,7 +64,8 @@ TEST(ForeignProgram, IsANameAndTheWordsOfACommand) {
 
 TEST(ForeignProgram, BadOnesAreRefused) {
   EXPECT_THAT(refusal_of_program("sim {shape}"), HasSubstr("no NAME before an ="));
-  for (const char* text : {"=sim {shape}", "a b=sim {shape}", "force=sim {shape}"}) {
+  for (const char* text :
+       {"=sim {shape}", "a b=sim {shape}", "..=sim {shape}", "force=sim {shape}"}) {
     EXPECT_THAT(refusal_of_program(text), HasSubstr("not such a NAME")) << text;
   }
   EXPECT_THAT(refusal_of_program("a=sim {scene}"), HasSubstr("no {shape} in the command"));

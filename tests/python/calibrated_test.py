@@ -1,0 +1,117 @@
+"""What a calibration found, in the place of what scenes say: as the command has it, to the digit."""
+
+import json
+import subprocess
+
+import numpy
+import pytest
+
+import dlo
+
+FOUND = """bending_stiffness = 2e-3
+mass_per_length = 0.02
+natural_curvature = [[0, 0.6], [0, -0.4]]
+camera_tilt = [0, 0, "2 deg"]
+[[gripper]]
+number = 2
+rotation = [0, 0, "-7 deg"]
+displacement = ["3 mm", 0, 0]
+"""
+
+MATERIAL = '[[material]]\nname = "calibrated"\nyoungs_modulus = 4e9\ndensity = 2000\n'
+
+
+def run(command, *arguments):
+    return subprocess.run([command, *map(str, arguments)], capture_output=True, text=True)
+
+
+def without_times(document):
+    """But for what the clock has measured."""
+    if isinstance(document, dict):
+        times = ("wall_s", "frame_s", "run_s")
+        return {key: without_times(value) for key, value in document.items() if key not in times}
+    return list(map(without_times, document)) if isinstance(document, list) else document
+
+
+def same(result, command, *arguments):
+    done = run(command, *arguments, "--format", "json")
+    assert done.returncode in (0, 1), done.stderr
+    assert without_times(result.json) == without_times(json.loads(done.stdout))
+
+
+@pytest.fixture
+def wire(root):
+    return root / "data/mountings/wire.toml"
+
+
+@pytest.fixture
+def found(tmp_path):
+    (tmp_path / "found.toml").write_text(FOUND)
+    return tmp_path / "found.toml"
+
+
+def test_a_calibrated_wire_is_the_commands(wire, found, root, command):
+    options = (wire, "--calibrated", found)
+    same(dlo.solve(wire, calibrated=found, samples=7), command, "solve", *options, "--samples", 7)
+    same(dlo.solve(dlo.Scene.from_file(wire), "exact", 7, calibrated=str(found)),
+         command, "solve", *options, "--samples", 7, "--model", "exact")
+    shape = root / "data/mountings/mounting_6.csv"
+    same(dlo.check(wire, shape, calibrated=found, explain=False),
+         command, "check", *options, "--shape", shape, "--no-explanation")
+
+
+def test_a_calibrated_rod_that_moves_is_the_commands(root, tmp_path, command):
+    swung = root / "data/scenes/swung_rod.toml"
+    (tmp_path / "found.toml").write_text(MATERIAL + '[[gripper]]\nnumber = 1\nrotation = [0, 0, 0.1]\n')
+    options = (swung, "--calibrated", tmp_path / "found.toml", "--to", 0.05, "--frame-rate", 50,
+               "--no-force", "--samples", 5)
+    track = dlo.track(swung, end=0.05, frame_rate=50, force=False, samples=5,
+                      calibrated=tmp_path / "found.toml")
+    same(track, command, "track", *options, "--shapes")
+    assert not numpy.array_equal(
+        track.points, dlo.track(swung, end=0.05, frame_rate=50, force=False, samples=5).points)
+
+
+def test_what_calibrate_returns_is_what_its_file_says(cable, tmp_path):
+    guess = cable.replace(material={"youngs_modulus": "1 MPa", "density": 1150})
+    truth = dlo.solve(cable, model="exact", samples=15)
+    fit = dlo.calibrate(guess, [(truth.points, truth.arc_length)])
+    (tmp_path / "fit.toml").write_text(fit.to_toml())
+    found = dlo.solve(guess, model="exact", samples=15, calibrated=fit)
+    numpy.testing.assert_array_equal(
+        found.points, dlo.solve(guess, model="exact", samples=15, calibrated=tmp_path / "fit.toml").points)
+    # E to 1e-6 of itself moves no point by more than that share of the length.
+    numpy.testing.assert_allclose(found.points, truth.points, atol=1e-6)
+    assert guess.youngs_modulus == 1e6  # the scene itself is as it was
+
+
+def test_the_calibrated_rod_is_turned_by_its_rotation(cable):
+    """A clamp held 20 degrees higher than said is that clamp."""
+    text = MATERIAL.replace("4e9", "5e6").replace("2000", "1150")
+    fit = dlo._documents.MaterialFit("", "{}", text + '[[gripper]]\nnumber = 1\nrotation = [0, 0, "20 deg"]\n')
+    raised = cable.copy()
+    raised.grippers[0].direction = "50 deg"
+    numpy.testing.assert_allclose(
+        dlo.solve(cable, samples=9, calibrated=fit).points, dlo.solve(raised, samples=9).points, atol=1e-9)
+
+
+@pytest.mark.parametrize("text", [
+    "natural_curvature = 1\n",
+    MATERIAL,
+    FOUND.replace("number = 2", "number = 3"),
+    FOUND.replace("natural_curvature", "natural_curvatur"),
+])
+def test_refusals_are_the_commands(wire, found, command, text):
+    found.write_text(text)
+    done = run(command, "solve", wire, "--calibrated", found)
+    assert done.returncode == 2
+    with pytest.raises(dlo.InputError) as refused:
+        dlo.solve(wire, calibrated=found)
+    assert done.stderr.strip().endswith(str(refused.value))
+
+
+def test_arguments_that_are_no_calibration_are_told(wire):
+    with pytest.raises(dlo.InputError, match="calibrated: a int .allowed: a dlo.MaterialFit, or the name"):
+        dlo.solve(wire, calibrated=3)
+    with pytest.raises(dlo.InputError, match="none.toml"):
+        dlo.check(wire, [[0, 0, 0], [1, 0, 0]], calibrated="none.toml")
