@@ -1,4 +1,4 @@
-#include "fit/leave_one_out.hpp"
+#include "wire/leave_one_out.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -6,11 +6,10 @@
 #include <optional>
 #include <utility>
 
-#include "fit/between_shapes.hpp"
-#include "fit/fitted_scene.hpp"
-#include "fit/wire_numbers.hpp"
 #include "least_squares/measured_shapes.hpp"
 #include "shape/arc_lengths.hpp"
+#include "wire/between_shapes.hpp"
+#include "wire/wire_numbers.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -92,19 +91,6 @@ Prediction leave_one_out(const std::vector<Scene>& scenes, const std::vector<Mea
   }
   result.rms_m = std::sqrt(squares / points);
   return result;
-}
-
-Prediction leave_one_out(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-                         const MaterialFitOptions& options, const MaterialFit& fit) {
-  MaterialFitOptions same = options;
-  same.alternatives = same.predict = false;
-  same.chain_segments = same.profile_points = 0;
-  same.chain_segment_lengths.clear();
-  return leave_one_out(scenes, shapes, options, fit, [&](std::size_t left) -> PredictedScene {
-    const std::vector<Scene> other_scenes = all_but(scenes, left);
-    const MaterialFit others = fit_material(other_scenes, all_but(shapes, left), same);
-    return {fitted_scene(scenes[left], others, other_scenes.front()), std::nullopt};
-  });
 }
 
 }  // namespace dlo::compare

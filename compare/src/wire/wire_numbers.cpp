@@ -1,4 +1,4 @@
-#include "fit/wire_numbers.hpp"
+#include "wire/wire_numbers.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "dlo/compare/error.hpp"
 #include "least_squares/measured_shapes.hpp"
 #include "least_squares/scene_change.hpp"
-#include "scene/reach.hpp"
+#include "wire/identifiable.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -215,25 +215,6 @@ void require_like_clamps(const std::vector<Scene>& scenes) {
 }
 
 }  // namespace
-
-bool has_forces_beside_weight(const Scene& scene) {
-  const bool loaded = scene.total_of_loads() > 0;
-  const std::vector<std::size_t> in_reach = obstacles_in_reach(scene);
-  return loaded || std::any_of(in_reach.begin(), in_reach.end(), [&](std::size_t i) {
-           return std::isfinite(scene.obstacles[i].stiffness);
-         });
-}
-
-bool is_forced(const Scene& scene) {
-  return scene.weight_per_length().norm() > 0 || has_forces_beside_weight(scene);
-}
-
-std::string why_unforced(const Scene& scene) {
-  return fmt::format(
-      "{0} is not identifiable from these shapes: neither weight nor a load or yielding obstacle "
-      "acts on the rod, so its shapes are the same with any {0} (a known load would identify it)",
-      scene.stiffness().name);
-}
 
 std::string why_no_camera_tilt(const std::vector<Scene>& scenes,
                                const std::vector<MeasuredShape>& shapes) {

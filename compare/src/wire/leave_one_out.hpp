@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "dlo/compare/material_fit.hpp"
+#include "dlo/compare/fitted_material.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/energy_model/energy.hpp"
 
@@ -32,11 +32,6 @@ using Predict = std::function<PredictedScene(std::size_t left)>;
                                        const std::vector<MeasuredShape>& shapes,
                                        const MaterialFitOptions& options, const MaterialFit& fit,
                                        const Predict& predict);
-
-/// The same where every fit begins from nothing.
-[[nodiscard]] Prediction leave_one_out(const std::vector<Scene>& scenes,
-                                       const std::vector<MeasuredShape>& shapes,
-                                       const MaterialFitOptions& options, const MaterialFit& fit);
 
 /// All but one.
 template <typename Value>

@@ -1,4 +1,4 @@
-#include "fit/between_shapes.hpp"
+#include "wire/between_shapes.hpp"
 
 #include <gsl/gsl_cdf.h>
 
@@ -51,142 +51,9 @@ double variance_between(const std::vector<ShapeEstimate>& estimates, double expe
   return high;
 }
 
-/// Of a point from a polyline [m^2].
-double squared_distance(const Eigen::Vector3d& point, const Eigen::Matrix3Xd& nodes) {
-  double least = std::numeric_limits<double>::infinity();
-  for (Eigen::Index k = 0; k + 1 < nodes.cols(); ++k) {
-    const Eigen::Vector3d way = nodes.col(k + 1) - nodes.col(k);
-    const Eigen::Vector3d gap = point - nodes.col(k);
-    const double share = std::clamp(gap.dot(way) / way.squaredNorm(), 0.0, 1.0);
-    least = std::min(least, (gap - share * way).squaredNorm());
-  }
-  return least;
-}
-
-/// Linear between its places, constant beyond them.
-double interpolated(const std::vector<double>& s, const std::vector<double>& value, double at) {
-  const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, at);
-  const auto i = static_cast<std::size_t>(above - s.begin());
-  const double step = s[i] - s[i - 1];
-  const double share = step > 0 ? std::clamp((at - s[i - 1]) / step, 0.0, 1.0) : 0;
-  return (1 - share) * value[i - 1] + share * value[i];
-}
-
-/// Places along the rod at which shapes are compared.
-constexpr int places = 21;
-
-/// Of arc lengths that all shapes have.
-struct ArcRange {
-  double low = -std::numeric_limits<double>::infinity();
-  double high = std::numeric_limits<double>::infinity();
-
-  [[nodiscard]] double at(int place) const { return low + (high - low) * place / (places - 1); }
-};
-
-/// None of fewer than two shapes, or if it is less than half of the longest.
-std::optional<ArcRange> common_range(const std::vector<std::vector<double>>& arc_lengths) {
-  if (arc_lengths.size() < 2) return std::nullopt;
-  ArcRange range;
-  double longest = 0;
-  for (const std::vector<double>& s : arc_lengths) {
-    if (s.size() < 2) return std::nullopt;
-    range.low = std::max(range.low, s.front());
-    range.high = std::min(range.high, s.back());
-    longest = std::max(longest, s.back() - s.front());
-  }
-  if (!(range.high - range.low > longest / 2)) return std::nullopt;
-  return range;
-}
-
-}  // namespace
-
-AcrossRod across_rod(const Shape& shape, const Shape& rod, const Eigen::Vector3d& normal) {
-  AcrossRod result;
-  const std::vector<double>& s = rod.arc_length;
-  for (Eigen::Index i = 0; i < shape.points.cols(); ++i) {
-    const double at = shape.arc_length[static_cast<std::size_t>(i)];
-    const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, at);
-    const Eigen::Index k = above - s.begin();
-    const Eigen::Vector3d begin = rod.points.col(k - 1);
-    const Eigen::Vector3d along = (rod.points.col(k) - begin).normalized();
-    result.arc_length.push_back(at);
-    // Across, the rod's piece may be taken for straight; where along it does not matter.
-    result.gap.push_back(normal.cross(along).dot(shape.points.col(i) - begin));
-  }
-  return result;
-}
-
-std::optional<double> common_share(const std::vector<AcrossRod>& shapes) {
-  std::vector<std::vector<double>> arc_lengths;
-  arc_lengths.reserve(shapes.size());
-  for (const AcrossRod& one : shapes) arc_lengths.push_back(one.arc_length);
-  const std::optional<ArcRange> range = common_range(arc_lengths);
-  if (!range) return std::nullopt;
-  double common = 0;
-  double all = 0;
-  for (int k = 0; k < places; ++k) {
-    double sum = 0;
-    for (const AcrossRod& one : shapes) {
-      const double gap = interpolated(one.arc_length, one.gap, range->at(k));
-      sum += gap;
-      all += gap * gap;
-    }
-    common += sum * sum / static_cast<double>(shapes.size());
-  }
-  if (!(all > 0)) return std::nullopt;
-  return common / all;
-}
-
-std::optional<double> repeatability(const std::vector<Shape>& shapes, ArcLengths rule) {
-  std::vector<std::vector<double>> arc_lengths;
-  arc_lengths.reserve(shapes.size());
-  for (const Shape& one : shapes) arc_lengths.push_back(one.arc_length);
-  const std::optional<ArcRange> range = common_range(arc_lengths);
-  if (!range) return std::nullopt;
-  std::vector<Eigen::Matrix3Xd> at_places;
-  at_places.reserve(shapes.size());
-  Eigen::Matrix3Xd sum = Eigen::Matrix3Xd::Zero(3, places);
-  for (const Shape& shape : shapes) {
-    Eigen::Matrix3Xd points(3, places);
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      const Eigen::VectorXd row = shape.points.row(axis);
-      const std::vector<double> values(row.begin(), row.end());
-      for (int k = 0; k < places; ++k) {
-        points(axis, k) = interpolated(shape.arc_length, values, range->at(k));
-      }
-    }
-    sum += points;
-    at_places.push_back(std::move(points));
-  }
-  const auto count = static_cast<double>(shapes.size());
-  double squares = 0;
-  for (const Eigen::Matrix3Xd& points : at_places) {
-    const Eigen::Matrix3Xd others = (sum - points) / (count - 1);
-    for (int k = 0; k < places; ++k) {
-      squares += rule == ArcLengths::file ? (points.col(k) - others.col(k)).squaredNorm()
-                                          : squared_distance(points.col(k), others);
-    }
-  }
-  return std::sqrt(squares / (places * count));
-}
-
-double beyond_chance(double share, std::size_t shapes) {
-  const double by_chance = 1 / static_cast<double>(shapes);
-  return (share - by_chance) / (1 - by_chance);
-}
-
-std::vector<ResidualSeries> series_of_shape(const std::vector<ResidualSeries>& all,
-                                            std::size_t shape) {
-  std::vector<ResidualSeries> own;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(own),
-               [shape](const ResidualSeries& one) { return one.shape == shape; });
-  return own;
-}
-
-ShapeEstimate estimate_of_shape(const std::vector<ResidualSeries>& series,
-                                const ErrorCovariance& covariance, double variance,
-                                Eigen::Index column, const std::vector<Nuisance>& nuisances) {
-  const Innovations seen = innovations(series, covariance);
+/// @param variance  of the innovations [m^2]
+ShapeEstimate estimate_of_shape(const Innovations& seen, double variance, Eigen::Index column,
+                                const std::vector<Nuisance>& nuisances) {
   const Eigen::Index rows = seen.residual.size();
   const auto count = static_cast<Eigen::Index>(nuisances.size());
   // What was known before is a row more each, in units of the errors.
@@ -211,6 +78,138 @@ ShapeEstimate estimate_of_shape(const std::vector<ResidualSeries>& series,
   }
   if (!(own.norm() > least_own_share * whole)) return {0, INFINITY};
   return {own.dot(residual) / own.squaredNorm(), variance / own.squaredNorm()};
+}
+
+/// Of a point from a polyline [m^2].
+double squared_distance(const Eigen::Vector3d& point, const Eigen::Matrix3Xd& nodes) {
+  double least = std::numeric_limits<double>::infinity();
+  for (Eigen::Index k = 0; k + 1 < nodes.cols(); ++k) {
+    const Eigen::Vector3d way = nodes.col(k + 1) - nodes.col(k);
+    const Eigen::Vector3d gap = point - nodes.col(k);
+    const double share = std::clamp(gap.dot(way) / way.squaredNorm(), 0.0, 1.0);
+    least = std::min(least, (gap - share * way).squaredNorm());
+  }
+  return least;
+}
+
+/// Places along the rod at which shapes are compared.
+constexpr int places = 21;
+
+/// Equally spaced over the arc lengths that all shapes have; none of fewer than two shapes, or if
+/// that is less than half of the longest.
+std::optional<std::vector<double>> common_places(
+    const std::vector<const std::vector<double>*>& arc_lengths) {
+  if (arc_lengths.size() < 2) return std::nullopt;
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  double longest = 0;
+  for (const std::vector<double>* const s : arc_lengths) {
+    if (s->size() < 2) return std::nullopt;
+    low = std::max(low, s->front());
+    high = std::min(high, s->back());
+    longest = std::max(longest, s->back() - s->front());
+  }
+  if (!(high - low > longest / 2)) return std::nullopt;
+  std::vector<double> result;
+  result.reserve(places);
+  for (int k = 0; k < places; ++k) result.push_back(low + (high - low) * k / (places - 1));
+  return result;
+}
+
+template <typename Of>
+std::optional<std::vector<double>> common_places(const std::vector<Of>& shapes) {
+  std::vector<const std::vector<double>*> arc_lengths;
+  arc_lengths.reserve(shapes.size());
+  for (const Of& one : shapes) arc_lengths.push_back(&one.arc_length);
+  return common_places(arc_lengths);
+}
+
+}  // namespace
+
+AcrossRod across_rod(const Shape& shape, const Shape& rod, const Eigen::Vector3d& normal) {
+  AcrossRod result;
+  const std::vector<double>& s = rod.arc_length;
+  for (Eigen::Index i = 0; i < shape.points.cols(); ++i) {
+    const double at = shape.arc_length[static_cast<std::size_t>(i)];
+    const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, at);
+    const Eigen::Index k = above - s.begin();
+    const Eigen::Vector3d begin = rod.points.col(k - 1);
+    const Eigen::Vector3d along = (rod.points.col(k) - begin).normalized();
+    result.arc_length.push_back(at);
+    // Across, the rod's piece may be taken for straight; where along it does not matter.
+    result.gap.push_back(normal.cross(along).dot(shape.points.col(i) - begin));
+  }
+  return result;
+}
+
+std::optional<double> common_share(const std::vector<AcrossRod>& shapes) {
+  const std::optional<std::vector<double>> at = common_places(shapes);
+  if (!at) return std::nullopt;
+  std::vector<std::vector<double>> gaps;
+  gaps.reserve(shapes.size());
+  for (const AcrossRod& one : shapes) {
+    gaps.push_back(interpolated(one.gap, one.arc_length, *at));
+  }
+  double common = 0;
+  double all = 0;
+  for (std::size_t k = 0; k < at->size(); ++k) {
+    double sum = 0;
+    for (const std::vector<double>& gap : gaps) {
+      sum += gap[k];
+      all += gap[k] * gap[k];
+    }
+    common += sum * sum / static_cast<double>(shapes.size());
+  }
+  if (!(all > 0)) return std::nullopt;
+  return common / all;
+}
+
+std::optional<double> repeatability(const std::vector<Shape>& shapes, ArcLengths rule) {
+  const std::optional<std::vector<double>> at = common_places(shapes);
+  if (!at) return std::nullopt;
+  std::vector<Eigen::Matrix3Xd> at_places;
+  at_places.reserve(shapes.size());
+  Eigen::Matrix3Xd sum = Eigen::Matrix3Xd::Zero(3, places);
+  for (const Shape& shape : shapes) {
+    at_places.push_back(resample(shape, *at).points);
+    sum += at_places.back();
+  }
+  const auto count = static_cast<double>(shapes.size());
+  double squares = 0;
+  for (const Eigen::Matrix3Xd& points : at_places) {
+    const Eigen::Matrix3Xd others = (sum - points) / (count - 1);
+    for (int k = 0; k < places; ++k) {
+      squares += rule == ArcLengths::file ? (points.col(k) - others.col(k)).squaredNorm()
+                                          : squared_distance(points.col(k), others);
+    }
+  }
+  return std::sqrt(squares / (places * count));
+}
+
+double beyond_chance(double share, std::size_t shapes) {
+  const double by_chance = 1 / static_cast<double>(shapes);
+  return (share - by_chance) / (1 - by_chance);
+}
+
+std::vector<Nuisance> frame_nuisances(Eigen::Index frames) {
+  std::vector<Nuisance> result;
+  for (Eigen::Index k = 0; k < frames; ++k) result.push_back({k, 0, INFINITY});
+  return result;
+}
+
+std::vector<ShapeEstimate> estimates_of_shapes(
+    const std::vector<ResidualSeries>& series, const ErrorCovariance& covariance, double variance,
+    Eigen::Index column, const std::vector<std::vector<Nuisance>>& nuisances) {
+  std::vector<ShapeEstimate> result;
+  result.reserve(nuisances.size());
+  for (std::size_t shape = 0; shape < nuisances.size(); ++shape) {
+    std::vector<ResidualSeries> own;
+    std::copy_if(series.begin(), series.end(), std::back_inserter(own),
+                 [shape](const ResidualSeries& one) { return one.shape == shape; });
+    result.push_back(
+        estimate_of_shape(innovations(own, covariance), variance, column, nuisances[shape]));
+  }
+  return result;
 }
 
 std::optional<ScatterBetweenShapes> scatter_between(const std::vector<ShapeEstimate>& estimates,

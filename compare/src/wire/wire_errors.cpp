@@ -1,4 +1,4 @@
-#include "fit/wire_errors.hpp"
+#include "wire/wire_errors.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "dlo/compare/material_fit.hpp"
+#include "dlo/compare/fitted_material.hpp"
 #include "dlo/compare/shape.hpp"
 #include "least_squares/error_correlation.hpp"
 
@@ -24,17 +24,16 @@ struct Nuisance {
   double known_before = 0;  ///< standard deviation about zero; infinite: nothing was known
 };
 
-/// The series of one shape.
-[[nodiscard]] std::vector<ResidualSeries> series_of_shape(const std::vector<ResidualSeries>& all,
-                                                          std::size_t shape);
+/// Nothing is known of a shape's frame. @param frames  its columns, the first of the design
+[[nodiscard]] std::vector<Nuisance> frame_nuisances(Eigen::Index frames);
 
-/// Generalised least squares of one number and its nuisances, linear about the common fit.
-/// @param series    of that shape;  @param column  the number's
-/// @param variance  of the errors, whose covariance is known up to it
-[[nodiscard]] ShapeEstimate estimate_of_shape(const std::vector<ResidualSeries>& series,
-                                              const ErrorCovariance& covariance, double variance,
-                                              Eigen::Index column,
-                                              const std::vector<Nuisance>& nuisances);
+/// What each shape alone says of one number: generalised least squares of it and the shape's
+/// nuisances, linear about the common fit.
+/// @param series  of all shapes, whose errors have that covariance up to their variance [m^2]
+/// @param column  the number's;  @param nuisances  of each shape
+[[nodiscard]] std::vector<ShapeEstimate> estimates_of_shapes(
+    const std::vector<ResidualSeries>& series, const ErrorCovariance& covariance, double variance,
+    Eigen::Index column, const std::vector<std::vector<Nuisance>>& nuisances);
 
 /// What of a shape's points is across its rod, in a plane that all shapes share.
 struct AcrossRod {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "dlo/compare/material_fit.hpp"
+#include "dlo/compare/fitted_material.hpp"
 #include "dlo/compare/scene.hpp"
 #include "least_squares/measured_shapes.hpp"
 
@@ -36,17 +36,6 @@ struct WireNumber {
       .solve = options.solve,
       .flat = options.natural_curvature_terms > 0 ? FlatShapes::confined : FlatShapes::unmeasured};
 }
-
-/// Whether a force acts on the rod that does not grow with its stiffness: weight, a load, an
-/// obstacle that yields. Without one its energy is E times a function of the shape alone, so the
-/// scene has the same equilibria with every E.
-[[nodiscard]] bool is_forced(const Scene& scene);
-
-/// What is not identifiable from such shapes, in words.
-[[nodiscard]] std::string why_unforced(const Scene& scene);
-
-/// The same but for its weight, without which it has the same ones with every density / E.
-[[nodiscard]] bool has_forces_beside_weight(const Scene& scene);
 
 /// Why shapes do not have a camera's tilt in common, naming file and what is allowed; empty: they
 /// may.

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "dlo/compare/material_fit.hpp"
-#include "fit/shape_misfit.hpp"
+#include "dlo/compare/fitted_material.hpp"
+#include "least_squares/material_point.hpp"
 #include "least_squares/measured_shapes.hpp"
 
 namespace dlo::compare {

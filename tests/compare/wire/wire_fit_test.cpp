@@ -1,4 +1,4 @@
-#include "fit/wire_fit.hpp"
+#include "wire/wire_fit.hpp"
 
 #include <gtest/gtest.h>
 
@@ -19,10 +19,10 @@
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/shape.hpp"
 #include "dlo/compare/solution.hpp"
-#include "fit/between_shapes.hpp"
 #include "least_squares/error_correlation.hpp"
 #include "measured_shapes.hpp"
 #include "scenes.hpp"
+#include "wire/between_shapes.hpp"
 
 namespace dlo::compare {
 namespace {

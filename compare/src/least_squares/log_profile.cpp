@@ -1,4 +1,4 @@
-#include "fit/log_profile.hpp"
+#include "least_squares/log_profile.hpp"
 
 #include <algorithm>
 #include <cmath>
