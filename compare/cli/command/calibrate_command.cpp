@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "calibration/calibrated_toml.hpp"
+#include "calibration/chain_springs_output.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/error.hpp"
