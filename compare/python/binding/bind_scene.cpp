@@ -15,7 +15,7 @@
 #include "foreign/scene_document.hpp"
 #include "module.hpp"
 #include "result.hpp"
-#include "scene/read_scene.hpp"
+#include "reading/read_scene.hpp"
 #include "toml/quantity.hpp"
 #include "toml/scene_keys.hpp"
 #include "toml/strict_table.hpp"

@@ -10,7 +10,7 @@
 #include "dlo/compare/choice.hpp"
 #include "dlo/compare/solution.hpp"
 #include "record/solution_fields.hpp"
-#include "scene/scene_template.hpp"
+#include "reading/scene_template.hpp"
 
 namespace dlo::compare {
 

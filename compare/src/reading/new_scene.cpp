@@ -1,4 +1,4 @@
-#include "scene/new_scene.hpp"
+#include "reading/new_scene.hpp"
 
 #include <fmt/format.h>
 

@@ -1,50 +1,23 @@
-#include "scene/read_rod.hpp"
+#include "reading/read_rod.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <string_view>
 
-#include "base/words.hpp"
-#include "dlo/compare/error.hpp"
-#include "dlo/compare/rest_shape.hpp"
-#include "dlo/compare/shape_file.hpp"
+#include "reading/read_layers.hpp"
+#include "reading/read_place.hpp"
+#include "reading/read_rest_shape.hpp"
 #include "toml/scene_keys.hpp"
-#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
 namespace {
 
 /// Beyond it no solver resolves the layer at a clamp, and no rod looks any different.
 constexpr double largest_gamma = 1e12;
-/// Of Legendre's polynomials; beyond it a curvature has more waves than a smooth rod.
-constexpr std::size_t most_natural_terms = 24;
 /// Arc lengths of two sections that meet may differ by what rounding of units makes [-].
 constexpr double same_place_share = 1e-12;
-
-Material read_material(StrictTable& rod, const std::vector<Material>& known_materials) {
-  if (rod.is_table("material")) {
-    StrictTable own = rod.table("material");
-    own.only(scene_keys("material"));
-    Material material{.name = "own", .source = "scene file"};
-    material.youngs_modulus = own.number("youngs_modulus", Dimension::pressure, Range::positive());
-    material.density = own.number("density", Dimension::density, Range::not_negative());
-    own.finish();
-    return material;
-  }
-  const std::string name = rod.text("material");
-  std::vector<std::string> names;
-  for (const Material& material : known_materials) {
-    if (material.name == name) return material;
-    names.push_back(material.name);
-  }
-  rod.fail("material",
-           fmt::format("unknown material{} (allowed: {}, or a table such as {{ youngs_modulus = "
-                       "\"5 MPa\", density = 1100 }}; dlo materials lists them with values)",
-                       did_you_mean(name, names), fmt::join(names, ", ")));
-}
 
 /// EI about every axis across the rod, or about d1 and d2.
 struct GivenBending {
@@ -117,85 +90,6 @@ void read_cross_section(StrictTable& rod, Scene& scene) {
   }
   scene.width = rod.number("width", Dimension::length, size);
   scene.thickness = rod.number("thickness", Dimension::length, size);
-}
-
-Layer read_layer(StrictTable& table, const std::vector<Material>& known_materials) {
-  table.only(scene_keys("layers"));
-  Layer layer;
-  if (table.has("material")) {
-    const Material material = read_material(table, known_materials);
-    layer.youngs_modulus = material.youngs_modulus;
-    layer.density = material.density;
-  }
-  const bool known = layer.youngs_modulus > 0;
-  if (!known || table.has("youngs_modulus")) {
-    layer.youngs_modulus = table.number("youngs_modulus", Dimension::pressure, Range::positive());
-  }
-  if (!known || table.has("density")) {
-    layer.density = table.number("density", Dimension::density, Range::not_negative());
-  }
-  const Range size = Range::between(1e-9, 1e3, " m");
-  if (table.has("strands") || table.has("strand_diameter")) {
-    if (table.has("outer_diameter")) {
-      table.fail("outer_diameter",
-                 "given besides strands, which say it (allowed: outer_diameter, or strands and "
-                 "strand_diameter)");
-    }
-    constexpr int most = 10'000;
-    layer.strands = table.integer("strands", 1, most);
-    layer.strand_diameter = table.number("strand_diameter", Dimension::length, size);
-  } else {
-    layer.outer_diameter = table.number("outer_diameter", Dimension::length, size);
-  }
-  table.finish();
-  return layer;
-}
-
-/// A cable's section, mass and stiffness. @return whether the rod has layers
-bool read_layers(StrictTable& rod, const std::vector<Material>& known_materials, Scene& scene) {
-  if (!rod.has("layers")) {
-    if (rod.has("layer_bound")) {
-      rod.fail("layer_bound", "the rod has no layers (allowed: rod.layers too, or no layer_bound)");
-    }
-    return false;
-  }
-  for (const char* key :
-       {"diameter", "inner_diameter", "width", "thickness", "material", "bending_stiffness",
-        "mass_per_length", "joint_stiffness", "joint_spacing"}) {
-    if (!rod.has(key)) continue;
-    rod.fail(key, "given besides layers, which say it (allowed: one of the two)");
-  }
-  constexpr std::size_t most = 100;
-  std::vector<StrictTable> tables = rod.tables("layers");
-  if (tables.empty() || tables.size() > most) {
-    rod.fail("layers", fmt::format("{} layers (allowed: 1 to {}, such as [{{ outer_diameter = \"2 "
-                                   "mm\", material = \"copper\" }}])",
-                                   tables.size(), most));
-  }
-  std::vector<Layer> layers;
-  layers.reserve(tables.size());
-  for (StrictTable& table : tables) layers.push_back(read_layer(table, known_materials));
-  LayeredSection section;
-  try {
-    section = layered_section(layers);
-  } catch (const InputError& error) {
-    rod.fail("layers", error.what());
-  }
-  section.bonded =
-      !rod.has("layer_bound") || rod.choice("layer_bound", {"bonded", "free"}) == "bonded";
-  scene.diameter = section.outer_diameter;
-  const double area = scene.cross_section();
-  scene.material = {.name = "layers",
-                    .youngs_modulus = section.axial_stiffness / area,
-                    .density = section.mass_per_length / area,
-                    .source = "scene file"};
-  scene.given_bending_stiffness =
-      section.bonded ? section.bonded_bending_stiffness : section.free_bending_stiffness;
-  scene.given_mass_per_length = section.mass_per_length;
-  scene.torsional_stiffness =
-      section.bonded ? section.bonded_torsional_stiffness : section.free_torsional_stiffness;
-  scene.layers = section;
-  return true;
 }
 
 /// Bending stiffness and mass, given as they are or by material and section.
@@ -322,75 +216,6 @@ void read_sections(std::vector<StrictTable>& tables, Scene& scene) {
   }
 }
 
-/// That the stress-free shape is said in one way.
-void require_one_rest_shape(const StrictTable& rod) {
-  for (const char* key : {"helix", "rest_shape"}) {
-    for (const char* other : {"natural_curvature", "natural_twist", "helix"}) {
-      if (!rod.has(key) || !rod.has(other) || std::string_view(key) == other) continue;
-      rod.fail(key, fmt::format("given besides {} (allowed: natural_curvature with natural_twist, "
-                                "or helix, or rest_shape)",
-                                other));
-    }
-  }
-}
-
-void read_natural_strains(StrictTable& rod, Scene& scene) {
-  require_one_rest_shape(rod);
-  const std::vector<Eigen::Vector2d> curvature =
-      rod.pairs("natural_curvature", Dimension::curvature, most_natural_terms);
-  if (!curvature.empty()) {
-    scene.natural_strain.head<2>() = curvature.front();
-    scene.natural_variation.assign(curvature.begin() + 1, curvature.end());
-  }
-  scene.natural_strain.z() =
-      rod.optional_number("natural_twist", Dimension::twist, Range::any()).value_or(0);
-  if (std::optional<StrictTable> helix = rod.optional_table("helix")) {
-    helix->only(scene_keys("helix"));
-    const Range size = Range::between(1e-9, 1e6, " m");
-    const Range rise = Range::between(-1e6, 1e6, " m, > 0 right-handed, < 0 left-handed");
-    const double radius = helix->number("radius", Dimension::length, size);
-    const double pitch = helix->number("pitch", Dimension::length, rise);
-    helix->finish();
-    scene.natural_strain = helix_strain(radius, pitch);
-  }
-}
-
-/// A file's points, or rows of three.
-MeasuredShape read_rest_points(StrictTable& rod, const std::string& scene_file) {
-  constexpr const char* key = "rest_shape";
-  constexpr const char* allowed =
-      "(allowed: a file of points in m beside the scene, as CSV with the columns x,y,z and, with "
-      "frames, d1_x,d1_y,d1_z, or rows [[x, y, z], ..])";
-  if (!rod.is_array(key)) {
-    const std::string name = rod.text(key);
-    return parse_shape(read_beside(rod, key, file_of_shape(name), scene_file, allowed), name);
-  }
-  constexpr std::size_t most = 10'000;
-  const Eigen::MatrixXd rows = rod.points(key, most);
-  return shape_of(rows.topRows<3>(), {}, "the points",
-                  rows.rows() == 6 ? Eigen::Matrix3Xd(rows.bottomRows<3>()) : Eigen::Matrix3Xd());
-}
-
-/// @param sections  the tables of the rod's sections, which have been read
-void read_rest_shape(StrictTable& rod, const std::vector<StrictTable>& sections, Scene& scene) {
-  if (!rod.has("rest_shape")) return;
-  for (const StrictTable& section : sections) {
-    for (const char* key : {"natural_curvature", "natural_twist"}) {
-      if (!section.has(key)) continue;
-      section.fail(key,
-                   "given besides rod.rest_shape, which says it all along (allowed: one of "
-                   "the two)");
-    }
-  }
-  try {
-    scene.set_rest_shape(fit_rest_shape(read_rest_points(rod, scene.file), scene.length));
-  } catch (const InputError& error) {
-    // One that the table has made says where it is already.
-    if (!error.key().empty()) throw;
-    rod.fail("rest_shape", error.what());
-  }
-}
-
 /// @param scene  its EA has been read
 void read_stretch(StrictTable& rod, Scene& scene) {
   if (rod.is_text("stretch") && rod.text("stretch") == "auto") {
@@ -407,13 +232,6 @@ void read_stretch(StrictTable& rod, Scene& scene) {
 }
 
 }  // namespace
-
-double read_arc_length(StrictTable& table, std::string_view key, double length) {
-  Range range = Range::between(0, length, " m, the rod's length");
-  range.low -= arc_rounding * length;
-  range.high += arc_rounding * length;
-  return *on_rod(table.number(key, Dimension::length, range), length);
-}
 
 void read_rod(StrictTable& rod, std::vector<StrictTable>& sections,
               const std::vector<Material>& known_materials, Scene& scene) {

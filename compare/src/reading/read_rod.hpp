@@ -1,15 +1,11 @@
 #pragma once
 
-#include <string_view>
 #include <vector>
 
 #include "dlo/compare/scene.hpp"
 #include "toml/strict_table.hpp"
 
 namespace dlo::compare {
-
-/// An arc length of the rod. @throws InputError as below
-[[nodiscard]] double read_arc_length(StrictTable& table, std::string_view key, double length);
 
 /// Reads the table [rod] and the tables [[section]] into a scene whose gravity is known.
 /// @throws InputError naming file, line, key, value and what is allowed

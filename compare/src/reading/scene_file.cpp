@@ -5,8 +5,8 @@
 #include "base/input_file.hpp"
 #include "decode/xml.hpp"
 #include "mjcf/mjcf_scene.hpp"
+#include "reading/read_scene.hpp"
 #include "scene/builtin_data.hpp"
-#include "scene/read_scene.hpp"
 #include "toml/strict_table.hpp"
 
 namespace dlo::compare {

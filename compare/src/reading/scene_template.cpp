@@ -1,4 +1,4 @@
-#include "scene/scene_template.hpp"
+#include "reading/scene_template.hpp"
 
 #include <fmt/format.h>
 
@@ -16,7 +16,7 @@
 #include "base/quote.hpp"
 #include "base/text_limits.hpp"
 #include "dlo/compare/error.hpp"
-#include "scene/read_scene.hpp"
+#include "reading/read_scene.hpp"
 #include "toml/strict_table.hpp"
 
 namespace dlo::compare {
