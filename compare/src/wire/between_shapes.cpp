@@ -193,6 +193,7 @@ double beyond_chance(double share, std::size_t shapes) {
 
 std::vector<Nuisance> frame_nuisances(Eigen::Index frames) {
   std::vector<Nuisance> result;
+  result.reserve(static_cast<std::size_t>(frames));
   for (Eigen::Index k = 0; k < frames; ++k) result.push_back({k, 0, INFINITY});
   return result;
 }
