@@ -10,7 +10,7 @@
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/shape_file.hpp"
-#include "scene/scene_template.hpp"
+#include "reading/scene_template.hpp"
 
 namespace dlo::fuzz {
 namespace {

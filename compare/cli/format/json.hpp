@@ -17,6 +17,7 @@ using compare::Json;
 using compare::json_list;
 using compare::json_or_null;
 using compare::points_json;
+using compare::text_or_null;
 using compare::to_json;
 
 /// A document as every command writes it: NaN and infinity are null, and what is no UTF-8 in the

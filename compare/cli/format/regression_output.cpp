@@ -25,7 +25,7 @@ long count(const std::vector<RegressionResult>& results, RegressionVerdict verdi
 Json errors_json(const std::optional<compare::ShapeErrors>& errors) {
   if (!errors) return nullptr;
   Json result = {{"rms_over_length", errors->rms}, {"max_over_length", errors->max}};
-  result["tip_over_length"] = errors->tip ? Json(*errors->tip) : Json(nullptr);
+  result["tip_over_length"] = json_or_null(errors->tip);
   return result;
 }
 

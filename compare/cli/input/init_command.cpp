@@ -13,7 +13,7 @@
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "option/output.hpp"
-#include "scene/new_scene.hpp"
+#include "reading/new_scene.hpp"
 
 namespace dlo::cli {
 namespace {

@@ -66,7 +66,7 @@ Json moving_frame_json(const DynamicFrame& frame, bool points) {
                    {"work", energy.work}}},
                  {"obstacles", obstacles_json(frame.obstacles)},
                  {"quasi_static_error_over_length", frame.quasi_static_error}};
-  result["force_error_over_length"] = frame.force_error ? Json(*frame.force_error) : Json(nullptr);
+  result["force_error_over_length"] = json_or_null(frame.force_error);
   if (points) result["points_m"] = points_json(frame.points);
   return result;
 }
@@ -126,8 +126,7 @@ Json dynamic_json(const DynamicTrack& dynamic, const compare::Track& track,
       {"energy_error", dynamic.energy_error},
       {"largest_energy_J", dynamic.largest_energy},
       {"step_error_over_length", dynamic.step_error},
-      {"deepest_contact_over_length",
-       dynamic.deepest_contact ? Json(*dynamic.deepest_contact) : Json(nullptr)},
+      {"deepest_contact_over_length", json_or_null(dynamic.deepest_contact)},
       {"fewer_terms", dynamic.fewer_terms},
       {"fewer_terms_change_over_length", dynamic.term_difference},
       {"quasi_static", errors_json(dynamic.quasi_static)}};

@@ -106,9 +106,9 @@ Json modes_json(const compare::SceneModes& modes, const compare::Scene& scene, d
                  {"modes", json_list(modes.modes, [&](const SceneMode& mode) -> Json {
                     return mode_json(mode, s);
                   })}};
-  result["tension_N"] = modes.tension ? Json(*modes.tension) : Json(nullptr);
-  result["no_polygon"] = modes.no_polygon.empty() ? Json(nullptr) : Json(modes.no_polygon);
-  result["mass_of_steps_kg"] = modes.mass_of_steps ? Json(*modes.mass_of_steps) : Json(nullptr);
+  result["tension_N"] = json_or_null(modes.tension);
+  result["no_polygon"] = text_or_null(modes.no_polygon);
+  result["mass_of_steps_kg"] = json_or_null(modes.mass_of_steps);
   result["physical"] = json_or_null(modes.physical, [](const auto& physical) -> Json {
     return {{"point_mass_kg", physical.point_mass},
             {"c_F_m_per_N", physical.c_F},

@@ -294,7 +294,7 @@ std::string track_json(const Track& track, const compare::Scene& scene, const Tr
   result["force_model"] = json_or_null(track.frames.front().force, [&](const auto& /*first*/) {
     return force_json(track.force, scene, options);
   });
-  result["no_force_model"] = track.force.none.empty() ? Json(nullptr) : Json(track.force.none);
+  result["no_force_model"] = text_or_null(track.force.none);
   if (dynamic != nullptr) result["dynamic"] = dynamic_json(*dynamic, track, frames);
   result["events"] = json_list(
       track.events, [&](const TrackEvent& event) -> Json { return event_json(track, event); });

@@ -9,8 +9,8 @@
 #include "batch/sweep_grid.hpp"
 #include "dlo/compare/choice.hpp"
 #include "dlo/compare/solution.hpp"
+#include "reading/scene_template.hpp"
 #include "record/solution_fields.hpp"
-#include "scene/scene_template.hpp"
 
 namespace dlo::compare {
 

@@ -79,7 +79,7 @@ std::string other_stiffness_within(const CheckResult& result) {
 }
 
 CheckResult check(const Scene& scene, const MeasuredShape& shape, const CheckRequest& request) {
-  const MeasuredShape whole = with_last_end(scene, shape);
+  const MeasuredShape whole = whole_of_segment_starts(scene, shape);
   CheckResult result{.scene = scene,
                      .check = check_shape(scene, whole, request.shape),
                      .tolerance = request.tolerance.value_or(default_tolerance(scene.length)),

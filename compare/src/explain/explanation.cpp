@@ -10,11 +10,11 @@
 
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
+#include "explain/cause_fit.hpp"
 #include "explain/file_causes.hpp"
 #include "explain/joint_causes.hpp"
 #include "explain/own_polygon.hpp"
 #include "explain/scene_causes.hpp"
-#include "least_squares/gauss_newton.hpp"
 #include "shape/aligner.hpp"
 #include "shape/arc_lengths.hpp"
 #include "shape/shape_measure.hpp"
@@ -29,8 +29,6 @@ constexpr double worth_of_a_number = 0.5;
 /// What is nearer than this share of the deviation, or of the length, is the same.
 constexpr double same_share = 0.02;
 constexpr double same_length = 1e-5;
-/// Share of its mean square that a step towards the shape has to take away.
-constexpr double least_gain = 0.1;
 /// Deviation beyond which a shape is just another one, in lengths.
 constexpr double another_shape = 0.05;
 /// By how much a rod that has left its plane is out of it, in lengths.
@@ -46,7 +44,7 @@ double price_of(double rms, int numbers, double before, double length) {
 }
 
 /// A shape with the end of its last segment, straight on from it.
-Shape with_last_end(Shape shape, double length) {
+Shape extended_straight(Shape shape, double length) {
   const Eigen::Index count = shape.points.cols();
   const Eigen::Vector3d end = 2 * shape.points.col(count - 1) - shape.points.col(count - 2);
   shape.points.conservativeResize(Eigen::NoChange, count + 1);
@@ -77,7 +75,7 @@ class Search {
     if (options_.pose == PoseFreedom::known) {
       for (const FileCause& cause : file_causes(scene_, shape_, check_)) look_at(cause);
     }
-    look_at_noise();
+    if (const auto noise = noise_of_points(check_.alignment.shape, check_.rod)) add(*noise);
     look_at_unstable();
     if (!is_found(0)) look_at_chains(Springs::as_the_rod);
     if (!is_found(1) && options_.pose == PoseFreedom::known) {
@@ -127,7 +125,7 @@ class Search {
   /// The chains whose points a shape may have, its last end missing or not.
   [[nodiscard]] std::vector<OwnPolygon> chains_of(const Shape& shape, Springs springs) const {
     if (!lacks_last_end(shape)) return own_polygons(scene_, shape, springs);
-    return own_polygons(scene_, with_last_end(shape, scene_.length), springs, std::nullopt,
+    return own_polygons(scene_, extended_straight(shape, scene_.length), springs, std::nullopt,
                         LastPoint::missing);
   }
 
@@ -276,25 +274,6 @@ class Search {
     return words;
   }
 
-  /// Of noise, neighbours have nothing in common: little is left of their mean.
-  void look_at_noise() {
-    const Shape& shape = check_.alignment.shape;
-    const Eigen::Matrix3Xd gaps = shape.points - check_.rod.sample(shape.arc_length).points;
-    const Eigen::Index count = gaps.cols();
-    const Eigen::Index around = std::max<Eigen::Index>(2, count / 10);
-    if (count < 4 * around) return;
-    Eigen::Matrix3Xd common(3, count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const Eigen::Index first = std::max<Eigen::Index>(0, i - around);
-      const Eigen::Index last = std::min(count - 1, i + around);
-      common.col(i) = gaps.middleCols(first, last - first + 1).rowwise().mean();
-    }
-    const double noise = std::sqrt((gaps - common).colwise().squaredNorm().mean());
-    const double left = std::sqrt(common.colwise().squaredNorm().mean());
-    add({fmt::format("there were no noise from point to point, {:.3g} mm RMS", noise * 1e3), left,
-         0, ExplanationKind::file});
-  }
-
   /// RMS deviation of the whole rod, in the state that a cause leads to [m].
   [[nodiscard]] double rms_of(const Scene& scene, const energy_model::Equilibrium& rod) const {
     const Alignment laid =
@@ -303,68 +282,20 @@ class Search {
   }
 
   void fit(const SceneCause& cause, const energy_model::Equilibrium& rod) {
+    const double noise = std::max(same_share * std::min(before_, another_shape * scene_.length),
+                                  same_length * scene_.length);
     try {
-      const std::vector<Scene> scene = {cause.changed(cause.start)};
-      MeasuredShapes measured(scene, {shape_},
-                              {.pose = options_.pose,
-                               .arc_lengths = options_.arc_lengths,
-                               .weights = PointWeights::by_length,
-                               .solve = options_.solve,
-                               .flat = FlatShapes::measured},
-                              begin_);
-      std::vector<Unknown> unknowns;
-      for (const double stride : cause.stride) {
-        unknowns.push_back({.stride = stride, .longest_step = cause.longest_step});
-      }
-      FittedRods rods(
-          measured, [&](std::size_t, const Eigen::VectorXd& p) { return cause.changed(p); },
-          unknowns);
-      if (!goes_to_state(cause, rod, rods)) return;
-      add_fit(cause, best_numbers(cause, rods), *rods.rods()[0]);
+      const std::optional<FittedCause> found =
+          fit_cause(cause, shape_, rod, options_, {noise, begin_});
+      if (!found) return;
+      add({cause.words(found->numbers), rms_of(cause.changed(found->numbers), found->rod),
+           static_cast<int>(found->numbers.size()), ExplanationKind::scene},
+          cause.same_as);
     } catch (const ConvergenceError&) {
       // No time is left.
     } catch (const InputError&) {
       // No scene, or a shape of too few points for one.
     }
-  }
-
-  /// To the state near the one that was compared with, or, where the rod is held in another way, to
-  /// the lowest if that is nearer to the shape; false if there is none.
-  [[nodiscard]] static bool goes_to_state(const SceneCause& cause,
-                                          const energy_model::Equilibrium& rod, FittedRods& rods) {
-    if (cause.start.isZero()) rods.go_on_from({rod});
-    FittedRods::State state = rods.state(cause.start);
-    if (cause.other_state) {
-      rods.go_on_from({std::nullopt});
-      FittedRods::State lowest = rods.state(cause.start);
-      if (lowest.squares[0] < state.squares[0]) state = std::move(lowest);
-    }
-    rods.go_on_from(state.rods);
-    return state.rods[0].has_value();
-  }
-
-  /// Numbers of a cause whose rod, that of `rods` then, is nearest to the shape.
-  [[nodiscard]] Eigen::VectorXd best_numbers(const SceneCause& cause, FittedRods& rods) const {
-    if (cause.stride.isZero()) return cause.start;
-    const double noise = std::max(same_share * std::min(before_, another_shape * scene_.length),
-                                  same_length * scene_.length);
-    GaussNewton fit(rods, cause.start,
-                    {.noise = noise, .last_step = 0.05, .least_gain = least_gain});
-    const FittedRods::Rods start = rods.rods();
-    try {
-      (void)fit.descend();
-    } catch (const ConvergenceError&) {
-      // No time is left for more.
-    }
-    rods.go_on_from(fit.rods().empty() ? start : fit.rods());
-    return fit.values();
-  }
-
-  void add_fit(const SceneCause& cause, const Eigen::VectorXd& p,
-               const energy_model::Equilibrium& rod) {
-    add({cause.words(p), rms_of(cause.changed(p), rod), static_cast<int>(p.size()),
-         ExplanationKind::scene},
-        cause.same_as);
   }
 
   const Scene& scene_;

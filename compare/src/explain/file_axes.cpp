@@ -10,7 +10,7 @@
 namespace dlo::compare {
 namespace {
 
-constexpr std::array names = {"x", "y", "z"};
+constexpr std::array axis_names = {"x", "y", "z"};
 
 /// Which axis of the file is the scene's vertical, if it is another one; else what is wrong.
 std::string name_of(const Eigen::Matrix3d& axes, const Eigen::Vector3d& gravity) {
@@ -19,7 +19,7 @@ std::string name_of(const Eigen::Matrix3d& axes, const Eigen::Vector3d& gravity)
     for (Eigen::Index from = 0; from < 3; ++from) {
       const double sign = axes(vertical, from) * (gravity[vertical] < 0 ? 1 : -1);
       if (sign == 0 || (from == vertical && axes(vertical, from) > 0)) continue;
-      return fmt::format("{} is {} in the file", names[static_cast<std::size_t>(from)],
+      return fmt::format("{} is {} in the file", axis_names[static_cast<std::size_t>(from)],
                          sign > 0 ? "up" : "down");
     }
   }
@@ -34,8 +34,8 @@ std::string axes_text(const Eigen::Matrix3d& axes) {
       const double sign = axes(to, from);
       if (sign == 0 || (to == from && sign > 0)) continue;
       text += fmt::format("{}the scene's {} is the file's {}{}", text.empty() ? "" : ", ",
-                          names[static_cast<std::size_t>(to)], sign < 0 ? "-" : "",
-                          names[static_cast<std::size_t>(from)]);
+                          axis_names[static_cast<std::size_t>(to)], sign < 0 ? "-" : "",
+                          axis_names[static_cast<std::size_t>(from)]);
     }
   }
   return text;

@@ -187,4 +187,23 @@ std::vector<FileCause> file_causes(const Scene& scene, const MeasuredShape& shap
   return causes;
 }
 
+std::optional<Explanation> noise_of_points(const Shape& shape,
+                                           const energy_model::Equilibrium& rod) {
+  const Eigen::Matrix3Xd gaps = shape.points - rod.sample(shape.arc_length).points;
+  const Eigen::Index count = gaps.cols();
+  const Eigen::Index around = std::max<Eigen::Index>(2, count / 10);
+  if (count < 4 * around) return std::nullopt;
+  Eigen::Matrix3Xd common(3, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Index first = std::max<Eigen::Index>(0, i - around);
+    const Eigen::Index last = std::min(count - 1, i + around);
+    common.col(i) = gaps.middleCols(first, last - first + 1).rowwise().mean();
+  }
+  const double noise = std::sqrt((gaps - common).colwise().squaredNorm().mean());
+  const double left = std::sqrt(common.colwise().squaredNorm().mean());
+  return Explanation{
+      fmt::format("there were no noise from point to point, {:.3g} mm RMS", noise * 1e3), left, 0,
+      ExplanationKind::file};
+}
+
 }  // namespace dlo::compare

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "dlo/compare/explanation.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape_check.hpp"
 #include "dlo/compare/shape_file.hpp"
+#include "dlo/energy_model/energy.hpp"
 
 namespace dlo::compare {
 
@@ -49,5 +52,10 @@ inline constexpr FileUnit file_units[] = {
 /// All that can be wrong with a file, in a frame that is said to be the scene's; one at a time.
 [[nodiscard]] std::vector<FileCause> file_causes(const Scene& scene, const MeasuredShape& shape,
                                                  const ShapeCheck& check);
+
+/// A shape without its points' own noise: of that, neighbours have nothing in common, so little is
+/// left of their mean. None of fewer than eight points.
+[[nodiscard]] std::optional<Explanation> noise_of_points(const Shape& shape,
+                                                         const energy_model::Equilibrium& rod);
 
 }  // namespace dlo::compare

@@ -44,7 +44,7 @@ Vector3d free_end(const Eigen::Matrix3Xd& points, double segment) {
 
 }  // namespace
 
-MeasuredShape with_last_end(const Scene& scene, const MeasuredShape& shape) {
+MeasuredShape whole_of_segment_starts(const Scene& scene, const MeasuredShape& shape) {
   if (!scene.model || scene.model->segments < 3 || !shape.arc_length.empty()) return shape;
   const ModelChain& model = *scene.model;
   const Index n = model.segments;

@@ -10,6 +10,6 @@ namespace dlo::compare {
 /// where a gripper holds it; a free end's last segment is rotated on by a quarter of what the one
 /// before is, as the moment of a weight grows with the square of the distance. Of all bodies of the
 /// model those of the chain are taken. Any other shape as it is. Notes say what was done.
-[[nodiscard]] MeasuredShape with_last_end(const Scene& scene, const MeasuredShape& shape);
+[[nodiscard]] MeasuredShape whole_of_segment_starts(const Scene& scene, const MeasuredShape& shape);
 
 }  // namespace dlo::compare

@@ -8,9 +8,11 @@
 #include <utility>
 
 #include "dlo/compare/error.hpp"
-#include "fit/shape_misfit.hpp"
-#include "fit/wire_fit.hpp"
-#include "fit/wire_numbers.hpp"
+#include "fit/fit_from.hpp"
+#include "fit/fitted_scene.hpp"
+#include "least_squares/material_point.hpp"
+#include "wire/wire_fit.hpp"
+#include "wire/wire_numbers.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -58,10 +60,10 @@ class OptionsSearch {
   [[nodiscard]] MaterialFit run() {
     MaterialFitOptions as_said = with_all_outputs(options_of(0, Clamps::as_said));
     as_said.predict = false;
-    plain_ = fit_material(scenes_, shapes_, as_said);
+    plain_ = fit_from(scenes_, shapes_, as_said, std::nullopt);
     if (options_.alternatives && !is_systematic(plain_)) {
       as_said.alternatives = true;
-      plain_ = fit_material(scenes_, shapes_, as_said);
+      plain_ = fit_from(scenes_, shapes_, as_said, std::nullopt);
     }
     start_ = material_of(plain_, scenes_.front());
     if (!is_systematic(plain_)) {
@@ -111,8 +113,7 @@ class OptionsSearch {
   [[nodiscard]] MaterialFit with_all_outputs(const Trial& chosen) const {
     MaterialFitOptions last = with_all_outputs(chosen.options);
     last.predict = false;
-    MaterialFit fit =
-        fits_a_wire(last) ? fit_material_from(scenes_, shapes_, last, start_) : plain_;
+    MaterialFit fit = fits_a_wire(last) ? fit_from(scenes_, shapes_, last, start_) : plain_;
     fit.prediction = chosen.fit.prediction;
     return fit;
   }
@@ -135,7 +136,7 @@ class OptionsSearch {
     options.predict = true;
     try {
       if (fits_a_wire(options)) {
-        trials_.push_back({options, fit_material_from(scenes_, shapes_, options, start_)});
+        trials_.push_back({options, fit_from(scenes_, shapes_, options, start_)});
       } else {
         MaterialFit plain = plain_;
         plain.prediction = plain_prediction();
@@ -154,7 +155,7 @@ class OptionsSearch {
   [[nodiscard]] std::optional<Prediction> plain_prediction() const {
     MaterialFitOptions options = options_of(0, Clamps::as_said);
     options.predict = true;
-    return fit_material_from(scenes_, shapes_, options, start_).prediction;
+    return fit_from(scenes_, shapes_, options, start_).prediction;
   }
 
   [[nodiscard]] MaterialFitOptions options_of(int terms, Clamps clamps) const {

@@ -2,8 +2,9 @@
 
 #include <vector>
 
-#include "dlo/compare/material_fit.hpp"
-#include "fit/shape_misfit.hpp"
+#include "dlo/compare/fitted_material.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/shape_file.hpp"
 
 namespace dlo::compare {
 
@@ -15,15 +16,5 @@ namespace dlo::compare {
 [[nodiscard]] MaterialFit fit_with_chosen_options(const std::vector<Scene>& scenes,
                                                   const std::vector<MeasuredShape>& shapes,
                                                   const MaterialFitOptions& options);
-
-/// The material of a fit, identified or not, as factors on that of the first scene.
-[[nodiscard]] MaterialPoint material_of(const MaterialFit& fit, const Scene& first);
-
-/// fit_material() by steps from a material, without its search over all E; with `predict` so is
-/// each shape's prediction.
-[[nodiscard]] MaterialFit fit_material_from(const std::vector<Scene>& scenes,
-                                            const std::vector<MeasuredShape>& shapes,
-                                            const MaterialFitOptions& options,
-                                            const MaterialPoint& start);
 
 }  // namespace dlo::compare

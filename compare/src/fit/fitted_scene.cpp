@@ -1,5 +1,6 @@
 #include "fit/fitted_scene.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "dlo/compare/calibrated_rod.hpp"
@@ -20,6 +21,17 @@ Scene fitted_scene(Scene scene, const MaterialFit& fit, const Scene& first) {
   }
   if (fit.torsional_stiffness) rod.torsional_stiffness = fit.torsional_stiffness->estimate;
   return calibrated_scene(std::move(scene), rod);
+}
+
+MaterialPoint material_of(const MaterialFit& fit, const Scene& first) {
+  MaterialPoint result;
+  if (fit.youngs_modulus.estimate) {
+    result.log_modulus = std::log(*fit.youngs_modulus.estimate / first.stiffness().value);
+  }
+  if (fit.density && fit.density->estimate) {
+    result.log_density = std::log(*fit.density->estimate / first.heaviness().value);
+  }
+  return result;
 }
 
 }  // namespace dlo::compare

@@ -54,9 +54,7 @@ ShapeMisfit::ShapeMisfit(const std::vector<Scene>& scenes, MeasuredShapes& measu
 std::shared_ptr<ShapeMisfit::Solved> ShapeMisfit::solve(std::size_t i,
                                                         const MaterialPoint& material,
                                                         const energy_model::Equilibrium* start) {
-  Scene scene = scenes_[i];
-  scene.scale_modulus(std::exp(material.log_modulus));
-  scene.scale_density(std::exp(material.log_density));
+  const Scene scene = of_material(scenes_[i], material);
   auto result = std::make_shared<Solved>();
   result->material = material;
   result->scene = i;

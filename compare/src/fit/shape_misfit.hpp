@@ -8,23 +8,12 @@
 #include <vector>
 
 #include "dlo/compare/alignment.hpp"
-#include "dlo/compare/material_fit.hpp"
+#include "dlo/compare/scene.hpp"
 #include "least_squares/fitted_rods.hpp"
+#include "least_squares/material_point.hpp"
 #include "least_squares/measured_shapes.hpp"
 
 namespace dlo::compare {
-
-/// Factors on the scenes' modulus and density, as logarithms.
-struct MaterialPoint {
-  double log_modulus = 0;
-  double log_density = 0;
-  bool operator==(const MaterialPoint& other) const {
-    return log_modulus == other.log_modulus && log_density == other.log_density;
-  }
-  bool operator<(const MaterialPoint& other) const {
-    return std::pair(log_modulus, log_density) < std::pair(other.log_modulus, other.log_density);
-  }
-};
 
 /// Measured shapes against the energy model's, for any modulus and density.
 ///

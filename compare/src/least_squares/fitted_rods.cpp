@@ -109,4 +109,14 @@ std::vector<Alignment> FittedRods::alignments(const Eigen::VectorXd& values) {
   return result;
 }
 
+std::vector<Shape> sampled(const FittedRods::Rods& rods, const std::vector<Scene>& scenes,
+                           int samples) {
+  std::vector<Shape> result;
+  for (std::size_t i = 0; i < rods.size() && rods[i]; ++i) {
+    const std::vector<double> s = equal_arc_lengths(scenes[i].length, samples);
+    result.push_back({.arc_length = s, .points = rods[i]->sample(s).points});
+  }
+  return result;
+}
+
 }  // namespace dlo::compare

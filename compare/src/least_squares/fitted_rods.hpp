@@ -46,6 +46,8 @@ class FittedRods {
   /// An equilibrium of each shape to go on from; none: search.
   using Rods = std::vector<std::optional<energy_model::Equilibrium>>;
   void go_on_from(Rods rods) { last_ = std::move(rods); }
+  /// From searches.
+  void search_next() { last_ = Rods(measured_.size()); }
   /// Those of the last values.
   [[nodiscard]] const Rods& rods() const { return last_; }
 
@@ -73,5 +75,9 @@ class FittedRods {
   std::vector<Unknown> unknowns_;
   Rods last_;
 };
+
+/// Rods at equal arc lengths, up to the first that there is not.
+[[nodiscard]] std::vector<Shape> sampled(const FittedRods::Rods& rods,
+                                         const std::vector<Scene>& scenes, int samples);
 
 }  // namespace dlo::compare

@@ -152,6 +152,15 @@ template <typename Value, typename Make>
   return value ? Json(make(*value)) : Json();
 }
 
+template <typename Value>
+[[nodiscard]] Json json_or_null(const std::optional<Value>& value) {
+  return value ? Json(*value) : Json();
+}
+/// Null of an empty one.
+[[nodiscard]] inline Json text_or_null(const std::string& text) {
+  return text.empty() ? Json() : Json(text);
+}
+
 [[nodiscard]] Json to_json(const Eigen::Vector3d& vector);
 [[nodiscard]] Json points_json(const Eigen::Matrix3Xd& points);
 

@@ -17,8 +17,9 @@ struct Bracket {
 Bracket bracket_of(const std::vector<double>& s, double at) {
   const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, at);
   const double left = *(above - 1);
+  const double step = *above - left;  // 0 of two points at the rod's end
   return {static_cast<std::size_t>(above - s.begin()),
-          std::clamp((at - left) / (*above - left), 0.0, 1.0)};
+          step > 0 ? std::clamp((at - left) / step, 0.0, 1.0) : 0};
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 
 #include "batch/sweep.hpp"
 #include "batch/sweep_grid.hpp"
-#include "scene/scene_template.hpp"
+#include "reading/scene_template.hpp"
 
 namespace {
 

@@ -27,7 +27,7 @@
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/shape_file.hpp"
 #include "folder_fixture.hpp"
-#include "scene/scene_template.hpp"
+#include "reading/scene_template.hpp"
 #include "scene_text.hpp"
 
 namespace {

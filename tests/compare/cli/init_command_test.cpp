@@ -13,7 +13,7 @@
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solution.hpp"
 #include "dlo/compare/solve.hpp"
-#include "scene/new_scene.hpp"
+#include "reading/new_scene.hpp"
 
 namespace {
 

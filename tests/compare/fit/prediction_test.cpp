@@ -14,11 +14,11 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/material_fit.hpp"
 #include "dlo/energy_model/energy.hpp"
-#include "fit/between_shapes.hpp"
-#include "fit/leave_one_out.hpp"
+#include "fit/fit_from.hpp"
 #include "measured_shapes.hpp"
 #include "polygon/energy_problems.hpp"
 #include "scenes.hpp"
+#include "wire/between_shapes.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -143,7 +143,7 @@ TEST(Prediction, StepsFromTheFitToAllLeadWhereFitsFromNothingDo) {
                                    .shared_clamps = true,
                                    .predict = true};
   const MaterialFit found = fit_material(seen.scenes, seen.shapes, options);
-  const Prediction anew = leave_one_out(seen.scenes, seen.shapes, options, found);
+  const Prediction anew = predict_each(seen.scenes, seen.shapes, options, found);
   ASSERT_TRUE(found.prediction.has_value());
   // The weight of what was known before is measured anew there.
   for (std::size_t i = 0; i < anew.shapes_m.size(); ++i) {

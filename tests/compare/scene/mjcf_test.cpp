@@ -142,7 +142,7 @@ TEST(Mjcf, MuJoCosOwnPointsPassWithoutTheirLastEnd) {
   ASSERT_EQ(shape.points.cols(), 21);
   const Eigen::Vector3d end = shape.points.col(20);
   shape.points.conservativeResize(Eigen::NoChange, 20);
-  const MeasuredShape whole = with_last_end(scene, shape);
+  const MeasuredShape whole = whole_of_segment_starts(scene, shape);
   ASSERT_EQ(whole.points.cols(), 21);
   EXPECT_EQ(whole.notes.size(), 1U);
   // The last joint turns by a quarter of what the one before does, within its own size:
@@ -155,8 +155,8 @@ TEST(Mjcf, MuJoCosOwnPointsPassWithoutTheirLastEnd) {
   MeasuredShape all = shape;
   all.points.resize(3, 21);
   all.points << Eigen::Vector3d(0, 0, 0.3), shape.points;
-  EXPECT_EQ(with_last_end(scene, all).points.cols(), 21);
-  EXPECT_EQ(with_last_end(scene, all).points.col(0), shape.points.col(0));
+  EXPECT_EQ(whole_of_segment_starts(scene, all).points.cols(), 21);
+  EXPECT_EQ(whole_of_segment_starts(scene, all).points.col(0), shape.points.col(0));
 }
 
 struct Refused {

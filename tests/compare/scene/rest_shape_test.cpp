@@ -21,7 +21,7 @@
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solve.hpp"
-#include "scene/scene_template.hpp"
+#include "reading/scene_template.hpp"
 #include "scene_text.hpp"
 #include "shape/write_vtk.hpp"
 #include "trajectory/trajectory_files.hpp"

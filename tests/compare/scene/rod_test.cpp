@@ -13,7 +13,7 @@
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "polygon/energy_problems.hpp"
-#include "scene/scene_template.hpp"
+#include "reading/scene_template.hpp"
 #include "scene_text.hpp"
 
 namespace dlo::compare {

@@ -1,0 +1,84 @@
+#include "fit/fit_from.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "dlo/compare/error.hpp"
+#include "fit/chain_springs.hpp"
+#include "fit/fitted_scene.hpp"
+#include "fit/material_alone.hpp"
+#include "fit/material_profiles.hpp"
+#include "wire/leave_one_out.hpp"
+#include "wire/wire_fit.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Each scene's once.
+void add_chains(const std::vector<Scene>& scenes, const MaterialFitOptions& options,
+                MaterialFit& fit) {
+  for (auto scene = scenes.begin(); scene != scenes.end(); ++scene) {
+    if (std::find(scenes.begin(), scene, *scene) != scene) continue;
+    const Scene fitted = fitted_scene(*scene, fit, scenes.front());
+    const std::vector<double>& lengths = options.chain_segment_lengths;
+    for (ChainSprings& chain : lengths.empty()
+                                   ? chain_springs(fitted, options.chain_segments, options.solve)
+                                   : chain_springs(fitted, lengths, options.solve)) {
+      fit.chains.push_back(std::move(chain));
+    }
+  }
+}
+
+/// @param least  sum of squares at the start [m^2]
+MaterialFit whole_wire(MaterialProfiles& material, const MaterialPoint& start, double least) {
+  MaterialFit fit = fit_wire(material.scenes(), material.shapes(), material.measured(),
+                             material.options(), start, material.has_density());
+  material.refuse_unverified(least);
+  if (fit.warning.empty()) {
+    fit.warning = warning_of(material, fit.rms_m * fit.rms_m * material.points(), std::nullopt);
+  }
+  return fit;
+}
+
+}  // namespace
+
+MaterialFit fit_from(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
+                     const MaterialFitOptions& options, const std::optional<MaterialPoint>& start) {
+  MaterialProfiles material(scenes, shapes, options);
+  MaterialFit fit;
+  if (start) {
+    fit = whole_wire(material, *start, material.squares(*start));
+  } else {
+    const MaterialProfiles::Search found = material.search();
+    fit = fits_a_wire(options)
+              ? whole_wire(material, found.best, found.over_modulus.minimum().value)
+              : fit_material_alone(material, found);
+  }
+  fit.equilibria = material.measured().solves();
+  fit.evaluations = material.measured().evaluations();
+  if (options.predict && !fit.prediction) {
+    fit.prediction = predict_each(scenes, shapes, options, fit);
+  }
+  const bool of_chains = options.chain_segments > 0 || !options.chain_segment_lengths.empty();
+  if (of_chains && fit.youngs_modulus.value) add_chains(scenes, options, fit);
+  return fit;
+}
+
+Prediction predict_each(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
+                        const MaterialFitOptions& options, const MaterialFit& fit) {
+  MaterialFitOptions same = options;
+  same.alternatives = same.predict = false;
+  same.chain_segments = same.profile_points = 0;
+  same.chain_segment_lengths.clear();
+  return leave_one_out(scenes, shapes, options, fit, [&](std::size_t left) -> PredictedScene {
+    const std::vector<Scene> other_scenes = all_but(scenes, left);
+    const MaterialFit others = fit_from(other_scenes, all_but(shapes, left), same, std::nullopt);
+    return {fitted_scene(scenes[left], others, other_scenes.front()), std::nullopt};
+  });
+}
+
+}  // namespace dlo::compare

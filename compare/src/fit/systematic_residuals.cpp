@@ -1,0 +1,129 @@
+#include "fit/systematic_residuals.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "dlo/compare/error.hpp"
+#include "fit/material_errors.hpp"
+#include "wire/between_shapes.hpp"
+#include "wire/identifiable.hpp"
+#include "wire/wire_fit.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// What shapes have in common beyond chance, of all that they could. Smooth residuals have some
+/// three numbers each: two shapes of them are beyond the first in one case of five, beyond the
+/// second in one of eleven, five shapes in one of a hundred and one of two thousand.
+constexpr double maybe_common = 0.5;
+constexpr double surely_common = 0.7;
+/// Share of the residual that an alternative may leave to be told, and to put the fit in doubt.
+constexpr double worth_naming = 0.7;
+constexpr double too_much = 0.5;
+constexpr double next_to_nothing = 0.02;
+
+/// What of the residuals all shapes have in common; nothing without a plane.
+std::optional<double> common_to_shapes(MaterialProfiles& material, const MaterialPoint& best,
+                                       const std::vector<FittedShape>& shapes) {
+  constexpr int samples = 1001;
+  const std::vector<Shape> rods = sampled(material.rods(best), material.scenes(), samples);
+  if (rods.size() != shapes.size()) return std::nullopt;
+  std::vector<AcrossRod> across;
+  std::optional<Eigen::Vector3d> first;
+  for (std::size_t i = 0; i < rods.size(); ++i) {
+    std::optional<Eigen::Vector3d> normal = material.scenes()[i].plane_normal();
+    if (!normal) return std::nullopt;
+    if (!first) first = normal;
+    if (normal->dot(*first) < 0) *normal *= -1;
+    across.push_back(across_rod(shapes[i].alignment.shape, rods[i], *normal));
+  }
+  return common_share(across);
+}
+
+/// Those with fewer numbers come first; one that has theirs and more has to leave less.
+void add_alternative(const FitAlternative& found, MaterialFit& fit) {
+  for (const FitAlternative& one : fit.alternatives) {
+    const bool has_more = found.natural_curvature_terms >= one.natural_curvature_terms &&
+                          found.direction_tolerance >= one.direction_tolerance;
+    if (has_more && found.rms_m > one.rms_m - next_to_nothing * fit.rms_m) return;
+  }
+  fit.alternatives.push_back(found);
+}
+
+void try_alternatives(MaterialProfiles& material, const MaterialPoint& best, MaterialFit& fit) {
+  constexpr double tolerance = 5 * std::numbers::pi / 180;
+  MaterialFitOptions options = material.options();
+  options.profile_points = 0;
+  for (const auto& [terms, directions] :
+       {std::pair{1, 0.0}, {2, 0.0}, {0, tolerance}, {2, tolerance}}) {
+    options.natural_curvature_terms = terms;
+    options.direction_tolerance = directions;
+    try {
+      const MaterialFit other = fit_wire(material.scenes(), material.shapes(), material.measured(),
+                                         options, best, material.has_density());
+      if (!(other.rms_m <= worth_naming * fit.rms_m)) continue;
+      add_alternative({terms, directions, other.rms_m, other.youngs_modulus}, fit);
+    } catch (const InputError&) {
+      // No clamp, no plane, or too few points.
+    } catch (const ConvergenceError&) {
+      // No shape, or no time.
+    }
+  }
+  std::stable_sort(
+      fit.alternatives.begin(), fit.alternatives.end(),
+      [](const FitAlternative& a, const FitAlternative& b) { return a.rms_m < b.rms_m; });
+}
+
+/// @param common  shapes surely have much of it in common
+std::string doubt(const MaterialFit& fit, bool common, const char* stiffness) {
+  if (!fit.alternatives.empty() && fit.alternatives.front().rms_m <= too_much * fit.rms_m) {
+    return fmt::format(
+        "the residuals are systematic: what is not fitted would leave {:.3g} mm of {:.3g} mm, so "
+        "the interval of {} holds only if the rod is intrinsically straight and held as said",
+        fit.alternatives.front().rms_m * 1e3, fit.rms_m * 1e3, stiffness);
+  }
+  if (!common) return "";
+  return fmt::format(
+      "the residuals are systematic: {:.2g} % of their mean square is common to all shapes, and "
+      "the interval of {} knows nothing of what they have in common",
+      *fit.common_share * 100, stiffness);
+}
+
+/// A wrong weight leaves no residual.
+void note_weight(const Scene& scene, MaterialFit& fit) {
+  const char* const heaviness = scene.heaviness().name;
+  const bool first = fit.not_identified.empty();
+  fit.not_identified += fmt::format(
+      "{}the {}{}: nothing but gravity bends the rod, so a wrong {} leaves no residual and makes "
+      "{} wrong by the same factor",
+      first ? "" : "; nor is ", heaviness, first ? " is not identifiable from these shapes" : "",
+      heaviness, scene.stiffness().name);
+}
+
+}  // namespace
+
+void look_for_alternatives(MaterialProfiles& material, const MaterialPoint& best,
+                           MaterialFit& fit) {
+  const std::vector<Scene>& scenes = material.scenes();
+  if (!(fit.rms_m > MaterialErrors::least_noise(scenes.front()))) return;
+  fit.common_share = common_to_shapes(material, best, fit.shapes);
+  const double common = fit.common_share ? beyond_chance(*fit.common_share, scenes.size()) : 0;
+  const bool explained = material.options().noise && fit.warning.empty();
+  if (explained || !(common > maybe_common || fit.correlation)) return;
+  try_alternatives(material, best, fit);
+  // Without forces E has no interval that could be wrong.
+  if (!material.is_forced()) return;
+  if (fit.warning.empty()) {
+    fit.warning = doubt(fit, common > surely_common, scenes.front().stiffness().name);
+  }
+  const bool weight_alone = std::none_of(scenes.begin(), scenes.end(), has_forces_beside_weight);
+  // Where the density was asked for it is said already.
+  if (weight_alone && !material.options().density) note_weight(scenes.front(), fit);
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,128 @@
+#include "reading/read_loads.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "reading/read_place.hpp"
+#include "toml/scene_keys.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr std::size_t most_forces_per_length = 100;
+
+/// What drags the rod, by Morison's law on its diameter.
+std::optional<energy_model::Drag> read_drag(StrictTable& table, double density, double diameter) {
+  if (!table.has("velocity")) {
+    for (const char* key : {"normal_drag", "tangential_drag"}) {
+      if (!table.has(key)) continue;
+      table.fail(key, fmt::format("of a medium at rest (allowed: velocity too, or no {})", key));
+    }
+    return std::nullopt;
+  }
+  energy_model::Drag drag;
+  drag.velocity = table.vector("velocity", Dimension::velocity);
+  const double unit = density * diameter / 2;
+  drag.normal = unit * table.number("normal_drag", Dimension::number, Range::not_negative());
+  drag.tangential =
+      std::numbers::pi * unit *
+      table.optional_number("tangential_drag", Dimension::number, Range::not_negative())
+          .value_or(0);
+  if (drag.velocity.isZero(0)) return std::nullopt;
+  return drag;
+}
+
+}  // namespace
+
+PointLoad read_load(StrictTable& table, const Scene& scene) {
+  PointLoad load;
+  table.only(scene_keys("load"));
+  load.at = read_arc_length(table, "at", scene.length);
+  const std::optional<double> mass =
+      table.optional_number("mass", Dimension::mass, Range::positive());
+  if (mass && table.has("force")) {
+    table.fail("mass", "given besides force (allowed: one of force and mass)");
+  }
+  load.torque = table.optional_vector("torque", Dimension::torque).value_or(load.torque);
+  load.follows = table.flag("follows");
+  if (mass && load.follows) {
+    table.fail("follows", "of a mass, which hangs along gravity (allowed: force and torque)");
+  }
+  if (mass) {
+    load.force = *mass * scene.gravity;
+  } else if (!table.has("torque") || table.has("force")) {
+    if (!table.has("force")) {
+      table.fail("force",
+                 "missing, and so are mass and torque (allowed: force or mass, torque, or one of "
+                 "the two with torque)");
+    }
+    load.force = table.vector("force", Dimension::force);
+  }
+  load.mass = mass.value_or(0);
+  table.finish();
+  return load;
+}
+
+DistributedLoad read_distributed_load(StrictTable& table, const Scene& scene) {
+  DistributedLoad load{0, scene.length, {}};
+  table.only(scene_keys("distributed_load"));
+  if (table.has("from")) load.from = read_arc_length(table, "from", scene.length);
+  if (table.has("to")) load.to = read_arc_length(table, "to", scene.length);
+  if (!(load.to > load.from)) {
+    table.fail(
+        table.has("to") ? "to" : "from",
+        fmt::format("the load ends at {:g} m, where it begins or before (allowed: to > from, "
+                    "which are 0 and the rod's length if not given)",
+                    load.to));
+  }
+  load.force_per_length =
+      table.vectors("force_per_length", Dimension::force_per_length, most_forces_per_length);
+  table.finish();
+  return load;
+}
+
+/// What the rod displaces bears it: a load against gravity, of a mass that does not move.
+void read_medium(StrictTable& table, Scene& scene) {
+  table.only(scene_keys("medium"));
+  const double density = table.number("density", Dimension::density, Range::positive());
+  if (!(scene.diameter > 0)) {
+    table.fail("density",
+               "of a rod whose volume is not known (allowed: [rod] with diameter, or no [medium])");
+  }
+  scene.drag = read_drag(table, density, scene.diameter);
+  if (scene.drag && !scene.obstacles.empty()) {
+    table.fail(
+        "velocity",
+        "beside obstacles, with which no model takes drag (allowed: neither, or no velocity)");
+  }
+  table.finish();
+  const double section = std::numbers::pi * scene.diameter * scene.diameter / 4;
+  scene.distributed_loads.push_back({0, scene.length, {-density * section * scene.gravity}});
+}
+
+void check_turning_loads(const Scene& scene, const std::vector<StrictTable>& entries) {
+  constexpr double at_clamp = 1e-9;  // of the length, as energy_model has it
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const PointLoad& load = scene.loads[i];
+    if (load.torque.isZero(0) && !load.follows) continue;
+    if (!scene.obstacles.empty()) {
+      entries[i].fail(load.follows ? "follows" : "torque",
+                      "beside obstacles, with which no model takes it (allowed: no obstacles, or "
+                      "forces that keep their direction)");
+    }
+    if (!load.follows) continue;
+    const auto clamped = [&](const Gripper& gripper) {
+      return gripper.direction && std::abs(gripper.at - load.at) <= at_clamp * scene.length;
+    };
+    if (std::any_of(scene.grippers.begin(), scene.grippers.end(), clamped)) {
+      entries[i].fail("follows",
+                      "at a clamp, which would hold it (allowed: true where no clamp is)");
+    }
+  }
+}
+
+}  // namespace dlo::compare

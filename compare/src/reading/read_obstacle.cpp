@@ -1,0 +1,91 @@
+#include "reading/read_obstacle.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <string>
+
+#include "reading/read_place.hpp"
+#include "toml/scene_keys.hpp"
+#include "trajectory/read_trajectory.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Edges of a box: `size` along `axis`, along `normal` and across both.
+obstacle::Body read_box(StrictTable& table, const Eigen::Vector3d& centre) {
+  const Eigen::Vector3d size = table.vector("size", Dimension::length);
+  if (!(size.minCoeff() > 0)) table.fail("size", "has to be three lengths > 0");
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  if (table.has("axis")) axes.col(0) = unit_vector(table, "axis");
+  if (table.has("normal")) axes.col(1) = unit_vector(table, "normal");
+  constexpr double square = 1e-6;
+  if (std::abs(axes.col(0).dot(axes.col(1))) > square) {
+    table.fail(table.has("axis") ? "axis" : "normal",
+               "the edges along axis and normal are not at right angles (axis is +x and normal +y "
+               "if not given)");
+  }
+  axes.col(1) = (axes.col(1) - axes.col(1).dot(axes.col(0)) * axes.col(0)).normalized();
+  axes.col(2) = axes.col(0).cross(axes.col(1));
+  const double largest = size.minCoeff() / 2;
+  const Range round{0, largest, false,
+                    fmt::format("0 to half of the smallest size, {:.4g} m", largest)};
+  const double radius = table.optional_number("radius", Dimension::length, round).value_or(0);
+  return obstacle::Body::box(centre, axes, size, radius);
+}
+
+obstacle::Body read_body(StrictTable& table, const Eigen::Vector3d& point) {
+  const std::string shape =
+      table.has("shape") ? table.choice("shape", {"plane", "sphere", "cylinder", "capsule", "box"})
+                         : "plane";
+  const auto length_of = [&table](const char* key) {
+    return table.number(key, Dimension::length, Range::positive());
+  };
+  if (shape == "plane") {
+    return obstacle::Body::half_space(point, unit_vector(table, "normal"));
+  }
+  if (shape == "sphere") {
+    return obstacle::Body::sphere(point, length_of("radius"));
+  }
+  if (shape == "cylinder") {
+    return obstacle::Body::cylinder(point, unit_vector(table, "axis"), length_of("radius"));
+  }
+  if (shape == "capsule") {
+    return obstacle::Body::capsule(point, unit_vector(table, "axis"), length_of("length"),
+                                   length_of("radius"));
+  }
+  return read_box(table, point);
+}
+
+}  // namespace
+
+Obstacle read_obstacle(StrictTable& table, const Scene& scene) {
+  Obstacle obstacle;
+  table.only(scene_keys("obstacle"));
+  obstacle.trajectory =
+      read_trajectory(table, {.position = "point", .direction = nullptr}, scene.file);
+  const Eigen::Vector3d point = read_place(table, "point", obstacle.trajectory);
+  obstacle.body = read_body(table, point);
+  obstacle.stiffness = table.optional_number("stiffness", Dimension::foundation, Range::positive())
+                           .value_or(obstacle.stiffness);
+  obstacle.friction = table.optional_number("friction", Dimension::number, Range::not_negative())
+                          .value_or(obstacle.friction);
+  const bool axis = table.has("touches") && table.choice("touches", {"surface", "axis"}) == "axis";
+  if (!axis && scene.width > 0) {
+    table.fail("touches",
+               "missing or \"surface\", which is not at one distance from the axis of a rod with "
+               "width and thickness (allowed: touches = \"axis\")");
+  }
+  if (!axis) obstacle.body = obstacle.body.grown(scene.diameter / 2);
+  if (!(obstacle.body.smallest_radius() > 0)) {
+    table.fail(axis ? "touches" : "size",
+               "a box whose edges are sharp, over which the rod would bend without a radius "
+               "(allowed: radius > 0, which rounds its edges, or the surface of a rod with a "
+               "diameter)");
+  }
+  table.finish();
+  return obstacle;
+}
+
+}  // namespace dlo::compare

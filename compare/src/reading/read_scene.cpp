@@ -1,0 +1,99 @@
+#include "reading/read_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <functional>
+
+#include "base/display.hpp"
+#include "dlo/compare/error.hpp"
+#include "reading/read_gripper.hpp"
+#include "reading/read_loads.hpp"
+#include "reading/read_obstacle.hpp"
+#include "reading/read_rod.hpp"
+#include "scene/read_force_model.hpp"
+#include "toml/scene_keys.hpp"
+#include "toml/strict_table.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Solvers of several spans take memory with the square of the number of grippers, some 250 MB for
+/// the most; of the others no scene has any use for more.
+constexpr std::size_t most_grippers = 500;
+constexpr std::size_t most_loads = 10'000;
+constexpr std::size_t most_distributed_loads = 100;
+constexpr std::size_t most_sections = 1'000;
+constexpr std::size_t most_obstacles = 1'000;
+
+std::vector<StrictTable> bounded_tables(StrictTable& table, const char* key, std::size_t most) {
+  std::vector<StrictTable> tables = table.tables(key);
+  if (tables.size() > most) {
+    table.fail(key, fmt::format("{} given (allowed: up to {})", tables.size(), most));
+  }
+  return tables;
+}
+
+void read_track(StrictTable& rates, Scene& scene) {
+  rates.only(scene_keys("track"));
+  const auto rate = [&rates](const char* key) {
+    return rates.optional_number(key, Dimension::frequency, Range::positive());
+  };
+  scene.track.frames = rate("frame_rate").value_or(scene.track.frames);
+  scene.track.obstacles = rate("obstacle_rate");
+  scene.track.steps = rate("step_rate").value_or(scene.track.steps);
+  rates.finish();
+}
+
+}  // namespace
+
+Scene read_scene(const toml::table& root, const std::string& file,
+                 const std::vector<Material>& known_materials) {
+  StrictTable table(root, "", file);
+  table.only(scene_keys(""));
+  Scene scene;
+  scene.file = file;
+  scene.name = table.optional_text("name").value_or(valid_utf8(file));
+  scene.gravity = table.optional_vector("gravity", Dimension::acceleration).value_or(scene.gravity);
+
+  if (!table.has("rod")) {
+    table.fail("rod", "missing, it is required (dlo init writes a scene to start from)");
+  }
+  StrictTable rod = table.table("rod");
+  std::vector<StrictTable> sections = bounded_tables(table, "section", most_sections);
+  read_rod(rod, sections, known_materials, scene);
+
+  for (StrictTable& entry : bounded_tables(table, "obstacle", most_obstacles)) {
+    scene.obstacles.push_back(read_obstacle(entry, scene));
+  }
+  std::vector<StrictTable> grippers = bounded_tables(table, "gripper", most_grippers);
+  for (StrictTable& entry : grippers) {
+    scene.grippers.push_back(read_gripper(entry, scene));
+  }
+  if (scene.grippers.empty()) {
+    throw InputError(fmt::format(
+        "{}: gripper: none given, nothing would hold the rod (allowed: one or more [[gripper]])",
+        file));
+  }
+  check_twist(scene, rod);
+  std::vector<StrictTable> loads = bounded_tables(table, "load", most_loads);
+  for (StrictTable& entry : loads) scene.loads.push_back(read_load(entry, scene));
+  for (StrictTable& entry : bounded_tables(table, "distributed_load", most_distributed_loads)) {
+    scene.distributed_loads.push_back(read_distributed_load(entry, scene));
+  }
+  if (auto medium = table.optional_table("medium")) {
+    read_medium(*medium, scene);
+  }
+  check_material_directors(scene, rod, sections);
+  check_turning_loads(scene, loads);
+  check_rolls(scene, grippers);
+  if (auto settings = table.optional_table("force_model")) {
+    scene.force_model = read_force_model(*settings);
+    check(scene.force_model, settings->where());
+  }
+  if (auto rates = table.optional_table("track")) read_track(*rates, scene);
+  table.finish();
+  return scene;
+}
+
+}  // namespace dlo::compare

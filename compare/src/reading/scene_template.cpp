@@ -1,0 +1,265 @@
+#include "reading/scene_template.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "base/fingerprint.hpp"
+#include "base/input_file.hpp"
+#include "base/number.hpp"
+#include "base/quote.hpp"
+#include "base/text_limits.hpp"
+#include "dlo/compare/error.hpp"
+#include "reading/read_scene.hpp"
+#include "toml/strict_table.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Puts a value where `place(node)` wants it, with the type that a file would give it.
+template <typename Place>
+void place_value(const SceneField& field, const std::string& file, const Place& place) {
+  const std::string& text = field.value.text();
+  if (const auto integer = as_number<std::int64_t>(text)) return place(*integer);
+  if (const auto number = as_number<double>(text)) return place(*number);
+  if (text.empty() || text.front() != '[') return place(text);
+  const toml::table parsed =
+      parse_toml("value = " + text, fmt::format("{}, {}", file, field.field));
+  const toml::array* array = parsed["value"].as_array();
+  if (array == nullptr || parsed.size() != 1) {
+    throw InputError(fmt::format("{}: {} = {}: no vector", file, field.field, text));
+  }
+  place(*array);
+}
+
+/// What people write for a field, and its path.
+constexpr std::pair<std::string_view, std::string_view> short_field_names[] = {
+    {"E", "rod.material.youngs_modulus"},
+    {"youngs_modulus", "rod.material.youngs_modulus"},
+    {"rod.youngs_modulus", "rod.material.youngs_modulus"},
+    {"density", "rod.material.density"},
+    {"rod.density", "rod.material.density"},
+    {"length", "rod.length"},
+    {"diameter", "rod.diameter"},
+    {"material", "rod.material"},
+    {"EI", "rod.bending_stiffness"},
+    {"bending_stiffness", "rod.bending_stiffness"},
+    {"mass_per_length", "rod.mass_per_length"},
+    {"natural_curvature", "rod.natural_curvature"},
+    {"points", "force_model.points"},
+    {"law", "force_model.law"}};
+
+class Overrider {
+ public:
+  Overrider(toml::table& root, const std::string& file, const std::vector<Material>& materials,
+            MissingElements missing)
+      : root_(root), file_(file), materials_(materials), missing_(missing) {}
+
+  void set(const SceneField& field) const {
+    for (const auto& [written, meant] : short_field_names) {
+      if (field.field == written) refuse(field.field, fmt::format("did you mean {}?", meant));
+    }
+    if (std::count(field.field.begin(), field.field.end(), '.') >= deepest_nesting) {
+      refuse(field.field.substr(0, 40) + "...",
+             fmt::format("too many dotted parts (allowed: {})", deepest_nesting));
+    }
+    toml::node* parent = &root_;
+    std::string_view rest = field.field;
+    for (std::size_t dot = rest.find('.'); dot != std::string_view::npos; dot = rest.find('.')) {
+      const std::string_view step = rest.substr(0, dot);
+      rest.remove_prefix(dot + 1);
+      if (missing_ == MissingElements::made) make(*parent, step, rest);
+      parent = &enter(*parent, step, field.field);
+    }
+    if (rest.empty()) refuse(field.field, "a part of the path is empty");
+    if (toml::table* table = parent->as_table()) {
+      place_value(field, file_, [&](const auto& value) { table->insert_or_assign(rest, value); });
+      return;
+    }
+    toml::array& array = *parent->as_array();
+    const std::size_t index = element(array, rest, field.field);
+    place_value(field, file_, [&](const auto& value) {
+      array.insert(array.erase(array.cbegin() + static_cast<std::ptrdiff_t>(index)), value);
+    });
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& path, const std::string& problem) const {
+    throw InputError(fmt::format("{}: {}: {}", file_, path, problem));
+  }
+
+  [[nodiscard]] std::size_t element(const toml::array& array, std::string_view step,
+                                    const std::string& path) const {
+    const auto index = as_number<std::size_t>(step);
+    if (!index || *index >= array.size()) {
+      refuse(path, array.empty() ? fmt::format("there is no \"{}\", the array is empty", step)
+                                 : fmt::format("there is no \"{}\" (allowed: 0 to {})", step,
+                                               array.size() - 1));
+    }
+    return *index;
+  }
+
+  /// What is below `parent`: an array where a number follows, whose next element is a table.
+  static void make(toml::node& parent, std::string_view step, std::string_view rest) {
+    toml::array* array = parent.as_array();
+    if (array != nullptr && as_number<std::size_t>(step) == array->size()) {
+      array->push_back(toml::table());
+    } else if (array == nullptr && as_number<std::size_t>(rest.substr(0, rest.find('.')))) {
+      parent.as_table()->insert(step, toml::array());
+    }
+  }
+
+  /// The table or array below `parent`; a table that the file lacks is as good as empty.
+  toml::node& enter(toml::node& parent, std::string_view step, const std::string& path) const {
+    toml::node* child = nullptr;
+    if (toml::table* table = parent.as_table()) {
+      if (step.empty()) refuse(path, "a part of the path is empty");
+      if (!table->contains(step)) table->insert(step, toml::table());
+      if (&parent == root_.get("rod") && step == "material") spell_out_material(*table);
+      child = table->get(step);
+    } else {
+      toml::array& array = *parent.as_array();
+      child = array.get(element(array, step, path));
+    }
+    if (!child->is_table() && !child->is_array()) {
+      refuse(path, fmt::format("\"{}\" is a single value and has no parts", step));
+    }
+    return *child;
+  }
+
+  void spell_out_material(toml::table& rod) const {
+    const auto name = rod["material"].value_exact<std::string>();
+    if (!name) return;
+    for (const Material& material : materials_) {
+      if (material.name != *name) continue;
+      rod.insert_or_assign("material", toml::table{{"youngs_modulus", material.youngs_modulus},
+                                                   {"density", material.density}});
+      return;
+    }
+    refuse("rod.material", fmt::format("unknown material \"{}\"", *name));
+  }
+
+  toml::table& root_;
+  const std::string& file_;
+  const std::vector<Material>& materials_;
+  MissingElements missing_;
+};
+
+/// EI, or the mean that GJ goes with, of a scene whose GJ is given; none if the file is no scene
+/// without other values.
+std::optional<double> bending_stiffness_with_torsion(const toml::table& root,
+                                                     const std::string& name,
+                                                     const std::vector<Material>& materials) {
+  if (!root["rod"]["torsional_stiffness"]) return std::nullopt;
+  try {
+    return read_scene(root, name, materials).mean_bending_stiffness();
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+/// Gravity that gives the scene this Gamma.
+toml::array scaled_gravity(const Scene& scene, const std::string& gamma) {
+  const auto value = as_number<double>(gamma);
+  if (!value || !(*value >= 0) || !std::isfinite(*value)) {
+    throw InputError(
+        fmt::format("{}: gamma = {}: must be a number (allowed: >= 0)", scene.file, gamma));
+  }
+  if (!(scene.gamma() > 0)) {
+    throw InputError(fmt::format(
+        "{}: gamma = {}: gravity or density is zero and cannot be scaled (allowed: > 0)",
+        scene.file, gamma));
+  }
+  const Eigen::Vector3d gravity = *value / scene.gamma() * scene.gravity;
+  return toml::array(gravity.x(), gravity.y(), gravity.z());
+}
+
+}  // namespace
+
+struct SceneTemplate::Parsed {
+  toml::table root;
+  std::string name;
+  std::vector<Material> materials;
+  std::optional<double> bending_stiffness;  // with the file's own values, if it has a GJ
+  std::string fingerprint;
+  MissingElements missing;
+};
+
+SceneTemplate::SceneTemplate(const std::string& text, std::string name,
+                             std::vector<Material> known_materials, MissingElements missing,
+                             const std::string& folder) {
+  std::string all = name + '\n' + text;
+  for (const Material& material : known_materials) {
+    all += fmt::format("\n{} {} {}", material.name, material.youngs_modulus, material.density);
+  }
+  SceneSource source = parse_scene_source(text, name);
+  toml::table& root = source.root;
+  name = source.where;
+  const auto points = root["rod"]["rest_shape"].value_exact<std::string>();
+  if (points && !folder.empty()) {
+    root["rod"].as_table()->insert_or_assign("rest_shape",
+                                             (std::filesystem::path(folder) / *points).string());
+  }
+  const std::optional<double> EI = bending_stiffness_with_torsion(root, name, known_materials);
+  parsed_ = std::make_shared<const Parsed>(Parsed{std::move(root), std::move(name),
+                                                  std::move(known_materials), EI,
+                                                  compare::fingerprint(all), missing});
+}
+
+const std::string& SceneTemplate::fingerprint() const { return parsed_->fingerprint; }
+
+Scene SceneTemplate::with(const std::vector<SceneField>& values) const {
+  toml::table root = parsed_->root;
+  const Overrider overrider(root, parsed_->name, parsed_->materials, parsed_->missing);
+  const SceneField* gamma = nullptr;
+  for (const SceneField& value : values) {
+    if (value.field == "gamma") {
+      gamma = &value;
+    } else {
+      overrider.set(value);
+    }
+  }
+  Scene scene = read_scene(root, parsed_->name, parsed_->materials);
+  if (gamma != nullptr) {
+    root.insert_or_assign("gravity", scaled_gravity(scene, gamma->value.text()));
+    scene = read_scene(root, parsed_->name, parsed_->materials);
+  }
+  const bool gives_torsion = std::any_of(values.begin(), values.end(), [](const SceneField& value) {
+    return value.field == "rod.torsional_stiffness";
+  });
+  if (scene.torsional_stiffness && parsed_->bending_stiffness && !gives_torsion) {
+    // Dividing first leaves GJ as it is where EI is.
+    *scene.torsional_stiffness *= scene.mean_bending_stiffness() / *parsed_->bending_stiffness;
+  }
+  return scene;
+}
+
+std::string SceneValue::of_number(double number) { return fmt::format("{}", number); }
+
+SceneValue::SceneValue(std::initializer_list<SceneValue> list) : text_("[") {
+  for (const SceneValue& value : list) {
+    const bool quoted =
+        value.text_.empty() || (value.text_.front() != '[' && !as_number<double>(value.text_));
+    text_ += (quoted ? toml_string(value.text_) : value.text_) + ", ";
+  }
+  text_ += "]";
+}
+
+Scene make_scene(const std::vector<SceneField>& fields, const std::string& file) {
+  return SceneTemplate("", file, materials(), MissingElements::made).with(fields);
+}
+
+SceneTemplate load_scene_template(const std::string& path,
+                                  const std::vector<Material>& known_materials) {
+  const std::filesystem::path file(path);
+  return {read_file(path), file.filename(), known_materials, MissingElements::refused,
+          file.parent_path()};
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/energy_model/problem.hpp"
+#include "scene/scene_problem.hpp"
+
+// What acts on a scene's rod beside its weight.
+namespace dlo::compare {
+
+Eigen::Vector3d DistributedLoad::between(double begin, double end) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const energy_model::LineLoad& piece : line_loads(*this)) sum += piece.between(begin, end);
+  return sum;
+}
+
+double DistributedLoad::size() const {
+  double sum = 0;
+  for (const energy_model::LineLoad& piece : line_loads(*this)) {
+    sum += (piece.at_begin.norm() + piece.at_end.norm()) / 2 * (piece.end - piece.begin);
+  }
+  return sum;
+}
+
+Eigen::Vector3d Scene::distributed_between(double begin, double end) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const DistributedLoad& load : distributed_loads) sum += load.between(begin, end);
+  return sum;
+}
+
+double Scene::total_of_loads() const {
+  double sum = 0;
+  for (const PointLoad& load : loads) sum += load.force.norm() + load.torque.norm() / length;
+  for (const DistributedLoad& load : distributed_loads) sum += load.size();
+  return sum;
+}
+
+bool Scene::has_couples() const {
+  return std::any_of(loads.begin(), loads.end(),
+                     [](const PointLoad& load) { return !load.torque.isZero(0); });
+}
+
+void Scene::require_potential(const char* who) const {
+  if (drag) {
+    throw InputError(fmt::format(
+        "{}: medium.velocity: drag, which has no potential and which {} not take (allowed: dlo "
+        "solve --model exact or force)",
+        file, who));
+  }
+  const auto follower = std::ranges::find_if(loads, &PointLoad::follows);
+  if (follower != loads.end()) {
+    throw InputError(fmt::format(
+        "{}: load.follows: the load at {:g} m turns with the rod, which has no potential and which "
+        "{} not take (allowed: dlo solve --model exact)",
+        file, follower->at, who));
+  }
+  if (!has_couples() || energy_model::has_potential(scene_problem(*this))) return;
+  throw InputError(fmt::format(
+      "{}: load.torque: out of a plane, where a couple that keeps its axis has no potential, so "
+      "that {} not take it (allowed: dlo solve --model exact)",
+      file, who));
+}
+
+void Scene::require_no_couples(const char* who) const {
+  require_potential(who);
+  const auto couple =
+      std::ranges::find_if(loads, [](const PointLoad& load) { return !load.torque.isZero(0); });
+  if (couple == loads.end()) return;
+  throw InputError(
+      fmt::format("{}: load.torque: the couple at {:g} m, which {} not take (allowed: dlo solve "
+                  "--model energy or exact)",
+                  file, couple->at, who));
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,235 @@
+#include "wire/between_shapes.hpp"
+
+#include <gsl/gsl_cdf.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+namespace dlo::compare {
+namespace {
+
+/// What a number's column may lose to its nuisances before it is rounding.
+constexpr double least_own_share = 1e-7;
+/// The chance below which estimates are said to scatter.
+constexpr double significant_chance = 0.05;
+
+/// Their mean with weights 1 / (variance + between), and how far they are from it in these weights.
+struct Spread {
+  double squares = 0;
+  double precision = 0;  // of the mean
+};
+
+Spread spread(const std::vector<ShapeEstimate>& estimates, double between) {
+  double mean = 0;
+  Spread result;
+  for (const ShapeEstimate& one : estimates) {
+    const double weight = 1 / (one.variance + between);
+    result.precision += weight;
+    mean += weight * one.value;
+  }
+  mean /= result.precision;
+  for (const ShapeEstimate& one : estimates) {
+    result.squares += std::pow(one.value - mean, 2) / (one.variance + between);
+  }
+  return result;
+}
+
+/// The variance between estimates with which they are as far apart as they should be (Paule and
+/// Mandel 1982): the squares fall as it grows.
+double variance_between(const std::vector<ShapeEstimate>& estimates, double expected) {
+  double low = 0;
+  double high = 1;
+  while (spread(estimates, high).squares > expected) high *= 4;
+  constexpr int bisections = 60;
+  for (int i = 0; i < bisections; ++i) {
+    const double middle = (low + high) / 2;
+    (spread(estimates, middle).squares > expected ? low : high) = middle;
+  }
+  return high;
+}
+
+/// @param variance  of the innovations [m^2]
+ShapeEstimate estimate_of_shape(const Innovations& seen, double variance, Eigen::Index column,
+                                const std::vector<Nuisance>& nuisances) {
+  const Eigen::Index rows = seen.residual.size();
+  const auto count = static_cast<Eigen::Index>(nuisances.size());
+  // What was known before is a row more each, in units of the errors.
+  Eigen::MatrixXd others = Eigen::MatrixXd::Zero(rows + count, count);
+  Eigen::VectorXd own = Eigen::VectorXd::Zero(rows + count);
+  Eigen::VectorXd residual = Eigen::VectorXd::Zero(rows + count);
+  own.head(rows) = seen.design.col(column);
+  residual.head(rows) = seen.residual;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Nuisance& nuisance = nuisances[static_cast<std::size_t>(k)];
+    const double weight = std::sqrt(variance) / nuisance.known_before;
+    others.col(k).head(rows) = seen.design.col(nuisance.column);
+    others(rows + k, k) = weight;
+    residual[rows + k] = -weight * nuisance.value;
+  }
+  const double whole = own.norm();
+  if (count > 0) {
+    const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(others);
+    const Eigen::MatrixXd basis =
+        qr.householderQ() * Eigen::MatrixXd::Identity(rows + count, qr.rank());
+    own -= basis * (basis.transpose() * own).eval();
+  }
+  if (!(own.norm() > least_own_share * whole)) return {0, INFINITY};
+  return {own.dot(residual) / own.squaredNorm(), variance / own.squaredNorm()};
+}
+
+/// Of a point from a polyline [m^2].
+double squared_distance(const Eigen::Vector3d& point, const Eigen::Matrix3Xd& nodes) {
+  double least = std::numeric_limits<double>::infinity();
+  for (Eigen::Index k = 0; k + 1 < nodes.cols(); ++k) {
+    const Eigen::Vector3d way = nodes.col(k + 1) - nodes.col(k);
+    const Eigen::Vector3d gap = point - nodes.col(k);
+    const double share = std::clamp(gap.dot(way) / way.squaredNorm(), 0.0, 1.0);
+    least = std::min(least, (gap - share * way).squaredNorm());
+  }
+  return least;
+}
+
+/// Places along the rod at which shapes are compared.
+constexpr int places = 21;
+
+/// Equally spaced over the arc lengths that all shapes have; none of fewer than two shapes, or if
+/// that is less than half of the longest.
+std::optional<std::vector<double>> common_places(
+    const std::vector<const std::vector<double>*>& arc_lengths) {
+  if (arc_lengths.size() < 2) return std::nullopt;
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  double longest = 0;
+  for (const std::vector<double>* const s : arc_lengths) {
+    if (s->size() < 2) return std::nullopt;
+    low = std::max(low, s->front());
+    high = std::min(high, s->back());
+    longest = std::max(longest, s->back() - s->front());
+  }
+  if (!(high - low > longest / 2)) return std::nullopt;
+  std::vector<double> result;
+  result.reserve(places);
+  for (int k = 0; k < places; ++k) result.push_back(low + (high - low) * k / (places - 1));
+  return result;
+}
+
+template <typename Of>
+std::optional<std::vector<double>> common_places(const std::vector<Of>& shapes) {
+  std::vector<const std::vector<double>*> arc_lengths;
+  arc_lengths.reserve(shapes.size());
+  for (const Of& one : shapes) arc_lengths.push_back(&one.arc_length);
+  return common_places(arc_lengths);
+}
+
+}  // namespace
+
+AcrossRod across_rod(const Shape& shape, const Shape& rod, const Eigen::Vector3d& normal) {
+  AcrossRod result;
+  const std::vector<double>& s = rod.arc_length;
+  for (Eigen::Index i = 0; i < shape.points.cols(); ++i) {
+    const double at = shape.arc_length[static_cast<std::size_t>(i)];
+    const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, at);
+    const Eigen::Index k = above - s.begin();
+    const Eigen::Vector3d begin = rod.points.col(k - 1);
+    const Eigen::Vector3d along = (rod.points.col(k) - begin).normalized();
+    result.arc_length.push_back(at);
+    // Across, the rod's piece may be taken for straight; where along it does not matter.
+    result.gap.push_back(normal.cross(along).dot(shape.points.col(i) - begin));
+  }
+  return result;
+}
+
+std::optional<double> common_share(const std::vector<AcrossRod>& shapes) {
+  const std::optional<std::vector<double>> at = common_places(shapes);
+  if (!at) return std::nullopt;
+  std::vector<std::vector<double>> gaps;
+  gaps.reserve(shapes.size());
+  for (const AcrossRod& one : shapes) {
+    gaps.push_back(interpolated(one.gap, one.arc_length, *at));
+  }
+  double common = 0;
+  double all = 0;
+  for (std::size_t k = 0; k < at->size(); ++k) {
+    double sum = 0;
+    for (const std::vector<double>& gap : gaps) {
+      sum += gap[k];
+      all += gap[k] * gap[k];
+    }
+    common += sum * sum / static_cast<double>(shapes.size());
+  }
+  if (!(all > 0)) return std::nullopt;
+  return common / all;
+}
+
+std::optional<double> repeatability(const std::vector<Shape>& shapes, ArcLengths rule) {
+  const std::optional<std::vector<double>> at = common_places(shapes);
+  if (!at) return std::nullopt;
+  std::vector<Eigen::Matrix3Xd> at_places;
+  at_places.reserve(shapes.size());
+  Eigen::Matrix3Xd sum = Eigen::Matrix3Xd::Zero(3, places);
+  for (const Shape& shape : shapes) {
+    at_places.push_back(resample(shape, *at).points);
+    sum += at_places.back();
+  }
+  const auto count = static_cast<double>(shapes.size());
+  double squares = 0;
+  for (const Eigen::Matrix3Xd& points : at_places) {
+    const Eigen::Matrix3Xd others = (sum - points) / (count - 1);
+    for (int k = 0; k < places; ++k) {
+      squares += rule == ArcLengths::file ? (points.col(k) - others.col(k)).squaredNorm()
+                                          : squared_distance(points.col(k), others);
+    }
+  }
+  return std::sqrt(squares / (places * count));
+}
+
+double beyond_chance(double share, std::size_t shapes) {
+  const double by_chance = 1 / static_cast<double>(shapes);
+  return (share - by_chance) / (1 - by_chance);
+}
+
+std::vector<Nuisance> frame_nuisances(Eigen::Index frames) {
+  std::vector<Nuisance> result;
+  result.reserve(static_cast<std::size_t>(frames));
+  for (Eigen::Index k = 0; k < frames; ++k) result.push_back({k, 0, INFINITY});
+  return result;
+}
+
+std::vector<ShapeEstimate> estimates_of_shapes(
+    const std::vector<ResidualSeries>& series, const ErrorCovariance& covariance, double variance,
+    Eigen::Index column, const std::vector<std::vector<Nuisance>>& nuisances) {
+  std::vector<ShapeEstimate> result;
+  result.reserve(nuisances.size());
+  for (std::size_t shape = 0; shape < nuisances.size(); ++shape) {
+    std::vector<ResidualSeries> own;
+    std::copy_if(series.begin(), series.end(), std::back_inserter(own),
+                 [shape](const ResidualSeries& one) { return one.shape == shape; });
+    result.push_back(
+        estimate_of_shape(innovations(own, covariance), variance, column, nuisances[shape]));
+  }
+  return result;
+}
+
+std::optional<ScatterBetweenShapes> scatter_between(const std::vector<ShapeEstimate>& estimates,
+                                                    double quantile) {
+  std::vector<ShapeEstimate> telling;
+  std::copy_if(estimates.begin(), estimates.end(), std::back_inserter(telling),
+               [](const ShapeEstimate& one) { return std::isfinite(one.variance); });
+  if (telling.size() < 2) return std::nullopt;
+  const auto freedom = static_cast<double>(telling.size() - 1);
+  const Spread together = spread(telling, 0);
+  const double chance = gsl_cdf_chisq_Q(together.squares, freedom);
+  if (!(chance < significant_chance)) return std::nullopt;
+  const double between = variance_between(telling, freedom);
+  const double with =
+      gsl_cdf_tdist_Pinv(0.975, freedom) / std::sqrt(spread(telling, between).precision);
+  const double without = quantile / std::sqrt(together.precision);
+  return ScatterBetweenShapes{.relative_deviation = std::sqrt(between),
+                              .chance = chance,
+                              .widening = std::max(1.0, with / without)};
+}
+
+}  // namespace dlo::compare

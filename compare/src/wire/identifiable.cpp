@@ -1,0 +1,47 @@
+#include "wire/identifiable.hpp"
+
+#include <fmt/format.h>
+#include <gsl/gsl_cdf.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/reach.hpp"
+
+namespace dlo::compare {
+
+bool has_forces_beside_weight(const Scene& scene) {
+  const bool loaded = scene.total_of_loads() > 0;
+  const std::vector<std::size_t> in_reach = obstacles_in_reach(scene);
+  return loaded || std::any_of(in_reach.begin(), in_reach.end(), [&](std::size_t i) {
+           return std::isfinite(scene.obstacles[i].stiffness);
+         });
+}
+
+bool is_forced(const Scene& scene) {
+  return scene.weight_per_length().norm() > 0 || has_forces_beside_weight(scene);
+}
+
+std::string why_unforced(const Scene& scene) {
+  return fmt::format(
+      "{0} is not identifiable from these shapes: neither weight nor a load or yielding obstacle "
+      "acts on the rod, so its shapes are the same with any {0} (a known load would identify it)",
+      scene.stiffness().name);
+}
+
+double interval_quantile(const std::optional<double>& noise, double freedom) {
+  constexpr double one_side = 0.975;
+  return noise ? gsl_cdf_ugaussian_Pinv(one_side) : gsl_cdf_tdist_Pinv(one_side, freedom);
+}
+
+FittedValue fitted_value(double logarithm, const LogProfile::Interval& interval, double unit,
+                         double identified_within) {
+  FittedValue result{.estimate = unit * std::exp(logarithm)};
+  if (interval.low) result.low = unit * std::exp(*interval.low);
+  if (interval.high) result.high = unit * std::exp(*interval.high);
+  const bool closed = result.low && result.high;
+  if (closed && *result.high <= identified_within * *result.low) result.value = result.estimate;
+  return result;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,96 @@
+#include "wire/leave_one_out.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "least_squares/measured_shapes.hpp"
+#include "shape/arc_lengths.hpp"
+#include "wire/between_shapes.hpp"
+#include "wire/wire_numbers.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Of grippers that hold a rod alike, in lengths.
+constexpr double alike = 0.02;
+
+/// Whether two scenes would have the same shape but for how well grippers come back to their
+/// places.
+bool are_alike(const Scene& a, const Scene& b) {
+  return a.length == b.length &&
+         std::equal(
+             a.grippers.begin(), a.grippers.end(), b.grippers.begin(), b.grippers.end(),
+             [&](const Gripper& one, const Gripper& other) {
+               return one.at == other.at &&
+                      one.direction.has_value() == other.direction.has_value() &&
+                      (!one.direction || (*one.direction - *other.direction).norm() <= alike) &&
+                      (one.position - other.position).norm() <= alike * a.length;
+             });
+}
+
+/// A laid shape, by lengths along its own points if they are the whole rod: where on the rod they
+/// are nearest depends on what else is fitted.
+Shape by_its_own_lengths(Shape shape, double length) {
+  const std::vector<double> s = lengths_along(shape.points);
+  constexpr double whole = 0.97;
+  if (s.back() < whole * length) return shape;
+  for (std::size_t i = 0; i < s.size(); ++i) shape.arc_length[i] = s[i] * length / s.back();
+  return shape;
+}
+
+std::optional<double> repeatability_of(const std::vector<Scene>& scenes, const MaterialFit& fit) {
+  if (!std::all_of(scenes.begin(), scenes.end(),
+                   [&](const Scene& scene) { return are_alike(scene, scenes.front()); })) {
+    return std::nullopt;
+  }
+  std::vector<Shape> shapes;
+  shapes.reserve(fit.shapes.size());
+  for (const FittedShape& fitted : fit.shapes) {
+    const Alignment& laid = fitted.alignment;
+    shapes.push_back(laid.arc_lengths == ArcLengths::file
+                         ? laid.shape
+                         : by_its_own_lengths(laid.shape, scenes.front().length));
+  }
+  return repeatability(shapes, fit.shapes.front().alignment.arc_lengths);
+}
+
+}  // namespace
+
+double distance_from_rod(const Scene& scene, const MeasuredShape& shape,
+                         const MaterialFitOptions& options,
+                         const energy_model::Equilibrium* known) {
+  MeasuredShapes measured({scene}, {shape}, measured_options(options),
+                          std::chrono::steady_clock::now());
+  double square = measured.alignment(0, measured.solve(0, scene, nullptr)).mean_square;
+  if (known != nullptr) {
+    const energy_model::Equilibrium near = measured.solve(0, scene, known);
+    if (energy_model::succeeded(near.status)) {
+      square = std::min(square, measured.alignment(0, near).mean_square);
+    }
+  }
+  return std::sqrt(square);
+}
+
+Prediction leave_one_out(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
+                         const MaterialFitOptions& options, const MaterialFit& fit,
+                         const Predict& predict) {
+  Prediction result{.repeatability_m = repeatability_of(scenes, fit)};
+  double squares = 0;
+  double points = 0;
+  for (std::size_t left = 0; left < scenes.size(); ++left) {
+    const PredictedScene predicted = predict(left);
+    const double rms = distance_from_rod(predicted.scene, shapes[left], options,
+                                         predicted.known ? &*predicted.known : nullptr);
+    result.shapes_m.push_back(rms);
+    const auto count = static_cast<double>(shapes[left].points.cols());
+    squares += rms * rms * count;
+    points += count;
+  }
+  result.rms_m = std::sqrt(squares / points);
+  return result;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,316 @@
+#include "wire/wire_numbers.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "dlo/compare/error.hpp"
+#include "least_squares/measured_shapes.hpp"
+#include "least_squares/scene_change.hpp"
+#include "wire/identifiable.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// What is known of natural curvature before, as standard deviation of each term times the length:
+/// hardly anything, the stress-free shape may have some whole turns.
+constexpr double natural_turns_before = 10;
+
+/// What is known of GJ / EI before, as standard deviation of its logarithm: a factor of ten.
+constexpr double torsion_before = 2.3;
+
+/// Farther a roll is not linear.
+constexpr double longest_roll_step = 0.5;
+/// A roll that is known better than this is looked for from what the scene says alone.
+constexpr double unknown_roll = 0.7;
+
+constexpr double unknown = std::numeric_limits<double>::infinity();
+
+/// The plane in which a shape's gripper may be off: the scene's, if nothing was measured out of it.
+std::optional<Eigen::Vector3d> plane_of(const Scene& scene, const MeasuredShape& shape) {
+  return lies_in_a_plane(shape.points) ? scene.plane_normal() : std::nullopt;
+}
+
+/// Whether GJ has an effect.
+bool twists(const Scene& scene) { return scene.twisting_stiffness() > 0 && !scene.planar(); }
+
+void add_natural_curvature(std::vector<WireNumber>& numbers, const std::vector<Scene>& scenes,
+                           const MaterialFitOptions& options) {
+  const bool planar =
+      options.roll_tolerance == 0 &&
+      std::all_of(scenes.begin(), scenes.end(), [](const Scene& scene) { return scene.planar(); });
+  // Where nothing is known of how the rod is turned, its mean curvature is about d2.
+  const bool turned = options.roll_tolerance > unknown_roll;
+  for (const Scene& scene : scenes) {
+    if (scene.rest_shape) {
+      throw InputError(fmt::format(
+          "{}: rod.rest_shape: says the natural curvature that is to be fitted (allowed: "
+          "natural_curvature or none)",
+          scene.file));
+    }
+    Scene bent = scene;
+    bend_by_nature(bent, 0, {0, 1 / scene.length});
+    (void)bent.first_frame();
+  }
+  const double length = scenes.front().length;
+  for (int term = 0; term < options.natural_curvature_terms; ++term) {
+    for (const int axis : {2, 1}) {
+      if (axis == 1 && (planar || (turned && term == 0))) continue;
+      const Eigen::Vector2d about = axis == 1 ? Eigen::Vector2d::UnitX() : Eigen::Vector2d::UnitY();
+      numbers.push_back({{.name = fmt::format("natural curvature{}, P_{}",
+                                              planar ? "" : fmt::format(" about d{}", axis), term),
+                          .unit = "1/m",
+                          .known_before = natural_turns_before / length,
+                          .shape = std::nullopt},
+                         1e-3 / length,
+                         [about, term](Scene& scene, double value) {
+                           bend_by_nature(scene, static_cast<std::size_t>(term), value * about);
+                         },
+                         term});
+    }
+  }
+}
+
+void add_torsion(std::vector<WireNumber>& numbers, const std::vector<Scene>& scenes) {
+  if (std::none_of(scenes.begin(), scenes.end(), twists)) {
+    throw InputError(
+        fmt::format("{}: torsional stiffness is in no shape of this scene (allowed: two clamps "
+                    "that hold the rod's frame, roll or frame, or an intrinsically curved rod that "
+                    "leaves its plane)",
+                    scenes.front().file));
+  }
+  numbers.push_back(
+      {{.name = "", .unit = "", .known_before = torsion_before, .shape = std::nullopt},
+       1e-3,
+       [](Scene& scene, double value) { scene.scale_torsion(std::exp(value)); }});
+}
+
+void add_directions(std::vector<WireNumber>& numbers, const Scene& scene,
+                    const std::optional<std::size_t>& shape,
+                    const std::optional<Eigen::Vector3d>& normal, double tolerance) {
+  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+    if (!scene.grippers[i].direction) continue;
+    const Eigen::Matrix3Xd ways = ways_across(*scene.grippers[i].direction, normal);
+    for (Eigen::Index k = 0; k < ways.cols(); ++k) {
+      const Eigen::Vector3d axis = ways.col(k);
+      numbers.push_back({{.name = fmt::format("direction of gripper {}, about [{:.3g}, {:.3g}, "
+                                              "{:.3g}]",
+                                              i + 1, axis.x(), axis.y(), axis.z()),
+                          .unit = "rad",
+                          .known_before = tolerance,
+                          .shape = shape},
+                         1e-3,
+                         [i, axis](Scene& changed, double value) {
+                           turn_clamp(changed.grippers[i], value * axis);
+                         }});
+    }
+  }
+}
+
+void add_positions(std::vector<WireNumber>& numbers, const Scene& scene,
+                   const std::optional<std::size_t>& shape,
+                   const std::optional<Eigen::Vector3d>& normal, double tolerance) {
+  const Eigen::Matrix3Xd ways = ways_of_place(normal);
+  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+    for (Eigen::Index k = 0; k < ways.cols(); ++k) {
+      const Eigen::Vector3d axis = ways.col(k);
+      numbers.push_back({{.name = fmt::format("position of gripper {}, along [{:.3g}, {:.3g}, "
+                                              "{:.3g}]",
+                                              i + 1, axis.x(), axis.y(), axis.z()),
+                          .unit = "m",
+                          .known_before = tolerance,
+                          .shape = shape},
+                         1e-4 * scene.length,
+                         [i, axis](Scene& changed, double value) {
+                           changed.grippers[i].position += value * axis;
+                         }});
+    }
+  }
+}
+
+/// The first clamp along the rod; null: there is none.
+Gripper* first_clamp(Scene& scene) {
+  Gripper* first = nullptr;
+  for (Gripper& gripper : scene.grippers) {
+    if (gripper.direction && (first == nullptr || gripper.at < first->at)) first = &gripper;
+  }
+  return first;
+}
+
+/// Whether its first clamp is turned about its direction shows in no shape.
+bool is_alike_all_around(const Scene& scene, const MaterialFitOptions& options) {
+  return options.natural_curvature_terms == 0 && !scene.has_material_directors();
+}
+
+void add_rolls(std::vector<WireNumber>& numbers, Scene scene, std::size_t shape,
+               const MaterialFitOptions& options) {
+  const Gripper* const first = first_clamp(scene);
+  bool is_first = true;
+  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+    if (!scene.grippers[i].frame) continue;
+    const bool turns_the_rod = &scene.grippers[i] == first;
+    const bool is_gauge = std::exchange(is_first, false) && is_alike_all_around(scene, options);
+    if (is_gauge) continue;
+    numbers.push_back(
+        {.described = {.name = fmt::format("roll of gripper {}", i + 1),
+                       .unit = "rad",
+                       .known_before = options.roll_tolerance,
+                       .shape = shape},
+         .stride = 1e-3,
+         .change = [i](Scene& changed, double value) { changed.grippers[i].frame->roll += value; },
+         .longest_step = longest_roll_step,
+         .turns_the_rod = turns_the_rod && options.roll_tolerance > unknown_roll});
+  }
+}
+
+/// Unit, across a direction and as level as that allows.
+Eigen::Vector3d level_across(const Eigen::Vector3d& direction, const Eigen::Vector3d& gravity) {
+  const Eigen::Vector3d level = gravity.cross(direction);
+  constexpr double upright = 1e-6;
+  return level.norm() > upright * gravity.norm() ? Eigen::Vector3d(level.normalized())
+                                                 : Eigen::Vector3d(direction.unitOrthogonal());
+}
+
+/// About the normal of the shapes' plane, else about all level axes.
+void add_camera_tilt(std::vector<WireNumber>& numbers, const std::vector<Scene>& scenes,
+                     const std::vector<MeasuredShape>& shapes, double tolerance) {
+  if (const std::string why = why_no_camera_tilt(scenes, shapes); !why.empty()) {
+    throw InputError(why);
+  }
+  const Eigen::Matrix3Xd ways =
+      ways_across(scenes.front().gravity.normalized(), plane_of(scenes.front(), shapes.front()));
+  for (const Eigen::Vector3d axis : ways.colwise()) {
+    numbers.push_back(
+        {.described = {.name = fmt::format("camera tilt about [{:.3g}, {:.3g}, {:.3g}]", axis.x(),
+                                           axis.y(), axis.z()),
+                       .unit = "rad",
+                       .known_before = tolerance,
+                       .shape = std::nullopt},
+         .stride = 1e-3,
+         .change = [axis](Scene& scene, double value) { turn_scene(scene, value * axis); },
+         .camera_axis = axis});
+  }
+}
+
+/// What is wrong with clamps is the same in all scenes only if they are the same.
+void require_like_clamps(const std::vector<Scene>& scenes) {
+  const std::vector<Gripper>& first = scenes.front().grippers;
+  for (const Scene& scene : scenes) {
+    const bool alike =
+        std::equal(first.begin(), first.end(), scene.grippers.begin(), scene.grippers.end(),
+                   [](const Gripper& a, const Gripper& b) {
+                     return a.at == b.at && a.direction.has_value() == b.direction.has_value();
+                   });
+    if (alike) continue;
+    throw InputError(fmt::format(
+        "{}: its grippers are not those of {}, so they are not misaligned alike (allowed: as many "
+        "grippers, at the same arc lengths, clamps or pins)",
+        scene.file, scenes.front().file));
+  }
+}
+
+}  // namespace
+
+std::string why_no_camera_tilt(const std::vector<Scene>& scenes,
+                               const std::vector<MeasuredShape>& shapes) {
+  const Scene& first = scenes.front();
+  const std::optional<Eigen::Vector3d> normal = plane_of(first, shapes.front());
+  constexpr double parallel = 1e-6;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    if (!is_bent_by_weight_alone(scenes[i])) {
+      return fmt::format(
+          "{}: a camera's tilt of a rod without weight, or with loads, a stream, obstacles or "
+          "grippers that move (allowed: a rod that its weight alone bends)",
+          scenes[i].file);
+    }
+    const std::optional<Eigen::Vector3d> other = plane_of(scenes[i], shapes[i]);
+    const bool in_one_plane = other.has_value() == normal.has_value() &&
+                              (!normal || normal->cross(*other).norm() < parallel);
+    if (!in_one_plane || !scenes[i].gravity.isApprox(first.gravity, parallel)) {
+      return fmt::format(
+          "{}: not the plane or gravity of {}, so one camera's tilt is not that of both (allowed: "
+          "shapes in one plane, or all in space, under one gravity)",
+          scenes[i].file, first.file);
+    }
+  }
+  return "";
+}
+
+std::vector<Scene> with_said_frames(std::vector<Scene> scenes, const std::vector<bool>& flat,
+                                    const MaterialFitOptions& options) {
+  const bool turned = options.direction_tolerance > 0 || options.roll_tolerance > 0;
+  if (options.natural_curvature_terms == 0 || !turned) return scenes;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    Gripper* const first = first_clamp(scenes[i]);
+    if (flat[i] || first == nullptr || (first->frame && first->frame->d1)) continue;
+    const double roll = first->frame ? first->frame->roll : 0;
+    Scene bent = scenes[i];
+    bent.natural_strain.y() += 1 / bent.length;
+    const bool is_open = options.roll_tolerance > 0 && !bent.plane_normal();
+    const Eigen::Vector3d d1 = is_open ? level_across(*first->direction, scenes[i].gravity)
+                                       : Eigen::Vector3d(bent.first_frame().col(0));
+    first->frame = FrameHold{.d1 = d1, .roll = roll};
+  }
+  return scenes;
+}
+
+std::vector<WireNumber> wire_numbers(const std::vector<Scene>& scenes,
+                                     const std::vector<MeasuredShape>& shapes,
+                                     const MaterialFitOptions& options, bool density) {
+  std::vector<WireNumber> numbers;
+  // Without forces differences by E are rounding, or a way along equilibria that have neighbours.
+  const bool forced = std::any_of(scenes.begin(), scenes.end(), is_forced);
+  const FittedNumber of_wire{
+      .name = "", .unit = "", .known_before = unknown, .shape = std::nullopt};
+  numbers.push_back({of_wire, forced ? 1e-3 : 0,
+                     [](Scene& scene, double value) { scene.scale_modulus(std::exp(value)); }});
+  if (density) {
+    numbers.push_back(
+        {of_wire, 1e-3, [](Scene& scene, double value) { scene.scale_density(std::exp(value)); }});
+  }
+  if (options.torsional_stiffness) add_torsion(numbers, scenes);
+  if (options.natural_curvature_terms > 0) {
+    add_natural_curvature(numbers, scenes, options);
+  }
+  const std::size_t sets = options.shared_clamps ? 1 : scenes.size();
+  if (options.shared_clamps) require_like_clamps(scenes);
+  for (std::size_t i = 0; i < sets; ++i) {
+    const std::optional<Eigen::Vector3d> normal = plane_of(scenes[i], shapes[i]);
+    const std::optional<std::size_t> own = options.shared_clamps ? std::nullopt : std::optional(i);
+    if (options.direction_tolerance > 0) {
+      add_directions(numbers, scenes[i], own, normal, options.direction_tolerance);
+    }
+    if (options.position_tolerance > 0) {
+      add_positions(numbers, scenes[i], own, normal, options.position_tolerance);
+    }
+  }
+  if (options.direction_scatter > 0) {
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+      add_directions(numbers, scenes[i], i, plane_of(scenes[i], shapes[i]),
+                     options.direction_scatter);
+    }
+  }
+  if (options.roll_tolerance > 0) {
+    const std::size_t others = numbers.size();
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+      if (!plane_of(scenes[i], shapes[i])) add_rolls(numbers, scenes[i], i, options);
+    }
+    if (numbers.size() == others) {
+      throw InputError(
+          fmt::format("{}: how clamps hold the rod about its tangent is in no shape of this scene "
+                      "(allowed: two clamps that hold the rod's frame, roll or frame, or natural "
+                      "curvature of a rod in space)",
+                      scenes.front().file));
+    }
+  }
+  // The last one: what is wrong with clamps is said in the scene's coordinates.
+  if (options.camera_tilt > 0) add_camera_tilt(numbers, scenes, shapes, options.camera_tilt);
+  return numbers;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,113 @@
+#include "wire/wire_optimum.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "least_squares/linear_fit.hpp"
+#include "wire/identifiable.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Correlated errors tell less than as many independent ones, which counts beside what was known
+/// before. How much less is measured from the residuals of a fit that knows it: so often, and to so
+/// much of it.
+constexpr int most_weights = 3;
+constexpr double weight_tolerance = 0.1;
+/// An end of the interval is right if the deviance there is its quantile's square to this share.
+constexpr double end_tolerance = 0.05;
+constexpr int most_ends = 6;
+
+}  // namespace
+
+WireOptimum::WireOptimum(const WireProblem& problem, FittedRods& rods, const Eigen::VectorXd& start)
+    : problem_(problem), rods_(rods), fit_(std::in_place, rods, start, problem.steps()) {
+  descend();
+  for (int i = 0; i < most_weights && !fit_->before().isZero(); ++i) {
+    const double weight = weight_of(errors_, *fit_);
+    if (std::abs(weight / fit_->weight() - 1) < weight_tolerance) break;
+    fit_->weigh(weight);
+    descend();
+  }
+  unseen_ = unseen(fit_->linear(), fit_->weight(), fit_->before());
+  if (!is_unseen(0)) go_to_likely_modulus();
+  here_ = fit_->rods();
+  covariance_ = covariance_of_numbers(errors_, *fit_, problem.measured.frame_columns(),
+                                      problem.options.noise);
+}
+
+void WireOptimum::descend() {
+  problem_.descend(*fit_);
+  errors_ = errors_about(*fit_, problem_.measured.frame_columns(), problem_.options.noise,
+                         problem_.least_noise());
+}
+
+/// From the least deviance to the E that is likeliest whatever the other numbers are. The two
+/// differ by how much more a stiffer rod lets the shapes tell of its clamps.
+void WireOptimum::go_to_likely_modulus() {
+  marginal_slope_ = fit_->marginal_slope();
+  const double variance = fit_->covariance_of_numbers()(0, 0);
+  const double longest = rods_.unknowns().front().longest_step;
+  const double step = std::clamp(-marginal_slope_ * variance / 2, -longest, longest);
+  GaussNewtonOptions held = problem_.steps();
+  if (std::abs(step) <= held.last_step * std::sqrt(variance)) return;
+  held.lowest = held.highest = std::clamp(values()[0] + step, held.lowest, held.highest);
+  rods_.go_on_from(fit_->rods());
+  GaussNewton there(rods_, fit_->values_beside(held.lowest), held);
+  there.weigh(fit_->weight());
+  fit_.emplace(std::move(there));
+  descend();
+}
+
+double WireOptimum::quantile() const {
+  return interval_quantile(problem_.options.noise, errors_.freedom);
+}
+
+double WireOptimum::correlated_widening() const {
+  const double independent = posterior(fit_->linear(), fit_->variance(), fit_->before())(0, 0);
+  const double alone = interval_quantile(problem_.options.noise, fit_->freedom());
+  return std::sqrt(covariance_(0, 0) / independent) * quantile() / alone;
+}
+
+/// Root of the unlikelihood at the interval's ends: farther than where the deviance of independent
+/// errors has its limit.
+double WireOptimum::limit() const {
+  return quantile() * std::sqrt(covariance_(0, 0) / fit_->covariance_of_numbers()(0, 0));
+}
+
+double WireOptimum::unlikelihood(double log_modulus) {
+  rods_.go_on_from(here_);
+  return fit_->profile(log_modulus) - fit_->deviance() +
+         marginal_slope_ * (log_modulus - values()[0]);
+}
+
+double WireOptimum::excess_over_limit(double log_modulus) {
+  return unlikelihood(log_modulus) / (limit() * limit());
+}
+
+std::optional<double> WireOptimum::end(double side) {
+  if (is_unseen(0)) return std::nullopt;
+  const double wanted = limit();
+  const double linear = quantile() * std::sqrt(covariance_(0, 0));
+  const GaussNewtonOptions range = problem_.steps();
+  const double farthest = side > 0 ? range.highest - values()[0] : values()[0] - range.lowest;
+  constexpr double jump = 4;
+  double distance = linear;
+  for (int i = 0; i < most_ends; ++i) {
+    if (!(distance < farthest)) return std::nullopt;
+    const double excess = unlikelihood(values()[0] + side * distance);
+    const double reached = std::sqrt(std::max(0.0, excess));
+    if (!(reached < jump * wanted)) return linear;
+    if (std::abs(reached - wanted) <= end_tolerance * wanted) break;
+    distance *= std::clamp(wanted / std::max(reached, 1e-300), 0.5, 2.0);
+  }
+  return distance;
+}
+
+std::vector<Alignment> WireOptimum::alignments() {
+  rods_.go_on_from(here_);
+  return rods_.alignments(values());
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,139 @@
+#include "wire/wire_start.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace dlo::compare {
+namespace {
+
+/// In log E from the scene's: another one fits best without the other numbers than with them.
+constexpr double far_away = 0.7;
+
+/// Each shape's numbers and its rod, those of some that come nearest to its points.
+struct NearestStart {
+  std::vector<double> squares;
+  FittedRods::Rods rods;
+  Eigen::VectorXd values;
+
+  [[nodiscard]] double sum() const { return std::accumulate(squares.begin(), squares.end(), 0.0); }
+
+  void take_nearer(const WireProblem& problem, const FittedRods::State& state,
+                   const Eigen::VectorXd& others) {
+    if (squares.empty()) {
+      *this = {state.squares, state.rods, others};
+      return;
+    }
+    for (std::size_t i = 0; i < squares.size(); ++i) {
+      if (!(state.squares[i] < squares[i])) continue;
+      squares[i] = state.squares[i];
+      rods[i] = state.rods[i];
+      for (std::size_t k = 0; k < problem.numbers.size(); ++k) {
+        const auto number = static_cast<Eigen::Index>(k);
+        if (problem.is_own(k, i)) values[number] = others[number];
+      }
+    }
+  }
+};
+
+/// The same of each mean curvature all over what is likely [turns of the rod], gone through from
+/// both ends, each shape following its own equilibrium; where it is not known how the clamp holds
+/// the rod, with angles all around.
+std::vector<NearestStart> nearest_by_curvature(const WireProblem& problem,
+                                               const Eigen::VectorXd& from, FittedRods& rods) {
+  constexpr std::array turns = {8.0, 5.0, 3.0, 1.5, 0.0, -1.5, -3.0, -5.0, -8.0};
+  constexpr int angles = 6;
+  const bool turns_the_rod =
+      std::ranges::any_of(problem.numbers, [](const WireNumber& one) { return one.turns_the_rod; });
+  std::vector<NearestStart> found(turns.size());
+  for (int angle = 0; angle < (turns_the_rod ? angles : 1); ++angle) {
+    const auto look_at = [&](std::size_t k) {
+      Eigen::VectorXd values = from;
+      values[problem.first_of_others()] = turns[k] / problem.scenes.front().length;
+      for (std::size_t i = 0; i < problem.numbers.size(); ++i) {
+        if (!problem.numbers[i].turns_the_rod) continue;
+        values[static_cast<Eigen::Index>(i)] = 2 * std::numbers::pi * angle / angles;
+      }
+      found[k].take_nearer(problem, rods.state(values), values);
+    };
+    rods.search_next();
+    for (std::size_t k = 0; k < turns.size(); ++k) look_at(k);
+    rods.search_next();
+    for (std::size_t k = turns.size(); k-- > 0;) look_at(k);
+  }
+  return found;
+}
+
+/// A rod that is intrinsically curved may hang on the other side of its clamp, and the E that fits
+/// best without that may be far away: mean curvatures are gone through with that E and the scene's,
+/// and each shape goes on from the one that is nearest to its points.
+void look_for_curvature(const WireProblem& problem, FittedRods& rods, Eigen::VectorXd& start) {
+  Eigen::VectorXd from = start;
+  double least = INFINITY;
+  FittedRods::Rods nearest;
+  for (const double log_modulus : {start[0], 0.0}) {
+    from[0] = log_modulus;
+    const std::vector<NearestStart> found = nearest_by_curvature(problem, from, rods);
+    // From the last one, as of two that are as near.
+    for (auto one = found.rbegin(); one != found.rend(); ++one) {
+      if (!(one->sum() < least)) continue;
+      least = one->sum();
+      nearest = one->rods;
+      start = one->values;
+    }
+  }
+  rods.go_on_from(std::move(nearest));
+}
+
+/// Of a rod that is held otherwise than was said, the E that fits best with what was said may be
+/// far away: steps begin at the scene's E as well.
+void look_for_modulus(const WireProblem& problem, FittedRods& rods, Eigen::VectorXd& values) {
+  Eigen::VectorXd from = values;
+  double least = INFINITY;
+  FittedRods::Rods nearest(problem.scenes.size());
+  for (const double log_modulus : {values[0], 0.0}) {
+    from[0] = log_modulus;
+    rods.search_next();
+    GaussNewton fit(rods, from, problem.coarse_steps());
+    if (!fit.descend() || !(fit.variance() < least)) continue;
+    least = fit.variance();
+    nearest = fit.rods();
+    values = fit.values();
+  }
+  rods.go_on_from(std::move(nearest));
+}
+
+/// More terms of natural curvature never fit worse than fewer: each one is added where the fit
+/// without it has led.
+void fit_fewer_terms(const WireProblem& problem, FittedRods& rods, Eigen::VectorXd& values) {
+  for (int terms = 1; terms < problem.options.natural_curvature_terms; ++terms) {
+    FittedRods fewer = problem.rods(terms);
+    fewer.go_on_from(rods.rods());
+    GaussNewton fit(fewer, values, problem.coarse_steps());
+    if (!fit.descend()) return;
+    values = fit.values();
+    rods.go_on_from(fit.rods());
+  }
+}
+
+}  // namespace
+
+Eigen::VectorXd wire_start(const WireProblem& problem, const MaterialPoint& material,
+                           FittedRods& rods) {
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(problem.numbers.size()));
+  if (material.log_modulus > problem.lowest()) values[0] = material.log_modulus;
+  if (problem.density) values[1] = material.log_density;
+  if (problem.options.natural_curvature_terms > 0) {
+    look_for_curvature(problem, rods, values);
+    fit_fewer_terms(problem, rods, values);
+  } else if (std::abs(values[0]) > far_away) {
+    look_for_modulus(problem, rods, values);
+  }
+  return values;
+}
+
+}  // namespace dlo::compare
