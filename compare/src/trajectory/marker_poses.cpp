@@ -37,7 +37,8 @@ std::vector<MarkerWay> ways_of(const MarkerMotion& markers, std::optional<double
   std::vector<MarkerWay> ways;
   ways.reserve(seen.size());
   for (auto& [s, poses] : seen) {
-    ways.push_back({s, Trajectory(cutoff ? smooth_poses(std::move(poses), *cutoff) : poses)});
+    if (cutoff) poses = smooth_poses(std::move(poses), *cutoff);
+    ways.push_back({s, Trajectory(std::move(poses))});
   }
   return ways;
 }
