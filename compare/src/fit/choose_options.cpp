@@ -61,10 +61,7 @@ class OptionsSearch {
     MaterialFitOptions as_said = with_all_outputs(options_of(0, Clamps::as_said));
     as_said.predict = false;
     plain_ = fit_from(scenes_, shapes_, as_said, std::nullopt);
-    if (options_.alternatives && !is_systematic(plain_)) {
-      as_said.alternatives = true;
-      plain_ = fit_from(scenes_, shapes_, as_said, std::nullopt);
-    }
+    if (!is_systematic(plain_)) plain_ = with_alternatives();
     start_ = material_of(plain_, scenes_.front());
     if (!is_systematic(plain_)) {
       if (options_.predict) plain_.prediction = plain_prediction();
@@ -113,9 +110,20 @@ class OptionsSearch {
   [[nodiscard]] MaterialFit with_all_outputs(const Trial& chosen) const {
     MaterialFitOptions last = with_all_outputs(chosen.options);
     last.predict = false;
-    MaterialFit fit = fits_a_wire(last) ? fit_from(scenes_, shapes_, last, start_) : plain_;
+    MaterialFit fit =
+        fits_a_wire(last) ? fit_from(scenes_, shapes_, last, start_) : with_alternatives();
     fit.prediction = chosen.fit.prediction;
     return fit;
+  }
+
+  /// The fit of the material alone, with what would remove its residuals. That may take as long as
+  /// all that is chosen from, so it is looked for only where it decides or is the answer.
+  [[nodiscard]] MaterialFit with_alternatives() const {
+    if (!options_.alternatives) return plain_;
+    MaterialFitOptions as_said = with_all_outputs(options_of(0, Clamps::as_said));
+    as_said.alternatives = true;
+    as_said.predict = false;
+    return fit_from(scenes_, shapes_, as_said, std::nullopt);
   }
 
   void try_terms(Clamps clamps) {

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <limits>
 
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape.hpp"
@@ -63,8 +65,9 @@ class Hinges {
 
   /// @return whether the lengths could be kept
   [[nodiscard]] bool step(double time) {
-    add_forces();
-    const Eigen::Matrix3Xd along = segments();
+    const Eigen::Matrix3Xd along =
+        points_.rightCols(mass_.size() - 1) - points_.leftCols(mass_.size() - 1);
+    add_forces(along / h_);
     // From rest the first step is half of what the others are.
     const double squared = time * time * (begins_ ? 0.5 : 1.0);
     Eigen::Matrix3Xd next = begins_ ? points_ : Eigen::Matrix3Xd(2 * points_ - before_);
@@ -78,14 +81,9 @@ class Hinges {
   }
 
  private:
-  [[nodiscard]] Eigen::Matrix3Xd segments() const {
-    return points_.rightCols(points_.cols() - 1) - points_.leftCols(points_.cols() - 1);
-  }
-
-  /// Weight, loads and springs.
-  void add_forces() {
+  /// Weight, loads and springs. @param units  directions of the segments
+  void add_forces(const Eigen::Matrix3Xd& units) {
     force_ = dead_;
-    const Eigen::Matrix3Xd units = segments() / h_;
     if (clamp_) add_spring(*clamp_, units.col(0), 2 * stiffness_ / h_, 0);
     for (Eigen::Index i = 1; i < units.cols(); ++i) {
       add_spring(units.col(i - 1), units.col(i), stiffness_ / h_, i);
@@ -108,9 +106,11 @@ class Hinges {
 
   /// Newton's method for the multipliers, whose matrix is tridiagonal.
   bool keep_lengths(const Eigen::Matrix3Xd& along, double squared, Eigen::Matrix3Xd& next) {
-    constexpr double allowed = 1e-13;  // of h^2: rounding
     constexpr int most = 20;
     const Eigen::Index n = along.cols();
+    // Of h^2: rounding. Points that are n h away are right to half an epsilon of that.
+    constexpr double epsilon = std::numeric_limits<double>::epsilon();
+    const double allowed = std::max(1e-13, 4 * epsilon * static_cast<double>(n));
     Eigen::VectorXd& l = multipliers_;
     const auto inverse = [&](Eigen::Index i) { return i == 0 ? 0.0 : squared / mass_(i); };
     apply(along, l, squared, next);
@@ -177,8 +177,15 @@ std::vector<Eigen::Matrix3Xd> hinge_motion(const ReleasedRod& rod, int segments,
   const double interval = times[1] - times[0];
   const auto steps = static_cast<long>(std::ceil(interval / longest));
   std::vector<Eigen::Matrix3Xd> frames = {hinges.points()};
+  const auto begin = std::chrono::steady_clock::now();
   while (frames.size() < times.size()) {
     for (long i = 0; i < steps; ++i) {
+      const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
+      if (!(spent.count() < options.time_limit)) {
+        throw ConvergenceError(
+            fmt::format("{}: time limit of {:g} s reached after {:g} s of motion", rod.scene.file,
+                        options.time_limit, times[frames.size() - 1]));
+      }
       if (hinges.step(interval / static_cast<double>(steps))) continue;
       throw ConvergenceError(fmt::format("{}: a moving chain of {} hinges broke after {:g} s",
                                          rod.scene.file, segments, times[frames.size() - 1]));

@@ -19,7 +19,8 @@ namespace dlo::compare {
 /// @param times     growing, at equal distances, from 0 [s], two or more
 /// @return points by time [m], 3 x (N + 1)
 /// @throws InputError if the rod is not straight, round and of one section, or is held other than
-/// by one gripper at s = 0;  ConvergenceError if the constraints cannot be held
+/// by one gripper at s = 0;  ConvergenceError if the constraints cannot be held, or at the time
+/// limit
 [[nodiscard]] std::vector<Eigen::Matrix3Xd> hinge_motion(const ReleasedRod& rod, int segments,
                                                          const std::vector<double>& times,
                                                          const SolveOptions& options = {});

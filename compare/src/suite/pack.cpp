@@ -29,8 +29,20 @@ double rounded(double value, double large) {
   return as_number<double>(fmt::format("{:.10g}", value)).value();
 }
 
-/// A bound, with two digits.
-double bound(double value) { return as_number<double>(fmt::format("{:.1e}", value)).value(); }
+/// A bound, with two digits. @param rounding  of what is written, which it holds too
+double bound(double value, double rounding) {
+  return as_number<double>(fmt::format("{:.1e}", value + rounding)).value();
+}
+
+/// Of a vector's length, or a number's, with what ten digits round of it.
+double bound_of_digits(double value, double size, double large) {
+  constexpr double rounding = 1e-10;  // half a unit of the last digit in each of three directions
+  return bound(value, rounding * std::max(size, large));
+}
+
+/// Of points, with what decimals round of each of three coordinates.
+constexpr double place_rounding = 1e-12;
+constexpr double motion_place_rounding = 1e-9;
 
 /// A length, with twelve decimals, never -0.
 std::string decimals(double metres) {
@@ -71,9 +83,11 @@ Json answer_grippers(const Answer& answer, const Magnitudes& large) {
     const GripperLoad& load = answer.first.grippers[i];
     result.push_back({{"at_m", answer.of.scene.grippers[i].at},
                       {"force_N", answer_vector(load.force, large.force)},
-                      {"force_bound_N", bound(answer.bounds.forces_N[i])},
+                      {"force_bound_N",
+                       bound_of_digits(answer.bounds.forces_N[i], load.force.norm(), large.force)},
                       {"torque_Nm", answer_vector(load.torque, large.torque)},
-                      {"torque_bound_Nm", bound(answer.bounds.torques_Nm[i])}});
+                      {"torque_bound_Nm", bound_of_digits(answer.bounds.torques_Nm[i],
+                                                          load.torque.norm(), large.torque)}});
   }
   return result;
 }
@@ -89,9 +103,11 @@ Json answer_obstacles(const Answer& answer, const Magnitudes& large) {
                           {"to_m", rounded(part.end, large.length)},
                           {"force_N", answer_vector(part.force, large.force)}});
     }
-    result.push_back({{"force_N", answer_vector(answer.first.obstacles[i], large.force)},
-                      {"force_bound_N", bound(answer.bounds.obstacles_N[i])},
-                      {"contacts", std::move(contacts)}});
+    result.push_back(
+        {{"force_N", answer_vector(answer.first.obstacles[i], large.force)},
+         {"force_bound_N", bound_of_digits(answer.bounds.obstacles_N[i],
+                                           answer.first.obstacles[i].norm(), large.force)},
+         {"contacts", std::move(contacts)}});
   }
   return result;
 }
@@ -137,7 +153,8 @@ nlohmann::ordered_json answer_json(const Answer& answer) {
                  {"lowest", scene.stretch != Stretch::none ? Json() : Json(answer.is_lowest)},
                  {"smallest_eigenvalue", rounded(first.smallest_eigenvalue, 1)},
                  {"energy", answer_energies(first.energy, large.energy)},
-                 {"energy_bound_J", bound(answer.bounds.energy_J)},
+                 {"energy_bound_J", bound_of_digits(answer.bounds.energy_J,
+                                                    std::abs(first.energy.total()), large.energy)},
                  {"grippers", answer_grippers(answer, large)},
                  {"obstacles", answer_obstacles(answer, large)}};
   constexpr double few_digits = 1e6;
@@ -150,7 +167,7 @@ nlohmann::ordered_json answer_json(const Answer& answer) {
             {"apart_over_length",
              rounded(short_number(other.apart_m, scene.length) / scene.length, 1)}};
   });
-  result["points_bound_m"] = bound(answer.bounds.points_m);
+  result["points_bound_m"] = bound(answer.bounds.points_m, place_rounding);
   result["arc_length_m"] =
       json_list(first.shape.arc_length, [](double s) -> Json { return place(s); });
   Json points = Json::array();
@@ -188,7 +205,7 @@ nlohmann::ordered_json motion_json(const MotionAnswer& answer) {
                  {"length_m", answer.of.scene.length},
                  {"gamma", rounded(answer.of.scene.gamma(), 1)},
                  {"methods", {to_string(Model::energy), answer.second_method}},
-                 {"points_bound_m", bound(answer.points_bound_m)},
+                 {"points_bound_m", bound(answer.points_bound_m, motion_place_rounding)},
                  {"times_s", places(answer.times)},
                  {"arc_length_m", places(answer.arc_length)}};
   result["frames_m"] = json_list(answer.frames, [](const Eigen::Matrix3Xd& frame) -> Json {
@@ -232,24 +249,25 @@ void write_pack(const std::string& folder, const Pack& pack) {
                 {"version", pack.version},
                 {"unit", "SI"},
                 {"answers", Json::array()}};
-  const auto entry = [](const BatteryScene& scene, double points_bound) -> Json {
+  const auto entry = [](const BatteryScene& scene, double points_bound, double rounding) -> Json {
     return {{"id", scene.id},
             {"class", scene.group},
             {"isolates", scene.isolates},
             {"answer", scene.id + ".json"},
             {"points", scene.id + ".csv"},
-            {"points_bound_over_length", bound(points_bound / scene.scene.length)}};
+            {"points_bound_over_length",
+             bound(points_bound / scene.scene.length, rounding / scene.scene.length)}};
   };
   for (const Answer& answer : pack.answers) {
     write_document(path / (answer.of.id + ".json"), answer_json(answer));
     write_file(path / (answer.of.id + ".csv"), answer_csv(answer));
     write_file(path / (answer.of.id + ".vtu"), answer_vtu(answer));
-    index["answers"].push_back(entry(answer.of, answer.bounds.points_m));
+    index["answers"].push_back(entry(answer.of, answer.bounds.points_m, place_rounding));
   }
   for (const MotionAnswer& answer : pack.motions) {
     write_document(path / (answer.of.id + ".json"), motion_json(answer));
     write_file(path / (answer.of.id + ".csv"), motion_csv(answer));
-    index["answers"].push_back(entry(answer.of, answer.points_bound_m));
+    index["answers"].push_back(entry(answer.of, answer.points_bound_m, motion_place_rounding));
   }
   write_file(path / "schema.json", answer_schema());
   write_file(path / "motion_schema.json", motion_schema());

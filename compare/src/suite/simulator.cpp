@@ -45,14 +45,16 @@ void solve_own(Model model, const Scene& scene, double time_limit, SimulatorRun&
 }
 
 /// `chain` is the chain of hinges with masses in its points.
-void move_own(Model model, const BatteryScene& scene, int points, SimulatorRun& run) {
+void move_own(Model model, const BatteryScene& scene, int points, double time_limit,
+              SimulatorRun& run) {
   if (model != Model::chain) {
     run.status = RunStatus::not_supported;
     run.problem = fmt::format("{} has no motion here", to_string(model));
     return;
   }
   const std::vector<double> times = scene.motion->times();
-  const std::vector<Eigen::Matrix3Xd> frames = hinge_motion(released_rod(scene), points - 1, times);
+  const std::vector<Eigen::Matrix3Xd> frames =
+      hinge_motion(released_rod(scene), points - 1, times, {.time_limit = time_limit});
   const std::vector<double> s = equal_arc_lengths(scene.scene.length, points);
   MarkerMotion motion{.file = to_string(model), .positions = {}};
   motion.positions.reserve(times.size() * s.size());
@@ -71,7 +73,7 @@ SimulatorRun run_own(Model model, BatteryScene scene, int points, double time_li
   scene.scene.file = "scene";  // scenes of one problem have one message
   try {
     if (scene.motion) {
-      move_own(model, scene, points, run);
+      move_own(model, scene, points, time_limit, run);
     } else {
       solve_own(model, scene.scene, time_limit, run);
     }

@@ -75,7 +75,9 @@ void look_for_curvature(const WireProblem& problem, FittedRods& rods, Eigen::Vec
   Eigen::VectorXd from = start;
   double least = INFINITY;
   FittedRods::Rods nearest;
-  for (const double log_modulus : {start[0], 0.0}) {
+  std::vector<double> moduli = {start[0]};
+  if (start[0] != 0) moduli.push_back(0);
+  for (const double log_modulus : moduli) {
     from[0] = log_modulus;
     const std::vector<NearestStart> found = nearest_by_curvature(problem, from, rods);
     // From the last one, as of two that are as near.

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "../../says.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/shape.hpp"
@@ -16,6 +17,9 @@
 
 namespace dlo::compare {
 namespace {
+
+using test::error_of;
+using test::says;
 
 ReleasedRod released(const std::string& id) {
   const std::string stem = std::string(DLO_DATA) + "/suite/scenes/" + id;
@@ -53,6 +57,15 @@ TEST(ReleasedRod, VibratesInItsFirstModeAsTheClosedFormSays) {
       EXPECT_NEAR(hinges.frames[k](1, point), w, 2e-3 * amplitude);
     }
   }
+}
+
+// Steps grow as N^2 and cost as N: of 4000 segments one frame would take hours.
+TEST(HingeMotion, EndsAtItsTimeLimit) {
+  EXPECT_TRUE(
+      says(error_of<ConvergenceError>([] {
+             return hinge_motion(released("motion_vibration"), 4000, {0, 1}, {.time_limit = 1});
+           }),
+           {"time limit of 1 s reached after 0 s of motion"}));
 }
 
 // A rigid rod's pendulum: T = 4 K(sin(a/2)) / omega, omega^2 = g/l (M + m/2) / (M + m/3). A cord of

@@ -112,6 +112,33 @@ TEST(Pack, CommittedAnswersAreThoseOfFreshOnesWithinTheirBounds) {
   }
 }
 
+// What is written has ten digits, points twelve decimals, whatever two methods agree to.
+TEST(Pack, BoundsHoldTheRoundingOfWhatIsWritten) {
+  for (const BatteryScene& scene :
+       chosen_scenes(builtin_battery(), {"clamps_space", "clamps_taut", "floor"})) {
+    const Answer answer = dlo::compare::certified_answer(scene);
+    const json written = dlo::compare::answer_json(answer);
+    const auto expect_within = [&](const Eigen::Vector3d& value, const json& row,
+                                   const std::string& name, const std::string& unit) {
+      EXPECT_LE((vector_of(row[name + "_" + unit]) - value).norm(),
+                row[name + "_bound_" + unit].get<double>())
+          << scene.id << " " << name;
+    };
+    for (std::size_t i = 0; i < answer.first.grippers.size(); ++i) {
+      expect_within(answer.first.grippers[i].force, written["grippers"][i], "force", "N");
+      expect_within(answer.first.grippers[i].torque, written["grippers"][i], "torque", "Nm");
+    }
+    for (std::size_t i = 0; i < answer.first.obstacles.size(); ++i) {
+      expect_within(answer.first.obstacles[i], written["obstacles"][i], "force", "N");
+    }
+    for (std::size_t i = 0; i < written["points_m"].size(); ++i) {
+      const auto point = static_cast<Eigen::Index>(i);
+      EXPECT_LE((vector_of(written["points_m"][i]) - answer.first.shape.points.col(point)).norm(),
+                written["points_bound_m"].get<double>());
+    }
+  }
+}
+
 TEST(Pack, CommittedOneHasEveryScene) {
   const json index = json::parse(text_of(DLO_DATA "/suite/answers/suite.json"));
   EXPECT_EQ(index["version"], builtin_battery().version);

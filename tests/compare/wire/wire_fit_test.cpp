@@ -459,6 +459,25 @@ TEST(WireFit, AHangingStraightRodTellsNoStiffnessBesideItsPlace) {
   EXPECT_TRUE(says(found.not_identified, {"the same with any E"}));
 }
 
+// Shapes of ropes, w l^3 / (EI) = 1e6, on which natural curvature is hard to solve and tells
+// nothing.
+TEST(WireFit, DoesNotLookForAStiffnessThatARopeHasNot) {
+  constexpr double gamma = 500;
+  constexpr double searched = 1e5;  // up to that (MaterialFitOptions::smallest_ratio)
+  std::mt19937 random(12);
+  std::vector<Picture> pictures;
+  for (const double angle : {0.0, 40.0}) {
+    const Scene said = test::heavy_scene(gamma, angle);
+    Scene rope = said;
+    rope.scale_modulus(gamma / 1e6);
+    pictures.push_back(picture_of(rope, said, 3e-3, 0.02, random));
+  }
+  const MaterialFit found = fit(pictures, {.natural_curvature_terms = 1});
+  const double softest = gamma / too_stiff / searched * pictures[0].said.material.youngs_modulus;
+  EXPECT_GE(*found.youngs_modulus.estimate, softest * (1 - 1e-9));
+  EXPECT_FALSE(found.youngs_modulus.low);
+}
+
 TEST(WireFit, RefusesNaturalCurvatureThatNoClampHolds) {
   std::mt19937 random(11);
   Scene scene = test::heavy_scene(5, 0);
