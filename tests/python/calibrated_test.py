@@ -85,6 +85,30 @@ def test_what_calibrate_returns_is_what_its_file_says(cable, tmp_path):
     assert guess.youngs_modulus == 1e6  # the scene itself is as it was
 
 
+@pytest.fixture
+def stiff():
+    """A scene, w l^3 / (EI) = 0.5, and three pictures of it."""
+    scene = dlo.Scene(length=1, bending_stiffness=1.962, mass_per_length=0.1,
+                      grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction="20 deg")])
+    rod = dlo.solve(scene, samples=30)
+    random = numpy.random.default_rng(3)
+    errors = numpy.zeros((3, *rod.points.shape))
+    errors[:, :, :2] = random.normal(0, 1e-4, (3, rod.points.shape[0], 2))
+    return scene, [(rod.points + error, rod.arc_length) for error in errors]
+
+
+def test_a_fit_that_predicts_shapes_has_a_file_though_it_is_no_material(stiff):
+    """A stiff rod's natural curvature stands in for its weight, so its EI is open."""
+    scene, shapes = stiff
+    options = dict(natural_curvature=3, arc_lengths="file", options="given")
+    alone = dlo.calibrate(scene, shapes, **options)
+    assert alone.bending_stiffness is None and alone.to_toml() == ""
+    fit = dlo.calibrate(scene, shapes, predict=True, **options)
+    assert fit.bending_stiffness is None and "No material" in fit.to_toml()
+    rod = dlo.solve(scene, samples=shapes[0][0].shape[0], calibrated=fit)
+    numpy.testing.assert_allclose(rod.points, shapes[0][0], atol=1e-3 * scene.length)
+
+
 def test_the_calibrated_rod_is_turned_by_its_rotation(cable):
     """A clamp held 20 degrees higher than said is that clamp."""
     text = MATERIAL.replace("4e9", "5e6").replace("2000", "1150")

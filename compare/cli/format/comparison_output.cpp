@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "base/display.hpp"
 #include "base/number.hpp"
@@ -21,8 +24,9 @@ void add_budget(std::string& out, const compare::Comparison& comparison) {
   append(out, "  error budget    RMS, and share of the total {:.4g} mm with sign\n",
          comparison.budget.total_m * 1e3);
   for (const auto& [name, part] : compare::shown_parts(comparison)) {
+    const double rounded = std::round(part->share * 1e4) / 100 + 0.0;  // not -0.00
     append(out, "                  {:<17}{:>9.4g} mm {:>9.2f} %\n", name,
-           compare::shown(part->rms_m, comparison.length) * 1e3, part->share * 100 + 0.0);
+           compare::shown(part->rms_m, comparison.length) * 1e3, rounded);
   }
 }
 
@@ -52,11 +56,19 @@ void add_state(std::string& out, const compare::ComparedState& state, double len
              : fmt::format("number {} by energy of {} stable ones found", state.rank, state.stable),
          state.energy_J,
          state.others.empty() ? "no other equilibrium found" : "besides " + unstable);
+  // Symmetric ones are the same to the digit.
+  std::vector<std::pair<std::string, int>> lines;
   for (const compare::OtherState& other : state.others) {
-    append(out,
-           "                  other: {}, {:+.4g} J, RMS {:.4g} % of l away, {:.4g} % from {}\n",
-           other.stable ? "stable" : "unstable", other.energy_difference_J,
-           other.rms_from_compared_m / length * 100, other.rms_from_shape_m / length * 100, shape);
+    if (!other.stable && other.rms_from_shape_m >= state.rms_from_shape_m) continue;
+    std::string line = fmt::format("{}, {:+.4g} J, RMS {:.4g} % of l away, {:.4g} % from {}\n",
+                                   other.stable ? "stable" : "unstable", other.energy_difference_J,
+                                   other.rms_from_compared_m / length * 100,
+                                   other.rms_from_shape_m / length * 100, shape);
+    if (lines.empty() || lines.back().first != line) lines.emplace_back(std::move(line), 0);
+    ++lines.back().second;
+  }
+  for (const auto& [line, count] : lines) {
+    append(out, "                  other: {}{}", count > 1 ? fmt::format("{} ", count) : "", line);
   }
 }
 

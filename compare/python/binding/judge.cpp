@@ -148,9 +148,13 @@ FitDocuments calibrate_material(const std::vector<SharedScene>& scenes, const py
   const compare::Calibration found = run_long([&](Signals& /*signals*/) {
     return compare::calibrate(scenes_of(scenes), measured_shapes, options, held_out);
   });
-  const bool told = found.fit.youngs_modulus.value.has_value();
-  return {compare::to_text(found), compare::to_json(found),
-          told ? cli::material_toml(found) : std::string()};
+  std::string toml;
+  try {
+    toml = cli::material_toml(found);
+  } catch (const compare::InputError&) {
+    // The rest of the fit is worth having without it.
+  }
+  return {compare::to_text(found), compare::to_json(found), std::move(toml)};
 }
 
 FitDocuments calibrate_force_model(const std::vector<SharedScene>& scenes,

@@ -318,7 +318,7 @@ class Calibration(Document):
 
     def to_toml(self) -> str:
         """What `dlo calibrate -o FILE.toml` writes: a file of parameters (of the force model) or of
-        materials (of measured shapes; "" if E is not identified)."""
+        materials (of measured shapes; "" where E is not identified and no shapes were predicted)."""
         return self._toml
 
 

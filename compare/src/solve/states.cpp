@@ -121,6 +121,7 @@ ComparedState describe_state(const Scene& scene, const std::vector<Equilibrium>&
                              std::size_t compared, const std::vector<double>& from_shape) {
   ComparedState result;
   result.energy_J = states[compared].energy.total();
+  result.rms_from_shape_m = from_shape[compared];
   result.stable = 0;
   for (std::size_t i = 0; i < states.size(); ++i) {
     const bool stable = is_stable(states[i]);

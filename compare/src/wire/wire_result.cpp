@@ -160,16 +160,28 @@ class WireIntervals {
   double widening_ = 1;  // of intervals, beside what the deviance alone gives
 };
 
+/// The numbers; what is in no shape is nought to rounding.
+Eigen::VectorXd found_values(const WireProblem& problem, const WireOptimum& optimum) {
+  constexpr double rounding = 1e-9;  // of what was known before
+  Eigen::VectorXd values = optimum.values();
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    const double before = problem.numbers[static_cast<std::size_t>(k)].described.known_before;
+    if (std::isfinite(before) && std::abs(values[k]) < rounding * before) values[k] = 0;
+  }
+  return values;
+}
+
 /// Natural curvature, and how shapes were held.
-void tell_others(const WireProblem& problem, const WireOptimum& optimum, MaterialFit& fit) {
-  for (Eigen::Index k = problem.first_of_others(); k < optimum.values().size(); ++k) {
+void tell_others(const WireProblem& problem, const WireOptimum& optimum,
+                 const Eigen::VectorXd& values, MaterialFit& fit) {
+  for (Eigen::Index k = problem.first_of_others(); k < values.size(); ++k) {
     FittedNumber found = problem.numbers[static_cast<std::size_t>(k)].described;
-    found.value = optimum.values()[k];
+    found.value = values[k];
     found.deviation = std::sqrt(optimum.covariance()(k, k));
     fit.others.push_back(std::move(found));
   }
   if (problem.options.natural_curvature_terms == 0) return;
-  const Scene found = problem.scene_at(0, optimum.values());
+  const Scene found = problem.scene_at(0, values);
   fit.natural_curvature = {found.natural_strain.head<2>()};
   fit.natural_curvature.insert(fit.natural_curvature.end(), found.natural_variation.begin(),
                                found.natural_variation.end());
@@ -277,9 +289,10 @@ MaterialFit wire_result(const WireProblem& problem, WireOptimum& optimum) {
   MaterialFit fit;
   WireIntervals intervals(problem, optimum);
   intervals.find(fit);
-  tell_others(problem, optimum, fit);
-  if (problem.options.shared_clamps) fit.clamps = clamp_corrections(problem, optimum.values());
-  fit.camera_tilt = camera_tilt(problem, optimum.values());
+  const Eigen::VectorXd values = found_values(problem, optimum);
+  tell_others(problem, optimum, values, fit);
+  if (problem.options.shared_clamps) fit.clamps = clamp_corrections(problem, values);
+  fit.camera_tilt = camera_tilt(problem, values);
   tell_errors(problem, optimum, fit);
   tell_shapes(problem, optimum, fit);
   if (problem.options.profile_points > 0) {

@@ -109,8 +109,11 @@ void look_between(const SpanOptions& options, SpanWorkspace& workspace, Found& f
       const Span& span = a.model->span();
       if (span.planar != b.model->span().planar || span.cuts != b.model->span().cuts) continue;
       LocalSolver own(span, options, workspace);
+      // In space steps with all terms are most of a search; few lead to the same equilibria.
+      const int all_terms = std::max(a.terms, b.terms);
+      const int terms = span.planar ? all_terms : std::min(all_terms, own.coarse_terms());
       for (const double share : shares) {
-        SpanSolution between = own.empty_solution(std::max(a.terms, b.terms));
+        SpanSolution between = own.empty_solution(terms);
         SpanEnergy& model = *between.model;
         between.x = (1 - share) * model.prolong(*a.model, a.x);
         between.x += share * model.prolong(*b.model, b.x);

@@ -244,6 +244,7 @@ TEST(WireFit, AConstantCurvatureBetweenTwoClampsIsSaidNotToBeSeen) {
         fit({picture_of(truth, said, 1e-3, 0.02, random)}, {.natural_curvature_terms = 1});
     ASSERT_EQ(found.others.size(), 1);
     EXPECT_FALSE(found.others[0].is_seen());
+    EXPECT_EQ(found.others[0].value, 0);
     EXPECT_NEAR(found.others[0].deviation / found.others[0].known_before, 1, 0.01);
     held += test::holds(found.youngs_modulus, true_modulus({said, {}}) * too_stiff) ? 1 : 0;
   }

@@ -15,6 +15,7 @@ struct OtherState {
 /// Which of a scene's equilibria a shape was compared with.
 struct ComparedState {
   double energy_J = 0;             ///< Solution::energy, of all
+  double rms_from_shape_m = 0;     ///< of it from the shape that was compared
   int rank = 1;                    ///< among the stable ones by energy, 1: the lowest
   int stable = 1;                  ///< how many stable ones were found
   int unstable = 0;                ///< how many unstable ones were found
