@@ -70,6 +70,8 @@ class Rod:
 
     def __init__(self, scene, points, thinner=1):
         rod, held = scene["rod"], scene["grippers"][0]
+        if "motion" in scene:
+            refuse("motion")
         if rod["natural_curvature_per_m"] or rod["natural_twist_rad_per_m"] or scene["obstacles"]:
             refuse("natural curvature, obstacles")
         if scene["distributed_loads"] or any(load["torque_Nm"] for load in scene["loads"]):
