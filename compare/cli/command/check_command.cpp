@@ -21,6 +21,7 @@
 #include "option/share.hpp"
 #include "option/terminal.hpp"
 #include "picture/check_figure.hpp"
+#include "picture/motion_figure.hpp"
 #include "recording/motion_check.hpp"
 #include "recording/recorded_frames.hpp"
 #include "report/check_page.hpp"
@@ -49,11 +50,11 @@ compare::Picture picture_of(const compare::CheckResult& report) {
   return compare::check_picture(report.scene, report.check, report.tolerance.allowed_m);
 }
 
-/// The page of a check, whole without a picture where gnuplot is missing.
-void write_page(const CheckOptions& options, const compare::CheckResult& result,
-                const std::string& text) {
+/// The parts of a page, whole without a picture where gnuplot is missing.
+compare::CheckPageParts page_parts(const CheckOptions& options, const compare::Picture& picture,
+                                   const std::string& text) {
   compare::CheckPageParts parts{.text = text, .version = DLO_VERSION};
-  for (const compare::PictureRow& row : picture_of(result).rows) {
+  for (const compare::PictureRow& row : picture.rows) {
     for (const std::vector<compare::Figure>& column : row) {
       for (const compare::Figure& figure : column) {
         parts.figures.push_back({.figure = figure});
@@ -68,7 +69,7 @@ void write_page(const CheckOptions& options, const compare::CheckResult& result,
       }
     }
   }
-  compare::write_file(options.report, compare::check_page(result, parts));
+  return parts;
 }
 
 void plot(const CheckOptions& options, const compare::CheckResult& report) {
@@ -108,13 +109,29 @@ void run(const CheckOptions& options) {
                                 .markdown = [&] { return shape_check_markdown(result); }});
   plot(options, result);
   if (!options.report.empty()) {
-    write_page(options, result, shape_check_text({result, page.unit_hint}));
+    const std::string text = shape_check_text({result, page.unit_hint});
+    compare::write_file(options.report,
+                        compare::check_page(result, page_parts(options, picture_of(result), text)));
   }
   const bool was_asked = !options.tolerance.allowed.empty();
   if (was_asked && !result.passes()) end_with(ExitStatus::outside_tolerance);
 }
 
+void plot_motion(const CheckOptions& options, const compare::MotionCheck& check) {
+  options.plot.draw([&] { return compare::motion_check_picture(check); });
+  options.plot.sketch(compare::scene_at(check.scene, check.worst_shapes.time), [&] {
+    return std::vector<compare::SpatialLine>{
+        {.points = check.worst_shapes.rod.points},
+        {.points = check.worst_shapes.recorded.points, .joined = false}};
+  });
+  if (options.report.empty()) return;
+  const compare::CheckPageParts parts =
+      page_parts(options, compare::motion_check_picture(check), motion_check_text(check));
+  compare::write_file(options.report, compare::motion_check_page(check, parts));
+}
+
 void run_motion(const CheckOptions& options) {
+  options.plot.require_drawable(options.output);
   const compare::Scene scene = options.overrides.load(options.scene);
   warn_of_friction(scene);
   compare::MotionCheckRequest request = options.moving;
@@ -138,6 +155,7 @@ void run_motion(const CheckOptions& options) {
        .markdown = []() -> std::string {
          throw compare::InputError("--motion: has no format markdown (allowed: text, json, csv)");
        }});
+  plot_motion(options, result);
   if (request.tolerance && !result.passes) end_with(ExitStatus::outside_tolerance);
 }
 
@@ -174,8 +192,8 @@ void add_motion_to(CLI::App& command, CheckOptions& options) {
                            "--from", "--frame-rate"}) {
     command.get_option(name)->group(group);
   }
-  for (const char* name : {"--shape", "--min-seen", "--no-modulus", "--unit", "--register",
-                           "--arc-lengths", "--report", "--plot"}) {
+  for (const char* name :
+       {"--shape", "--min-seen", "--no-modulus", "--unit", "--register", "--arc-lengths"}) {
     motion->excludes(command.get_option(name));
   }
 }
@@ -222,8 +240,11 @@ void add_check(CLI::App& app) {
       ->add_option("--report", options->report,
                    "write a page of one screen, FILE.html: verdict, picture, cause, numbers")
       ->type_name("FILE");
-  options->plot.add_to(*command, "the points on the rod, and their distances along it",
-                       Sketches::offered);
+  options->plot.add_to(
+      *command,
+      "the points on the rod, and their distances along it; of a motion the worst frame, "
+      "and the distances against time",
+      Sketches::offered);
   add_motion_to(*command, *options);
   command->footer(
       "Example, with dlo in place of your simulator:\n"

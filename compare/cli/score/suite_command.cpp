@@ -87,9 +87,11 @@ void add_suite(CLI::App& app) {
       app.add_subcommand("suite", "a battery of scenes with certified answers, and a score card");
   const auto options = std::make_shared<SuiteOptions>();
   command
-      ->add_option("--with", options->simulators,
-                   "a simulator to make the card of: NAME=COMMAND with {scene}, {points} and "
-                   "{shape}, or our own chain or force; may be given again")
+      ->add_option(
+          "--with", options->simulators,
+          "a simulator to make the card of: NAME=COMMAND with {scene}, {points} and "
+          "{shape}, or our own chain, force, chain_paper or force_paper (law paper); may be "
+          "given again")
       ->type_name("NAME=COMMAND")
       ->allow_extra_args(false);
   command->add_option("--scenes", options->scenes, "classes, or names of scenes; none: all")

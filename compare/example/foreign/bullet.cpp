@@ -5,8 +5,9 @@
 // SCENE is what `dlo scene --format json` writes, SHAPE becomes a CSV file of the rod's axis. The
 // rod is a btMultiBody (Featherstone's algorithm) with a spherical joint at each hinge; a second
 // clamp is a btMultiBodyFixedConstraint. Only the shape at rest is asked for, which masses have no
-// part in: each body has the same mass and moments of inertia, the weight is a force, and motion is
-// stopped whenever it has lost speed (kinetic damping). Needs Bullet in double precision.
+// part in: each body has the same moments of inertia and next to no mass, with which the number of
+// steps to rest grows with N and not with its square, the weight is a force, and motion is stopped
+// whenever it has lost speed (kinetic damping). Needs Bullet in double precision.
 
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
@@ -32,15 +33,15 @@ using foreign::Chain;
 using foreign::Quaternion;
 using foreign::Vector;
 
-constexpr double mass = 1;         // [kg] of each body
+constexpr double inertia = 1;      // of each body about its end [kg m^2]
 constexpr double at_rest = 1e-13;  // turn within a step [rad], at the moment of the highest speed
 
 btVector3 to_bullet(const Vector& v) { return {v[0], v[1], v[2]}; }
 btQuaternion to_bullet(const Quaternion& q) { return {q[1], q[2], q[3], q[0]}; }
 
-/// No step may be longer than 2 / omega of the fastest motion, in which hinges turn in zigzag: 16 k
-/// / (m h^2) from their stiffness, which doubles at turns of a right angle, and 4 F / (m h) from
-/// the weight. Taken: a quarter.
+/// No step may be longer than 2 / omega of the fastest motion, in which hinges turn in zigzag: 4 k
+/// / I from their stiffness, which doubles at turns of a right angle, and F h / I from the weight.
+/// Taken: an eighth, as hinges that turn further stiffen more.
 double time_step(const Chain& chain) {
   const double h = chain.segment.front();
   double stiffness = 0;
@@ -49,7 +50,7 @@ double time_step(const Chain& chain) {
     stiffness = std::max(stiffness, std::max(hinge.bend, hinge.twist));
   }
   for (const Vector& force : chain.force) weight += foreign::length(force);
-  return 0.5 / std::sqrt((16 * stiffness / h + 4 * weight) / (mass * h));
+  return 0.25 / std::sqrt((8 * stiffness + weight * h) / inertia);
 }
 
 class Simulation {
@@ -87,7 +88,7 @@ class Simulation {
       apply_forces();
       world_.stepSimulation(step_, 0);
       double now = motion();
-      if (now < before) {
+      if (now <= before) {  // both are 0 where the rod is at rest from the beginning
         body_.clearVelocities();
         calm = before < at_rest * at_rest ? calm + 1 : 0;
         now = 0;
@@ -107,12 +108,13 @@ class Simulation {
   }
 
  private:
-  /// Link i ends at the point i + 2, where all its mass is.
+  /// Link i ends at the point i + 2, where its mass is.
   void build() {
     body_.setBasePos(to_bullet(chain_.first_point));
     body_.setWorldToBaseRot(to_bullet(chain_.frames.front()).inverse());
-    const double h = chain_.segment.front();
-    const double inertia = mass * h * h / 4;
+    // So little that all of them at the rod's end would not be felt at its first hinge.
+    const double length = chain_.segment.front() * links_;
+    const double mass = 1e-4 * inertia / (length * length * links_);
     for (int i = 0; i < links_; ++i) {
       body_.setupSpherical(i, mass, {inertia, inertia, inertia}, i - 1, btQuaternion::getIdentity(),
                            {0, 0, 0}, {chain_.segment[static_cast<std::size_t>(i) + 1], 0, 0});

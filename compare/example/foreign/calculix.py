@@ -30,6 +30,7 @@ import tempfile
 INCREMENTS = (0.1, 0.05, 0.025, 0.015, 0.01, 0.005)  # largest ones of the load and of the way
 # Numbers have 12 digits: CalculiX reads no more than 20 characters of one.
 PER_STAGE = 100  # places of the second grip between which its nodes go straight
+FEWEST_TWISTED = 7  # bricks of a rod whose end is turned: three came to no end, or to another one
 
 
 NOT_SUPPORTED = 3  # exit status of a scene that it does not have
@@ -70,6 +71,8 @@ class Rod:
 
     def __init__(self, scene, points, thinner=1):
         rod, held = scene["rod"], scene["grippers"][0]
+        if "motion" in scene:
+            refuse("motion")
         if rod["natural_curvature_per_m"] or rod["natural_twist_rad_per_m"] or scene["obstacles"]:
             refuse("natural curvature, obstacles")
         if scene["distributed_loads"] or any(load["torque_Nm"] for load in scene["loads"]):
@@ -189,6 +192,8 @@ def way_of_second_grip(rod):
                lambda v, a=a: turned(v, rod.axis, -a))
     if not second["frame"]:
         return
+    if len(rod.ends) - 1 < FEWEST_TWISTED:
+        refuse(f"twist of fewer than {FEWEST_TWISTED} bricks, which end in a fold")
     roll = second["frame"]["roll_rad"] - first["frame"]["roll_rad"]
     for i in range(1, PER_STAGE + 1):
         yield second["position_m"], lambda v, a=roll * i / PER_STAGE: turned(v, direction, a)

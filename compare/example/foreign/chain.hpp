@@ -102,6 +102,7 @@ inline void check(const nlohmann::json& scene) {
   const nlohmann::json& model = scene.at("force_model");
   const nlohmann::json& rod = scene.at("rod");
   const nlohmann::json& grippers = scene.at("grippers");
+  refuse_unless(!scene.contains("motion"), "only the shape at rest");
   refuse_unless(model.at("refused").is_null(), "the scene has no force_model");
   refuse_unless(model.at("law") == "hooke" && model.at("bookkeeping") == "consistent",
                 "only the law hooke and the bookkeeping consistent");

@@ -15,24 +15,6 @@ constexpr const char* file_colour = "#B34700";
 constexpr const char* blue = "#0059A8";
 constexpr const char* red = "#A00000";
 
-Look worst_look() { return {.colour = red, .width = 0, .mark = Mark::circle, .mark_size = 1.8}; }
-
-/// From each point of the rod to the file's.
-Series whiskers(const Shape& file, const Shape& rod) {
-  Series series{
-      .id = "whisker", .title = "distances of the file's points", .look = {.colour = blue}};
-  const Eigen::Index count = file.points.cols();
-  series.points.resize(3, 3 * count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    series.points.col(3 * i) = rod.points.col(i);
-    series.points.col(3 * i + 1) = file.points.col(i);
-    series.points.col(3 * i + 2).setConstant(NAN);
-    const double s = rod.arc_length[static_cast<std::size_t>(i)];
-    series.arc_length.insert(series.arc_length.end(), {s, s, s});
-  }
-  return series;
-}
-
 Series worst_point(const ShapeCheck& check) {
   return {.id = "worst",
           .title = fmt::format("worst: point {}, {:.4g} mm", check.worst_point,
@@ -57,52 +39,76 @@ Figure distance_figure(const Scene& scene, const ShapeCheck& check,
     points.x.push_back(s);
     points.y.push_back(mm);
   }
-  const auto level = [](double m, const char* what, const Look& look) -> PlottedCurve {
-    return {.title = fmt::format("{} {:.4g} mm", what, m * 1e3),
-            .look = look,
-            .x = {-HUGE_VAL, HUGE_VAL},
-            .y = {m * 1e3, m * 1e3}};
-  };
-  // A tolerance far above all distances would flatten them: it is then in words only.
-  constexpr double far = 5;
-  const double largest = check.deviation.max_m;
-  const bool has_room = allowed_m && *allowed_m < far * largest;
-  const double top = 1.1 * std::max({largest, has_room ? *allowed_m : 0, 1e-9 * scene.length});
   Panel panel{.height = 280,
               .x = {.label = "arc length s [m]", .from = 0, .to = scene.length},
-              .y = {.label = "distance from the rod [mm]", .from = 0, .to = top * 1e3}};
+              .y = {.label = "distance from the rod [mm]"}};
   panel.curves = {std::move(impulses),
                   std::move(points),
                   {.title = "the worst",
                    .look = worst_look(),
                    .x = {check.deviation.max_at_m},
-                   .y = {check.deviation.max_m * 1e3}},
-                  level(check.deviation.rms_m, "RMS",
-                        {.colour = "#404040", .width = 1.5, .dashes = Dashes::dotted})};
-  if (allowed_m) {
-    panel.curves.push_back(
-        level(*allowed_m, "tolerance", {.colour = red, .width = 1.5, .dashes = Dashes::dashed}));
-  }
+                   .y = {check.deviation.max_m * 1e3}}};
+  add_levels(panel, check.deviation.rms_m, allowed_m, check.deviation.max_m, scene.length);
   return {.name = "distance", .title = "Distance along the rod", .panels = {std::move(panel)}};
 }
 
 }  // namespace
+
+Look worst_look() { return {.colour = red, .width = 0, .mark = Mark::circle, .mark_size = 1.8}; }
+
+Series distance_series(const Shape& file, const Shape& rod) {
+  Series series{
+      .id = "whisker", .title = "distances of the file's points", .look = {.colour = blue}};
+  const Eigen::Index count = file.points.cols();
+  series.points.resize(3, 3 * count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    series.points.col(3 * i) = rod.points.col(i);
+    series.points.col(3 * i + 1) = file.points.col(i);
+    series.points.col(3 * i + 2).setConstant(NAN);
+    const double s = rod.arc_length[static_cast<std::size_t>(i)];
+    series.arc_length.insert(series.arc_length.end(), {s, s, s});
+  }
+  return series;
+}
+
+Series file_series(const Shape& file) {
+  return {.id = "file",
+          .title = "points of the file",
+          .look = {.colour = file_colour,
+                   .dashes = Dashes::dashed,
+                   .mark = Mark::dot,
+                   .mark_size = 0.5},
+          .points = file.points,
+          .arc_length = file.arc_length};
+}
+
+void add_levels(Panel& panel, double rms_m, std::optional<double> allowed_m, double largest_m,
+                double length) {
+  const auto level = [&](double m, const char* what, const Look& look) {
+    panel.curves.push_back({.title = fmt::format("{} {:.4g} mm", what, m * 1e3),
+                            .look = look,
+                            .x = {-HUGE_VAL, HUGE_VAL},
+                            .y = {m * 1e3, m * 1e3}});
+  };
+  constexpr double far = 5;
+  constexpr double air = 1.1;
+  const bool has_room = allowed_m && *allowed_m < far * largest_m;
+  panel.y.from = 0;
+  panel.y.to = air * std::max({largest_m, has_room ? *allowed_m : 0, 1e-9 * length}) * 1e3;
+  level(rms_m, "RMS", {.colour = "#404040", .width = 1.5, .dashes = Dashes::dotted});
+  if (allowed_m) {
+    level(*allowed_m, "tolerance", {.colour = red, .width = 1.5, .dashes = Dashes::dashed});
+  }
+}
 
 Drawing check_drawing(const Scene& scene, const ShapeCheck& check) {
   const std::vector<View> views = views_of(scene, check.reference.points);
   const Shape& file = check.alignment.shape;
   const Series rod = rod_series(check.rod.sample, scene, views.front());
   std::vector<Series> all = obstacle_series(scene, views, rod.points);
-  all.push_back(whiskers(file, check.reference));
+  all.push_back(distance_series(file, check.reference));
   all.push_back(rod);
-  all.push_back({.id = "file",
-                 .title = "points of the file",
-                 .look = {.colour = file_colour,
-                          .dashes = Dashes::dashed,
-                          .mark = Mark::dot,
-                          .mark_size = 0.5},
-                 .points = file.points,
-                 .arc_length = file.arc_length});
+  all.push_back(file_series(file));
   for (Series& gripper : gripper_series(scene)) all.push_back(std::move(gripper));
   all.push_back(worst_point(check));
   return {views, std::move(all)};

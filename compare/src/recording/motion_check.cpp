@@ -239,6 +239,17 @@ void judge_motion(MotionCheck& check) {
       tolerance.allowed_m / check.scene.length * 100, tolerance.by_default ? ", the default" : "");
 }
 
+/// The errors of frames whose time less the lag is one of the model's.
+std::vector<FrameError> errors_without_lag(const MarkerMotion& recorded, const ModelMotion& model,
+                                           double lag, double length) {
+  std::vector<FrameError> frames =
+      motion_errors(recorded, motion_residuals(recorded, model, lag), length).frames;
+  std::erase_if(frames, [&](const FrameError& frame) {
+    return frame.time - lag < model.begin() || frame.time - lag > model.end();
+  });
+  return frames;
+}
+
 }  // namespace
 
 const char* to_string(MotionCause::Kind kind) {
@@ -279,12 +290,17 @@ MotionCheck check_motion(const Scene& scene, const MarkerMotion& recorded,
   if (models.with_inertia) check.with_inertia_rms_m = rms_of(residuals(MotionModel::with_inertia));
   check.nearer = nearer_model(check);
   judge_motion(check);
+  const ModelMotion& judged = *models.of(check.model);
+  check.worst_shapes = frame_shapes(recorded, judged, check.worst().time, scene.length, check.lag);
   if (!(check.errors.rms_m > no_error * scene.length)) return check;
   CauseSearch search(check, models, recorded);
   const std::optional<MotionShift> lag = search.lag();
   if (lag && lag->rms_m <= cause_may_leave * check.errors.rms_m) {
     check.lag = lag->lag;
     check.lag_rms_m = lag->rms_m;
+    check.frames_without_lag = errors_without_lag(recorded, judged, lag->lag, scene.length);
+    check.worst_shapes =
+        frame_shapes(recorded, judged, check.worst().time, scene.length, check.lag);
   }
   if (request.explaining == Explaining::yes) check.causes = search.run(lag);
   return check;

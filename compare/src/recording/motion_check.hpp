@@ -12,6 +12,7 @@
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape_verdict.hpp"
 #include "motion/moving_scene.hpp"
+#include "recording/frame_shapes.hpp"
 #include "recording/motion_residuals.hpp"
 #include "trajectory/read_markers.hpp"
 
@@ -74,7 +75,9 @@ struct MotionCheck {
   /// Lag that explains most, and the RMS that is left, where it explains a good part; NaN: none.
   double lag = std::numeric_limits<double>::quiet_NaN();        ///< [s], > 0: the recording is late
   double lag_rms_m = std::numeric_limits<double>::quiet_NaN();  ///< [m]
-  double at_rest_rms_m = 0;                                     ///< from the rod at rest [m]
+  std::vector<FrameError> frames_without_lag;  ///< as far as the rod is known; empty: no lag
+  FrameShapes worst_shapes;                    ///< of the worst frame
+  double at_rest_rms_m = 0;                    ///< from the rod at rest [m]
   /// From the rod with inertia [m]; NaN: there is none, and why.
   double with_inertia_rms_m = std::numeric_limits<double>::quiet_NaN();
   std::string no_inertia;

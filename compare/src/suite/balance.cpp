@@ -77,9 +77,41 @@ Eigen::MatrixXd moments_of_end(const Eigen::Matrix3Xd& points, Eigen::Index unkn
   return columns;
 }
 
+/// EI kappa of the joints inside, those beside the ends without: springs differ there by where a
+/// clamp is thought to be. Of another power they go with that of 2 sin(angle / 2), and are EI kappa
+/// where the rod turns most.
+Eigen::VectorXd bending_moments(const Scene& scene, const Shape& shape, double power) {
+  const Eigen::Index n = shape.points.cols() - 1;
+  Eigen::VectorXd moments = Eigen::VectorXd::Zero(3 * (n - 1));
+  Eigen::VectorXd chords = Eigen::VectorXd::Zero(n - 1);
+  for (Eigen::Index i = 2; i <= n - 2; ++i) {
+    const auto joint = static_cast<std::size_t>(i);
+    const Eigen::Vector3d curvature = joint_curvature(shape, joint);
+    chords[i - 1] = 2 * std::sin(curvature.norm() * joint_length(shape, joint) / 2);
+    moments.segment<3>(3 * (i - 1)) = scene.bending_stiffness() * curvature;
+  }
+  if (power == 1) return moments;
+  const double largest = chords.maxCoeff();
+  for (Eigen::Index i = 2; i <= n - 2; ++i) {
+    const double length = joint_length(shape, static_cast<std::size_t>(i));
+    const Eigen::Vector3d moment = moments.segment<3>(3 * (i - 1));
+    moments.segment<3>(3 * (i - 1)) = moment.normalized() * scene.bending_stiffness() / length *
+                                      largest * std::pow(chords[i - 1] / largest, power);
+  }
+  return moments;
+}
+
+/// MomentBalance::resolution
+double resolution(const Scene& scene, const LoadedPoints& rod) {
+  constexpr double of_second_order = 0.25;
+  const double h = scene.length / static_cast<double>(rod.shape.points.cols() - 1);
+  const double force = rod.weights.colwise().norm().sum() + rod.forces.colwise().norm().sum();
+  return of_second_order * h * h * force / scene.bending_stiffness();
+}
+
 }  // namespace
 
-std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& shape) {
+std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& shape, double power) {
   const bool plain = scene.sections.empty() && !scene.has_material_directors() &&
                      !scene.holds_twist() && !scene.has_couples() &&
                      scene.stretch == Stretch::none && obstacles_in_reach(scene).empty();
@@ -98,19 +130,12 @@ std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& sha
     std::swap(first, last);
   }
   const Eigen::Index unknown = last == nullptr ? 0 : last->direction ? 6 : 3;
-  Eigen::VectorXd bending(3 * (n - 1));
-  // At the joints beside an end springs differ by where a clamp is thought to be.
   const Eigen::Index from = 2;
   const Eigen::Index to = n - 2;
-  bending.setZero();
-  for (Eigen::Index i = from; i <= to; ++i) {
-    bending.segment<3>(3 * (i - 1)) =
-        scene.bending_stiffness() * joint_curvature(rod.shape, static_cast<std::size_t>(i));
-  }
   const auto inside = [&](const auto& rows) {
     return rows.middleRows(3 * (from - 1), 3 * (to - from + 1)).eval();
   };
-  bending = inside(bending);
+  const Eigen::VectorXd bending = inside(bending_moments(scene, rod.shape, power));
   if (!(bending.norm() > 0)) return std::nullopt;
   constexpr double no_load = 1e-9;
   const Eigen::VectorXd of_weight = inside(moments_beyond(rod.shape.points, rod.weights));
@@ -134,6 +159,7 @@ std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& sha
                                        : Eigen::VectorXd(-of_weight - of_loads);
   const Eigen::VectorXd found = columns.colPivHouseholderQr().solve(right);
   MomentBalance result;
+  result.resolution = resolution(scene, rod);
   if (any) result.stiffness = found[found.size() - 1];
   if (both) result.weight = found[found.size() - 2];
   constexpr double least = 1e-3;

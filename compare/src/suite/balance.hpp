@@ -12,6 +12,9 @@ struct MomentBalance {
   double imbalance = 0;  ///< share of its bending moments that nothing explains [-]
   double stiffness = 1;  ///< c, over EI
   double weight = 1;     ///< a, over the scene's; 1 unless there is weight and another load
+  /// Share of the moments that is not identifiable from points at such distances: curvatures of a
+  /// rod in which forces F bend layers of sqrt(EI / F) are found to a quarter of h^2 F / EI [-]
+  double resolution = 0;
 };
 
 /// The share of a shape's bending moments that neither its loads nor forces and torques of the
@@ -21,6 +24,8 @@ struct MomentBalance {
 /// error of discretisation. Nothing where the scene has more than a round, straight rod of one
 /// section, held at its ends alone.
 /// @param shape  in the scene's frame, along the whole rod
-[[nodiscard]] std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& shape);
+/// @param power  of springs whose moments go with a power of 2 sin(angle / 2), > 0; 1: EI kappa
+[[nodiscard]] std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& shape,
+                                                          double power = 1);
 
 }  // namespace dlo::compare

@@ -14,6 +14,7 @@
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/shape_check.hpp"
 #include "explain/own_polygon.hpp"
+#include "polygon/scalar_search.hpp"
 #include "suite/answer.hpp"
 #include "suite/balance.hpp"
 #include "suite/stiffness_cause.hpp"
@@ -41,6 +42,8 @@ constexpr double no_order = 0.4;
 constexpr double some_order = 1.2;
 /// Share of its moments by which a shape that does not rest is out of balance.
 constexpr double out_of_balance = 0.02;
+/// An error that is a thousandth of what is right: a rod that has a thickness is as far away.
+constexpr double negligible_error = 1e-5;
 
 class Diagnosis {
  public:
@@ -51,7 +54,7 @@ class Diagnosis {
   [[nodiscard]] std::vector<Cause> run() {
     const double order = convergence_order(shapes_);
     const bool converges = !(finest().error > error_floor) || order > second_order;
-    if (look_at_chains(converges) || converges) return found_;
+    if (look_at_chains(converges) || converges || finest().error <= negligible_error) return found_;
     if (order > no_order && !stays()) return found_;  // of discretisation, without a name
     if (look_at_neglected() || look_at_states() || look_at_springs() || look_at_rest() ||
         look_at_stiffness()) {
@@ -231,6 +234,29 @@ class Diagnosis {
     return false;
   }
 
+  /// Whether the shape is at rest with springs of another power than 1.
+  bool look_at_power() {
+    constexpr double least = 0.25;
+    constexpr double most = 5;
+    constexpr int steps = 19;
+    constexpr double balanced = 5e-3;
+    constexpr double other = 0.2;
+    const auto left = [&](const CardShape& shape, double power) {
+      const std::optional<MomentBalance> balance = moment_balance(scene_, shape.shape, power);
+      return balance ? balance->imbalance : std::numeric_limits<double>::infinity();
+    };
+    const Function of_finest = [&](double power) { return left(finest(), power); };
+    const Scan seen = scan(of_finest, least, most, steps);
+    if (!seen.is_bracketed()) return false;
+    const Minimum best = minimum_near(of_finest, seen);
+    if (!(best.value < balanced) || std::abs(best.x - 1) < other) return false;
+    if (!(left(coarsest(), best.x) < out_of_balance)) return false;
+    add("springs with a power of the angle", best.x,
+        fmt::format("moments balance if they go with the power {:.2g} of the joints' angles",
+                    best.x));
+    return true;
+  }
+
   bool look_at_rest() {
     const std::optional<MomentBalance> balance = moment_balance(scene_, finest().shape);
     if (!balance) return false;
@@ -243,6 +269,8 @@ class Diagnosis {
           fmt::format("the weight is {:.3g} times the scene's", balance->weight));
       return true;
     }
+    if (look_at_power()) return true;
+    if (balance->imbalance <= balance->resolution) return false;
     // Loads that are not the scene's are out of balance too.
     if (look_at_scene(nothing_left)) return true;
     add("not at rest", balance->imbalance,

@@ -22,11 +22,27 @@
 namespace dlo::compare {
 namespace {
 
-std::optional<Model> own_model(const std::string& text) {
-  for (const Model model : {Model::chain, Model::force}) {
-    if (text == to_string(model)) return model;
+/// One of our own polygon models.
+struct OwnSimulator {
+  const char* name;
+  Model model;
+  BendingLaw law;
+};
+constexpr OwnSimulator own_simulators[] = {
+    {"chain", Model::chain, BendingLaw::hooke},
+    {"force", Model::force, BendingLaw::hooke},
+    {"chain_paper", Model::chain, BendingLaw::paper},
+    {"force_paper", Model::force, BendingLaw::paper},
+};
+
+Simulator parsed_simulator(const std::string& text) {
+  for (const OwnSimulator& own : own_simulators) {
+    if (text == own.name) {
+      return {.name = text, .own = own.model, .law = own.law, .program = {}};
+    }
   }
-  return std::nullopt;
+  ForeignProgram program = parse_foreign_program(text);
+  return {.name = program.name, .own = {}, .program = std::move(program)};
 }
 
 ReleasedRod released_rod(const BatteryScene& scene) {
@@ -47,9 +63,9 @@ void solve_own(Model model, const Scene& scene, double time_limit, SimulatorRun&
 /// `chain` is the chain of hinges with masses in its points.
 void move_own(Model model, const BatteryScene& scene, int points, double time_limit,
               SimulatorRun& run) {
-  if (model != Model::chain) {
+  if (model != Model::chain || scene.scene.force_model.law != BendingLaw::hooke) {
     run.status = RunStatus::not_supported;
-    run.problem = fmt::format("{} has no motion here", to_string(model));
+    run.problem = "only chain, with law hooke, has motion here";
     return;
   }
   const std::vector<double> times = scene.motion->times();
@@ -170,7 +186,7 @@ void write_run(const std::filesystem::path& file, const std::string& known,
 
 std::string Simulator::identity() const {
   if (function) return fmt::format("function {}", name);
-  return own ? fmt::format("model {}", to_string(*own))
+  return own ? fmt::format("model {}", name)
              : fmt::format("command {}", Json(program.words).dump());
 }
 
@@ -178,10 +194,7 @@ std::vector<Simulator> parse_simulators(const std::vector<std::string>& texts) {
   std::vector<Simulator> simulators;
   std::set<std::string> taken;
   for (const std::string& text : texts) {
-    Simulator simulator;
-    simulator.own = own_model(text);
-    if (!simulator.own) simulator.program = parse_foreign_program(text);
-    simulator.name = simulator.own ? text : simulator.program.name;
+    Simulator simulator = parsed_simulator(text);
     if (!taken.insert(simulator.name).second) {
       throw InputError(fmt::format("--with {}: given twice (allowed: a name of its own for each)",
                                    simulator.name));
@@ -224,6 +237,7 @@ SimulatorRun run_simulator(const Simulator& simulator, const BatteryScene& scene
   } else if (simulator.own) {
     BatteryScene numbered = scene;
     numbered.scene.force_model.points = points;
+    numbered.scene.force_model.law = simulator.law;
     run = run_own(*simulator.own, std::move(numbered), points, time_limit);
   } else {
     run = run_program(simulator.program, scene, points, time_limit);

@@ -42,9 +42,10 @@ struct SimulatorRun {
 
 /// What is run on the battery: a program, one of our own polygon models, or a function.
 struct Simulator {
-  std::string name;          ///< of the program or function, or "chain" or "force"
+  std::string name;          ///< of the program or function, or as parse_simulators() has it
   std::optional<Model> own;  ///< none: `program`
-  ForeignProgram program;    ///< its command
+  BendingLaw law = BendingLaw::hooke;  ///< of an own one
+  ForeignProgram program;              ///< its command
   /// A function of this process, from any thread. None: one of those.
   std::function<SimulatorRun(const Scene& scene, int points)> function = {};
 
@@ -52,7 +53,8 @@ struct Simulator {
   [[nodiscard]] std::string identity() const;
 };
 
-/// @param texts  each NAME=COMMAND as parse_foreign_program() takes it, or "chain" or "force"
+/// @param texts  each NAME=COMMAND as parse_foreign_program() takes it, or "chain" or "force" with
+///               the law `hooke`, or "chain_paper" or "force_paper"
 /// @throws InputError as that, or if two have the same name
 [[nodiscard]] std::vector<Simulator> parse_simulators(const std::vector<std::string>& texts);
 

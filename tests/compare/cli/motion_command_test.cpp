@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "../../says.hpp"
 #include "command_fixture.hpp"
 
 namespace {
@@ -89,6 +90,22 @@ TEST_F(MotionCommand, CheckTellsLagAndFramesInEveryFormat) {
   for (const json& frame : document.at("frames")) {
     EXPECT_LE(frame.at("rms_m").get<double>(), worst.at("rms_m").get<double>());
   }
+}
+
+TEST_F(MotionCommand, CheckDrawsTheWorstFrameAndWritesAPage) {
+  write_markers("late.csv", 0.02);
+  const std::string late =
+      check(path("late.csv") + " --from 0 --dynamic --damping 0.01 --frame-rate 200");
+  const Outcome sketch = run(late + " --plot -");
+  EXPECT_EQ(sketch.status, 0) << sketch.err;
+  EXPECT_THAT(sketch.out, HasSubstr("x to the right"));
+  const Outcome page = run(late + " --report " + path("page.html"));
+  ASSERT_EQ(page.status, 0) << page.err;
+  const std::string html = read(path("page.html"));
+  EXPECT_TRUE(dlo::test::says(html, {"<p class=\"badge fail\">", "It would be ", "20 ms late"}));
+  EXPECT_TRUE(dlo::test::says_none(html, {"src=\"http", "href=\"http", "url("}));
+  // Not over the recording.
+  expect_error(late + " --report " + path("late.csv"), 2, {"late.csv"});
 }
 
 TEST_F(MotionCommand, CheckTakesTheFramesThatTrackWrites) {

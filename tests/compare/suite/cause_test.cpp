@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -91,6 +92,29 @@ TEST(MomentBalance, DoesNotHoldHalfWayToRest) {
   shape.points.row(1) += 0.02 * (shape.points.row(0).array() * 30).sin().matrix();
   EXPECT_GT(moment_balance(scene, shape)->imbalance, 0.1);
   EXPECT_FALSE(moment_balance(battery_scene("floor"), end));
+}
+
+// Points further apart than the layer in which a soft rod bends at its clamp do not tell its
+// moments.
+TEST(MomentBalance, OfARodAtRestIsWithinItsResolution) {
+  for (const char* id : {"weight_100", "weight_1000", "weight_10000", "end_up"}) {
+    const Scene scene = battery_scene(id);
+    for (const int points : {9, 17, 33, 65}) {
+      const auto balance = moment_balance(scene, rod_shape(scene, points));
+      ASSERT_TRUE(balance) << id;
+      EXPECT_LT(balance->imbalance, std::max(0.02, balance->resolution)) << id << ' ' << points;
+    }
+  }
+  // w l (l/64)^2 / EI = Gamma / 64^2, a quarter of it.
+  const Scene scene = battery_scene("weight_100");
+  EXPECT_NEAR(moment_balance(scene, rod_shape(scene))->resolution, 100.0 / 4096 / 4, 1e-6);
+}
+
+TEST(Causes, AreNoneOfAnErrorThatIsAThousandthOfWhatIsRight) {
+  const Scene scene = battery_scene("weight_10");
+  Scene other = scene;
+  other.scale_modulus(1 + 1e-5);
+  EXPECT_TRUE(causes_of_other(scene, other).empty());
 }
 
 TEST(Causes, NameWhatASceneHasAndAShapeHasNot) {

@@ -73,6 +73,33 @@ TEST_F(SuiteCommand, NamesWhatIsWrong) {
   }
 }
 
+TEST_F(SuiteCommand, HasOurPolygonsWithThePapersLawToo) {
+  for (const std::string model : {"chain", "force"}) {
+    const std::string same = " --with same='" + std::string(DLO_COMMAND) + " solve " + DLO_DATA +
+                             "/suite/scenes/weight_10.toml --law paper --points {points} --model " +
+                             model + " --format csv -o {shape}'";
+    const Outcome result = run("suite --format json --points 8 --scenes weight_10 --with " + model +
+                               "_paper --with " + model + same);
+    ASSERT_EQ(result.status, 0) << result.err;
+    const json cards = json::parse(result.out).at("cards");
+    const auto error = [&](std::size_t card, std::size_t run) {
+      return cards.at(card).at("scenes").at(0).at("runs").at(run).at("rms_over_length");
+    };
+    for (const std::size_t run : {0, 1, 2}) {
+      EXPECT_NEAR(error(0, run).get<double>(), error(2, run).get<double>(), 1e-6) << model;
+      EXPECT_GT(error(0, run).get<double>(), 5 * error(1, run).get<double>()) << model;
+    }
+  }
+  // M = 2 c_b L sin^3(angle / 2): the cause is its power, with one clamp and with two.
+  const json cubic = card_of("--points 8 --with chain_paper --scenes weight_1,clamps_step");
+  EXPECT_EQ(causes(cubic), Names{"springs with a power of the angle"}) << cubic.dump(1);
+  for (const json& scene : cubic.at("scenes")) {
+    EXPECT_NEAR(scene.at("causes").at(0).at("factor").get<double>(), 3, 0.01);
+  }
+  const json card = card_of("--with chain_paper --scenes motion_vibration");
+  EXPECT_EQ(card.at("total").at("not_supported"), 1);
+}
+
 TEST_F(SuiteCommand, NamesWhatIsNotAtRestThoughTipLoadsMakeItAStifferRod) {
   const json card =
       card_of(wrong("not_at_rest") + " --scenes bending_small,weight_1,weight_10,buckling_weight");

@@ -7,16 +7,15 @@
 // named, what MuJoCo was given. Needs MuJoCo as WebAssembly: `npm install` in this folder.
 //
 // Bodies are the segments of the scene's `force_model`, with ball joints of stiffness EI/h at its hinges; the first
-// segment is held, a second clamp is an equality constraint (weld) of the last. Only the shape at rest is asked for,
-// which masses have no part in: all bodies have the same, weight is a force on the points, and motion is stopped whenever
-// it has lost speed. A ball joint's spring turns back along the rotation vector with one stiffness for bending and
-// twist: for a rod with GJ < EI a hinge about the segment lies in series with it.
+// segment is held, a second clamp is an equality constraint (weld) of the last. Only the shape at rest is asked for, which
+// inertia has no part in: a hinge has that of its stiffness (armature), with which all hinges swing in the same time and
+// steps to rest hardly grow with N, bodies have next to none, weight is a force on the points, and motion is stopped
+// whenever it has lost speed. A ball joint's spring turns back along the rotation vector with one stiffness for bending
+// and twist: for a rod with GJ < EI a hinge about the segment lies in series with it.
 
 import { readFileSync, writeFileSync } from 'node:fs';
-import load from '@mujoco/mujoco';
 
-const MASS = 1; // [kg] of each body
-const STEPS = 1e6;
+const STEPS = 1e5;
 const AT_REST = 1e-13; // turn within a step [rad], at the moment of the highest speed
 
 const fail = (why) => {
@@ -46,13 +45,14 @@ const shortestTurn = (a, b) => {
 function readChain(scene) {
   const { force_model: model, grippers, rod } = scene;
   const [first, second] = grippers;
-  if (model.refused) refuse(model.refused);
+  if (scene.motion) refuse('motion');
   if (grippers.length > 2 || grippers.some((grip) => grip.hold !== 'clamp') || first.at_m !== 0 ||
       (second && (second.at_m !== rod.length_m || minus(second.direction, first.direction).some((x) => x))))
     refuse('other than a clamp at arc length 0, and a second one, parallel to it, at the end');
   if (rod.natural_curvature_per_m.length || scene.obstacles.length) refuse('natural curvature, obstacles');
   if (rod.bending_stiffness_Nm2[0] !== rod.bending_stiffness_Nm2[1] || scene.loads.some((load) => load.torque_Nm))
     refuse('two bending stiffnesses, couples');
+  if (model.refused) refuse(model.refused);
   const roll = second?.frame ? second.frame.roll_rad - first.frame.roll_rad : 0;
   const [EI, GJ] = [rod.bending_stiffness_Nm2[0], rod.torsional_stiffness_Nm2 ?? rod.bending_stiffness_Nm2[0]];
   if (roll && (rod.sections.length || GJ > EI)) refuse('twist other than of a rod without sections, with GJ <= EI');
@@ -67,39 +67,43 @@ function readChain(scene) {
     const half = (roll / 2) * (i / (model.segment_m.length - 1));
     return product(frame, [Math.cos(half), Math.sin(half), 0, 0]);
   });
-  const hinges = model.joint_stiffness_Nm.map((bend) => ({
-    bend,
-    series: roll && GJ < EI ? (bend * GJ) / (EI - GJ) : 0, // 1 / (EI/h) + 1 / series = 1 / (GJ/h)
+  // Shapes at rest depend on forces over stiffnesses alone. MuJoCo takes no mass below 1e-15 kg.
+  const unit = Math.min(...model.joint_stiffness_Nm);
+  const hinges = model.joint_stiffness_Nm.map((stiffness) => ({
+    bend: stiffness / unit,
+    series: roll && GJ < EI ? (stiffness / unit) * (GJ / (EI - GJ)) : 0, // 1 / (EI/h) + 1 / series = 1 / (GJ/h)
   }));
-  return { at: model.point_at_m, segment: model.segment_m, force: model.point_force_N, frames, hinges,
+  const force = model.point_force_N.map((one) => one.map((x) => x / unit));
+  return { at: model.point_at_m, segment: model.segment_m, force, frames, hinges,
     hinge: model.held[0].points_m[1], lastHinge: second && model.held[1].points_m[0],
     origin: first.position_m, end: second?.position_m, length: rod.length_m };
 }
 
-/** No step may be longer than the fastest motion, in which hinges turn in zigzag, allows. */
-function timeStep({ segment: [h], hinges, force }) {
-  const stiffest = Math.max(...hinges.map(({ bend, series }) => Math.max(bend, series)));
-  const weight = force.reduce((sum, one) => sum + Math.hypot(...one), 0);
-  return 0.5 / Math.sqrt((16 * stiffest / h + 4 * weight) / (MASS * h));
+/** A quarter of the step that the fastest motion allows, by a bound of what weight adds to the springs' 1/s^2. */
+function timeStep({ hinges, force, segment: [h] }) {
+  // Turns of the hinges j and k move a point beyond both by its distance from the farther one.
+  const weight = force.reduce((sum, one, i) => sum + (Math.hypot(...one) * h * i * (i + 1)) / 2, 0);
+  return 0.5 / Math.sqrt(1 + weight);
 }
 
 function mjcf(chain) {
   const list = (numbers) => numbers.join(' ');
-  const [h] = chain.segment;
-  const inertia = (MASS * h * h) / 4;
+  // Of the bodies themselves, too little to matter beside the hinges'.
+  const mass = 1e-4 / (chain.length * chain.hinges.length) ** 2;
+  const inertia = mass * chain.segment[0] ** 2;
   // Written straight, since springs are at rest where the model is written, and turned afterwards.
   const bodies = chain.hinges.map(({ bend, series }, i) => `
     <body name="segment${i + 1}" pos="${list(i === 0 ? chain.hinge : [chain.segment[i], 0, 0])}"
         quat="${list(i === 0 ? chain.frames[0] : [1, 0, 0, 0])}">
-      ${series ? `<joint type="hinge" axis="1 0 0" stiffness="${series}" armature="${inertia}"/>` : ''}
-      <joint type="ball" stiffness="${bend}"/>
-      <inertial pos="${chain.segment[i + 1]} 0 0" mass="${MASS}" diaginertia="${list([inertia, inertia, inertia])}"/>`);
+      ${series ? `<joint type="hinge" axis="1 0 0" stiffness="${series}" armature="${series}"/>` : ''}
+      <joint type="ball" stiffness="${bend}" armature="${bend}"/>
+      <inertial pos="${chain.segment[i + 1]} 0 0" mass="${mass}" diaginertia="${list([inertia, inertia, inertia])}"/>`);
   const weld = `<equality>
     <weld body1="world" body2="segment${bodies.length}" anchor="0 0 0" solimp="0.9999 0.9999 0.001"
         relpose="${list([...(chain.lastHinge ?? []), ...chain.frames.at(-1)])}"/>
   </equality>`;
   return `<mujoco>
-  <option timestep="${timeStep(chain)}" gravity="0 0 0" tolerance="1e-15"><flag contact="disable"/></option>
+  <option timestep="${timeStep(chain)}" gravity="0 0 0" iterations="2" tolerance="1e-15"><flag contact="disable"/></option>
   <worldbody>${bodies.join('')}${'</body>'.repeat(bodies.length)}
   </worldbody>
   ${chain.end ? weld : ''}
@@ -119,14 +123,25 @@ function solve(mujoco, chain, xml) {
     at += 4;
     applied.set(chain.force[i + 2], 6 * (i + 1)); // at the body's centre of mass, which is its end
   });
+  // A weld yields to its force. Where it is led is moved by how far it is off, until it is not.
+  const last = chain.hinges.length;
+  const place = model.eq_data.subarray(3, 6), turn = model.eq_data.subarray(6, 10);
+  const shiftWeld = () => {
+    mujoco.mj_kinematics(model, data);
+    const off = minus(chain.lastHinge, [...data.xpos.subarray(3 * last, 3 * last + 3)]);
+    const turned = product(chain.frames.at(-1), inverse([...data.xquat.subarray(4 * last, 4 * last + 4)]));
+    place.set(off.map((x, i) => place[i] + x));
+    turn.set(product(turned, [...turn]));
+  };
   const step = timeStep(chain);
   for (let i = 0, before = 0, calm = 0; calm < 3; ++i) {
     if (i === STEPS) fail('not at rest');
     mujoco.mj_step(model, data);
     let motion = 0;
     for (const speed of qvel) motion += (speed * step) ** 2;
-    if (motion < before) {
+    if (motion <= before) { // both are 0 where the rod is at rest from the beginning
       qvel.fill(0);
+      if (chain.end) shiftWeld();
       calm = before < AT_REST ** 2 ? calm + 1 : 0;
       motion = 0;
     }
@@ -141,6 +156,7 @@ if (!shape) fail('usage: mujoco.mjs SCENE SHAPE [MODEL.XML]');
 const chain = readChain(JSON.parse(readFileSync(scene, 'utf8')));
 const xml = mjcf(chain);
 if (model) writeFileSync(model, xml);
+const { default: load } = await import('@mujoco/mujoco'); // not before a scene is refused
 const points = solve(await load(), chain, xml).slice(0, chain.end ? -1 : undefined);
 const rows = [[...chain.origin, 0], ...points.map((point, i) => [...point, chain.at[i + 1]])];
 if (chain.end) rows.push([...chain.end, chain.length]);

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+
+#include "dlo/compare/shape.hpp"
+#include "recording/model_motion.hpp"
+#include "trajectory/read_markers.hpp"
+
+namespace dlo::compare {
+
+/// One frame of a recording beside the rod.
+struct FrameShapes {
+  double time = 0;                         ///< [s]
+  Shape recorded;                          ///< the frame's points
+  Shape on_rod;                            ///< the rod's points at their arc lengths
+  Shape rod;                               ///< the whole rod
+  std::optional<Shape> rod_at_other_time;  ///< the same at time - lag, where there is a lag
+};
+
+/// @param time    of a frame of the recording [s]
+/// @param length  of the rod [m]
+/// @param lag     by which the recording is late [s]; NaN: none
+[[nodiscard]] FrameShapes frame_shapes(const MarkerMotion& recorded, const ModelMotion& model,
+                                       double time, double length, double lag);
+
+}  // namespace dlo::compare
