@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "dlo/energy_model/energy.hpp"
+#include "frames/position_operator.hpp"
 #include "problem/split.hpp"
 #include "problems.hpp"
-#include "strain/position_operator.hpp"
 #include "strain/span_energy.hpp"
 
 namespace dlo::energy_model {

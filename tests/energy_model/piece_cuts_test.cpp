@@ -49,8 +49,9 @@ TEST(PieceCuts, AreWhereASoftRodTurnsBackAndBesideIt) {
   const int as_many = terms * cut.model->pieces() / plain.model->pieces();
   const SpanSolution uncut = solved(hairpin(), as_many, workspace);
   printf("cut %d pieces tail %g; uncut %d pieces x %d tail %g\n", cut.model->pieces(),
-         cut.model->tail(cut.x), plain.model->pieces(), as_many, uncut.model->tail(uncut.x));
-  EXPECT_LT(cut.model->tail(cut.x), 1e-2 * uncut.model->tail(uncut.x));
+         cut.model->truncation(cut.x), plain.model->pieces(), as_many,
+         uncut.model->truncation(uncut.x));
+  EXPECT_LT(cut.model->truncation(cut.x), 1e-2 * uncut.model->truncation(uncut.x));
 }
 
 TEST(PieceCuts, ResolveSoftRodsBetweenManyGrips) {

@@ -1,13 +1,13 @@
 // Points of a span as sums over tangents, against the samples of its shape.
 
-#include "strain/position_operator.hpp"
+#include "frames/position_operator.hpp"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-#include "strain/rod_frames.hpp"
-#include "strain/span_shape.hpp"
+#include "frames/rod_frames.hpp"
+#include "frames/span_shape.hpp"
 
 namespace dlo::energy_model {
 namespace {

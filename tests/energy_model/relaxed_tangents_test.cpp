@@ -12,6 +12,7 @@
 #include "dlo/energy_model/problem.hpp"
 #include "kirchhoff/grip_gaps.hpp"
 #include "kirchhoff/polygon_starts.hpp"
+#include "kirchhoff/rod_mesh.hpp"
 #include "kirchhoff/rod_span.hpp"
 
 namespace dlo::energy_model {

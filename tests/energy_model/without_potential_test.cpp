@@ -15,6 +15,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "dlo/energy_model/vibrations.hpp"
+#include "kirchhoff/rod_mesh.hpp"
 #include "kirchhoff/rod_span.hpp"
 #include "problems.hpp"
 #include "random_problems.hpp"

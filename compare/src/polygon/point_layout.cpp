@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "dlo/compare/discretise.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/energy_model/taut_line.hpp"
 #include "scene/scene_problem.hpp"
@@ -208,6 +209,98 @@ Layout lay_out(const Scene& scene, const ForceModelSettings& settings) {
     }
   }
   return layout;
+}
+
+namespace {
+
+force_model::Grip grip_of(const Gripper& gripper, const Layout& layout, Eigen::Index first) {
+  force_model::Grip hold;
+  hold.first_point = first;
+  hold.reference = gripper.position;
+  if (gripper.direction) {
+    hold.targets =
+        force_model::grip_targets(gripper.position, *gripper.direction, layout.segment_length,
+                                  gripper.at - layout.arc_length[static_cast<std::size_t>(first)]);
+  } else {
+    hold.targets = gripper.position;
+  }
+  return hold;
+}
+
+/// What two neighbouring grips leave between the points that they hold.
+struct Between {
+  double apart = 0;  // the two points [m]
+  double rod = 0;    // the segments' rest lengths [m]
+  Eigen::Index segments = 0;
+
+  /// One segment alone is as long as the grips are apart; more of them may bend.
+  [[nodiscard]] bool fits(double strain) const {
+    if (apart > rod * (1 + 1e-9)) return false;
+    return segments > 1 || apart >= rod * (1 - strain);
+  }
+};
+
+std::vector<Between> between_grips(const Layout& layout,
+                                   const std::vector<force_model::Grip>& grips) {
+  std::vector<Between> result;
+  for (std::size_t k = 0; k + 1 < layout.along.size(); ++k) {
+    const force_model::Grip& a = grips[layout.along[k]];
+    const force_model::Grip& b = grips[layout.along[k + 1]];
+    const Eigen::Index last = a.first_point + a.targets.cols() - 1;
+    const Eigen::Index segments = b.first_point - last;
+    result.push_back({(b.targets.col(0) - a.targets.rightCols<1>()).norm(),
+                      layout.rest_lengths.segment(last, segments).sum(), segments});
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<force_model::Grip> grips_of(const Scene& scene, const Layout& layout) {
+  std::vector<force_model::Grip> grips;
+  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+    grips.push_back(grip_of(scene.grippers[i], layout, layout.first_held[i]));
+  }
+  return grips;
+}
+
+namespace {
+
+bool grips_fit(const Layout& layout, const std::vector<force_model::Grip>& grips, double strain) {
+  const std::vector<Between> all = between_grips(layout, grips);
+  return std::all_of(all.begin(), all.end(),
+                     [strain](const Between& between) { return between.fits(strain); });
+}
+
+/// The fewest points, above those of the settings, whose held segments leave rod enough; 0: none
+/// among the next thousands.
+int points_that_fit(const Scene& scene, ForceModelSettings settings, double strain) {
+  constexpr int most_more = 3000;
+  const int last = settings.points + most_more;
+  for (++settings.points; settings.points <= last; ++settings.points) {
+    const Layout layout = lay_out(scene, settings);
+    if (grips_fit(layout, grips_of(scene, layout), strain)) return settings.points;
+  }
+  return 0;
+}
+
+}  // namespace
+
+void require_fit(const Scene& scene, const ForceModelSettings& settings, const Layout& layout,
+                 const std::vector<force_model::Grip>& grips) {
+  const double strain = largest_strain(scene, settings);
+  if (grips_fit(layout, grips, strain)) return;
+  const int needed = points_that_fit(scene, settings, strain);
+  const std::string allowed =
+      needed > 0 ? fmt::format("{} or more", needed) : std::string("more points");
+  for (const Between& between : between_grips(layout, grips)) {
+    if (between.fits(strain)) continue;
+    throw InputError(
+        fmt::format("{}: force_model.points = {}: held segments of {:g} m leave {:g} m of rod in "
+                    "{} segment{} between points that two grippers hold {:g} m apart (allowed: {})",
+                    scene.file, settings.points, layout.segment_length, between.rod,
+                    between.segments, between.segments == 1 ? "" : "s", between.apart, allowed));
+  }
 }
 
 }  // namespace dlo::compare

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "dlo/compare/scene.hpp"
+#include "dlo/force_model/grip.hpp"
 
 namespace dlo::compare {
 
@@ -26,5 +27,14 @@ void require_slack(const Scene& scene);
 
 /// Lays out points as `discretise` says. @throws InputError as it does
 [[nodiscard]] Layout lay_out(const Scene& scene, const ForceModelSettings& settings);
+
+/// What a scene's grippers hold of its polygon, one each.
+[[nodiscard]] std::vector<force_model::Grip> grips_of(const Scene& scene, const Layout& layout);
+
+/// Few points have long held segments, which may leave too little rod between two grips, or a
+/// single segment that would have to be shorter than it is. @throws InputError then, saying how
+/// many points do. @param grips  of grips_of()
+void require_fit(const Scene& scene, const ForceModelSettings& settings, const Layout& layout,
+                 const std::vector<force_model::Grip>& grips);
 
 }  // namespace dlo::compare

@@ -56,7 +56,7 @@ double linear_error(const SpanSolution& solution, double load) {
   const double scale = scale_of_forces(solution, load);
   // The angle that the last coefficient adds is a_K / (2K); forces feel it as little again.
   const double K = solution.terms;
-  const double angle = solution.model->tail(solution.x) / (2 * K);
+  const double angle = solution.model->truncation(solution.x) / (2 * K);
   const double smallest = std::min(solution.eigenvalue_nearest_zero, 1.0);
   const double truncated = scale * angle / (2 * K) + misplaced_contact(solution);
   return solution.next_step + (rounding_of(scale) + truncated) / smallest;
@@ -73,7 +73,7 @@ double error_estimate(const SpanSolution& solution, double moved) {
   for (const Span::Part& part : model.span().parts) {
     least_stiffness = std::min(least_stiffness, part.stiffness.head<2>().minCoeff());
   }
-  const double angle = model.tail(solution.x) / (2.0 * solution.terms);
+  const double angle = model.truncation(solution.x) / (2.0 * solution.terms);
   return std::min(moved / std::sqrt(least_stiffness) + angle, largest_error);
 }
 
@@ -261,8 +261,7 @@ class Certification {
   }
 
   void look_out_of_plane() {
-    SecondDerivatives across;
-    model_.out_of_plane(solution_.multipliers, across.hessian, across.jacobian);
+    const SecondDerivatives across = second_derivatives_out_of_plane(model_, solution_.multipliers);
     ReducedHessian beside;
     beside.compute(across.hessian, across.jacobian);
     const SmallEigenvalues found = eigenvalues_of(beside, rigid_.out_of_plane);

@@ -14,7 +14,7 @@ int terms_needed(const SpanEnergy& model, const Eigen::VectorXd& x, double toler
   int terms = model.terms();
   while (terms > least) {
     const double K = terms - 1;
-    if (!(model.tail(x, terms - 1) < tolerance * 4 * K * K)) break;
+    if (!(model.truncation(x, terms - 1) < tolerance * 4 * K * K)) break;
     --terms;
   }
   return terms;

@@ -9,7 +9,7 @@ namespace dlo::energy_model {
 namespace {
 
 /// Points at which a shape is looked at.
-constexpr Eigen::Index looks = 4096;
+constexpr Eigen::Index probes = 4096;
 
 /// What bends the rod within a length of its own.
 struct Feature {
@@ -69,18 +69,18 @@ Feature kink_at(const SpanSolution& solution, double at, double sense) {
 std::vector<Feature> peaks_of(const SpanSolution& solution, double begin, double end) {
   constexpr double fallen = 0.6;
   constexpr double widths = 2;
-  const Eigen::VectorXd at = Eigen::VectorXd::LinSpaced(looks, begin, end);
+  const Eigen::VectorXd at = Eigen::VectorXd::LinSpaced(probes, begin, end);
   const Eigen::VectorXd curvature = solution.model->shape(solution.x)
-                                        .sample({at.data(), static_cast<std::size_t>(looks)})
+                                        .sample({at.data(), static_cast<std::size_t>(probes)})
                                         .curvature.colwise()
                                         .norm();
-  const double h = (end - begin) / static_cast<double>(looks - 1);
+  const double h = (end - begin) / static_cast<double>(probes - 1);
   std::vector<Feature> peaks;
-  for (Eigen::Index i = 1; i + 1 < looks; ++i) {
+  for (Eigen::Index i = 1; i + 1 < probes; ++i) {
     const double length = 2 / curvature[i];
     if (!(widths * length < end - begin)) continue;
     const auto aside = static_cast<Eigen::Index>(widths * length / h) + 1;
-    if (aside > i || i + aside >= looks) continue;
+    if (aside > i || i + aside >= probes) continue;
     if (curvature.segment(i - aside, 2 * aside + 1).maxCoeff() > curvature[i]) continue;
     if (std::max(curvature[i - aside], curvature[i + aside]) > fallen * curvature[i]) continue;
     peaks.push_back({at[i], length});

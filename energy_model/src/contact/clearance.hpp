@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "frames/span_shape.hpp"
 #include "problem/span.hpp"
-#include "strain/span_shape.hpp"
 
 namespace dlo::energy_model {
 

@@ -22,7 +22,7 @@ struct FreeBoundary {
 /// All of a span's, by growing s.
 [[nodiscard]] std::vector<FreeBoundary> free_boundaries(const Span& span);
 
-/// What is missed there: of one that touches and slides the way to where it is nearest; of one that
+/// Residual there: of one that touches and slides the way to where it is nearest; of one that
 /// is held the slope of the clearance times the length of the shorter piece beside it, because the
 /// way would be slope over curvature, which is 0 / 0 where the rod begins to lie; of a lying part
 /// the second derivative of the clearance times the length of the free piece beside it.

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "base/deadline.hpp"
+#include "frames/span_shape.hpp"
 #include "problem/span.hpp"
-#include "strain/span_shape.hpp"
 
 namespace dlo::energy_model {
 

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
+#include "frames/span_shape.hpp"
 #include "problem/span.hpp"
-#include "strain/span_shape.hpp"
 #include "strain/span_solution.hpp"
 
 namespace dlo::energy_model {

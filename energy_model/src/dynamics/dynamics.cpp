@@ -170,6 +170,35 @@ StartingShape straight_rod(const Eigen::Vector3d& direction) {
   };
 }
 
+namespace {
+
+/// The rod's frames as far as all spans came, the first one but for its energy, by which they
+/// balance.
+void add_frames(const MovingRod& rod, const std::vector<PlacedSpan>& spans,
+                const std::vector<SpanRun>& runs, std::span<const double> times, Dynamics& result) {
+  const double begin = times.empty() ? 0 : std::min(0.0, times.front());
+  std::size_t reached = times.size() + 1;
+  for (const SpanRun& run : runs) reached = std::min(reached, run.frames.size());
+  EnergyBalance first;
+  double largest_imbalance = 0;
+  for (std::size_t k = 0; k < reached; ++k) {
+    MovingFrame frame = frame_of_all(rod, runs, k);
+    frame.time = k == 0 ? begin : times[k - 1];
+    move_zero(rod, spans, frame.energy);
+    add_loads_on_clamps(rod, begin, frame);
+    if (k == 0) first = frame.energy;
+    const EnergyBalance& energy = frame.energy;
+    largest_imbalance = std::max(
+        largest_imbalance,
+        std::abs(energy.total() - first.total() + energy.dissipated + energy.lost - energy.work));
+    result.largest_energy = std::max(result.largest_energy, of_largest(energy, first));
+    if (k > 0) result.frames.push_back(std::move(frame));
+  }
+  result.energy_error = result.largest_energy > 0 ? largest_imbalance / result.largest_energy : 0;
+}
+
+}  // namespace
+
 Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<const double> times,
                   const DynamicsOptions& options) {
   check_rod(rod);
@@ -216,24 +245,7 @@ Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<co
     runs.push_back(std::move(run));
   }
   if (options.step > 0) result.error_estimate = std::numeric_limits<double>::quiet_NaN();
-  std::size_t reached = times.size() + 1;
-  for (const SpanRun& run : runs) reached = std::min(reached, run.frames.size());
-  EnergyBalance first;
-  double largest_imbalance = 0;
-  for (std::size_t k = 0; k < reached; ++k) {
-    MovingFrame frame = frame_of_all(complete, runs, k);
-    frame.time = k == 0 ? begin : times[k - 1];
-    move_zero(complete, spans, frame.energy);
-    add_loads_on_clamps(complete, begin, frame);
-    if (k == 0) first = frame.energy;
-    const EnergyBalance& energy = frame.energy;
-    largest_imbalance = std::max(
-        largest_imbalance,
-        std::abs(energy.total() - first.total() + energy.dissipated + energy.lost - energy.work));
-    result.largest_energy = std::max(result.largest_energy, of_largest(energy, first));
-    if (k > 0) result.frames.push_back(std::move(frame));
-  }
-  result.energy_error = result.largest_energy > 0 ? largest_imbalance / result.largest_energy : 0;
+  add_frames(complete, spans, runs, times, result);
   return result;
 }
 

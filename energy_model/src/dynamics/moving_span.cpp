@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "base/spin.hpp"
+#include "frames/span_shape.hpp"
 #include "problem/rod_law.hpp"
 #include "search/known_shape.hpp"
-#include "strain/span_shape.hpp"
 #include "vibration/inertia.hpp"
 
 namespace dlo::energy_model {

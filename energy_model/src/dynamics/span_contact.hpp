@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "frames/position_operator.hpp"
 #include "problem/span.hpp"
-#include "strain/position_operator.hpp"
 
 namespace dlo::energy_model {
 

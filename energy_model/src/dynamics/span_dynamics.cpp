@@ -86,7 +86,8 @@ void SpanDynamics::move(const SpanDrive& drive, const Eigen::Ref<const Eigen::Ve
   v_ = v;
   a_ = a;
   frames_.evaluate(full(x), state_);
-  const FrameSpins spins = frames_.spins(full(v), full(a), drive.spin, drive.spin_rate, state_);
+  const FrameSpins spins =
+      frame_spins(frames_, state_, {full(v), full(a), drive.spin, drive.spin_rate});
   t_ = state_.t.bottomRows(nodes().size());
   t_rate_ = cross_rows(spins.velocities, t_);
   const Eigen::Matrix3d end = state_.end_frame();
@@ -138,7 +139,7 @@ Eigen::Vector3d SpanDynamics::multiplier_force(const Eigen::Ref<const Eigen::Vec
 /// Derivatives by the unknowns.
 Eigen::VectorXd SpanDynamics::pulled(const FrameGradient& f) {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(all_unknowns());
-  frames_.pull(f, 1, state_, result);
+  frames_.add_adjoint(f, 1, state_, result);
   return result.head(size());
 }
 
@@ -186,7 +187,7 @@ Eigen::MatrixXd SpanDynamics::stiffness(const Eigen::Ref<const Eigen::VectorXd>&
         multipliers[row++] * spin_curvature(director(across).value, across.direction.value);
   }
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(all_unknowns(), all_unknowns());
-  frames_.add_hessian({&tangents, couples(multipliers)}, curvatures, state_, hessian);
+  frame_hessian_.add(frames_, {&tangents, couples(multipliers)}, curvatures, state_, hessian);
   Eigen::MatrixXd result = hessian.topLeftCorner(size(), size());
   result.diagonal() += elastic_;
   add_touches(&Touch::by_depth, result);
@@ -235,7 +236,7 @@ Eigen::MatrixXd SpanDynamics::jacobian() {
   Eigen::Index row = 0;
   for (const std::vector<double>& signs : signs_) {
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(3, all_unknowns());
-    frames_.pull_position(signs, state_, rows);
+    frames_.position_jacobian(signs, state_, rows);
     result.middleRows(row, axes_) = rows.topLeftCorner(axes_, size());
     row += axes_;
   }
@@ -257,8 +258,10 @@ Eigen::MatrixXd SpanDynamics::mass_matrix() {
 }
 
 Eigen::VectorXd SpanDynamics::fit(const StartShape& shape) const {
-  Eigen::VectorXd x = frames_.fit(shape.tangents);
-  if (has_twist() && shape.roll.size() > 0) x = frames_.rolled(x, shape.roll);
+  RodFrames::State scratch;
+  frames_.resize(scratch);
+  Eigen::VectorXd x = energy_model::fit(frames_, shape.tangents, most_fit_steps, scratch);
+  if (has_twist() && shape.roll.size() > 0) x = rolled(frames_, x, shape.roll);
   return x.head(size());
 }
 

@@ -6,9 +6,12 @@
 
 #include "dlo/energy_model/dynamics.hpp"
 #include "dynamics/span_contact.hpp"
-#include "strain/position_operator.hpp"
-#include "strain/rod_frames.hpp"
-#include "strain/span_shape.hpp"
+#include "frames/fit_frames.hpp"
+#include "frames/frame_hessian.hpp"
+#include "frames/frame_spins.hpp"
+#include "frames/position_operator.hpp"
+#include "frames/rod_frames.hpp"
+#include "frames/span_shape.hpp"
 
 namespace dlo::energy_model {
 
@@ -55,7 +58,7 @@ void add(const EnergyBalance& of, double times, EnergyBalance& to);
 ///     int (rho A r'' + c r' + q |v| v).dr ds + x.dx + tau x'.dx = int w.dr ds + loads + grips +
 ///     obstacles,
 /// for all dx that move r, with r' and r'' from x', x'' by the spins of cross-sections
-/// (RodFrames::spins()),
+/// (frame_spins()),
 ///     t' = omega x t,  t'' = alpha x t + omega x t'.
 /// Rates of vectors are those in space. What has mass are the points of a SpanReach.
 ///
@@ -87,7 +90,7 @@ class SpanDynamics {
   /// What the change of the points' momentum from these velocities does along the unknowns; zero
   /// where only grips strike.
   [[nodiscard]] Eigen::VectorXd impulse(const Eigen::MatrixX3d& before);
-  /// By how much the constraints are missed: positions, velocities and accelerations, a column
+  /// Residuals of the constraints: positions, velocities and accelerations, a column
   /// each.
   [[nodiscard]] Eigen::MatrixX3d constraint_residuals() const;
   /// Derivatives of the constraints by x.
@@ -143,6 +146,7 @@ class SpanDynamics {
   Eigen::Matrix3d start_frame_;
   RodFrames frames_;
   RodFrames::State state_;
+  FrameHessian frame_hessian_;
   PositionOperator nodes_;
   SpanReach points_;
   ContactGrid grid_;

@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iomanip>
 #include <numbers>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "base/sized_samples.hpp"
+#include "exact/catenary.hpp"
 #include "problem/rod_law.hpp"
 #include "shooting/lobatto_element.hpp"
 
@@ -21,136 +21,12 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-/// Of the length: arc lengths and heights that are meant to be the same.
-constexpr double negligible = 1e-9;
 /// What a clamp may bend the rod by: of a straight fold nobody says to which side.
 constexpr double most_turned = 170 * std::numbers::pi / 180;
 /// Lengths of a layer after which nothing is left of it: exp(-40) = 4e-18.
 constexpr double layer_reach = 40;
 /// Of the length; the models' own estimates are lower where they succeed.
 constexpr double most_error = 1e-7;
-
-/// A catenary, part of which may lie on the level of its lowest point.
-struct Catenary {
-  double a = 0;      // T / w at the lowest point [m]; 0: a line that hangs straight
-  double low = 0;    // arc length of that point; beyond the ends if the line rises all along
-  double lying = 0;  // length that lies from there on
-  Vector origin;     // that point
-  Vector level;      // unit, along growing arc length
-  Vector up;         // unit
-
-  /// Arc length from the lowest point, or from the end of what lies.
-  [[nodiscard]] double own(double s) const {
-    if (s < low) return s - low;
-    return std::max(0.0, s - low - lying);
-  }
-  [[nodiscard]] double height(double s) const { return std::hypot(a, own(s)); }
-  [[nodiscard]] bool lies(double s) const { return s > low && s < low + lying; }
-  [[nodiscard]] Vector point(double s) const {
-    const double q = own(s);
-    const double x = std::clamp(s - low, 0.0, lying) + (a > 0 ? a * std::asinh(q / a) : 0.0);
-    return origin + x * level + (std::hypot(a, q) - a) * up;
-  }
-  [[nodiscard]] Vector tangent(double s) const {
-    if (a == 0) return own(s) < 0 || (own(s) == 0 && low > 0) ? Vector(-up) : up;
-    return (a * level + own(s) * up) / height(s);
-  }
-  [[nodiscard]] Vector curvature(double s) const {
-    if (a == 0 || lies(s)) return Vector::Zero();
-    const double y = height(s);
-    return a / (y * y) * (a * up - own(s) * level) / y;
-  }
-  /// int (height - a) ds from the lowest point on.
-  [[nodiscard]] double height_integral(double q) const {
-    const double area = (q * std::hypot(a, q) + (a > 0 ? a * a * std::asinh(q / a) : 0.0)) / 2;
-    return area - a * q;
-  }
-  /// int |curvature|^2 ds from there on.
-  [[nodiscard]] double bend_integral(double q) const {
-    if (a == 0) return 0;
-    return (q / (a * a + q * q) + std::atan(q / a) / a) / 2;
-  }
-};
-
-/// u of sinh(u) / u = ratio, given ratio - 1.
-double root_of_sinh_ratio(double excess) {
-  const auto excess_at = [](double u) {
-    if (u > 1) return std::sinh(u) / u - 1;
-    double term = 1;
-    double sum = 0;
-    for (int k = 1; k < 12; ++k) sum += term *= u * u / (2 * k * (2 * k + 1));
-    return sum;
-  };
-  double low = 0;
-  double high = 1;
-  while (excess_at(high) < excess && high < 700) high *= 2;
-  constexpr int halvings = 200;
-  for (int i = 0; i < halvings && high - low > 1e-16 * high; ++i) {
-    const double middle = (low + high) / 2;
-    (excess_at(middle) < excess ? low : high) = middle;
-  }
-  return (low + high) / 2;
-}
-
-/// Between two points, arc length l apart; none if they are above each other or as far as that.
-std::optional<Catenary> hang_between(const Vector& begin, const Vector& end, double l,
-                                     const Vector& up) {
-  const Vector way = end - begin;
-  const double rise = way.dot(up);
-  const Vector flat = way - rise * up;
-  const double x = flat.norm();
-  if (!(x > negligible * l) || !(way.norm() < l * (1 - negligible))) return std::nullopt;
-  const double ratio = std::sqrt((l - rise) * (l + rise)) / x;
-  const double excess = (l - way.norm()) * (l + way.norm()) / (x * x * (ratio + 1));
-  const double u = root_of_sinh_ratio(excess);
-  Catenary line;
-  line.a = x / (2 * u);
-  line.level = flat / x;
-  line.up = up;
-  const double first = line.a * std::sinh(std::atanh(rise / l) - u);
-  line.low = -first;
-  line.origin = begin - line.a * std::asinh(first / line.a) * line.level -
-                (std::hypot(line.a, first) - line.a) * up;
-  return line;
-}
-
-/// The same on a floor that carries its lowest part; none if it does not.
-std::optional<Catenary> lie_between(const Vector& begin, const Vector& end, double l,
-                                    const Vector& up, double floor) {
-  const Vector way = end - begin;
-  const Vector flat = way - way.dot(up) * up;
-  const double x = flat.norm();
-  if (!(x > negligible * l)) return std::nullopt;
-  const std::array<double, 2> heights = {std::max(0.0, begin.dot(up) - floor),
-                                         std::max(0.0, end.dot(up) - floor)};
-  const auto length = [](double h, double a) { return std::sqrt(h * (h + 2 * a)); };
-  const auto reach = [](double h, double a) {
-    const double z = h / a;
-    return a * std::log1p(z + std::sqrt(z * (z + 2)));
-  };
-  const auto spare = [&](double a) {
-    double sum = 0;
-    for (const double h : heights) sum += length(h, a) - reach(h, a);
-    return sum;
-  };
-  double low = 1e-6 * l;
-  double high = 1e6 * l;
-  if (!(spare(low) > l - x) || !(spare(high) < l - x)) return std::nullopt;
-  constexpr int halvings = 200;
-  for (int i = 0; i < halvings && high / low > 1 + 1e-15; ++i) {
-    const double middle = std::sqrt(low * high);
-    (spare(middle) > l - x ? low : high) = middle;
-  }
-  Catenary line;
-  line.a = std::sqrt(low * high);
-  line.level = flat / x;
-  line.up = up;
-  line.low = length(heights[0], line.a);
-  line.lying = l - line.low - length(heights[1], line.a);
-  if (!(line.lying > 0)) return std::nullopt;
-  line.origin = begin + reach(heights[0], line.a) * line.level - heights[0] * up;
-  return line;
-}
 
 /// How the rod leaves a grip at one of its ends.
 struct Layer {
@@ -235,15 +111,15 @@ struct Composite {
     }
     std::erase_if(nodes, [&](double s) { return !(s >= 0 && s <= length); });
     std::sort(nodes.begin(), nodes.end());
-    Vector missed = at(0).point - at(length).point;
+    Vector gap = at(0).point - at(length).point;
     for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
       const double h = nodes[i + 1] - nodes[i];
       for (std::size_t q = 0; q < element_quadrature; ++q) {
         const double s = nodes[i] + h * (1 + element_gauss[q]) / 2;
-        missed += h / 2 * element_weight[q] * at(s).tangent;
+        gap += h / 2 * element_weight[q] * at(s).tangent;
       }
     }
-    return missed.norm();
+    return gap.norm();
   }
 };
 
@@ -261,7 +137,7 @@ class SoftLine {
                          .at_end = grip.at > problem_.length / 2,
                          .clamped = grip.direction.has_value()});
     }
-    constexpr int rounds = 12;  // each leaves a layer's share of the length of what was missed
+    constexpr int rounds = 12;  // each leaves a layer's share of the length of the gap
     for (int i = 0; i < rounds; ++i) {
       if (!find_catenary()) return std::nullopt;
       for (Layer& layer : layers_) bend(layer);
@@ -274,7 +150,7 @@ class SoftLine {
   [[nodiscard]] bool is_taken() const {
     const double l = problem_.length;
     const auto at_end = [&](const Grip& grip) {
-      return grip.at < negligible * l || grip.at > l * (1 - negligible);
+      return grip.at < negligible_way * l || grip.at > l * (1 - negligible_way);
     };
     const std::vector<Grip>& grips = problem_.grips;
     if (problem_.axial_stiffness || problem_.confined_to_plane || !has_dead_loads(problem_) ||
@@ -294,7 +170,7 @@ class SoftLine {
     const Obstacle& obstacle = problem_.obstacles.front();
     if (!std::isinf(obstacle.stiffness) || !obstacle.body.is_half_space()) return std::nullopt;
     const obstacle::Body& body = obstacle.body;
-    if ((body.normal() - up_).norm() > negligible) return std::nullopt;
+    if ((body.normal() - up_).norm() > negligible_way) return std::nullopt;
     return (body.centre() + body.radius() * body.normal()).dot(up_);
   }
 
@@ -327,7 +203,7 @@ class SoftLine {
     const std::optional<double> ground = floor();
     if (!ground) return false;
     const double lowest = line_.point(std::clamp(line_.low, 0.0, l)).dot(up_);
-    if (lowest > *ground + negligible * l) return true;
+    if (lowest > *ground + negligible_way * l) return true;
     const std::optional<Catenary> lying = lie_between(begin, end, l, up_, *ground);
     if (!lying) return false;
     line_ = *lying;
@@ -366,7 +242,8 @@ class SoftLine {
                               line_.own(at(layer)) == 0;
       if (lies_there) {
         // On the floor, along it.
-        if (std::abs(above) > negligible * problem_.length || layer.turn > negligible) return false;
+        if (std::abs(above) > negligible_way * problem_.length || layer.turn > negligible_way)
+          return false;
       } else if (!(above > layer_reach * layer.length)) {
         return false;
       }
@@ -443,7 +320,7 @@ class SoftLine {
     const double pressed = weight_ * edge_layer();
     const double end = line_.low + line_.lying;
     const bool rises_at_begin = line_.low > 0;
-    const bool rises_at_end = end < problem_.length * (1 - negligible);
+    const bool rises_at_end = end < problem_.length * (1 - negligible_way);
     result.obstacles.front() = weight_ * line_.lying * up_;
     ContactPart part;
     part.kind = ContactKind::lying;

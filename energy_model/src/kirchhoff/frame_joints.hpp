@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "kirchhoff/rod_mesh.hpp"
 #include "kirchhoff/rod_span.hpp"
 
 namespace dlo::energy_model {

@@ -65,7 +65,7 @@ std::vector<Eigen::Vector3d> axes_of(const RodSpan& span, const Quaterniond& alo
   return axes;
 }
 
-/// The rod as it is by nature, from its first clamp on.
+/// The stress-free rod, from its first clamp on.
 Frames natural_shape(const RodSpan& span, const RodMesh& mesh, const Quaterniond& along) {
   Frames shape(static_cast<std::size_t>(mesh.intervals()));
   const auto half = [&](Eigen::Index i, double side) {

@@ -5,6 +5,7 @@
 
 #include "base/deadline.hpp"
 #include "kirchhoff/relaxed_polygon.hpp"
+#include "kirchhoff/rod_mesh.hpp"
 #include "kirchhoff/rod_span.hpp"
 
 namespace dlo::energy_model {

@@ -6,11 +6,12 @@
 
 #include "base/deadline.hpp"
 #include "kirchhoff/rod_flow.hpp"
+#include "kirchhoff/rod_mesh.hpp"
 #include "kirchhoff/rod_span.hpp"
 
 namespace dlo::energy_model {
 
-/// A coarse equilibrium of a rod whose frames after the first clamp are let go: frames q_i of the
+/// A coarse equilibrium of a rod whose frames after the first clamp are released: frames q_i of the
 /// intervals h_i of a mesh, at a local minimum of
 ///     sum 1/2 h (v - u0) . K (v - u0) - sum h_i n_i . t_i,   v = 2 / h vec(q_i* q_(i+1)),
 /// h and K of the rod between the intervals' middles, or to a clamp, and n_i the force that they

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "base/deadline.hpp"
+#include "kirchhoff/rod_mesh.hpp"
 #include "kirchhoff/rod_span.hpp"
 
 namespace dlo::energy_model {

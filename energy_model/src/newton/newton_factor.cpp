@@ -43,7 +43,7 @@ std::shared_ptr<NewtonFactor> NewtonFactors::make(const Eigen::MatrixXd& jacobia
 
 Eigen::MatrixXd prolonged(const Eigen::MatrixXd& hessian, const SpanEnergy& fewer,
                           const SpanEnergy& model) {
-  const std::vector<Eigen::Index> places = model.places_of(fewer);
+  const std::vector<Eigen::Index> places = model.unknowns().places_of(fewer.unknowns());
   Eigen::MatrixXd result = Eigen::MatrixXd::Identity(model.size(), model.size());
   for (std::size_t j = 0; j < places.size(); ++j) {
     for (std::size_t i = 0; i < places.size(); ++i) {

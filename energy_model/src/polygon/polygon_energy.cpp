@@ -207,6 +207,30 @@ double polygon_energy(const PolygonProblem& problem, const Points& points,
   return energy;
 }
 
+namespace {
+
+void add_obstacle_hessian(const PolygonProblem& problem, const Points& points, HessianTerms which,
+                          const AddBlock& add) {
+  const std::vector<bool> held = held_points(problem);
+  for (const PointObstacle& obstacle : problem.obstacles) {
+    const double k = obstacle.stiffness / obstacle.samples;
+    const auto stiffen = [&](Eigen::Index i, double share, const Eigen::Vector3d& point) {
+      if (obstacle.body.clearance(point) >= 0) return;
+      const obstacle::Gap gap = obstacle.body.gap(point);
+      Eigen::Matrix3d H = k * gap.gradient * gap.gradient.transpose();
+      if (which == HessianTerms::all) H += k * gap.value * gap.hessian;
+      add(i, i, (1 - share) * (1 - share) * H);
+      if (share == 0) return;
+      add(i + 1, i + 1, share * share * H);
+      add(i + 1, i, share * (1 - share) * H);
+      add(i, i + 1, share * (1 - share) * H);
+    };
+    for_each_look(held, obstacle, points, stiffen);
+  }
+}
+
+}  // namespace
+
 void polygon_hessian(const PolygonProblem& problem, const Points& points, HessianTerms which,
                      const AddBlock& add) {
   const bool all = which == HessianTerms::all;
@@ -253,23 +277,7 @@ void polygon_hessian(const PolygonProblem& problem, const Points& points, Hessia
     add_difference_block(i, i - 1, ab.transpose(), add);
   }
   add_twist_hessian(problem, points, add);
-  if (problem.obstacles.empty()) return;
-  const std::vector<bool> held = held_points(problem);
-  for (const PointObstacle& obstacle : problem.obstacles) {
-    const double k = obstacle.stiffness / obstacle.samples;
-    const auto stiffen = [&](Eigen::Index i, double share, const Eigen::Vector3d& point) {
-      if (obstacle.body.clearance(point) >= 0) return;
-      const obstacle::Gap gap = obstacle.body.gap(point);
-      Eigen::Matrix3d H = k * gap.gradient * gap.gradient.transpose();
-      if (all) H += k * gap.value * gap.hessian;
-      add(i, i, (1 - share) * (1 - share) * H);
-      if (share == 0) return;
-      add(i + 1, i + 1, share * share * H);
-      add(i + 1, i, share * (1 - share) * H);
-      add(i, i + 1, share * (1 - share) * H);
-    };
-    for_each_look(held, obstacle, points, stiffen);
-  }
+  if (!problem.obstacles.empty()) add_obstacle_hessian(problem, points, which, add);
 }
 
 }  // namespace dlo::energy_model

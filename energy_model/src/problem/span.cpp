@@ -58,4 +58,16 @@ bool Span::pulled_one_way() const {
   return sum.norm() >= (1 - rounding) * total_load();
 }
 
+HeldBy Span::held_within(double begin, double end, double margin) const {
+  const auto within = [&](double at) { return at > begin - margin && at < end + margin; };
+  HeldBy held = HeldBy::nothing;
+  if (within(anchor)) held = start_direction ? HeldBy::clamp : HeldBy::pin;
+  for (std::size_t i = 0; i < holds.size(); ++i) {
+    if (!within(holds[i].at)) continue;
+    const bool clamp = holds[i].direction || (end_direction && i + 1 == holds.size());
+    held = std::max(held, clamp ? HeldBy::clamp : HeldBy::pin);
+  }
+  return held;
+}
+
 }  // namespace dlo::energy_model

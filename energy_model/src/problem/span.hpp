@@ -10,6 +10,9 @@
 
 namespace dlo::energy_model {
 
+/// How a grip holds a rod, the more the later.
+enum class HeldBy { nothing, pin, clamp };
+
 /// The part of a rod between two clamps, or between a clamp and a free end, or a rod without
 /// clamps. Clamps that a torque passes through, because they do not hold the rod's frame, do not
 /// end it where there is one. Own units (lengths in l, forces in EI/l^2), own frame, in which a
@@ -107,6 +110,8 @@ struct Span {
   [[nodiscard]] double total_load() const;
   /// Of weight and loads on what lies before s.
   [[nodiscard]] Eigen::Vector3d force_before(double s) const;
+  /// The most that a grip within these arc lengths, or `margin` beyond them, does.
+  [[nodiscard]] HeldBy held_within(double begin, double end, double margin) const;
   /// Then nothing is known of the energy out of the plane.
   [[nodiscard]] bool has_couples() const;
   /// What leaves the plane is not looked at: the rod cannot, or couples have no potential there.

@@ -3,20 +3,26 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "base/require.hpp"
-#include "base/spin.hpp"
 #include "dlo/energy_model/plane.hpp"
 #include "dlo/energy_model/turns.hpp"
+#include "problem/material_directors.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/rod_law.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
-using std::numbers::pi;
+/// The arc lengths between which a span lies, and whether clamps hold it there.
+struct Stretch {
+  double begin = 0, end = 0;
+  bool clamped_begin = false, clamped_end = false;
+
+  [[nodiscard]] bool contains(double at) const { return at >= begin && at <= end; }
+  [[nodiscard]] bool is_between_clamps() const { return clamped_begin && clamped_end; }
+};
 
 /// What a span's frame has to reckon with: directions of grips, chords and forces, in space.
 struct Directions {
@@ -87,12 +93,12 @@ bool are_symmetric(const Span& span) {
 
 /// The parts of the rod that have another section, between two arc lengths of a span that runs from
 /// placed.start on.
-void place_sections(const Problem& problem, PlacedSpan& placed, double begin, double end) {
+void place_sections(const Problem& problem, const Stretch& stretch, PlacedSpan& placed) {
   const double l = problem.length;
   const double force_unit = bending_unit(problem) / (l * l);
   for (const Section& section : problem.sections) {
-    const double from = std::max(begin, section.begin);
-    const double to = std::min(end, section.end);
+    const double from = std::max(stretch.begin, section.begin);
+    const double to = std::min(stretch.end, section.end);
     if (!(to > from)) continue;
     const double a = placed.s_of(from, l);
     const double b = placed.s_of(to, l);
@@ -105,12 +111,12 @@ void place_sections(const Problem& problem, PlacedSpan& placed, double begin, do
 }
 
 /// What of line loads is not in the span's weight, between two arc lengths.
-void place_line_loads(const Problem& problem, PlacedSpan& placed, double begin, double end) {
+void place_line_loads(const Problem& problem, const Stretch& stretch, PlacedSpan& placed) {
   const double l = problem.length;
   const double unit = bending_unit(problem) / (l * l * l);
   for (const LineLoad& load : problem.line_loads) {
-    const double from = std::max(begin, load.begin);
-    const double to = std::min(end, load.end);
+    const double from = std::max(stretch.begin, load.begin);
+    const double to = std::min(stretch.end, load.end);
     if (acts_everywhere(load, problem) || !(to > from)) continue;
     LineLoad own{placed.s_of(from, l), placed.s_of(to, l),
                  (load.at_begin + (from - load.begin) * load.slope()) / unit,
@@ -131,115 +137,6 @@ double mean_torsion(const Problem& problem, double begin, double end) {
     if (length > 0) compliance += length / part.torsional_stiffness;
   }
   return (end - begin) / compliance / bending_unit(problem);
-}
-
-/// The frame in which a clamp holds a rod with material directors; it is the first one, or holds
-/// its frame.
-Eigen::Matrix3d material_frame(const Problem& problem, const OrderedGrip& clamp) {
-  if (clamp.index == first_clamp(problem)) return first_frame(problem);
-  return held_frame(*clamp.grip, held_d1(problem, *clamp.grip));
-}
-
-/// The rod's directors at the start of a span, as columns in the span's axes; its tangent there is
-/// `along`. Where no clamp holds the start they are those of a rod in its plane.
-Eigen::Matrix3d directors_at_start(const Problem& problem, const PlacedSpan& placed,
-                                   const OrderedGrip& anchor, const Eigen::Vector3d& along) {
-  Eigen::Matrix3d own;
-  if (placed.span.start_direction) {
-    own = placed.frame * material_frame(problem, anchor);
-  } else {
-    const Eigen::Vector3d normal = placed.frame * natural_normal(problem).value();
-    own << normal.cross(along), normal, along;
-  }
-  if (placed.reversed) own.rightCols<2>() *= -1;
-  return own;
-}
-
-/// Chooses the frame that the span has at its start, and by which angle the rod's own is ahead of
-/// it. That of a round rod is Span::d1()'s whatever the angle. Two bending stiffnesses want one
-/// along the principal axes: of the four the one next to Span::d1()'s, so that a rod in a plane
-/// across one of its axes bends about the frame's first one.
-void place_start_frame(const Eigen::Vector3d& along, const Eigen::Matrix3d& own, bool is_round,
-                       PlacedSpan& placed) {
-  constexpr double rounding = 1e-12;
-  Span& span = placed.span;
-  const Eigen::Vector3d d1 = Span::d1(along);
-  const Eigen::Matrix3d to_own = frame_along(along, d1).transpose() * own;
-  placed.ahead = std::atan2(to_own(1, 0), to_own(0, 0));
-  if (is_round) return;
-  const double quarters = std::round(placed.ahead / (pi / 2));
-  const double aside = placed.ahead - quarters * pi / 2;
-  placed.ahead = quarters * pi / 2;
-  if (std::abs(aside) > rounding) {
-    span.planar = false;
-    span.principal_d1 = Eigen::AngleAxisd(aside, along) * frame_along(along, d1).col(0);
-  }
-  if (std::fmod(std::abs(quarters), 2) == 0) return;
-  std::swap(span.stiffness[0], span.stiffness[1]);
-  for (Span::Part& part : span.parts) std::swap(part.stiffness[0], part.stiffness[1]);
-}
-
-/// What sections have of natural strains of their own, about the same axes.
-void place_natural_parts(const Problem& problem, PlacedSpan& placed) {
-  const double l = problem.length;
-  Span& span = placed.span;
-  for (const Section& section : problem.sections) {
-    if (!section.natural_curvature && !section.natural_twist) continue;
-    const double a = placed.s_of(section.begin, l);
-    const double b = placed.s_of(section.end, l);
-    const double begin = std::max(std::min(a, b), 0.0);
-    const double end = std::min(std::max(a, b), span.length);
-    if (!(end > begin)) continue;
-    NaturalStrains::Part part{begin, end, std::nullopt, std::nullopt};
-    if (section.natural_curvature) {
-      Eigen::Vector2d bend = l * *section.natural_curvature;
-      if (placed.reversed) bend.x() *= -1;
-      part.bend = Eigen::Rotation2Dd(placed.ahead) * bend;
-    }
-    if (section.natural_twist) part.twist = l * *section.natural_twist;
-    span.natural.parts.push_back(part);
-  }
-  if (placed.reversed) std::reverse(span.natural.parts.begin(), span.natural.parts.end());
-}
-
-/// Stiffnesses and natural strains of a rod with material directors, about the axes of the frame
-/// that the span has at its start.
-void place_material_directors(const Problem& problem, PlacedSpan& placed,
-                              const OrderedGrip& anchor) {
-  Span& span = placed.span;
-  const double l = problem.length;
-  if (span.start_direction || span.planar) {
-    const Eigen::Vector3d along =
-        span.start_direction.value_or(Eigen::Vector3d(Eigen::Vector3d::UnitX()));
-    place_start_frame(along, directors_at_start(problem, placed, anchor, along),
-                      !has_two_stiffnesses(problem), placed);
-  }
-  const Eigen::AngleAxisd to_own(placed.ahead, Eigen::Vector3d::UnitZ());
-  for (Eigen::Vector3d strain : problem.natural_strains) {
-    if (placed.reversed) strain.x() *= -1;
-    span.natural.coefficients.emplace_back(l * (to_own * strain));
-  }
-  if (span.natural.empty()) span.natural.coefficients = {Eigen::Vector3d::Zero()};
-  place_natural_parts(problem, placed);
-  const double sense = placed.reversed ? -1 : 1;
-  span.natural.rate = 2 * sense;
-  span.natural.from = 2 * placed.start / l - 1;
-  // What an obstacle keeps from leaving the plane is looked at in space.
-  if (!span.soft_obstacles.empty() || !span.rigid_obstacles.empty()) span.planar = false;
-  constexpr double rounding = 1e-12;
-  const double largest = span.natural.largest();
-  for (Eigen::Vector3d& strain : span.natural.coefficients) {
-    if (!span.planar) break;
-    span.planar = strain.tail<2>().norm() <= rounding * largest;
-    if (span.planar) strain.tail<2>().setZero();
-  }
-  for (NaturalStrains::Part& part : span.natural.parts) {
-    if (!span.planar) break;
-    const Eigen::Vector3d strain = part.over(Eigen::Vector3d::Zero());
-    span.planar = strain.tail<2>().norm() <= rounding * largest;
-    if (span.planar && part.bend) part.bend->y() = 0;
-    if (span.planar && part.twist) part.twist = 0;
-  }
 }
 
 /// What two clamps do with the rod's frame between them, seen in a span's own axes.
@@ -264,12 +161,11 @@ constexpr const char* couples_need =
     "held frames: elsewhere a couple has no potential";
 
 /// About the normal of the span's plane, in the order of its loads.
-void place_couples(const Problem& problem, double begin, double end, PlacedSpan& placed) {
+void place_couples(const Problem& problem, const Stretch& stretch, PlacedSpan& placed) {
   constexpr double rounding = 1e-9;
   const double unit = bending_unit(problem) / problem.length;
   for (const Load& load : problem.loads) {
-    const bool inside = load.at >= begin && load.at <= end;
-    if (!inside || load.torque.isZero(0) || clamp_under(problem, load)) continue;
+    if (!stretch.contains(load.at) || load.torque.isZero(0) || clamp_under(problem, load)) continue;
     const Eigen::Vector3d own = placed.frame * load.torque;
     require(placed.span.planar && own.head<2>().norm() <= rounding * own.norm() &&
                 clamps_with_frames(problem) < 2 && problem.obstacles.empty(),
@@ -282,37 +178,17 @@ void place_couples(const Problem& problem, double begin, double end, PlacedSpan&
   }
 }
 
-/// The span between arc lengths `begin` and `end`; it runs backwards from a clamp at `end` if there
-/// is none at `begin`.
-PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips, double begin,
-                 double end, bool clamped_begin, bool clamped_end) {
+/// Grips that hold the span, by growing s, of which the first is its anchor.
+void place_grips(const Problem& problem, const std::vector<OrderedGrip>& held,
+                 const Stretch& stretch, PlacedSpan& placed, Directions& directions) {
   const double l = problem.length;
-  const double force_unit = bending_unit(problem) / (l * l);
-  PlacedSpan placed;
-  placed.reversed = clamped_end && !clamped_begin;
-  placed.start = placed.reversed ? end : begin;
-  Span& span = placed.span;
-  span.length = (end - begin) / l;
-  span.weight = weight_everywhere(problem) * l / force_unit;
-  span.stiffness = principal_stiffness({.bending_stiffness = problem.bending_stiffness,
-                                        .torsional_stiffness = problem.torsional_stiffness,
-                                        .bending_stiffness_2 = problem.bending_stiffness_2},
-                                       bending_unit(problem));
-  place_sections(problem, placed, begin, end);
-  place_line_loads(problem, placed, begin, end);
   const double sense = placed.reversed ? -1 : 1;
-
-  std::vector<OrderedGrip> held;
-  for (const OrderedGrip& g : grips) {
-    if (g.grip->at >= begin && g.grip->at <= end) held.push_back(g);
-  }
-  if (placed.reversed) std::reverse(held.begin(), held.end());
+  Span& span = placed.span;
   const OrderedGrip& anchor = held.front();
   placed.anchor_grip = anchor.index;
   placed.anchor_position = anchor.grip->position;
   span.anchor = placed.s_of(anchor.grip->at, l);
-  Directions directions;
-  if (clamped_begin || clamped_end) {
+  if (stretch.clamped_begin || stretch.clamped_end) {
     span.start_direction = sense * anchor.grip->direction->normalized();
     directions.grips.push_back(*span.start_direction);
   }
@@ -320,27 +196,34 @@ PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips, 
     const Eigen::Vector3d offset = (held[i].grip->position - placed.anchor_position) / l;
     span.holds.push_back({placed.s_of(held[i].grip->at, l), offset});
     placed.hold_grips.push_back(held[i].index);
-    const bool at_end = clamped_begin && clamped_end && i + 1 == held.size();
+    const bool at_end = stretch.is_between_clamps() && i + 1 == held.size();
     if (held[i].grip->direction && !at_end) {
       span.holds.back().direction = sense * held[i].grip->direction->normalized();
       directions.grips.push_back(*span.holds.back().direction);
     }
     if (offset.norm() > 1e-9) directions.grips.push_back(offset.normalized());
   }
-  if (clamped_begin && clamped_end) {
+  if (stretch.is_between_clamps()) {
     span.holds.back().at = span.length;
     span.end_direction = held.back().grip->direction->normalized();
     directions.grips.push_back(*span.end_direction);
   }
+}
+
+/// Weight, line loads and loads, but those on clamps.
+void place_loads(const Problem& problem, const Stretch& stretch, PlacedSpan& placed,
+                 Directions& directions) {
+  const double l = problem.length;
+  const double force_unit = bending_unit(problem) / (l * l);
+  Span& span = placed.span;
   directions.forces.push_back(span.weight);
   for (const Span::Part& part : span.parts) directions.forces.push_back(part.weight);
   for (const LineLoad& load : span.line_loads) {
     directions.forces.insert(directions.forces.end(), {load.at_begin, load.at_end});
   }
   for (const Load& load : problem.loads) {
-    const bool inside = load.at >= begin && load.at <= end;
     // A load on a clamp is the gripper's alone.
-    if (!inside || clamp_under(problem, load)) continue;
+    if (!stretch.contains(load.at) || clamp_under(problem, load)) continue;
     span.loads.push_back({placed.s_of(load.at, l), load.force / force_unit});
     directions.forces.push_back(span.loads.back().force);
     if (load.torque.isZero(0)) continue;
@@ -350,6 +233,12 @@ PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips, 
   }
   std::sort(span.loads.begin(), span.loads.end(),
             [](const Span::Load& a, const Span::Load& b) { return a.at < b.at; });
+}
+
+void place_obstacles(const Problem& problem, PlacedSpan& placed, Directions& directions) {
+  const double l = problem.length;
+  const double force_unit = bending_unit(problem) / (l * l);
+  Span& span = placed.span;
   for (std::size_t i = 0; i < problem.obstacles.size(); ++i) {
     const Obstacle& obstacle = problem.obstacles[i];
     const Span::Obstacle placed_obstacle{
@@ -361,18 +250,46 @@ PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips, 
     }
     if (obstacle.body.is_half_space()) directions.grips.push_back(obstacle.body.normal());
   }
+}
+
+/// The span of a stretch; it runs backwards from a clamp at its end if there is none at its begin.
+PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips,
+                 const Stretch& stretch) {
+  const double l = problem.length;
+  const double force_unit = bending_unit(problem) / (l * l);
+  PlacedSpan placed;
+  placed.reversed = stretch.clamped_end && !stretch.clamped_begin;
+  placed.start = placed.reversed ? stretch.end : stretch.begin;
+  Span& span = placed.span;
+  span.length = (stretch.end - stretch.begin) / l;
+  span.weight = weight_everywhere(problem) * l / force_unit;
+  span.stiffness = principal_stiffness({.bending_stiffness = problem.bending_stiffness,
+                                        .torsional_stiffness = problem.torsional_stiffness,
+                                        .bending_stiffness_2 = problem.bending_stiffness_2},
+                                       bending_unit(problem));
+  place_sections(problem, stretch, placed);
+  place_line_loads(problem, stretch, placed);
+  std::vector<OrderedGrip> held;
+  for (const OrderedGrip& g : grips) {
+    if (stretch.contains(g.grip->at)) held.push_back(g);
+  }
+  if (placed.reversed) std::reverse(held.begin(), held.end());
+  Directions directions;
+  place_grips(problem, held, stretch, placed, directions);
+  place_loads(problem, stretch, placed, directions);
+  place_obstacles(problem, placed, directions);
   choose_frame(placed, directions);
   turn_vectors(span, placed.frame);
-  if (has_couples(problem)) place_couples(problem, begin, end, placed);
+  if (has_couples(problem)) place_couples(problem, stretch, placed);
   if (!are_symmetric(span)) span.planar = false;
-  if (has_material_directors(problem)) place_material_directors(problem, placed, anchor);
+  if (has_material_directors(problem)) place_material_directors(problem, held.front(), placed);
   require(!span.has_couples() || span.planar, "Problem", "torque of a load", span.total_load(),
           couples_need);
   span.confined = problem.confined_to_plane;
   require(!span.confined ||
               (span.planar && clamps_with_frames(problem) < 2 && problem.obstacles.empty()),
           "Problem", "confined_to_plane", 1, confined_need);
-  if (clamped_begin && clamped_end) {
+  if (stretch.is_between_clamps()) {
     placed.frames = frames_of(problem, held.front(), *held.back().grip, placed.frame);
   }
   return placed;
@@ -410,17 +327,17 @@ std::vector<PlacedSpan> split(const Problem& problem) {
   const std::vector<double> clamps = cuts_at_clamps(problem, grips);
   std::vector<PlacedSpan> spans;
   if (clamps.empty()) {
-    return {place(problem, grips, 0, problem.length, false, false)};
+    return {place(problem, grips, {0, problem.length})};
   }
   const double shortest = 1e-9 * problem.length;
   if (clamps.front() > shortest) {
-    spans.push_back(place(problem, grips, 0, clamps.front(), false, true));
+    spans.push_back(place(problem, grips, {0, clamps.front(), false, true}));
   }
   for (std::size_t i = 0; i + 1 < clamps.size(); ++i) {
-    spans.push_back(place(problem, grips, clamps[i], clamps[i + 1], true, true));
+    spans.push_back(place(problem, grips, {clamps[i], clamps[i + 1], true, true}));
   }
   if (problem.length - clamps.back() > shortest) {
-    spans.push_back(place(problem, grips, clamps.back(), problem.length, true, false));
+    spans.push_back(place(problem, grips, {clamps.back(), problem.length, true}));
   }
   return spans;
 }

@@ -65,129 +65,180 @@ bool is_worse(SolveStatus status, SolveStatus than) {
   return rank(status) > rank(than);
 }
 
+/// What a result is made of, span after span.
+class Assembly {
+ public:
+  explicit Assembly(const Problem& problem)
+      : problem_(problem),
+        l_(problem.length),
+        energy_unit_(bending_unit(problem) / l_),
+        force_unit_(energy_unit_ / l_) {
+    result_.status = SolveStatus::converged;
+    result_.message = to_string(result_.status);
+    result_.residual = 0;
+    result_.error_estimate = 0;
+    result_.grips.resize(problem.grips.size());
+    result_.obstacles.assign(problem.obstacles.size(), Eigen::Vector3d::Zero());
+    result_.smallest_eigenvalue = std::numeric_limits<double>::infinity();
+  }
+
+  void add(const PlacedSpan& place, const SpanSolution& solution) {
+    add_claims(solution);
+    if (solution.x.size() == 0) return;
+    add_energies(place, solution);
+    add_reactions(place, solution);
+  }
+
+  Equilibrium finish(const std::vector<PlacedSpan>& placed,
+                     const std::vector<const SpanSolution*>& solutions) {
+    if (succeeded(result_.status) || result_.status == SolveStatus::saddle) {
+      result_.message += zero_modes_note(rigid_body_modes_);
+      if (has_couples(problem_)) result_.message += in_the_plane;
+    }
+    if (result_.status == SolveStatus::near_singular && result_.neutral_directions > 0) {
+      result_.message += ": " + std::to_string(result_.neutral_directions) + " neutral direction" +
+                         (result_.neutral_directions == 1 ? "" : "s");
+    }
+    std::sort(result_.contacts.begin(), result_.contacts.end(),
+              [](const ContactPart& a, const ContactPart& b) { return a.begin < b.begin; });
+    add_loads_on_clamps();
+    place_shapes(placed, solutions);
+    return std::move(result_);
+  }
+
+ private:
+  /// The least that is claimed of any span.
+  void add_claims(const SpanSolution& solution) {
+    result_.evaluations += solution.evaluations;
+    result_.terms = std::max(result_.terms, solution.terms);
+    // -1, where one is not known, stays.
+    const bool known = solution.residual >= 0 && result_.residual >= 0;
+    result_.residual = known ? std::max(result_.residual, solution.residual) : -1;
+    result_.neutral_directions += solution.neutral_directions;
+    rigid_body_modes_ += solution.rigid_body_modes;
+    // NaN, where one is not known, stays.
+    if (std::isnan(solution.error) || solution.error > result_.error_estimate) {
+      result_.error_estimate = solution.error;
+    }
+    // NaN, where one was not looked at, stays.
+    if (std::isnan(solution.smallest_eigenvalue) ||
+        solution.smallest_eigenvalue < result_.smallest_eigenvalue) {
+      result_.smallest_eigenvalue = solution.smallest_eigenvalue;
+    }
+    if (is_worse(solution.status, result_.status)) {
+      result_.status = solution.status;
+      result_.message = solution.message;
+    }
+  }
+
+  void add_energies(const PlacedSpan& place, const SpanSolution& solution) {
+    const Energies own = solution.model->energies(solution.x);
+    Energies& sum = result_.energy;
+    sum.bending += own.bending * energy_unit_;
+    sum.twisting += own.twisting * energy_unit_;
+    if (solution.model->span().twist) {
+      result_.twists.push_back(
+          {place.start, place.start + place.span.length * l_, solution.model->twist(solution.x),
+           energy_unit_ * solution.model->twisting_torque(solution.x, solution.multipliers)});
+    }
+    // A span's potential counts from its anchor.
+    const Eigen::Vector3d lift = place.anchor_position - problem_.grips.front().position;
+    const Eigen::Vector3d weight = to_newtons(place, weight_of(place));
+    sum.gravity += own.gravity * energy_unit_ - weight.dot(lift);
+    sum.load += own.load * energy_unit_;
+    sum.contact += own.contact * energy_unit_;
+    for (const Span::Load& load : place.span.loads) {
+      sum.load -= to_newtons(place, load.force).dot(lift);
+    }
+  }
+
+  void add_reactions(const PlacedSpan& place, const SpanSolution& solution) {
+    SpanEnergy& model = *solution.model;
+    // What the anchor carries, as nothing else does.
+    Eigen::Vector3d carried = weight_of(place);
+    for (const Span::Load& load : place.span.loads) carried += load.force;
+    const std::vector<Eigen::Vector3d> obstacles = model.soft_contact().forces();
+    for (std::size_t w = 0; w < obstacles.size(); ++w) {
+      carried += obstacles[w];
+      result_.obstacles[place.span.soft_obstacles[w].index] += to_newtons(place, obstacles[w]);
+    }
+    for (const ContactPart& contact : contacts_of(place, solution, l_)) {
+      carried += place.frame * contact.force;
+      result_.obstacles[contact.obstacle] += force_unit_ * contact.force;
+      result_.contacts.push_back(in_newtons(contact, force_unit_, l_));
+    }
+    const Eigen::Index axes = model.span().planar ? 2 : 3;
+    const auto to_space = [&](const Eigen::Vector3d& torque) {
+      return Eigen::Vector3d(energy_unit_ * (place.frame.transpose() * torque));
+    };
+    Reaction& anchor = result_.grips[place.anchor_grip];
+    anchor.torque += to_space(model.start_torque(solution.multipliers));
+    for (std::size_t j = 0; j < place.hold_grips.size(); ++j) {
+      const auto hold = static_cast<Eigen::Index>(j);
+      Eigen::Vector3d force = Eigen::Vector3d::Zero();
+      force.head(axes) = solution.multipliers.segment(hold * axes, axes);
+      carried += force;
+      Reaction& own = result_.grips[place.hold_grips[j]];
+      own.force += to_newtons(place, force);
+      own.torque += to_space(model.hold_torque(hold, solution.multipliers));
+    }
+    anchor.force -= to_newtons(place, carried);
+  }
+
+  /// They are the gripper's alone.
+  void add_loads_on_clamps() {
+    for (const Load& load : problem_.loads) {
+      const std::optional<std::size_t> clamp = clamp_under(problem_, load);
+      if (!clamp) continue;
+      result_.grips[*clamp].force -= load.force;
+      result_.grips[*clamp].torque -= load.torque;
+      result_.energy.load -=
+          load.force.dot(problem_.grips[*clamp].position - problem_.grips.front().position);
+    }
+  }
+
+  void place_shapes(const std::vector<PlacedSpan>& placed,
+                    const std::vector<const SpanSolution*>& solutions) {
+    std::vector<PlacedShape> shapes;
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+      if (solutions[i]->x.size() == 0) continue;
+      shapes.push_back(placed_shape(placed[i], *solutions[i], l_));
+      if (placed[i].span.has_material_directors()) {
+        shapes.back().ahead = [ahead = placed[i].ahead](double) { return ahead; };
+      }
+    }
+    const bool is_whole = shapes.size() == placed.size();
+    if (is_whole && !has_material_directors(problem_)) {
+      place_twisted_material(problem_, solutions, shapes);
+    }
+    result_.sample = [l = l_, shapes = std::move(shapes)](std::span<const double> arc_lengths) {
+      return sample(shapes, l, arc_lengths);
+    };
+    if (is_whole) separate_line_loads(problem_, result_);
+  }
+
+  /// From the span's units and axes.
+  [[nodiscard]] Eigen::Vector3d to_newtons(const PlacedSpan& place,
+                                           const Eigen::Vector3d& force) const {
+    return force_unit_ * (place.frame.transpose() * force);
+  }
+  [[nodiscard]] static Eigen::Vector3d weight_of(const PlacedSpan& place) {
+    return place.span.weight_between(0, place.span.length);
+  }
+
+  const Problem& problem_;
+  double l_, energy_unit_, force_unit_;
+  int rigid_body_modes_ = 0;
+  Equilibrium result_;
+};
+
 }  // namespace
 
 Equilibrium assemble(const Problem& problem, const std::vector<PlacedSpan>& placed,
                      const std::vector<const SpanSolution*>& solutions) {
-  const double l = problem.length;
-  const double energy_unit = bending_unit(problem) / l;
-  const double force_unit = energy_unit / l;
-  const Eigen::Vector3d origin = problem.grips.front().position;
-  Equilibrium result;
-  result.status = SolveStatus::converged;
-  result.message = to_string(result.status);
-  result.residual = 0;
-  result.error_estimate = 0;
-  result.grips.resize(problem.grips.size());
-  result.obstacles.assign(problem.obstacles.size(), Eigen::Vector3d::Zero());
-  result.smallest_eigenvalue = std::numeric_limits<double>::infinity();
-  int rigid_body_modes = 0;
-  for (std::size_t i = 0; i < placed.size(); ++i) {
-    const PlacedSpan& place = placed[i];
-    const SpanSolution& solution = *solutions[i];
-    result.evaluations += solution.evaluations;
-    result.terms = std::max(result.terms, solution.terms);
-    // -1, where one is not known, stays.
-    const bool known = solution.residual >= 0 && result.residual >= 0;
-    result.residual = known ? std::max(result.residual, solution.residual) : -1;
-    result.neutral_directions += solution.neutral_directions;
-    rigid_body_modes += solution.rigid_body_modes;
-    // NaN, where one is not known, stays.
-    if (std::isnan(solution.error) || solution.error > result.error_estimate) {
-      result.error_estimate = solution.error;
-    }
-    // NaN, where one was not looked at, stays.
-    if (std::isnan(solution.smallest_eigenvalue) ||
-        solution.smallest_eigenvalue < result.smallest_eigenvalue) {
-      result.smallest_eigenvalue = solution.smallest_eigenvalue;
-    }
-    if (is_worse(solution.status, result.status)) {
-      result.status = solution.status;
-      result.message = solution.message;
-    }
-    if (solution.x.size() == 0) continue;
-    const Energies own = solution.model->energies(solution.x);
-    result.energy.bending += own.bending * energy_unit;
-    result.energy.twisting += own.twisting * energy_unit;
-    if (solution.model->span().twist) {
-      result.twists.push_back(
-          {place.start, place.start + place.span.length * l, solution.model->twist(solution.x),
-           energy_unit * solution.model->twisting_torque(solution.x, solution.multipliers)});
-    }
-    const Eigen::Vector3d lift = place.anchor_position - origin;
-    Eigen::Vector3d carried = place.span.weight_between(0, place.span.length);
-    const Eigen::Vector3d weight = force_unit * (place.frame.transpose() * carried);
-    result.energy.gravity += own.gravity * energy_unit - weight.dot(lift);
-    result.energy.load += own.load * energy_unit;
-    result.energy.contact += own.contact * energy_unit;
-    for (const Span::Load& load : place.span.loads) {
-      carried += load.force;
-      result.energy.load -= force_unit * (place.frame.transpose() * load.force).dot(lift);
-    }
-    const std::vector<Eigen::Vector3d> obstacles = solution.model->soft_contact().forces();
-    for (std::size_t w = 0; w < obstacles.size(); ++w) {
-      carried += obstacles[w];
-      result.obstacles[place.span.soft_obstacles[w].index] +=
-          force_unit * (place.frame.transpose() * obstacles[w]);
-    }
-    for (const ContactPart& contact : contacts_of(place, solution, l)) {
-      carried += place.frame * contact.force;
-      result.obstacles[contact.obstacle] += force_unit * contact.force;
-      result.contacts.push_back(in_newtons(contact, force_unit, l));
-    }
-    const Eigen::Index axes = solution.model->span().planar ? 2 : 3;
-    for (std::size_t j = 0; j < place.hold_grips.size(); ++j) {
-      Eigen::Vector3d force = Eigen::Vector3d::Zero();
-      force.head(axes) = solution.multipliers.segment(static_cast<Eigen::Index>(j) * axes, axes);
-      carried += force;
-      result.grips[place.hold_grips[j]].force += force_unit * (place.frame.transpose() * force);
-    }
-    result.grips[place.anchor_grip].force -= force_unit * (place.frame.transpose() * carried);
-    const auto to_space = [&](const Eigen::Vector3d& torque) {
-      return Eigen::Vector3d(energy_unit * (place.frame.transpose() * torque));
-    };
-    result.grips[place.anchor_grip].torque +=
-        to_space(solution.model->start_torque(solution.multipliers));
-    for (std::size_t j = 0; j < place.hold_grips.size(); ++j) {
-      result.grips[place.hold_grips[j]].torque +=
-          to_space(solution.model->hold_torque(static_cast<Eigen::Index>(j), solution.multipliers));
-    }
-  }
-  if (succeeded(result.status) || result.status == SolveStatus::saddle) {
-    result.message += zero_modes_note(rigid_body_modes);
-    if (has_couples(problem)) result.message += in_the_plane;
-  }
-  if (result.status == SolveStatus::near_singular && result.neutral_directions > 0) {
-    result.message += ": " + std::to_string(result.neutral_directions) + " neutral direction" +
-                      (result.neutral_directions == 1 ? "" : "s");
-  }
-  std::sort(result.contacts.begin(), result.contacts.end(),
-            [](const ContactPart& a, const ContactPart& b) { return a.begin < b.begin; });
-  for (const Load& load : problem.loads) {
-    const std::optional<std::size_t> clamp = clamp_under(problem, load);
-    if (!clamp) continue;
-    result.grips[*clamp].force -= load.force;
-    result.grips[*clamp].torque -= load.torque;
-    result.energy.load -= load.force.dot(problem.grips[*clamp].position - origin);
-  }
-  std::vector<PlacedShape> shapes;
-  for (std::size_t i = 0; i < placed.size(); ++i) {
-    if (solutions[i]->x.size() == 0) continue;
-    const PlacedSpan& place = placed[i];
-    shapes.push_back(placed_shape(place, *solutions[i], l));
-    if (place.span.has_material_directors()) {
-      shapes.back().ahead = [ahead = place.ahead](double) { return ahead; };
-    }
-  }
-  const bool is_whole = shapes.size() == placed.size();
-  if (is_whole && !has_material_directors(problem)) {
-    place_twisted_material(problem, solutions, shapes);
-  }
-  result.sample = [l, shapes = std::move(shapes)](std::span<const double> arc_lengths) {
-    return sample(shapes, l, arc_lengths);
-  };
-  if (is_whole) separate_line_loads(problem, result);
-  return result;
+  Assembly assembly(problem);
+  for (std::size_t i = 0; i < placed.size(); ++i) assembly.add(placed[i], *solutions[i]);
+  return assembly.finish(placed, solutions);
 }
 
 }  // namespace dlo::energy_model

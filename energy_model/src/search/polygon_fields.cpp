@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "contact/tangent_between.hpp"
+#include "kirchhoff/rod_mesh.hpp"
 #include "kirchhoff/rod_span.hpp"
 
 namespace dlo::energy_model {

@@ -168,15 +168,21 @@ class VariationProblem {
     }
   }
 
-  void add_element(Eigen::Index e, const std::vector<RodState>& inside) {
-    static const ElementBasis basis;
-    constexpr Eigen::Index own = 3 * (element_order + 1);
-    const double h = elements_[e + 1] - elements_[e];
-    RodSection section = section_at(span_, elements_[e] + h / 2);
-    if (free_twist_) section.torsion = 0;
+  /// Of an element, by spins of its nodes: second derivatives, norm, and the way between its ends.
+  struct ElementSums {
+    static constexpr Eigen::Index own = 3 * (element_order + 1);
     Eigen::Matrix<double, own, own> second = Eigen::Matrix<double, own, own>::Zero();
     Eigen::Matrix<double, own, own> norm = Eigen::Matrix<double, own, own>::Zero();
     Eigen::Matrix<double, 3, own> integral = Eigen::Matrix<double, 3, own>::Zero();
+  };
+
+  void add_element(Eigen::Index e, const std::vector<RodState>& inside) {
+    static const ElementBasis basis;
+    const double h = elements_[e + 1] - elements_[e];
+    RodSection section = section_at(span_, elements_[e] + h / 2);
+    if (free_twist_) section.torsion = 0;
+    ElementSums sums;
+    auto& [second, norm, integral] = sums;
     Eigen::Matrix3d yields = Eigen::Matrix3d::Zero();
     for (std::size_t q = 0; q < element_quadrature; ++q) {
       const RodState& state = inside[static_cast<std::size_t>(e) * element_quadrature + q];
@@ -214,6 +220,13 @@ class VariationProblem {
     press(e, inside);
     const Eigen::Index multiplier = multiplier_of(e);
     if (section.stretch > 0 && multiplier >= 0) add(fixed_, multiplier, multiplier, -yields);
+    distribute(e, sums);
+  }
+
+  /// Adds an element's sums to those of its nodes.
+  void distribute(Eigen::Index e, const ElementSums& sums) {
+    const auto& [second, norm, integral] = sums;
+    const Eigen::Index multiplier = multiplier_of(e);
     const std::size_t first = static_cast<std::size_t>(e) * element_order;
     for (std::size_t a = 0; a <= element_order; ++a) {
       const SpinNode& node = nodes_[first + a];

@@ -7,6 +7,7 @@
 
 #include "dlo/energy_model/equilibrium.hpp"
 #include "kirchhoff/rod_flow.hpp"
+#include "kirchhoff/rod_mesh.hpp"
 #include "kirchhoff/rod_span.hpp"
 #include "shooting/constrained_pencil.hpp"
 

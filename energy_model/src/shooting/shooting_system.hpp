@@ -7,6 +7,7 @@
 
 #include "base/deadline.hpp"
 #include "kirchhoff/rod_flow.hpp"
+#include "kirchhoff/rod_mesh.hpp"
 #include "kirchhoff/rod_span.hpp"
 
 namespace dlo::energy_model {

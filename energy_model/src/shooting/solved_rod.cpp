@@ -77,18 +77,18 @@ void add_twists(const Problem& problem, const RodSpan& span, const SpanEquilibri
 double energy_of_couples(const RodSpan& span, const SpanEquilibrium& equilibrium,
                          double tolerance) {
   if (!span.plane) return 0;
-  constexpr Eigen::Index looks = 513;  // that no two have half a turn between them
+  constexpr Eigen::Index points = 513;  // that no two have half a turn between them
   const Eigen::Vector3d normal = span.plane->x.cross(span.plane->y);
   const double from = span.clamps.empty() ? 0 : span.clamps.front().at;
   double energy = 0;
   for (const RodSpan::Load& load : span.loads) {
     if (load.couple.isZero(0) || load.follows) continue;
     const Eigen::VectorXd s =
-        Eigen::VectorXd::LinSpaced(looks, std::min(from, load.at), std::max(from, load.at));
+        Eigen::VectorXd::LinSpaced(points, std::min(from, load.at), std::max(from, load.at));
     const Eigen::Matrix3Xd t =
         tangents_of(states_at(equilibrium, span, {s.begin(), s.end()}, tolerance));
     double angle = 0;
-    for (Eigen::Index i = 1; i < looks; ++i) {
+    for (Eigen::Index i = 1; i < points; ++i) {
       const Eigen::Vector3d before = t.col(i - 1);
       angle +=
           std::atan2(normal.dot(before.cross(Eigen::Vector3d(t.col(i)))), before.dot(t.col(i)));

@@ -27,7 +27,7 @@ constexpr Eigen::Index most_intervals = 1000;     // of a polygon that is made f
 constexpr int search_iterations = 30;     // of Newton's method, which takes 6 to 12 near a minimum
 constexpr double start_tolerance = 1e-6;  // of the integrator along a polygon
 constexpr double polygons_share = 0.5;    // of the time that is left
-constexpr double most_bend = 0.3;         // of a polygon at a node, by nature [rad]
+constexpr double most_bend = 0.3;         // of a stress-free polygon at a node [rad]
 
 /// The frames of a round rod without twist are any: its tangents count.
 bool same(const RodSpan& span, const SpanEquilibrium& a, const SpanEquilibrium& b) {
@@ -45,7 +45,7 @@ bool same(const RodSpan& span, const SpanEquilibrium& a, const SpanEquilibrium& 
   return distance < same_directors;
 }
 
-/// What search_span() has found so far, of a span whose frames are let go.
+/// What search_span() has found so far, of a span whose frames are released.
 class SpanSearch {
  public:
   SpanSearch(const RodSpan& span, double tolerance, const Deadline& deadline)

@@ -22,7 +22,7 @@ struct SpanSearchResult {
 /// there; if nothing is stable then, the gradient flow leads on from the lowest one. If nothing is
 /// found, one that has failed.
 ///
-/// Frames after the first clamp are let go for that. From the lowest equilibrium on they are then
+/// Frames after the first clamp are released for that. From the lowest equilibrium on they are then
 /// turned to where they are held (span_twist.hpp): one equilibrium then, or one that has failed.
 [[nodiscard]] SpanSearchResult search_span(const RodSpan& span, double tolerance,
                                            const Deadline& deadline);

@@ -16,9 +16,9 @@ namespace {
 
 /// Tangents of a shape at arc lengths that are the same for all.
 Eigen::Matrix3Xd looked_at(const SpanSolution& solution) {
-  constexpr Eigen::Index looks = 65;
-  const Eigen::VectorXd s = Eigen::VectorXd::LinSpaced(looks, 0, solution.model->span().length);
-  return solution.model->shape(solution.x).sample({s.data(), s.data() + looks}).tangents;
+  constexpr Eigen::Index samples = 65;
+  const Eigen::VectorXd s = Eigen::VectorXd::LinSpaced(samples, 0, solution.model->span().length);
+  return solution.model->shape(solution.x).sample({s.data(), s.data() + samples}).tangents;
 }
 
 /// Whether a shape is next to the known one that it was followed from by Newton's method.

@@ -6,10 +6,10 @@
 #include "base/legendre.hpp"
 #include "base/minimise.hpp"
 #include "certify/enough_terms.hpp"
+#include "frames/piece.hpp"
 #include "newton/augmented_lagrangian.hpp"
 #include "newton/trust_region.hpp"
 #include "span/span_traits.hpp"
-#include "strain/piece.hpp"
 
 namespace dlo::energy_model {
 namespace {

@@ -53,7 +53,7 @@ std::optional<NegativeCurvature> negative_curvature(const SpanSolution& solution
   NegativeCurvature out{model.span(), {}};
   out.span.planar = false;
   SpanEnergy in_space(out.span, solution.terms);
-  in_space.linearise_at(model, solution.x, at.hessian, at.jacobian);
+  at = second_derivatives_at(in_space, model, solution.x);
   reduced.compute(at.hessian, at.jacobian);
   if (std::optional<Eigen::VectorXd> way = negative_curvature_direction(reduced)) {
     out.direction = std::move(*way);
@@ -61,7 +61,7 @@ std::optional<NegativeCurvature> negative_curvature(const SpanSolution& solution
   }
   // Deep within a box, in the middle between two faces, the energy has a ridge: the span in space
   // has one of its slopes there, and only the planar one's tilts see both.
-  model.out_of_plane(solution.multipliers, at.hessian, at.jacobian);
+  at = second_derivatives_out_of_plane(model, solution.multipliers);
   reduced.compute(at.hessian, at.jacobian);
   const std::optional<Eigen::VectorXd> tilts = negative_curvature_direction(reduced);
   if (!tilts) return std::nullopt;

@@ -80,7 +80,7 @@ class Refinement {
             more, first_terms(solution.multipliers.cwiseAbs().maxCoeff(), traits_.longest_piece));
       }
       if (before.terms == 0) more = std::max(more, terms_by_own_decay(solution));
-      before = {solution.terms, solution.model->tail(solution.x)};
+      before = {solution.terms, solution.model->truncation(solution.x)};
       solution = with_terms(solution, std::min(most_terms, more));
     }
     return solution;
@@ -108,8 +108,8 @@ class Refinement {
     constexpr double falls = 0.5;
     const int K = solution.terms;
     const int half = K / 2;
-    const double before = solution.model->tail(solution.x, half);
-    const double now = solution.model->tail(solution.x);
+    const double before = solution.model->truncation(solution.x, half);
+    const double now = solution.model->truncation(solution.x);
     if (options_.terms > 0 || half < 2 || !(now > 0 && now < falls * before)) return K;
     const double rate = std::log(before / now) / (K - half);
     double all = K;
@@ -125,7 +125,7 @@ class Refinement {
   /// exponentially as from those before; a quarter more where nothing is known.
   [[nodiscard]] int terms_by_decay(const SpanSolution& solution, const Tail& before) const {
     const int K = solution.terms;
-    const double now = solution.model->tail(solution.x);
+    const double now = solution.model->truncation(solution.x);
     const double wanted = options_.tolerance * 4 * K * K;
     int more = std::max(2, K / 4);
     if (before.terms > 0 && now < before.size && now > wanted) {
@@ -165,7 +165,7 @@ class Refinement {
     if (span_.twist && solution.terms < terms_under_twist(solution)) return false;
     const double K = solution.terms;
     // The angle that the last coefficient adds is a_K / (2K); positions feel it as little again.
-    if (solution.model->tail(solution.x) > options_.tolerance * 4 * K * K) return false;
+    if (solution.model->truncation(solution.x) > options_.tolerance * 4 * K * K) return false;
     if (span_.is_plain_cantilever()) return true;
     return holds_with_more_terms(solution);
   }

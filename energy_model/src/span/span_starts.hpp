@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include "frames/span_shape.hpp"
 #include "problem/span.hpp"
-#include "strain/span_shape.hpp"
 
 namespace dlo::energy_model {
 

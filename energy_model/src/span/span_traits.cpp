@@ -6,8 +6,8 @@
 #include <stdexcept>
 
 #include "certify/enough_terms.hpp"
+#include "frames/piece.hpp"
 #include "problem/segments.hpp"
-#include "strain/piece.hpp"
 
 namespace dlo::energy_model {
 

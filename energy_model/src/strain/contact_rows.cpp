@@ -5,43 +5,17 @@
 #include <cmath>
 #include <utility>
 
-#include "strain/span_shape.hpp"
+#include "frames/span_shape.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
-/// On a part that is shorter [lengths] a few moments of the slope say all: more would be a system
-/// whose rounding hides Newton's last step, and forces that are made of it.
-constexpr double short_part = 5e-3;
-constexpr Eigen::Index most_of_short = 8;  // moments
-constexpr Eigen::Index told_of_short = 4;  // coefficients of the force
-
-/// How a grip holds the rod at a contact.
-enum class HeldBy {
-  nothing,
-  pin,
-  clamp,
-};
-
-HeldBy held_within(const Span& span, double begin, double end) {
-  const auto within = [&](double at) {
-    return at > begin - closest_cuts && at < end + closest_cuts;
-  };
-  HeldBy held = HeldBy::nothing;
-  if (within(span.anchor)) held = span.start_direction ? HeldBy::clamp : HeldBy::pin;
-  for (std::size_t i = 0; i < span.holds.size(); ++i) {
-    if (!within(span.holds[i].at)) continue;
-    const bool clamp =
-        span.holds[i].direction || (span.end_direction && i + 1 == span.holds.size());
-    held = std::max(held, clamp ? HeldBy::clamp : HeldBy::pin);
-  }
-  return held;
-}
+constexpr Eigen::Index most_of_short = 8;  // moments of the slope on a short part
 
 /// Whether there is something beside the obstacle from which a concentrated force could come.
 bool may_concentrate(const Span& span, double at) {
   const auto is_there = [at](double other) { return std::abs(at - other) < closest_cuts; };
-  return held_within(span, at, at) != HeldBy::nothing ||
+  return span.held_within(at, at, closest_cuts) != HeldBy::nothing ||
          std::any_of(span.loads.begin(), span.loads.end(),
                      [&](const Span::Load& load) { return is_there(load.at); }) ||
          std::any_of(span.parts.begin(), span.parts.end(), [&](const Span::Part& part) {
@@ -49,15 +23,22 @@ bool may_concentrate(const Span& span, double at) {
          });
 }
 
-/// Series in orthonormal Legendre polynomials at xi.
-double series(const Eigen::Ref<const Eigen::VectorXd>& coefficients, double xi) {
-  Eigen::VectorXd values(coefficients.size());
-  Eigen::VectorXd integrals(coefficients.size());
-  legendre(xi, values, integrals);
-  return values.dot(coefficients);
+}  // namespace
+
+Eigen::VectorXd ContactRows::Curved::forces(
+    const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
+  return weights * multipliers.segment(first, weights.cols());
 }
 
-}  // namespace
+Eigen::VectorXd ContactRows::Curved::stiffness(const Eigen::VectorXd& forces, std::size_t a,
+                                               std::size_t b) const {
+  Eigen::VectorXd result(forces.size());
+  for (Eigen::Index m = 0; m < forces.size(); ++m) {
+    const Eigen::Matrix3d& hessian = gaps[static_cast<std::size_t>(m)].hessian;
+    result[m] = forces[m] * hessian(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+  }
+  return result;
+}
 
 Eigen::Index ContactRows::add_row() {
   const Eigen::Index row = linear_.cols();
@@ -120,7 +101,7 @@ void ContactRows::add_slopes(const Span& span, std::size_t contact,
     if (middle < own.begin || middle > own.end) continue;
     const Eigen::Index count =
         piece.length < short_part ? std::min(degrees, most_of_short) : degrees;
-    Rows::Slope slope;
+    ContactSeries::Slope slope;
     slope.first = linear_.cols();
     slope.count = count;
     slope.length = piece.length;
@@ -169,13 +150,14 @@ void ContactRows::reset(const Span& span, const std::vector<Piece>& pieces, int 
     const Span::Contact& contact = span.contacts[i];
     const obstacle::Body& body = contact.obstacle.body;
     normals_.emplace_back(body.is_half_space() ? body.normal() : Eigen::Vector3d::Zero());
-    const HeldBy held = held_within(span, contact.begin, contact.end);
+    const HeldBy held = span.held_within(contact.begin, contact.end, closest_cuts);
     if (held == HeldBy::nothing) {
       add_clearance(span, i, pieces);
     } else {
       contacts_[i].held_at_begin =
-          held_within(span, contact.begin, contact.begin) != HeldBy::nothing;
-      contacts_[i].held_at_end = held_within(span, contact.end, contact.end) != HeldBy::nothing;
+          span.held_within(contact.begin, contact.begin, closest_cuts) != HeldBy::nothing;
+      contacts_[i].held_at_end =
+          span.held_within(contact.end, contact.end, closest_cuts) != HeldBy::nothing;
     }
     if (!contact.lies()) continue;
     // A slope of which nothing is known yet has one more unknown than its curvature.
@@ -317,8 +299,7 @@ void ContactRows::subtract_hessian(const Eigen::Ref<const Eigen::VectorXd>& mult
     hessian.noalias() += (mu / touch.rate) * turned * turned.transpose();
   }
   for (const Curved& curved : curved_) {
-    const Eigen::VectorXd forces =
-        curved.weights * multipliers.segment(curved.first, curved.weights.cols());
+    const Eigen::VectorXd forces = curved.forces(multipliers);
     std::array<Eigen::MatrixXd, 3> points;  // x unknowns
     const std::size_t axes = tangents[2].isZero(0) ? 2 : 3;
     for (std::size_t axis = 0; axis < axes; ++axis) {
@@ -327,33 +308,24 @@ void ContactRows::subtract_hessian(const Eigen::Ref<const Eigen::VectorXd>& mult
     for (std::size_t a = 0; a < axes; ++a) {
       Eigen::MatrixXd bent = Eigen::MatrixXd::Zero(points[a].rows(), points[a].cols());
       for (std::size_t b = 0; b < axes; ++b) {
-        Eigen::VectorXd by_point(forces.size());
-        for (Eigen::Index m = 0; m < forces.size(); ++m) {
-          by_point[m] = forces[m] * curved.gaps[static_cast<std::size_t>(m)].hessian(
-                                        static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
-        }
-        bent.noalias() += by_point.asDiagonal() * points[b];
+        bent.noalias() += curved.stiffness(forces, a, b).asDiagonal() * points[b];
       }
       hessian.noalias() -= points[a].transpose() * bent;
     }
   }
 }
 
-void ContactRows::subtract_sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
-                                    const Eigen::MatrixXd& tangents,
-                                    Eigen::Ref<Eigen::MatrixXd> hessian) const {
+void ContactRows::subtract_tilt_hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                                        const Eigen::MatrixXd& tangents,
+                                        Eigen::Ref<Eigen::MatrixXd> hessian) const {
   for (const Touch& touch : touches_) {
     const Eigen::VectorXd moved = tangents.transpose() * touch.point.position;
     hessian.noalias() -=
         (multipliers[touch.row] * touch.gap.hessian(2, 2)) * moved * moved.transpose();
   }
   for (const Curved& curved : curved_) {
-    const Eigen::VectorXd forces =
-        curved.weights * multipliers.segment(curved.first, curved.weights.cols());
-    Eigen::VectorXd bent(forces.size());
-    for (Eigen::Index m = 0; m < forces.size(); ++m) {
-      bent[m] = forces[m] * curved.gaps[static_cast<std::size_t>(m)].hessian(2, 2);
-    }
+    const Eigen::VectorXd forces = curved.forces(multipliers);
+    const Eigen::VectorXd bent = curved.stiffness(forces, 2, 2);
     const Eigen::MatrixXd moved = curved.reach.sums(tangents);
     hessian.noalias() -= moved.transpose() * (bent.asDiagonal() * moved);
   }
@@ -374,8 +346,8 @@ Eigen::VectorXd ContactRows::prolong(const ContactRows& other,
                                      const Eigen::VectorXd& multipliers) const {
   Eigen::VectorXd prolonged = Eigen::VectorXd::Zero(count());
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
-    const Rows& to = contacts_[i];
-    const Rows& from = other.contacts_[i];
+    const ContactSeries& to = contacts_[i];
+    const ContactSeries& from = other.contacts_[i];
     if (to.clearance >= 0) prolonged[to.clearance] = multipliers[from.clearance];
     for (std::size_t k = 0; k < to.slopes.size(); ++k) {
       const Eigen::Index shared = std::min(to.slopes[k].count, from.slopes[k].count);
@@ -387,55 +359,18 @@ Eigen::VectorXd ContactRows::prolong(const ContactRows& other,
 }
 
 std::vector<ContactForce> ContactRows::forces(const Eigen::VectorXd& multipliers) const {
-  constexpr int samples = 32;  // at the pressure of a piece
   std::vector<ContactForce> result;
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const Rows& rows = contacts_[c];
-    ContactForce force;
-    double before = rows.clearance < 0 ? 0 : multipliers[rows.clearance];
-    if (rows.held_at_begin && !rows.slopes.empty()) {
-      // What is concentrated there is the grip's.
-      const Rows::Slope& slope = rows.slopes.front();
-      before = series(multipliers.segment(slope.first, slope.count) / slope.length, 0);
-    }
-    force.total = force.begin = before;
-    for (std::size_t i = 0; i < rows.slopes.size(); ++i) {
-      const Rows::Slope& slope = rows.slopes[i];
-      const bool is_short = slope.length < short_part;
-      const Eigen::VectorXd carried =
-          multipliers.segment(slope.first,
-                              is_short ? std::min(slope.count, told_of_short) : slope.count) /
-          slope.length;
-      const double here = series(carried, 0);
-      if (i == 0) {
-        force.begin = before - here;
-      } else if (slope.concentrates) {
-        force.least_inner = std::min(force.least_inner, before - here);
-      }
-      force.end = before = series(carried, 1);
-      // The pressure is its derivative, which the last coefficients hardly know.
-      const Eigen::VectorXd smooth = carried.head(is_short ? 2 : (slope.count + 1) / 2);
-      double last = series(smooth, 0);
-      for (int k = 1; k <= samples; ++k) {
-        const double next = series(smooth, static_cast<double>(k) / samples);
-        const double pressure = (last - next) * samples / slope.length;
-        const bool first = i == 0 && k == 1;
-        force.least_pressure = first ? pressure : std::min(force.least_pressure, pressure);
-        force.largest_pressure = first ? pressure : std::max(force.largest_pressure, pressure);
-        last = next;
-      }
-    }
-    if (rows.held_at_end) force.total -= std::exchange(force.end, 0);
-    force.force = force.total * normals_[c];
-    result.push_back(force);
+  result.reserve(contacts_.size());
+  for (std::size_t i = 0; i < contacts_.size(); ++i) {
+    result.push_back(force_of_series(contacts_[i], multipliers));
+    result.back().force = result.back().total * normals_[i];
   }
   for (const Touch& touch : touches_) {
     result[touch.contact].force = multipliers[touch.row] * touch.gap.gradient;
   }
   for (const Curved& curved : curved_) {
-    const Eigen::VectorXd forces =
-        curved.weights * multipliers.segment(curved.first, curved.weights.cols());
-    const Rows& rows = contacts_[curved.contact];
+    const Eigen::VectorXd forces = curved.forces(multipliers);
+    const ContactSeries& rows = contacts_[curved.contact];
     const bool begins = !rows.slopes.empty() && curved.first == rows.slopes.front().first;
     const bool ends = !rows.slopes.empty() && curved.first == rows.slopes.back().first;
     const Eigen::Index first = begins && rows.held_at_begin ? 1 : 0;

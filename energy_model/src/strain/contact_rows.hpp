@@ -6,24 +6,12 @@
 #include <vector>
 
 #include "base/legendre.hpp"
+#include "frames/piece.hpp"
+#include "frames/position_operator.hpp"
 #include "problem/span.hpp"
-#include "strain/piece.hpp"
-#include "strain/position_operator.hpp"
+#include "strain/contact_forces.hpp"
 
 namespace dlo::energy_model {
-
-/// Forces with which a rigid obstacle holds a contact, away from it: at the begin and the end of
-/// the part in contact, which are the same where it touches at one point, and between.
-struct ContactForce {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< of all of it
-  double total = 0;                                 ///< sum of the magnitudes
-  double begin = 0, end = 0;  ///< concentrated ones; `end` is 0 where it touches at one point
-  double least_pressure = 0;  ///< per length, of what lies; 0 where it touches at one point
-  double largest_pressure = 0;
-  /// Least concentrated one inside, at loads and sections; what the series of two pieces differ by
-  /// elsewhere is their error.
-  double least_inner = 0;
-};
 
 /// Constraints of the rod's contacts with rigid obstacles, over clearances g of its points. A
 /// contact at one point that slides is the least clearance near it, of whatever point that is. Else
@@ -64,9 +52,9 @@ class ContactRows {
                         const std::array<Eigen::MatrixXd, 3>& tangents,
                         Eigen::Ref<Eigen::MatrixXd> hessian) const;
   /// The same along z alone, of a rod in the plane.
-  void subtract_sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
-                         const Eigen::MatrixXd& tangents,
-                         Eigen::Ref<Eigen::MatrixXd> hessian) const;
+  void subtract_tilt_hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                             const Eigen::MatrixXd& tangents,
+                             Eigen::Ref<Eigen::MatrixXd> hessian) const;
   /// Moment about the anchor of what the multipliers stand for. @param tangents  as placed
   [[nodiscard]] Eigen::Vector3d moment(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                                        const Eigen::MatrixX3d& tangents) const;
@@ -77,18 +65,6 @@ class ContactRows {
   [[nodiscard]] std::vector<ContactForce> forces(const Eigen::VectorXd& multipliers) const;
 
  private:
-  /// Rows of a contact: of its begin's, or the least, clearance (-1: a grip holds it there), and of
-  /// the slope on each of its pieces.
-  struct Rows {
-    struct Slope {
-      Eigen::Index first = 0, count = 0;
-      double length = 0;          // of the piece
-      bool concentrates = false;  // a load, a section's end or a grip is where it begins
-    };
-    Eigen::Index clearance = -1;
-    std::vector<Slope> slopes;
-    bool held_at_begin = false, held_at_end = false;  // by a grip
-  };
   /// Rows over the clearances of points from a body that is not flat.
   struct Curved {
     std::size_t contact = 0;
@@ -97,6 +73,13 @@ class ContactRows {
     Eigen::MatrixXd weights;          // rows = weights^T clearances, points x rows
     PointsReach reach;                // of the points
     std::vector<obstacle::Gap> gaps;  // of the points
+
+    /// On the points, by the multipliers of all rows.
+    [[nodiscard]] Eigen::VectorXd forces(
+        const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
+    /// These times the gaps' second derivatives by two coordinates.
+    [[nodiscard]] Eigen::VectorXd stiffness(const Eigen::VectorXd& forces, std::size_t a,
+                                            std::size_t b) const;
   };
   /// The row of a least clearance.
   struct Touch {
@@ -119,7 +102,7 @@ class ContactRows {
   void add_curved(Curved curved, Eigen::Index rows);
   void place_touch(const Eigen::MatrixX3d& tangents, Touch& touch) const;
 
-  std::vector<Rows> contacts_;
+  std::vector<ContactSeries> contacts_;
   std::vector<Curved> curved_;
   std::vector<Touch> touches_;
   std::vector<Eigen::Vector3d> normals_;  // of half-spaces, by contact

@@ -4,8 +4,8 @@
 
 namespace dlo::energy_model {
 
-/// By how much a director p misses the direction `to`, looked at along `across`, which is at right
-/// angles to it,
+/// Residual of a director p that is held in the direction `to`, in the component along `across`,
+/// which is at right angles to it,
 ///     c = 2 across.p / (1 + to.p):
 /// about the angle, and zero at p = to alone. A turn theta of p, a rotation vector, changes it by
 /// couple . theta + theta . curvature theta / 2.

@@ -1,6 +1,8 @@
 #include "strain/point_on_span.hpp"
 
+#include <Eigen/QR>
 #include <utility>
+#include <vector>
 
 namespace dlo::energy_model {
 
@@ -29,6 +31,46 @@ SecondDerivatives second_derivatives(SpanEnergy& model, const Eigen::VectorXd& x
   SecondDerivatives result;
   result.jacobian = std::move(evaluated(model, x).jacobian);
   model.hessian(multipliers, result.hessian);
+  return result;
+}
+
+SecondDerivatives second_derivatives_at(SpanEnergy& model, const SpanEnergy& other,
+                                        const Eigen::VectorXd& x) {
+  PointOnSpan point = evaluated(model, model.prolong(other, x));
+  // The forces are the other one's, seen in these constraints.
+  const Eigen::VectorXd multipliers =
+      model.constraints() == 0
+          ? Eigen::VectorXd()
+          : Eigen::VectorXd(
+                point.jacobian.transpose().completeOrthogonalDecomposition().solve(point.gradient));
+  SecondDerivatives result;
+  model.hessian(multipliers, result.hessian);
+  result.jacobian = std::move(point.jacobian);
+  return result;
+}
+
+SecondDerivatives second_derivatives_out_of_plane(SpanEnergy& model,
+                                                  const Eigen::VectorXd& multipliers) {
+  SecondDerivatives result;
+  if (!model.span().has_material_directors()) {
+    model.tilt_hessian(multipliers, result.hessian, result.jacobian);
+    return result;
+  }
+  // A rod that is curved, or of another stiffness out of its plane, twists as it leaves it.
+  Span space = model.span();
+  space.planar = false;
+  SpanEnergy twin(space, model.terms());
+  const SecondDerivatives all = second_derivatives_at(twin, model, model.x());
+  const Eigen::Index out = twin.size() - model.size();
+  result.hessian = all.hessian.bottomRightCorner(out, out);
+  // Of a position its z, of a direction what is across it along z.
+  std::vector<Eigen::Index> rows;
+  const Eigen::Index holds = std::ssize(space.holds);
+  for (Eigen::Index j = 0; j < holds; ++j) rows.push_back(3 * j + 2);
+  for (Eigen::Index row = twin.first_direction_row(); row < twin.constraints(); row += 2) {
+    rows.push_back(row);
+  }
+  result.jacobian = all.jacobian(rows, Eigen::lastN(out));
   return result;
 }
 

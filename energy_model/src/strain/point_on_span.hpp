@@ -31,4 +31,15 @@ struct SecondDerivatives {
   return second_derivatives(*solution.model, solution.x, solution.multipliers);
 }
 
+/// The same at the equilibrium x of another model, of the same span in its plane; mu are the
+/// multipliers that balance it best.
+[[nodiscard]] SecondDerivatives second_derivatives_at(SpanEnergy& model, const SpanEnergy& other,
+                                                      const Eigen::VectorXd& x);
+
+/// The same for bending (and twisting, with material directors) of a planar span out of its plane,
+/// at the point where the model is. Unknowns of a round rod are the rates of the tangent's tilt,
+/// with material directors the last unknowns of the same span in space.
+[[nodiscard]] SecondDerivatives second_derivatives_out_of_plane(SpanEnergy& model,
+                                                                const Eigen::VectorXd& multipliers);
+
 }  // namespace dlo::energy_model

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "strain/position_operator.hpp"
+#include "frames/position_operator.hpp"
 
 namespace dlo::energy_model {
 
@@ -77,7 +77,7 @@ namespace {
 /// Of a body that is symmetric about the plane, over its stiffness: what resists leaving the plane.
 /// A force out of it comes of a ridge, where the faces on both sides are equally near, and turns
 /// round there: what the energy falls by over a short way, as if it fell with the square.
-double sideways_spring(const obstacle::Gap& gap) {
+double tilt_spring(const obstacle::Gap& gap) {
   constexpr double way = 1e-3;
   if (is_on_ridge(gap)) return 1 + 2 * gap.value / way;
   return gap.value * gap.hessian(2, 2);
@@ -87,7 +87,7 @@ double sideways_spring(const obstacle::Gap& gap) {
 
 bool is_on_ridge(const obstacle::Gap& gap) { return std::abs(gap.gradient.z()) > 0.5; }
 
-void SoftContact::add_sideways(const Eigen::MatrixXd& angle, Eigen::MatrixXd& hessian) const {
+void SoftContact::add_tilt_hessian(const Eigen::MatrixXd& angle, Eigen::MatrixXd& hessian) const {
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
     if (pressed_[i].empty()) continue;
     const Eigen::Index count = std::ssize(pressed_[i]);
@@ -96,7 +96,7 @@ void SoftContact::add_sideways(const Eigen::MatrixXd& angle, Eigen::MatrixXd& he
     for (Eigen::Index p = 0; p < count; ++p) {
       const Pressed& at = pressed_[i][static_cast<std::size_t>(p)];
       reach.row(p) = position_.row(at.node);
-      spring[p] = obstacles_[i].stiffness * weights_[at.node] * sideways_spring(at.gap);
+      spring[p] = obstacles_[i].stiffness * weights_[at.node] * tilt_spring(at.gap);
     }
     const Eigen::MatrixXd moved = reach * angle;
     hessian.noalias() += moved.transpose() * spring.asDiagonal() * moved;

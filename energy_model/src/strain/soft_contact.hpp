@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/legendre.hpp"
-#include "strain/span_shape.hpp"
+#include "frames/span_shape.hpp"
 
 namespace dlo::energy_model {
 
@@ -31,7 +31,7 @@ class SoftContact {
 
   /// Adds what leaving the plane changes of a planar span. @param angle  nodes x unknowns: tilt of
   /// the tangents out of the plane
-  void add_sideways(const Eigen::MatrixXd& angle, Eigen::MatrixXd& hessian) const;
+  void add_tilt_hessian(const Eigen::MatrixXd& angle, Eigen::MatrixXd& hessian) const;
 
   /// Of the springs at the point of the last add().
   [[nodiscard]] double energy() const;

@@ -5,11 +5,16 @@
 #include <vector>
 
 #include "dlo/energy_model/problem.hpp"
+#include "frames/fit_frames.hpp"
+#include "frames/frame_hessian.hpp"
+#include "frames/planar_frames.hpp"
+#include "frames/rod_frames.hpp"
+#include "frames/span_shape.hpp"
 #include "strain/contact_rows.hpp"
-#include "strain/direction_residual.hpp"
-#include "strain/rod_frames.hpp"
+#include "strain/dead_loads.hpp"
+#include "strain/grip_rows.hpp"
 #include "strain/soft_contact.hpp"
-#include "strain/span_shape.hpp"
+#include "strain/span_unknowns.hpp"
 
 namespace dlo::energy_model {
 
@@ -32,9 +37,15 @@ class SpanEnergy {
   void reset(const Span& span, int terms);
 
   [[nodiscard]] const Span& span() const { return span_; }
-  [[nodiscard]] Eigen::Index size() const { return strains() + (has_psi() ? 1 : 0); }
-  [[nodiscard]] Eigen::Index constraints() const { return constraints_; }
-  [[nodiscard]] int terms() const { return terms_; }
+  [[nodiscard]] Eigen::Index size() const { return unknowns_.size(); }
+  [[nodiscard]] Eigen::Index constraints() const {
+    return grips_.positions() + contacts_.count() + grips_.directions();
+  }
+  /// Constraints on directions are the last ones.
+  [[nodiscard]] Eigen::Index first_direction_row() const {
+    return constraints() - grips_.directions();
+  }
+  [[nodiscard]] int terms() const { return static_cast<int>(unknowns_.terms); }
   [[nodiscard]] int pieces() const { return static_cast<int>(pieces_.size()); }
   [[nodiscard]] double longest_piece() const;
 
@@ -46,18 +57,16 @@ class SpanEnergy {
   void constraint(Eigen::Ref<Eigen::VectorXd> residual, Eigen::Ref<Eigen::MatrixXd> jacobian);
   /// Second derivatives of E - mu . c at the point of the last value().
   void hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers, Eigen::MatrixXd& result);
-  /// For a planar span: the same for bending (and twisting, with material directors) out of the
-  /// plane, with its constraints' Jacobian. Unknowns of a round rod are the rates of the tangent's
-  /// tilt, with material directors the last unknowns of the same span in space.
-  void out_of_plane(const Eigen::Ref<const Eigen::VectorXd>& multipliers, Eigen::MatrixXd& hessian,
-                    Eigen::MatrixXd& jacobian);
-  /// Second derivatives of E - mu . c and the constraints' Jacobian at the equilibrium x of another
-  /// model, of the same span in its plane; mu are the multipliers that balance it best.
-  void linearise_at(const SpanEnergy& other, const Eigen::VectorXd& x, Eigen::MatrixXd& hessian,
+  /// For a planar span of a round rod without natural strains: the same for bending out of the
+  /// plane, with its constraints' Jacobian. Unknowns are the rates of the tangent's tilt.
+  /// second_derivatives_out_of_plane() is for all planar spans.
+  void tilt_hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers, Eigen::MatrixXd& hessian,
                     Eigen::MatrixXd& jacobian);
   /// For a planar span held by one clamp and nothing else: whether bending out of the plane stores
   /// energy, at the point of the last value().
   [[nodiscard]] bool resists_out_of_plane();
+  /// The point of the last value().
+  [[nodiscard]] const Eigen::VectorXd& x() const { return x_; }
 
   /// Arc lengths of the nodes, and tangents there at the point of the last value(), 3 x nodes.
   [[nodiscard]] const Eigen::VectorXd& nodes() const { return s_; }
@@ -68,8 +77,7 @@ class SpanEnergy {
   /// given ones; a planar span drops what leaves its plane. Also turns the clamps' angles to the
   /// winding of these tangents.
   /// @param most_steps  that the fit may take in space, one evaluation each
-  [[nodiscard]] Eigen::VectorXd fit(const StartShape& shape,
-                                    int most_steps = RodFrames::most_fit_steps);
+  [[nodiscard]] Eigen::VectorXd fit(const StartShape& shape, int most_steps = most_fit_steps);
 
   /// What tangents at the nodes would cost a round rod that is intrinsically
   /// straight, and how far from the holds they would end, before they are fitted.
@@ -86,19 +94,17 @@ class SpanEnergy {
   /// Unknowns of a shape that was found with another number of terms, or in the plane.
   [[nodiscard]] Eigen::VectorXd prolong(const SpanEnergy& other, const Eigen::VectorXd& x);
 
-  /// Where the unknowns of the same span with no more terms are among these.
-  [[nodiscard]] std::vector<Eigen::Index> places_of(const SpanEnergy& other) const;
+  [[nodiscard]] const SpanUnknowns& unknowns() const { return unknowns_; }
 
   /// Multipliers of the same span's constraints, found with another number of
   /// terms.
   [[nodiscard]] Eigen::VectorXd prolong_multipliers(const SpanEnergy& other,
                                                     const Eigen::VectorXd& multipliers) const;
 
-  /// Size of the last coefficients, which tells whether the curvature is
-  /// resolved.
-  [[nodiscard]] double tail(const Eigen::VectorXd& x) const { return tail(x, terms_); }
+  /// Truncation indicator, the size of the last coefficients: is the curvature resolved?
+  [[nodiscard]] double truncation(const Eigen::VectorXd& x) const { return truncation(x, terms()); }
   /// The same of the last of the first `terms` coefficients.
-  [[nodiscard]] double tail(const Eigen::VectorXd& x, int terms) const;
+  [[nodiscard]] double truncation(const Eigen::VectorXd& x, int terms) const;
   /// The rod's twist, end ahead of start [rad]; 0 where nothing holds it.
   [[nodiscard]] double twist(const Eigen::VectorXd& x) const;
   /// What the clamp at the end turns it with, about the tangent.
@@ -131,7 +137,7 @@ class SpanEnergy {
   [[nodiscard]] const SoftContact& soft_contact() const { return soft_contact_; }
   /// What holds the rod on rigid obstacles by these multipliers.
   [[nodiscard]] std::vector<ContactForce> contact_forces(const Eigen::VectorXd& multipliers) const {
-    return contacts_.forces(multipliers.segment(first_contact_row(), contacts_.count()));
+    return contacts_.forces(of_contacts(multipliers));
   }
 
   /// Where one of Span::contacts that slides is, at the point of the last value(); nothing of
@@ -143,82 +149,49 @@ class SpanEnergy {
   /// Torque of one of the span's holds and of the clamp at its start, at the point of the last
   /// value(): the weak forms, from the directors' multipliers and from the balance about the start.
   /// They converge with the energy, the curvature at the very end only with its last coefficients.
-  [[nodiscard]] Eigen::Vector3d hold_torque(Eigen::Index hold,
-                                            const Eigen::VectorXd& multipliers) const;
-  [[nodiscard]] Eigen::Vector3d start_torque(const Eigen::VectorXd& multipliers) const;
+  [[nodiscard]] Eigen::Vector3d hold_torque(Eigen::Index hold, const Eigen::VectorXd& multipliers);
+  [[nodiscard]] Eigen::Vector3d start_torque(const Eigen::VectorXd& multipliers);
 
  private:
-  /// A constraint on a director that a clamp holds, in one component.
-  struct DirectorRow {
-    Eigen::Index hold;   // in span_.holds
-    Eigen::Index piece;  // at whose end it is
-    Eigen::Vector3d to = Eigen::Vector3d::Zero();
-    Eigen::Vector3d across = Eigen::Vector3d::Zero();
-    bool of_d1 = false;  // not of the tangent
-    double angle = 0;    // in the plane, whole turns counted, less that of the stress-free shape
-  };
-  /// Strains of the rod, or turns of it as a whole.
-  [[nodiscard]] Eigen::Index fields() const { return span_.planar ? 1 : frames_.fields(); }
-  [[nodiscard]] Eigen::Index strains() const { return fields() * columns_; }
-  /// Rotation of the tangent of the stress-free shape in the plane up to a piece's end.
-  [[nodiscard]] double natural_turn(Eigen::Index piece) const;
-  /// Where the constraints on directors begin.
-  [[nodiscard]] Eigen::Index first_director_row() const {
-    return first_contact_row() + contacts_.count();
+  [[nodiscard]] Eigen::Index strains() const { return unknowns_.strains(); }
+  [[nodiscard]] bool has_psi() const { return unknowns_.has_psi; }
+  [[nodiscard]] PlanarPoint in_plane() { return {plane_, plane_state_, t_, x_}; }
+  [[nodiscard]] SpatialPoint in_space() {
+    return {frames_, state_, t_, has_psi() ? twist_root_ : 0, has_psi() ? twist(x_) : 0};
   }
-  [[nodiscard]] Eigen::Index first_contact_row() const { return axes_ * reach_.cols(); }
-  /// Unknown of the mean twist of a piece of a rod with material directors.
-  [[nodiscard]] Eigen::Index first_twist(Eigen::Index piece) const {
-    return 2 * columns_ + free_start_ + piece * terms_;
+  /// Between those of positions and of directions.
+  [[nodiscard]] Eigen::VectorXd of_contacts(
+      const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
+    return multipliers.segment(grips_.positions(), contacts_.count());
   }
-  [[nodiscard]] bool has_psi() const { return span_.twist && !span_.has_material_directors(); }
-  void tabulate_angles();
-  void tabulate_natural_angles();
-  void tabulate_couples();
-  void tabulate_forces();
   void carry(const Eigen::Ref<const Eigen::VectorXd>& multipliers);
-  void add_angles_squared(Eigen::Ref<Eigen::MatrixXd> result);
-  void carry_sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers);
-  void place_tangents();
-  void sideways_with_twist(Eigen::MatrixXd& hessian, Eigen::MatrixXd& jacobian);
-  void list_director_rows();
-  [[nodiscard]] DirectionResidual residual_of(const DirectorRow& row) const;
-  void add_twist_hessian(double factor, Eigen::MatrixXd& result);
+  void carry_tilts(const Eigen::Ref<const Eigen::VectorXd>& multipliers);
 
   Span span_;
-  int terms_ = 0;
-  Eigen::Index columns_ = 0;  // unknowns of one field: the angle, or each of two strains
-  Eigen::Index free_start_ = 0;
-  Eigen::Index constraints_ = 0;
-  std::vector<DirectorRow> director_rows_;  // of the last constraints
-  double twist_root_ = 0;                   // unknown by twist
-  Eigen::Index axes_ = 2;                   // position components that are constrained, 2 or 3
   std::vector<Piece> pieces_;
+  SpanUnknowns unknowns_;
+  double twist_root_ = 0;  // unknown by twist
   const LegendreTable* table_ = nullptr;
   Eigen::VectorXd s_, weights_;
 
+  // Terms and constraints
+  DeadLoads loads_;
+  GripRows grips_;
+  ContactRows contacts_;
+  SoftContact soft_contact_;
+
   // In the plane
-  double start_theta_ = 0;
-  Eigen::MatrixXd angle_;             // of the nodes by unknown
-  Eigen::MatrixXd angle_transposed_;  // its transpose
-  Eigen::MatrixXd held_angle_;        // of the director rows by unknown
-  Eigen::VectorXd natural_angle_;     // of the nodes, from the start's; empty: zero
-  Eigen::VectorXd couples_work_;      // by unknown, of the loads' couples; empty: none
+  PlanarFrames plane_;
+  PlanarFrames::State plane_state_;
   // In space
   Eigen::Matrix3d start_frame_ = Eigen::Matrix3d::Identity();
   RodFrames frames_;
   RodFrames::State state_;
-
-  Eigen::MatrixX3d force_;  // quadrature weight of the node times weight and loads beyond it
-  Eigen::MatrixXd reach_;   // per hold, quadrature weight of the node times -1, 0, 1
-  std::vector<std::vector<double>> reach_signs_;  // the same by hold and piece, without weights
-  ContactRows contacts_;
-  SoftContact soft_contact_;
+  FrameHessian frame_hessian_;
 
   // At the point of the last value(), nodes x 3
-  Eigen::VectorXd theta_, kappa_;
-  Eigen::MatrixX3d t_, t_theta_;
-  Eigen::MatrixX3d total_;  // -dE/dt, of all but bending: force_ and the obstacles' beyond the node
+  Eigen::MatrixX3d t_;
+  Eigen::MatrixX3d total_;  // -dE/dt, of all but bending: loads and the obstacles' beyond the node
   Eigen::VectorXd x_, gradient_;
   double energy_ = 0;
   bool evaluated_ = false;  // x_ is a point that value() has seen since reset()
@@ -227,8 +200,7 @@ class SpanEnergy {
   Eigen::MatrixX3d carried_;                 // total_ and what grips and contacts add to it
   std::vector<Eigen::Vector3d> couples_;     // by piece
   std::vector<Eigen::Matrix3d> curvatures_;  // by piece
-  Eigen::VectorXd along_, turning_, pulled_, beside_;
-  Eigen::MatrixXd scaled_, own_;
+  Eigen::VectorXd along_, by_unknown_;
 };
 
 }  // namespace dlo::energy_model

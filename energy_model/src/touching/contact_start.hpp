@@ -7,6 +7,7 @@
 #include "dlo/energy_model/equilibrium.hpp"
 #include "dlo/energy_model/problem.hpp"
 #include "dlo/obstacle/body.hpp"
+#include "kirchhoff/rod_mesh.hpp"
 #include "kirchhoff/rod_span.hpp"
 
 namespace dlo::energy_model {

@@ -108,8 +108,8 @@ std::optional<std::vector<ContactPart>> other_contacts(const Problem& problem,
 }
 
 /// With the contact that its signs ask for. @return nothing if the shots could not be closed
-std::optional<Equilibrium> settle(const Problem& problem, Equilibrium start,
-                                  const Deadline& deadline) {
+std::optional<Equilibrium> solve_from(const Problem& problem, Equilibrium start,
+                                      const Deadline& deadline) {
   for (int changes = 0; changes < most_changes; ++changes) {
     std::optional<Equilibrium> found = close_contacts(problem, start, way_tolerance, deadline);
     if (!found) return std::nullopt;
@@ -155,12 +155,12 @@ std::optional<Equilibrium> raise_weight(const Problem& problem, double tolerance
   double share = first_gamma / gamma_of(problem);
   double ratio = 0.3;
   std::optional<Equilibrium> shape =
-      settle(with_share(problem, share), straight(problem), deadline);
+      solve_from(with_share(problem, share), straight(problem), deadline);
   if (!shape) share = 0;
   while (shape && share < 1 && ratio > smallest_ratio && !deadline.passed()) {
     const double next = std::min(1.0, share * std::exp(ratio));
     std::optional<Equilibrium> trial =
-        settle(with_share(problem, next), scaled(*shape, next / share), deadline);
+        solve_from(with_share(problem, next), scaled(*shape, next / share), deadline);
     if (!trial || !is_next(*shape, *trial, problem.length)) {
       ratio /= 2;
       continue;

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "dlo/energy_model/vibrations.hpp"
+#include "frames/position_operator.hpp"
 #include "problem/split.hpp"
-#include "strain/position_operator.hpp"
 
 namespace dlo::energy_model {
 

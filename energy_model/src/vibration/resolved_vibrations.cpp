@@ -10,9 +10,9 @@
 
 #include "base/legendre.hpp"
 #include "base/sized_samples.hpp"
+#include "frames/position_operator.hpp"
 #include "problem/rod_law.hpp"
 #include "search/known_shape.hpp"
-#include "strain/position_operator.hpp"
 #include "strain/span_energy.hpp"
 #include "vibration/inertia.hpp"
 #include "vibration/span_modes.hpp"

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "frames/piece.hpp"
 #include "problem/span.hpp"
-#include "strain/piece.hpp"
 
 namespace dlo::energy_model {
 

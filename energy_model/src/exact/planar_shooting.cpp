@@ -1,19 +1,17 @@
-#include "shooting/planar_shooting.hpp"
+#include "exact/planar_shooting.hpp"
 
 #include <gsl/gsl_errno.h>
-#include <gsl/gsl_odeiv2.h>
 #include <gsl/gsl_roots.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <exception>
-#include <limits>
 #include <memory>
 #include <numbers>
 
 #include "base/silence_gsl.hpp"
 #include "base/zero_modes_note.hpp"
+#include "exact/tip_shot.hpp"
 #include "shooting/refine_span.hpp"
 #include "shooting/second_variation.hpp"
 #include "shooting/span_equilibrium.hpp"
@@ -23,147 +21,10 @@ namespace {
 
 using std::numbers::pi;
 
-/// State along sigma = 1 - s, from the tip to the clamp, in the frame of the last force: angle psi
-/// of the tangent against that force, curvature by sigma, position relative to the tip, bending
-/// energy, and the potential of the weight relative to the clamp; then, if asked for, the
-/// derivatives of psi and its rate by psi at the tip.
-enum Component : std::size_t {
-  psi,
-  psi_rate,
-  x,
-  y,
-  bending,
-  gravity,
-  components,
-  psi_change = components,
-  psi_rate_change,
-  components_and_changes
-};
-using State = std::array<double, components_and_changes>;
-
-constexpr int most_shot_steps = 100000;  // of the integrator, in a shot
-constexpr int most_shots = 20000;        // of a scan
-constexpr int deepest_cell = 6;          // halvings of a cell of the scan
-constexpr double cell_resolved = 0.02;   // a cubic's error in a cell over the residual there
-constexpr double double_root = 1e-11;    // of the residual: rounding of a shot
-
-/// Forces in the frame whose x axis is the last force.
-struct Frame {
-  double axis_angle = 0;  // of the last force against the clamp's tangent
-  Eigen::Vector2d weight = Eigen::Vector2d::Zero();
-  std::vector<PlanarCantilever::Load> loads;  // by growing sigma; `at` is sigma here
-
-  [[nodiscard]] bool parallel() const {
-    return weight.y() == 0 && std::all_of(loads.begin(), loads.end(), [](const auto& load) {
-             return load.force.y() == 0 && load.couple == 0;
-           });
-  }
-};
-
-struct TipSection {
-  Eigen::Vector2d weight;
-  Eigen::Vector2d loads;  // sum of those that have been passed
-  bool changes = false;   // by psi at the tip
-};
-
-Eigen::Vector2d into_frame(const Eigen::Vector2d& force, double axis_angle) {
-  const Eigen::Vector2d axis(std::cos(axis_angle), std::sin(axis_angle));
-  Eigen::Vector2d turned(axis.dot(force), axis.x() * force.y() - axis.y() * force.x());
-  // What is parallel up to rounding is parallel: it may not disturb an exponentially small psi.
-  if (std::abs(turned.y()) < 1e-14 * turned.norm()) turned.y() = 0;
-  return turned;
-}
-
-Frame make_frame(const PlanarCantilever& rod) {
-  const bool tip_load = !rod.loads.empty() && rod.loads.back().at == 1;
-  Eigen::Vector2d last = rod.weight;
-  if (tip_load) {
-    last.setZero();
-    for (const auto& load : rod.loads) {
-      if (load.at == 1) last += load.force;
-    }
-  } else if (last.norm() == 0 && !rod.loads.empty()) {
-    last = rod.loads.back().force;
-  }
-  Frame frame;
-  frame.axis_angle = std::atan2(last.y(), last.x());
-  frame.weight = into_frame(rod.weight, frame.axis_angle);
-  for (auto load = rod.loads.rbegin(); load != rod.loads.rend(); ++load) {
-    frame.loads.push_back({1 - load->at, into_frame(load->force, frame.axis_angle), load->couple});
-  }
-  return frame;
-}
-
-int section_rates(double sigma, const double* state, double* rate, void* data) {
-  const auto& section = *static_cast<const TipSection*>(data);
-  const Eigen::Vector2d n = sigma * section.weight + section.loads;
-  const double sine = std::sin(state[psi]);
-  const double cosine = std::cos(state[psi]);
-  rate[psi] = state[psi_rate];
-  rate[psi_rate] = n.x() * sine - n.y() * cosine;
-  rate[x] = -cosine;
-  rate[y] = -sine;
-  rate[bending] = state[psi_rate] * state[psi_rate] / 2;
-  rate[gravity] = -sigma * (section.weight.x() * cosine + section.weight.y() * sine);
-  if (section.changes) {
-    rate[psi_change] = state[psi_rate_change];
-    rate[psi_rate_change] = (n.x() * cosine + n.y() * sine) * state[psi_change];
-  }
-  return GSL_SUCCESS;
-}
-
-/// Integrates from the tip, psi = start there, through every sigma of `stops` (growing).
-/// @param changes  the derivatives by `start` too
-/// @return false if the integrator failed; `states` are then incomplete
-bool shoot(const Frame& frame, double start, double tolerance, const std::vector<double>& stops,
-           std::vector<State>& states, bool changes = false) {
-  const std::size_t n = changes ? components_and_changes : components;
-  TipSection section{frame.weight, Eigen::Vector2d::Zero(), changes};
-  gsl_odeiv2_system system{section_rates, nullptr, n, &section};
-  const std::unique_ptr<gsl_odeiv2_step, decltype(&gsl_odeiv2_step_free)> step(
-      gsl_odeiv2_step_alloc(gsl_odeiv2_step_rk8pd, n), gsl_odeiv2_step_free);
-  const std::unique_ptr<gsl_odeiv2_evolve, decltype(&gsl_odeiv2_evolve_free)> evolve(
-      gsl_odeiv2_evolve_alloc(n), gsl_odeiv2_evolve_free);
-  // psi may start exponentially small, and its relative error is what counts then.
-  const double small = std::max(std::min(std::abs(start), 1.0), 1e-300);
-  const double angle_scale = frame.parallel() ? small : 1.0;
-  const std::array<double, components_and_changes> scale = {angle_scale, angle_scale, 1, 1,
-                                                            1,           1,           1, 1};
-  const std::unique_ptr<gsl_odeiv2_control, decltype(&gsl_odeiv2_control_free)> control(
-      gsl_odeiv2_control_scaled_new(tolerance, tolerance, 1, 0, scale.data(), n),
-      gsl_odeiv2_control_free);
-
-  State state{};
-  state[psi] = start;
-  state[psi_change] = 1;
-  int steps = 0;
-  double sigma = 0;
-  double h = 1e-3;
-  std::size_t next_load = 0;
-  states.clear();
-  for (const double stop : stops) {
-    for (;;) {
-      while (next_load < frame.loads.size() && frame.loads[next_load].at <= sigma) {
-        state[psi_rate] -= frame.loads[next_load].couple;  // by sigma: minus the curvature
-        section.loads += frame.loads[next_load++].force;
-        gsl_odeiv2_evolve_reset(evolve.get());
-        gsl_odeiv2_step_reset(step.get());
-      }
-      if (sigma >= stop) break;
-      const double until =
-          next_load < frame.loads.size() ? std::min(stop, frame.loads[next_load].at) : stop;
-      while (sigma < until) {
-        if (gsl_odeiv2_evolve_apply(evolve.get(), control.get(), step.get(), &system, &sigma, until,
-                                    &h, state.data()) != GSL_SUCCESS ||
-            ++steps > most_shot_steps) {
-          return false;
-        }
-      }
-    }
-    states.push_back(state);
-  }
-  return std::isfinite(states.back()[psi]);
-}
+constexpr int most_shots = 20000;       // of a scan
+constexpr int deepest_cell = 6;         // halvings of a cell of the scan
+constexpr double cell_resolved = 0.02;  // a cubic's error in a cell over the residual there
+constexpr double double_root = 1e-11;   // of the residual: rounding of a shot
 
 /// A tip's angle, the residual at the clamp's angle, and the derivative of that.
 struct ScanPoint {
@@ -173,27 +34,34 @@ struct ScanPoint {
 };
 
 struct Shooter {
-  Frame frame;
+  TipFrame frame;
   double tolerance;
   Deadline deadline;
   int shots = 0;
-  int failures = 0;  // shots and searches for a root that came to nothing
+  int failures = 0;  // shots and searches for a root that did not converge
   bool out_of_time = false;
   std::exception_ptr thrown;  // within GSL, which is C
-  std::vector<State> states;
 
-  /// How far the clamp's angle is missed; zero at every winding number. NaN if the shot fails.
-  double residual(double start) { return point(start, false).residual; }
+  /// Of the clamp's angle; zero at every winding number. NaN if the shot fails.
+  double residual(double start) {
+    return std::sin(half(is_in_time() ? shoot_angle(frame, start, tolerance) : NAN));
+  }
 
-  ScanPoint point(double start, bool with_slope) {
+  /// The same with its derivative.
+  ScanPoint point(double start) {
+    const TipShot shot = is_in_time() ? shoot(frame, start, tolerance) : TipShot{NAN, NAN};
+    const double angle = half(shot.psi);
+    return {start, std::sin(angle), std::cos(angle) / 2 * shot.psi_change};
+  }
+
+  bool is_in_time() {
     ++shots;
     out_of_time = out_of_time || deadline.passed();
-    if (out_of_time || !shoot(frame, start, tolerance, {1.0}, states, with_slope)) {
-      ++failures;
-      return {start, NAN, NAN};
-    }
-    const double half = (states.back()[psi] + frame.axis_angle) / 2;
-    return {start, std::sin(half), std::cos(half) / 2 * states.back()[psi_change]};
+    return !out_of_time;
+  }
+  double half(double psi) {
+    if (!std::isfinite(psi)) ++failures;
+    return (psi + frame.axis_angle) / 2;
   }
 };
 
@@ -210,7 +78,7 @@ double residual_at(double start, void* data) {
 double slope_of(double start, void* data) {
   auto& shooter = *static_cast<Shooter*>(data);
   try {
-    return shooter.point(start, true).slope;
+    return shooter.point(start).slope;
   } catch (...) {
     shooter.thrown = std::current_exception();
     return NAN;
@@ -233,12 +101,6 @@ double refine_root(Shooter& shooter, double (*function_of)(double, void*), doubl
   }
   if (shooter.thrown) std::rethrow_exception(shooter.thrown);
   return good ? gsl_root_fsolver_root(solver.get()) : NAN;
-}
-
-double total_load(const PlanarCantilever& rod) {
-  double load = rod.weight.norm();
-  for (const auto& l : rod.loads) load += l.force.norm() + std::abs(l.couple);
-  return load;
 }
 
 /// Starts psi at the tip, growing from -pi to pi. Where all forces are parallel the tip's angle
@@ -266,7 +128,7 @@ class TipScan {
   std::vector<double> run(const std::vector<double>& grid) {
     ScanPoint previous{};
     for (std::size_t i = 0; i < grid.size(); ++i) {
-      const ScanPoint next = shooter_.point(grid[i], true);
+      const ScanPoint next = shooter_.point(grid[i]);
       if (i > 0) look_into(previous, next, 0);
       // Only a tip that keeps its angle all along the rod is a root without a change of sign.
       const bool straight = next.start == 0 || std::abs(next.start) == pi;
@@ -284,7 +146,7 @@ class TipScan {
   /// Halves a cell until a cubic through its ends tells what the residual is in its middle.
   void look_into(const ScanPoint& low, const ScanPoint& high, int depth) {
     if (!std::isfinite(low.residual) || !std::isfinite(high.residual)) return;
-    const ScanPoint middle = shooter_.point((low.start + high.start) / 2, true);
+    const ScanPoint middle = shooter_.point((low.start + high.start) / 2);
     if (!std::isfinite(middle.residual)) return;
     const double cubic = (low.residual + high.residual) / 2 +
                          (high.start - low.start) / 8 * (low.slope - high.slope);
@@ -334,56 +196,6 @@ class TipScan {
   std::vector<double> roots_;
 };
 
-PlanarSamples sample(const Frame& frame, double start, double tolerance,
-                     const std::vector<double>& distances) {
-  std::vector<double> stops;
-  stops.reserve(distances.size() + 1);
-  for (const double s : distances) stops.push_back(1 - s);
-  stops.push_back(1);
-  std::sort(stops.begin(), stops.end());
-  std::vector<State> states;
-  PlanarSamples samples(static_cast<Eigen::Index>(distances.size()));
-  if (!shoot(frame, start, tolerance, stops, states)) {
-    samples.points.setConstant(NAN);
-    samples.angle.setConstant(NAN);
-    samples.curvature.setConstant(NAN);
-    return samples;
-  }
-  const State& clamp = states.back();
-  const double cosine = std::cos(frame.axis_angle);
-  const double sine = std::sin(frame.axis_angle);
-  // The clamp's tangent is 0 up to whole turns that the rod makes on its way.
-  const double turns = 2 * pi * std::round((clamp[psi] + frame.axis_angle) / (2 * pi));
-  for (std::size_t i = 0; i < distances.size(); ++i) {
-    const auto at = std::lower_bound(stops.begin(), stops.end(), 1 - distances[i]);
-    const State& state = states[static_cast<std::size_t>(at - stops.begin())];
-    const double dx = state[x] - clamp[x];
-    const double dy = state[y] - clamp[y];
-    const auto column = static_cast<Eigen::Index>(i);
-    samples.points.col(column) << cosine * dx - sine * dy, sine * dx + cosine * dy;
-    samples.angle[column] = state[psi] + frame.axis_angle - turns;
-    samples.curvature[column] = -state[psi_rate];
-  }
-  return samples;
-}
-
-Energies energies(const PlanarCantilever& rod, const Frame& frame, double start, double tolerance) {
-  std::vector<State> states;
-  if (!shoot(frame, start, tolerance, {1.0}, states)) return {NAN, NAN, NAN};
-  Energies energies;
-  energies.bending = states.back()[bending];
-  energies.gravity = states.back()[gravity];
-  std::vector<double> load_points;
-  for (const auto& load : rod.loads) load_points.push_back(load.at);
-  const PlanarSamples at_loads = sample(frame, start, tolerance, load_points);
-  for (std::size_t j = 0; j < rod.loads.size(); ++j) {
-    const auto column = static_cast<Eigen::Index>(j);
-    energies.load -= rod.loads[j].force.dot(at_loads.points.col(column)) +
-                     rod.loads[j].couple * at_loads.angle[column];
-  }
-  return energies;
-}
-
 /// Stability of a shape that holds, from its samples and its clamp's force.
 SecondVariation stability_of(const Problem& problem, const RodSpan& span,
                              const Equilibrium& shape) {
@@ -414,13 +226,13 @@ SecondVariation stability_of(const Problem& problem, const RodSpan& span,
 bool planar_shots_are_well_posed(const PlanarCantilever& rod) {
   constexpr double largest_parallel = 4e5;
   constexpr double largest = 60;
-  return total_load(rod) <= (make_frame(rod).parallel() ? largest_parallel : largest);
+  return total_load(rod) <= (tip_frame(rod).parallel() ? largest_parallel : largest);
 }
 
 TipShots shoot_from_tip(const Problem& problem, const ReducedCantilever& reduced, double tolerance,
                         const Deadline& deadline) {
   silence_gsl();
-  Shooter shooter{make_frame(reduced.rod), tolerance, deadline, 0, 0, false, nullptr, {}};
+  Shooter shooter{tip_frame(reduced.rod), tolerance, deadline};
   const std::vector<double> starts =
       TipScan(shooter).run(scan_grid(reduced.rod, shooter.frame.parallel()));
   const RodSpan span = cut_at_clamps(problem).front();

@@ -1,4 +1,4 @@
-#include "strain/span_shape.hpp"
+#include "frames/span_shape.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "base/legendre.hpp"
+#include "frames/rod_frames.hpp"
 #include "problem/segments.hpp"
-#include "strain/rod_frames.hpp"
 
 namespace dlo::energy_model {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/legendre.hpp"
+#include "frames/piece.hpp"
 #include "problem/natural_strains.hpp"
-#include "strain/piece.hpp"
 
 namespace dlo::energy_model {
 
@@ -19,12 +19,6 @@ namespace dlo::energy_model {
 struct FrameGradient {
   const Eigen::MatrixX3d* nodes = nullptr;
   std::span<const Eigen::Vector3d> couples;
-};
-
-/// How cross-sections turn: at the pieces' nodes (nodes x 3) and at the end.
-struct FrameSpins {
-  Eigen::MatrixX3d velocities, accelerations;
-  Eigen::Vector3d end_velocity, end_acceleration;
 };
 
 /// A rod's directors in space from its body strains,
@@ -42,8 +36,16 @@ struct FrameSpins {
 /// start there.
 class RodFrames {
  public:
-  /// After which tangents are fitted as well as the coefficients can.
-  static constexpr int most_fit_steps = 3;
+  /// A piece, or the turn of a free start, which is one of length 1, as the directors are
+  /// collocated on it.
+  struct Panel {
+    double length;
+    std::array<double, 3> strain;  ///< of the coefficient of p_0 = 1, by field
+    const LegendreTable* table;
+    Eigen::Index terms, column, node;  ///< its first unknown of a field, and its first node
+
+    [[nodiscard]] Eigen::Index nodes() const { return table->nodes.size(); }
+  };
 
   /// Of the last evaluate(), rows are nodes, those of a free start's turn first.
   struct State {
@@ -54,18 +56,14 @@ class RodFrames {
     Eigen::MatrixX3d tails;
     std::vector<Eigen::Quaterniond> panel_ends;  ///< frames; of a free start's turn first
     /// Derivatives of the turn of the end's frame by x, 3 x unknowns, of the
-    /// last end_rotation_jacobian() or add_hessian().
+    /// last end_rotation_jacobian().
     Eigen::Matrix3Xd ends;
 
     // Scratch, of a piece
     Eigen::MatrixX4d product, defect, turn;
     Eigen::MatrixX3d couples, moments, levers;
     Eigen::MatrixX3d along;
-    /// Symmetric 3 x 3 matrices: xx, yy, zz, xy, xz, yz.
-    Eigen::Matrix<double, Eigen::Dynamic, 6> curvatures, beyond;
-    std::array<Eigen::MatrixX3d, 3> pulls, turns;  // by field
-    Eigen::MatrixXd pairs, by_node, spins, scaled, own, before;
-    Eigen::Matrix3Xd beside, turned;
+    Eigen::MatrixXd spins, scaled;
 
     /// Frame of the span's end.
     [[nodiscard]] Eigen::Matrix3d end_frame() const { return panel_ends.back().toRotationMatrix(); }
@@ -87,12 +85,24 @@ class RodFrames {
     const auto turns = panels_.size() - pieces_;
     return state.panel_ends[turns + static_cast<std::size_t>(piece)].toRotationMatrix();
   }
+  /// That of a free start first.
+  [[nodiscard]] const std::vector<Panel>& panels() const { return panels_; }
+  [[nodiscard]] std::size_t pieces() const { return pieces_; }
+  [[nodiscard]] static const Eigen::MatrixX3d& director(const State& state, Eigen::Index field) {
+    return field == 0 ? state.d1 : field == 1 ? state.d2 : state.t;
+  }
+  /// Frame of the span's start, without the turn of a free one.
+  [[nodiscard]] const Eigen::Quaterniond& start() const { return start_; }
+  /// Natural strains at the nodes; empty with two fields.
+  [[nodiscard]] const Eigen::MatrixX3d& natural() const { return natural_; }
   /// Unknowns of one field, and nodes of a free start's turn.
   [[nodiscard]] Eigen::Index columns() const { return columns_; }
+  [[nodiscard]] Eigen::Index size() const { return fields_ * columns_; }
   [[nodiscard]] Eigen::Index turn_nodes() const { return turn_nodes_; }
+  /// Those of the pieces.
+  [[nodiscard]] Eigen::Index nodes() const { return nodes_ - turn_nodes_; }
 
-  /// Gives a state its size; nothing else allocates, but for tangent_jacobian(), fit() and the
-  /// first add_hessian().
+  /// Gives a state its size; nothing else allocates, but for tangent_jacobian().
   void resize(State& state) const;
 
   /// Directors by collocation at the nodes: Magnus' fourth-order steps between neighbouring nodes,
@@ -101,87 +111,36 @@ class RodFrames {
   void evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, State& state) const;
 
   /// Adds `sense` times the gradient of f by x.
-  void pull(const FrameGradient& f, double sense, State& state,
-            Eigen::Ref<Eigen::VectorXd> gradient) const;
+  void add_adjoint(const FrameGradient& f, double sense, State& state,
+                   Eigen::Ref<Eigen::VectorXd> gradient) const;
 
+  /// Into state.couples and state.moments (rows of a panel): t x g of the nodes, and the moment
+  ///     M(s) = int_s^end t x dg
+  /// that the discrete spins give them; `later` is the sum of t x g beyond the panel.
+  void moments(const Panel& panel, const FrameGradient& f, const Eigen::Vector3d& later,
+               State& state) const;
   /// Into state.ends.
   void end_rotation_jacobian(State& state) const;
   /// Derivatives by x of the work of a couple on the turn of the frame at a
   /// piece's end, from state.ends.
-  void pull_couple(Eigen::Index piece, const Eigen::Vector3d& couple, const State& state,
-                   Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> row) const;
+  void couple_adjoint(Eigen::Index piece, const Eigen::Vector3d& couple, const State& state,
+                      Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> row) const;
 
   /// Derivatives by x of sum_e sign_e int_e t ds over the pieces e, which is
   /// where a grip is seen from the anchor, into 3 x unknowns.
-  void pull_position(const std::vector<double>& signs, State& state,
-                     Eigen::Ref<Eigen::MatrixXd> jacobian) const;
-
-  /// Adds the second derivatives of f by x.
-  /// @param curvatures  second derivatives of f by turns of the frames at the pieces' ends
-  void add_hessian(const FrameGradient& f, std::span<const Eigen::Matrix3d> curvatures,
-                   State& state, Eigen::Ref<Eigen::MatrixXd> hessian) const;
+  void position_jacobian(const std::vector<double>& signs, State& state,
+                         Eigen::Ref<Eigen::MatrixXd> jacobian) const;
 
   /// Derivatives of the tangents at the nodes by x: three matrices, one an axis, nodes x unknowns.
   [[nodiscard]] std::array<Eigen::MatrixXd, 3> tangent_jacobian(State& state) const;
 
-  /// Angular velocities and accelerations in space of a rod whose unknowns have these rates v and
-  /// accelerations a,
-  ///     omega_s = R u',  alpha_s = R u'' + omega x R u',
-  /// collocated as the directors are.
-  /// @param spin, spin_rate  of the start, without the turn of a free one
-  [[nodiscard]] FrameSpins spins(const Eigen::Ref<const Eigen::VectorXd>& v,
-                                 const Eigen::Ref<const Eigen::VectorXd>& a,
-                                 const Eigen::Vector3d& spin, const Eigen::Vector3d& spin_rate,
-                                 const State& state) const;
-
-  /// Coefficients whose tangents at the nodes are these (3 x nodes), by least squares on each
-  /// piece; without twist.
-  /// @param most_steps  of Newton's method towards them
-  [[nodiscard]] Eigen::VectorXd fit(const Eigen::Matrix3Xd& tangents, int most_steps,
-                                    State& state) const;
-  [[nodiscard]] Eigen::VectorXd fit(const Eigen::Matrix3Xd& tangents) const {
-    State scratch;
-    resize(scratch);
-    return fit(tangents, most_fit_steps, scratch);
-  }
-  /// With three fields: the same shape with the rod's frame turned ahead by these angles at the
-  /// nodes.
-  [[nodiscard]] Eigen::VectorXd rolled(const Eigen::VectorXd& x, const Eigen::VectorXd& roll) const;
-
  private:
-  struct Panel {
-    double length;
-    std::array<double, 3> strain;  // of the coefficient of p_0 = 1, by field
-    const LegendreTable* table;
-    Eigen::Index terms, column, node;
-
-    [[nodiscard]] Eigen::Index nodes() const { return table->nodes.size(); }
-  };
-
-  [[nodiscard]] static const Eigen::MatrixX3d& director(const State& state, Eigen::Index field) {
-    return field == 0 ? state.d1 : field == 1 ? state.d2 : state.t;
-  }
-  [[nodiscard]] Eigen::MatrixX3d strains_in_space(const Panel& panel,
-                                                  const Eigen::Ref<const Eigen::VectorXd>& rates,
-                                                  const State& state) const;
-  void resize_for_hessian(State& state) const;
   void integrate(const Panel& panel, Eigen::Quaterniond& at, State& state) const;
   void multiply_by_strains(const Eigen::Ref<const Eigen::MatrixX4d, 0, Eigen::OuterStride<>>& q,
                            const Panel& panel, const State& state,
                            Eigen::Ref<Eigen::MatrixX4d, 0, Eigen::OuterStride<>> product) const;
-  void moments(const Panel& panel, const FrameGradient& f, const Eigen::Vector3d& later,
-               State& state) const;
   void own_spins(const Panel& panel, State& state) const;
-  [[nodiscard]] Eigen::Matrix3d gather_curvatures(const Panel& panel, const FrameGradient& f,
-                                                  State& state) const;
-  void weigh_turns(const Panel& panel, State& state) const;
-  void pair_unknowns(const Panel& panel, State& state) const;
   void end_spins(const Panel& panel, State& state) const;
-  void add_panel(const Panel& panel, const Eigen::Matrix3d& later_curvature, State& state,
-                 Eigen::Ref<Eigen::MatrixXd> hessian) const;
-  [[nodiscard]] Eigen::VectorXd from_angles(const Eigen::MatrixX2d& angles) const;
-  [[nodiscard]] Eigen::VectorXd projected(const Eigen::MatrixX3d& strains) const;
-  [[nodiscard]] Eigen::VectorXd cumulated(const Eigen::VectorXd& values) const;
 
   std::vector<Panel> panels_;
   std::size_t pieces_ = 0;  // of the panels, the last ones

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/legendre.hpp"
+#include "frames/piece.hpp"
 #include "problem/span.hpp"
-#include "strain/piece.hpp"
 
 namespace dlo::energy_model {
 

@@ -5,7 +5,6 @@
 #include "base/deadline.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
 #include "dlo/energy_model/problem.hpp"
-#include "problem/planar_cantilever.hpp"
 #include "problem/reduction.hpp"
 
 namespace dlo::energy_model {

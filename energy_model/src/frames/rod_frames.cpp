@@ -1,4 +1,4 @@
-#include "strain/rod_frames.hpp"
+#include "frames/rod_frames.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -159,23 +159,6 @@ void RodFrames::resize(State& state) const {
   state.ends.resize(3, fields_ * columns_);
 }
 
-/// What only second derivatives need, at the first of them.
-void RodFrames::resize_for_hessian(State& state) const {
-  const Eigen::Index Q = panels_.back().nodes();
-  const Eigen::Index K = std::max(panels_.back().terms, panels_.front().terms);
-  const Eigen::Index pairs = fields_ * (fields_ + 1) / 2;
-  for (auto* m : {&state.curvatures, &state.beyond}) m->resize(Q, 6);
-  for (auto* by_field : {&state.pulls, &state.turns}) {
-    for (Eigen::MatrixX3d& m : *by_field) m.resize(Q, 3);
-  }
-  state.pairs.resize(Q, pairs * Q);
-  state.by_node.resize(K, pairs * Q);
-  state.own.resize(fields_ * K, fields_ * K);
-  state.beside.resize(3, fields_ * K);
-  state.turned.resize(3, K);
-  state.before.resize(columns_, K);
-}
-
 void RodFrames::evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, State& state) const {
   Eigen::Quaterniond at = start_;
   std::size_t done = 0;
@@ -211,9 +194,6 @@ void RodFrames::evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, State& stat
   }
 }
 
-/// Into state.couples and state.moments (rows of a panel): t x g of the nodes, and the moment
-///     M(s) = int_s^end t x dg
-/// that the discrete spins give them; `later` is the sum of t x g beyond the panel.
 void RodFrames::moments(const Panel& panel, const FrameGradient& f, const Eigen::Vector3d& later,
                         State& state) const {
   const Eigen::Index Q = panel.nodes();
@@ -235,8 +215,8 @@ void RodFrames::moments(const Panel& panel, const FrameGradient& f, const Eigen:
   moments += panel.length * beyond;
 }
 
-void RodFrames::pull(const FrameGradient& f, double sense, State& state,
-                     Eigen::Ref<Eigen::VectorXd> gradient) const {
+void RodFrames::add_adjoint(const FrameGradient& f, double sense, State& state,
+                            Eigen::Ref<Eigen::VectorXd> gradient) const {
   Eigen::Vector3d later = Eigen::Vector3d::Zero();
   std::size_t piece = pieces_;
   for (auto panel = panels_.rbegin(); panel != panels_.rend(); ++panel) {
@@ -263,8 +243,9 @@ void RodFrames::end_rotation_jacobian(State& state) const {
   for (const Panel& panel : panels_) end_spins(panel, state);
 }
 
-void RodFrames::pull_couple(Eigen::Index piece, const Eigen::Vector3d& couple, const State& state,
-                            Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> row) const {
+void RodFrames::couple_adjoint(Eigen::Index piece, const Eigen::Vector3d& couple,
+                               const State& state,
+                               Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> row) const {
   const Panel& last = panels_[panels_.size() - pieces_ + static_cast<std::size_t>(piece)];
   const Eigen::Index count = last.column + last.terms;
   row.setZero();
@@ -274,8 +255,8 @@ void RodFrames::pull_couple(Eigen::Index piece, const Eigen::Vector3d& couple, c
   }
 }
 
-void RodFrames::pull_position(const std::vector<double>& signs, State& state,
-                              Eigen::Ref<Eigen::MatrixXd> jacobian) const {
+void RodFrames::position_jacobian(const std::vector<double>& signs, State& state,
+                                  Eigen::Ref<Eigen::MatrixXd> jacobian) const {
   // The moment of a force along an axis a is v x a, v what lies beyond; d.(v x a) = a.(d x v).
   Eigen::Vector3d beyond = Eigen::Vector3d::Zero();
   std::size_t piece = signs.size();
@@ -335,157 +316,6 @@ void RodFrames::end_spins(const Panel& panel, State& state) const {
     multiply(panel.table->values_transposed.topRows(panel.terms), weighted, columns);
     state.ends.middleCols(field * columns_ + panel.column, panel.terms) =
         panel.length * panel.strain[static_cast<std::size_t>(field)] * columns.transpose();
-  }
-}
-
-/// Into state.beyond: what of f's second derivatives A by turns of the panel's nodes lies beyond
-/// each node, int_s^end A. @return all of it
-Eigen::Matrix3d RodFrames::gather_curvatures(const Panel& panel, const FrameGradient& f,
-                                             State& state) const {
-  const Eigen::Index Q = panel.nodes();
-  auto beyond = state.beyond.topRows(Q);
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  if (panel.node < turn_nodes_) {
-    beyond.setZero();
-    return sum;
-  }
-  auto curvatures = state.curvatures.topRows(Q);
-  for (Eigen::Index r = 0; r < Q; ++r) {
-    const Eigen::Index node = panel.node + r;
-    const Eigen::Matrix3d a = spin_curvature(state.t.row(node), f.nodes->row(node - turn_nodes_));
-    sum += a;
-    curvatures.row(r) << a(0, 0), a(1, 1), a(2, 2), a(0, 1), a(0, 2), a(1, 2);
-  }
-  multiply(panel.table->integration_transposed, curvatures, beyond);
-  beyond *= panel.length;
-  return sum;
-}
-
-/// Into state.turns: by what an unknown whose strain is 1 at a node turns there, per length of the
-/// panel. Into state.pulls: what a turn theta that a node has already makes of it, pull . theta, of
-/// state.moments M and state.beyond B: d x M / 2 + B d.
-void RodFrames::weigh_turns(const Panel& panel, State& state) const {
-  const Eigen::Index Q = panel.nodes();
-  const auto M = state.moments.topRows(Q).array();
-  const auto B = state.beyond.topRows(Q).array();
-  for (Eigen::Index field = 0; field < fields_; ++field) {
-    const auto which = static_cast<std::size_t>(field);
-    const auto d = director(state, field).middleRows(panel.node, Q).array();
-    auto pull = state.pulls[which].topRows(Q).array();
-    pull.col(0) = (d.col(1) * M.col(2) - d.col(2) * M.col(1)) / 2 + B.col(0) * d.col(0) +
-                  B.col(3) * d.col(1) + B.col(4) * d.col(2);
-    pull.col(1) = (d.col(2) * M.col(0) - d.col(0) * M.col(2)) / 2 + B.col(3) * d.col(0) +
-                  B.col(1) * d.col(1) + B.col(5) * d.col(2);
-    pull.col(2) = (d.col(0) * M.col(1) - d.col(1) * M.col(0)) / 2 + B.col(4) * d.col(0) +
-                  B.col(5) * d.col(1) + B.col(2) * d.col(2);
-    pull *= panel.strain[which];
-    state.turns[which].topRows(Q).array() = panel.length * panel.strain[which] * d;
-  }
-}
-
-/// Into state.own: second derivatives of f by pairs of the panel's own unknowns. With the strains
-/// p and p' of a pair, and the turn theta' = int turn' p' that the latter has made up to a node, f
-/// changes by
-///     int pull . theta' p ds
-/// and the same with both exchanged: theta . A theta' has been integrated by parts, and the order
-/// of two turns counts half to either side. No turns of all nodes by all unknowns are worked out,
-/// but what pairs of nodes do to each other: the polynomials come last.
-void RodFrames::pair_unknowns(const Panel& panel, State& state) const {
-  const LegendreTable& table = *panel.table;
-  const Eigen::Index Q = panel.nodes();
-  const Eigen::Index K = panel.terms;
-  const Eigen::Index pairs = fields_ * (fields_ + 1) / 2;
-  const auto values = table.values_transposed.topRows(K);
-  Eigen::Index pair = 0;
-  for (Eigen::Index a = 0; a < fields_; ++a) {
-    for (Eigen::Index b = a; b < fields_; ++b, ++pair) {
-      const auto first = static_cast<std::size_t>(a);
-      const auto second = static_cast<std::size_t>(b);
-      auto nodes = state.pairs.block(0, pair * Q, Q, Q);
-      dense_kernel().add_weighed(
-          {columns_of(table.integration), columns_of(state.pulls[first].topRows(Q)),
-           columns_of(state.turns[second].topRows(Q))},
-          {columns_of(table.integration_transposed), columns_of(state.turns[first].topRows(Q)),
-           columns_of(state.pulls[second].topRows(Q))},
-          result_columns(nodes));
-    }
-  }
-  auto by_node = state.by_node.topLeftCorner(K, pairs * Q);
-  multiply(values, state.pairs.topLeftCorner(Q, pairs * Q), by_node);
-  pair = 0;
-  for (Eigen::Index a = 0; a < fields_; ++a) {
-    for (Eigen::Index b = a; b < fields_; ++b, ++pair) {
-      auto own = state.own.block(a * K, b * K, K, K);
-      const auto of_pair = by_node.middleCols(pair * Q, Q);
-      if (a == b) {
-        multiply_symmetric(values, of_pair, own);
-        continue;
-      }
-      multiply(of_pair, table.values.leftCols(K), own);
-      state.own.block(b * K, a * K, K, K) = own.transpose();
-    }
-  }
-}
-
-void RodFrames::add_hessian(const FrameGradient& f, std::span<const Eigen::Matrix3d> curvatures,
-                            State& state, Eigen::Ref<Eigen::MatrixXd> hessian) const {
-  resize_for_hessian(state);
-  end_rotation_jacobian(state);
-  Eigen::Matrix3d later_curvature = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d later = Eigen::Vector3d::Zero();
-  std::size_t piece = pieces_;
-  for (auto panel = panels_.rbegin(); panel != panels_.rend(); ++panel) {
-    if (piece > 0 && !f.couples.empty()) {
-      later += f.couples[--piece];
-      later_curvature += curvatures[piece];
-    }
-    moments(*panel, f, later, state);
-    const Eigen::Matrix3d curvature = gather_curvatures(*panel, f, state);
-    weigh_turns(*panel, state);
-    pair_unknowns(*panel, state);
-    // With the turn of all that is beyond an earlier panel.
-    const Eigen::Index Q = panel->nodes();
-    const Eigen::Index K = panel->terms;
-    for (Eigen::Index field = 0; field < fields_ && panel->column > 0; ++field) {
-      auto turned = state.product.topLeftCorner(K, 3);
-      multiply(panel->table->values_transposed.topRows(K),
-               state.pulls[static_cast<std::size_t>(field)].topRows(Q), turned);
-      auto beside = state.beside.middleCols(field * K, K);
-      const auto ends = state.ends.middleCols(field * columns_ + panel->column, K);
-      beside = turned.transpose();
-      beside.noalias() += later_curvature * ends;
-    }
-    add_panel(*panel, later_curvature, state, hessian);
-    later_curvature += curvature;
-    later += state.couples.topRows(Q).colwise().sum().transpose();
-  }
-}
-
-/// Adds state.own, with what turns all that is beyond the panel, and beside it the columns of the
-/// panels before.
-void RodFrames::add_panel(const Panel& panel, const Eigen::Matrix3d& later_curvature, State& state,
-                          Eigen::Ref<Eigen::MatrixXd> hessian) const {
-  const Eigen::Index K = panel.terms;
-  const bool turns_more = (later_curvature.array() != 0).any();
-  for (Eigen::Index row = 0; row < fields_; ++row) {
-    const Eigen::Index at_row = row * columns_ + panel.column;
-    for (Eigen::Index column = 0; column < fields_; ++column) {
-      const Eigen::Index at_column = column * columns_ + panel.column;
-      auto block = hessian.block(at_row, at_column, K, K);
-      block += state.own.block(row * K, column * K, K, K);
-      if (turns_more) {
-        const auto ends = state.ends.middleCols(at_column, K);
-        auto turned = state.turned.leftCols(K);
-        turned.noalias() = later_curvature * ends;
-        block.noalias() += state.ends.middleCols(at_row, K).transpose() * turned;
-      }
-      if (panel.column == 0) continue;
-      auto before = state.before.topLeftCorner(panel.column, K);
-      before.noalias() = state.ends.middleCols(row * columns_, panel.column).transpose() *
-                         state.beside.middleCols(column * K, K);
-      hessian.block(row * columns_, at_column, panel.column, K) += before;
-      hessian.block(at_column, row * columns_, K, panel.column) += before.transpose();
-    }
   }
 }
 

@@ -1,4 +1,4 @@
-#include "strain/position_operator.hpp"
+#include "frames/position_operator.hpp"
 
 #include <utility>
 

@@ -1,0 +1,126 @@
+#include "exact/catenary.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace dlo::energy_model {
+namespace {
+
+using Vector = Eigen::Vector3d;
+
+/// u of sinh(u) / u = ratio, given ratio - 1.
+double root_of_sinh_ratio(double excess) {
+  const auto excess_at = [](double u) {
+    if (u > 1) return std::sinh(u) / u - 1;
+    double term = 1;
+    double sum = 0;
+    for (int k = 1; k < 12; ++k) sum += term *= u * u / (2 * k * (2 * k + 1));
+    return sum;
+  };
+  double low = 0;
+  double high = 1;
+  while (excess_at(high) < excess && high < 700) high *= 2;
+  constexpr int halvings = 200;
+  for (int i = 0; i < halvings && high - low > 1e-16 * high; ++i) {
+    const double middle = (low + high) / 2;
+    (excess_at(middle) < excess ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
+}  // namespace
+
+double Catenary::own(double s) const {
+  if (s < low) return s - low;
+  return std::max(0.0, s - low - lying);
+}
+
+double Catenary::height(double s) const { return std::hypot(a, own(s)); }
+
+Vector Catenary::point(double s) const {
+  const double q = own(s);
+  const double x = std::clamp(s - low, 0.0, lying) + (a > 0 ? a * std::asinh(q / a) : 0.0);
+  return origin + x * level + (std::hypot(a, q) - a) * up;
+}
+
+Vector Catenary::tangent(double s) const {
+  if (a == 0) return own(s) < 0 || (own(s) == 0 && low > 0) ? Vector(-up) : up;
+  return (a * level + own(s) * up) / height(s);
+}
+
+Vector Catenary::curvature(double s) const {
+  if (a == 0 || lies(s)) return Vector::Zero();
+  const double y = height(s);
+  return a / (y * y) * (a * up - own(s) * level) / y;
+}
+
+double Catenary::height_integral(double q) const {
+  const double area = (q * std::hypot(a, q) + (a > 0 ? a * a * std::asinh(q / a) : 0.0)) / 2;
+  return area - a * q;
+}
+
+double Catenary::bend_integral(double q) const {
+  if (a == 0) return 0;
+  return (q / (a * a + q * q) + std::atan(q / a) / a) / 2;
+}
+
+std::optional<Catenary> hang_between(const Vector& begin, const Vector& end, double l,
+                                     const Vector& up) {
+  const Vector way = end - begin;
+  const double rise = way.dot(up);
+  const Vector flat = way - rise * up;
+  const double x = flat.norm();
+  if (!(x > negligible_way * l) || !(way.norm() < l * (1 - negligible_way))) return std::nullopt;
+  const double ratio = std::sqrt((l - rise) * (l + rise)) / x;
+  const double excess = (l - way.norm()) * (l + way.norm()) / (x * x * (ratio + 1));
+  const double u = root_of_sinh_ratio(excess);
+  Catenary line;
+  line.a = x / (2 * u);
+  line.level = flat / x;
+  line.up = up;
+  const double first = line.a * std::sinh(std::atanh(rise / l) - u);
+  line.low = -first;
+  line.origin = begin - line.a * std::asinh(first / line.a) * line.level -
+                (std::hypot(line.a, first) - line.a) * up;
+  return line;
+}
+
+std::optional<Catenary> lie_between(const Vector& begin, const Vector& end, double l,
+                                    const Vector& up, double floor) {
+  const Vector way = end - begin;
+  const Vector flat = way - way.dot(up) * up;
+  const double x = flat.norm();
+  if (!(x > negligible_way * l)) return std::nullopt;
+  const std::array<double, 2> heights = {std::max(0.0, begin.dot(up) - floor),
+                                         std::max(0.0, end.dot(up) - floor)};
+  const auto length = [](double h, double a) { return std::sqrt(h * (h + 2 * a)); };
+  const auto reach = [](double h, double a) {
+    const double z = h / a;
+    return a * std::log1p(z + std::sqrt(z * (z + 2)));
+  };
+  const auto spare = [&](double a) {
+    double sum = 0;
+    for (const double h : heights) sum += length(h, a) - reach(h, a);
+    return sum;
+  };
+  double low = 1e-6 * l;
+  double high = 1e6 * l;
+  if (!(spare(low) > l - x) || !(spare(high) < l - x)) return std::nullopt;
+  constexpr int halvings = 200;
+  for (int i = 0; i < halvings && high / low > 1 + 1e-15; ++i) {
+    const double middle = std::sqrt(low * high);
+    (spare(middle) > l - x ? low : high) = middle;
+  }
+  Catenary line;
+  line.a = std::sqrt(low * high);
+  line.level = flat / x;
+  line.up = up;
+  line.low = length(heights[0], line.a);
+  line.lying = l - line.low - length(heights[1], line.a);
+  if (!(line.lying > 0)) return std::nullopt;
+  line.origin = begin + reach(heights[0], line.a) * line.level - heights[0] * up;
+  return line;
+}
+
+}  // namespace dlo::energy_model

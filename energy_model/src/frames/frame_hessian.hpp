@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <span>
+
+#include "frames/rod_frames.hpp"
+
+namespace dlo::energy_model {
+
+/// Second derivatives of a function f of a rod's tangents and frames by the unknowns of RodFrames.
+/// What survives between calls are buffers: after the first one nothing allocates.
+class FrameHessian {
+ public:
+  /// Adds them, and leaves state.ends as RodFrames::end_rotation_jacobian() does.
+  /// @param f           with its gradient by the nodes
+  /// @param curvatures  second derivatives of f by turns of the frames at the pieces' ends
+  /// @param state       of the last RodFrames::evaluate()
+  void add(const RodFrames& frames, const FrameGradient& f,
+           std::span<const Eigen::Matrix3d> curvatures, RodFrames::State& state,
+           Eigen::Ref<Eigen::MatrixXd> hessian);
+
+ private:
+  void resize(const RodFrames& frames);
+  [[nodiscard]] Eigen::Matrix3d gather_curvatures(const RodFrames& frames,
+                                                  const RodFrames::Panel& panel,
+                                                  const FrameGradient& f,
+                                                  const RodFrames::State& state);
+  void weigh_turns(const RodFrames& frames, const RodFrames::Panel& panel,
+                   const RodFrames::State& state);
+  void pair_unknowns(const RodFrames::Panel& panel, Eigen::Index fields);
+  void add_panel(const RodFrames& frames, const RodFrames::Panel& panel,
+                 const Eigen::Matrix3d& later_curvature, const RodFrames::State& state,
+                 Eigen::Ref<Eigen::MatrixXd> hessian);
+
+  // Of a panel. Symmetric 3 x 3 matrices by node: xx, yy, zz, xy, xz, yz.
+  Eigen::Matrix<double, Eigen::Dynamic, 6> curvatures_, beyond_;
+  std::array<Eigen::MatrixX3d, 3> adjoints_, turns_;  // by field
+  Eigen::MatrixXd pairs_, by_node_, own_;
+  // With the panels before
+  Eigen::MatrixXd before_;
+  Eigen::Matrix3Xd beside_, turned_;
+};
+
+}  // namespace dlo::energy_model

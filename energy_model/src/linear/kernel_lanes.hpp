@@ -1,0 +1,61 @@
+#pragma once
+
+#include "linear/dense_kernel.hpp"
+
+// A part of dense_kernel.cpp, whose rules hold here: registers, and loops over what is in them.
+namespace dlo::energy_model::DLO_KERNEL {
+
+#if defined(__AVX512F__)
+constexpr std::ptrdiff_t lane_count = 8;
+#elif defined(__AVX2__)
+constexpr std::ptrdiff_t lane_count = 4;
+#else
+constexpr std::ptrdiff_t lane_count = 2;
+#endif
+
+/// A register, and one as stored at any double (GCC and Clang vector extension).
+using Lanes [[gnu::vector_size(lane_count * sizeof(double))]] = double;
+using StoredLanes [[gnu::vector_size(lane_count * sizeof(double)), gnu::aligned(sizeof(double)),
+                    gnu::may_alias]] = double;
+
+inline Lanes read_lanes(const double* from) { return *reinterpret_cast<const StoredLanes*>(from); }
+inline void write_lanes(double* to, Lanes value) { *reinterpret_cast<StoredLanes*>(to) = value; }
+inline std::ptrdiff_t smaller(std::ptrdiff_t a, std::ptrdiff_t b) { return a < b ? a : b; }
+
+inline double dot(const double* a, const double* b, std::ptrdiff_t size) {
+  double sum = 0;
+  for (std::ptrdiff_t k = 0; k < size; ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+/// One row after the other, or as many as a register has lanes.
+inline void read(const double* from, double& value) { value = *from; }
+inline void read(const double* from, Lanes& value) { value = read_lanes(from); }
+inline void write(double* to, double value) { *to = value; }
+inline void write(double* to, Lanes value) { write_lanes(to, value); }
+inline double root(double a) { return __builtin_sqrt(a); }
+inline Lanes root(Lanes a) {
+  Lanes result{};
+  for (std::ptrdiff_t i = 0; i < lane_count; ++i) result[i] = __builtin_sqrt(a[i]);
+  return result;
+}
+
+/// to = to + factor from
+inline void add_multiple(const double* from, double factor, std::ptrdiff_t size, double* to) {
+  std::ptrdiff_t i = 0;
+  for (; i + lane_count <= size; i += lane_count) {
+    write_lanes(to + i, read_lanes(to + i) + read_lanes(from + i) * factor);
+  }
+  for (; i < size; ++i) to[i] += factor * from[i];
+}
+
+inline double dot_of_lanes(const double* a, const double* b, std::ptrdiff_t size) {
+  Lanes sums{};
+  std::ptrdiff_t i = 0;
+  for (; i + lane_count <= size; i += lane_count) sums += read_lanes(a + i) * read_lanes(b + i);
+  double sum = dot(a + i, b + i, size - i);
+  for (std::ptrdiff_t lane = 0; lane < lane_count; ++lane) sum += sums[lane];
+  return sum;
+}
+
+}  // namespace dlo::energy_model::DLO_KERNEL

@@ -1,0 +1,217 @@
+#include "strain/grip_rows.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "base/spin.hpp"
+#include "frames/position_operator.hpp"
+
+namespace dlo::energy_model {
+
+void GripRows::reset(const Span& span, const std::vector<Piece>& pieces,
+                     const LegendreTable& table) {
+  axes_ = span.planar ? 2 : 3;
+  holds_ = span.holds;
+  reach_.resize(std::ssize(pieces) * table.nodes.size(), std::ssize(holds_));
+  reach_signs_.clear();
+  directions_.clear();
+  if (holds_.empty()) return;
+  const PositionOperator reach(span, pieces, table);
+  for (std::size_t j = 0; j < holds_.size(); ++j) {
+    reach_.col(static_cast<Eigen::Index>(j)) = reach.begin(pieces_before(pieces, holds_[j].at));
+    reach_signs_.push_back(reach.signs(holds_[j].at));
+  }
+  list_directions(span, pieces);
+}
+
+void GripRows::list_directions(const Span& span, const std::vector<Piece>& pieces) {
+  const auto add = [&](Eigen::Index hold, Eigen::Index piece, const Eigen::Vector3d& to) {
+    // A planar shape bends about d1.
+    const Eigen::Matrix3d frame = frame_along(to, Span::d1(to));
+    directions_.push_back({hold, piece, to, frame.col(0)});
+    if (!span.planar) directions_.push_back({hold, piece, to, frame.col(1)});
+  };
+  for (std::size_t j = 0; j < holds_.size(); ++j) {
+    if (!holds_[j].direction) continue;
+    add(static_cast<Eigen::Index>(j), pieces_before(pieces, holds_[j].at) - 1,
+        *holds_[j].direction);
+  }
+  if (!span.end_direction) return;
+  const Eigen::Index hold = std::ssize(holds_) - 1;
+  const Eigen::Index piece = std::ssize(pieces) - 1;
+  add(hold, piece, *span.end_direction);
+  if (!span.twist) return;
+  directions_.push_back({.hold = hold, .piece = piece, .of_d1 = true});
+  turn_end_clamp(*span.end_direction, span.twist->end_d1);
+}
+
+void GripRows::reset_in_plane(const PlanarFrames& frames) {
+  held_angle_.resize(directions(), frames.by_unknown().cols());
+  for (Eigen::Index i = 0; i < directions(); ++i) {
+    DirectionRow& row = directions_[static_cast<std::size_t>(i)];
+    held_angle_.row(i) = frames.by_unknown_after(row.piece);
+    row.angle = frames.angle_towards(row.to, row.piece);
+  }
+}
+
+void GripRows::turn_end_clamp(const Eigen::Vector3d& direction, const Eigen::Vector3d& d1) {
+  const Eigen::Matrix3d held = frame_along(direction, d1);
+  directions_.back().to = held.col(0);
+  directions_.back().across = held.col(1);
+}
+
+DirectionResidual GripRows::residual_of(const DirectionRow& row, const SpatialPoint& at) {
+  const Eigen::Matrix3d frame = at.frames.frame_after(at.state, row.piece);
+  if (!row.of_d1) return direction_residual(frame.col(2), row.to, row.across);
+  const Eigen::Vector3d d1 = std::cos(at.psi) * frame.col(0) + std::sin(at.psi) * frame.col(1);
+  return direction_residual(d1, row.to, row.across);
+}
+
+void GripRows::constrain(const PlanarPoint& at, Eigen::Ref<Eigen::VectorXd> residual,
+                         Eigen::Ref<Eigen::MatrixXd> jacobian) const {
+  Eigen::Index row = 0;
+  for (Eigen::Index j = 0; j < reach_.cols(); ++j) {
+    const Eigen::Vector3d& offset = holds_[static_cast<std::size_t>(j)].offset;
+    for (Eigen::Index axis = 0; axis < 2; ++axis, ++row) {
+      residual[row] = at.tangents.col(axis).dot(reach_.col(j)) - offset[axis];
+      at.frames.adjoint(reach_.col(j), axis, at.state);
+      jacobian.row(row) = at.state.by_unknown.transpose();
+    }
+  }
+  if (directions_.empty()) return;
+  jacobian.bottomRows(directions()) = held_angle_;
+  residual.tail(directions()).noalias() = held_angle_ * at.x;
+  row = residual.size() - directions();
+  for (const DirectionRow& held : directions_) {
+    residual[row++] += at.frames.start_theta() - held.angle;
+  }
+}
+
+void GripRows::constrain(const SpatialPoint& at, Eigen::Ref<Eigen::VectorXd> residual,
+                         Eigen::Ref<Eigen::MatrixXd> jacobian) const {
+  const Eigen::Index strains = at.strains();
+  for (Eigen::Index j = 0; j < reach_.cols(); ++j) {
+    const auto hold = static_cast<std::size_t>(j);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      residual[3 * j + axis] = at.tangents.col(axis).dot(reach_.col(j)) - holds_[hold].offset[axis];
+    }
+    at.frames.position_jacobian(reach_signs_[hold], at.state, jacobian.middleRows(3 * j, 3));
+    if (at.twist_root > 0) jacobian.col(strains).segment<3>(3 * j).setZero();
+  }
+  if (!directions_.empty()) at.frames.end_rotation_jacobian(at.state);
+  Eigen::Index row = residual.size() - directions();
+  for (const DirectionRow& held : directions_) {
+    const DirectionResidual own = residual_of(held, at);
+    residual[row] = own.value;
+    at.frames.couple_adjoint(held.piece, own.couple, at.state, jacobian.row(row).head(strains));
+    // Twist turns d1 about the tangent.
+    if (at.twist_root > 0) {
+      jacobian(row, strains) =
+          held.of_d1 ? own.couple.dot(at.state.end_frame().col(2)) / at.twist_root : 0;
+    }
+    ++row;
+  }
+}
+
+void GripRows::add_forces(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                          Eigen::MatrixX3d& carried) const {
+  for (Eigen::Index j = 0; j < reach_.cols(); ++j) {
+    for (Eigen::Index axis = 0; axis < axes_; ++axis) {
+      carried.col(axis) += multipliers[j * axes_ + axis] * reach_.col(j);
+    }
+  }
+}
+
+void GripRows::turn_derivatives(const SpatialPoint& at,
+                                const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                                std::vector<Eigen::Vector3d>& couples,
+                                std::vector<Eigen::Matrix3d>& curvatures) const {
+  for (Eigen::Vector3d& couple : couples) couple.setZero();
+  for (Eigen::Matrix3d& curvature : curvatures) curvature.setZero();
+  Eigen::Index row = multipliers.size() - directions();
+  for (const DirectionRow& held : directions_) {
+    const double mu = multipliers[row++];
+    const DirectionResidual own = residual_of(held, at);
+    couples[static_cast<std::size_t>(held.piece)] -= mu * own.couple;
+    curvatures[static_cast<std::size_t>(held.piece)] -= mu * own.curvature;
+  }
+}
+
+/// psi turns d1 about the tangent t, after which the strains turn it, which is the sum of both
+/// turns and half their cross product.
+void GripRows::add_twist_hessian(const SpatialPoint& at, double factor,
+                                 Eigen::MatrixXd& hessian) const {
+  const Eigen::Index strains = at.strains();
+  const Eigen::Vector3d t = at.state.end_frame().col(2);
+  const DirectionResidual own = residual_of(directions_.back(), at);
+  const Eigen::Vector3d turned = own.curvature * t;
+  const Eigen::Vector3d mixed = factor / at.twist_root * (turned + t.cross(own.couple) / 2);
+  auto column = hessian.col(strains).head(strains);
+  column.noalias() = at.state.ends.transpose() * mixed;
+  hessian.row(strains).head(strains) = column.transpose();
+  hessian(strains, strains) += factor * t.dot(turned) / (at.twist_root * at.twist_root);
+}
+
+void GripRows::tilt_jacobian(const PlanarFrames& frames, Eigen::MatrixXd& jacobian) const {
+  const Eigen::MatrixXd& angle = frames.by_unknown();
+  jacobian.resize(reach_.cols() + directions(), angle.cols());
+  jacobian.topRows(reach_.cols()).noalias() = reach_.transpose() * angle;
+  jacobian.bottomRows(directions()) = held_angle_;
+}
+
+double GripRows::gap(const Eigen::Matrix3Xd& tangents) const {
+  double squared = 0;
+  for (Eigen::Index j = 0; j < reach_.cols(); ++j) {
+    const Span::Hold& hold = holds_[static_cast<std::size_t>(j)];
+    squared += (tangents * reach_.col(j) - hold.offset).squaredNorm();
+  }
+  return std::sqrt(squared);
+}
+
+void GripRows::unwrap(const Eigen::VectorXd& angles, Eigen::Index nodes_of_piece) {
+  for (DirectionRow& row : directions_) {
+    row.angle = nearest_turn(row.angle, angles[(row.piece + 1) * nodes_of_piece - 1]);
+  }
+}
+
+void GripRows::unwrap(const Eigen::Ref<const Eigen::VectorXd>& x, double start_theta) {
+  for (Eigen::Index i = 0; i < directions(); ++i) {
+    double& angle = directions_[static_cast<std::size_t>(i)].angle;
+    angle = nearest_turn(angle, start_theta + held_angle_.row(i).dot(x));
+  }
+}
+
+void GripRows::unwrap(const GripRows& other) {
+  for (std::size_t i = 0; i < directions_.size(); ++i) {
+    directions_[i].angle = other.directions_[i].angle;
+  }
+}
+
+Eigen::Vector3d GripRows::torque(Eigen::Index hold, const Eigen::VectorXd& multipliers,
+                                 const SpatialPoint* at) const {
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+  Eigen::Index row = multipliers.size() - directions();
+  for (const DirectionRow& held : directions_) {
+    const double mu = multipliers[row++];
+    if (held.hold != hold) continue;
+    if (at == nullptr) {
+      torque.z() += mu;
+    } else {
+      torque += mu * residual_of(held, *at).couple;
+    }
+  }
+  return torque;
+}
+
+Eigen::Vector3d GripRows::moment(const Eigen::VectorXd& multipliers, const SpatialPoint* at) const {
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  for (Eigen::Index j = 0; j < reach_.cols(); ++j) moment += torque(j, multipliers, at);
+  for (Eigen::Index j = 0; j < reach_.cols(); ++j) {
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    force.head(axes_) = multipliers.segment(j * axes_, axes_);
+    moment += holds_[static_cast<std::size_t>(j)].offset.cross(force);
+  }
+  return moment;
+}
+
+}  // namespace dlo::energy_model
