@@ -101,7 +101,7 @@ Eigen::VectorXd bending_moments(const Scene& scene, const Shape& shape, double p
   return moments;
 }
 
-/// MomentBalance::resolution
+/// MomentBalance::resolution with the scene's stiffness.
 double resolution(const Scene& scene, const LoadedPoints& rod) {
   constexpr double of_second_order = 0.25;
   const double h = scene.length / static_cast<double>(rod.shape.points.cols() - 1);
@@ -159,10 +159,10 @@ std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& sha
                                        : Eigen::VectorXd(-of_weight - of_loads);
   const Eigen::VectorXd found = columns.colPivHouseholderQr().solve(right);
   MomentBalance result;
-  result.resolution = resolution(scene, rod);
   if (any) result.stiffness = found[found.size() - 1];
   if (both) result.weight = found[found.size() - 2];
   constexpr double least = 1e-3;
+  result.resolution = resolution(scene, rod) / std::clamp(result.stiffness, least, 1.0);
   const double size = std::max(std::abs(result.stiffness) * bending.norm(), least * right.norm());
   result.imbalance = (columns * found - right).norm() / size;
   return result;

@@ -13,7 +13,8 @@ struct MomentBalance {
   double stiffness = 1;  ///< c, over EI
   double weight = 1;     ///< a, over the scene's; 1 unless there is weight and another load
   /// Share of the moments that is not identifiable from points at such distances: curvatures of a
-  /// rod in which forces F bend layers of sqrt(EI / F) are found to a quarter of h^2 F / EI [-]
+  /// rod in which forces F bend layers of sqrt(EI / F) are found to a quarter of h^2 F / EI, EI
+  /// being the scene's or, if that is less, the shape's [-]
   double resolution = 0;
 };
 

@@ -33,6 +33,9 @@ constexpr double may_be_left_without = 0.03;
 constexpr double may_be_left_of_way = 0.3;
 /// What one that has a fitted number may leave: a number takes away more by itself.
 constexpr double may_be_left_fitted = 0.02;
+/// And of the coarsest shape where it leaves as little of the finest: the rest is of
+/// discretisation.
+constexpr double may_be_left_coarse = 0.3;
 /// The same of a cause beside a shape that is out of balance.
 constexpr double nothing_left = 2e-3;
 /// Orders of convergence of a simulator that is right, and of one that has a limit of its own.
@@ -56,8 +59,8 @@ class Diagnosis {
     const bool converges = !(finest().error > error_floor) || order > second_order;
     if (look_at_chains(converges) || converges || finest().error <= negligible_error) return found_;
     if (order > no_order && !stays()) return found_;  // of discretisation, without a name
-    if (look_at_neglected() || look_at_states() || look_at_springs() || look_at_rest() ||
-        look_at_stiffness()) {
+    if (look_at_neglected() || look_at_states() ||
+        look_at_springs(coarsest(), may_be_left_fitted) || look_at_rest() || look_at_stiffness()) {
       return found_;
     }
     look_at_scene(may_be_left_fitted);
@@ -67,6 +70,9 @@ class Diagnosis {
  private:
   [[nodiscard]] const CardShape& coarsest() const { return shapes_.front(); }
   [[nodiscard]] const CardShape& finest() const { return shapes_.back(); }
+  [[nodiscard]] const CardShape& second_finest() const {
+    return shapes_.size() > 1 ? *(shapes_.end() - 2) : shapes_.back();
+  }
   [[nodiscard]] double error_m(const CardShape& shape) const { return shape.error * scene_.length; }
 
   /// Whether the error is not small and does not fall any more.
@@ -115,22 +121,24 @@ class Diagnosis {
   }
 
   /// Of the springs of a chain that fits the shape best, over EI/h.
-  [[nodiscard]] std::optional<double> spring_factor(const CardShape& shape) const {
+  [[nodiscard]] std::optional<double> spring_factor(const CardShape& shape,
+                                                    double may_leave) const {
     std::optional<OwnPolygon> best;
     for (const OwnPolygon& chain : own_polygons(scene_, shape.shape, Springs::fitted)) {
       if (!best || chain.rms_m < best->rms_m) best = chain;
     }
-    if (!best || !(best->rms_m <= may_be_left_fitted * error_m(shape))) return std::nullopt;
+    if (!best || !(best->rms_m <= may_leave * error_m(shape))) return std::nullopt;
     return best->stiffness;
   }
 
-  [[nodiscard]] std::optional<double> modulus_factor(const CardShape& shape) const {
+  [[nodiscard]] std::optional<double> modulus_factor(const CardShape& shape,
+                                                     double may_leave) const {
     if (scene_.stretch != Stretch::none) return std::nullopt;
     try {
       const EffectiveModulus modulus =
           fit_effective_modulus(scene_, distance_from(shape.shape), reference_, options_);
       if (!is_identified(modulus.optimum)) return std::nullopt;
-      if (!(modulus.rms_m <= may_be_left_fitted * error_m(shape))) return std::nullopt;
+      if (!(modulus.rms_m <= may_leave * error_m(shape))) return std::nullopt;
       return modulus.ratio;
     } catch (const ConvergenceError&) {
       return std::nullopt;
@@ -139,26 +147,31 @@ class Diagnosis {
     }
   }
 
-  void add_factors(double coarse, double fine) {
-    found_.push_back(
-        cause_of_factors(scene_, {coarsest().points, coarse}, {finest().points, fine}));
+  void add_factors(const CardShape& coarser, double coarse, double fine) {
+    found_.push_back(cause_of_factors(scene_, {coarser.points, coarse}, {finest().points, fine}));
   }
 
-  bool look_at_springs() {
+  /// @param may_leave  share of the coarser shape's error
+  bool look_at_springs(const CardShape& coarser, double may_leave) {
     if (scene_.stretch != Stretch::none) return false;
-    const std::optional<double> coarse = spring_factor(coarsest());
-    const std::optional<double> fine = coarse ? spring_factor(finest()) : std::nullopt;
+    const std::optional<double> coarse = spring_factor(coarser, may_leave);
+    const std::optional<double> fine =
+        coarse ? spring_factor(finest(), may_be_left_fitted) : std::nullopt;
     if (!fine) return false;
-    add_factors(*coarse, *fine);
+    add_factors(coarser, *coarse, *fine);
     return true;
   }
 
   bool look_at_stiffness() {
-    const std::optional<double> fine = modulus_factor(finest());
-    const std::optional<double> coarse = fine ? modulus_factor(coarsest()) : std::nullopt;
-    if (!coarse) return false;
-    add_factors(*coarse, *fine);
-    return true;
+    const std::optional<double> fine = modulus_factor(finest(), may_be_left_fitted);
+    if (!fine) return look_at_springs(second_finest(), may_be_left_coarse);
+    if (const auto coarse = modulus_factor(coarsest(), may_be_left_fitted)) {
+      add_factors(coarsest(), *coarse, *fine);
+      return true;
+    }
+    const std::optional<double> coarse = modulus_factor(second_finest(), may_be_left_coarse);
+    if (coarse) add_factors(second_finest(), *coarse, *fine);
+    return coarse.has_value();
   }
 
   /// Whether the shape is that of a scene that has less.

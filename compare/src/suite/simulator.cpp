@@ -41,8 +41,8 @@ Simulator parsed_simulator(const std::string& text) {
       return {.name = text, .own = own.model, .law = own.law, .program = {}};
     }
   }
-  ForeignProgram program = parse_foreign_program(text);
-  return {.name = program.name, .own = {}, .program = std::move(program)};
+  const ForeignProgram program = parse_foreign_program(text);
+  return {.name = program.name, .own = {}, .program = program};
 }
 
 ReleasedRod released_rod(const BatteryScene& scene) {

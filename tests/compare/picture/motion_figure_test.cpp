@@ -86,9 +86,10 @@ TEST(WorstFrame, HasTheRecordingsPointsOnTheRodOfThatTime) {
   EXPECT_EQ(drawing.views[0].up, 2);
   const Eigen::Matrix3Xd& whiskers = series_of(drawing, "whisker").points;
   ASSERT_EQ(whiskers.cols(), 12);
-  for (int i = 0; i < 4; ++i) {
+  for (Eigen::Index i = 0; i < 4; ++i) {
     const Eigen::Vector3d distance = whiskers.col(3 * i + 1) - whiskers.col(3 * i);
-    EXPECT_LT((distance - Eigen::Vector3d(0, 0, up * 0.25 * (i + 1))).norm(), 1e-6);
+    EXPECT_LT((distance - Eigen::Vector3d(0, 0, up * 0.25 * static_cast<double>(i + 1))).norm(),
+              1e-6);
   }
   EXPECT_LT((series_of(drawing, "worst").points.col(0) - whiskers.col(10)).norm(), 1e-12);
   // The grippers are where they are then.

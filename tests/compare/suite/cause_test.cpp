@@ -105,9 +105,9 @@ TEST(MomentBalance, OfARodAtRestIsWithinItsResolution) {
       EXPECT_LT(balance->imbalance, std::max(0.02, balance->resolution)) << id << ' ' << points;
     }
   }
-  // w l (l/64)^2 / EI = Gamma / 64^2, a quarter of it.
+  // w l (l/64)^2 / EI = Gamma / 64^2, a quarter of it; the shape's EI is found to 1 %.
   const Scene scene = battery_scene("weight_100");
-  EXPECT_NEAR(moment_balance(scene, rod_shape(scene))->resolution, 100.0 / 4096 / 4, 1e-6);
+  EXPECT_NEAR(moment_balance(scene, rod_shape(scene))->resolution, 100.0 / 4096 / 4, 1e-4);
 }
 
 TEST(Causes, AreNoneOfAnErrorThatIsAThousandthOfWhatIsRight) {
@@ -149,6 +149,29 @@ TEST(Causes, NameAStiffnessWhereNoChainIsCompared) {
   ASSERT_EQ(causes.size(), 1U);
   EXPECT_EQ(causes[0].name, "bending stiffness wrong");
   EXPECT_NEAR(causes[0].factor, 0.6, 0.01);
+}
+
+// Chains of 7 to 31 segments: the coarsest one's own error is more than a fitted stiffness may
+// leave.
+TEST(Causes, NameAStiffnessThatCoarseChainsHaveBesideTheirOwnError) {
+  for (const char* id : {"section_halves", "payload_within", "weight_100"}) {
+    const Scene scene = battery_scene(id);
+    const auto reference = dlo::compare::solve_reference(scene, dlo::compare::answer_model(scene));
+    std::vector<CardShape> shapes;
+    for (const int points : {8, 16, 32}) {
+      Scene soft = scene;
+      soft.scale_modulus(0.5);
+      soft.force_model.points = points;
+      const Shape shape = dlo::compare::solve(soft, Model::chain).shape;
+      shapes.push_back({.points = points,
+                        .shape = shape,
+                        .error = dlo::compare::distance(shape, reference.sample) / scene.length});
+    }
+    const std::vector<Cause> causes = causes_of(scene, reference, shapes);
+    ASSERT_EQ(causes.size(), 1U) << id;
+    EXPECT_EQ(causes[0].name, "bending stiffness wrong") << id;
+    EXPECT_NEAR(causes[0].factor, 0.5, 0.01) << id;
+  }
 }
 
 TEST(CauseOfFactors, IsWhatTheyAreAtBothNumbersOfPoints) {
