@@ -36,7 +36,8 @@ FrameShapes frame_shapes(const MarkerMotion& recorded, const ModelMotion& model,
   result.on_rod = rod_shape(model, time, result.recorded.arc_length);
   result.rod = rod_shape(model, time, equal_arc_lengths(length, whole_rod_samples));
   if (std::isfinite(lag)) {
-    result.rod_at_other_time = rod_shape(model, time - lag, equal_arc_lengths(length, whole_rod_samples));
+    result.rod_at_other_time =
+        rod_shape(model, time - lag, equal_arc_lengths(length, whole_rod_samples));
   }
   return result;
 }
