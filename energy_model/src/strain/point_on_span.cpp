@@ -34,17 +34,17 @@ SecondDerivatives second_derivatives(SpanEnergy& model, const Eigen::VectorXd& x
   return result;
 }
 
-SecondDerivatives second_derivatives_at(SpanEnergy& model, const SpanEnergy& other,
+SecondDerivatives second_derivatives_at(SpanEnergy& of, const SpanEnergy& found_in,
                                         const Eigen::VectorXd& x) {
-  PointOnSpan point = evaluated(model, model.prolong(other, x));
+  PointOnSpan point = evaluated(of, of.prolong(found_in, x));
   // The forces are the other one's, seen in these constraints.
   const Eigen::VectorXd multipliers =
-      model.constraints() == 0
+      of.constraints() == 0
           ? Eigen::VectorXd()
           : Eigen::VectorXd(
                 point.jacobian.transpose().completeOrthogonalDecomposition().solve(point.gradient));
   SecondDerivatives result;
-  model.hessian(multipliers, result.hessian);
+  of.hessian(multipliers, result.hessian);
   result.jacobian = std::move(point.jacobian);
   return result;
 }

@@ -31,9 +31,9 @@ struct SecondDerivatives {
   return second_derivatives(*solution.model, solution.x, solution.multipliers);
 }
 
-/// The same at the equilibrium x of another model, of the same span in its plane; mu are the
-/// multipliers that balance it best.
-[[nodiscard]] SecondDerivatives second_derivatives_at(SpanEnergy& model, const SpanEnergy& other,
+/// The same at an equilibrium x that was found in another model, of the same span in its plane; mu
+/// are the multipliers that balance it best.
+[[nodiscard]] SecondDerivatives second_derivatives_at(SpanEnergy& of, const SpanEnergy& found_in,
                                                       const Eigen::VectorXd& x);
 
 /// The same for bending (and twisting, with material directors) of a planar span out of its plane,
