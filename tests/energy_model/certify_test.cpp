@@ -73,15 +73,10 @@ TEST(Certify, AsksTheFactorOnlyNextToThePointThatItIsOf) {
     EXPECT_EQ(copy.factor->distance(copy, 1), 0);
     return copy;
   }();
-  Eigen::VectorXd gradient(solution.model->size());
-  Eigen::VectorXd residual(solution.model->constraints());
-  Eigen::MatrixXd jacobian(solution.model->constraints(), solution.model->size());
   for (const double away : {1e-8, 1e-2}) {
     SpanSolution beside = solution;
     beside.x[1] += away;
-    (void)beside.model->value(beside.x, gradient);
-    beside.model->constraint(residual, jacobian);
-    factors.factor_at(beside, jacobian, span.total_load());
+    factors.factor_at(beside, *beside.at_x(), span.total_load());
     SpanSolution certified = solution;
     certified.factor = beside.factor;
     certify(certified, span.total_load(), factors);
@@ -100,7 +95,7 @@ TEST(Certify, AFollowedShapeIsTheOneThatIsSearchedFor) {
   ASSERT_TRUE(before.factor);
   const Span span = spatial_arch(0.28);
   SpanOptions options;
-  const auto tangents = [&](const Eigen::VectorXd&) { return before.model->tangents(); };
+  const auto tangents = [&](const Eigen::VectorXd&) { return before.at_x()->tangents(); };
   options.start.field = tangents;
   options.start.known = {before.model, before.x, before.multipliers, before.factor};
   const SpanSolution followed = std::move(solve_span(span, options, workspace).front());
@@ -133,15 +128,11 @@ TEST(NegativeCurvature, IsThatOfTheRodInSpace) {
     SpanEnergy model(way->span, found.terms);
     const Eigen::VectorXd x = model.prolong(*found.model, found.x);
     const auto lagrangian = [&](double step, const Eigen::VectorXd& multipliers) {
-      Eigen::VectorXd gradient(model.size());
-      const double energy = model.value(x + step * way->direction, gradient);
-      Eigen::VectorXd residual(model.constraints());
-      Eigen::MatrixXd jacobian(model.constraints(), model.size());
-      model.constraint(residual, jacobian);
-      EXPECT_NEAR((jacobian * way->direction).norm(), 0, step == 0 ? 1e-8 : 1) << step;
+      const SpanPoint at = model.evaluated(x + step * way->direction);
+      EXPECT_NEAR((at.jacobian * way->direction).norm(), 0, step == 0 ? 1e-8 : 1) << step;
       const Eigen::VectorXd own =
-          jacobian.transpose().completeOrthogonalDecomposition().solve(gradient);
-      return std::pair(energy - multipliers.dot(residual), own);
+          at.jacobian.transpose().completeOrthogonalDecomposition().solve(at.gradient);
+      return std::pair(at.energy - multipliers.dot(at.residual), own);
     };
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(model.constraints());
     const Eigen::VectorXd multipliers = lagrangian(0, none).second;

@@ -23,36 +23,35 @@ struct Slider {
   Eigen::VectorXd weights;  ///< of the tangents at the nodes: r(L) = tangents weights
 };
 
-double residual(const Slider& slider, const SpanEnergy& model) {
-  return slider.N.dot(model.tangents() * slider.weights - slider.p);
+double residual(const Slider& slider, const SpanPoint& at) {
+  return slider.N.dot(at.tangents() * slider.weights - slider.p);
 }
 
-Eigen::RowVectorXd jacobian(const Slider& slider, SpanEnergy& model) {
-  const std::array<Eigen::MatrixXd, 3> J = model.tangent_jacobian();
+Eigen::RowVectorXd jacobian(const Slider& slider, const SpanEnergy& model, SpanPoint& at) {
+  const std::array<Eigen::MatrixXd, 3> J = model.tangent_jacobian(at);
   return slider.weights.transpose() *
          (slider.N[0] * J[0] + slider.N[1] * J[1] + slider.N[2] * J[2]);
 }
 
 /// c's second derivative, of a span in a plane: that of a tangent is -t a a^T, a its angle's.
-Eigen::MatrixXd hessian(const Slider& slider, SpanEnergy& model) {
-  const std::array<Eigen::MatrixXd, 3> J = model.tangent_jacobian();
-  const Eigen::Matrix3Xd t = model.tangents();
+Eigen::MatrixXd hessian(const Slider& slider, const SpanEnergy& model, SpanPoint& at) {
+  const std::array<Eigen::MatrixXd, 3> J = model.tangent_jacobian(at);
+  const Eigen::Matrix3Xd t = at.tangents();
   const Eigen::MatrixXd a = t.row(0).asDiagonal() * J[1] - t.row(1).asDiagonal() * J[0];
   const Eigen::VectorXd along = t.transpose() * slider.N;
   return -a.transpose() * slider.weights.cwiseProduct(along).asDiagonal() * a;
 }
 
 /// One step of Newton's method for L = E - mu c, which `system` factors.
-void newton_step(const Slider& slider, SpanEnergy& model, NewtonSystem& system, Eigen::VectorXd& x,
-                 double& mu) {
+void newton_step(const Slider& slider, const SpanEnergy& model, NewtonSystem& system,
+                 Eigen::VectorXd& x, double& mu) {
+  SpanPoint at = model.evaluated(x);
+  const Eigen::RowVectorXd J = jacobian(slider, model, at);
   Eigen::VectorXd right(x.size() + 1);
-  Eigen::VectorXd slope(x.size());
-  (void)model.value(x, slope);
-  const Eigen::RowVectorXd J = jacobian(slider, model);
-  right << mu * J.transpose() - slope, -residual(slider, model);
+  right << mu * J.transpose() - at.gradient, -residual(slider, at);
   Eigen::MatrixXd H;
-  model.hessian(Eigen::VectorXd(), H);
-  H -= mu * hessian(slider, model);
+  model.hessian(at, Eigen::VectorXd(), H);
+  H -= mu * hessian(slider, model, at);
   system.compute(H, J);
   Eigen::VectorXd step;
   system.solve(right, step);
@@ -73,20 +72,19 @@ TEST(ExtendConstraint, DerivativesAreThoseOfTheResidual) {
   const PlacedSpan placed = split(test::heavy_cantilever(5, 20)).front();
   SpanEnergy model(placed.span, 24);
   const Slider slider = slider_of(model, placed);
-  Eigen::VectorXd slope(model.size());
   const Eigen::VectorXd x = 0.3 * Eigen::VectorXd::Random(model.size());
-  (void)model.value(x, slope);
-  const Eigen::RowVectorXd first = jacobian(slider, model);
-  const Eigen::MatrixXd second = hessian(slider, model);
+  SpanPoint here = model.evaluated(x);
+  const Eigen::RowVectorXd first = jacobian(slider, model, here);
+  const Eigen::MatrixXd second = hessian(slider, model, here);
   constexpr double h = 1e-4;  // error h^2, rounding 1e-16 / h
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     const Eigen::VectorXd by = h * Eigen::VectorXd::Unit(x.size(), i);
-    (void)model.value(x + by, slope);
-    const double ahead = residual(slider, model);
-    const Eigen::RowVectorXd first_ahead = jacobian(slider, model);
-    (void)model.value(x - by, slope);
-    EXPECT_NEAR((ahead - residual(slider, model)) / (2 * h), first[i], 1e-7);
-    EXPECT_LT(((first_ahead - jacobian(slider, model)) / (2 * h) - second.row(i)).norm(), 1e-7);
+    SpanPoint ahead = model.evaluated(x + by);
+    SpanPoint behind = model.evaluated(x - by);
+    EXPECT_NEAR((residual(slider, ahead) - residual(slider, behind)) / (2 * h), first[i], 1e-7);
+    const Eigen::RowVectorXd turned =
+        jacobian(slider, model, ahead) - jacobian(slider, model, behind);
+    EXPECT_LT((turned / (2 * h) - second.row(i)).norm(), 1e-7);
   }
 }
 
@@ -100,14 +98,15 @@ TEST(ExtendConstraint, MultiplierIsTheForceOfTheLine) {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(model.size());
   double mu = 0;
   for (int i = 0; i < 20; ++i) newton_step(slider, model, system, x, mu);
-  EXPECT_LT(std::abs(residual(slider, model)), 1e-12);
+  const SpanPoint at = model.evaluated(x);
+  EXPECT_LT(std::abs(residual(slider, at)), 1e-12);
   const std::optional<double> smallest = system.reduced_hessian().smallest_eigenvalue_of_definite();
   ASSERT_TRUE(smallest.has_value());
   EXPECT_GT(*smallest, 0);
   problem.loads = {{1, mu * (placed.frame.transpose() * slider.N)}};
   const Equilibrium loaded = solve_energy(problem);
   ASSERT_EQ(loaded.status, SolveStatus::converged) << loaded.message;
-  const Eigen::Vector3d end = placed.frame.transpose() * (model.tangents() * slider.weights);
+  const Eigen::Vector3d end = placed.frame.transpose() * (at.tangents() * slider.weights);
   EXPECT_LT((loaded.sample(std::vector<double>{1}).points.col(0) - end).norm(), 1e-9);
 }
 

@@ -22,27 +22,27 @@ struct Tether {
   Eigen::Vector3d p;
   Eigen::VectorXd weights;  ///< of the tangents at the nodes: r(L) = tangents weights
 
-  [[nodiscard]] Eigen::Vector3d stretch(const SpanEnergy& model) const {
-    return model.tangents() * weights - p;
+  [[nodiscard]] Eigen::Vector3d stretch(const SpanPoint& at) const {
+    return at.tangents() * weights - p;
   }
 };
 
-double value(const Tether& tether, const SpanEnergy& model) {
-  return tether.k / 2 * tether.stretch(model).squaredNorm();
+double value(const Tether& tether, const SpanPoint& at) {
+  return tether.k / 2 * tether.stretch(at).squaredNorm();
 }
 
-Eigen::VectorXd gradient(const Tether& tether, SpanEnergy& model) {
-  const std::array<Eigen::MatrixXd, 3> J = model.tangent_jacobian();
-  const Eigen::Vector3d d = tether.k * tether.stretch(model);
+Eigen::VectorXd gradient(const Tether& tether, const SpanEnergy& model, SpanPoint& at) {
+  const std::array<Eigen::MatrixXd, 3> J = model.tangent_jacobian(at);
+  const Eigen::Vector3d d = tether.k * tether.stretch(at);
   return (d[0] * J[0] + d[1] * J[1] + d[2] * J[2]).transpose() * tether.weights;
 }
 
 /// Of a span in a plane, where a tangent's second derivative is -t a a^T, a that of its angle.
-Eigen::MatrixXd hessian(const Tether& tether, SpanEnergy& model) {
-  const std::array<Eigen::MatrixXd, 3> J = model.tangent_jacobian();
-  const Eigen::Matrix3Xd t = model.tangents();
+Eigen::MatrixXd hessian(const Tether& tether, const SpanEnergy& model, SpanPoint& at) {
+  const std::array<Eigen::MatrixXd, 3> J = model.tangent_jacobian(at);
+  const Eigen::Matrix3Xd t = at.tangents();
   const Eigen::MatrixXd a = t.row(0).asDiagonal() * J[1] - t.row(1).asDiagonal() * J[0];
-  const Eigen::VectorXd along = t.transpose() * tether.stretch(model);
+  const Eigen::VectorXd along = t.transpose() * tether.stretch(at);
   Eigen::MatrixXd result = -a.transpose() * tether.weights.cwiseProduct(along).asDiagonal() * a;
   for (const Eigen::MatrixXd& axis : J) {
     const Eigen::VectorXd by_x = axis.transpose() * tether.weights;
@@ -56,6 +56,7 @@ struct TetheredRod {
   PlacedSpan placed;
   SpanEnergy model;
   Tether tether;
+  SpanPoint at;
 
   explicit TetheredRod(const Problem& problem)
       : placed(split(problem).front()), model(placed.span, 24) {
@@ -66,16 +67,15 @@ struct TetheredRod {
   }
 
   double evaluate(const Eigen::VectorXd& x, Eigen::VectorXd& slope) {
-    slope.resize(x.size());
-    const double energy = model.value(x, slope) + value(tether, model);
-    slope += gradient(tether, model);
-    return energy;
+    model.evaluate(x, at);
+    slope = at.gradient + gradient(tether, model, at);
+    return at.energy + value(tether, at);
   }
 
   Eigen::MatrixXd second_derivative() {
     Eigen::MatrixXd result;
-    model.hessian(Eigen::VectorXd(), result);
-    return result + hessian(tether, model);
+    model.hessian(at, Eigen::VectorXd(), result);
+    return result + hessian(tether, model, at);
   }
 };
 
@@ -108,7 +108,7 @@ TEST(ExtendTerm, RestsAsUnderItsForce) {
   }
   (void)rod.evaluate(x, slope);
   ASSERT_LT(slope.norm(), 1e-10);
-  const Eigen::Vector3d stretch = rod.tether.stretch(rod.model);
+  const Eigen::Vector3d stretch = rod.tether.stretch(rod.at);
   problem.loads = {{1, -rod.tether.k * (rod.placed.frame.transpose() * stretch)}};
   const Equilibrium loaded = solve_energy(problem);
   ASSERT_EQ(loaded.status, SolveStatus::converged) << loaded.message;

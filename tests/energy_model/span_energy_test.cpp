@@ -164,34 +164,24 @@ void expect_derivatives(SpanEnergy& model) {
   Eigen::VectorXd x = Eigen::VectorXd::NullaryExpr(n, [&] { return uniform(random); });
   const Eigen::VectorXd mu = Eigen::VectorXd::NullaryExpr(m, [&] { return uniform(random); });
 
-  struct Point {
-    double value;
-    Eigen::VectorXd gradient, residual;
-    Eigen::MatrixXd jacobian, hessian;
-  };
-  const auto at = [&](const Eigen::VectorXd& where) {
-    Point point{0, Eigen::VectorXd(n), Eigen::VectorXd(m), Eigen::MatrixXd(m, n), {}};
-    point.value = model.value(where, point.gradient);
-    model.constraint(point.residual, point.jacobian);
-    model.hessian(mu, point.hessian);
-    return point;
-  };
-  const Point here = at(x);
+  SpanPoint here = model.evaluated(x);
+  Eigen::MatrixXd hessian;
+  model.hessian(here, mu, hessian);
   const double h = 1e-5;
-  const double scale = 1 + here.hessian.norm();
+  const double scale = 1 + hessian.norm();
   for (Eigen::Index k = 0; k < n; ++k) {
     Eigen::VectorXd aside = x;
     aside[k] += h;
-    const Point after = at(aside);
+    const SpanPoint after = model.evaluated(aside);
     aside[k] -= 2 * h;
-    const Point before = at(aside);
-    EXPECT_NEAR((after.value - before.value) / (2 * h), here.gradient[k], 1e-8 * scale);
+    const SpanPoint before = model.evaluated(aside);
+    EXPECT_NEAR((after.energy - before.energy) / (2 * h), here.gradient[k], 1e-8 * scale);
     const Eigen::VectorXd slope = (after.residual - before.residual) / (2 * h);
     EXPECT_LT((slope - here.jacobian.col(k)).norm(), 1e-8 * scale);
     const Eigen::VectorXd lagrangian_after = after.gradient - after.jacobian.transpose() * mu;
     const Eigen::VectorXd lagrangian_before = before.gradient - before.jacobian.transpose() * mu;
     const Eigen::VectorXd curve = (lagrangian_after - lagrangian_before) / (2 * h);
-    EXPECT_LT((curve - here.hessian.col(k)).norm(), 1e-7 * scale) << "unknown " << k;
+    EXPECT_LT((curve - hessian.col(k)).norm(), 1e-7 * scale) << "unknown " << k;
   }
 }
 
@@ -210,17 +200,32 @@ TEST_P(Objective, OfAnotherSpanIsNotTheOneBefore) {
   lighter.weight /= 2;
   SpanEnergy model(lighter, 6);
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(model.size(), -0.5, 0.5);
-  Eigen::VectorXd gradient(x.size());
-  Eigen::VectorXd expected(x.size());
-  const double energy_of_lighter = model.value(x, gradient);
+  SpanPoint point = model.evaluated(x);
+  const double energy_of_lighter = point.energy;
   model.reset(span, 6);
-  const double energy = model.value(x, gradient);
-  EXPECT_NE(energy, energy_of_lighter);
-  EXPECT_EQ(energy, SpanEnergy(span, 6).value(x, expected));
-  EXPECT_EQ(gradient, expected);
-  // Nor where it is known already.
-  EXPECT_EQ(model.value(x, gradient), energy);
-  EXPECT_EQ(gradient, expected);
+  const SpanPoint expected = SpanEnergy(span, 6).evaluated(x);
+  model.evaluate(x, point);
+  EXPECT_NE(point.energy, energy_of_lighter);
+  EXPECT_EQ(point.energy, expected.energy);
+  EXPECT_EQ(point.gradient, expected.gradient);
+}
+
+// What was evaluated at one point is of that point, whatever the model is asked of others.
+TEST_P(Objective, APointStaysWhatItIs) {
+  SpanEnergy model(GetParam().span(), 6);
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(model.size(), -0.5, 0.5);
+  const Eigen::VectorXd mu = Eigen::VectorXd::Ones(model.constraints());
+  SpanPoint here = model.evaluated(x);
+  Eigen::MatrixXd hessian;
+  model.hessian(here, mu, hessian);
+  SpanPoint there = model.evaluated(0.5 * x);
+  Eigen::MatrixXd of_there;
+  model.hessian(there, mu, of_there);
+  Eigen::MatrixXd again;
+  model.hessian(here, mu, again);
+  EXPECT_EQ(again, hessian);
+  EXPECT_EQ(here.residual, model.evaluated(x).residual);
+  EXPECT_EQ(here.tangents(), model.evaluated(x).tangents());
 }
 
 #ifdef DLO_COUNTS_ALLOCATIONS
@@ -229,24 +234,15 @@ class ObjectiveWithoutObstacles : public Objective {};
 TEST_P(ObjectiveWithoutObstacles, DoesNotAllocate) {
   SpanEnergy model(GetParam().span(), 12);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(model.size());
-  Eigen::VectorXd gradient(model.size());
-  Eigen::VectorXd residual(model.constraints());
-  Eigen::MatrixXd jacobian(model.constraints(), model.size());
   const Eigen::VectorXd mu = Eigen::VectorXd::Ones(model.constraints());
   Eigen::MatrixXd hessian(model.size(), model.size());
-  long before = allocations;
-  const auto evaluate = [&] {
-    (void)model.value(x, gradient);
-    model.constraint(residual, jacobian);
-  };
-  evaluate();
-  EXPECT_EQ(allocations, before);
-  model.hessian(mu, hessian);
-  before = allocations;
+  SpanPoint point = model.evaluated(x);
+  model.hessian(point, mu, hessian);
+  const long before = allocations;
   for (int i = 1; i < 3; ++i) {
     x[0] = i;
-    evaluate();
-    model.hessian(mu, hessian);
+    model.evaluate(x, point);
+    model.hessian(point, mu, hessian);
   }
   EXPECT_EQ(allocations, before);
 }

@@ -47,21 +47,18 @@ double axial_torque(const Equilibrium& equilibrium) { return equilibrium.twists.
 /// as of the distance between the ends of a straight rod, are left out.
 Eigen::VectorXd second_variation_at(SpanEnergy& model, const Eigen::VectorXd& x,
                                     const Eigen::VectorXd& multipliers) {
-  Eigen::VectorXd gradient(model.size());
-  Eigen::VectorXd residual(model.constraints());
-  Eigen::MatrixXd jacobian(model.constraints(), model.size());
+  SpanPoint at = model.evaluated(x);
+  const Eigen::MatrixXd& jacobian = at.jacobian;
   Eigen::MatrixXd hessian;
-  (void)model.value(x, gradient);
-  model.constraint(residual, jacobian);
-  model.hessian(multipliers, hessian);
+  model.hessian(at, multipliers, hessian);
   Eigen::MatrixXd effective(0, model.size());
   for (Eigen::Index row = 0; row < jacobian.rows(); ++row) {
     if (jacobian.row(row).norm() < 1e-9) continue;
     effective.conservativeResize(effective.rows() + 1, Eigen::NoChange);
     effective.bottomRows<1>() = jacobian.row(row);
   }
-  EXPECT_LT(residual.norm(), 1e-12);
-  EXPECT_LT((gradient - jacobian.transpose() * multipliers).norm(), 1e-9);
+  EXPECT_LT(at.residual.norm(), 1e-12);
+  EXPECT_LT((at.gradient - jacobian.transpose() * multipliers).norm(), 1e-9);
   const Eigen::MatrixXd Z = test::free_basis(effective, model.size());
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Z.transpose() * hessian * Z).eigenvalues();
 }
@@ -113,12 +110,9 @@ TEST(Twist, MakesARingUnstableAtMichellsAngle) {
     SpanEnergy model(span, 32);
     Eigen::VectorXd x = model.with_twist(Eigen::VectorXd::Zero(model.size()), psi);
     x[0] = 2 * pi;
-    Eigen::VectorXd gradient(model.size());
-    Eigen::VectorXd residual(model.constraints());
-    Eigen::MatrixXd jacobian(model.constraints(), model.size());
-    (void)model.value(x, gradient);
-    model.constraint(residual, jacobian);
-    const Eigen::VectorXd multipliers = jacobian.transpose().colPivHouseholderQr().solve(gradient);
+    const SpanPoint at = model.evaluated(x);
+    const Eigen::VectorXd multipliers =
+        at.jacobian.transpose().colPivHouseholderQr().solve(at.gradient);
     // The ring turns about its clamps' direction for nothing.
     const Eigen::VectorXd eigenvalues = second_variation_at(model, x, multipliers);
     return std::abs(eigenvalues[0]) < 1e-9 ? eigenvalues[1] : eigenvalues[0];

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "certify/contact_ends.hpp"
 #include "certify/rigid_body_modes.hpp"
 #include "linear/free_directions.hpp"
 #include "linear/newton_system.hpp"
 #include "newton/newton.hpp"
-#include "strain/point_on_span.hpp"
+#include "strain/second_derivatives.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -37,13 +38,14 @@ constexpr double largest_change = 0.01;
 constexpr double largest_third_derivative = 4;
 
 /// Norm of Newton's step from here; it has no part along near-null modes.
-double newton_step(NewtonSystem& system, const PointOnSpan& point) {
-  Eigen::VectorXd right(point.gradient.size() + point.residual.size());
-  right << -point.gradient, -point.residual;
+/// @param gradient  of E - mu . c
+double newton_step(NewtonSystem& system, const SpanPoint& point, const Eigen::VectorXd& gradient) {
+  Eigen::VectorXd right(gradient.size() + point.residual.size());
+  right << -gradient, -point.residual;
   Eigen::VectorXd step;
   system.solve(right, step);
   if (!system.is_met(right, step, largest_next_step)) step = system.minimum_norm_step(right);
-  return step.head(point.gradient.size()).norm();
+  return step.head(gradient.size()).norm();
 }
 
 /// Rounding of forces, whose scale is this.
@@ -141,7 +143,6 @@ EigenvalueDerivatives eigenvalue_derivatives(SpanSolution& solution, const SoftM
   };
   const double ahead = eigenvalue(step);
   const double behind = eigenvalue(-step);
-  // Last, so that the model is left where the solution is.
   const double here = eigenvalue(0);
   return {(ahead - behind) / (2 * step), (ahead - 2 * here + behind) / (step * step)};
 }
@@ -176,7 +177,7 @@ class Certification {
     // Newton's method leaves those undetermined whose terms nobody has looked at.
     const bool undetermined = solution_.status == SolveStatus::near_singular;
     if (!evaluate()) return;
-    rigid_ = rigid_body_modes(model_.span(), model_.tangents());
+    rigid_ = rigid_body_modes(model_.span(), point_->tangents());
     solution_.rigid_body_modes = static_cast<int>(rigid_.all());
     ask_factor();
     const bool at_fold = estimate_error();
@@ -199,15 +200,15 @@ class Certification {
  private:
   /// @return whether it meets the equations of equilibrium
   [[nodiscard]] bool evaluate() {
-    point_ = evaluated(model_, solution_.x);
+    point_ = solution_.at_x();
     ++solution_.evaluations;
-    solution_.energy = point_.energy;
-    point_.gradient -= point_.jacobian.transpose() * solution_.multipliers;
+    solution_.energy = point_->energy;
+    gradient_ = point_->gradient - point_->jacobian.transpose() * solution_.multipliers;
     if (!(solution_.multipliers.norm() <= largest_pull * (1 + load_))) {
       solution_.fail("the grips would have to pull without bound");
       return false;
     }
-    solution_.residual = std::hypot(point_.gradient.norm(), scale_ * point_.residual.norm());
+    solution_.residual = std::hypot(gradient_.norm(), scale_ * point_->residual.norm());
     if (solution_.residual <= largest_next_step * scale_) return true;
     solution_.fail("the residual of the returned shape is not small");
     return false;
@@ -223,9 +224,9 @@ class Certification {
     for (bool near = !obstacles_ && solution_.factor != nullptr;; near = false) {
       const double change = near ? change_since_factor(solution_, scale_) : 0;
       near = near && change < largest_h;
-      if (!near) factors_.factor_at(solution_, point_.jacobian, load_);
+      if (!near) factors_.factor_at(solution_, *point_, load_);
       NewtonSystem& system = solution_.factor->system;
-      solution_.next_step = newton_step(system, point_);
+      solution_.next_step = newton_step(system, *point_, gradient_);
       small_step_ = solution_.next_step <= largest_next_step;
       // Below it what is left of the residual makes a step that is not small.
       bound_ = std::max(neutral, small_step_ ? 0 : solution_.residual / largest_next_step);
@@ -248,7 +249,7 @@ class Certification {
     // As many terms as constraints leave no direction that a fold could be in.
     const bool can_move = found_.zero < model_.size() - model_.constraints();
     if (can_move && may_be_at_fold(solution_, load_, eta_)) {
-      const SoftMode mode = soft_mode(solution_.factor->system, point_.jacobian, found_.zero);
+      const SoftMode mode = soft_mode(solution_.factor->system, point_->jacobian, found_.zero);
       const EigenvalueDerivatives change = eigenvalue_derivatives(solution_, mode);
       const double kappa = std::abs(change.first) + std::abs(change.second) * eta_;
       const double h = eta_ * kappa / solution_.eigenvalue_nearest_zero;
@@ -261,7 +262,8 @@ class Certification {
   }
 
   void look_out_of_plane() {
-    const SecondDerivatives across = second_derivatives_out_of_plane(model_, solution_.multipliers);
+    const SecondDerivatives across =
+        second_derivatives_out_of_plane(model_, *point_, solution_.multipliers);
     ReducedHessian beside;
     beside.compute(across.hessian, across.jacobian);
     const SmallEigenvalues found = eigenvalues_of(beside, rigid_.out_of_plane);
@@ -270,12 +272,13 @@ class Certification {
   }
 
   SpanSolution& solution_;
-  SpanEnergy& model_;
+  const SpanEnergy& model_;
   const double load_;
   NewtonFactors& factors_;
   const double scale_;  // of forces
   const bool obstacles_;
-  PointOnSpan point_;
+  std::shared_ptr<SpanPoint> point_;
+  Eigen::VectorXd gradient_;  // of E - mu . c
   RigidBodyModes rigid_;
   double bound_ = neutral;  // size up to which an eigenvalue counts as neutral
   double eta_ = 0;          // by which the coefficients may be off, without a fold
@@ -299,7 +302,7 @@ void certify_out_of_plane(SpanSolution& solution, double load, NewtonFactors& fa
   if (is_along(span.weight) && std::all_of(span.loads.begin(), span.loads.end(),
                                            [&](const auto& l) { return is_along(l.force); })) {
     solution.rigid_body_modes =
-        static_cast<int>(rigid_body_modes(span, solution.model->tangents()).all());
+        static_cast<int>(rigid_body_modes(span, solution.at_x()->tangents()).all());
   }
   const double eta = linear_error(solution, load);
   // Of what is no minimum in the plane the factor tells nothing.
@@ -311,7 +314,7 @@ void certify_out_of_plane(SpanSolution& solution, double load, NewtonFactors& fa
   if (!solution.is_equilibrium()) return;
   solution.error = error_estimate(solution, eta);
   if (solution.status != SolveStatus::converged) return;
-  if (!solution.model->resists_out_of_plane()) solution.finish(SolveStatus::saddle);
+  if (!solution.model->resists_out_of_plane(*solution.at_x())) solution.finish(SolveStatus::saddle);
 }
 
 }  // namespace dlo::energy_model

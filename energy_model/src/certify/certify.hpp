@@ -21,7 +21,7 @@ void certify(SpanSolution& solution, double load, NewtonFactors& factors);
 
 /// The same for a plain cantilever that Newton's method has just found, and thereby looked at
 /// its step and its second variation in the plane: only that out of the plane is left, and only its
-/// sign is told. The model's last value() was at solution.x.
+/// sign is told.
 void certify_out_of_plane(SpanSolution& solution, double load, NewtonFactors& factors);
 
 }  // namespace dlo::energy_model

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "contact/clearance.hpp"
 
@@ -66,8 +67,7 @@ Eigen::VectorXd free_boundary_residual(const SpanSolution& solution,
                                        const std::vector<FreeBoundary>& ends) {
   constexpr double aside = 1e-12;
   const Span& span = solution.model->span();
-  Eigen::VectorXd gradient(solution.x.size());
-  (void)solution.model->value(solution.x, gradient);
+  const std::shared_ptr<SpanPoint> point = solution.at_x();
   std::vector<double> s;
   for (const FreeBoundary& end : ends) {
     // Of two pieces that meet there the free one.
@@ -84,7 +84,7 @@ Eigen::VectorXd free_boundary_residual(const SpanSolution& solution,
     const Room room = room_of(span, ends[i]);
     if (contact.lies()) {
       result[column] = here.rate * (ends[i].begins ? room.down : room.up);
-    } else if (const auto at = solution.model->touches_at(ends[i].contact)) {
+    } else if (const auto at = solution.model->touches_at(*point, ends[i].contact)) {
       result[column] = contact.begin - *at;
     } else {
       result[column] = here.slope * std::min(room.down, room.up);

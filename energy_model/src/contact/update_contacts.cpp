@@ -58,7 +58,8 @@ class Contacts {
  private:
   /// Of what an obstacle would have to pull at: points, and the ends of parts.
   void release_tensile() {
-    const std::vector<ContactForce> forces = solution_.model->contact_forces(solution_.multipliers);
+    const std::vector<ContactForce> forces =
+        solution_.model->contact_forces(*solution_.at_x(), solution_.multipliers);
     std::vector<Span::Contact> kept;
     for (std::size_t i = 0; i < contacts_.size(); ++i) {
       Span::Contact contact = contacts_[i];

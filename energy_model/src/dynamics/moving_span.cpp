@@ -280,6 +280,17 @@ void MovingSpan::take(const SpanIntegrator& integrator, SpanRun& run) const {
   run.depth = integrator.depth() * length_;
 }
 
+/// Meets the grips and begins to move, if it is in motion. @return why it can't; empty: it can
+std::string MovingSpan::settle(SpanIntegrator& integrator, SpanDynamics& model,
+                               const DynamicsOptions& options, SpanInstant& at) const {
+  at.v = Eigen::VectorXd::Zero(model.size());
+  std::string message = integrator.project(at);
+  if (message.empty() && model.has_twist()) message = integrator.settle_twist(at);
+  if (!options.in_motion || !message.empty()) return message;
+  at.v = equilibrium_rates(model, at);
+  return integrator.project(at);
+}
+
 SpanRun MovingSpan::run_with(const ContactLaw& contact, const StartingShape& start,
                              const std::vector<PointMass>& masses, std::span<const double> times,
                              const DynamicsOptions& options, const Deadline& deadline) const {
@@ -311,14 +322,8 @@ SpanRun MovingSpan::run_with(const ContactLaw& contact, const StartingShape& sta
   SpanInstant at;
   at.time = begin_ / time_;
   at.x = model.fit(begin);
-  at.v = Eigen::VectorXd::Zero(model.size());
-  result.message = integrator.project(at);
-  if (result.message.empty() && model.has_twist()) result.message = integrator.settle_twist(at);
+  result.message = settle(integrator, model, options, at);
   const auto stopped = [&] { return !result.message.empty() || left_plane; };
-  if (options.in_motion && !stopped()) {
-    at.v = equilibrium_rates(model, at);
-    result.message = integrator.project(at);
-  }
   if (!stopped()) {
     result.frames.push_back(frame(integrator, model, at));
     if (model.depth() > contact.depth) result.message = "the rod begins within a rigid obstacle";

@@ -48,6 +48,8 @@ class MovingSpan {
 
  private:
   /// With one law of contact; ends where it lets the rod in too deep.
+  [[nodiscard]] std::string settle(SpanIntegrator& integrator, SpanDynamics& model,
+                                   const DynamicsOptions& options, SpanInstant& at) const;
   [[nodiscard]] SpanRun run_with(const ContactLaw& contact, const StartingShape& start,
                                  const std::vector<PointMass>& masses,
                                  std::span<const double> times, const DynamicsOptions& options,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "linear/reduced_hessian.hpp"
 #include "linear/trust_region_step.hpp"
@@ -21,20 +22,16 @@ class AugmentedLagrangian {
       : solution_(solution), model_(*solution.model), options_(options) {}
 
   void run() {
-    const Eigen::Index n = model_.size();
     const Eigen::Index m = model_.constraints();
     mu_ = solution_.multipliers;
     if (mu_.size() != m) mu_.setZero(m);
-    gradient_.resize(n);
-    residual_.resize(m);
-    jacobian_.resize(m, n);
     kappa_ = std::max(100 * (1 + options_.load), 10 * options_.stiffness);
     evaluate();
-    double last_residual = residual_.norm();
+    double last_residual = here_.residual.norm();
     for (int update = 0; update < most_updates; ++update) {
       if (!minimise(std::min(1e-2, last_residual))) break;
       mu_ = forces();
-      const double residual = residual_.norm();
+      const double residual = here_.residual.norm();
       if (residual <= close_enough) return finish(SolveStatus::converged);
       if (residual > last_residual / 4) kappa_ = std::min(largest_kappa(), 10 * kappa_);
       last_residual = residual;
@@ -51,13 +48,13 @@ class AugmentedLagrangian {
   [[nodiscard]] bool out_of_time() const {
     return options_.deadline != nullptr && options_.deadline->passed();
   }
-  [[nodiscard]] Eigen::VectorXd forces() const { return mu_ - kappa_ * residual_; }
+  [[nodiscard]] Eigen::VectorXd forces() const { return mu_ - kappa_ * here_.residual; }
 
   void evaluate() {
-    solution_.energy = model_.value(solution_.x, gradient_);
-    model_.constraint(residual_, jacobian_);
-    ++solution_.evaluations;
-    value_ = solution_.energy - mu_.dot(residual_) + kappa_ / 2 * residual_.squaredNorm();
+    solution_.evaluate(solution_.x, here_);
+    solution_.energy = here_.energy;
+    const Eigen::VectorXd& c = here_.residual;
+    value_ = here_.energy - mu_.dot(c) + kappa_ / 2 * c.squaredNorm();
   }
 
   /// Minimum of the penalised energy for the present mu and kappa, so well that its gradient is
@@ -68,9 +65,9 @@ class AugmentedLagrangian {
     for (int i = 0; i < options_.max_iterations; ++i) {
       if (out_of_time()) return false;
       const Eigen::VectorXd nu = forces();
-      slope_ = gradient_ - jacobian_.transpose() * nu;
-      model_.hessian(nu, hessian_);
-      hessian_.noalias() += kappa_ * jacobian_.transpose() * jacobian_;
+      slope_ = here_.gradient - here_.jacobian.transpose() * nu;
+      model_.hessian(here_, nu, hessian_);
+      hessian_.noalias() += kappa_ * here_.jacobian.transpose() * here_.jacobian;
       reduced_.compute(hessian_, Eigen::MatrixXd(0, hessian_.cols()));
       const std::optional<Eigen::VectorXd> step = trust_region_step(
           reduced_, slope_,
@@ -78,16 +75,18 @@ class AugmentedLagrangian {
            .gradient_tolerance = precision * 1e-3 * (1 + options_.load + nu.norm())});
       if (!step) return true;
       const double predicted = -(slope_.dot(*step) + step->dot(hessian_ * *step) / 2);
-      const Eigen::VectorXd before_x = solution_.x;
       const double before = value_;
       solution_.x += *step;
+      std::swap(here_, before_);
       evaluate();
       const double rounding = 1e-13 * (1 + std::abs(before));
       const double ratio = (before - value_ + rounding) / (predicted + rounding);
       const double length = step->norm();
       if (!(ratio > 0.1)) {
-        solution_.x = before_x;
-        evaluate();
+        std::swap(here_, before_);
+        solution_.x = here_.x;
+        solution_.energy = here_.energy;
+        value_ = before;
         radius = std::min(radius, length) / 4;
         if (radius < least_penalty_radius) return true;
       } else if (ratio > 0.75 && length > 0.9 * radius) {
@@ -105,13 +104,14 @@ class AugmentedLagrangian {
   }
 
   SpanSolution& solution_;
-  SpanEnergy& model_;
+  const SpanEnergy& model_;
   const TrustRegionOptions& options_;
   double kappa_ = 0;
   double value_ = 0;
   double radius_ = first_radius;
-  Eigen::VectorXd mu_, gradient_, residual_, slope_;
-  Eigen::MatrixXd jacobian_, hessian_;
+  SpanPoint here_, before_;
+  Eigen::VectorXd mu_, slope_;
+  Eigen::MatrixXd hessian_;
   ReducedHessian reduced_;
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "newton/newton_step.hpp"
@@ -43,6 +44,14 @@ class NewtonIteration {
 
   void run() {
     begin();
+    iterate();
+    solution_.point = std::move(buffers_.here);
+  }
+
+ private:
+  enum class Outcome { goes_on, equilibrium, singular, diverged };
+
+  void iterate() {
     const int most = among_obstacles_                              ? most_steps_among_obstacles
                      : options_.method == NewtonMethod::simplified ? most_simplified_steps
                                                                    : most_newton_steps;
@@ -69,9 +78,6 @@ class NewtonIteration {
     solution_.fail("Newton's method did not reduce the residual to rounding");
   }
 
- private:
-  enum class Outcome { goes_on, equilibrium, singular, diverged };
-
   void begin();
   [[nodiscard]] Outcome advance();
   [[nodiscard]] Outcome advance_among_obstacles();
@@ -79,7 +85,12 @@ class NewtonIteration {
   [[nodiscard]] Outcome judge_move(double moved);
   void finish();
 
-  [[nodiscard]] double evaluate();
+  void evaluate();
+  [[nodiscard]] double residual();
+  [[nodiscard]] double evaluated_residual() {
+    evaluate();
+    return residual();
+  }
   void move(double length);
   [[nodiscard]] bool natural_move();
   [[nodiscard]] double step_length();
@@ -90,43 +101,52 @@ class NewtonIteration {
   [[nodiscard]] bool is_at_rounding() const { return size_ <= last_residual * scale(); }
   SpanSolution& solution_;
   const NewtonOptions& options_;
-  SpanEnergy& model_;
+  const SpanEnergy& model_;
   NewtonBuffers& buffers_;
   const bool among_obstacles_;
   NewtonStep step_;
   bool step_is_next_ = false;  // it is the one from here already
   double size_ = 0;            // of the residual
+  std::shared_ptr<SpanPoint> trial_;
 };
 
 void NewtonIteration::begin() {
-  buffers_.gradient.resize(model_.size());
-  buffers_.residual.resize(model_.constraints());
-  buffers_.jacobian.resize(model_.constraints(), model_.size());
   buffers_.broyden.clear();
   solution_.factor.reset();
+  buffers_.here = buffers_.new_point(model_);
+  trial_ = buffers_.new_point(model_);
+  if (solution_.has_point()) {
+    *buffers_.here = *solution_.point;
+  } else {
+    evaluate();
+  }
   if (solution_.multipliers.size() != model_.constraints()) {
     solution_.multipliers.setZero(model_.constraints());
+    // Those that balance the gradient best.
     if (model_.constraints() > 0) {
-      // The multipliers that balance the gradient best.
-      (void)evaluate();
       solution_.multipliers =
-          buffers_.jacobian.transpose().householderQr().solve(buffers_.gradient);
+          buffers_.here->jacobian.transpose().householderQr().solve(buffers_.here->gradient);
     }
   }
-  size_ = evaluate();
+  size_ = residual();
   const bool can_borrow =
       model_.constraints() > 0 && !among_obstacles_ && options_.method != NewtonMethod::corrector;
   if (can_borrow) step_.borrow();
 }
 
-double NewtonIteration::evaluate() {
-  Eigen::VectorXd& gradient = buffers_.gradient;
-  solution_.energy = model_.value(solution_.x, gradient);
+void NewtonIteration::evaluate() {
+  model_.evaluate(solution_.x, *buffers_.here);
   ++solution_.evaluations;
-  if (model_.constraints() == 0) return gradient.norm();
-  model_.constraint(buffers_.residual, buffers_.jacobian);
-  gradient.noalias() -= buffers_.jacobian.transpose() * solution_.multipliers;
-  return std::hypot(gradient.norm(), (1 + options_.load) * buffers_.residual.norm());
+}
+
+/// Of gradient and constraints, by the point and the multipliers.
+double NewtonIteration::residual() {
+  const SpanPoint& here = *buffers_.here;
+  solution_.energy = here.energy;
+  buffers_.gradient = here.gradient;
+  if (model_.constraints() == 0) return here.gradient.norm();
+  buffers_.gradient.noalias() -= here.jacobian.transpose() * solution_.multipliers;
+  return std::hypot(buffers_.gradient.norm(), (1 + options_.load) * here.residual.norm());
 }
 
 NewtonIteration::Outcome NewtonIteration::advance() {
@@ -155,7 +175,7 @@ NewtonIteration::Outcome NewtonIteration::advance_among_obstacles() {
   const double before = size_;
   const double moved = solution_.next_step;
   move(step_length());
-  size_ = evaluate();
+  size_ = evaluated_residual();
   solution_.next_step = moved * size_ / before;
   step_.give_up_factor();
   return Outcome::goes_on;
@@ -190,15 +210,14 @@ NewtonIteration::Outcome NewtonIteration::judge_move(double moved) {
     if (borrowed) {
       // Steps with the factor's own Hessian end far below the next one; these only by a part.
       move(1);
-      size_ = evaluate();
+      size_ = evaluated_residual();
     }
     return Outcome::equilibrium;
   }
   // Between grips the caller looks at the second variation; without, the factor has to tell it.
   const bool near = moved * (1 + options_.load) <= factor_reach &&
                     !(borrowed && options_.first_hessian != nullptr);
-  const bool shrinks =
-      solution_.next_step < fast_contraction * moved && buffers_.residual.size() > 0;
+  const bool shrinks = solution_.next_step < fast_contraction * moved && model_.constraints() > 0;
   near || shrinks ? step_.reuse() : step_.give_up_factor();
   return Outcome::goes_on;
 }
@@ -210,14 +229,14 @@ void NewtonIteration::finish() {
   if (!(solution_.multipliers.norm() <= largest_pull * (1 + options_.load))) {
     return solution_.fail("Newton's method left for forces without bound");
   }
-  const bool minimum = step_.is_minimum() || buffers_.residual.size() > 0;
+  const bool minimum = step_.is_minimum() || model_.constraints() > 0;
   solution_.finish(minimum ? SolveStatus::converged : SolveStatus::saddle);
 }
 
 void NewtonIteration::move(double length) {
   solution_.x += length * buffers_.step.head(buffers_.gradient.size());
-  if (buffers_.residual.size() > 0) {
-    solution_.multipliers += length * buffers_.step.tail(buffers_.residual.size());
+  if (model_.constraints() > 0) {
+    solution_.multipliers += length * buffers_.step.tail(model_.constraints());
   }
 }
 
@@ -229,6 +248,7 @@ void NewtonIteration::move(double length) {
 bool NewtonIteration::natural_move() {
   constexpr double longest = 2;        // of a step; angles of this size have left the path
   constexpr double least_part = 1e-5;  // of a step
+  std::swap(buffers_.here, trial_);
   buffers_.trial_x = solution_.x;
   buffers_.trial_multipliers = solution_.multipliers;
   buffers_.first_step = buffers_.step;
@@ -244,14 +264,14 @@ bool NewtonIteration::natural_move() {
   for (double part = first; part > least && !out_of_time(); part /= 4) {
     buffers_.step = buffers_.first_step;
     move(part);
-    size_ = evaluate();
+    size_ = evaluated_residual();
     if (std::isfinite(size_)) {
       step_.solve();
       if (step_.size_with_forces() < (1 - part / 4) * length) {
         // A part of a step, and one that is deflated, says less of the factor.
         if (part < 1 || options_.method == NewtonMethod::corrector) {
           buffers_.broyden.clear();
-        } else if (buffers_.residual.size() > 0) {
+        } else if (model_.constraints() > 0) {
           step_.update();
         }
         return true;
@@ -261,19 +281,19 @@ bool NewtonIteration::natural_move() {
     solution_.multipliers = buffers_.trial_multipliers;
   }
   buffers_.step = buffers_.first_step;
-  size_ = evaluate();
+  std::swap(buffers_.here, trial_);
+  size_ = residual();
   return false;
 }
 
 double NewtonIteration::step_length_by_energy() {
   const double slope = buffers_.gradient.dot(buffers_.step);
   const double rounding = 1e-14 * (1 + std::abs(solution_.energy));
-  buffers_.trial_gradient.resize(buffers_.gradient.size());
   for (double length = 1; length > 1e-4; length /= 2) {
     ++solution_.evaluations;
     buffers_.trial_x = solution_.x + length * buffers_.step;
-    const double energy = model_.value(buffers_.trial_x, buffers_.trial_gradient);
-    if (energy <= solution_.energy + 1e-4 * length * slope + rounding) return length;
+    model_.evaluate(buffers_.trial_x, *trial_);
+    if (trial_->energy <= solution_.energy + 1e-4 * length * slope + rounding) return length;
   }
   return 1e-4;
 }
@@ -286,7 +306,7 @@ double NewtonIteration::step_length() {
   buffers_.trial_multipliers = solution_.multipliers;
   for (double length = 1; length > 1e-3; length /= 2) {
     move(length);
-    const double trial = evaluate();
+    const double trial = evaluated_residual();
     solution_.x = buffers_.trial_x;
     solution_.multipliers = buffers_.trial_multipliers;
     if (trial < (1 - 1e-4 * length) * size_) return length;

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "base/deadline.hpp"
+#include "base/pool.hpp"
 #include "newton/broyden.hpp"
 #include "newton/newton_factor.hpp"
 #include "strain/span_solution.hpp"
@@ -53,10 +54,17 @@ struct NewtonOptions {
 /// What newton_solve() works in; buffers survive from one call to the next.
 struct NewtonBuffers {
   NewtonFactors factors;
+  Pool<SpanPoint> points;
   BroydenSteps broyden;
-  Eigen::VectorXd gradient, residual, right, step, first_step;
-  Eigen::VectorXd trial_x, trial_multipliers, trial_gradient, lowest_mode;
-  Eigen::MatrixXd jacobian, near_null_modes;
+  std::shared_ptr<SpanPoint> here;  ///< where the solution is
+  Eigen::VectorXd gradient;         ///< of E - mu . c there
+  Eigen::VectorXd right, step, first_step;
+  Eigen::VectorXd trial_x, trial_multipliers, lowest_mode;
+  Eigen::MatrixXd near_null_modes;
+
+  [[nodiscard]] std::shared_ptr<SpanPoint> new_point(const SpanEnergy& model) {
+    return points.take([&](const SpanPoint& kept) { return kept.x.size() == model.size(); });
+  }
 };
 
 /// Newton's method on the gradient of E - mu . c and on the constraints: from solution.x to where

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/pool.hpp"
 #include "linear/newton_system.hpp"
 #include "strain/span_solution.hpp"
 
@@ -31,11 +32,11 @@ struct NewtonFactor {
 /// Makes factors, in buffers that are used again once nobody holds a factor any more.
 class NewtonFactors {
  public:
-  /// Of the second variation of E - mu . c and the constraints at solution.x, where the model's
-  /// last value() was, into solution.factor.
-  /// @param jacobian  of the constraints there
-  /// @param load      sum of weight and loads
-  void factor_at(SpanSolution& solution, const Eigen::MatrixXd& jacobian, double load);
+  /// Of the second variation of E - mu . c and the constraints at the solution, into
+  /// solution.factor.
+  /// @param at    of the model, at solution.x
+  /// @param load  sum of weight and loads
+  void factor_at(SpanSolution& solution, SpanPoint& at, double load);
 
   /// Of a Hessian that is none of the model at a point.
   [[nodiscard]] std::shared_ptr<NewtonFactor> factor(const Eigen::MatrixXd& hessian,
@@ -44,7 +45,7 @@ class NewtonFactors {
  private:
   [[nodiscard]] std::shared_ptr<NewtonFactor> make(const Eigen::MatrixXd& jacobian, double scale);
 
-  std::vector<std::shared_ptr<NewtonFactor>> factors_;
+  Pool<NewtonFactor> factors_;
   Eigen::MatrixXd hessian_;  // of the next one
 };
 

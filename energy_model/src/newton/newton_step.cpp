@@ -14,10 +14,11 @@ constexpr Eigen::Index most_near_null = 3;
 
 void NewtonStep::borrow() {
   if (options_.first_hessian != nullptr) {
-    factor_ = buffers_.factors.factor(*options_.first_hessian, buffers_.jacobian,
+    factor_ = buffers_.factors.factor(*options_.first_hessian, buffers_.here->jacobian,
                                       scale_of_forces(solution_, options_.load));
-  } else if (options_.first_factor && options_.first_factor->system.is_of(
-                                          buffers_.gradient.size(), buffers_.residual.size())) {
+  } else if (options_.first_factor &&
+             options_.first_factor->system.is_of(buffers_.gradient.size(),
+                                                 solution_.model->constraints())) {
     factor_ = options_.first_factor;
   } else {
     return;
@@ -27,7 +28,7 @@ void NewtonStep::borrow() {
 
 void NewtonStep::factor() {
   factor_.reset();
-  buffers_.factors.factor_at(solution_, buffers_.jacobian, options_.load);
+  buffers_.factors.factor_at(solution_, *buffers_.here, options_.load);
   factor_ = solution_.factor;
   factor_of_ = FactorOf::this_point;
   buffers_.broyden.clear();
@@ -38,7 +39,7 @@ void NewtonStep::factor() {
 /// along them would be any. Multipliers count by their own size, or a gap that grips hardly close
 /// would pass for one.
 void NewtonStep::find_near_null_modes() {
-  const Eigen::Index m = buffers_.residual.size();
+  const Eigen::Index m = solution_.model->constraints();
   const Eigen::Index size = buffers_.gradient.size() + m;
   Eigen::MatrixXd& modes = buffers_.near_null_modes;
   modes.resize(size, 0);
@@ -63,7 +64,7 @@ void NewtonStep::find_near_null_modes() {
 }
 
 void NewtonStep::deflate() {
-  auto multipliers = buffers_.step.tail(buffers_.residual.size());
+  auto multipliers = buffers_.step.tail(solution_.model->constraints());
   multipliers /= factor_->scale;
   const Eigen::MatrixXd& modes = buffers_.near_null_modes;
   buffers_.step -= modes * (modes.transpose() * buffers_.step);
@@ -77,8 +78,8 @@ void NewtonStep::solve() {
     return;
   }
   Eigen::VectorXd& right = buffers_.right;
-  right.resize(buffers_.gradient.size() + buffers_.residual.size());
-  right << -buffers_.gradient, -buffers_.residual;
+  right.resize(buffers_.gradient.size() + solution_.model->constraints());
+  right << -buffers_.gradient, -buffers_.here->residual;
   factor_->system.solve(right, buffers_.step);
   if (options_.method == NewtonMethod::corrector) deflate();
   // A near-null mode leaves the system singular; the minimum-norm step has no part along it.
@@ -91,14 +92,14 @@ void NewtonStep::solve() {
 }
 
 void NewtonStep::solve_by_least_squares() {
-  buffers_.right << -buffers_.gradient, -buffers_.residual;
+  buffers_.right << -buffers_.gradient, -buffers_.here->residual;
   buffers_.step = factor_->system.minimum_norm_step(buffers_.right);
 }
 
 /// Multipliers count by their own size.
 void NewtonStep::update() {
-  auto first_multipliers = buffers_.first_step.tail(buffers_.residual.size());
-  auto multipliers = buffers_.step.tail(buffers_.residual.size());
+  auto first_multipliers = buffers_.first_step.tail(solution_.model->constraints());
+  auto multipliers = buffers_.step.tail(solution_.model->constraints());
   first_multipliers /= factor_->scale;
   multipliers /= factor_->scale;
   buffers_.broyden.update(buffers_.first_step, buffers_.step);
@@ -121,7 +122,7 @@ double NewtonStep::smallest_eigenvalue() {
 }
 
 double NewtonStep::size_with_forces() const {
-  const Eigen::Index m = buffers_.residual.size();
+  const Eigen::Index m = solution_.model->constraints();
   if (m == 0) return size();
   return std::hypot(size(),
                     buffers_.step.tail(m).norm() / scale_of_forces(solution_, options_.load));

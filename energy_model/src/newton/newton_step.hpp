@@ -19,7 +19,7 @@ class NewtonStep {
 
   /// Takes the factor that the options bring along, if they do.
   void borrow();
-  /// Factors where the solution is, and the model's last value() was.
+  /// Factors where the solution is.
   void factor();
   [[nodiscard]] FactorOf factor_of() const { return factor_of_; }
   /// Whether it is another shape's.
@@ -44,7 +44,7 @@ class NewtonStep {
 
   /// Whether no constraints bind it, and the factor's Hessian is positive definite.
   [[nodiscard]] bool is_minimum() const {
-    return buffers_.residual.size() == 0 && factor_->system.reduced_hessian().is_definite();
+    return solution_.model->constraints() == 0 && factor_->system.reduced_hessian().is_definite();
   }
   /// Of that Hessian, by inverse iteration from a vector that low modes share: not below the
   /// smallest eigenvalue, and next to it where that is far below the others.

@@ -13,23 +13,24 @@ namespace {
 constexpr double largest_bent_gap = 1e-3;
 
 /// Anything without a symmetry, in the lower coefficients of every piece.
-void bend(SpanSolution& solution, PointOnSpan& point, int which) {
-  for (Eigen::Index k = 0; k < point.x.size(); ++k) {
+void bend(SpanSolution& solution, SpanPoint& point, int which) {
+  Eigen::VectorXd x = point.x;
+  for (Eigen::Index k = 0; k < x.size(); ++k) {
     const auto order = static_cast<double>(k % solution.model->terms());
-    point.x[k] += 0.3 * std::sin(which + 1.7 * static_cast<double>(k)) / (1 + order * order);
+    x[k] += 0.3 * std::sin(which + 1.7 * static_cast<double>(k)) / (1 + order * order);
   }
-  evaluate(solution, point);
+  solution.evaluate(x, point);
 }
 
 }  // namespace
 
-bool restore(SpanSolution& solution, PointOnSpan& point, double gap, RestoreScratch& scratch,
+bool restore(SpanSolution& solution, SpanPoint& point, double gap, RestoreScratch& scratch,
              double most_energy) {
   if (solution.model->constraints() == 0) return std::isfinite(point.energy);
   constexpr int most_steps = 60;
   constexpr double longest = 1;  // of a step
   constexpr int most_bends = 3;
-  PointOnSpan& trial = scratch.trial;
+  SpanPoint& trial = scratch.trial;
   Eigen::MatrixXd& square = scratch.square;
   Eigen::MatrixXd& normal = scratch.normal;
   int bends = 0;
@@ -50,8 +51,7 @@ bool restore(SpanSolution& solution, PointOnSpan& point, double gap, RestoreScra
       scratch.factor.solveInPlace(scratch.along);
       scratch.step.noalias() = point.jacobian.transpose() * scratch.along;
       if (!(scratch.step.norm() <= longest)) continue;
-      trial.x = point.x - scratch.step;
-      evaluate(solution, trial);
+      solution.evaluate(point.x - scratch.step, trial);
       shorter = trial.residual.norm() < 0.99 * size;
     }
     if (shorter) {

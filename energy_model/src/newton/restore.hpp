@@ -4,7 +4,6 @@
 #include <Eigen/Core>
 #include <limits>
 
-#include "strain/point_on_span.hpp"
 #include "strain/span_solution.hpp"
 
 namespace dlo::energy_model {
@@ -14,7 +13,7 @@ inline constexpr double loosest_gap = 1e-5;
 
 /// What restore() works in; buffers survive from one call to the next.
 struct RestoreScratch {
-  PointOnSpan trial;
+  SpanPoint trial;
   Eigen::MatrixXd square, normal;
   Eigen::LLT<Eigen::MatrixXd> factor;
   Eigen::VectorXd along, step;
@@ -28,7 +27,7 @@ struct RestoreScratch {
 /// @param[in,out] point  evaluated
 /// @param most_energy    above which nobody asks how it goes on
 /// @return whether the gap is closed
-[[nodiscard]] bool restore(SpanSolution& solution, PointOnSpan& point, double gap,
+[[nodiscard]] bool restore(SpanSolution& solution, SpanPoint& point, double gap,
                            RestoreScratch& scratch,
                            double most_energy = std::numeric_limits<double>::infinity());
 

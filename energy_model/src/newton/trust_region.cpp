@@ -25,9 +25,8 @@ class TrustRegionDescent {
         multipliers_(Eigen::VectorXd::Zero(model_.constraints())) {}
 
   void run() {
-    PointOnSpan here;
-    here.x = solution_.x;
-    evaluate(solution_, here);
+    SpanPoint here;
+    solution_.evaluate(solution_.x, here);
     if (!restore(solution_, here, loosest_gap, scratch_)) {
       solution_.multipliers = multipliers_;
       return solution_.fail("the grips' positions could not be met from this start");
@@ -54,7 +53,7 @@ class TrustRegionDescent {
 
  private:
   /// Multipliers, what is free, projected gradient and Hessian at a point.
-  void linearise(const PointOnSpan& here) {
+  void linearise(SpanPoint& here) {
     reduced_.constrain(here.jacobian);
     if (reduced_.is_independent()) {
       ReducedHessian::Balance balance = reduced_.balance(here.gradient);
@@ -63,15 +62,12 @@ class TrustRegionDescent {
     } else {
       balance_independent(here);
     }
-    // The model's Hessian is that of its last value().
-    gradient_.resize(model_.size());
-    (void)model_.value(here.x, gradient_);
-    model_.hessian(multipliers_, hessian_);
+    model_.hessian(here, multipliers_, hessian_);
     reduced_.compute(hessian_);
   }
 
   /// Where constraints depend on each other, as of a straight rod: with those that do not.
-  void balance_independent(const PointOnSpan& here) {
+  void balance_independent(const SpanPoint& here) {
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(here.jacobian.transpose());
     qr.setThreshold(1e-10);
     const Eigen::VectorXi rows = qr.colsPermutation().indices().head(qr.rank());
@@ -96,9 +92,8 @@ class TrustRegionDescent {
   }
 
   /// @return the next radius
-  [[nodiscard]] double try_step(PointOnSpan& here, const Eigen::VectorXd& step, double radius) {
-    trial_.x = here.x + step;
-    evaluate(solution_, trial_);
+  [[nodiscard]] double try_step(SpanPoint& here, const Eigen::VectorXd& step, double radius) {
+    solution_.evaluate(here.x + step, trial_);
     const double gap = std::min(loosest_gap, std::max(1e-13, 1e-2 * length_ * length_));
     if (!restore(solution_, trial_, gap, scratch_)) return std::min(radius, length_) / 4;
     const double before = here.energy - multipliers_.dot(here.residual);
@@ -111,7 +106,7 @@ class TrustRegionDescent {
     return ratio < 0.25 ? radius / 2 : radius;
   }
 
-  void keep(const PointOnSpan& here) {
+  void keep(const SpanPoint& here) {
     solution_.x = here.x;
     solution_.energy = here.energy;
     solution_.multipliers = multipliers_;
@@ -119,12 +114,12 @@ class TrustRegionDescent {
   }
 
   SpanSolution& solution_;
-  SpanEnergy& model_;
+  const SpanEnergy& model_;
   const TrustRegionOptions& options_;
-  PointOnSpan trial_;
+  SpanPoint trial_;
   RestoreScratch scratch_;
   ReducedHessian reduced_;
-  Eigen::VectorXd multipliers_, gradient_, projected_gradient_;
+  Eigen::VectorXd multipliers_, projected_gradient_;
   Eigen::MatrixXd hessian_;
   double predicted_ = 0;  // fall of E - lambda.c
   double length_ = 0;     // of the step

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -61,75 +62,14 @@ class PolygonDescent {
   /// Newton steps until they are below `tolerance` polygon lengths.
   SolveStatus run(double tolerance) {
     tolerance_ = tolerance;
+    way_ = {};
     energy_ = polygon_energy(problem_, result_.points, gradient_);
     ++result_.evaluations;
     if (free_ == 0) return SolveStatus::converged;
-    double damping = 0;
-    double last_step = std::numeric_limits<double>::infinity();
-    int escapes = 0;
-    double beside_saddle = first_beside_saddle;
-    double last_stiffening = 0;
-    int slows = 0;  // steps in a row without all second derivatives that became shorter
     assemble(HessianTerms::all);
     while (result_.evaluations < options_.max_evaluations) {
       if (deadline_.passed()) return SolveStatus::time_limit;
-      const bool exact = which_ == HessianTerms::all;
-      if (!factor(damping)) {
-        if (exact && options_.project_hessian) {
-          assemble(HessianTerms::stiffening);
-        } else {
-          damping = std::max(4 * damping, first_damping);
-          if (damping > most_damping) return SolveStatus::failed;
-        }
-        continue;
-      }
-      const Eigen::VectorXd force = free_part(-gradient_);
-      Eigen::VectorXd step = solver_.solve(force);
-      const double size = step.norm() / std::sqrt(static_cast<double>(free_)) / length_;
-      if (!std::isfinite(size)) return SolveStatus::failed;
-      if (damping == 0 && exact) {
-        if (size <= tolerance_) return SolveStatus::converged;
-        if (size < rounding_step && size > last_step / 2) return SolveStatus::roundoff_limited;
-        last_step = size;
-        slows = 0;
-      } else if (const bool at_rest = force.dot(step) <= rounding_energy();
-                 at_rest || (size < beside_saddle && slows >= most_slow)) {
-        // At rest, but only the terms omitted, or damping, made the Hessian positive; or on the
-        // slow way there.
-        beside_saddle = size / 4;
-        slows = 0;
-        assemble(HessianTerms::all);
-        if (at_rest && factor(0)) {
-          damping = 0;
-          continue;
-        }
-        if (at_rest && escapes++ == most_escapes) return SolveStatus::saddle;
-        for (damping = std::max(damping, first_damping); !factor(damping); damping *= 4) {
-          if (damping > most_damping) return SolveStatus::failed;
-        }
-        escape();
-        assemble(HessianTerms::all);
-        continue;
-      }
-      step *= std::min(1.0, largest_step * length_ / step.cwiseAbs().maxCoeff());
-      const Eigen::Matrix3Xd trial = moved(step);
-      const double trial_energy = polygon_energy(problem_, trial, trial_gradient_);
-      ++result_.evaluations;
-      const bool lower = trial_energy < energy_ + rounding_energy() && trial_gradient_.allFinite();
-      if (lower) {
-        result_.points = trial;
-        count_twists();
-        gradient_ = trial_gradient_;
-        energy_ = trial_energy;
-        assemble(HessianTerms::all);
-        damping = damping < 4 * first_damping ? 0 : damping / 8;
-        slows = !exact && size < std::exchange(last_stiffening, size) ? slows + 1 : 0;
-      } else if (exact && damping == 0 && options_.project_hessian) {
-        assemble(HessianTerms::stiffening);
-      } else {
-        damping = std::max(4 * damping, first_damping);
-        if (damping > most_damping) return SolveStatus::failed;
-      }
+      if (const std::optional<SolveStatus> end = advance()) return *end;
     }
     return SolveStatus::evaluation_limit;
   }
@@ -167,6 +107,91 @@ class PolygonDescent {
   // Shares of the largest diagonal element.
   static constexpr double first_damping = 1e-12;
   static constexpr double most_damping = 1e3;
+
+  /// What a run() has come through.
+  struct Way {
+    double damping = 0;
+    double last_step = std::numeric_limits<double>::infinity();
+    double last_stiffening = 0;
+    double beside_saddle = first_beside_saddle;
+    int slows = 0;  // steps in a row without all second derivatives that became shorter
+    int escapes = 0;
+  };
+
+  /// One step of run(). @return how it ends; nothing: it goes on
+  [[nodiscard]] std::optional<SolveStatus> advance() {
+    const bool exact = which_ == HessianTerms::all;
+    if (!factor(way_.damping)) {
+      if (!exact || !options_.project_hessian) return damp();
+      assemble(HessianTerms::stiffening);
+      return std::nullopt;
+    }
+    const Eigen::VectorXd force = free_part(-gradient_);
+    Eigen::VectorXd step = solver_.solve(force);
+    const double size = step.norm() / std::sqrt(static_cast<double>(free_)) / length_;
+    if (!std::isfinite(size)) return SolveStatus::failed;
+    if (way_.damping == 0 && exact) {
+      if (size <= tolerance_) return SolveStatus::converged;
+      if (size < rounding_step && size > way_.last_step / 2) return SolveStatus::roundoff_limited;
+      way_.last_step = size;
+      way_.slows = 0;
+    } else if (const bool at_rest = force.dot(step) <= rounding_energy();
+               at_rest || (size < way_.beside_saddle && way_.slows >= most_slow)) {
+      // At rest, but only the terms omitted, or damping, made the Hessian positive; or on the
+      // slow way there.
+      way_.beside_saddle = size / 4;
+      way_.slows = 0;
+      return leave(at_rest);
+    }
+    step *= std::min(1.0, largest_step * length_ / step.cwiseAbs().maxCoeff());
+    return take(step, size);
+  }
+
+  /// Past a saddle, if it is one.
+  [[nodiscard]] std::optional<SolveStatus> leave(bool at_rest) {
+    assemble(HessianTerms::all);
+    if (at_rest && factor(0)) {
+      way_.damping = 0;
+      return std::nullopt;
+    }
+    if (at_rest && way_.escapes++ == most_escapes) return SolveStatus::saddle;
+    way_.damping = std::max(way_.damping, first_damping);
+    for (; !factor(way_.damping); way_.damping *= 4) {
+      if (way_.damping > most_damping) return SolveStatus::failed;
+    }
+    escape();
+    assemble(HessianTerms::all);
+    return std::nullopt;
+  }
+
+  /// Goes a step if that lowers the energy; else the next one is shorter.
+  [[nodiscard]] std::optional<SolveStatus> take(const Eigen::VectorXd& step, double size) {
+    const bool exact = which_ == HessianTerms::all;
+    const Eigen::Matrix3Xd trial = moved(step);
+    const double trial_energy = polygon_energy(problem_, trial, trial_gradient_);
+    ++result_.evaluations;
+    if (trial_energy < energy_ + rounding_energy() && trial_gradient_.allFinite()) {
+      result_.points = trial;
+      count_twists();
+      gradient_ = trial_gradient_;
+      energy_ = trial_energy;
+      assemble(HessianTerms::all);
+      way_.damping = way_.damping < 4 * first_damping ? 0 : way_.damping / 8;
+      const bool slow = !exact && size < std::exchange(way_.last_stiffening, size);
+      way_.slows = slow ? way_.slows + 1 : 0;
+    } else if (exact && way_.damping == 0 && options_.project_hessian) {
+      assemble(HessianTerms::stiffening);
+    } else {
+      return damp();
+    }
+    return std::nullopt;
+  }
+
+  [[nodiscard]] std::optional<SolveStatus> damp() {
+    way_.damping = std::max(4 * way_.damping, first_damping);
+    if (way_.damping > most_damping) return SolveStatus::failed;
+    return std::nullopt;
+  }
 
   /// Energy, gradient and residual of the points. @return the largest force that acts on them [N]
   double evaluate() {
@@ -280,6 +305,7 @@ class PolygonDescent {
   double length_;
   Eigen::Index axes_;  // in which free points move: of a polygon with natural turns x and y
   double tolerance_ = 0;
+  Way way_;
   std::vector<Eigen::Index> index_;  // of each point among the free ones, -1 for held points
   Eigen::Index free_ = 0;
   double energy_ = 0;

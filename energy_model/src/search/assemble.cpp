@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 
@@ -21,7 +22,8 @@ std::vector<ContactPart> contacts_of(const PlacedSpan& place, const SpanSolution
   std::vector<ContactPart> parts;
   const Span& span = solution.model->span();
   if (span.contacts.empty()) return parts;
-  const std::vector<ContactForce> forces = solution.model->contact_forces(solution.multipliers);
+  const std::vector<ContactForce> forces =
+      solution.model->contact_forces(*solution.at_x(), solution.multipliers);
   for (std::size_t i = 0; i < forces.size(); ++i) {
     const Span::Contact& contact = span.contacts[i];
     const double sense = place.reversed ? -length : length;
@@ -132,7 +134,7 @@ class Assembly {
   }
 
   void add_energies(const PlacedSpan& place, const SpanSolution& solution) {
-    const Energies own = solution.model->energies(solution.x);
+    const Energies own = solution.model->energies(*solution.at_x());
     Energies& sum = result_.energy;
     sum.bending += own.bending * energy_unit_;
     sum.twisting += own.twisting * energy_unit_;
@@ -153,11 +155,12 @@ class Assembly {
   }
 
   void add_reactions(const PlacedSpan& place, const SpanSolution& solution) {
-    SpanEnergy& model = *solution.model;
+    const SpanEnergy& model = *solution.model;
+    const std::shared_ptr<SpanPoint> at = solution.at_x();
     // What the anchor carries, as nothing else does.
     Eigen::Vector3d carried = weight_of(place);
     for (const Span::Load& load : place.span.loads) carried += load.force;
-    const std::vector<Eigen::Vector3d> obstacles = model.soft_contact().forces();
+    const std::vector<Eigen::Vector3d> obstacles = model.soft_obstacle_forces(*at);
     for (std::size_t w = 0; w < obstacles.size(); ++w) {
       carried += obstacles[w];
       result_.obstacles[place.span.soft_obstacles[w].index] += to_newtons(place, obstacles[w]);
@@ -172,7 +175,7 @@ class Assembly {
       return Eigen::Vector3d(energy_unit_ * (place.frame.transpose() * torque));
     };
     Reaction& anchor = result_.grips[place.anchor_grip];
-    anchor.torque += to_space(model.start_torque(solution.multipliers));
+    anchor.torque += to_space(model.start_torque(*at, solution.multipliers));
     for (std::size_t j = 0; j < place.hold_grips.size(); ++j) {
       const auto hold = static_cast<Eigen::Index>(j);
       Eigen::Vector3d force = Eigen::Vector3d::Zero();
@@ -180,7 +183,7 @@ class Assembly {
       carried += force;
       Reaction& own = result_.grips[place.hold_grips[j]];
       own.force += to_newtons(place, force);
-      own.torque += to_space(model.hold_torque(hold, solution.multipliers));
+      own.torque += to_space(model.hold_torque(*at, hold, solution.multipliers));
     }
     anchor.force -= to_newtons(place, carried);
   }

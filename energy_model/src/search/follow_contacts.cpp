@@ -104,7 +104,7 @@ SpanSolution follow_contacts(const Span& searched, const SpanOptions& options,
   }
   if (!solution.is_equilibrium()) return solution;
   const Eigen::Matrix3Xd turned =
-      solution.model->tangents() - start.field(solution.model->nodes()).tangents;
+      solution.at_x()->tangents() - start.field(solution.model->nodes()).tangents;
   if (!(turned.cwiseAbs().maxCoeff() < followed_tangents)) return {};
   solution = active_set.solve(std::move(solution));
   solution.followed = succeeded(solution.status) || solution.is_singular_point();

@@ -10,14 +10,15 @@ void Remembered::remember(const SpanSolution& found, const PlacedSpan& placed) {
   frame = placed.frame;
   if (!succeeded(found.status) && !found.is_singular_point()) return;
   last = {found.model, found.x, found.multipliers, found.factor};
+  point = found.at_x();
 }
 
 TangentField Remembered::field(const PlacedSpan& placed) const {
   const Eigen::Matrix3d turn = placed.frame * frame.transpose();
   const bool rolls = placed.span.has_material_directors() && !planar();
-  return [model = last.model, turn, rolls](const Eigen::VectorXd& s) {
-    StartShape shape(turn * model->tangents());
-    if (rolls) shape.roll = roll_of(model->tangents(), model->d1());
+  return [model = last.model, point = point, turn, rolls](const Eigen::VectorXd& s) {
+    StartShape shape(turn * point->tangents());
+    if (rolls) shape.roll = roll_of(point->tangents(), point->d1());
     const Eigen::VectorXd& nodes = model->nodes();
     if (s.size() == nodes.size() && s == nodes) return shape;
     StartShape nearest(Eigen::Matrix3Xd(3, s.size()), Eigen::VectorXd(rolls ? s.size() : 0));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 
 #include "problem/split.hpp"
 #include "span/span_options.hpp"
@@ -12,6 +13,7 @@ namespace dlo::energy_model {
 struct Remembered {
   KnownShape last;
   KnownShape before;                                    ///< the one before it, without a factor
+  std::shared_ptr<const SpanPoint> point;               ///< of `last`
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< PlacedSpan::frame
 
   [[nodiscard]] bool is_known() const { return last.model != nullptr; }

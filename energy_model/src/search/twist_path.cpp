@@ -19,7 +19,7 @@
 #include "newton/trust_region.hpp"
 #include "search/active_set.hpp"
 #include "span/refinement.hpp"
-#include "strain/point_on_span.hpp"
+#include "strain/second_derivatives.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -262,8 +262,7 @@ class TwistPath {
   }
 
   void factor_at(SpanSolution& solution) {
-    const PointOnSpan point = evaluated(*solution.model, solution.x);
-    workspace_.factors().factor_at(solution, point.jacobian, load_);
+    workspace_.factors().factor_at(solution, *solution.at_x(), load_);
   }
 
   /// Downhill to what is stable, from beside here.
@@ -364,8 +363,7 @@ UntwistedShape untwisted_shape(const SpanSolution& solution, SpanWorkspace& work
   Span span = solution.model->span();
   span.planar = false;
   const std::shared_ptr<SpanEnergy> model = workspace.model(span, solution.terms);
-  Eigen::VectorXd gradient(model->size());
-  (void)model->value(model->prolong(*solution.model, solution.x), gradient);
+  const SpanPoint point = model->evaluated(model->prolong(*solution.model, solution.x));
   const SpanShape shape = solution.model->shape(solution.x);
   const auto sample = [&shape, length = span.length](std::span<const double> at) {
     const SpanSamples own = shape.sample(at);
@@ -374,7 +372,7 @@ UntwistedShape untwisted_shape(const SpanSolution& solution, SpanWorkspace& work
     samples.tangents = own.tangents;
     return samples;
   };
-  return {solution, model->transported_d1(), writhe(sample, 0, span.length)};
+  return {solution, point.end_d1(), writhe(sample, 0, span.length)};
 }
 
 EndFrame end_frame(const HeldFrames& held, const UntwistedShape& untwisted) {

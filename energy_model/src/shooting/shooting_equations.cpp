@@ -219,6 +219,17 @@ std::vector<ShootingSystem::Block> ShootingSystem::with_width(
   return blocks;
 }
 
+/// Of a node's state by its own unknowns, of its position the first ones only.
+RodVariation ShootingSystem::variation_by(Eigen::Index placed) const {
+  const Eigen::Index turns = turns_.cols();
+  RodVariation change(placed + 2 * turns + positions_.cols());
+  change.r.leftCols(placed) = positions_.leftCols(placed);
+  change.spin.middleCols(placed, turns) = turns_;
+  change.m.middleCols(placed + turns, turns) = rate_ * turns_;
+  change.n.rightCols(positions_.cols()) = rate_ * rate_ * positions_;
+  return change;
+}
+
 bool ShootingSystem::interval_equations(const ShootingPoint& point, Eigen::Index i,
                                         Rows& rows) const {
   const Eigen::Index positions = positions_.cols();
@@ -232,13 +243,7 @@ bool ShootingSystem::interval_equations(const ShootingPoint& point, Eigen::Index
   // An end without a grip moves as the begin moves; on a surface the pressure changes with r.
   const Eigen::Index placed = piece.surface != nullptr ? positions : 0;
   RodState end = node;
-  RodVariation change(rows.derivatives != nullptr ? placed + 2 * turns + positions : 0);
-  if (rows.derivatives != nullptr) {
-    change.r.leftCols(placed) = positions_.leftCols(placed);
-    change.spin.middleCols(placed, turns) = turns_;
-    change.m.middleCols(placed + turns, turns) = rate_ * turns_;
-    change.n.rightCols(positions) = force * positions_;
-  }
+  RodVariation change = rows.derivatives != nullptr ? variation_by(placed) : RodVariation(0);
   RodIntegrals integrals;
   if (!follow_rod(piece, tolerance_, end, change, integrals)) return false;
   const RodRate by_width =

@@ -115,6 +115,7 @@ class ShootingSystem {
   /// Position and direction of a clamp, or no moment and no force but the load.
   void start_equations(const ShootingPoint& point, Rows& rows) const;
 
+  [[nodiscard]] RodVariation variation_by(Eigen::Index placed) const;
   [[nodiscard]] bool interval_equations(const ShootingPoint& point, Eigen::Index i,
                                         Rows& rows) const;
 

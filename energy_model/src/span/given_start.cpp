@@ -9,7 +9,6 @@
 #include "span/local_solver.hpp"
 #include "span/nearby_equilibria.hpp"
 #include "span/refinement.hpp"
-#include "strain/point_on_span.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -27,7 +26,7 @@ bool is_followed(const SpanSolution& solution, const SpanStart& start) {
     return false;
   }
   const Eigen::Matrix3Xd from = start.field(solution.model->nodes()).tangents;
-  return (solution.model->tangents() - from).cwiseAbs().maxCoeff() < followed_tangents;
+  return (solution.at_x()->tangents() - from).cwiseAbs().maxCoeff() < followed_tangents;
 }
 
 /// From a start next to which Newton's method has found nothing, with pieces for the start's own
@@ -37,7 +36,7 @@ std::optional<SpanSolution> start_on_adapted_mesh(const LocalSolver& on) {
   if (start.known.model || on.span().holds.empty()) return std::nullopt;
   SpanSolution looked = on.empty_solution(max_terms);
   looked.x = looked.model->fit(start.field(looked.model->nodes()));
-  const PointOnSpan point = evaluated(*looked.model, looked.x);
+  const SpanPoint point = looked.model->evaluated(looked.x);
   looked.multipliers = point.jacobian.transpose().householderQr().solve(point.gradient);
   const std::optional<Span> span = adapted_mesh(on, looked);
   if (!span) return std::nullopt;

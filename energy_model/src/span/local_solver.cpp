@@ -102,8 +102,9 @@ bool LocalSolver::reaches_minimum_by_newton(SpanSolution& solution) {
     return false;
   }
   const Eigen::VectorXd start = solution.x;
-  Eigen::VectorXd gradient(model.size());
-  const double energy = model.value(start, gradient);
+  solution.point = workspace_.newton().new_point(model);
+  solution.evaluate(start, *solution.point);
+  const double energy = solution.point->energy;
   newton(solution, {.step_tolerance = solution.terms < terms() ? rough_step : finest_step});
   if (succeeded(solution.status) && solution.energy <= energy &&
       (solution.x - start).norm() < far && solution.evaluations <= options_.max_evaluations) {
@@ -147,9 +148,9 @@ bool LocalSolver::prolong_known(const StartShape& wanted, SpanSolution& solution
   if (known.model->span().planar || known.model->pieces() != model.pieces()) return false;
   if (known.model->span().cuts != span_.cuts) return false;
   solution.x = model.prolong(*known.model, known.x);
-  Eigen::VectorXd gradient(model.size());
-  (void)model.value(solution.x, gradient);
-  return (model.tangents() - wanted.tangents).cwiseAbs().maxCoeff() < near;
+  solution.point = workspace_.newton().new_point(model);
+  solution.evaluate(solution.x, *solution.point);
+  return (solution.point->tangents() - wanted.tangents).cwiseAbs().maxCoeff() < near;
 }
 
 void LocalSolver::descend(SpanSolution& solution) {
@@ -172,9 +173,12 @@ void LocalSolver::minimise(SpanSolution& solution) const {
                                        .deadline = &options_.deadline});
     return;
   }
-  const Objective objective = [&model](const Eigen::Ref<const Eigen::VectorXd>& x,
-                                       Eigen::Ref<Eigen::VectorXd> gradient) {
-    return model.value(x, gradient);
+  SpanPoint point;
+  const Objective objective = [&](const Eigen::Ref<const Eigen::VectorXd>& x,
+                                  Eigen::Ref<Eigen::VectorXd> gradient) {
+    model.evaluate(x, point);
+    gradient = point.gradient;
+    return point.energy;
   };
   const MinimiseResult result =
       minimise_lbfgs(objective, solution.x,

@@ -14,7 +14,7 @@
 #include "span/contact_pieces.hpp"
 #include "span/local_solver.hpp"
 #include "span/refinement.hpp"
-#include "strain/point_on_span.hpp"
+#include "strain/second_derivatives.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -61,7 +61,7 @@ std::optional<NegativeCurvature> negative_curvature(const SpanSolution& solution
   }
   // Deep within a box, in the middle between two faces, the energy has a ridge: the span in space
   // has one of its slopes there, and only the planar one's tilts see both.
-  at = second_derivatives_out_of_plane(model, solution.multipliers);
+  at = second_derivatives_out_of_plane(model, *solution.at_x(), solution.multipliers);
   reduced.compute(at.hessian, at.jacobian);
   const std::optional<Eigen::VectorXd> tilts = negative_curvature_direction(reduced);
   if (!tilts) return std::nullopt;
@@ -75,7 +75,7 @@ std::optional<Eigen::VectorXd> mode_nearest_zero(const SpanSolution& solution) {
   const SecondDerivatives at = second_derivatives(solution);
   ReducedHessian reduced;
   reduced.compute(at.hessian, at.jacobian);
-  const Eigen::Index free = rigid_body_modes(model.span(), model.tangents()).in_plane;
+  const Eigen::Index free = rigid_body_modes(model.span(), solution.at_x()->tangents()).in_plane;
   if (free >= model.size() - model.constraints()) return std::nullopt;
   return direction_by_size(reduced, free);
 }

@@ -1,6 +1,7 @@
 #include "span/plain_cantilever.hpp"
 
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "span/refinement.hpp"
@@ -34,15 +35,14 @@ bool turns_to_load(const Span& span, const Eigen::Matrix3Xd& tangents) {
 }
 
 /// As the load on the straight rod bends it, if that lowers its energy; else straight.
-void bend_slightly(SpanSolution& solution) {
-  SpanEnergy& model = *solution.model;
-  solution.x.setZero(model.size());
-  Eigen::VectorXd gradient(model.size());
-  const double energy = model.value(solution.x, gradient);
-  ++solution.evaluations;
-  const Eigen::VectorXd bent = -gradient;
-  // Newton's method begins with this value, and counts it.
-  if (model.value(bent, gradient) < energy) solution.x = bent;
+void bend_slightly(SpanSolution& solution, NewtonBuffers& buffers) {
+  const SpanEnergy& model = *solution.model;
+  const std::shared_ptr<SpanPoint> straight = buffers.new_point(model);
+  const std::shared_ptr<SpanPoint> bent = buffers.new_point(model);
+  solution.evaluate(Eigen::VectorXd::Zero(model.size()), *straight);
+  solution.evaluate(-straight->gradient, *bent);
+  solution.point = bent->energy < straight->energy ? bent : straight;
+  solution.x = solution.point->x;
 }
 
 }  // namespace
@@ -50,14 +50,14 @@ void bend_slightly(SpanSolution& solution) {
 SpanSolution plain_cantilever(LocalSolver& on) {
   SpanSolution at_once = on.empty_solution(on.terms());
   if (on.traits().load < soft_load) {
-    bend_slightly(at_once);
+    bend_slightly(at_once, on.workspace().newton());
   } else {
     at_once.x = at_once.model->fit(soft_field(on.span())(at_once.model->nodes()));
   }
   on.newton(at_once);
   at_once = refined(on, std::move(at_once));
   if (succeeded(at_once.status) && at_once.evaluations <= on.options().max_evaluations &&
-      turns_to_load(on.span(), at_once.model->tangents())) {
+      turns_to_load(on.span(), at_once.at_x()->tangents())) {
     return at_once;
   }
   int spent = at_once.evaluations;

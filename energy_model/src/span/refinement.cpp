@@ -11,7 +11,7 @@
 #include "certify/piece_cuts.hpp"
 #include "span/contact_pieces.hpp"
 #include "span/span_traits.hpp"
-#include "strain/point_on_span.hpp"
+#include "strain/second_derivatives.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -176,7 +176,7 @@ class Refinement {
   [[nodiscard]] bool holds_with_more_terms(const SpanSolution& solution) {
     const std::shared_ptr<SpanEnergy> model =
         on_.workspace().model(span_, std::min(max_terms, 3 * solution.terms / 2));
-    PointOnSpan point = evaluated(*model, model->prolong(*solution.model, solution.x));
+    SpanPoint point = model->evaluated(model->prolong(*solution.model, solution.x));
     point.gradient -= point.jacobian.transpose() *
                       model->prolong_multipliers(*solution.model, solution.multipliers);
     return point.gradient.norm() < largest_residual * (1 + traits_.load) &&

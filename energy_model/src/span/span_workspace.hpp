@@ -1,8 +1,8 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
+#include "base/pool.hpp"
 #include "newton/newton.hpp"
 #include "strain/span_energy.hpp"
 #include "strain/span_solution.hpp"
@@ -21,7 +21,7 @@ class SpanWorkspace {
   [[nodiscard]] NewtonFactors& factors() { return newton_.factors; }
 
  private:
-  std::vector<std::shared_ptr<SpanEnergy>> models_;
+  Pool<SpanEnergy> models_;
   NewtonBuffers newton_;
 };
 

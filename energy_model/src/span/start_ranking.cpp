@@ -15,14 +15,13 @@ bool is_cheaper(const Start& a, const Start& b) { return a.cost < b.cost; }
 
 void weigh_with_springs(SpanSolution& looked, const StartRanking& ranking,
                         std::vector<Start>& starts) {
-  PointOnSpan point;
+  SpanPoint point;
   for (Start& start : starts) {
-    point.x = looked.model->fit(start.field(looked.model->nodes()));
+    looked.evaluate(looked.model->fit(start.field(looked.model->nodes())), point);
     if (ranking.keeps_unknowns) {
       start.model = looked.model;
       start.x = point.x;
     }
-    evaluate(looked, point);
     start.cost = point.energy + ranking.stiffness / 2 * point.residual.squaredNorm();
   }
 }
@@ -42,15 +41,14 @@ void meet_grips(SpanSolution& looked, const StartRanking& ranking, std::vector<S
   }
   std::stable_sort(starts.begin(), starts.end(), is_cheaper);
   std::vector<double> energies;  // of those that meet the grips, the lowest ones
-  PointOnSpan point;
+  SpanPoint point;
   RestoreScratch scratch;
   for (Start& start : starts) {
     if (ranking.deadline != nullptr && ranking.deadline->passed()) return;
     const double most = energies.size() < ranking.followed ? std::numeric_limits<double>::infinity()
                                                            : energies.back();
     if (start.least > most) continue;
-    point.x = model.fit(start.shape, no_corrections);
-    evaluate(looked, point);
+    looked.evaluate(model.fit(start.shape, no_corrections), point);
     if (!restore(looked, point, loosest_gap, scratch, most)) {
       start.cost = std::max(start.cost, most);
       continue;

@@ -1,6 +1,5 @@
 #include "strain/contact_rows.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -23,21 +22,22 @@ bool may_concentrate(const Span& span, double at) {
          });
 }
 
-}  // namespace
-
-Eigen::VectorXd ContactRows::Curved::forces(
-    const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
-  return weights * multipliers.segment(first, weights.cols());
-}
-
-Eigen::VectorXd ContactRows::Curved::stiffness(const Eigen::VectorXd& forces, std::size_t a,
-                                               std::size_t b) const {
+/// Forces on points times their gaps' second derivatives by two coordinates.
+Eigen::VectorXd stiffness(const Eigen::VectorXd& forces, const std::vector<obstacle::Gap>& gaps,
+                          std::size_t a, std::size_t b) {
   Eigen::VectorXd result(forces.size());
   for (Eigen::Index m = 0; m < forces.size(); ++m) {
     const Eigen::Matrix3d& hessian = gaps[static_cast<std::size_t>(m)].hessian;
     result[m] = forces[m] * hessian(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
   }
   return result;
+}
+
+}  // namespace
+
+Eigen::VectorXd ContactRows::Curved::forces(
+    const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
+  return weights * multipliers.segment(first, weights.cols());
 }
 
 Eigen::Index ContactRows::add_row() {
@@ -54,7 +54,6 @@ Eigen::Index ContactRows::add_row() {
 void ContactRows::add_curved(Curved curved, Eigen::Index rows) {
   curved.first = linear_.cols();
   for (Eigen::Index k = 0; k < rows; ++k) (void)add_row();
-  curved.gaps.resize(static_cast<std::size_t>(curved.reach.points()));
   curved_.push_back(std::move(curved));
 }
 
@@ -164,25 +163,35 @@ void ContactRows::reset(const Span& span, const std::vector<Piece>& pieces, int 
     const Eigen::Index degrees = held == HeldBy::clamp ? terms : terms + 1;
     add_slopes(span, i, pieces, degrees, terms, table);
   }
+}
+
+void ContactRows::resize(ContactPlace& place) const {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    by_tangent_[axis] = linear_ * normal_.row(static_cast<Eigen::Index>(axis)).asDiagonal();
+    place.by_tangent[axis] = linear_ * normal_.row(static_cast<Eigen::Index>(axis)).asDiagonal();
   }
-  residual_.setZero(count());
+  place.residual.setZero(count());
+  place.touches.resize(touches_.size());
+  place.gaps.resize(curved_.size());
+  for (std::size_t i = 0; i < curved_.size(); ++i) {
+    place.gaps[i].resize(static_cast<std::size_t>(curved_[i].reach.points()));
+  }
 }
 
 /// The first least clearance on that side of where it is looked for to which the clearance falls.
-void ContactRows::place_touch(const Eigen::MatrixX3d& tangents, Touch& touch) const {
-  constexpr double found = 1e-14;
+ContactPlace::Touch ContactRows::least_clearance(const Eigen::MatrixX3d& tangents,
+                                                 const Touch& touch) const {
+  constexpr double closest = 1e-14;
   constexpr int strides = 8;
   constexpr int most_steps = 50;
+  ContactPlace::Touch found;
   const auto look = [&](Eigen::Index piece, double s) {
-    touch.found = s;
-    touch.point = reach_.at(piece, s);
-    touch.gap = touch.body.gap(tangents.transpose() * touch.point.position);
-    touch.tangent = tangents.transpose() * touch.point.tangent;
-    touch.rate = touch.gap.gradient.dot(tangents.transpose() * touch.point.curvature) +
-                 touch.tangent.dot(touch.gap.hessian * touch.tangent);
-    return touch.gap.gradient.dot(touch.tangent);
+    found.at = s;
+    found.point = reach_.at(piece, s);
+    found.gap = touch.body.gap(tangents.transpose() * found.point.position);
+    found.tangent = tangents.transpose() * found.point.tangent;
+    found.rate = found.gap.gradient.dot(tangents.transpose() * found.point.curvature) +
+                 found.tangent.dot(found.gap.hessian * found.tangent);
+    return found.gap.gradient.dot(found.tangent);
   };
   // Slopes in the direction in which it falls.
   double sense = -1;
@@ -197,43 +206,47 @@ void ContactRows::place_touch(const Eigen::MatrixX3d& tangents, Touch& touch) co
   double high = 0;
   double way = 0;
   for (int step = 0; step < most_steps; ++step) {
-    const double newton = touch.rate > 0 ? way - slope / touch.rate : room;
-    if (touch.rate > 0 && std::abs(newton - way) < found) return;
+    const double newton = found.rate > 0 ? way - slope / found.rate : room;
+    if (found.rate > 0 && std::abs(newton - way) < closest) return found;
     const bool bracketed = high > 0;
     if (bracketed) {
       way = newton > low && newton < high ? newton : (low + high) / 2;
     } else {
       way = std::min(newton, low + room / strides);
     }
-    if (way > room || (bracketed && high - low < found)) break;
+    if (way > room || (bracketed && high - low < closest)) break;
     slope = sense * look(piece, touch.at + sense * way);
     (slope < 0 ? low : high) = way;
   }
-  touch.rate = 0;  // beyond the range that is searched
+  found.rate = 0;  // beyond the range that is searched
+  return found;
 }
 
-void ContactRows::place(const Eigen::MatrixX3d& tangents) {
-  for (Touch& touch : touches_) {
-    place_touch(tangents, touch);
+void ContactRows::look(const Eigen::MatrixX3d& tangents, ContactPlace& place) const {
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    place.touches[i] = least_clearance(tangents, touches_[i]);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      by_tangent_[axis].col(touch.row) =
-          touch.gap.gradient[static_cast<Eigen::Index>(axis)] * touch.point.position;
+      place.by_tangent[axis].col(touches_[i].row) =
+          place.touches[i].gap.gradient[static_cast<Eigen::Index>(axis)] *
+          place.touches[i].point.position;
     }
   }
-  for (Curved& curved : curved_) {
+  for (std::size_t i = 0; i < curved_.size(); ++i) {
+    const Curved& curved = curved_[i];
     const Eigen::Index points = curved.reach.points();
     const Eigen::Matrix3Xd positions = curved.reach.positions(tangents);
     Eigen::MatrixX3d gradients(points, 3);
     Eigen::VectorXd clearances(points);
     for (Eigen::Index m = 0; m < points; ++m) {
-      obstacle::Gap& gap = curved.gaps[static_cast<std::size_t>(m)];
+      obstacle::Gap& gap = place.gaps[i][static_cast<std::size_t>(m)];
       gap = curved.body.gap(positions.col(m));
       gradients.row(m) = gap.gradient;
       clearances[m] = gap.value;
     }
     const Eigen::Index rows = curved.weights.cols();
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      auto by_tangent = by_tangent_[static_cast<std::size_t>(axis)].middleCols(curved.first, rows);
+      auto by_tangent =
+          place.by_tangent[static_cast<std::size_t>(axis)].middleCols(curved.first, rows);
       // Of a rod in the plane nothing goes across it.
       if (gradients.col(axis).isZero(0)) {
         by_tangent.setZero();
@@ -241,49 +254,34 @@ void ContactRows::place(const Eigen::MatrixX3d& tangents) {
         curved.reach.spread(gradients.col(axis).asDiagonal() * curved.weights, by_tangent);
       }
     }
-    residual_.segment(curved.first, rows).noalias() = curved.weights.transpose() * clearances;
+    place.residual.segment(curved.first, rows).noalias() = curved.weights.transpose() * clearances;
   }
   for (Eigen::Index row = 0; row < count(); ++row) {
     if (normal_.col(row).squaredNorm() == 0) continue;
-    residual_[row] =
+    place.residual[row] =
         linear_.col(row).dot(tangents * Eigen::Vector3d(normal_.col(row))) + offset_[row];
   }
-  for (const Touch& touch : touches_) residual_[touch.row] = touch.gap.value;
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    place.residual[touches_[i].row] = place.touches[i].gap.value;
+  }
 }
 
-std::optional<double> ContactRows::touches_at(std::size_t contact) const {
-  for (const Touch& touch : touches_) {
-    if (touch.contact == contact) return touch.found;
+std::optional<double> ContactRows::touches_at(const ContactPlace& place,
+                                              std::size_t contact) const {
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    if (touches_[i].contact == contact) return place.touches[i].at;
   }
   return std::nullopt;
 }
 
-Eigen::MatrixXd ContactRows::along(const Eigen::MatrixX3d& vectors) const {
-  Eigen::MatrixXd result = vectors.col(0).asDiagonal() * by_tangent_[0];
-  result += vectors.col(1).asDiagonal() * by_tangent_[1];
-  result += vectors.col(2).asDiagonal() * by_tangent_[2];
-  return result;
-}
-
-Eigen::MatrixX3d ContactRows::by_node(Eigen::Index row) const {
-  Eigen::MatrixX3d result(linear_.rows(), 3);
-  result << by_tangent_[0].col(row), by_tangent_[1].col(row), by_tangent_[2].col(row);
-  return result;
-}
-
-void ContactRows::add(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
-                      Eigen::MatrixX3d& carried) const {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    carried.col(static_cast<Eigen::Index>(axis)).noalias() += by_tangent_[axis] * multipliers;
-  }
-}
-
-void ContactRows::subtract_hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+void ContactRows::subtract_hessian(const ContactPlace& place,
+                                   const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                                    const std::array<Eigen::MatrixXd, 3>& tangents,
                                    Eigen::Ref<Eigen::MatrixXd> hessian) const {
   Eigen::MatrixX3d moved(hessian.cols(), 3);
-  for (const Touch& touch : touches_) {
-    const double mu = multipliers[touch.row];
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    const ContactPlace::Touch& touch = place.touches[i];
+    const double mu = multipliers[touches_[i].row];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       moved.col(static_cast<Eigen::Index>(axis)).noalias() =
           tangents[axis].transpose() * touch.point.position;
@@ -298,7 +296,8 @@ void ContactRows::subtract_hessian(const Eigen::Ref<const Eigen::VectorXd>& mult
     }
     hessian.noalias() += (mu / touch.rate) * turned * turned.transpose();
   }
-  for (const Curved& curved : curved_) {
+  for (std::size_t i = 0; i < curved_.size(); ++i) {
+    const Curved& curved = curved_[i];
     const Eigen::VectorXd forces = curved.forces(multipliers);
     std::array<Eigen::MatrixXd, 3> points;  // x unknowns
     const std::size_t axes = tangents[2].isZero(0) ? 2 : 3;
@@ -308,38 +307,30 @@ void ContactRows::subtract_hessian(const Eigen::Ref<const Eigen::VectorXd>& mult
     for (std::size_t a = 0; a < axes; ++a) {
       Eigen::MatrixXd bent = Eigen::MatrixXd::Zero(points[a].rows(), points[a].cols());
       for (std::size_t b = 0; b < axes; ++b) {
-        bent.noalias() += curved.stiffness(forces, a, b).asDiagonal() * points[b];
+        bent.noalias() += stiffness(forces, place.gaps[i], a, b).asDiagonal() * points[b];
       }
       hessian.noalias() -= points[a].transpose() * bent;
     }
   }
 }
 
-void ContactRows::subtract_tilt_hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+void ContactRows::subtract_tilt_hessian(const ContactPlace& place,
+                                        const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                                         const Eigen::MatrixXd& tangents,
                                         Eigen::Ref<Eigen::MatrixXd> hessian) const {
-  for (const Touch& touch : touches_) {
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    const ContactPlace::Touch& touch = place.touches[i];
     const Eigen::VectorXd moved = tangents.transpose() * touch.point.position;
     hessian.noalias() -=
-        (multipliers[touch.row] * touch.gap.hessian(2, 2)) * moved * moved.transpose();
+        (multipliers[touches_[i].row] * touch.gap.hessian(2, 2)) * moved * moved.transpose();
   }
-  for (const Curved& curved : curved_) {
+  for (std::size_t i = 0; i < curved_.size(); ++i) {
+    const Curved& curved = curved_[i];
     const Eigen::VectorXd forces = curved.forces(multipliers);
-    const Eigen::VectorXd bent = curved.stiffness(forces, 2, 2);
+    const Eigen::VectorXd bent = stiffness(forces, place.gaps[i], 2, 2);
     const Eigen::MatrixXd moved = curved.reach.sums(tangents);
     hessian.noalias() -= moved.transpose() * (bent.asDiagonal() * moved);
   }
-}
-
-Eigen::Vector3d ContactRows::moment(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
-                                    const Eigen::MatrixX3d& tangents) const {
-  Eigen::MatrixX3d carried = Eigen::MatrixX3d::Zero(tangents.rows(), 3);
-  add(multipliers, carried);
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  for (Eigen::Index q = 0; q < tangents.rows(); ++q) {
-    moment += Eigen::Vector3d(tangents.row(q)).cross(Eigen::Vector3d(carried.row(q)));
-  }
-  return moment;
 }
 
 Eigen::VectorXd ContactRows::prolong(const ContactRows& other,
@@ -358,17 +349,20 @@ Eigen::VectorXd ContactRows::prolong(const ContactRows& other,
   return prolonged;
 }
 
-std::vector<ContactForce> ContactRows::forces(const Eigen::VectorXd& multipliers) const {
+std::vector<ContactForce> ContactRows::forces(const ContactPlace& place,
+                                              const Eigen::VectorXd& multipliers) const {
   std::vector<ContactForce> result;
   result.reserve(contacts_.size());
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     result.push_back(force_of_series(contacts_[i], multipliers));
     result.back().force = result.back().total * normals_[i];
   }
-  for (const Touch& touch : touches_) {
-    result[touch.contact].force = multipliers[touch.row] * touch.gap.gradient;
+  for (std::size_t i = 0; i < touches_.size(); ++i) {
+    result[touches_[i].contact].force =
+        multipliers[touches_[i].row] * place.touches[i].gap.gradient;
   }
-  for (const Curved& curved : curved_) {
+  for (std::size_t i = 0; i < curved_.size(); ++i) {
+    const Curved& curved = curved_[i];
     const Eigen::VectorXd forces = curved.forces(multipliers);
     const ContactSeries& rows = contacts_[curved.contact];
     const bool begins = !rows.slopes.empty() && curved.first == rows.slopes.front().first;
@@ -376,7 +370,8 @@ std::vector<ContactForce> ContactRows::forces(const Eigen::VectorXd& multipliers
     const Eigen::Index first = begins && rows.held_at_begin ? 1 : 0;
     const Eigen::Index last = forces.size() - (ends && rows.held_at_end ? 1 : 0);
     for (Eigen::Index m = first; m < last; ++m) {
-      result[curved.contact].force += forces[m] * curved.gaps[static_cast<std::size_t>(m)].gradient;
+      result[curved.contact].force +=
+          forces[m] * place.gaps[i][static_cast<std::size_t>(m)].gradient;
     }
   }
   return result;

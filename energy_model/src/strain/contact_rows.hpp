@@ -10,6 +10,7 @@
 #include "frames/position_operator.hpp"
 #include "problem/span.hpp"
 #include "strain/contact_forces.hpp"
+#include "strain/contact_place.hpp"
 
 namespace dlo::energy_model {
 
@@ -30,77 +31,64 @@ class ContactRows {
              const LegendreTable& table);
 
   [[nodiscard]] Eigen::Index count() const { return linear_.cols(); }
-  /// Looks where the rod is; all below is at these tangents. @param tangents  nodes x 3
-  void place(const Eigen::MatrixX3d& tangents);
+  /// Gives a place its size.
+  void resize(ContactPlace& place) const;
+  /// Looks where the rod is. @param tangents  nodes x 3
+  void look(const Eigen::MatrixX3d& tangents, ContactPlace& place) const;
 
-  /// Of all rows.
-  [[nodiscard]] const Eigen::VectorXd& residual() const { return residual_; }
-  /// What the rows change by along these vectors at the nodes, nodes x rows.
-  [[nodiscard]] Eigen::MatrixXd along(const Eigen::MatrixX3d& vectors) const;
-  /// Gradient by the tangents, nodes x 3.
-  [[nodiscard]] Eigen::MatrixX3d by_node(Eigen::Index row) const;
-  /// Adds the multipliers times by_node().
-  void add(const Eigen::Ref<const Eigen::VectorXd>& multipliers, Eigen::MatrixX3d& carried) const;
   /// Where a contact that slides is; nothing of others.
-  [[nodiscard]] std::optional<double> touches_at(std::size_t contact) const;
+  [[nodiscard]] std::optional<double> touches_at(const ContactPlace& place,
+                                                 std::size_t contact) const;
   /// Whether rows bend where tangents turn steadily.
   [[nodiscard]] bool curved() const { return !touches_.empty() || !curved_.empty(); }
   /// Subtracts the multipliers times the rows' second derivatives, but for what bends the tangents
-  /// twice, which is in add().
+  /// twice, which is in ContactPlace::add().
   /// @param tangents  derivatives of the tangents by the unknowns, an axis each, nodes x unknowns
-  void subtract_hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+  void subtract_hessian(const ContactPlace& place,
+                        const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                         const std::array<Eigen::MatrixXd, 3>& tangents,
                         Eigen::Ref<Eigen::MatrixXd> hessian) const;
   /// The same along z alone, of a rod in the plane.
-  void subtract_tilt_hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+  void subtract_tilt_hessian(const ContactPlace& place,
+                             const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                              const Eigen::MatrixXd& tangents,
                              Eigen::Ref<Eigen::MatrixXd> hessian) const;
-  /// Moment about the anchor of what the multipliers stand for. @param tangents  as placed
-  [[nodiscard]] Eigen::Vector3d moment(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
-                                       const Eigen::MatrixX3d& tangents) const;
   /// Multipliers of these rows from those of the same contacts with another number of terms.
   [[nodiscard]] Eigen::VectorXd prolong(const ContactRows& other,
                                         const Eigen::VectorXd& multipliers) const;
   /// Of each of Span::contacts. @param multipliers  of all rows
-  [[nodiscard]] std::vector<ContactForce> forces(const Eigen::VectorXd& multipliers) const;
+  [[nodiscard]] std::vector<ContactForce> forces(const ContactPlace& place,
+                                                 const Eigen::VectorXd& multipliers) const;
 
  private:
   /// Rows over the clearances of points from a body that is not flat.
   struct Curved {
     std::size_t contact = 0;
     obstacle::Body body;
-    Eigen::Index first = 0;           // row
-    Eigen::MatrixXd weights;          // rows = weights^T clearances, points x rows
-    PointsReach reach;                // of the points
-    std::vector<obstacle::Gap> gaps;  // of the points
+    Eigen::Index first = 0;   // row
+    Eigen::MatrixXd weights;  // rows = weights^T clearances, points x rows
+    PointsReach reach;        // of the points
 
     /// On the points, by the multipliers of all rows.
     [[nodiscard]] Eigen::VectorXd forces(
         const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
-    /// These times the gaps' second derivatives by two coordinates.
-    [[nodiscard]] Eigen::VectorXd stiffness(const Eigen::VectorXd& forces, std::size_t a,
-                                            std::size_t b) const;
   };
   /// The row of a least clearance.
   struct Touch {
     std::size_t contact = 0;
     obstacle::Body body;
     Eigen::Index row = 0;
-    double at = 0;                  // s where it is looked for
-    Eigen::Index before = 0;        // piece that ends there
-    double low = 0, high = 0;       // how far away it may be
-    PositionOperator::Point point;  // where it is
-    double found = 0;
-    obstacle::Gap gap;
-    Eigen::Vector3d tangent = Eigen::Vector3d::Zero();
-    double rate = 0;  // second derivative by s; 0 where there is no least one
+    double at = 0;             // s where it is looked for
+    Eigen::Index before = 0;   // piece that ends there
+    double low = 0, high = 0;  // how far away it may be
   };
   [[nodiscard]] Eigen::Index add_row();
   void add_clearance(const Span& span, std::size_t contact, const std::vector<Piece>& pieces);
   void add_slopes(const Span& span, std::size_t contact, const std::vector<Piece>& pieces,
                   Eigen::Index degrees, Eigen::Index terms, const LegendreTable& table);
   void add_curved(Curved curved, Eigen::Index rows);
-  void place_touch(const Eigen::MatrixX3d& tangents, Touch& touch) const;
+  [[nodiscard]] ContactPlace::Touch least_clearance(const Eigen::MatrixX3d& tangents,
+                                                    const Touch& touch) const;
 
   std::vector<ContactSeries> contacts_;
   std::vector<Curved> curved_;
@@ -111,9 +99,6 @@ class ContactRows {
   Eigen::MatrixXd linear_;   // weight times phi, nodes x rows
   Eigen::Matrix3Xd normal_;  // by row
   Eigen::VectorXd offset_;
-  // As placed
-  std::array<Eigen::MatrixXd, 3> by_tangent_;  // nodes x rows, an axis each
-  Eigen::VectorXd residual_;
 };
 
 }  // namespace dlo::energy_model

@@ -22,41 +22,41 @@ void SoftContact::reset(const Span& span, const std::vector<Piece>& pieces,
       position_.row(e * Q + q) = along.weights(q + 1).transpose();
     }
   }
-  pressed_.assign(obstacles_.size(), {});
 }
 
-double SoftContact::add(const Eigen::MatrixX3d& tangents, Eigen::MatrixX3d& force) {
+void SoftContact::look(const Eigen::MatrixX3d& tangents, Place& place,
+                       Eigen::MatrixX3d& force) const {
+  place.resize(obstacles_.size());
   const Eigen::MatrixX3d points = position_ * tangents;
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
     const Span::SoftObstacle& obstacle = obstacles_[i];
-    pressed_[i].clear();
+    place[i].clear();
     // p = max(0, -k d), energy p^2 / 2k, d the clearance
     for (Eigen::Index q = 0; q < weights_.size(); ++q) {
       const Eigen::Vector3d point = points.row(q);
       if (obstacle.body.clearance(point) >= 0) continue;
-      pressed_[i].push_back({q, obstacle.body.gap(point)});
-      force.noalias() += position_.row(q).transpose() * push(i, pressed_[i].back()).transpose();
+      place[i].push_back({q, obstacle.body.gap(point)});
+      force.noalias() += position_.row(q).transpose() * push(i, place[i].back()).transpose();
     }
   }
-  return energy();
 }
 
-void SoftContact::add_hessian(const std::array<Eigen::MatrixXd, 3>& tangents,
+void SoftContact::add_hessian(const Place& place, const std::array<Eigen::MatrixXd, 3>& tangents,
                               Eigen::Ref<Eigen::MatrixXd> hessian) const {
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-    if (pressed_[i].empty()) continue;
+    if (place[i].empty()) continue;
     const double k = obstacles_[i].stiffness;
-    const Eigen::Index count = std::ssize(pressed_[i]);
+    const Eigen::Index count = std::ssize(place[i]);
     Eigen::MatrixXd reach(count, position_.cols());
     for (Eigen::Index p = 0; p < count; ++p) {
-      reach.row(p) = position_.row(pressed_[i][static_cast<std::size_t>(p)].node);
+      reach.row(p) = position_.row(place[i][static_cast<std::size_t>(p)].node);
     }
     // Of the points that press, by axis: what the unknowns move them by, and the force of that.
     std::array<Eigen::MatrixXd, 3> moved;
     for (std::size_t axis = 0; axis < 3; ++axis) moved[axis].noalias() = reach * tangents[axis];
     std::array<Eigen::MatrixXd, 3> pushed = moved;
     for (Eigen::Index p = 0; p < count; ++p) {
-      const Pressed& at = pressed_[i][static_cast<std::size_t>(p)];
+      const Pressed& at = place[i][static_cast<std::size_t>(p)];
       const Eigen::Vector3d& normal = at.gap.gradient;
       const Eigen::Matrix3d spring =
           k * weights_[at.node] * (normal * normal.transpose() + at.gap.value * at.gap.hessian);
@@ -87,14 +87,15 @@ double tilt_spring(const obstacle::Gap& gap) {
 
 bool is_on_ridge(const obstacle::Gap& gap) { return std::abs(gap.gradient.z()) > 0.5; }
 
-void SoftContact::add_tilt_hessian(const Eigen::MatrixXd& angle, Eigen::MatrixXd& hessian) const {
+void SoftContact::add_tilt_hessian(const Place& place, const Eigen::MatrixXd& angle,
+                                   Eigen::MatrixXd& hessian) const {
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-    if (pressed_[i].empty()) continue;
-    const Eigen::Index count = std::ssize(pressed_[i]);
+    if (place[i].empty()) continue;
+    const Eigen::Index count = std::ssize(place[i]);
     Eigen::MatrixXd reach(count, position_.cols());
     Eigen::VectorXd spring(count);
     for (Eigen::Index p = 0; p < count; ++p) {
-      const Pressed& at = pressed_[i][static_cast<std::size_t>(p)];
+      const Pressed& at = place[i][static_cast<std::size_t>(p)];
       reach.row(p) = position_.row(at.node);
       spring[p] = obstacles_[i].stiffness * weights_[at.node] * tilt_spring(at.gap);
     }
@@ -103,29 +104,29 @@ void SoftContact::add_tilt_hessian(const Eigen::MatrixXd& angle, Eigen::MatrixXd
   }
 }
 
-double SoftContact::energy() const {
+double SoftContact::energy(const Place& place) const {
   double energy = 0;
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-    for (const Pressed& at : pressed_[i]) {
+    for (const Pressed& at : place[i]) {
       energy += weights_[at.node] * obstacles_[i].stiffness * at.gap.value * at.gap.value / 2;
     }
   }
   return energy;
 }
 
-std::vector<Eigen::Vector3d> SoftContact::forces() const {
+std::vector<Eigen::Vector3d> SoftContact::forces(const Place& place) const {
   std::vector<Eigen::Vector3d> forces;
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
     forces.emplace_back(Eigen::Vector3d::Zero());
-    for (const Pressed& at : pressed_[i]) forces.back() += push(i, at);
+    for (const Pressed& at : place[i]) forces.back() += push(i, at);
   }
   return forces;
 }
 
-Eigen::Vector3d SoftContact::moment(const Eigen::MatrixX3d& tangents) const {
+Eigen::Vector3d SoftContact::moment(const Place& place, const Eigen::MatrixX3d& tangents) const {
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-    for (const Pressed& at : pressed_[i]) {
+    for (const Pressed& at : place[i]) {
       const Eigen::Vector3d point = tangents.transpose() * position_.row(at.node).transpose();
       moment += point.cross(push(i, at));
     }

@@ -16,42 +16,45 @@ namespace dlo::energy_model {
 /// Contact of a span's quadrature nodes with its soft obstacles, which are one-sided springs.
 class SoftContact {
  public:
-  void reset(const Span& span, const std::vector<Piece>& pieces, const LegendreTable& table);
-
-  [[nodiscard]] bool any() const { return !obstacles_.empty(); }
-
-  /// Energy of the springs at these tangents (nodes x 3); adds what they push with, carried from
-  /// beyond each node, to `force` (nodes x 3). Keeps the pressures.
-  double add(const Eigen::MatrixX3d& tangents, Eigen::MatrixX3d& force);
-  /// Adds the springs' second derivatives but for what bends the tangents twice, which is in the
-  /// force that add() adds.
-  /// @param tangents  derivatives of the tangents by the unknowns, an axis each, nodes x unknowns
-  void add_hessian(const std::array<Eigen::MatrixXd, 3>& tangents,
-                   Eigen::Ref<Eigen::MatrixXd> hessian) const;
-
-  /// Adds what leaving the plane changes of a planar span. @param angle  nodes x unknowns: tilt of
-  /// the tangents out of the plane
-  void add_tilt_hessian(const Eigen::MatrixXd& angle, Eigen::MatrixXd& hessian) const;
-
-  /// Of the springs at the point of the last add().
-  [[nodiscard]] double energy() const;
-  /// Force of each obstacle on the span.
-  [[nodiscard]] std::vector<Eigen::Vector3d> forces() const;
-  /// Their moment about the anchor.
-  [[nodiscard]] Eigen::Vector3d moment(const Eigen::MatrixX3d& tangents) const;
-
- private:
   /// A node within an obstacle.
   struct Pressed {
     Eigen::Index node = 0;
     obstacle::Gap gap;
   };
+  /// At a point, by obstacle.
+  using Place = std::vector<std::vector<Pressed>>;
+
+  void reset(const Span& span, const std::vector<Piece>& pieces, const LegendreTable& table);
+
+  [[nodiscard]] bool any() const { return !obstacles_.empty(); }
+
+  /// What is pressed at these tangents (nodes x 3); adds what that pushes with, carried from beyond
+  /// each node, to `force` (nodes x 3).
+  void look(const Eigen::MatrixX3d& tangents, Place& place, Eigen::MatrixX3d& force) const;
+  /// Adds the springs' second derivatives but for what bends the tangents twice, which is in the
+  /// force that look() adds.
+  /// @param tangents  derivatives of the tangents by the unknowns, an axis each, nodes x unknowns
+  void add_hessian(const Place& place, const std::array<Eigen::MatrixXd, 3>& tangents,
+                   Eigen::Ref<Eigen::MatrixXd> hessian) const;
+
+  /// Adds what leaving the plane changes of a planar span. @param angle  nodes x unknowns: tilt of
+  /// the tangents out of the plane
+  void add_tilt_hessian(const Place& place, const Eigen::MatrixXd& angle,
+                        Eigen::MatrixXd& hessian) const;
+
+  /// Of the springs.
+  [[nodiscard]] double energy(const Place& place) const;
+  /// Force of each obstacle on the span.
+  [[nodiscard]] std::vector<Eigen::Vector3d> forces(const Place& place) const;
+  /// Their moment about the anchor.
+  [[nodiscard]] Eigen::Vector3d moment(const Place& place, const Eigen::MatrixX3d& tangents) const;
+
+ private:
   [[nodiscard]] Eigen::Vector3d push(std::size_t obstacle, const Pressed& at) const;
 
   std::vector<Span::SoftObstacle> obstacles_;
   Eigen::VectorXd weights_;
-  Eigen::MatrixXd position_;                   // of the nodes by tangent of the nodes
-  std::vector<std::vector<Pressed>> pressed_;  // by obstacle, of the last add()
+  Eigen::MatrixXd position_;  // of the nodes by tangent of the nodes
 };
 
 }  // namespace dlo::energy_model

@@ -1,6 +1,7 @@
 #include "strain/span_energy.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -33,70 +34,80 @@ void SpanEnergy::reset(const Span& span, int terms) {
   if (span.twist) twist_root_ = std::sqrt(span.twist->stiffness / span.length);
   contacts_.reset(span, pieces_, terms, *table_);
   soft_contact_.reset(span_, pieces_, *table_);
-  for (Eigen::MatrixX3d* m : {&t_, &total_, &carried_}) m->setZero(s_.size(), 3);
-  along_.setZero(s_.size());
   unknowns_ = {1, std::ssize(pieces_), terms, span.start_direction ? 0 : 1, false};
   if (span.planar) {
     std::optional<double> start_theta;
     if (span.start_direction) start_theta = angle_of(*span.start_direction);
     plane_.reset(pieces_, terms, start_theta, span.natural);
-    plane_.resize(plane_state_);
     loads_.tabulate_couples(span, pieces_, plane_);
     grips_.reset_in_plane(plane_);
   } else {
     const Eigen::Vector3d tangent = first_tangent(span);
     start_frame_ = frame_along(tangent, span.first_d1(tangent));
     frames_.reset(pieces_, terms, start_frame_, !span.start_direction, span.natural);
-    frames_.resize(state_);
     unknowns_.fields = frames_.fields();
     unknowns_.has_psi = span.twist && !span.has_material_directors();
-    by_unknown_.resize(size());
-    couples_.assign(pieces_.size(), Eigen::Vector3d::Zero());
-    curvatures_.assign(pieces_.size(), Eigen::Matrix3d::Zero());
   }
-  x_.setZero(size());
-  gradient_.setZero(size());
-  evaluated_ = false;
+  revise();
+}
+
+void SpanEnergy::revise() {
+  static std::atomic<long> last = 0;
+  revision_ = ++last;
+}
+
+void SpanEnergy::resize(SpanPoint& point) const {
+  for (Eigen::VectorXd* v : {&point.x, &point.gradient, &point.by_unknown}) v->resize(size());
+  point.residual.resize(constraints());
+  point.jacobian.resize(constraints(), size());
+  for (Eigen::MatrixX3d* m : {&point.t, &point.force, &point.carried}) m->setZero(s_.size(), 3);
+  point.along.resize(s_.size());
+  if (span_.planar) {
+    plane_.resize(point.plane);
+  } else {
+    frames_.resize(point.frames);
+    point.couples.resize(pieces_.size());
+    point.curvatures.resize(pieces_.size());
+  }
+  contacts_.resize(point.contacts);
+  point.pressed.clear();
+  point.revision = revision_;
 }
 
 void SpanEnergy::turn_end_clamp(const Eigen::Vector3d& end_d1) {
   span_.twist->end_d1 = end_d1;
   grips_.turn_end_clamp(*span_.end_direction, end_d1);
+  revise();
 }
 
-double SpanEnergy::value(const Eigen::Ref<const Eigen::VectorXd>& x,
-                         Eigen::Ref<Eigen::VectorXd> gradient) {
-  if (evaluated_ && !has_soft_obstacles() && x == x_) {
-    gradient = gradient_;
-    return energy_;
-  }
-  x_ = x;
+void SpanEnergy::evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, SpanPoint& point) const {
+  if (point.revision != revision_) resize(point);
+  point.x = x;
   if (span_.planar) {
-    plane_.evaluate(x_, t_, plane_state_);
+    plane_.evaluate(x, point.t, point.plane);
   } else {
-    frames_.evaluate(x_, state_);
-    t_ = state_.t.bottomRows(s_.size());
+    frames_.evaluate(x, point.frames);
+    point.t = point.frames.t.bottomRows(s_.size());
   }
-  if (contacts_.count() > 0) contacts_.place(t_);
-  gradient = x;
-  unknowns_.clear_start(gradient);
-  double energy = gradient.dot(x) / 2 + loads_.force_energy(t_);
-  total_ = loads_.force();
-  if (has_soft_obstacles()) energy += soft_contact_.add(t_, total_);
+  point.gradient = x;
+  unknowns_.clear_start(point.gradient);
+  point.energy = point.gradient.dot(x) / 2 + loads_.force_energy(point.t);
+  point.force = loads_.force();
+  if (has_soft_obstacles()) {
+    soft_contact_.look(point.t, point.pressed, point.force);
+    point.energy += soft_contact_.energy(point.pressed);
+  }
   if (span_.planar) {
-    plane_.adjoint(total_, plane_state_);
-    gradient -= plane_state_.by_unknown;
+    plane_.adjoint(point.force, point.plane);
+    point.gradient -= point.plane.by_unknown;
     if (loads_.couples().size() > 0) {
-      energy -= loads_.couples().dot(x);
-      gradient -= loads_.couples();
+      point.energy -= loads_.couples().dot(x);
+      point.gradient -= loads_.couples();
     }
   } else {
-    frames_.add_adjoint({&total_}, -1, state_, gradient);
+    frames_.add_adjoint({&point.force}, -1, point.frames, point.gradient);
   }
-  gradient_ = gradient;
-  energy_ = energy;
-  evaluated_ = true;
-  return energy;
+  if (constraints() > 0) constrain(point);
 }
 
 double SpanEnergy::twist(const Eigen::VectorXd& x) const {
@@ -131,89 +142,94 @@ Eigen::VectorXd SpanEnergy::with_twist(Eigen::VectorXd x, double angle) const {
   return x;
 }
 
-void SpanEnergy::constraint(Eigen::Ref<Eigen::VectorXd> residual,
-                            Eigen::Ref<Eigen::MatrixXd> jacobian) {
+void SpanEnergy::constrain(SpanPoint& point) const {
   const Eigen::Index count = contacts_.count();
   const Eigen::Index first = grips_.positions();
-  if (count > 0) residual.segment(first, count) = contacts_.residual();
+  if (count > 0) {
+    contacts_.look(point.t, point.contacts);
+    point.residual.segment(first, count) = point.contacts.residual;
+  }
   if (span_.planar) {
-    grips_.constrain(in_plane(), residual, jacobian);
+    grips_.constrain(in_plane(point), point.residual, point.jacobian);
     if (count == 0) return;
-    jacobian.middleRows(first, count).noalias() =
-        contacts_.along(plane_state_.t_theta).transpose() * plane_.by_unknown();
+    point.jacobian.middleRows(first, count).noalias() =
+        point.contacts.along(point.plane.t_theta).transpose() * plane_.by_unknown();
     return;
   }
-  grips_.constrain(in_space(), residual, jacobian);
+  grips_.constrain(in_space(point), point.residual, point.jacobian);
   for (Eigen::Index i = 0; i < count; ++i) {
-    carried_ = contacts_.by_node(i);
-    by_unknown_.setZero();
-    frames_.add_adjoint({&carried_}, 1, state_, by_unknown_);
-    jacobian.row(first + i) = by_unknown_.transpose();
+    point.carried = point.contacts.by_node(i);
+    point.by_unknown.setZero();
+    frames_.add_adjoint({&point.carried}, 1, point.frames, point.by_unknown);
+    point.jacobian.row(first + i) = point.by_unknown.transpose();
   }
 }
 
-/// Into carried_: weight of the node times the force that the rod carries there with the grips'.
-void SpanEnergy::carry(const Eigen::Ref<const Eigen::VectorXd>& multipliers) {
-  carried_ = total_;
-  grips_.add_forces(multipliers, carried_);
-  if (contacts_.count() > 0) contacts_.add(of_contacts(multipliers), carried_);
+/// Into at.carried: weight of the node times the force that the rod carries there with the grips'.
+void SpanEnergy::carry(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
+  at.carried = at.force;
+  grips_.add_forces(multipliers, at.carried);
+  if (contacts_.count() > 0) at.contacts.add(of_contacts(multipliers), at.carried);
 }
 
-void SpanEnergy::hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
-                         Eigen::MatrixXd& result) {
-  carry(multipliers);
+void SpanEnergy::hessian(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                         Eigen::MatrixXd& result) const {
+  carry(at, multipliers);
   result.setIdentity(size(), size());
   auto stored = result.diagonal();
   unknowns_.clear_start(stored);
   if (span_.planar) {
-    dot_in_plane(carried_, t_, along_);
-    plane_.add_hessian(along_, plane_state_, result);
+    dot_in_plane(at.carried, at.t, at.along);
+    plane_.add_hessian(at.along, at.plane, result);
   } else {
-    carried_ = -carried_;
-    const SpatialPoint at = in_space();
-    grips_.turn_derivatives(at, multipliers, couples_, curvatures_);
-    frame_hessian_.add(frames_, {&carried_, couples_}, curvatures_, state_, result);
-    if (has_psi()) grips_.add_twist_hessian(at, -multipliers[constraints() - 1], result);
+    at.carried = -at.carried;
+    const SpatialPoint here = in_space(at);
+    grips_.turn_derivatives(here, multipliers, at.couples, at.curvatures);
+    at.hessian.add(frames_, {&at.carried, at.couples}, at.curvatures, at.frames, result);
+    if (has_psi()) grips_.add_twist_hessian(here, -multipliers[constraints() - 1], result);
   }
   if (!has_soft_obstacles() && !contacts_.curved()) return;
-  const std::array<Eigen::MatrixXd, 3> tangents = tangent_jacobian();
+  const std::array<Eigen::MatrixXd, 3> tangents = tangent_jacobian(at);
   auto by_strains = result.topLeftCorner(strains(), strains());
-  soft_contact_.add_hessian(tangents, by_strains);
-  contacts_.subtract_hessian(of_contacts(multipliers), tangents, by_strains);
+  soft_contact_.add_hessian(at.pressed, tangents, by_strains);
+  contacts_.subtract_hessian(at.contacts, of_contacts(multipliers), tangents, by_strains);
 }
 
-std::array<Eigen::MatrixXd, 3> SpanEnergy::tangent_jacobian() {
-  return span_.planar ? plane_.tangent_jacobian(plane_state_) : frames_.tangent_jacobian(state_);
+std::array<Eigen::MatrixXd, 3> SpanEnergy::tangent_jacobian(SpanPoint& at) const {
+  return span_.planar ? plane_.tangent_jacobian(at.plane) : frames_.tangent_jacobian(at.frames);
 }
 
-/// Into along_: weight of the node times n.t - B kappa^2, which is what the square of a tilt out of
-/// the plane costs there.
-void SpanEnergy::carry_tilts(const Eigen::Ref<const Eigen::VectorXd>& multipliers) {
-  carry(multipliers);
-  dot_in_plane(carried_, t_, along_);
-  plane_.subtract_bending(x_, weights_, plane_state_, along_);
+/// Into at.along: weight of the node times n.t - B kappa^2, which is what the square of a tilt out
+/// of the plane costs there.
+void SpanEnergy::carry_tilts(SpanPoint& at,
+                             const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
+  carry(at, multipliers);
+  dot_in_plane(at.carried, at.t, at.along);
+  plane_.subtract_bending(at.x, weights_, at.plane, at.along);
 }
 
-bool SpanEnergy::resists_out_of_plane() {
-  carry_tilts(Eigen::VectorXd());
+bool SpanEnergy::resists_out_of_plane(SpanPoint& at) const {
+  carry_tilts(at, Eigen::VectorXd());
   // int beta'^2 >= (pi / 2L)^2 int beta^2 for what a clamp holds at one end.
   const double bending = std::numbers::pi * std::numbers::pi / (4 * span_.length * span_.length);
-  if (((along_.array() + bending * weights_.array()) > 0).all()) return true;
+  if (((at.along.array() + bending * weights_.array()) > 0).all()) return true;
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Identity(size(), size());
-  plane_.add_hessian(along_, plane_state_, hessian);
+  plane_.add_hessian(at.along, at.plane, hessian);
   return is_minimum(hessian);
 }
 
-void SpanEnergy::tilt_hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
-                              Eigen::MatrixXd& hessian, Eigen::MatrixXd& jacobian) {
-  carry_tilts(multipliers);
+void SpanEnergy::tilt_hessian(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                              Eigen::MatrixXd& hessian, Eigen::MatrixXd& jacobian) const {
+  carry_tilts(at, multipliers);
   hessian.setIdentity(size(), size());
   auto stored = hessian.diagonal();
   unknowns_.clear_start(stored);
-  plane_.add_hessian(along_, plane_state_, hessian);
+  plane_.add_hessian(at.along, at.plane, hessian);
   const Eigen::MatrixXd& angle = plane_.by_unknown();
-  if (contacts_.curved()) contacts_.subtract_tilt_hessian(of_contacts(multipliers), angle, hessian);
-  if (has_soft_obstacles()) soft_contact_.add_tilt_hessian(angle, hessian);
+  if (contacts_.curved()) {
+    contacts_.subtract_tilt_hessian(at.contacts, of_contacts(multipliers), angle, hessian);
+  }
+  if (has_soft_obstacles()) soft_contact_.add_tilt_hessian(at.pressed, angle, hessian);
   grips_.tilt_jacobian(plane_, jacobian);
 }
 
@@ -235,22 +251,29 @@ SpanEnergy::Estimate SpanEnergy::estimate(const Eigen::Matrix3Xd& tangents) cons
 Eigen::VectorXd SpanEnergy::fit(const StartShape& shape, int most_steps) {
   if (!span_.planar) {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(size());
-    evaluated_ = false;
-    x.head(strains()) = energy_model::fit(frames_, shape.tangents, most_steps, state_);
+    RodFrames::State state;
+    frames_.resize(state);
+    x.head(strains()) = energy_model::fit(frames_, shape.tangents, most_steps, state);
     if (unknowns_.fields == 3 && shape.roll.size() > 0) x = rolled(frames_, x, shape.roll);
     return has_psi() ? with_twist(std::move(x), shape.twist) : x;
   }
   const Eigen::VectorXd angles = plane_.angles(shape.tangents);
   grips_.unwrap(angles, table_->nodes.size());
+  revise();
   return plane_.fit(angles);
 }
 
 void SpanEnergy::unwrap(const Eigen::Ref<const Eigen::VectorXd>& x) {
-  if (span_.planar) grips_.unwrap(x, plane_.start_theta());
+  if (!span_.planar) return;
+  grips_.unwrap(x, plane_.start_theta());
+  revise();
 }
 
 Eigen::VectorXd SpanEnergy::prolong(const SpanEnergy& other, const Eigen::VectorXd& x) {
-  if (other.span_.planar && span_.planar) grips_.unwrap(other.grips_);
+  if (other.span_.planar && span_.planar) {
+    grips_.unwrap(other.grips_);
+    revise();
+  }
   // A planar shape's curvature is u1.
   Eigen::VectorXd prolonged = unknowns_.prolong(other.unknowns_, x);
   if (unknowns_.free_start == 1 && other.span_.planar && !span_.planar) {
@@ -321,41 +344,42 @@ TangentField SpanEnergy::field(const Eigen::VectorXd& x) const {
   };
 }
 
-Energies SpanEnergy::energies(const Eigen::VectorXd& x) {
-  Eigen::VectorXd gradient(x.size());
-  (void)value(x, gradient);
+Energies SpanEnergy::energies(const SpanPoint& at) const {
   Energies energies;
-  Eigen::VectorXd stored = x;
+  Eigen::VectorXd stored = at.x;
   unknowns_.clear_start(stored);
   const Eigen::Index bends = std::min<Eigen::Index>(unknowns_.fields, 2) * unknowns_.columns();
   energies.bending = stored.head(bends).squaredNorm() / 2;
   energies.twisting = stored.tail(stored.size() - bends).squaredNorm() / 2;
   if (!span_.loads.empty()) {
-    energies.load = energy_of_forces(span_.loads, PositionOperator(span_, pieces_, *table_), t_);
+    energies.load = energy_of_forces(span_.loads, PositionOperator(span_, pieces_, *table_), at.t);
   }
-  energies.gravity = loads_.force_energy(t_) - energies.load;
-  if (loads_.couples().size() > 0) energies.load -= loads_.couples().dot(x);
+  energies.gravity = loads_.force_energy(at.t) - energies.load;
+  if (loads_.couples().size() > 0) energies.load -= loads_.couples().dot(at.x);
   for (const Span::Load& load : span_.loads) {
     if (!span_.planar || !span_.has_material_directors()) break;
     energies.load -= load.couple * span_.natural.integral(load.at).x();
   }
-  energies.contact = soft_contact_.energy();
+  if (has_soft_obstacles()) energies.contact = soft_contact_.energy(at.pressed);
   return energies;
 }
 
-Eigen::Vector3d SpanEnergy::hold_torque(Eigen::Index hold, const Eigen::VectorXd& multipliers) {
+Eigen::Vector3d SpanEnergy::hold_torque(SpanPoint& at, Eigen::Index hold,
+                                        const Eigen::VectorXd& multipliers) const {
   if (span_.planar) return grips_.torque(hold, multipliers, nullptr);
-  const SpatialPoint at = in_space();
-  return grips_.torque(hold, multipliers, &at);
+  const SpatialPoint here = in_space(at);
+  return grips_.torque(hold, multipliers, &here);
 }
 
-Eigen::Vector3d SpanEnergy::start_torque(const Eigen::VectorXd& multipliers) {
+Eigen::Vector3d SpanEnergy::start_torque(SpanPoint& at, const Eigen::VectorXd& multipliers) const {
   if (!span_.start_direction) return Eigen::Vector3d::Zero();
-  const SpatialPoint at = in_space();
-  Eigen::Vector3d moment = grips_.moment(multipliers, span_.planar ? nullptr : &at);
-  loads_.add_moment(span_, t_, moment);
-  if (contacts_.count() > 0) moment += contacts_.moment(of_contacts(multipliers), t_);
-  return -(moment + soft_contact_.moment(t_));
+  const SpatialPoint here = in_space(at);
+  Eigen::Vector3d moment = grips_.moment(multipliers, span_.planar ? nullptr : &here);
+  loads_.add_moment(span_, at.t, moment);
+  if (contacts_.count() > 0) {
+    moment += at.contacts.moment(of_contacts(multipliers), at.t);
+  }
+  return -(moment + soft_contact_.moment(at.pressed, at.t));
 }
 
 }  // namespace dlo::energy_model

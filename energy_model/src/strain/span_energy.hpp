@@ -6,7 +6,6 @@
 
 #include "dlo/energy_model/problem.hpp"
 #include "frames/fit_frames.hpp"
-#include "frames/frame_hessian.hpp"
 #include "frames/planar_frames.hpp"
 #include "frames/rod_frames.hpp"
 #include "frames/span_shape.hpp"
@@ -14,6 +13,7 @@
 #include "strain/dead_loads.hpp"
 #include "strain/grip_rows.hpp"
 #include "strain/soft_contact.hpp"
+#include "strain/span_point.hpp"
 #include "strain/span_unknowns.hpp"
 
 namespace dlo::energy_model {
@@ -27,8 +27,8 @@ namespace dlo::energy_model {
 /// frame meet its clamp's. With material directors the frames are the rod's own.
 ///
 /// L = E - sum mu . c: the multipliers mu are the forces (of positions) and torques (of end angles)
-/// that the grips exert on the rod. value(), constraint() and hessian() allocate nothing, but for
-/// obstacles and what the first Hessian takes.
+/// that the grips exert on the rod. evaluate() and hessian() allocate nothing once a point has its
+/// size, but for obstacles.
 class SpanEnergy {
  public:
   SpanEnergy() = default;
@@ -49,30 +49,29 @@ class SpanEnergy {
   [[nodiscard]] int pieces() const { return static_cast<int>(pieces_.size()); }
   [[nodiscard]] double longest_piece() const;
 
-  /// Energy in EI/l and its gradient; known already where the last value() was, unless obstacles'
-  /// multipliers may have moved on.
-  [[nodiscard]] double value(const Eigen::Ref<const Eigen::VectorXd>& x,
-                             Eigen::Ref<Eigen::VectorXd> gradient);
-  /// Residuals of the constraints at the point of the last value(), and their Jacobian.
-  void constraint(Eigen::Ref<Eigen::VectorXd> residual, Eigen::Ref<Eigen::MatrixXd> jacobian);
-  /// Second derivatives of E - mu . c at the point of the last value().
-  void hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers, Eigen::MatrixXd& result);
+  /// Of what the model's values are: another one after reset(), and whatever turns a clamp.
+  [[nodiscard]] long revision() const { return revision_; }
+  /// Energy, gradient and constraints at x.
+  void evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, SpanPoint& point) const;
+  [[nodiscard]] SpanPoint evaluated(const Eigen::Ref<const Eigen::VectorXd>& x) const {
+    SpanPoint point;
+    evaluate(x, point);
+    return point;
+  }
+  /// Second derivatives of E - mu . c.
+  void hessian(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+               Eigen::MatrixXd& result) const;
   /// For a planar span of a round rod without natural strains: the same for bending out of the
   /// plane, with its constraints' Jacobian. Unknowns are the rates of the tangent's tilt.
   /// second_derivatives_out_of_plane() is for all planar spans.
-  void tilt_hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers, Eigen::MatrixXd& hessian,
-                    Eigen::MatrixXd& jacobian);
+  void tilt_hessian(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                    Eigen::MatrixXd& hessian, Eigen::MatrixXd& jacobian) const;
   /// For a planar span held by one clamp and nothing else: whether bending out of the plane stores
-  /// energy, at the point of the last value().
-  [[nodiscard]] bool resists_out_of_plane();
-  /// The point of the last value().
-  [[nodiscard]] const Eigen::VectorXd& x() const { return x_; }
+  /// energy.
+  [[nodiscard]] bool resists_out_of_plane(SpanPoint& at) const;
 
-  /// Arc lengths of the nodes, and tangents there at the point of the last value(), 3 x nodes.
+  /// Arc lengths of the nodes.
   [[nodiscard]] const Eigen::VectorXd& nodes() const { return s_; }
-  [[nodiscard]] Eigen::Matrix3Xd tangents() const { return t_.transpose(); }
-  /// d1 of the rod's own frame there, of a span in space with material directors.
-  [[nodiscard]] Eigen::Matrix3Xd d1() const { return state_.d1.bottomRows(s_.size()).transpose(); }
   /// Unknowns whose tangents, and with material directors frames, at the nodes come nearest to the
   /// given ones; a planar span drops what leaves its plane. Also turns the clamps' angles to the
   /// winding of these tangents.
@@ -112,60 +111,64 @@ class SpanEnergy {
                                        const Eigen::VectorXd& multipliers) const;
   /// Unknowns with this twist.
   [[nodiscard]] Eigen::VectorXd with_twist(Eigen::VectorXd x, double angle) const;
-  /// d1 at the end, at the point of the last value(), of the frame with Span::first_d1() at the
-  /// start, the rod's or Bishop's.
-  [[nodiscard]] Eigen::Vector3d transported_d1() const { return state_.end_frame().col(0); }
   /// Turns the clamp at the end of a span whose frames are held.
   void turn_end_clamp(const Eigen::Vector3d& end_d1);
 
   [[nodiscard]] SpanShape shape(const Eigen::VectorXd& x) const;
   /// The shape of these unknowns, to start from.
   [[nodiscard]] TangentField field(const Eigen::VectorXd& x) const;
-  [[nodiscard]] Energies energies(const Eigen::VectorXd& x);
+  [[nodiscard]] Energies energies(const SpanPoint& at) const;
 
   [[nodiscard]] const Piece& piece(Eigen::Index index) const {
     return pieces_[static_cast<std::size_t>(index)];
   }
   /// On which the nodes of each piece lie.
   [[nodiscard]] const LegendreTable& table() const { return *table_; }
-  /// Derivatives of the tangents at the nodes by the unknowns but for the twist psi, at the point
-  /// of the last value(): components x, y and z, nodes x unknowns.
-  [[nodiscard]] std::array<Eigen::MatrixXd, 3> tangent_jacobian();
+  /// Derivatives of the tangents at the nodes by the unknowns but for the twist psi: components x,
+  /// y and z, nodes x unknowns.
+  [[nodiscard]] std::array<Eigen::MatrixXd, 3> tangent_jacobian(SpanPoint& at) const;
 
   [[nodiscard]] bool has_soft_obstacles() const { return soft_contact_.any(); }
-  [[nodiscard]] SoftContact& soft_contact() { return soft_contact_; }
-  [[nodiscard]] const SoftContact& soft_contact() const { return soft_contact_; }
+  /// Of each soft obstacle on the span.
+  [[nodiscard]] std::vector<Eigen::Vector3d> soft_obstacle_forces(const SpanPoint& at) const {
+    return soft_contact_.forces(at.pressed);
+  }
   /// What holds the rod on rigid obstacles by these multipliers.
-  [[nodiscard]] std::vector<ContactForce> contact_forces(const Eigen::VectorXd& multipliers) const {
-    return contacts_.forces(of_contacts(multipliers));
+  [[nodiscard]] std::vector<ContactForce> contact_forces(const SpanPoint& at,
+                                                         const Eigen::VectorXd& multipliers) const {
+    return contacts_.forces(at.contacts, of_contacts(multipliers));
   }
 
-  /// Where one of Span::contacts that slides is, at the point of the last value(); nothing of
-  /// others.
-  [[nodiscard]] std::optional<double> touches_at(std::size_t contact) const {
-    return contacts_.touches_at(contact);
+  /// Where one of Span::contacts that slides is; nothing of others.
+  [[nodiscard]] std::optional<double> touches_at(const SpanPoint& at, std::size_t contact) const {
+    return contacts_.touches_at(at.contacts, contact);
   }
 
-  /// Torque of one of the span's holds and of the clamp at its start, at the point of the last
-  /// value(): the weak forms, from the directors' multipliers and from the balance about the start.
-  /// They converge with the energy, the curvature at the very end only with its last coefficients.
-  [[nodiscard]] Eigen::Vector3d hold_torque(Eigen::Index hold, const Eigen::VectorXd& multipliers);
-  [[nodiscard]] Eigen::Vector3d start_torque(const Eigen::VectorXd& multipliers);
+  /// Torque of one of the span's holds and of the clamp at its start: the weak forms, from the
+  /// directors' multipliers and from the balance about the start. They converge with the energy,
+  /// the curvature at the very end only with its last coefficients.
+  [[nodiscard]] Eigen::Vector3d hold_torque(SpanPoint& at, Eigen::Index hold,
+                                            const Eigen::VectorXd& multipliers) const;
+  [[nodiscard]] Eigen::Vector3d start_torque(SpanPoint& at,
+                                             const Eigen::VectorXd& multipliers) const;
 
  private:
   [[nodiscard]] Eigen::Index strains() const { return unknowns_.strains(); }
   [[nodiscard]] bool has_psi() const { return unknowns_.has_psi; }
-  [[nodiscard]] PlanarPoint in_plane() { return {plane_, plane_state_, t_, x_}; }
-  [[nodiscard]] SpatialPoint in_space() {
-    return {frames_, state_, t_, has_psi() ? twist_root_ : 0, has_psi() ? twist(x_) : 0};
+  void resize(SpanPoint& point) const;
+  [[nodiscard]] PlanarPoint in_plane(SpanPoint& at) const { return {plane_, at.plane, at.t, at.x}; }
+  [[nodiscard]] SpatialPoint in_space(SpanPoint& at) const {
+    return {frames_, at.frames, at.t, has_psi() ? twist_root_ : 0, has_psi() ? twist(at.x) : 0};
   }
   /// Between those of positions and of directions.
   [[nodiscard]] Eigen::VectorXd of_contacts(
       const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
     return multipliers.segment(grips_.positions(), contacts_.count());
   }
-  void carry(const Eigen::Ref<const Eigen::VectorXd>& multipliers);
-  void carry_tilts(const Eigen::Ref<const Eigen::VectorXd>& multipliers);
+  void constrain(SpanPoint& point) const;
+  void carry(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
+  void carry_tilts(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
+  void revise();
 
   Span span_;
   std::vector<Piece> pieces_;
@@ -180,27 +183,11 @@ class SpanEnergy {
   ContactRows contacts_;
   SoftContact soft_contact_;
 
-  // In the plane
-  PlanarFrames plane_;
-  PlanarFrames::State plane_state_;
+  PlanarFrames plane_;  // in the plane
   // In space
   Eigen::Matrix3d start_frame_ = Eigen::Matrix3d::Identity();
   RodFrames frames_;
-  RodFrames::State state_;
-  FrameHessian frame_hessian_;
-
-  // At the point of the last value(), nodes x 3
-  Eigen::MatrixX3d t_;
-  Eigen::MatrixX3d total_;  // -dE/dt, of all but bending: loads and the obstacles' beyond the node
-  Eigen::VectorXd x_, gradient_;
-  double energy_ = 0;
-  bool evaluated_ = false;  // x_ is a point that value() has seen since reset()
-
-  // Scratch
-  Eigen::MatrixX3d carried_;                 // total_ and what grips and contacts add to it
-  std::vector<Eigen::Vector3d> couples_;     // by piece
-  std::vector<Eigen::Matrix3d> curvatures_;  // by piece
-  Eigen::VectorXd along_, by_unknown_;
+  long revision_ = 0;
 };
 
 }  // namespace dlo::energy_model

@@ -36,10 +36,25 @@ struct [[nodiscard]] SpanSolution {
   std::shared_ptr<SpanEnergy> model;
   Eigen::VectorXd x;
   Eigen::VectorXd multipliers;
+  /// Of the model where x was found, which others may share; null: not known.
+  std::shared_ptr<SpanPoint> point;
   /// Of `model` at a point on the way to x, which the last steps of Newton's method were made with
   /// or certify() has asked; null: there is none.
   std::shared_ptr<NewtonFactor> factor;
 
+  /// Whether `point` is the model's at x, as both are now.
+  [[nodiscard]] bool has_point() const {
+    return point && point->revision == model->revision() && point->x == x;
+  }
+  /// The model's point at x, evaluated now where it is not known.
+  [[nodiscard]] std::shared_ptr<SpanPoint> at_x() const {
+    return has_point() ? point : std::make_shared<SpanPoint>(model->evaluated(x));
+  }
+  /// Evaluates the model, and counts it.
+  void evaluate(const Eigen::Ref<const Eigen::VectorXd>& where, SpanPoint& at) {
+    model->evaluate(where, at);
+    ++evaluations;
+  }
   void finish(SolveStatus how) {
     status = how;
     message = to_string(how);

@@ -128,23 +128,19 @@ class RodVibrations {
   void add(const PlacedSolution& found) {
     const PlacedSpan& placed = found.placed;
     const std::shared_ptr<SpanEnergy>& model = found.solution.model;
-    Eigen::VectorXd gradient(model->size());
-    (void)model->value(found.solution.x, gradient);
+    const std::shared_ptr<SpanPoint> at = found.solution.at_x();
     if (known_ != nullptr) {
       const Eigen::Matrix3Xd known =
           field_of(*known_, placed, problem_.length)(model->nodes()).tangents;
-      farthest_ = std::max(farthest_, (known - model->tangents()).cwiseAbs().maxCoeff());
+      farthest_ = std::max(farthest_, (known - at->tangents()).cwiseAbs().maxCoeff());
     }
-    Eigen::VectorXd residual(model->constraints());
-    Eigen::MatrixXd jacobian(model->constraints(), model->size());
-    model->constraint(residual, jacobian);
     Eigen::MatrixXd hessian;
-    model->hessian(found.solution.multipliers, hessian);
-    const ShapeAxes axes = shape_axes(model->tangents());
+    model->hessian(*at, found.solution.multipliers, hessian);
+    const ShapeAxes axes = shape_axes(at->tangents());
     auto span = std::make_shared<VibratingSpan>(
         VibratingSpan{placed,
                       PositionOperator(model->span(), pieces_of(model->span()), model->table()),
-                      model->tangent_jacobian(),
+                      model->tangent_jacobian(*at),
                       {},
                       axes.flat});
     // Twist of a round rod moves no point.
@@ -173,7 +169,7 @@ class RodVibrations {
                                    axes.rows(2, 1) * span->tangents[1] +
                                    axes.rows(2, 2) * span->tangents[2];
     // Two of one frequency are told apart together.
-    span->modes = span_modes(hessian, jacobian, mass, mass_along(across), count_ + 1);
+    span->modes = span_modes(hessian, at->jacobian, mass, mass_along(across), count_ + 1);
     spans_.push_back(std::move(span));
   }
 

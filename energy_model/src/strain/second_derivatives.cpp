@@ -1,4 +1,4 @@
-#include "strain/point_on_span.hpp"
+#include "strain/second_derivatives.hpp"
 
 #include <Eigen/QR>
 #include <utility>
@@ -6,37 +6,18 @@
 
 namespace dlo::energy_model {
 
-void evaluate(SpanEnergy& model, PointOnSpan& point) {
-  point.gradient.resize(model.size());
-  point.residual.resize(model.constraints());
-  point.jacobian.resize(model.constraints(), model.size());
-  point.energy = model.value(point.x, point.gradient);
-  model.constraint(point.residual, point.jacobian);
-}
-
-void evaluate(SpanSolution& solution, PointOnSpan& point) {
-  evaluate(*solution.model, point);
-  ++solution.evaluations;
-}
-
-PointOnSpan evaluated(SpanEnergy& model, const Eigen::VectorXd& x) {
-  PointOnSpan point;
-  point.x = x;
-  evaluate(model, point);
-  return point;
-}
-
-SecondDerivatives second_derivatives(SpanEnergy& model, const Eigen::VectorXd& x,
+SecondDerivatives second_derivatives(const SpanEnergy& model, const Eigen::VectorXd& x,
                                      const Eigen::VectorXd& multipliers) {
+  SpanPoint point = model.evaluated(x);
   SecondDerivatives result;
-  result.jacobian = std::move(evaluated(model, x).jacobian);
-  model.hessian(multipliers, result.hessian);
+  model.hessian(point, multipliers, result.hessian);
+  result.jacobian = std::move(point.jacobian);
   return result;
 }
 
 SecondDerivatives second_derivatives_at(SpanEnergy& of, const SpanEnergy& found_in,
                                         const Eigen::VectorXd& x) {
-  PointOnSpan point = evaluated(of, of.prolong(found_in, x));
+  SpanPoint point = of.evaluated(of.prolong(found_in, x));
   // The forces are the other one's, seen in these constraints.
   const Eigen::VectorXd multipliers =
       of.constraints() == 0
@@ -44,23 +25,23 @@ SecondDerivatives second_derivatives_at(SpanEnergy& of, const SpanEnergy& found_
           : Eigen::VectorXd(
                 point.jacobian.transpose().completeOrthogonalDecomposition().solve(point.gradient));
   SecondDerivatives result;
-  of.hessian(multipliers, result.hessian);
+  of.hessian(point, multipliers, result.hessian);
   result.jacobian = std::move(point.jacobian);
   return result;
 }
 
-SecondDerivatives second_derivatives_out_of_plane(SpanEnergy& model,
+SecondDerivatives second_derivatives_out_of_plane(const SpanEnergy& model, SpanPoint& at,
                                                   const Eigen::VectorXd& multipliers) {
   SecondDerivatives result;
   if (!model.span().has_material_directors()) {
-    model.tilt_hessian(multipliers, result.hessian, result.jacobian);
+    model.tilt_hessian(at, multipliers, result.hessian, result.jacobian);
     return result;
   }
   // A rod that is curved, or of another stiffness out of its plane, twists as it leaves it.
   Span space = model.span();
   space.planar = false;
   SpanEnergy twin(space, model.terms());
-  const SecondDerivatives all = second_derivatives_at(twin, model, model.x());
+  const SecondDerivatives all = second_derivatives_at(twin, model, at.x);
   const Eigen::Index out = twin.size() - model.size();
   result.hessian = all.hessian.bottomRightCorner(out, out);
   // Of a position its z, of a direction what is across it along z.

@@ -7,25 +7,13 @@
 
 namespace dlo::energy_model {
 
-/// Energy, its derivatives and the constraints at a point.
-struct PointOnSpan {
-  Eigen::VectorXd x, gradient, residual;
-  Eigen::MatrixXd jacobian;
-  double energy = 0;
-};
-
-/// A model at point.x, which it is left at, into the rest.
-void evaluate(SpanEnergy& model, PointOnSpan& point);
-/// The same, which the solution counts.
-void evaluate(SpanSolution& solution, PointOnSpan& point);
-[[nodiscard]] PointOnSpan evaluated(SpanEnergy& model, const Eigen::VectorXd& x);
-
 /// Second derivatives of E - mu . c, and what the constraints hold.
 struct SecondDerivatives {
   Eigen::MatrixXd hessian, jacobian;
 };
 
-[[nodiscard]] SecondDerivatives second_derivatives(SpanEnergy& model, const Eigen::VectorXd& x,
+[[nodiscard]] SecondDerivatives second_derivatives(const SpanEnergy& model,
+                                                   const Eigen::VectorXd& x,
                                                    const Eigen::VectorXd& multipliers);
 [[nodiscard]] inline SecondDerivatives second_derivatives(const SpanSolution& solution) {
   return second_derivatives(*solution.model, solution.x, solution.multipliers);
@@ -37,9 +25,10 @@ struct SecondDerivatives {
                                                       const Eigen::VectorXd& x);
 
 /// The same for bending (and twisting, with material directors) of a planar span out of its plane,
-/// at the point where the model is. Unknowns of a round rod are the rates of the tangent's tilt,
+/// at a point of the model. Unknowns of a round rod are the rates of the tangent's tilt,
 /// with material directors the last unknowns of the same span in space.
-[[nodiscard]] SecondDerivatives second_derivatives_out_of_plane(SpanEnergy& model,
+[[nodiscard]] SecondDerivatives second_derivatives_out_of_plane(const SpanEnergy& model,
+                                                                SpanPoint& at,
                                                                 const Eigen::VectorXd& multipliers);
 
 }  // namespace dlo::energy_model
