@@ -164,6 +164,39 @@ void bind_arrays(Class& bound) {
           "What each obstacle exerts on the rod [N], shape (O, 3), read only.");
 }
 
+void bind_equilibria(py::module_& module) {
+  py::class_<SolvedStates, std::shared_ptr<SolvedStates>> equilibria(
+      module, "Equilibria",
+      "Every equilibrium that was found: a sequence of Solution, stable ones first, by energy.");
+  bind_result(equilibria);
+  bind_picture(equilibria, [](const SolvedStates& solved) {
+    return compare::solution_drawing(solved.scene->scene, solved.all.solutions);
+  });
+  equilibria.def("__len__", [](const SolvedStates& solved) { return solved.all.solutions.size(); })
+      .def(
+          "__getitem__",
+          [](const SolvedStates& solved, py::ssize_t index) {
+            const auto size = static_cast<py::ssize_t>(solved.all.solutions.size());
+            if (index < 0) index += size;
+            if (index < 0 || index >= size) throw py::index_error("no such equilibrium");
+            return std::make_shared<SolvedScene>(
+                SolvedScene{solved.scene, solved.all.solutions[static_cast<std::size_t>(index)],
+                            solved.time_limit});
+          },
+          py::arg("index"))
+      .def("__iter__",
+           [](const py::object& self) {
+             return py::reinterpret_steal<py::iterator>(PySeqIter_New(self.ptr()));
+           })
+      .def_property_readonly(
+          "not_looked", [](const SolvedStates& solved) { return solved.all.not_looked; },
+          "What a limit has cut short, or the search does not cover.")
+      .def("to_json", &states_document, "The document of `dlo solve --all --format json`, as text.")
+      .def("__str__", [](const SolvedStates& solved) {
+        return cli::equilibria_text(solved.all, solved.scene->scene);
+      });
+}
+
 }  // namespace
 
 compare::SolveOptions solve_options(const py::dict& given) {
@@ -209,36 +242,7 @@ void bind_solve(py::module_& module) {
       .def("__str__", [](const SolvedScene& solved) {
         return cli::solution_text(solved.solution, solved.scene->scene);
       });
-  py::class_<SolvedStates, std::shared_ptr<SolvedStates>> equilibria(
-      module, "Equilibria",
-      "Every equilibrium that was found: a sequence of Solution, stable ones first, by energy.");
-  bind_result(equilibria);
-  bind_picture(equilibria, [](const SolvedStates& solved) {
-    return compare::solution_drawing(solved.scene->scene, solved.all.solutions);
-  });
-  equilibria.def("__len__", [](const SolvedStates& solved) { return solved.all.solutions.size(); })
-      .def(
-          "__getitem__",
-          [](const SolvedStates& solved, py::ssize_t index) {
-            const auto size = static_cast<py::ssize_t>(solved.all.solutions.size());
-            if (index < 0) index += size;
-            if (index < 0 || index >= size) throw py::index_error("no such equilibrium");
-            return std::make_shared<SolvedScene>(
-                SolvedScene{solved.scene, solved.all.solutions[static_cast<std::size_t>(index)],
-                            solved.time_limit});
-          },
-          py::arg("index"))
-      .def("__iter__",
-           [](const py::object& self) {
-             return py::reinterpret_steal<py::iterator>(PySeqIter_New(self.ptr()));
-           })
-      .def_property_readonly(
-          "not_looked", [](const SolvedStates& solved) { return solved.all.not_looked; },
-          "What a limit has cut short, or the search does not cover.")
-      .def("to_json", &states_document, "The document of `dlo solve --all --format json`, as text.")
-      .def("__str__", [](const SolvedStates& solved) {
-        return cli::equilibria_text(solved.all, solved.scene->scene);
-      });
+  bind_equilibria(module);
   module.def("solve", &solve, py::arg("scene"), py::arg("model"), py::arg("samples"),
              py::arg("limits"));
   module.def("solve_all", &solve_all, py::arg("scene"), py::arg("samples"), py::arg("limits"));

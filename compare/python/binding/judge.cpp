@@ -60,22 +60,24 @@ compare::MeasuredShape measured(const py::object& points, const py::object& arc_
 }
 
 std::shared_ptr<CheckResult> check(const SharedScene& scene, const py::object& points,
-                                   const py::object& arc_length, const py::tuple& tolerance,
-                                   const std::string& pose, const std::string& arc_lengths,
-                                   bool modulus, const py::dict& limits) {
+                                   const py::object& arc_length, const py::dict& what,
+                                   const py::dict& limits) {
   const compare::MeasuredShape shape = measured(points, arc_length, "points");
   compare::CheckRequest request{
-      .explaining = tolerance[3].cast<bool>() ? compare::Explaining::yes : compare::Explaining::no,
-      .shape = {.pose = compare::from_name<compare::PoseFreedom>(pose),
-                .arc_lengths = compare::from_name<compare::ArcLengths>(arc_lengths),
-                .modulus = modulus ? compare::ModulusSearch::yes : compare::ModulusSearch::no,
+      .explaining =
+          what["explain"].cast<bool>() ? compare::Explaining::yes : compare::Explaining::no,
+      .shape = {.pose = compare::from_name<compare::PoseFreedom>(what["pose"].cast<std::string>()),
+                .arc_lengths =
+                    compare::from_name<compare::ArcLengths>(what["arc_lengths"].cast<std::string>()),
+                .modulus = what["modulus"].cast<bool>() ? compare::ModulusSearch::yes
+                                                        : compare::ModulusSearch::no,
                 .solve = solve_options(limits)}};
   request.shape.solve.accept_unverified = false;
-  if (const auto allowed = tolerance[0].cast<std::optional<std::string>>()) {
-    request.tolerance = cli::shape_tolerance(
-        "tolerance",
-        {*allowed, tolerance[1].cast<std::string>(), tolerance[2].cast<std::optional<double>>()},
-        scene->scene.length);
+  if (const auto allowed = what["tolerance"].cast<std::optional<std::string>>()) {
+    request.tolerance = cli::shape_tolerance("tolerance",
+                                             {*allowed, what["measure"].cast<std::string>(),
+                                              what["min_seen"].cast<std::optional<double>>()},
+                                             scene->scene.length);
   }
   return std::make_shared<CheckResult>(
       run_long([&](Signals& /*signals*/) { return compare::check(scene->scene, shape, request); }));
@@ -266,8 +268,7 @@ void bind_judge(py::module_& module) {
   bind_check(module);
   bind_comparison(module);
   module.def("check", &check, py::arg("scene"), py::arg("points"), py::arg("arc_length"),
-             py::arg("tolerance"), py::arg("pose"), py::arg("arc_lengths"), py::arg("modulus"),
-             py::arg("limits"));
+             py::arg("what"), py::arg("limits"));
   module.def("compare", &compare_scene, py::arg("scene"), py::arg("modulus"), py::arg("plan"),
              py::arg("limits"));
   module.def("calibrate_material", &calibrate_material, py::arg("scenes"), py::arg("shapes"),

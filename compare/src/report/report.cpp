@@ -231,6 +231,17 @@ void add_benchmark(const std::vector<Scene>& scenes, const Stages& progress, Rep
   if (!together.scenes.empty()) report.benchmark = std::move(together);
 }
 
+/// Scenes whose speed is measured; of files the extremes, whose names the report keeps.
+std::vector<Scene> benchmarked(const std::vector<SceneFile>& files, Report& report) {
+  if (report.paper) return benchmark_scenes();
+  std::vector<Scene> scenes;
+  for (const SceneFile* file : extremes(files)) {
+    scenes.push_back(file->scene);
+    report.benchmark_files.push_back(file->name);
+  }
+  return scenes;
+}
+
 }  // namespace
 
 std::vector<SceneFile> load_scene_files(const std::vector<std::string>& paths) {
@@ -294,16 +305,9 @@ Report make_report(const std::vector<SceneFile>& files, const ReportOptions& opt
   report.options = options;
   report.paper = files.empty();
   if (options.benchmark) {
-    std::vector<Scene> scenes = benchmark_scenes();
-    if (!report.paper) {
-      scenes.clear();
-      for (const SceneFile* file : extremes(files)) {
-        scenes.push_back(file->scene);
-        report.benchmark_files.push_back(file->name);
-      }
-    }
     add_benchmark(
-        scenes, [&](const std::string& what) { say("speed against error: " + what); }, report);
+        benchmarked(files, report),
+        [&](const std::string& what) { say("speed against error: " + what); }, report);
   }
   constexpr std::size_t paper_scene_files = 3;
   say("scenes: both models, and E*/E on the way to rest");
