@@ -10,6 +10,7 @@
 #include "format/json.hpp"
 #include "format/stability_output.hpp"
 #include "option/exit_status.hpp"
+#include "option/option_values.hpp"
 #include "option/output.hpp"
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
@@ -85,17 +86,14 @@ void run_cases(StabilityOptions& options) {
 constexpr long most_steps = 1000000000000;
 
 void add_case_options(CLI::App& command, StabilityOptions& options) {
-  const std::string group = "Hard cases";
-  command.add_option("--case", options.cases.name_contains, "only cases whose name contains this")
-      ->group(group);
+  const OptionGroup group(command, "Hard cases");
+  command.add_option("--case", options.cases.name_contains, "only cases whose name contains this");
   command.add_option("--stepper", options.steppers, "only these steppers")
-      ->check(CLI::IsMember(compare::names<compare::Stepper>()))
-      ->group(group);
+      ->check(CLI::IsMember(compare::names<compare::Stepper>()));
   const auto add_steps = [&](const char* name, long& value, const char* words) {
     command.add_option(name, value, words)
         ->check(CLI::Range(1L, most_steps))
-        ->capture_default_str()
-        ->group(group);
+        ->capture_default_str();
   };
   add_steps("--max-steps", options.cases.max_steps, "of the paper's steppers and verlet");
   add_steps("--max-steps-auto", options.cases.max_steps_auto, "of steppers auto and implicit");
@@ -104,19 +102,16 @@ void add_case_options(CLI::App& command, StabilityOptions& options) {
 }
 
 void add_map_options(CLI::App& command, StabilityOptions& options) {
-  const std::string group = "Map";
+  const OptionGroup group(command, "Map");
   command.add_option("--columns", options.grid.columns, "values of c_c or c_h")
       ->check(CLI::Range(1, 1000))
-      ->capture_default_str()
-      ->group(group);
+      ->capture_default_str();
   command.add_option("--rows", options.grid.rows, "values of c_F")
       ->check(CLI::Range(2, 1000))
-      ->capture_default_str()
-      ->group(group);
+      ->capture_default_str();
   command.add_option("--map-steps", options.grid.steps, "of each rod")
       ->check(CLI::Range(1L, most_steps))
-      ->capture_default_str()
-      ->group(group);
+      ->capture_default_str();
 }
 
 }  // namespace
