@@ -11,7 +11,6 @@
 #include <tuple>
 #include <utility>
 
-#include "base/fingerprint.hpp"
 #include "base/quote.hpp"
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/deviation.hpp"
@@ -19,6 +18,7 @@
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solve.hpp"
+#include "reading/fingerprint.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -309,20 +309,6 @@ std::optional<double> only_coefficient(const Scene& scene) {
 
 }  // namespace
 
-const char* to_string(FrictionVerdict verdict) {
-  switch (verdict) {
-    case FrictionVerdict::none_needed:
-      return "none_needed";
-    case FrictionVerdict::inside:
-      return "inside";
-    case FrictionVerdict::outside:
-      return "outside";
-    case FrictionVerdict::not_identified:
-      break;
-  }
-  return "not_identified";
-}
-
 FrictionCheck check_friction(const Scene& scene, const ShapeCheck& check) {
   FrictionCheck result;
   result.reason = refusal(scene, check);

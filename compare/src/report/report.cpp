@@ -5,12 +5,12 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
 
 #include "base/input_file.hpp"
+#include "base/timer.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/error.hpp"
@@ -86,9 +86,7 @@ template <typename Function>
 void try_to(const std::string& what, std::vector<std::string>& failures, const Function& function) {
   try {
     function();
-  } catch (const ConvergenceError& error) {
-    failures.push_back(fmt::format("{}: {}", what, error.what()));
-  } catch (const InputError& error) {
+  } catch (const ResultError& error) {
     failures.push_back(fmt::format("{}: {}", what, error.what()));
   } catch (const std::invalid_argument& error) {
     failures.push_back(fmt::format("{}: {}", what, error.what()));
@@ -299,7 +297,7 @@ Report make_report(const std::vector<SceneFile>& files, const ReportOptions& opt
       say(fmt::format("{}, {} of {}", what, done, total));
     };
   };
-  const auto start = std::chrono::steady_clock::now();
+  const Timer timer;
   for (const SceneFile& file : files) (void)discretise(file.scene, file.scene.force_model);
   Report report;
   report.options = options;
@@ -340,7 +338,7 @@ Report make_report(const std::vector<SceneFile>& files, const ReportOptions& opt
     cases.progress = counted("hard cases");
     try_to("hard cases", report.failures, [&] { report.hard_cases = stability(cases); });
   }
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.seconds = timer.seconds();
   return report;
 }
 

@@ -4,13 +4,13 @@
 
 #include <Eigen/QR>
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "base/timer.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/error.hpp"
@@ -203,14 +203,7 @@ void add_rest(const RestingRod& rest, Solution& solution) {
   const force_model::Simulation& simulation = rest.simulation;
   solution.model = Model::force;
   solution.message = rest.result.message;
-  // What an obstacle does to a held point inside a gripper is not felt outside.
-  force_model::Rod without_walls = simulation.rod();
-  without_walls.walls.clear();
-  without_walls.solids.clear();
-  for (const force_model::GripReaction& reaction :
-       force_model::grip_reactions(without_walls, simulation.points())) {
-    solution.grippers.push_back({reaction.force, reaction.torque});
-  }
+  solution.grippers = gripper_loads(simulation.rod(), simulation.points());
   solution.steps = rest.result.steps;
   solution.c_F = simulation.options().c_F;
   solution.c_h = simulation.options().c_h;
@@ -230,7 +223,7 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
   Discretisation discretisation = discretise(dead_scene, settings);
   set_masses(dead_scene, settings, discretisation);
   const SimulationStart start = simulation_start(dead_scene, settings, discretisation, options);
-  const auto begin = std::chrono::steady_clock::now();
+  const Timer timer;
   const auto simulate = [&](const force_model::Rod& rod, const Eigen::Matrix3Xd& points) {
     try {
       return force_model::Simulation(rod, points, step_options(settings, discretisation));
@@ -275,8 +268,7 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
   add_rest(rest, solution);
   if (scene.drag) solution.status = energy_model::SolveStatus::not_verified;
   if (!scene.drag && strayed()) solution.message += ", in another state than the chain";
-  solution.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  solution.seconds = timer.seconds();
   return solution;
 }
 

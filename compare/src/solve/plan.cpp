@@ -4,12 +4,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <exception>
 #include <optional>
 #include <stdexcept>
 
+#include "base/timer.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
@@ -27,22 +27,6 @@ constexpr double unbounded = std::numeric_limits<double>::infinity();
 constexpr double bound_factor = 2;
 constexpr double largest_response = 0.03;
 constexpr double largest_joint_angle = 0.5;  // [rad]
-
-/// The time that a plan may take.
-class PlanClock {
- public:
-  explicit PlanClock(double limit) : limit_(limit) {}
-
-  /// [s]
-  [[nodiscard]] double left() const {
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
-    return limit_ - spent.count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  double limit_;
-};
 
 std::vector<PlannedSpan> spans_of(const Scene& scene) {
   std::vector<PlannedSpan> spans;
@@ -118,7 +102,7 @@ double polygon_bound(const Scene& scene, const energy_model::Equilibrium& rod, i
 
 /// From the error at one N to the next, by the order of convergence, until it is met or time is up.
 int points_for_target(const Scene& scene, const energy_model::Equilibrium& rod, double target,
-                      const PlanClock& clock) {
+                      const TimeLimit& time) {
   const std::vector<double> s = equal_arc_lengths(scene.length, rod_points);
   const double curvature = std::sqrt(rod.sample(s).curvature.colwise().squaredNorm().maxCoeff());
   int points = 5;
@@ -126,7 +110,7 @@ int points_for_target(const Scene& scene, const energy_model::Equilibrium& rod, 
     points = force_model::points_for_radius(scene.length, 1 / curvature, largest_joint_angle);
   }
   const double order = scene.force_model.bookkeeping == Bookkeeping::consistent ? 2 : 1;
-  while (points <= most_planned_points && clock.left() > 0) {
+  while (points <= most_planned_points && time.left() > 0) {
     const double bound = polygon_bound(scene, rod, points);
     if (bound <= target * scene.length) return points;
     const double growth =
@@ -264,16 +248,16 @@ struct LookedAt {
 
 void bound_by_shape(const Scene& scene, const PlanOptions& options, const LookedAt& items,
                     Plan& plan) {
-  const PlanClock clock(options.time_limit);
+  const TimeLimit time(options.time_limit);
   std::string why;
   const std::optional<energy_model::Equilibrium> rod = rod_shape(scene, options.time_limit, why);
   plan.contact = !rod || touches(*rod);
   if (rod && !plan.twist.empty()) {
     look_at_twist(*rod, plan);
-    look_at(scene.without_twist(), *rod, clock.left(), items.twist);
+    look_at(scene.without_twist(), *rod, time.left(), items.twist);
   }
   if (rod && scene.naturally_bent()) {
-    look_at(scene.without_natural_strain(), *rod, clock.left(), items.natural);
+    look_at(scene.without_natural_strain(), *rod, time.left(), items.natural);
   }
   const std::optional<Discretisation> fine = hooke_polygon(scene, rod_points);
   if (!rod) {
@@ -286,7 +270,7 @@ void bound_by_shape(const Scene& scene, const PlanOptions& options, const Looked
     items.bounds.set_unbounded("the grips lie closer than any polygon looked at");
   } else {
     bound_by_response(scene, *rod, *fine, items.bounds);
-    plan.points = points_for_target(scene, *rod, options.target, clock);
+    plan.points = points_for_target(scene, *rod, options.target, time);
   }
 }
 
