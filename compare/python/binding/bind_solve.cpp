@@ -223,6 +223,12 @@ compare::SolveOptions solve_options(const py::dict& given) {
   return options;
 }
 
+compare::SolveOptions verified_options(const py::dict& given) {
+  compare::SolveOptions options = solve_options(given);
+  options.accept_unverified = false;
+  return options;
+}
+
 void bind_solve(py::module_& module) {
   py::class_<SolvedScene, std::shared_ptr<SolvedScene>> solution(
       module, "Solution",

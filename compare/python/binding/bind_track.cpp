@@ -39,14 +39,13 @@ py::object track(const SharedScene& shared, const py::dict& what, const py::obje
                   .force = what["force"].cast<bool>() ? compare::ForceBeside::runs
                                                       : compare::ForceBeside::absent,
                   .samples = what["samples"].cast<int>(),
-                  .solve = solve_options(limits)},
+                  .solve = verified_options(limits)},
       .frame_rate = what["frame_rate"].cast<Given>(),
       .obstacle_rate = what["obstacle_rate"].cast<Given>(),
       .step_rate = what["step_rate"].cast<Given>()};
   if (what["dynamic"].cast<bool>()) {
     request.damping = {what["damping"].cast<double>(), what["drag"].cast<double>()};
   }
-  request.options.solve.accept_unverified = false;
   const compare::TrackResult found = run_long([&](Signals& signals) {
     return compare::follow(scene, request, [&](auto, auto) { signals.throw_if_stopped(); });
   });
@@ -86,8 +85,7 @@ std::pair<std::string, std::string> calibrate_motion(const SharedScene& shared,
                                                      const std::string& name,
                                                      const py::dict& limits) {
   const compare::MarkerMotion recorded = recorded_motion(rows, name, shared->scene.length);
-  compare::SolveOptions solve = solve_options(limits);
-  solve.accept_unverified = false;
+  const compare::SolveOptions solve = verified_options(limits);
   const compare::MotionFit found = run_long([&](Signals& /*signals*/) {
     return compare::fit_motion(shared->scene, recorded, {.solve = solve});
   });
@@ -108,8 +106,7 @@ std::pair<std::string, std::string> check_motion(const SharedScene& shared,
       .frame_rate = what["frame_rate"].cast<std::optional<double>>(),
       .explaining =
           what["explain"].cast<bool>() ? compare::Explaining::yes : compare::Explaining::no,
-      .solve = solve_options(limits)};
-  request.solve.accept_unverified = false;
+      .solve = verified_options(limits)};
   if (const auto allowed = what["tolerance"].cast<std::optional<std::string>>()) {
     request.tolerance = cli::shape_tolerance(
         "tolerance", {*allowed, what["measure"].cast<std::string>(), std::nullopt}, scene.length);

@@ -56,8 +56,7 @@ py::dict sweep(const std::string& text, const std::string& file, const Materials
                const Axes& fields, const py::dict& what, const py::dict& limits) {
   const auto model = compare::from_name<compare::SweepModel>(what["model"].cast<std::string>());
   const auto threads = what["threads"].cast<int>();
-  compare::SolveOptions options = solve_options(limits);
-  options.accept_unverified = false;
+  const compare::SolveOptions options = verified_options(limits);
   const Table table = run_long([&](Signals& signals) {
     const compare::Sweep sweep(compare::SceneTemplate(text, file, materials_of(materials)),
                                grid_of(fields), model, options);
