@@ -1,4 +1,4 @@
-#include "motion/motion_fit.hpp"
+#include "recording/motion_fit.hpp"
 
 #include <fmt/format.h>
 #include <gsl/gsl_cdf.h>
@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "dlo/compare/error.hpp"
+#include "recording/motion_residuals.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -350,25 +351,17 @@ void add_numbers(const Scene& scene, const MotionMisfit& misfit, const NearestMo
 }
 
 /// What is left of the distances, by marker and of the worst time.
-void add_errors(const MarkerMotion& recorded, const std::vector<RecordedFrame>& frames,
-                const Eigen::VectorXd& residuals, MotionFit& result) {
-  std::map<double, std::pair<double, double>> by_marker;
-  for (const RecordedFrame& frame : frames) {
-    double sum = 0;
-    for (std::size_t i = frame.begin; i < frame.end; ++i) {
-      const double square = residuals.segment<3>(static_cast<Eigen::Index>(3 * i)).squaredNorm();
-      auto& [of_marker, count] = by_marker[recorded.positions[i].arc_length];
-      of_marker += square;
-      count += 1;
-      sum += square;
-    }
-    const double rms = std::sqrt(sum / static_cast<double>(frame.end - frame.begin));
-    if (rms > result.worst.rms) result.worst = {frame.time, rms};
+void add_errors(const MarkerMotion& recorded, const Eigen::VectorXd& residuals, double length,
+                MotionFit& result) {
+  const MotionErrors errors = motion_errors(recorded, residuals.reshaped(3, residuals.size() / 3),
+                                            length, recorded.positions.size());
+  result.rms = errors.rms_m;
+  for (const PartError& marker : errors.markers) {
+    result.by_marker.push_back({marker.from_m, marker.rms_m});
   }
-  for (const auto& [s, sums] : by_marker) {
-    result.by_marker.push_back({s, std::sqrt(sums.first / sums.second)});
-  }
-  result.markers = by_marker.size();
+  result.markers = errors.markers.size();
+  const FrameError& worst = errors.frames[errors.worst_frame];
+  result.worst = {worst.time, worst.rms_m};
 }
 
 }  // namespace
@@ -383,13 +376,11 @@ MotionFit fit_motion(const Scene& scene, const MarkerMotion& recorded,
   result.from = frames.front().time;
   result.to = frames.back().time;
   result.coordinates = misfit.coordinates();
-  const auto distance = [&](const Eigen::VectorXd& residuals) {
-    return std::sqrt(residuals.squaredNorm() / (static_cast<double>(residuals.size()) / 3));
-  };
   if (result.coordinates <= misfit.sought().size()) {
     throw InputError(recorded.file + ": too few rows");
   }
-  result.given_rms = distance(misfit.given());
+  const Eigen::VectorXd given = misfit.given();
+  result.given_rms = rms_of(given.reshaped(3, given.size() / 3));
   constexpr double beginning = 0.2;
   misfit.look_at(beginning);
   Eigen::VectorXd start = first_guess(misfit);
@@ -400,10 +391,9 @@ MotionFit fit_motion(const Scene& scene, const MarkerMotion& recorded,
   if (!misfit.stopped().empty()) {
     throw ConvergenceError("the moving rod stopped: " + misfit.stopped());
   }
-  result.rms = distance(nearest.residuals);
   add_numbers(scene, misfit, nearest, correlated_share(recorded, nearest.residuals), result);
   result.damping = misfit.damping(nearest.logs);
-  add_errors(recorded, frames, nearest.residuals, result);
+  add_errors(recorded, nearest.residuals, scene.length, result);
   result.in_motion = misfit.in_motion();
   result.terms = misfit.terms();
   result.simulations = misfit.simulations();
