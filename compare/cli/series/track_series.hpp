@@ -36,7 +36,7 @@ struct TrackFrames {
 /// Indices of the frames that a table of text shows, from the first to the last.
 [[nodiscard]] std::vector<std::size_t> listed_frames(std::size_t count);
 
-/// Lines of how late a force model is, and of why and when a track has stopped; empty if it is not.
+/// Lines of a force model's lag, and of why and when a track has stopped; empty without one.
 [[nodiscard]] std::string lag_text(double lag, double error_without_lag);
 [[nodiscard]] std::string stop_text(const std::optional<compare::TrackStop>& stop);
 
