@@ -231,6 +231,7 @@ std::vector<std::size_t> listed_frames(std::size_t count) {
   constexpr std::size_t most_rows = 11;
   const std::size_t rows = std::min(count, most_rows);
   std::vector<std::size_t> result;
+  result.reserve(rows);
   for (std::size_t row = 0; row < rows; ++row) {
     result.push_back(rows == 1 ? 0 : row * (count - 1) / (rows - 1));
   }

@@ -278,6 +278,7 @@ double arc_information(const ArcTarget& target, std::size_t arcs, double sum) {
 
 std::vector<Index> spread_indices(Index count, Index chosen) {
   std::vector<Index> result;
+  result.reserve(static_cast<std::size_t>(chosen));
   for (Index k = 0; k < chosen; ++k) result.push_back(k * (count - 1) / (chosen - 1));
   return result;
 }

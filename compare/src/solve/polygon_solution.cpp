@@ -83,8 +83,10 @@ Solution polygon_solution(const Scene& scene, const ForceModelSettings& settings
 std::vector<GripperLoad> gripper_loads(force_model::Rod rod, const Eigen::Matrix3Xd& points) {
   rod.walls.clear();
   rod.solids.clear();
+  const std::vector<force_model::GripReaction> reactions = force_model::grip_reactions(rod, points);
   std::vector<GripperLoad> loads;
-  for (const force_model::GripReaction& reaction : force_model::grip_reactions(rod, points)) {
+  loads.reserve(reactions.size());
+  for (const force_model::GripReaction& reaction : reactions) {
     loads.push_back({reaction.force, reaction.torque});
   }
   return loads;
