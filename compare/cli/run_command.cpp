@@ -29,26 +29,21 @@ void build(CLI::App& app) {
   app.formatter(help_formatter());
   app.set_help_flag("-h,--help", "this help; with a command, its options");
   app.set_version_flag("--version", "dlo " DLO_VERSION, "the version");
-  const std::string setup = "Set up";
-  const auto print = [&app](std::string (*text)(const CLI::App&)) {
-    write_standard_output(text(app));
-    throw CLI::Success();
+  const auto add_text = [&app](const char* name, std::string (*text)(const CLI::App&),
+                               const char* words) {
+    const auto print = [&app, text] {
+      write_standard_output(text(app));
+      throw CLI::Success();
+    };
+    app.add_flag_callback(name, print, words)->group("Set up");
   };
-  app.add_flag_callback(
-         "--man-page", [=] { print(manual_page); }, "print the manual page (mdoc)")
-      ->group(setup);
-  app.add_flag_callback(
-         "--bash-completion", [=] { print(bash_completion); },
-         "print completion for bash: source <(dlo --bash-completion)")
-      ->group(setup);
-  app.add_flag_callback(
-         "--zsh-completion", [=] { print(zsh_completion); },
-         "print completion for zsh: source <(dlo --zsh-completion)")
-      ->group(setup);
-  app.add_flag_callback(
-         "--fish-completion", [=] { print(fish_completion); },
-         "print completion for fish: dlo --fish-completion | source")
-      ->group(setup);
+  add_text("--man-page", manual_page, "print the manual page (mdoc)");
+  add_text("--bash-completion", bash_completion,
+           "print completion for bash: source <(dlo --bash-completion)");
+  add_text("--zsh-completion", zsh_completion,
+           "print completion for zsh: source <(dlo --zsh-completion)");
+  add_text("--fish-completion", fish_completion,
+           "print completion for fish: dlo --fish-completion | source");
   for (const Task& task : tasks()) {
     for (const auto add : task.commands) {
       add(app);

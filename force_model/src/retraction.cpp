@@ -50,10 +50,10 @@ void Retraction::move(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& mo
       for (Eigen::Index k = anchor; k + 1 < i; ++k) {
         moved.col(k + 1) = moved.col(k) + segments_.col(k);
       }
-      const Eigen::Vector3d missed = moved.col(i) - moved.col(i - 1) - segments_.col(i - 1);
+      const Eigen::Vector3d residual = moved.col(i) - moved.col(i - 1) - segments_.col(i - 1);
       const auto count = static_cast<double>(i - anchor);
       for (Eigen::Index k = anchor + 1; k < i; ++k) {
-        moved.col(k) += static_cast<double>(k - anchor) / count * missed;
+        moved.col(k) += static_cast<double>(k - anchor) / count * residual;
       }
       restore_lengths(anchor, i, moved);
     }

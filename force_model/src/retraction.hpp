@@ -10,7 +10,7 @@ namespace dlo::force_model {
 /// moves than its beginning, u = a/|a|,
 ///     |a'| = |a| + u.d,   a'/|a'| along a + d                                            (1)
 /// Anchors move as they are told. A part between an anchor and a free end is put together from (1).
-/// One between two anchors is put together from the first; by what it then misses the other, its
+/// One between two anchors is put together from the first; by what then remains to the other, its
 /// points are moved in proportion, and Newton steps on the lengths alone,
 ///     J J^T y = lengths (1) - lengths,   P += J^T y                                        (2)
 /// give them back, J the derivative of the lengths by the points between. Only the constructor

@@ -55,6 +55,25 @@ inline LaneVector<3> cross(const LaneVector<3>& a, const LaneVector<3>& b) {
 /// Of vectors in the plane z = 0.
 inline LaneVector<2> left(const LaneVector<2>& s) { return {{-s.axis[1], s.axis[0]}}; }
 
+/// What joints bear besides, added to the force through segment k.
+template <JointExtra extra, int dimension, std::ptrdiff_t stride>
+void add_extra(const Registers<dimension, stride>& all, std::ptrdiff_t k,
+               const Segments<dimension>& here, const Segments<dimension>& following,
+               LaneVector<dimension>& T) {
+  using All = Registers<dimension, stride>;
+  const Lanes inverse = here.inverse_length;
+  if constexpr (extra == JointExtra::couples) {
+    const Lanes couple = all.load(natural, k + stride) - all.load(natural, k);
+    T = T + (couple * inverse * inverse) * left(here.s);  // (d)
+  }
+  if constexpr (extra == JointExtra::twist) {
+    const Lanes M_here = all.load(twist_share, k) * here.m;
+    const Lanes M_after = all.load(twist_share, k + stride) * All::after(here.m, following.m);
+    T = T + inverse * (M_here * cross(here.s_before, here.s) +
+                       M_after * cross(here.s, All::after(here.s, following.s)));  // (e)
+  }
+}
+
 template <BendingLaw law, int dimension, std::ptrdiff_t stride, JointExtra extra>
 void compute_forces(const PointBlock& block, PointArray applied, PerLane& regular) {
   using All = Registers<dimension, stride>;
@@ -102,16 +121,7 @@ void compute_forces(const PointBlock& block, PointArray applied, PerLane& regula
                        All::after(here.m, following.m) * All::after(here.s, following.s);
       const Lanes along = (tension + dot(h, here.s) * inverse) * inverse;
       Vector T = along * here.s - h;  // (c)
-      if constexpr (extra == JointExtra::couples) {
-        const Lanes couple = all.load(natural, k + stride) - all.load(natural, k);
-        T = T + (couple * inverse * inverse) * left(here.s);  // (d)
-      }
-      if constexpr (extra == JointExtra::twist) {
-        const Lanes M_here = all.load(twist_share, k) * here.m;
-        const Lanes M_after = all.load(twist_share, k + stride) * All::after(here.m, following.m);
-        T = T + inverse * (M_here * cross(here.s_before, here.s) +
-                           M_after * cross(here.s, All::after(here.s, following.s)));  // (e)
-      }
+      add_extra<extra>(all, k, here, following, T);
       const Vector inner = T - All::before(T_previous, T);   // (2), (4)
       const Vector F = inner + all.load_vector(applied, k);  // (6)
       all.store_vector(forces, k, all.load(is_free, k) * F);

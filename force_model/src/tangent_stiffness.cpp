@@ -173,6 +173,66 @@ void add_all(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
   add_twist(rod, points, stiffness);
 }
 
+/// Of all points that are free.
+Eigen::VectorXd free_forces(const Rod& rod, const Eigen::Matrix3Xd& points,
+                            const TangentStiffness& stiffness) {
+  Eigen::Matrix3Xd forces(3, points.cols());
+  total_forces(rod, points, forces);
+  return stiffness.gathered(forces);
+}
+
+void set_stable_without_error(EquilibriumCheck& result) {
+  result.stable = true;
+  result.proven = true;
+  result.remaining_error = 0;
+}
+
+/// What Newton's steps with one K need.
+struct NewtonMatrix {
+  const TangentStiffness& stiffness;
+  const StiffnessFactor& factor;
+  const SlowModes& slow;
+  double rounding_of_force;  // [N]
+};
+
+/// Newton's step across the neutral modes. Nothing is finite where a force acts along them.
+Eigen::VectorXd newton_step(const Rod& rod, const Eigen::Matrix3Xd& at, const NewtonMatrix& K,
+                            Eigen::Index neutral_modes) {
+  const Eigen::MatrixXd neutral = K.slow.modes.leftCols(neutral_modes);
+  const Eigen::VectorXd force = free_forces(rod, at, K.stiffness);
+  const Eigen::VectorXd along = neutral.transpose() * force;
+  if (along.norm() > K.rounding_of_force) return Eigen::VectorXd::Constant(force.size(), NAN);
+  return K.factor.solve(force - neutral * along);
+}
+
+/// Newton's step from the points to the equilibrium, and a bound of the way.
+void bound_error(const Rod& rod, const Eigen::Matrix3Xd& points, const NewtonMatrix& K,
+                 EquilibriumCheck& result) {
+  const Eigen::VectorXd step = newton_step(rod, points, K, result.neutral_modes);
+  if (!step.allFinite()) return;
+  const double root_points = std::sqrt(static_cast<double>(points.cols()));
+  const double error = step.norm() / root_points;
+  result.remaining_error = error;
+  result.step = K.stiffness.scattered(step);
+  result.slowest_mode = K.slow.eigenvalues[result.neutral_modes];
+  result.stable = true;
+  result.rounding_error = std::numeric_limits<double>::epsilon() * rod.c_c *
+                          points.cwiseAbs().maxCoeff() / rod.rest_lengths.minCoeff() /
+                          result.slowest_mode;
+  // The step is evaluated: by Kantorovich's theorem the equilibrium exists, and its distance is
+  // bounded by the step's, if a second step with the same K is at most a quarter of the first.
+  const Eigen::Matrix3Xd stepped = points + result.step;
+  const double second = newton_step(rod, stepped, K, result.neutral_modes).norm() / root_points;
+  const double share = second / error;
+  if (!(second > std::max(step_rounding_share * rod.length(), result.rounding_error))) {
+    result.proven = std::isfinite(second);
+    result.remaining_error = error + second;
+  } else if (share <= 0.25) {
+    result.proven = true;
+    result.remaining_error = error * (1 - std::sqrt(1 - 4 * share)) / (2 * share);
+  }
+}
+
 }  // namespace
 
 StiffnessMatrix tangent_stiffness(const Rod& rod,
@@ -197,17 +257,15 @@ EquilibriumCheck check_equilibrium(const Rod& rod,
   result.step.setZero(3, points.cols());
   TangentStiffness stiffness(rod);
   if (stiffness.free_points() == 0) {
-    result.stable = true;
-    result.proven = true;
-    result.remaining_error = 0;
+    set_stable_without_error(result);
     return result;
   }
   add_all(rod, points, stiffness);
   const BorderedMatrix K = stiffness.matrix();
-  // Rounding of K, which is banded, leaves no sign to a mode below this.
-  const double rounding = 64 * std::numeric_limits<double>::epsilon() * K.largest_eigenvalue();
   StiffnessFactor factor(K);
   if (!factor.succeeded()) return result;
+  // Rounding of K, which is banded, leaves no sign to a mode below this.
+  const double rounding = 64 * std::numeric_limits<double>::epsilon() * K.largest_eigenvalue();
   SlowModes slow;
   const bool positive = factor.is_positive();
   if (positive) slow = slow_modes(K, factor);
@@ -232,46 +290,13 @@ EquilibriumCheck check_equilibrium(const Rod& rod,
     if (result.neutral_modes == SlowModes::most) {
       // Of how many more? Where no point feels a force none of them moves (the paper's law has no
       // stiffness where the rod is straight); else nothing is known of them.
-      Eigen::Matrix3Xd forces(3, points.cols());
-      total_forces(rod, points, forces);
-      const double largest = stiffness.gathered(forces).cwiseAbs().maxCoeff();
-      result.stable = result.proven = largest <= rounding * points.cwiseAbs().maxCoeff();
-      if (result.stable) result.remaining_error = 0;
+      const double largest = free_forces(rod, points, stiffness).cwiseAbs().maxCoeff();
+      if (largest <= rounding * points.cwiseAbs().maxCoeff()) set_stable_without_error(result);
       return result;
     }
   }
-  const Eigen::MatrixXd neutral = slow.modes.leftCols(result.neutral_modes);
-  const double rounding_of_force = rounding * points.cwiseAbs().maxCoeff();
-  const auto newton_step = [&](const Eigen::Matrix3Xd& at) -> Eigen::VectorXd {
-    Eigen::Matrix3Xd forces(3, at.cols());
-    total_forces(rod, at, forces);
-    Eigen::VectorXd force = stiffness.gathered(forces);
-    const Eigen::VectorXd along = neutral.transpose() * force;
-    if (along.norm() > rounding_of_force) return Eigen::VectorXd::Constant(force.size(), NAN);
-    return factor.solve(force - neutral * along);
-  };
-  const Eigen::VectorXd step = newton_step(points);
-  if (!step.allFinite()) return result;
-  const double root_points = std::sqrt(static_cast<double>(points.cols()));
-  const double error = step.norm() / root_points;
-  result.remaining_error = error;
-  result.step = stiffness.scattered(step);
-  result.slowest_mode = slow.eigenvalues[result.neutral_modes];
-  result.stable = true;
-  result.rounding_error = std::numeric_limits<double>::epsilon() * rod.c_c *
-                          points.cwiseAbs().maxCoeff() / rod.rest_lengths.minCoeff() /
-                          result.slowest_mode;
-  // The step is evaluated: by Kantorovich's theorem the equilibrium exists, and its distance is
-  // bounded by the step's, if a second step with the same K is at most a quarter of the first.
-  const double second = newton_step(points + result.step).norm() / root_points;
-  const double share = second / error;
-  if (!(second > std::max(step_rounding_share * rod.length(), result.rounding_error))) {
-    result.proven = std::isfinite(second);
-    result.remaining_error = error + second;
-  } else if (share <= 0.25) {
-    result.proven = true;
-    result.remaining_error = error * (1 - std::sqrt(1 - 4 * share)) / (2 * share);
-  }
+  bound_error(rod, points, {stiffness, factor, slow, rounding * points.cwiseAbs().maxCoeff()},
+              result);
   return result;
 }
 

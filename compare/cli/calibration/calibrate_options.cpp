@@ -74,9 +74,8 @@ compare::MaterialFitOptions CalibrateOptions::material_options() const {
 
 /// What is found beside E.
 void CalibrateOptions::add_numbers_of_wire(CLI::App& command, CLI::Option* shape) {
-  const auto of_shapes = [shape](CLI::Option* option) -> CLI::Option* {
-    return option->needs(shape)->group(measured);
-  };
+  const OptionGroup group(command, measured);
+  const auto of_shapes = [shape](CLI::Option* option) { option->needs(shape); };
   of_shapes(command.add_flag("--density", density, "fit the density as well"));
   of_shapes(command.add_flag("--torsional-stiffness", torsional_stiffness,
                              "fit GJ as well, from shapes whose clamps twist the wire"));

@@ -24,6 +24,29 @@ std::string natural_curvature_text(const compare::MaterialFit& fit) {
   return "[" + out + "]";
 }
 
+/// What the fit says of the rod beside its material, and of the camera.
+void add_shape_lines(std::string& out, const compare::MaterialFit& fit) {
+  if (fit.torsional_stiffness && fit.torsional_stiffness->value) {
+    append(out, "torsional_stiffness = {:.8e}  # N m^2, {}\n", *fit.torsional_stiffness->value,
+           interval_text(*fit.torsional_stiffness));
+  }
+  if (!fit.natural_curvature.empty()) {
+    append(out, "natural_curvature = {}\n", natural_curvature_text(fit));
+  }
+  if (!fit.camera_tilt.isZero(0)) {
+    append(out, "camera_tilt = {}  # rad, of the shapes' coordinates\n",
+           vector_text(fit.camera_tilt));
+  }
+}
+
+void add_clamps(std::string& out, const compare::MaterialFit& fit) {
+  for (const compare::ClampCorrection& correction : fit.clamps) {
+    append(out, "[[gripper]]\nnumber = {}\nrotation = {}  # rad\ndisplacement = {}  # m\n",
+           correction.gripper + 1, vector_text(correction.rotation),
+           vector_text(correction.displacement));
+  }
+}
+
 }  // namespace
 
 std::string material_toml(const compare::Calibration& report) {
@@ -57,17 +80,7 @@ std::string material_toml(const compare::Calibration& report) {
            "material: {}.\n",
            fit.prediction->rms_m * 1000, fit.not_identified);
   }
-  if (fit.torsional_stiffness && fit.torsional_stiffness->value) {
-    append(out, "torsional_stiffness = {:.8e}  # N m^2, {}\n", *fit.torsional_stiffness->value,
-           interval_text(*fit.torsional_stiffness));
-  }
-  if (!fit.natural_curvature.empty()) {
-    append(out, "natural_curvature = {}\n", natural_curvature_text(fit));
-  }
-  if (!fit.camera_tilt.isZero(0)) {
-    append(out, "camera_tilt = {}  # rad, of the shapes' coordinates\n",
-           vector_text(fit.camera_tilt));
-  }
+  add_shape_lines(out, fit);
   if (!given) out += "[[material]]\nname = \"calibrated\"\n";
   std::string value = fmt::format("{:.8e}", *E.estimate);
   if (scene.given_bending_stiffness_2) {
@@ -82,11 +95,7 @@ std::string material_toml(const compare::Calibration& report) {
   append(out, "{}least squares of {} measured shape{}, noise {:.3g} m{}{}\n",
          given ? "# " : "source = \"", fit.shapes.size(), fit.shapes.size() == 1 ? "" : "s",
          fit.noise_m, fit.correlation ? ", correlated along the rod" : "", given ? "" : "\"");
-  for (const compare::ClampCorrection& correction : fit.clamps) {
-    append(out, "[[gripper]]\nnumber = {}\nrotation = {}  # rad\ndisplacement = {}  # m\n",
-           correction.gripper + 1, vector_text(correction.rotation),
-           vector_text(correction.displacement));
-  }
+  add_clamps(out, fit);
   return out;
 }
 

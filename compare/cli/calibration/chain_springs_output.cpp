@@ -24,7 +24,7 @@ const char* text_of(compare::ChainClamp clamp) {
   return "clamped in the middle of a segment";
 }
 
-std::string range_text(double low, double high, const char* unit) {
+std::string spring_range_text(double low, double high, const char* unit) {
   return low == high ? fmt::format("{:.4g}{}", low, unit)
                      : fmt::format("{:.4g} to {:.4g}{}", low, high, unit);
 }
@@ -33,7 +33,7 @@ std::string lengths_text(const compare::ChainSprings& chain) {
   const std::vector<double>& h = chain.segment_lengths;
   if (h.empty()) return fmt::format("{:.4g} m", chain.segment_length);
   const auto [low, high] = std::minmax_element(h.begin(), h.end());
-  return range_text(*low, *high, " m");
+  return spring_range_text(*low, *high, " m");
 }
 
 std::string stiffness_text(const compare::ChainSprings& chain) {
@@ -41,7 +41,7 @@ std::string stiffness_text(const compare::ChainSprings& chain) {
   const auto [low, high] =
       std::minmax_element(chain.joints.begin(), chain.joints.end(),
                           [](const auto& a, const auto& b) { return a.stiffness < b.stiffness; });
-  return range_text(low->stiffness, high->stiffness, "");
+  return spring_range_text(low->stiffness, high->stiffness, "");
 }
 
 /// Of unequal segments each joint.

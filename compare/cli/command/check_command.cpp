@@ -161,7 +161,7 @@ void run_motion(const CheckOptions& options) {
 
 /// A recorded motion instead of a shape.
 void add_motion_to(CLI::App& command, CheckOptions& options) {
-  const std::string group = "Recorded motion";
+  const OptionGroup group(command, "Recorded motion");
   CLI::Option* motion =
       command
           .add_option("--motion", options.motion,
@@ -188,10 +188,6 @@ void add_motion_to(CLI::App& command, CheckOptions& options) {
       ->check(number_between(1e-6, 1e9))
       ->type_name("HZ")
       ->needs(motion);
-  for (const char* name : {"--motion", "--dynamic", "--damping", "--drag", "--quadratic-drag",
-                           "--from", "--frame-rate"}) {
-    command.get_option(name)->group(group);
-  }
   for (const char* name :
        {"--shape", "--min-seen", "--no-modulus", "--unit", "--register", "--arc-lengths"}) {
     motion->excludes(command.get_option(name));

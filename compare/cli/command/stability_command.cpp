@@ -10,6 +10,7 @@
 #include "format/json.hpp"
 #include "format/stability_output.hpp"
 #include "option/exit_status.hpp"
+#include "option/option_values.hpp"
 #include "option/output.hpp"
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
@@ -82,6 +83,37 @@ void run_cases(StabilityOptions& options) {
   }
 }
 
+constexpr long most_steps = 1000000000000;
+
+void add_case_options(CLI::App& command, StabilityOptions& options) {
+  const OptionGroup group(command, "Hard cases");
+  command.add_option("--case", options.cases.name_contains, "only cases whose name contains this");
+  command.add_option("--stepper", options.steppers, "only these steppers")
+      ->check(CLI::IsMember(compare::names<compare::Stepper>()));
+  const auto add_steps = [&](const char* name, long& value, const char* words) {
+    command.add_option(name, value, words)
+        ->check(CLI::Range(1L, most_steps))
+        ->capture_default_str();
+  };
+  add_steps("--max-steps", options.cases.max_steps, "of the paper's steppers and verlet");
+  add_steps("--max-steps-auto", options.cases.max_steps_auto, "of steppers auto and implicit");
+  add_steps("--steps-at-rest", options.cases.steps_at_rest,
+            "of the case at rest; implicit: a hundredth");
+}
+
+void add_map_options(CLI::App& command, StabilityOptions& options) {
+  const OptionGroup group(command, "Map");
+  command.add_option("--columns", options.grid.columns, "values of c_c or c_h")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command.add_option("--rows", options.grid.rows, "values of c_F")
+      ->check(CLI::Range(2, 1000))
+      ->capture_default_str();
+  command.add_option("--map-steps", options.grid.steps, "of each rod")
+      ->check(CLI::Range(1L, most_steps))
+      ->capture_default_str();
+}
+
 }  // namespace
 
 void add_stability(CLI::App& app) {
@@ -98,44 +130,10 @@ void add_stability(CLI::App& app) {
   command->add_option("--threads", options->threads, "at most; 0: as many as the machine has")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  const std::string table = "Hard cases";
-  command->add_option("--case", options->cases.name_contains, "only cases whose name contains this")
-      ->group(table);
-  command->add_option("--stepper", options->steppers, "only these steppers")
-      ->check(CLI::IsMember(compare::names<compare::Stepper>()))
-      ->group(table);
-  const auto steps = CLI::Range(1L, 1000000000000L);
-  command->add_option("--max-steps", options->cases.max_steps, "of the paper's steppers and verlet")
-      ->check(steps)
-      ->capture_default_str()
-      ->group(table);
-  command
-      ->add_option("--max-steps-auto", options->cases.max_steps_auto,
-                   "of steppers auto and implicit")
-      ->check(steps)
-      ->capture_default_str()
-      ->group(table);
-  command
-      ->add_option("--steps-at-rest", options->cases.steps_at_rest,
-                   "of the case at rest; implicit: a hundredth")
-      ->check(steps)
-      ->capture_default_str()
-      ->group(table);
-  const std::string map = "Map";
-  command->add_option("--columns", options->grid.columns, "values of c_c or c_h")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str()
-      ->group(map);
-  command->add_option("--rows", options->grid.rows, "values of c_F")
-      ->check(CLI::Range(2, 1000))
-      ->capture_default_str()
-      ->group(map);
-  command->add_option("--map-steps", options->grid.steps, "of each rod")
-      ->check(steps)
-      ->capture_default_str()
-      ->group(map);
+  add_case_options(*command, *options);
+  add_map_options(*command, *options);
   add_output_options(*command, options->output);
-  options->plot.add_to(*command, "the map", Sketches::none)->needs(map_option)->group(map);
+  options->plot.add_to(*command, "the map", Sketches::none)->needs(map_option)->group("Map");
   command->footer(
       "Exit status 1: stepper auto or implicit does not pass a case.\n"
       "Examples:\n  dlo stability --case folded\n  dlo stability --map cF-cc --columns 8 --plot "

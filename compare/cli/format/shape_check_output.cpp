@@ -116,45 +116,44 @@ const char* verdict_of(const compare::ShapeJudgement& judgement) {
   return judgement.pass ? "pass" : "fail";
 }
 
-}  // namespace
-
-std::string shape_check_text(const CheckPage& page) {
-  const compare::CheckResult& report = page.result;
+/// What of the rod the file shows.
+void add_seen(std::string& out, const compare::CheckResult& report, const std::string& unit_hint) {
   const compare::ShapeCheck& c = report.check;
-  const compare::Scene& scene = report.scene;
-  std::string out;
-  const compare::Alignment& a = c.alignment;
   const std::vector<double>& s = c.reference.arc_length;
-  append(out, "{}   Gamma = {:.4g}\n", compare::display(c.scene), c.gamma);
-  if (scene.model) add_model(out, scene);
   append(out, "  shape           {}: {} points, {}\n", compare::display(c.file), s.size(),
-         range_text(a, scene.length));
+         range_text(c.alignment, report.scene.length));
   for (const std::string& note : report.notes) {
     append(out, "                  ({})\n", compare::display(note));
   }
   if (!c.direction_is_clear) append(out, "                  (the other direction fits as well)\n");
-  append(out, "  arc lengths     {}\n", rule_text(a.arc_lengths));
+  append(out, "  arc lengths     {}\n", rule_text(c.alignment.arc_lengths));
   append(out,
          "  seen            s = {:.4g} to {:.4g} m, {:.4g} % of l; polyline {:.4g} m; largest gap "
          "{:.4g} m at s = {:.4g} m\n",
          s.front(), s.back(), c.seen_share * 100, c.polyline_length_m, c.largest_gap_m,
          c.largest_gap_at_m);
-  const std::string hint = c.hint.empty() ? page.unit_hint : c.hint;
+  const std::string hint = c.hint.empty() ? unit_hint : c.hint;
   if (!hint.empty()) append(out, "                  ({})\n", hint);
+}
+
+void add_frame(std::string& out, const compare::CheckResult& report) {
   if (report.pose == compare::PoseFreedom::known) {
     append(out, "  frame           the scene's\n");
-  } else {
-    append(out, "  frame           found ({}): {}\n", compare::to_string(report.pose),
-           pose_text(a.pose, scene.length));
-    if (!c.turn_is_clear) {
-      append(out,
-             "                  (the rotation about the rod's own line is not identifiable from "
-             "these points)\n");
-    }
+    return;
   }
+  append(out, "  frame           found ({}): {}\n", compare::to_string(report.pose),
+         pose_text(report.check.alignment.pose, report.scene.length));
+  if (!report.check.turn_is_clear) {
+    append(out,
+           "                  (the rotation about the rod's own line is not identifiable from "
+           "these points)\n");
+  }
+}
+
+void add_deviation(std::string& out, const compare::ShapeCheck& c, double length) {
   const compare::Deviation& d = c.deviation;
   add_largest_and_rms(out, d);
-  const Eigen::Vector3d at = shown(c.worst_position, scene.length);
+  const Eigen::Vector3d at = shown(c.worst_position, length);
   append(out, " (point {} of the file, at [{:.4g}, {:.4g}, {:.4g}] m)\n", c.worst_point, at.x(),
          at.y(), at.z());
   if (std::isfinite(d.tip_m)) append(out, "                  tip {:.4g} mm\n", d.tip_m * 1e3);
@@ -167,8 +166,33 @@ std::string shape_check_text(const CheckPage& page) {
   if (std::isfinite(d.angle_rms_rad)) add_angle_and_curvature(out, d);
   if (std::isfinite(c.movement_m)) {
     append(out, "  movement        the rod is {:.4g} mm = {:.4g} % of l away from straight (RMS)\n",
-           c.movement_m * 1e3, c.movement_m / scene.length * 100);
+           c.movement_m * 1e3, c.movement_m / length * 100);
   }
+}
+
+void add_explanations(std::string& out, const compare::CheckResult& report) {
+  constexpr std::size_t most_explanations = 3;
+  for (std::size_t i = 0; i < std::min(most_explanations, report.explanations.size()); ++i) {
+    const compare::Explanation& explanation = report.explanations[i];
+    append(out, "  {}  RMS {:.4g} mm if {}{}\n", i == 0 ? "explained by  " : "              ",
+           explanation.rms_m * 1e3,
+           explanation.kind == compare::ExplanationKind::discretisation ? "it is " : "",
+           explanation.cause);
+  }
+}
+
+}  // namespace
+
+std::string shape_check_text(const CheckPage& page) {
+  const compare::CheckResult& report = page.result;
+  const compare::ShapeCheck& c = report.check;
+  const compare::Scene& scene = report.scene;
+  std::string out;
+  append(out, "{}   Gamma = {:.4g}\n", compare::display(c.scene), c.gamma);
+  if (scene.model) add_model(out, scene);
+  add_seen(out, report, page.unit_hint);
+  add_frame(out, report);
+  add_deviation(out, c, scene.length);
   if (report.supersedes_modulus) {
     append(out,
            "  {:<15} no measure of the material: what explains the shape comes nearer than any "
@@ -179,14 +203,7 @@ std::string shape_check_text(const CheckPage& page) {
   }
   add_state(out, c.state, scene.length, "the shape");
   if (report.friction) add_friction(out, *report.friction);
-  constexpr std::size_t most_explanations = 3;
-  for (std::size_t i = 0; i < std::min(most_explanations, report.explanations.size()); ++i) {
-    const compare::Explanation& explanation = report.explanations[i];
-    append(out, "  {}  RMS {:.4g} mm if {}{}\n", i == 0 ? "explained by  " : "              ",
-           explanation.rms_m * 1e3,
-           explanation.kind == compare::ExplanationKind::discretisation ? "it is " : "",
-           explanation.cause);
-  }
+  add_explanations(out, report);
   append(out, "  verdict         {}: {}\n",
          page.verdict.empty() ? verdict_of(report.judgement) : page.verdict,
          report.judgement.reason);

@@ -124,14 +124,9 @@ std::string stretch_decision_text(const compare::Solution& solution) {
       effect.moved_m, effect.tension * 100);
 }
 
-std::string solution_text(const compare::Solution& solution, const compare::Scene& scene) {
-  std::string out;
-  append(out, "scene      {}\n", compare::display(scene.name));
-  append(out, "model      {}, {}\n", compare::to_string(solution.model), solution.message);
-  append(out, "Gamma      {:.6g}   (w l^3 / EI)\n", scene.gamma());
-  if (scene.assumes_torsion()) append(out, "assumed    {}\n", assumption_text(scene));
-  if (scene.layers) append(out, "layers     {}\n", layers_text(scene));
-  if (scene.rest_shape) append(out, "rest shape {}\n", rest_shape_text(scene));
+namespace {
+
+void add_work(std::string& out, const compare::Solution& solution) {
   if (solution.steps > 0) {
     append(out, "steps      {}", solution.steps);
     // Steps in time and Newton's have neither.
@@ -142,7 +137,10 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
     if (solution.terms > 0) append(out, ", {} terms", solution.terms);
     append(out, "\n");
   }
-  append(out, "wall time  {:.3g} ms\n", solution.seconds * 1e3);
+}
+
+/// What of the scene the model has not.
+void add_neglected(std::string& out, const compare::Solution& solution) {
   if (!solution.neglected.empty()) {
     append(out, "neglected  {}: the scene has it, model {} has not\n",
            fmt::join(solution.neglected, ", "), compare::to_string(solution.model));
@@ -162,16 +160,10 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
              solution.stretch.moved_m, solution.stretch.tension * 100);
     }
   }
-  if (const std::string decision = stretch_decision_text(solution); !decision.empty()) {
-    append(out, "stretch    {}\n", decision);
-  }
-  if (const auto crossing = compare::self_crossing(solution.shape, scene.diameter)) {
-    append(out,
-           "crossing   at s = {:.4g} m and {:.4g} m the rod's axis is {:.2g} m apart, its diameter "
-           "is {:g} m: contact of the rod with itself is in no model\n",
-           crossing->first, crossing->second, crossing->distance, scene.diameter);
-  }
-  const compare::Magnitudes large = compare::magnitudes(scene);
+}
+
+void add_energies(std::string& out, const compare::Solution& solution,
+                  const compare::Magnitudes& large) {
   compare::SceneEnergies e = solution.energy;
   for (double* part : {&e.bending, &e.twisting, &e.gravity, &e.load, &e.stretch}) {
     *part = compare::shown(*part, large.energy);
@@ -180,6 +172,10 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
   if (!solution.twists.empty()) append(out, "twisting {:.9g} J, ", e.twisting);
   append(out, "gravity {:.9g} J, load {:.9g} J, stretch {:.3g} J", e.gravity, e.load, e.stretch);
   out += e.contact > 0 ? fmt::format(", contact {:.9g} J\n", e.contact) : "\n";
+}
+
+void add_twists(std::string& out, const compare::Solution& solution,
+                const compare::Magnitudes& large) {
   for (const energy_model::TwistedPart& part : solution.twists) {
     append(out, "twist      {:.6g} rad, torque {:.6g} Nm from s = {:.4g} to {:.4g} m\n",
            compare::shown(part.angle, 1), compare::shown(part.torque, large.torque), part.begin,
@@ -196,7 +192,11 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
     }
     append(out, "\n");
   }
-  out += compare::text_rows(compare::shape_numbers(), {scene, solution}, scene);
+}
+
+/// On the rod, of obstacles and grippers.
+void add_forces(std::string& out, const compare::Solution& solution, const compare::Scene& scene,
+                const compare::Magnitudes& large) {
   for (const Eigen::Vector3d& exact : solution.obstacles) {
     const Eigen::Vector3d force = shown(exact, large.force);
     append(out, "obstacle   force [{:.6g}, {:.6g}, {:.6g}] N on the rod\n", force.x(), force.y(),
@@ -216,12 +216,45 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
            i + 1, gripper.at, gripper.direction ? "clamp" : "pin", force.x(), force.y(), force.z(),
            torque.x(), torque.y(), torque.z());
   }
+}
+
+void add_points(std::string& out, const compare::Shape& shape) {
   append(out, "\n{:>12} {:>13} {:>13} {:>13}\n", "s [m]", "x [m]", "y [m]", "z [m]");
-  for (std::size_t i = 0; i < solution.shape.arc_length.size(); ++i) {
-    const auto point = solution.shape.points.col(static_cast<Eigen::Index>(i));
-    append(out, "{:12.6f} {:>13} {:>13} {:>13}\n", solution.shape.arc_length[i],
-           coordinate(point.x()), coordinate(point.y()), coordinate(point.z()));
+  for (std::size_t i = 0; i < shape.arc_length.size(); ++i) {
+    const auto point = shape.points.col(static_cast<Eigen::Index>(i));
+    append(out, "{:12.6f} {:>13} {:>13} {:>13}\n", shape.arc_length[i], coordinate(point.x()),
+           coordinate(point.y()), coordinate(point.z()));
   }
+}
+
+}  // namespace
+
+std::string solution_text(const compare::Solution& solution, const compare::Scene& scene) {
+  std::string out;
+  append(out, "scene      {}\n", compare::display(scene.name));
+  append(out, "model      {}, {}\n", compare::to_string(solution.model), solution.message);
+  append(out, "Gamma      {:.6g}   (w l^3 / EI)\n", scene.gamma());
+  if (scene.assumes_torsion()) append(out, "assumed    {}\n", assumption_text(scene));
+  if (scene.layers) append(out, "layers     {}\n", layers_text(scene));
+  if (scene.rest_shape) append(out, "rest shape {}\n", rest_shape_text(scene));
+  add_work(out, solution);
+  append(out, "wall time  {:.3g} ms\n", solution.seconds * 1e3);
+  add_neglected(out, solution);
+  if (const std::string decision = stretch_decision_text(solution); !decision.empty()) {
+    append(out, "stretch    {}\n", decision);
+  }
+  if (const auto crossing = compare::self_crossing(solution.shape, scene.diameter)) {
+    append(out,
+           "crossing   at s = {:.4g} m and {:.4g} m the rod's axis is {:.2g} m apart, its diameter "
+           "is {:g} m: contact of the rod with itself is in no model\n",
+           crossing->first, crossing->second, crossing->distance, scene.diameter);
+  }
+  const compare::Magnitudes large = compare::magnitudes(scene);
+  add_energies(out, solution, large);
+  add_twists(out, solution, large);
+  out += compare::text_rows(compare::shape_numbers(), {scene, solution}, scene);
+  add_forces(out, solution, scene, large);
+  add_points(out, solution.shape);
   return out;
 }
 

@@ -6,6 +6,22 @@
 
 namespace dlo::cli {
 
+/// While it lives, options that a command gets are in a group of its help.
+class OptionGroup {
+ public:
+  OptionGroup(CLI::App& command, const std::string& name)
+      : defaults_(*command.option_defaults()), before_(defaults_.get_group()) {
+    defaults_.group(name);
+  }
+  ~OptionGroup() { defaults_.group(before_); }
+  OptionGroup(const OptionGroup&) = delete;
+  OptionGroup& operator=(const OptionGroup&) = delete;
+
+ private:
+  CLI::OptionDefaults& defaults_;
+  std::string before_;
+};
+
 /// For an option that takes a number: in [low, high], so neither NaN nor, unless `high` is,
 /// infinite.
 [[nodiscard]] CLI::Validator number_between(double low, double high);

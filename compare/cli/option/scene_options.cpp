@@ -21,12 +21,15 @@ namespace {
 
 using compare::Dimension;
 using compare::InputError;
+using Settings = compare::ForceModelSettings;
 
+constexpr double unbounded = std::numeric_limits<double>::infinity();
+constexpr const char* solvers_group = "Solvers";
 constexpr const char* force_model_group = "Force model (override the scene)";
 
 /// A quantity of an option: with a unit, or a bare number in SI.
 double option_quantity(const std::string& option, const std::string& text, Dimension dimension,
-                       double below = std::numeric_limits<double>::infinity()) {
+                       double below) {
   double value = 0;
   try {
     value = compare::parse_quantity(text, Dimension::number);
@@ -37,7 +40,7 @@ double option_quantity(const std::string& option, const std::string& text, Dimen
       throw InputError(fmt::format("{} = {}: {}", option, text, error.what()));
     }
   }
-  const bool zero_allowed = below < std::numeric_limits<double>::infinity();
+  const bool zero_allowed = below < unbounded;
   if (!(zero_allowed ? value >= 0 : value > 0) || !(value < below)) {
     throw InputError(fmt::format("{} = {}: out of range (allowed: {})", option, text,
                                  zero_allowed ? fmt::format("0 <= value < {}", below) : "> 0"));
@@ -97,17 +100,14 @@ void add_output_options(CLI::App& command, OutputOptions& options,
 }
 
 void PlanOptions::add_to(CLI::App& command) {
-  const std::string group = "Plan";
-  command
-      .add_flag("--explain", explain_,
-                "show what the scene needs, what is neglected and what that could change")
-      ->group(group);
+  const OptionGroup group(command, "Plan");
+  command.add_flag("--explain", explain_,
+                   "show what the scene needs, what is neglected and what that could change");
   command
       .add_option("--target-error", plan_.target,
                   "error that the plan chooses N for, share of the length such as 0.1%")
       ->transform(share_of_length())
-      ->capture_default_str()
-      ->group(group);
+      ->capture_default_str();
 }
 
 void SceneOptions::add_to(CLI::App& command) {
@@ -135,98 +135,85 @@ void SceneOptions::add_settings_to(CLI::App& command) {
 }
 
 void SceneOptions::add_force_model_to(CLI::App& command) {
-  const std::string group = force_model_group;
+  const OptionGroup group(command, force_model_group);
   command_ = &command;
   command
       .add_option("--parameters", parameters_,
                   "[force_model] of a file such as dlo calibrate writes, instead of the scene's")
-      ->type_name("FILE")
-      ->group(group);
-  command.add_option("--points", points_, "N")->check(CLI::Range(4, 1000000))->group(group);
-  command.add_option("--law", law_, compare::meanings<compare::BendingLaw>())
-      ->check(CLI::IsMember(compare::names<compare::BendingLaw>()))
-      ->group(group);
-  command.add_option("--bookkeeping", bookkeeping_, compare::meanings<compare::Bookkeeping>())
-      ->check(CLI::IsMember(compare::names<compare::Bookkeeping>()))
-      ->group(group);
-  command.add_option("--stepper", stepper_, compare::meanings<compare::Stepper>())
-      ->check(CLI::IsMember(compare::names<compare::Stepper>()))
-      ->group(group);
-  command
-      .add_option("--bending-rule", bending_rule_,
-                  "for c_b: " + compare::meanings<compare::BendingRule>())
-      ->check(CLI::IsMember(compare::names<compare::BendingRule>()))
-      ->group(group);
-  command.add_option("--design-curvature", design_curvature_, "k of Formula 21 [1/m]")
-      ->group(group);
-  command.add_option("--c-b", c_b_, "bending stiffness of the paper's law [N]")->group(group);
-  command.add_option("--c-c", c_c_, "stretch stiffness [N], default A E")->group(group);
-  command.add_option("--c-F", c_F_, "step factor [m/N], not for stepper auto, verlet, implicit")
-      ->group(group);
-  command.add_option("--c-h", c_h_, "share of the last movement [-], stepper dynamic")
-      ->group(group);
-  command.add_option("--l-s", l_s_, "largest movement per step [m]")->group(group);
+      ->type_name("FILE");
+  command.add_option("--points", points_, "N")->check(CLI::Range(4, 1000000));
+  const auto add = [this, &command](const char* name, const std::string& words, const auto& set) {
+    return command.add_option_function<std::string>(
+        name,
+        [this, set](const std::string& text) {
+          changes_.emplace_back([set, text](Settings& settings) { set(settings, text); });
+        },
+        words);
+  };
+  const auto choice = [&add]<typename Value>(const char* name, Value Settings::*field,
+                                             const std::string& of_what = "") {
+    add(name, of_what + compare::meanings<Value>(), [field](Settings& settings, const auto& text) {
+      settings.*field = compare::from_name<Value>(text);
+    })->check(CLI::IsMember(compare::names<Value>()));
+  };
+  const auto quantity = [&add](const char* name, std::optional<double> Settings::*field,
+                               Dimension dimension, const char* words, double below = unbounded) {
+    add(name, words, [=](Settings& settings, const std::string& text) {
+      settings.*field = option_quantity(name, text, dimension, below);
+    });
+  };
+  choice("--law", &Settings::law);
+  choice("--bookkeeping", &Settings::bookkeeping);
+  choice("--stepper", &Settings::stepper);
+  choice("--bending-rule", &Settings::bending_rule, "for c_b: ");
+  quantity("--design-curvature", &Settings::design_curvature, Dimension::curvature,
+           "k of Formula 21 [1/m]");
+  quantity("--c-b", &Settings::c_b, Dimension::force, "bending stiffness of the paper's law [N]");
+  quantity("--c-c", &Settings::c_c, Dimension::force, "stretch stiffness [N], default A E");
+  quantity("--c-F", &Settings::c_F, Dimension::number,
+           "step factor [m/N], not for stepper auto, verlet, implicit");
+  quantity("--c-h", &Settings::c_h, Dimension::number,
+           "share of the last movement [-], stepper dynamic", 1);
+  quantity("--l-s", &Settings::l_s, Dimension::length, "largest movement per step [m]");
 }
 
 void SceneOptions::add_solvers_to(CLI::App& command) {
-  const std::string solvers = "Solvers";
+  const OptionGroup group(command, solvers_group);
   command.add_option("--terms", solve_.terms, "curvature terms of the energy model, 0: as needed")
-      ->check(CLI::Range(0, 128))
-      ->group(solvers);
+      ->check(CLI::Range(0, 128));
   command.add_option("--max-evaluations", solve_.max_evaluations, "of the minimisers")
       ->check(CLI::Range(1, 1000000000))
-      ->capture_default_str()
-      ->group(solvers);
+      ->capture_default_str();
   command.add_option("--time-limit", solve_.time_limit, "of each solve [s]")
       ->check(number_between(1e-3, 1e9))
-      ->capture_default_str()
-      ->group(solvers);
+      ->capture_default_str();
   command.add_option("--max-steps", solve_.max_steps, "of the force model")
       ->check(CLI::Range(1L, 1000000000000L))
-      ->capture_default_str()
-      ->group(solvers);
+      ->capture_default_str();
   command
       .add_option("--rest-tolerance", solve_.rest_tolerance,
                   "distance from rest at which the force model stops, share of the length")
       ->check(number_between(1e-12, 1e-1))
-      ->capture_default_str()
-      ->group(solvers);
+      ->capture_default_str();
   add_materials_to(command);
 }
 
 void SceneOptions::add_materials_to(CLI::App& command) {
+  const OptionGroup group(command, solvers_group);
   command.add_option("--materials", materials_, "materials file instead of the built-in one")
-      ->type_name("FILE")
-      ->group("Solvers");
+      ->type_name("FILE");
   command
       .add_option("--calibrated", calibrated_,
                   "what dlo calibrate -o FILE.toml wrote: its rod, and how its clamps are held, in "
                   "the place of the scene's")
-      ->type_name("FILE")
-      ->group("Solvers");
+      ->type_name("FILE");
 }
 
 void SceneOptions::apply(compare::Scene& scene) const {
-  compare::ForceModelSettings& settings = scene.force_model;
+  Settings& settings = scene.force_model;
   if (!parameters_.empty()) settings = compare::load_parameters(parameters_);
   if (points_ > 0) settings.points = points_;
-  if (!law_.empty()) settings.law = compare::from_name<compare::BendingLaw>(law_);
-  if (!bookkeeping_.empty()) {
-    settings.bookkeeping = compare::from_name<compare::Bookkeeping>(bookkeeping_);
-  }
-  if (!stepper_.empty()) settings.stepper = compare::from_name<compare::Stepper>(stepper_);
-  if (!bending_rule_.empty()) {
-    settings.bending_rule = compare::from_name<compare::BendingRule>(bending_rule_);
-  }
-  if (!design_curvature_.empty()) {
-    settings.design_curvature =
-        option_quantity("--design-curvature", design_curvature_, Dimension::curvature);
-  }
-  if (!c_b_.empty()) settings.c_b = option_quantity("--c-b", c_b_, Dimension::force);
-  if (!c_c_.empty()) settings.c_c = option_quantity("--c-c", c_c_, Dimension::force);
-  if (!c_F_.empty()) settings.c_F = option_quantity("--c-F", c_F_, Dimension::number);
-  if (!c_h_.empty()) settings.c_h = option_quantity("--c-h", c_h_, Dimension::number, 1);
-  if (!l_s_.empty()) settings.l_s = option_quantity("--l-s", l_s_, Dimension::length);
+  for (const auto& change : changes_) change(settings);
   compare::check(settings, scene.file + ", with the command line's options");
 }
 

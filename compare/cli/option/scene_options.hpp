@@ -1,8 +1,10 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "dlo/compare/plan.hpp"
 #include "dlo/compare/scene.hpp"
@@ -39,8 +41,8 @@ class SceneOptions {
   const CLI::App* command_ = nullptr;
   std::string materials_, calibrated_, parameters_;
   int points_ = 0;
-  std::string law_, bookkeeping_, stepper_, bending_rule_;
-  std::string c_b_, c_c_, c_F_, c_h_, l_s_, design_curvature_;
+  /// What the options given change, after --parameters.
+  std::vector<std::function<void(compare::ForceModelSettings&)>> changes_;
   std::optional<double> time_;
   compare::SolveOptions solve_;
 };

@@ -4,12 +4,13 @@
 
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
+#include "option/option_values.hpp"
 #include "option/output.hpp"
 #include "toml/quantity.hpp"
 
 namespace dlo::cli {
 void ShapeOptions::add_to(CLI::App& command, ChordLengths chord) {
-  const std::string group = "Shape files";
+  const OptionGroup group(command, "Shape files");
   std::vector<std::string> rules = compare::names<compare::ArcLengths>();
   if (chord == ChordLengths::not_exact_enough) {
     std::erase(rules, compare::to_string(compare::ArcLengths::chord));
@@ -17,15 +18,13 @@ void ShapeOptions::add_to(CLI::App& command, ChordLengths chord) {
   const std::vector<std::string> units = compare::unit_names(compare::Dimension::length);
   command.add_option("--unit", unit_, "what the numbers are in: " + compare::one_of(units))
       ->check(CLI::IsMember(units))
-      ->capture_default_str()
-      ->group(group);
+      ->capture_default_str();
   command
       .add_flag(
           "--register{rigid}", pose_,
           "the file's frame is unknown: find it. --register=upright if its vertical is known, "
           "--register=translation if all directions are")
-      ->check(CLI::IsMember(compare::names<compare::PoseFreedom>()))
-      ->group(group);
+      ->check(CLI::IsMember(compare::names<compare::PoseFreedom>()));
   command
       .add_option(
           "--arc-lengths", arc_lengths_,
@@ -36,8 +35,7 @@ void ShapeOptions::add_to(CLI::App& command, ChordLengths chord) {
               : "of the points: file (its column s), nearest (points of the rod) or auto: file if "
                 "there is a column s, else nearest")
       ->check(CLI::IsMember(rules))
-      ->capture_default_str()
-      ->group(group);
+      ->capture_default_str();
 }
 
 compare::MeasuredShape ShapeOptions::load(const std::string& path) const {

@@ -10,7 +10,6 @@
 #include "base/quote.hpp"
 #include "option/output.hpp"
 #include "report/html.hpp"
-#include "report/style.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -198,12 +197,7 @@ std::string cards_junit(const std::vector<Card>& cards) {
 }
 
 std::string cards_page(const std::vector<Card>& cards, const std::string& version) {
-  std::string out = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta name=\"generator\" content=\"dlo suite\">\n<link rel=\"icon\" href=\"data:,\">\n"
-      "<title>dlo suite</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n",
-      compare::report_style);
+  std::string out = compare::html_begin("dlo suite", "dlo suite") + "<main>\n";
   for (const Card& card : cards) {
     const CardGroup total = card.total();
     append(out, "<h1>{}</h1>\n", compare::escape_markup(card.simulator));
@@ -223,8 +217,7 @@ std::string cards_page(const std::vector<Card>& cards, const std::string& versio
              compare::to_html(scenes) + "</details>\n";
     }
   }
-  return out + fmt::format("<p class=\"faint\">dlo {}</p>\n</main>\n</body>\n</html>\n",
-                           compare::escape_markup(version));
+  return out + compare::html_end(version);
 }
 
 std::string changes_text(const std::vector<compare::GroupChange>& changes) {

@@ -16,9 +16,6 @@ using compare::DynamicFrame;
 using compare::DynamicTrack;
 using compare::TrackErrors;
 
-/// Rows of the table in text, at most.
-constexpr std::size_t dynamic_rows = 11;
-
 Json errors_json(const TrackErrors& errors) {
   return {{"mean_error_over_length", errors.mean},
           {"largest_error_over_length", errors.largest},
@@ -34,10 +31,8 @@ std::string moving_table(const DynamicTrack& dynamic) {
   std::string out;
   append(out, "\n{:>10} {:>14} {:>12} {:>12} {:>12} {:>12}\n", "t [s]", "energy [J]", "kinetic [J]",
          "force 1 [N]", "at rest: d/l", "error/l");
-  const std::size_t count = dynamic.frames.size();
-  const std::size_t rows = std::min(count, dynamic_rows);
-  for (std::size_t row = 0; row < rows; ++row) {
-    const DynamicFrame& frame = dynamic.frames[rows == 1 ? 0 : row * (count - 1) / (rows - 1)];
+  for (const std::size_t i : listed_frames(dynamic.frames.size())) {
+    const DynamicFrame& frame = dynamic.frames[i];
     append(out, "{:10.5g} {:14.8g} {:12.5g} {:12.5g} {:12.3g} {:>12}\n", frame.time,
            compare::shown(frame.energy.total(), dynamic.largest_energy),
            compare::shown(frame.energy.kinetic, dynamic.largest_energy),
@@ -99,17 +94,9 @@ std::string dynamic_text(const DynamicTrack& dynamic) {
   append(out, "at rest     off the moving rod by {}\n", errors_text(dynamic.quasi_static));
   if (dynamic.force) {
     append(out, "force model off the moving rod by {}\n", errors_text(*dynamic.force));
-    if (std::isfinite(dynamic.force_lag)) {
-      append(out,
-             "            it lags by {:.4g} ms: from where the rod was then it is {:.4g} % of l "
-             "(RMS) off\n",
-             dynamic.force_lag * 1e3, dynamic.force_error_without_lag * 100);
-    }
+    out += lag_text(dynamic.force_lag, dynamic.force_error_without_lag);
   }
-  if (dynamic.stopped) {
-    append(out, "stopped     at {:.6g} s: {}\n", dynamic.stopped->time,
-           compare::display(dynamic.stopped->why));
-  }
+  out += stop_text(dynamic.stopped);
   return out + moving_table(dynamic);
 }
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "format/json.hpp"
-#include "motion/motion_fit.hpp"
+#include "recording/motion_fit.hpp"
 
 namespace dlo::cli {
 

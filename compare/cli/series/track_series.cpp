@@ -24,9 +24,6 @@ using compare::TrackOptions;
 using energy_model::ContactKind;
 using energy_model::ContactPart;
 
-/// Rows of the table in text, at most.
-constexpr std::size_t text_rows = 11;
-
 std::string vector_text(const Eigen::Vector3d& vector, double magnitude) {
   const Eigen::Vector3d v = shown(vector, magnitude);
   return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", v.x(), v.y(), v.z());
@@ -95,12 +92,7 @@ std::string force_text(const Track& track, const compare::Scene& scene,
            "            error {:.4g} % of l at first (at rest), mean {:.4g} %, largest {:.4g} % "
            "at {:.6g} s\n",
            force.rest_error * 100, force.mean * 100, force.largest * 100, force.largest_time);
-    if (std::isfinite(force.lag)) {
-      append(out,
-             "            it lags by {:.4g} ms: from where the rod was then it is {:.4g} % of l "
-             "(RMS) off\n",
-             force.lag * 1e3, force.error_without_lag * 100);
-    }
+    out += lag_text(force.lag, force.error_without_lag);
     const double spare = 1 / options.rates.frames;
     if (force.median_seconds > spare) {
       append(out, "            not in real time: a frame has {:.4g} ms\n", spare * 1e3);
@@ -117,10 +109,7 @@ std::string table_text(const Track& track, const compare::Magnitudes& large) {
   std::string out;
   append(out, "\n{:>10} {:>14} {:>12} {:>12}   {}\n", "t [s]", "energy [J]", "force 1 [N]",
          "error/l", "touches");
-  const std::size_t count = track.frames.size();
-  const std::size_t rows = std::min(count, text_rows);
-  for (std::size_t row = 0; row < rows; ++row) {
-    const std::size_t i = rows == 1 ? 0 : row * (count - 1) / (rows - 1);
+  for (const std::size_t i : listed_frames(track.frames.size())) {
     const TrackFrame& frame = track.frames[i];
     append(out, "{:10.5g} {:14.8g} {:12.5g} {:>12}   {}\n", frame.time,
            compare::shown(frame.energy.total(), large.energy),
@@ -238,6 +227,30 @@ std::vector<std::size_t> TrackFrames::of(const Track& track) const {
   return result;
 }
 
+std::vector<std::size_t> listed_frames(std::size_t count) {
+  constexpr std::size_t most_rows = 11;
+  const std::size_t rows = std::min(count, most_rows);
+  std::vector<std::size_t> result;
+  result.reserve(rows);
+  for (std::size_t row = 0; row < rows; ++row) {
+    result.push_back(rows == 1 ? 0 : row * (count - 1) / (rows - 1));
+  }
+  return result;
+}
+
+std::string lag_text(double lag, double error_without_lag) {
+  if (!std::isfinite(lag)) return "";
+  return fmt::format(
+      "            it lags by {:.4g} ms: from where the rod was then it is {:.4g} % of l (RMS) "
+      "off\n",
+      lag * 1e3, error_without_lag * 100);
+}
+
+std::string stop_text(const std::optional<compare::TrackStop>& stop) {
+  if (!stop) return "";
+  return fmt::format("stopped     at {:.6g} s: {}\n", stop->time, compare::display(stop->why));
+}
+
 Json stop_json(const compare::TrackStop& stop) {
   return {{"time_s", stop.time}, {"why", stop.why}};
 }
@@ -271,10 +284,7 @@ std::string track_text(const Track& track, const compare::Scene& scene,
         compare::shown(released, large.energy));
   }
   out += force_text(track, scene, options);
-  if (track.stopped) {
-    append(out, "stopped     at {:.6g} s: {}\n", track.stopped->time,
-           compare::display(track.stopped->why));
-  }
+  out += stop_text(track.stopped);
   append(out, "events      {}\n",
          track.events.empty() ? "none" : std::to_string(track.events.size()));
   for (const TrackEvent& event : track.events) out += event_text(track, event, large);

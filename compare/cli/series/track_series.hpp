@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,13 @@ struct TrackFrames {
 [[nodiscard]] std::string track_csv(const compare::Track& track, const compare::Scene& scene,
                                     const TrackFrames& frames,
                                     const compare::DynamicTrack* dynamic = nullptr);
+
+/// Indices of the frames that a table of text shows, from the first to the last.
+[[nodiscard]] std::vector<std::size_t> listed_frames(std::size_t count);
+
+/// Lines of a force model's lag, and of why and when a track has stopped; empty without one.
+[[nodiscard]] std::string lag_text(double lag, double error_without_lag);
+[[nodiscard]] std::string stop_text(const std::optional<compare::TrackStop>& stop);
 
 /// Why it has stopped, and when.
 [[nodiscard]] Json stop_json(const compare::TrackStop& stop);

@@ -21,13 +21,12 @@ py::object regress(const std::vector<SharedScene>& scenes, const std::string& fi
                    const py::dict& what, const py::object& make_result, const py::dict& limits) {
   const auto model = what["model"].cast<std::string>();
   if (model != "force" && model != "chain") compare::refuse_choice(model, {"force", "chain"});
-  compare::RegressRequest request{.model = compare::from_name<compare::Model>(model),
-                                  .programs = compare::parse_foreign_programs(
-                                      what["programs"].cast<std::vector<std::string>>()),
-                                  .tolerance = {.relative = what["relative"].cast<double>(),
-                                                .absolute = what["absolute"].cast<double>()},
-                                  .solve = solve_options(limits)};
-  request.solve.accept_unverified = false;
+  const compare::RegressRequest request{.model = compare::from_name<compare::Model>(model),
+                                        .programs = compare::parse_foreign_programs(
+                                            what["programs"].cast<std::vector<std::string>>()),
+                                        .tolerance = {.relative = what["relative"].cast<double>(),
+                                                      .absolute = what["absolute"].cast<double>()},
+                                        .solve = verified_options(limits)};
   bool written = false;
   const compare::Regression found = run_long([&](Signals& signals) {
     // An unreadable baseline is told before minutes of solving.

@@ -154,41 +154,37 @@ std::vector<compare::Scene> scenes_of(const std::vector<SharedScene>& shared) {
 }
 
 void bind_scene(py::module_& module) {
-  const auto of = [](auto get) { return [get](const SceneData& data) { return get(data.scene); }; };
   using compare::Scene;
   py::class_<SceneData, std::shared_ptr<SceneData>> bound(
       module, "SceneData", "A scene as the reader has it, in SI units.");
   refuse_pickle(bound, "pickled or copied", "the dlo.Scene");
   refuse_new(bound, "dlo.Scene");
-  bound.def_property_readonly("name", of([](const Scene& s) { return s.name; }))
-      .def_property_readonly("gravity", of([](const Scene& s) { return vector_copy(s.gravity); }))
-      .def_property_readonly("length", of([](const Scene& s) { return s.length; }))
-      .def_property_readonly("diameter", of([](const Scene& s) { return s.diameter; }))
-      .def_property_readonly("inner_diameter", of([](const Scene& s) { return s.inner_diameter; }))
-      .def_property_readonly("width", of([](const Scene& s) { return s.width; }))
-      .def_property_readonly("thickness", of([](const Scene& s) { return s.thickness; }))
-      .def_property_readonly("youngs_modulus",
-                             of([](const Scene& s) { return s.material.youngs_modulus; }))
-      .def_property_readonly("density", of([](const Scene& s) { return s.material.density; }))
-      .def_property_readonly("bending_stiffness",
-                             of([](const Scene& s) { return s.bending_stiffness(); }))
-      .def_property_readonly("axial_stiffness",
-                             of([](const Scene& s) { return s.axial_stiffness(); }))
-      .def_property_readonly("mass_per_length",
-                             of([](const Scene& s) { return s.mass_per_length(); }))
-      .def_property_readonly("mass", of([](const Scene& s) { return s.mass(); }))
-      .def_property_readonly("gamma", of([](const Scene& s) { return s.gamma(); }))
-      .def_property_readonly("planar", of([](const Scene& s) { return s.planar(); }))
-      .def_property_readonly("rest_shape_error", of([](const Scene& s) {
-                               return s.rest_shape ? s.rest_shape->largest_error
-                                                   : std::numeric_limits<double>::quiet_NaN();
-                             }))
-      .def_property_readonly("rest_shape_angle", of([](const Scene& s) {
-                               return (s.rest_shape ? s.rest_shape->largest_angle : std::nullopt)
-                                   .value_or(std::numeric_limits<double>::quiet_NaN());
-                             }))
-      .def_property_readonly("force_model", settings_of)
-      .def_property_readonly("track", rates_of);
+  const auto add = [&bound](const char* name, auto get) {
+    bound.def_property_readonly(name, [get](const SceneData& data) { return get(data.scene); });
+  };
+  add("name", [](const Scene& s) { return s.name; });
+  add("gravity", [](const Scene& s) { return vector_copy(s.gravity); });
+  add("length", [](const Scene& s) { return s.length; });
+  add("diameter", [](const Scene& s) { return s.diameter; });
+  add("inner_diameter", [](const Scene& s) { return s.inner_diameter; });
+  add("width", [](const Scene& s) { return s.width; });
+  add("thickness", [](const Scene& s) { return s.thickness; });
+  add("youngs_modulus", [](const Scene& s) { return s.material.youngs_modulus; });
+  add("density", [](const Scene& s) { return s.material.density; });
+  add("bending_stiffness", [](const Scene& s) { return s.bending_stiffness(); });
+  add("axial_stiffness", [](const Scene& s) { return s.axial_stiffness(); });
+  add("mass_per_length", [](const Scene& s) { return s.mass_per_length(); });
+  add("mass", [](const Scene& s) { return s.mass(); });
+  add("gamma", [](const Scene& s) { return s.gamma(); });
+  add("planar", [](const Scene& s) { return s.planar(); });
+  add("rest_shape_error", [](const Scene& s) {
+    return s.rest_shape ? s.rest_shape->largest_error : std::numeric_limits<double>::quiet_NaN();
+  });
+  add("rest_shape_angle", [](const Scene& s) {
+    return (s.rest_shape ? s.rest_shape->largest_angle : std::nullopt)
+        .value_or(std::numeric_limits<double>::quiet_NaN());
+  });
+  bound.def_property_readonly("force_model", settings_of).def_property_readonly("track", rates_of);
   module.attr("scene_keys") = table_keys();
   module.def("did_you_mean", &compare::did_you_mean, py::arg("written"), py::arg("words"));
   module.def(

@@ -164,51 +164,7 @@ void bind_arrays(Class& bound) {
           "What each obstacle exerts on the rod [N], shape (O, 3), read only.");
 }
 
-}  // namespace
-
-compare::SolveOptions solve_options(const py::dict& given) {
-  compare::SolveOptions options{.accept_unverified = true};
-  for (const auto& [key, value] : given) {
-    if (value.is_none()) continue;
-    const auto name = key.cast<std::string>();
-    if (name == "time_limit") {
-      options.time_limit = positive<double>(name, value);
-    } else if (name == "rest_tolerance") {
-      options.rest_tolerance = positive<double>(name, value);
-    } else if (name == "max_steps") {
-      options.max_steps = positive<long>(name, value);
-    } else if (name == "max_evaluations") {
-      options.max_evaluations = positive<int>(name, value);
-    } else if (name == "terms") {
-      options.terms = positive<int>(name, value);
-    } else {
-      throw compare::InputError(name +
-                                ": no such limit (allowed: time_limit, terms, "
-                                "max_evaluations, max_steps, rest_tolerance)");
-    }
-  }
-  return options;
-}
-
-void bind_solve(py::module_& module) {
-  py::class_<SolvedScene, std::shared_ptr<SolvedScene>> solution(
-      module, "Solution",
-      "A shape of a scene's rod in balance, and what it cost; of solve() and solve_all().\n\n"
-      "Arrays are views into it, read only; they keep it alive.");
-  bind_arrays(solution);
-  bind_result(solution);
-  bind_picture(solution, [](const SolvedScene& solved) {
-    return compare::solution_drawing(solved.scene->scene, {solved.solution});
-  });
-  const auto of = [](const SolvedScene& solved) {
-    return compare::SolvedShape{solved.scene->scene, solved.solution};
-  };
-  bind_fields(solution, compare::solution_fields(), of);
-  bind_fields(solution, compare::shape_numbers(), of);
-  solution.def("to_json", &solution_document, "The document of `dlo solve --format json`, as text.")
-      .def("__str__", [](const SolvedScene& solved) {
-        return cli::solution_text(solved.solution, solved.scene->scene);
-      });
+void bind_equilibria(py::module_& module) {
   py::class_<SolvedStates, std::shared_ptr<SolvedStates>> equilibria(
       module, "Equilibria",
       "Every equilibrium that was found: a sequence of Solution, stable ones first, by energy.");
@@ -239,6 +195,60 @@ void bind_solve(py::module_& module) {
       .def("__str__", [](const SolvedStates& solved) {
         return cli::equilibria_text(solved.all, solved.scene->scene);
       });
+}
+
+}  // namespace
+
+compare::SolveOptions solve_options(const py::dict& given) {
+  compare::SolveOptions options{.accept_unverified = true};
+  for (const auto& [key, value] : given) {
+    if (value.is_none()) continue;
+    const auto name = key.cast<std::string>();
+    if (name == "time_limit") {
+      options.time_limit = positive<double>(name, value);
+    } else if (name == "rest_tolerance") {
+      options.rest_tolerance = positive<double>(name, value);
+    } else if (name == "max_steps") {
+      options.max_steps = positive<long>(name, value);
+    } else if (name == "max_evaluations") {
+      options.max_evaluations = positive<int>(name, value);
+    } else if (name == "terms") {
+      options.terms = positive<int>(name, value);
+    } else {
+      throw compare::InputError(name +
+                                ": no such limit (allowed: time_limit, terms, "
+                                "max_evaluations, max_steps, rest_tolerance)");
+    }
+  }
+  return options;
+}
+
+compare::SolveOptions verified_options(const py::dict& given) {
+  compare::SolveOptions options = solve_options(given);
+  options.accept_unverified = false;
+  return options;
+}
+
+void bind_solve(py::module_& module) {
+  py::class_<SolvedScene, std::shared_ptr<SolvedScene>> solution(
+      module, "Solution",
+      "A shape of a scene's rod in balance, and what it cost; of solve() and solve_all().\n\n"
+      "Arrays are views into it, read only; they keep it alive.");
+  bind_arrays(solution);
+  bind_result(solution);
+  bind_picture(solution, [](const SolvedScene& solved) {
+    return compare::solution_drawing(solved.scene->scene, {solved.solution});
+  });
+  const auto of = [](const SolvedScene& solved) {
+    return compare::SolvedShape{solved.scene->scene, solved.solution};
+  };
+  bind_fields(solution, compare::solution_fields(), of);
+  bind_fields(solution, compare::shape_numbers(), of);
+  solution.def("to_json", &solution_document, "The document of `dlo solve --format json`, as text.")
+      .def("__str__", [](const SolvedScene& solved) {
+        return cli::solution_text(solved.solution, solved.scene->scene);
+      });
+  bind_equilibria(module);
   module.def("solve", &solve, py::arg("scene"), py::arg("model"), py::arg("samples"),
              py::arg("limits"));
   module.def("solve_all", &solve_all, py::arg("scene"), py::arg("samples"), py::arg("limits"));

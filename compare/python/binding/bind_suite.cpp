@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include <chrono>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -10,6 +9,7 @@
 
 #include "array.hpp"
 #include "base/quote.hpp"
+#include "base/timer.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
 #include "foreign/foreign_program.hpp"
@@ -48,10 +48,9 @@ class PythonSimulator {
     const std::string text = compare::builtin_scene_text(scene);
     const std::scoped_lock one_call(calling_);
     const py::gil_scoped_acquire python;
-    const auto begin = std::chrono::steady_clock::now();
+    const compare::Timer timer;
     SimulatorRun result = called(text, scene.file, points);
-    result.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    result.seconds = timer.seconds();
     return result;
   }
 

@@ -1,10 +1,8 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include <array>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -15,11 +13,11 @@
 #include "long_call.hpp"
 #include "module.hpp"
 #include "motion/dynamic_track.hpp"
-#include "motion/motion_fit.hpp"
 #include "option/share.hpp"
 #include "picture.hpp"
 #include "picture/track_figure.hpp"
 #include "recording/motion_check.hpp"
+#include "recording/motion_fit.hpp"
 #include "recording/recorded_frames.hpp"
 #include "series/dynamic_track_series.hpp"
 #include "series/motion_check_output.hpp"
@@ -31,23 +29,23 @@
 namespace dlo::python {
 namespace {
 
-/// @param part     begin, end, rates of frames, obstacles and steps; None for what the scene says
-/// @param damping  of a rod with inertia, of the material and of the air; none: it is at rest
-py::object track(const SharedScene& shared, const std::vector<std::optional<double>>& part,
-                 bool force, const std::optional<std::pair<double, double>>& damping, int samples,
-                 const py::object& make_result, const py::dict& limits) {
+py::object track(const SharedScene& shared, const py::dict& what, const py::object& make_result,
+                 const py::dict& limits) {
+  using Given = std::optional<double>;
   const compare::Scene& scene = shared->scene;
   compare::TrackRequest request{
-      .options = {.from = part.at(0),
-                  .to = part.at(1),
-                  .force = force ? compare::ForceBeside::runs : compare::ForceBeside::absent,
-                  .samples = samples,
-                  .solve = solve_options(limits)},
-      .frame_rate = part.at(2),
-      .obstacle_rate = part.at(3),
-      .step_rate = part.at(4)};
-  if (damping) request.damping = {damping->first, damping->second};
-  request.options.solve.accept_unverified = false;
+      .options = {.from = what["begin"].cast<Given>(),
+                  .to = what["end"].cast<Given>(),
+                  .force = what["force"].cast<bool>() ? compare::ForceBeside::runs
+                                                      : compare::ForceBeside::absent,
+                  .samples = what["samples"].cast<int>(),
+                  .solve = verified_options(limits)},
+      .frame_rate = what["frame_rate"].cast<Given>(),
+      .obstacle_rate = what["obstacle_rate"].cast<Given>(),
+      .step_rate = what["step_rate"].cast<Given>()};
+  if (what["dynamic"].cast<bool>()) {
+    request.damping = {what["damping"].cast<double>(), what["drag"].cast<double>()};
+  }
   const compare::TrackResult found = run_long([&](Signals& signals) {
     return compare::follow(scene, request, [&](auto, auto) { signals.throw_if_stopped(); });
   });
@@ -87,8 +85,7 @@ std::pair<std::string, std::string> calibrate_motion(const SharedScene& shared,
                                                      const std::string& name,
                                                      const py::dict& limits) {
   const compare::MarkerMotion recorded = recorded_motion(rows, name, shared->scene.length);
-  compare::SolveOptions solve = solve_options(limits);
-  solve.accept_unverified = false;
+  const compare::SolveOptions solve = verified_options(limits);
   const compare::MotionFit found = run_long([&](Signals& /*signals*/) {
     return compare::fit_motion(shared->scene, recorded, {.solve = solve});
   });
@@ -96,27 +93,23 @@ std::pair<std::string, std::string> calibrate_motion(const SharedScene& shared,
           cli::json_text(cli::motion_fit_json(found, shared->scene))};
 }
 
-/// @param part       when the rod's motion begins, and frames a second; None: as usual
-/// @param damping    of the material, of the air, of the air by the squared velocity
-/// @param tolerance  in words, what is held against it, and whether causes are looked for
-std::pair<std::string, std::string> check_motion(
-    const SharedScene& shared, const RecordedRows& rows,
-    const std::pair<std::optional<double>, std::optional<double>>& part, bool dynamic,
-    const std::array<double, 3>& damping,
-    const std::tuple<std::optional<std::string>, std::string, bool>& tolerance,
-    const py::dict& limits) {
+std::pair<std::string, std::string> check_motion(const SharedScene& shared,
+                                                 const RecordedRows& rows, const py::dict& what,
+                                                 const py::dict& limits) {
   const compare::Scene& scene = shared->scene;
   compare::MotionCheckRequest request{
-      .model = dynamic ? compare::MotionModel::with_inertia : compare::MotionModel::at_rest,
-      .damping = {damping[0], damping[1], damping[2]},
-      .from = part.first,
-      .frame_rate = part.second,
-      .explaining = std::get<2>(tolerance) ? compare::Explaining::yes : compare::Explaining::no,
-      .solve = solve_options(limits)};
-  request.solve.accept_unverified = false;
-  if (const std::optional<std::string>& allowed = std::get<0>(tolerance)) {
+      .model = what["dynamic"].cast<bool>() ? compare::MotionModel::with_inertia
+                                            : compare::MotionModel::at_rest,
+      .damping = {what["damping"].cast<double>(), what["drag"].cast<double>(),
+                  what["quadratic_drag"].cast<double>()},
+      .from = what["begin"].cast<std::optional<double>>(),
+      .frame_rate = what["frame_rate"].cast<std::optional<double>>(),
+      .explaining =
+          what["explain"].cast<bool>() ? compare::Explaining::yes : compare::Explaining::no,
+      .solve = verified_options(limits)};
+  if (const auto allowed = what["tolerance"].cast<std::optional<std::string>>()) {
     request.tolerance = cli::shape_tolerance(
-        "tolerance", {*allowed, std::get<1>(tolerance), std::nullopt}, scene.length);
+        "tolerance", {*allowed, what["measure"].cast<std::string>(), std::nullopt}, scene.length);
   }
   const compare::MarkerMotion recorded = recorded_motion(rows, "motion", scene.length);
   const compare::MotionCheck found = run_long([&](Signals& signals) {
@@ -129,12 +122,12 @@ std::pair<std::string, std::string> check_motion(
 }  // namespace
 
 void bind_track(py::module_& module) {
-  module.def("track", &track, py::arg("scene"), py::arg("part"), py::arg("force"),
-             py::arg("damping"), py::arg("samples"), py::arg("make_result"), py::arg("limits"));
+  module.def("track", &track, py::arg("scene"), py::arg("what"), py::arg("make_result"),
+             py::arg("limits"));
   module.def("calibrate_motion", &calibrate_motion, py::arg("scene"), py::arg("rows"),
              py::arg("name"), py::arg("limits"));
-  module.def("check_motion", &check_motion, py::arg("scene"), py::arg("rows"), py::arg("part"),
-             py::arg("dynamic"), py::arg("damping"), py::arg("tolerance"), py::arg("limits"));
+  module.def("check_motion", &check_motion, py::arg("scene"), py::arg("rows"), py::arg("what"),
+             py::arg("limits"));
 }
 
 }  // namespace dlo::python

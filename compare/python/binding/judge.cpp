@@ -60,22 +60,23 @@ compare::MeasuredShape measured(const py::object& points, const py::object& arc_
 }
 
 std::shared_ptr<CheckResult> check(const SharedScene& scene, const py::object& points,
-                                   const py::object& arc_length, const py::tuple& tolerance,
-                                   const std::string& pose, const std::string& arc_lengths,
-                                   bool modulus, const py::dict& limits) {
+                                   const py::object& arc_length, const py::dict& what,
+                                   const py::dict& limits) {
   const compare::MeasuredShape shape = measured(points, arc_length, "points");
   compare::CheckRequest request{
-      .explaining = tolerance[3].cast<bool>() ? compare::Explaining::yes : compare::Explaining::no,
-      .shape = {.pose = compare::from_name<compare::PoseFreedom>(pose),
-                .arc_lengths = compare::from_name<compare::ArcLengths>(arc_lengths),
-                .modulus = modulus ? compare::ModulusSearch::yes : compare::ModulusSearch::no,
-                .solve = solve_options(limits)}};
-  request.shape.solve.accept_unverified = false;
-  if (const auto allowed = tolerance[0].cast<std::optional<std::string>>()) {
-    request.tolerance = cli::shape_tolerance(
-        "tolerance",
-        {*allowed, tolerance[1].cast<std::string>(), tolerance[2].cast<std::optional<double>>()},
-        scene->scene.length);
+      .explaining =
+          what["explain"].cast<bool>() ? compare::Explaining::yes : compare::Explaining::no,
+      .shape = {.pose = compare::from_name<compare::PoseFreedom>(what["pose"].cast<std::string>()),
+                .arc_lengths = compare::from_name<compare::ArcLengths>(
+                    what["arc_lengths"].cast<std::string>()),
+                .modulus = what["modulus"].cast<bool>() ? compare::ModulusSearch::yes
+                                                        : compare::ModulusSearch::no,
+                .solve = verified_options(limits)}};
+  if (const auto allowed = what["tolerance"].cast<std::optional<std::string>>()) {
+    request.tolerance = cli::shape_tolerance("tolerance",
+                                             {*allowed, what["measure"].cast<std::string>(),
+                                              what["min_seen"].cast<std::optional<double>>()},
+                                             scene->scene.length);
   }
   return std::make_shared<CheckResult>(
       run_long([&](Signals& /*signals*/) { return compare::check(scene->scene, shape, request); }));
@@ -119,8 +120,6 @@ FitDocuments calibrate_material(const std::vector<SharedScene>& scenes, const py
   const std::vector<compare::MeasuredShape> measured_shapes = shapes_of(shapes, "shapes");
   const std::vector<compare::MeasuredShape> held_out =
       shapes_of(what["holdout"].cast<py::list>(), "holdout");
-  compare::SolveOptions solve = solve_options(limits);
-  solve.accept_unverified = false;
   const auto chosen = what["options"].cast<std::optional<std::string>>();
   if (chosen && *chosen != "given" && *chosen != "auto") {
     throw compare::InputError(
@@ -144,7 +143,7 @@ FitDocuments calibrate_material(const std::vector<SharedScene>& scenes, const py
       .chain_segments = what["segments"].cast<int>(),
       .chain_segment_lengths = what["segment_lengths"].cast<std::vector<double>>(),
       .noise = what["noise"].cast<std::optional<double>>(),
-      .solve = solve};
+      .solve = verified_options(limits)};
   const compare::Calibration found = run_long([&](Signals& /*signals*/) {
     return compare::calibrate(scenes_of(scenes), measured_shapes, options, held_out);
   });
@@ -164,8 +163,7 @@ FitDocuments calibrate_force_model(const std::vector<SharedScene>& scenes,
   compare::ForceModelFitOptions options;
   options.points = points;
   options.target = target.value_or(options.target);
-  options.solve = solve_options(limits);
-  options.solve.accept_unverified = false;
+  options.solve = verified_options(limits);
   const compare::ForceModelFit fit = run_long([&](Signals& signals) {
     options.progress = [&signals](auto, auto) { signals.throw_if_stopped(); };
     return compare::fit_force_model(scenes_of(scenes), scenes_of(holdouts), options);
@@ -266,8 +264,7 @@ void bind_judge(py::module_& module) {
   bind_check(module);
   bind_comparison(module);
   module.def("check", &check, py::arg("scene"), py::arg("points"), py::arg("arc_length"),
-             py::arg("tolerance"), py::arg("pose"), py::arg("arc_lengths"), py::arg("modulus"),
-             py::arg("limits"));
+             py::arg("what"), py::arg("limits"));
   module.def("compare", &compare_scene, py::arg("scene"), py::arg("modulus"), py::arg("plan"),
              py::arg("limits"));
   module.def("calibrate_material", &calibrate_material, py::arg("scenes"), py::arg("shapes"),

@@ -13,4 +13,7 @@ namespace py = pybind11;
 /// @throws compare::InputError for a number out of range or another name
 [[nodiscard]] compare::SolveOptions solve_options(const py::dict& given);
 
+/// The same where a shape that is not verified is an error at once.
+[[nodiscard]] compare::SolveOptions verified_options(const py::dict& given);
+
 }  // namespace dlo::python

@@ -52,17 +52,14 @@ compare::Grid grid_of(const Axes& fields) {
   return compare::Grid(std::move(axes));
 }
 
-py::dict sweep(
-    const std::string& text, const std::string& file, const MaterialsFile& materials,
-    const std::vector<std::pair<std::string, std::variant<std::vector<std::string>, std::string>>>&
-        fields,
-    const std::string& model, int threads, const py::dict& limits) {
-  compare::SolveOptions options = solve_options(limits);
-  options.accept_unverified = false;
+py::dict sweep(const std::string& text, const std::string& file, const MaterialsFile& materials,
+               const Axes& fields, const py::dict& what, const py::dict& limits) {
+  const auto model = compare::from_name<compare::SweepModel>(what["model"].cast<std::string>());
+  const auto threads = what["threads"].cast<int>();
+  const compare::SolveOptions options = verified_options(limits);
   const Table table = run_long([&](Signals& signals) {
     const compare::Sweep sweep(compare::SceneTemplate(text, file, materials_of(materials)),
-                               grid_of(fields), compare::from_name<compare::SweepModel>(model),
-                               options);
+                               grid_of(fields), model, options);
     if (sweep.grid().size() > largest_table) {
       throw compare::InputError(
           fmt::format("sweep: {} combinations (allowed: {} in a table; more in parts, or by the "
@@ -129,8 +126,12 @@ StudyDocuments bench(const std::vector<SharedScene>& shared, double seconds, int
   });
 }
 
-py::object modes(const SharedScene& scene, int count, double rate, double damping, int samples,
-                 const py::object& make_result, const py::dict& limits) {
+py::object modes(const SharedScene& scene, const py::dict& what, const py::object& make_result,
+                 const py::dict& limits) {
+  const auto count = what["count"].cast<int>();
+  const auto rate = what["rate"].cast<double>();
+  const auto damping = what["damping"].cast<double>();
+  const auto samples = what["samples"].cast<int>();
   if (count < 1 || !(rate > 0) || !(damping > 0 && damping <= 1) || samples < 2) {
     throw compare::InputError(
         "modes: out of range (allowed: count >= 1, rate > 0, 0 < damping <= 1, samples >= 2)");
@@ -153,14 +154,14 @@ py::object modes(const SharedScene& scene, int count, double rate, double dampin
 void bind_studies(py::module_& module) {
   module.attr("largest_table") = largest_table;
   module.def("sweep", &sweep, py::arg("text"), py::arg("file"), py::arg("materials"),
-             py::arg("fields"), py::arg("model"), py::arg("threads"), py::arg("limits"));
+             py::arg("fields"), py::arg("what"), py::arg("limits"));
   module.def("hard_cases", &hard_cases, py::arg("name_contains"), py::arg("steppers"),
              py::arg("max_steps"), py::arg("threads"));
   module.def("stability_map", &stability_map, py::arg("scene"), py::arg("axis"), py::arg("columns"),
              py::arg("rows"), py::arg("steps"), py::arg("threads"));
   module.def("bench", &bench, py::arg("scenes"), py::arg("seconds"), py::arg("repeats"));
-  module.def("modes", &modes, py::arg("scene"), py::arg("count"), py::arg("rate"),
-             py::arg("damping"), py::arg("samples"), py::arg("make_result"), py::arg("limits"));
+  module.def("modes", &modes, py::arg("scene"), py::arg("what"), py::arg("make_result"),
+             py::arg("limits"));
 }
 
 }  // namespace dlo::python

@@ -259,10 +259,7 @@ def check(
     scene: SceneData,
     points: Union[ArrayLike, bytes],
     arc_length: Optional[ArrayLike],
-    tolerance: tuple[Optional[str], str, Optional[float], bool],
-    pose: str,
-    arc_lengths: str,
-    modulus: bool,
+    what: dict[str, Any],
     limits: dict[str, Any],
 ) -> Check: ...
 def compare(
@@ -283,10 +280,7 @@ def calibrate_motion(
 def check_motion(
     scene: SceneData,
     rows: Union[bytes, Sequence[Sequence[float]]],
-    part: tuple[Optional[float], Optional[float]],
-    dynamic: bool,
-    damping: tuple[float, float, float],
-    tolerance: tuple[Optional[str], str, bool],
+    what: dict[str, Any],
     limits: dict[str, Any],
 ) -> tuple[str, str]: ...
 def calibrate_force_model(
@@ -301,8 +295,7 @@ def sweep(
     file: str,
     materials: _Materials,
     fields: Sequence[tuple[str, Union[str, list[str]]]],
-    model: str,
-    threads: int,
+    what: dict[str, Any],
     limits: dict[str, Any],
 ) -> dict[str, NDArray[Any]]: ...
 def regress(
@@ -335,19 +328,13 @@ def stability_map(
 def bench(scenes: Sequence[SceneData], seconds: float, repeats: int) -> tuple[str, str]: ...
 def track(
     scene: SceneData,
-    part: Sequence[Optional[float]],
-    force: bool,
-    damping: Optional[tuple[float, float]],
-    samples: int,
+    what: dict[str, Any],
     make_result: Callable[[str, str], Any],
     limits: dict[str, Any],
 ) -> Any: ...
 def modes(
     scene: SceneData,
-    count: int,
-    rate: float,
-    damping: float,
-    samples: int,
+    what: dict[str, Any],
     make_result: Callable[[str, str], Any],
     limits: dict[str, Any],
 ) -> Any: ...

@@ -172,21 +172,32 @@ def check(
     quadratic_drag [N s^2/m^3], not at rest. begin: of the rod's motion [s]; None: the recording's.
     frame_rate: of the rod [Hz]; None: as needed.
     """
+    what: dict[str, Any] = {
+        "tolerance": None if tolerance is None else str(tolerance),
+        "measure": measure,
+        "explain": bool(explain),
+    }
     if motion is not None:
         if points is not None:
             raise InputError("check: points and motion (allowed: one of them)")
-        told = (None if tolerance is None else str(tolerance), measure, bool(explain))
-        loss = (float(damping), float(drag), float(quadratic_drag))
-        part = (begin, frame_rate)
         data = data_of(scene, materials, None, calibrated)
-        rows = _recorded(motion)
-        return MotionCheck(*_dlo.check_motion(data, rows, part, bool(dynamic), loss, told, limits))
+        what.update(
+            dynamic=bool(dynamic),
+            damping=float(damping),
+            drag=float(drag),
+            quadratic_drag=float(quadratic_drag),
+            begin=begin,
+            frame_rate=frame_rate,
+        )
+        return MotionCheck(*_dlo.check_motion(data, _recorded(motion), what, limits))
     if points is None:
         raise InputError("check: nothing to check (allowed: points, or motion)")
-    asked = (None if tolerance is None else str(tolerance), measure, min_seen, bool(explain))
+    what.update(
+        min_seen=min_seen, pose=pose or register, arc_lengths=arc_lengths, modulus=bool(modulus)
+    )
     data = data_of(scene, materials, None, calibrated)
     taken: Any = file_name(points, "points") if is_file(points) else points
-    return _dlo.check(data, taken, arc_length, asked, pose or register, arc_lengths, bool(modulus), limits)
+    return _dlo.check(data, taken, arc_length, what, limits)
 
 
 @checked(modulus=TRUTH, plan=TRUTH, time=NUMBER)

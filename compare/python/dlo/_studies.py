@@ -69,7 +69,8 @@ def sweep(
     """
     made = as_scene(scene, materials)
     fields = [_axis(field, values) for field, values in vary.items()]
-    return _dlo.sweep(made.to_toml(), made._file, made._materials, fields, model, threads, limits)
+    what = {"model": model, "threads": threads}
+    return _dlo.sweep(made.to_toml(), made._file, made._materials, fields, what, limits)
 
 
 @checked(
@@ -285,9 +286,8 @@ def modes(
     slowest mode that the material has [-]. samples: points of each mode's shape. time, materials,
     calibrated: as of solve().
     """
-    found: Modes = _dlo.modes(
-        data_of(scene, materials, time, calibrated), count, rate, damping, samples, Modes, limits
-    )
+    what = {"count": count, "rate": rate, "damping": damping, "samples": samples}
+    found: Modes = _dlo.modes(data_of(scene, materials, time, calibrated), what, Modes, limits)
     return found
 
 
@@ -332,8 +332,17 @@ def track(
     """
     if not dynamic and (damping != 0 or drag != 0):
         raise InputError("track: damping and drag are those of a rod with inertia (allowed: dynamic=True)")
-    part = [begin, end, frame_rate, obstacle_rate, step_rate]
-    loss = (damping, drag) if dynamic else None
-    data = data_of(scene, materials, None, calibrated)
-    found: Track = _dlo.track(data, part, bool(force), loss, samples, Track, limits)
+    what = {
+        "begin": begin,
+        "end": end,
+        "frame_rate": frame_rate,
+        "obstacle_rate": obstacle_rate,
+        "step_rate": step_rate,
+        "force": bool(force),
+        "dynamic": bool(dynamic),
+        "damping": damping,
+        "drag": drag,
+        "samples": samples,
+    }
+    found: Track = _dlo.track(data_of(scene, materials, None, calibrated), what, Track, limits)
     return found

@@ -4,10 +4,10 @@
 
 namespace dlo::compare {
 
-InputError::InputError(const std::string& message) : std::runtime_error(display(message)) {}
+InputError::InputError(const std::string& message) : ResultError(display(message)) {}
 
 InputError::InputError(const std::string& where, const std::string& key, const std::string& problem)
-    : std::runtime_error(display(where + ": " + key + problem)),
+    : ResultError(display(where + ": " + key + problem)),
       key_(display(key)),
       problem_(display(problem)) {}
 

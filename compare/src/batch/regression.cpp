@@ -2,14 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
 
-#include "base/fingerprint.hpp"
 #include "base/quote.hpp"
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/deviation.hpp"
@@ -17,6 +18,7 @@
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solve.hpp"
+#include "reading/fingerprint.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -57,119 +59,142 @@ void compare_errors(RegressionResult& result, const RegressionTolerance& toleran
   }
 }
 
-/// All that a scene's shape depends on and the case's name does not say. Twelve digits, so that
-/// "2 mm" is 0.002.
-std::string content_of(const Scene& scene) {
-  std::string text;
-  const auto add = [&](double value) { text += fmt::format("{:.12g} ", value + 0.0); };
-  const auto add_vector = [&](const Eigen::Vector3d& v) {
-    for (const double component : v) add(component);
-  };
-  const auto add_optional = [&](const std::optional<double>& value) {
-    value ? add(*value) : void(text += "- ");
-  };
-  add_vector(scene.gravity);
-  add(scene.length);
-  add(scene.diameter);
-  add(scene.material.youngs_modulus);
-  add(scene.material.density);
+/// What a scene says, as text. Twelve digits, so that "2 mm" is 0.002.
+class ContentText {
+ public:
+  void add_words(std::string_view words) { text_ += words; }
+  void add(double value) { text_ += fmt::format("{:.12g} ", value + 0.0); }
+  void add(const Eigen::Vector3d& vector) {
+    for (const double component : vector) add(component);
+  }
+  void add(const std::optional<double>& value) { value ? add(*value) : add_words("- "); }
   // What few scenes have is named, so that others keep the fingerprints of their baselines.
-  const auto add_named = [&](const char* name, const std::optional<double>& value) {
+  void add_named(const char* name, const std::optional<double>& value) {
     if (!value) return;
-    text += name;
+    add_words(name);
     add(*value);
-  };
-  add_named("torsion ", scene.torsional_stiffness);
-  add_named("EI ", scene.given_bending_stiffness);
-  add_named("EI_2 ", scene.given_bending_stiffness_2);
-  add_named("mass ", scene.given_mass_per_length);
-  add_named("EA ", scene.given_axial_stiffness);
-  if (scene.stretch == Stretch::counted) add_named("stretch ", scene.axial_stiffness());
-  if (scene.stretch == Stretch::automatic) add_named("stretch auto ", scene.axial_stiffness());
-  const auto add_known = [&](const char* name, double value) {
+  }
+  void add_positive(const char* name, double value) {
     if (value > 0) add_named(name, value);
-  };
-  add_known("inner ", scene.inner_diameter);
-  add_known("width ", scene.width);
-  add_known("thickness ", scene.thickness);
-  if (scene.naturally_bent()) {
-    text += "natural ";
-    add_vector(scene.natural_strain);
-    for (const Eigen::Vector2d& strain : scene.natural_variation) {
-      text += "varies ";
-      add_vector({strain.x(), strain.y(), 0});
-    }
   }
-  for (const Section& section : scene.sections) {
-    text += "\nsection ";
-    for (const double value :
-         {section.from, section.to, section.bending_stiffness, section.mass_per_length}) {
-      add(value);
-    }
-    add_named("torsion ", section.torsional_stiffness);
-    add_named("EI_2 ", section.bending_stiffness_2);
-    if (section.natural_curvature) {
-      text += "natural ";
-      add_vector({section.natural_curvature->x(), section.natural_curvature->y(), 0});
-    }
-    add_named("twist ", section.natural_twist);
+  std::string take() { return std::move(text_); }
+
+ private:
+  std::string text_;
+};
+
+void add_rod(ContentText& text, const Scene& scene) {
+  text.add(scene.gravity);
+  text.add(scene.length);
+  text.add(scene.diameter);
+  text.add(scene.material.youngs_modulus);
+  text.add(scene.material.density);
+  text.add_named("torsion ", scene.torsional_stiffness);
+  text.add_named("EI ", scene.given_bending_stiffness);
+  text.add_named("EI_2 ", scene.given_bending_stiffness_2);
+  text.add_named("mass ", scene.given_mass_per_length);
+  text.add_named("EA ", scene.given_axial_stiffness);
+  if (scene.stretch == Stretch::counted) text.add_named("stretch ", scene.axial_stiffness());
+  if (scene.stretch == Stretch::automatic) text.add_named("stretch auto ", scene.axial_stiffness());
+  text.add_positive("inner ", scene.inner_diameter);
+  text.add_positive("width ", scene.width);
+  text.add_positive("thickness ", scene.thickness);
+  if (!scene.naturally_bent()) return;
+  text.add_words("natural ");
+  text.add(scene.natural_strain);
+  for (const Eigen::Vector2d& strain : scene.natural_variation) {
+    text.add_words("varies ");
+    text.add({strain.x(), strain.y(), 0});
   }
-  for (const Gripper& gripper : scene.grippers) {
-    text += "\ngripper ";
-    add(gripper.at);
-    add_vector(gripper.position);
-    if (gripper.direction) add_vector(*gripper.direction);
-    if (!gripper.frame) continue;
-    text += "frame ";
-    if (gripper.frame->d1) add_vector(*gripper.frame->d1);
-    add(gripper.frame->roll);
+}
+
+void add_section(ContentText& text, const Section& section) {
+  text.add_words("\nsection ");
+  for (const double value :
+       {section.from, section.to, section.bending_stiffness, section.mass_per_length}) {
+    text.add(value);
   }
+  text.add_named("torsion ", section.torsional_stiffness);
+  text.add_named("EI_2 ", section.bending_stiffness_2);
+  if (section.natural_curvature) {
+    text.add_words("natural ");
+    text.add({section.natural_curvature->x(), section.natural_curvature->y(), 0});
+  }
+  text.add_named("twist ", section.natural_twist);
+}
+
+void add_gripper(ContentText& text, const Gripper& gripper) {
+  text.add_words("\ngripper ");
+  text.add(gripper.at);
+  text.add(gripper.position);
+  if (gripper.direction) text.add(*gripper.direction);
+  if (!gripper.frame) return;
+  text.add_words("frame ");
+  if (gripper.frame->d1) text.add(*gripper.frame->d1);
+  text.add(gripper.frame->roll);
+}
+
+void add_loads(ContentText& text, const Scene& scene) {
   for (const PointLoad& load : scene.loads) {
-    text += "\nload ";
-    add(load.at);
-    add_vector(load.force);
-    if (!load.torque.isZero(0)) add_vector(load.torque);
-    if (load.follows) text += "follows ";
+    text.add_words("\nload ");
+    text.add(load.at);
+    text.add(load.force);
+    if (!load.torque.isZero(0)) text.add(load.torque);
+    if (load.follows) text.add_words("follows ");
   }
   for (const DistributedLoad& load : scene.distributed_loads) {
-    text += "\ndistributed load ";
-    add(load.from);
-    add(load.to);
-    for (const Eigen::Vector3d& q : load.force_per_length) add_vector(q);
+    text.add_words("\ndistributed load ");
+    text.add(load.from);
+    text.add(load.to);
+    for (const Eigen::Vector3d& q : load.force_per_length) text.add(q);
   }
   if (scene.drag) {
-    text += "\ndrag ";
-    add_vector(scene.drag->velocity);
-    add(scene.drag->normal);
-    add(scene.drag->tangential);
+    text.add_words("\ndrag ");
+    text.add(scene.drag->velocity);
+    text.add(scene.drag->normal);
+    text.add(scene.drag->tangential);
   }
-  for (const Obstacle& obstacle : scene.obstacles) {
-    const obstacle::Body& body = obstacle.body;
-    if (body.is_half_space()) {
-      text += "\nobstacle ";
-      add_vector(body.centre() + body.radius() * body.normal());
-      add_vector(body.normal());
-    } else {
-      text += "\nbody ";
-      add_vector(body.centre());
-      for (Eigen::Index axis = 0; axis < 3; ++axis) add_vector(body.axes().col(axis));
-      add_vector(body.upper());
-      add(body.radius());
-    }
-    add(obstacle.stiffness);
-    if (obstacle.friction > 0) {
-      text += "friction ";
-      add(obstacle.friction);
-    }
+}
+
+void add_obstacle(ContentText& text, const Obstacle& obstacle) {
+  const obstacle::Body& body = obstacle.body;
+  if (body.is_half_space()) {
+    text.add_words("\nobstacle ");
+    text.add(Eigen::Vector3d(body.centre() + body.radius() * body.normal()));
+    text.add(body.normal());
+  } else {
+    text.add_words("\nbody ");
+    text.add(body.centre());
+    for (Eigen::Index axis = 0; axis < 3; ++axis) text.add(Eigen::Vector3d(body.axes().col(axis)));
+    text.add(body.upper());
+    text.add(body.radius());
   }
-  const ForceModelSettings& settings = scene.force_model;
-  text += fmt::format("\n{} {} ", to_string(settings.stepper), to_string(settings.bending_rule));
-  if (settings.joint_law) text += fmt::format("joints {} ", to_string(*settings.joint_law));
+  text.add(obstacle.stiffness);
+  text.add_positive("friction ", obstacle.friction);
+}
+
+void add_force_model(ContentText& text, const ForceModelSettings& settings) {
+  text.add_words(
+      fmt::format("\n{} {} ", to_string(settings.stepper), to_string(settings.bending_rule)));
+  if (settings.joint_law) {
+    text.add_words(fmt::format("joints {} ", to_string(*settings.joint_law)));
+  }
   for (const auto& value : {settings.design_curvature, settings.point_weight, settings.c_b,
                             settings.c_c, settings.c_F, settings.c_h, settings.l_s}) {
-    add_optional(value);
+    text.add(value);
   }
-  return text;
+}
+
+/// All that a scene's shape depends on and the case's name does not say.
+std::string content_of(const Scene& scene) {
+  ContentText text;
+  add_rod(text, scene);
+  for (const Section& section : scene.sections) add_section(text, section);
+  for (const Gripper& gripper : scene.grippers) add_gripper(text, gripper);
+  add_loads(text, scene);
+  for (const Obstacle& obstacle : scene.obstacles) add_obstacle(text, obstacle);
+  add_force_model(text, scene.force_model);
+  return text.take();
 }
 
 /// Of measured cases, by name, the case of the baseline whose place they take: the only other one
@@ -219,6 +244,57 @@ std::string change_between(const BaselineCase& before, const BaselineCase& now) 
   const bool known = !before.fingerprint.empty() && !now.fingerprint.empty();
   return known && before.fingerprint != now.fingerprint ? "the scene is another than the baseline's"
                                                         : "";
+}
+
+/// The cases of a baseline, by the names that this run has for them.
+std::map<std::string, const BaselineCase*> expected_cases(
+    const std::vector<BaselineCase>& baseline, const std::vector<MeasuredCase>& measured) {
+  std::map<std::string, const BaselineCase*> expected;
+  for (const BaselineCase& entry : baseline) expected[entry.name()] = &entry;
+  for (const auto& [name, entry] : replaced_cases(baseline, measured)) {
+    expected.erase(entry->name());
+    expected[name] = entry;
+  }
+  return expected;
+}
+
+/// Of a case of the baseline as long as none of the measured ones is it.
+RegressionResult not_measured(const BaselineCase& entry,
+                              const std::vector<MeasuredCase>& measured) {
+  RegressionResult result;
+  result.expected = entry.errors;
+  result.verdict = RegressionVerdict::not_measured;
+  const bool is_run = std::ranges::any_of(measured, [&](const MeasuredCase& measurement) {
+    return measurement.entry.program == entry.program;
+  });
+  result.message = entry.program.empty() || is_run
+                       ? "in the baseline, but no scene given is this case"
+                       : fmt::format("in the baseline, of a program: --with {}='COMMAND' runs it",
+                                     entry.program);
+  return result;
+}
+
+/// @param known  the baseline's case that it is; null if there is none
+void judge_case(RegressionResult& result, const MeasuredCase& measurement,
+                const BaselineCase* known, const RegressionTolerance& tolerance) {
+  result.message.clear();
+  if (!measurement.problem.empty()) {
+    result.verdict = RegressionVerdict::not_solved;
+    result.message = measurement.problem;
+    return;
+  }
+  result.measured = measurement.entry.errors;
+  if (!result.expected) {
+    result.verdict = RegressionVerdict::not_in_baseline;
+    result.message = fmt::format("RMS {} of l, not in the baseline (--update adds it)",
+                                 percent(result.measured->rms));
+    return;
+  }
+  compare_errors(result, tolerance);
+  const std::string change = change_between(*known, measurement.entry);
+  if (change.empty()) return;
+  result.verdict = RegressionVerdict::changed;
+  result.message = fmt::format("{}: {}", change, result.message);
 }
 
 ShapeErrors errors_of(const Scene& scene, const Deviation& deviation) {
@@ -278,54 +354,20 @@ std::vector<RegressionResult> judge_regression(const std::vector<BaselineCase>& 
         fmt::format("judge_regression: tolerance relative = {}, absolute = {}, must be >= 0",
                     tolerance.relative, tolerance.absolute));
   }
-  const std::map<std::string, const BaselineCase*> replaced = replaced_cases(baseline, measured);
-  std::map<std::string, const BaselineCase*> expected;  // by the name that this run has for it
-  for (const BaselineCase& entry : baseline) expected[entry.name()] = &entry;
-  for (const auto& [name, entry] : replaced) {
-    expected.erase(entry->name());
-    expected[name] = entry;
-  }
+  // By the name that this run has for it.
+  const std::map<std::string, const BaselineCase*> expected = expected_cases(baseline, measured);
   std::map<std::string, RegressionResult> results;
-  for (const auto& [name, known] : expected) {
-    const BaselineCase& entry = *known;
-    RegressionResult& result = results[name];
-    result.expected = entry.errors;
-    result.verdict = RegressionVerdict::not_measured;
-    const bool is_run = std::ranges::any_of(measured, [&](const MeasuredCase& measurement) {
-      return measurement.entry.program == entry.program;
-    });
-    result.message = entry.program.empty() || is_run
-                         ? "in the baseline, but no scene given is this case"
-                         : fmt::format("in the baseline, of a program: --with {}='COMMAND' runs it",
-                                       entry.program);
-  }
-  std::map<std::string, int> seen;
+  for (const auto& [name, entry] : expected) results[name] = not_measured(*entry, measured);
+  std::set<std::string> seen;
   for (const MeasuredCase& measurement : measured) {
     const std::string name = measurement.entry.name();
-    if (++seen[name] > 1) {
+    if (!seen.insert(name).second) {
       throw InputError(fmt::format(
           "{}: two scenes are this case (allowed: a name of its own for each scene)", name));
     }
-    RegressionResult& result = results[name];
-    result.message.clear();
-    if (!measurement.problem.empty()) {
-      result.verdict = RegressionVerdict::not_solved;
-      result.message = measurement.problem;
-      continue;
-    }
-    result.measured = measurement.entry.errors;
-    if (result.expected) {
-      compare_errors(result, tolerance);
-      const std::string change = change_between(*expected.at(name), measurement.entry);
-      if (!change.empty()) {
-        result.verdict = RegressionVerdict::changed;
-        result.message = fmt::format("{}: {}", change, result.message);
-      }
-    } else {
-      result.verdict = RegressionVerdict::not_in_baseline;
-      result.message = fmt::format("RMS {} of l, not in the baseline (--update adds it)",
-                                   percent(result.measured->rms));
-    }
+    const auto known = expected.find(name);
+    judge_case(results[name], measurement, known == expected.end() ? nullptr : known->second,
+               tolerance);
   }
   std::vector<RegressionResult> sorted;
   for (auto& [name, result] : results) {

@@ -13,7 +13,6 @@
 #include <system_error>
 
 #include "base/display.hpp"
-#include "base/fingerprint.hpp"
 #include "base/number.hpp"
 #include "base/quote.hpp"
 #include "dlo/compare/comparison.hpp"
@@ -23,6 +22,7 @@
 #include "dlo/compare/solution.hpp"
 #include "dlo/compare/solve.hpp"
 #include "parallel/threads.hpp"
+#include "reading/fingerprint.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/timer.hpp"
 #include "dlo/compare/error.hpp"
 #include "least_squares/gauss_newton.hpp"
 
@@ -54,7 +55,7 @@ std::optional<FittedCause> fit_cause(const SceneCause& cause, const MeasuredShap
                            .weights = PointWeights::by_length,
                            .solve = options.solve,
                            .flat = FlatShapes::measured},
-                          limits.begin);
+                          limits.timer);
   std::vector<Unknown> unknowns;
   for (const double stride : cause.stride) {
     unknowns.push_back({.stride = stride, .longest_step = cause.longest_step});

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <chrono>
 #include <optional>
 
+#include "base/timer.hpp"
 #include "dlo/compare/shape_check.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "explain/scene_causes.hpp"
@@ -17,8 +17,8 @@ struct FittedCause {
 };
 
 struct CauseFitLimits {
-  double noise = 0;                             ///< what is nearer is the same [m]
-  std::chrono::steady_clock::time_point begin;  ///< from when on the time limit is
+  double noise = 0;  ///< what is nearer is the same [m]
+  Timer timer;       ///< from when on the time limit is
 };
 
 /// @param rod  that the shape was compared with

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <utility>
 
+#include "base/timer.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
 #include "explain/cause_fit.hpp"
@@ -105,10 +105,7 @@ class Search {
   }
 
  private:
-  [[nodiscard]] bool is_over() const {
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
-    return spent.count() > options_.solve.time_limit;
-  }
+  [[nodiscard]] bool is_over() const { return timer_.seconds() > options_.solve.time_limit; }
 
   /// Whether nothing with so many numbers could be better than what has been found.
   [[nodiscard]] bool is_found(int numbers) const {
@@ -286,15 +283,13 @@ class Search {
                                   same_length * scene_.length);
     try {
       const std::optional<FittedCause> found =
-          fit_cause(cause, shape_, rod, options_, {noise, begin_});
+          fit_cause(cause, shape_, rod, options_, {noise, timer_});
       if (!found) return;
       add({cause.words(found->numbers), rms_of(cause.changed(found->numbers), found->rod),
            static_cast<int>(found->numbers.size()), ExplanationKind::scene},
           cause.same_as);
-    } catch (const ConvergenceError&) {
-      // No time is left.
-    } catch (const InputError&) {
-      // No scene, or a shape of too few points for one.
+    } catch (const ResultError&) {
+      // No scene, or a shape of too few points for one; or no time is left.
     }
   }
 
@@ -315,7 +310,7 @@ class Search {
     double price;
   };
   std::optional<SaidRightly> said_rightly_;  // the best
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  Timer timer_;
 };
 
 }  // namespace

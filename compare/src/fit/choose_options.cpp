@@ -150,10 +150,8 @@ class OptionsSearch {
         plain.prediction = plain_prediction();
         trials_.push_back({options, std::move(plain)});
       }
-    } catch (const ConvergenceError&) {
-      return std::nullopt;
-    } catch (const InputError&) {
-      // No clamp, no plane, other grippers, or too few points.
+    } catch (const ResultError&) {
+      // No clamp, no plane, other grippers, or too few points; or no shape.
       return std::nullopt;
     }
     return trials_.back().prediction();

@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
+#include "base/timer.hpp"
 #include "dlo/compare/error.hpp"
 #include "wire/identifiable.hpp"
 #include "wire/wire_numbers.hpp"
@@ -26,7 +26,7 @@ MaterialProfiles::MaterialProfiles(const std::vector<Scene>& scenes,
     : scenes_(scenes),
       shapes_(shapes),
       options_(options),
-      measured_(scenes, shapes, measured_options(options), std::chrono::steady_clock::now()),
+      measured_(scenes, shapes, measured_options(options), Timer()),
       misfit_(scenes, measured_),
       forced_(std::any_of(scenes.begin(), scenes.end(), compare::is_forced)),
       both_(options.density && std::any_of(scenes.begin(), scenes.end(), has_forces_beside_weight)),

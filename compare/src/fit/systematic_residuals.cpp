@@ -68,10 +68,8 @@ void try_alternatives(MaterialProfiles& material, const MaterialPoint& best, Mat
                                          options, best, material.has_density());
       if (!(other.rms_m <= worth_naming * fit.rms_m)) continue;
       add_alternative({terms, directions, other.rms_m, other.youngs_modulus}, fit);
-    } catch (const InputError&) {
-      // No clamp, no plane, or too few points.
-    } catch (const ConvergenceError&) {
-      // No shape, or no time.
+    } catch (const ResultError&) {
+      // No clamp, no plane, or too few points; no shape, or no time.
     }
   }
   std::stable_sort(

@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "base/temporary_path.hpp"
+#include "base/timer.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -68,14 +69,13 @@ class SpawnSettings {
 /// Waits until a child has ended, which it keeps as it is; false at the time limit. Looks often at
 /// first, then every hundredth of the time so far, so that the wall time is right to a percent.
 bool ended_within(pid_t process, double time_limit, double& seconds) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point begin = Clock::now();
+  const Timer timer;
   while (true) {
     siginfo_t info{};
     const int status =
         ::waitid(P_PID, static_cast<id_t>(process), &info,
                  static_cast<int>(WEXITED) | static_cast<int>(WNOHANG) | static_cast<int>(WNOWAIT));
-    seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    seconds = timer.seconds();
     if (status == 0 && info.si_pid == process) return true;
     if (seconds >= time_limit) return false;
     const double pause = std::clamp(seconds / 100, 5e-5, 1e-2);

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <utility>
 
+#include "base/timer.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
@@ -102,8 +102,7 @@ class FollowedState {
   const Known* step(const Known& start, double log_ratio) {
     SolveOptions options = options_;
     options.start = &start.state;
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
-    options.time_limit -= spent.count();
+    options.time_limit -= timer_.seconds();
     if (!(options.time_limit > 0)) throw OutOfTime();
     Scene scene = scene_;
     scene.scale_modulus(std::exp(log_ratio));
@@ -125,7 +124,7 @@ class FollowedState {
   SolveOptions options_;
   std::vector<double> s_;
   std::map<double, Known> known_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  Timer timer_;
   int solves_ = 0;
 };
 

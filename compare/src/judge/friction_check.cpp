@@ -193,22 +193,25 @@ double least_with(const LinearDistance& distance, double mean_square, double mos
   return high;
 }
 
-Needed needed(const Scene& scene, const Shape& shape, int segments,
-              const std::optional<Eigen::Vector3d>& normal) {
-  HeldPolygon polygon(scene, segments, normal);
-  const std::vector<double>& at = polygon.arc_lengths();
-  Eigen::Matrix3Xd along(3, static_cast<Eigen::Index>(at.size()));
+/// Between the points of the shape, and on past them as it ends.
+Eigen::Matrix3Xd points_at(const std::vector<double>& at, const Shape& shape) {
+  const std::vector<double>& s = shape.arc_length;
+  Eigen::Matrix3Xd result(3, static_cast<Eigen::Index>(at.size()));
   for (std::size_t i = 0; i < at.size(); ++i) {
-    // Between the points of the shape, and on past them as it ends.
-    const std::vector<double>& s = shape.arc_length;
     const auto after = std::upper_bound(s.begin() + 1, s.end() - 1, at[i]);
     const auto m = static_cast<Eigen::Index>(after - s.begin());
     const auto right = static_cast<std::size_t>(m);
     const double share = (at[i] - s[right - 1]) / (s[right] - s[right - 1]);
-    along.col(static_cast<Eigen::Index>(i)) =
+    result.col(static_cast<Eigen::Index>(i)) =
         (1 - share) * shape.points.col(m - 1) + share * shape.points.col(m);
   }
-  polygon.lay_along(along);
+  return result;
+}
+
+Needed needed(const Scene& scene, const Shape& shape, int segments,
+              const std::optional<Eigen::Vector3d>& normal) {
+  HeldPolygon polygon(scene, segments, normal);
+  polygon.lay_along(points_at(polygon.arc_lengths(), shape));
   LinearDistance distance(scene, shape, normal.has_value());
   const double same = same_distance * scene.length;
   const double most = any_friction(scene);
@@ -281,35 +284,37 @@ std::string refusal(const Scene& scene, const ShapeCheck& check) {
   return {};
 }
 
-}  // namespace
-
-const char* to_string(FrictionVerdict verdict) {
-  switch (verdict) {
-    case FrictionVerdict::none_needed:
-      return "none_needed";
-    case FrictionVerdict::inside:
-      return "inside";
-    case FrictionVerdict::outside:
-      return "outside";
-    case FrictionVerdict::not_identified:
-      break;
-  }
-  return "not_identified";
+/// The normal of the scene's plane if the shape lies in it: a frictionless floor lets a rod turn
+/// out of its plane, and friction may hold it there.
+std::optional<Eigen::Vector3d> shared_plane(const Scene& scene, const Shape& shape) {
+  std::optional<Eigen::Vector3d> normal = scene.plane_normal();
+  if (!normal) return normal;
+  const Eigen::Vector3d grip = scene.grippers.front().position;
+  const double off = (normal->transpose() * (shape.points.colwise() - grip)).cwiseAbs().maxCoeff();
+  if (!(off <= same_distance * scene.length)) normal.reset();
+  return normal;
 }
+
+/// Of all obstacles in reach that have friction; none where they have several.
+std::optional<double> only_coefficient(const Scene& scene) {
+  std::optional<double> mu;
+  for (const std::size_t i : obstacles_in_reach(scene)) {
+    const double own = scene.obstacles[i].friction;
+    if (own == 0) continue;
+    if (mu && *mu != own) return std::nullopt;
+    mu = own;
+  }
+  return mu;
+}
+
+}  // namespace
 
 FrictionCheck check_friction(const Scene& scene, const ShapeCheck& check) {
   FrictionCheck result;
   result.reason = refusal(scene, check);
   if (!result.reason.empty()) return result;
   const Shape& shape = check.alignment.shape;
-  std::optional<Eigen::Vector3d> normal = scene.plane_normal();
-  if (normal) {
-    const Eigen::Vector3d grip = scene.grippers.front().position;
-    const double off =
-        (normal->transpose() * (shape.points.colwise() - grip)).cwiseAbs().maxCoeff();
-    // A frictionless floor lets a rod turn out of its plane, and friction may hold it there.
-    if (!(off <= same_distance * scene.length)) normal.reset();
-  }
+  const std::optional<Eigen::Vector3d> normal = shared_plane(scene, shape);
   const Needed coarse = needed(scene, shape, finest_segments / 2, normal);
   const Needed fine = needed(scene, shape, finest_segments, normal);
   if (!fine.touches) {
@@ -339,15 +344,9 @@ FrictionCheck check_friction(const Scene& scene, const ShapeCheck& check) {
   if (!normal) {
     result.factor_error += result.factor * (1 / std::cos(std::numbers::pi / pyramid_sides) - 1);
   }
-  std::optional<double> mu;
-  bool one = true;
-  for (const std::size_t i : obstacles_in_reach(scene)) {
-    const double own = scene.obstacles[i].friction;
-    if (own == 0) continue;
-    if (mu && *mu != own) one = false;
-    mu = own;
+  if (const std::optional<double> mu = only_coefficient(scene)) {
+    result.coefficient = result.factor * *mu;
   }
-  if (one && mu) result.coefficient = result.factor * *mu;
   // What the scatter may hide is as much again as what it leaves open below.
   const double most_needed = 2 * result.factor - result.least_factor + result.factor_error;
   const bool scattered = result.rms_m > largest_scatter * scene.length;

@@ -10,6 +10,36 @@ namespace {
 /// Arc lengths that are nearer than this share of the length are one node.
 constexpr double same_place = 1e-9;
 
+/// Nodes where anything of the scene begins or ends, and so many segments about evenly between.
+std::vector<double> cut_arc_lengths(const Scene& scene, int segments) {
+  std::vector<double> cuts = {0, scene.length};
+  for (const Gripper& gripper : scene.grippers) cuts.push_back(gripper.at);
+  for (const PointLoad& load : scene.loads) cuts.push_back(load.at);
+  for (const DistributedLoad& load : scene.distributed_loads) {
+    cuts.insert(cuts.end(), {load.from, load.to});
+  }
+  for (const Section& section : scene.sections) {
+    cuts.insert(cuts.end(), {section.from, section.to});
+  }
+  std::sort(cuts.begin(), cuts.end());
+  std::vector<double> s = {0};
+  double from = 0;
+  for (const double cut : cuts) {
+    if (cut - from <= same_place * scene.length) continue;
+    const double share = (cut - from) / scene.length;
+    const int parts = std::max(1, static_cast<int>(std::ceil(share * segments - 1e-6)));
+    for (int i = 1; i <= parts; ++i) s.push_back(from + (cut - from) * i / parts);
+    from = cut;
+  }
+  return s;
+}
+
+Eigen::Index nearest_node(const std::vector<double>& s, double at) {
+  const auto nearest = std::min_element(
+      s.begin(), s.end(), [at](double a, double b) { return std::abs(a - at) < std::abs(b - at); });
+  return nearest - s.begin();
+}
+
 }  // namespace
 
 HeldPolygon::HeldPolygon(const Scene& scene, int segments,
@@ -20,41 +50,32 @@ HeldPolygon::HeldPolygon(const Scene& scene, int segments,
     axes_.resize(3, 2);
     axes_ << x, normal->cross(x);
   }
-  std::vector<double> cuts = {0, scene.length};
-  for (const Gripper& gripper : scene.grippers) cuts.push_back(gripper.at);
-  for (const PointLoad& load : scene.loads) cuts.push_back(load.at);
-  for (const DistributedLoad& load : scene.distributed_loads) {
-    cuts.insert(cuts.end(), {load.from, load.to});
-  }
-  for (const Section& section : scene.sections) {
-    cuts.push_back(section.from);
-    cuts.push_back(section.to);
-  }
-  std::sort(cuts.begin(), cuts.end());
-  s_.push_back(0);
-  double from = 0;
-  for (const double cut : cuts) {
-    if (cut - from <= same_place * scene.length) continue;
-    const double share = (cut - from) / scene.length;
-    const int parts = std::max(1, static_cast<int>(std::ceil(share * segments - 1e-6)));
-    for (int i = 1; i <= parts; ++i) s_.push_back(from + (cut - from) * i / parts);
-    from = cut;
-  }
+  s_ = cut_arc_lengths(scene, segments);
   for (std::size_t i = 0; i + 1 < s_.size(); ++i) lengths_.push_back(s_[i + 1] - s_[i]);
   t_.resize(3, count());
-  const auto node_at = [&](double at) {
-    const auto nearest = std::min_element(s_.begin(), s_.end(), [at](double a, double b) {
-      return std::abs(a - at) < std::abs(b - at);
-    });
-    return static_cast<Eigen::Index>(nearest - s_.begin());
-  };
+  hold(scene);
+  for (Eigen::Index i = 0; i < count(); ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const Eigen::Vector3d half =
+        (scene.weight_between(s_[at], s_[at + 1]) + scene.distributed_between(s_[at], s_[at + 1])) /
+        2;
+    dead_.push_back({i, half});
+    dead_.push_back({i + 1, half});
+  }
+  for (const PointLoad& load : scene.loads) {
+    dead_.push_back({nearest_node(s_, load.at), load.force});
+  }
+  pulls_.setZero(axes_.cols() * static_cast<Eigen::Index>(grips_.size()));
+}
+
+void HeldPolygon::hold(const Scene& scene) {
   const auto middle = [&](Eigen::Index i) {
     const auto at = static_cast<std::size_t>(i);
     return (s_[at] + s_[at + 1]) / 2;
   };
   std::vector<std::optional<Eigen::Vector3d>> clamps(s_.size());
   for (const Gripper& gripper : scene.grippers) {
-    const Eigen::Index node = node_at(gripper.at);
+    const Eigen::Index node = nearest_node(s_, gripper.at);
     grips_.push_back({node, gripper.position});
     clamps[static_cast<std::size_t>(node)] = gripper.direction;
   }
@@ -74,16 +95,6 @@ HeldPolygon::HeldPolygon(const Scene& scene, int segments,
       joints_.push_back({node, -1, 1 / scene.bending_compliance(at, middle(node)), *clamp});
     }
   }
-  for (Eigen::Index i = 0; i < count(); ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    const Eigen::Vector3d half =
-        (scene.weight_between(s_[at], s_[at + 1]) + scene.distributed_between(s_[at], s_[at + 1])) /
-        2;
-    dead_.push_back({i, half});
-    dead_.push_back({i + 1, half});
-  }
-  for (const PointLoad& load : scene.loads) dead_.push_back({node_at(load.at), load.force});
-  pulls_.setZero(axes_.cols() * static_cast<Eigen::Index>(grips_.size()));
 }
 
 void HeldPolygon::lay_along(const Eigen::Matrix3Xd& points) {

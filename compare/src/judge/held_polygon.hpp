@@ -65,6 +65,8 @@ class HeldPolygon {
   [[nodiscard]] Eigen::Index turns() const { return axes_.cols() - 1; }  // of one segment
   [[nodiscard]] Eigen::Index unknowns() const { return count() * turns() + axes_.cols(); }
   [[nodiscard]] Eigen::Index count() const { return static_cast<Eigen::Index>(lengths_.size()); }
+  /// Grips, and the joints of the nodes.
+  void hold(const Scene& scene);
   [[nodiscard]] Eigen::Matrix3Xd basis(Eigen::Index segment) const;
   /// Adds what a force at a node pulls the unknowns with, to the head of a vector.
   void pull(const NodeForce& force, Eigen::Ref<Eigen::VectorXd> result) const;

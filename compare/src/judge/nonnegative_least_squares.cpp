@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 namespace dlo::compare {
@@ -19,6 +20,30 @@ Eigen::MatrixXd columns(const Eigen::MatrixXd& A, const std::vector<Eigen::Index
     result.col(static_cast<Eigen::Index>(i)) = A.col(which[i]);
   }
   return result;
+}
+
+/// As far towards the free solution as all stay nonnegative; what gets to zero is passive no more.
+void step_to_bound(const Eigen::VectorXd& free, std::vector<Eigen::Index>& passive,
+                   Eigen::VectorXd& x) {
+  double part = 1;
+  for (std::size_t i = 0; i < passive.size(); ++i) {
+    const double to = free[static_cast<Eigen::Index>(i)];
+    const double from = x[passive[i]];
+    if (to <= 0) part = std::min(part, from > to ? from / (from - to) : 0.0);
+  }
+  std::vector<Eigen::Index> kept;
+  for (std::size_t i = 0; i < passive.size(); ++i) {
+    const double to = free[static_cast<Eigen::Index>(i)];
+    double& value = x[passive[i]];
+    const double scale = std::abs(to) + value;
+    value += part * (to - value);
+    if (to <= 0 && value <= 8 * std::numeric_limits<double>::epsilon() * scale) {
+      value = 0;
+    } else {
+      kept.push_back(passive[i]);
+    }
+  }
+  passive = std::move(kept);
 }
 
 }  // namespace
@@ -55,26 +80,7 @@ Eigen::VectorXd nonnegative_least_squares(const Eigen::MatrixXd& A, const Eigen:
         }
         break;
       }
-      // As far towards it as all stay nonnegative.
-      double part = 1;
-      for (std::size_t i = 0; i < passive.size(); ++i) {
-        const double to = free[static_cast<Eigen::Index>(i)];
-        const double from = x[passive[i]];
-        if (to <= 0) part = std::min(part, from > to ? from / (from - to) : 0.0);
-      }
-      std::vector<Eigen::Index> kept;
-      for (std::size_t i = 0; i < passive.size(); ++i) {
-        const double to = free[static_cast<Eigen::Index>(i)];
-        double& value = x[passive[i]];
-        const double scale = std::abs(to) + value;
-        value += part * (to - value);
-        if (to <= 0 && value <= 8 * std::numeric_limits<double>::epsilon() * scale) {
-          value = 0;
-        } else {
-          kept.push_back(passive[i]);
-        }
-      }
-      passive = std::move(kept);
+      step_to_bound(free, passive, x);
     }
     // A column that rounding lets in and out again would do so for ever.
     if (x[entering] > 0) {

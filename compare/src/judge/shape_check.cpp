@@ -139,6 +139,31 @@ std::string hint_of(const ShapeCheck& check, const Measured& measured) {
   return {};
 }
 
+void add_worst_point(const MeasuredShape& shape, const Measured& measured, ShapeCheck& check) {
+  const Alignment& alignment = check.alignment;
+  const Eigen::Index worst = measured.worst;
+  check.worst_position = alignment.shape.points.col(worst);
+  const bool file_falls = alignment.arc_lengths == ArcLengths::file &&
+                          shape.arc_length.front() > shape.arc_length.back();
+  const bool backwards = alignment.reversed != file_falls;
+  check.worst_point = 1 + (backwards ? shape.points.cols() - 1 - worst : worst);
+}
+
+/// What of the rod the points show.
+/// @param s  arc lengths of the points
+void add_seen_part(const MeasuredShape& shape, const std::vector<double>& s, double length,
+                   ShapeCheck& check) {
+  for (std::size_t i = 0; i + 1 < s.size(); ++i) {
+    if (!(s[i + 1] - s[i] > check.largest_gap_m)) continue;
+    check.largest_gap_m = s[i + 1] - s[i];
+    check.largest_gap_at_m = s[i];
+  }
+  const Eigen::Index segments = shape.points.cols() - 1;
+  check.polyline_length_m =
+      (shape.points.rightCols(segments) - shape.points.leftCols(segments)).colwise().norm().sum();
+  check.seen_share = (s.back() - s.front()) / length;
+}
+
 }  // namespace
 
 ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
@@ -182,21 +207,8 @@ ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
   result.whole_rms_m = whole.rms_m;
   result.whole_max_m = whole.max_m;
 
-  const Eigen::Index worst = measured.worst;
-  result.worst_position = alignment.shape.points.col(worst);
-  const bool file_falls = alignment.arc_lengths == ArcLengths::file &&
-                          shape.arc_length.front() > shape.arc_length.back();
-  const bool backwards = alignment.reversed != file_falls;
-  result.worst_point = 1 + (backwards ? shape.points.cols() - 1 - worst : worst);
-  for (std::size_t i = 0; i + 1 < s.size(); ++i) {
-    if (!(s[i + 1] - s[i] > result.largest_gap_m)) continue;
-    result.largest_gap_m = s[i + 1] - s[i];
-    result.largest_gap_at_m = s[i];
-  }
-  const Eigen::Index segments = shape.points.cols() - 1;
-  result.polyline_length_m =
-      (shape.points.rightCols(segments) - shape.points.leftCols(segments)).colwise().norm().sum();
-  result.seen_share = (s.back() - s.front()) / scene.length;
+  add_worst_point(shape, measured, result);
+  add_seen_part(shape, s, scene.length, result);
   result.hint = hint_of(result, measured);
   result.direction_is_clear = alignment.other_rms_m > 1.05 * alignment.rms_m;
   const double offset = distance_from_line(alignment.shape.points);

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/timer.hpp"
 #include "dlo/compare/error.hpp"
 #include "polygon/energy_problems.hpp"
 #include "shape/shape_measure.hpp"
@@ -101,9 +102,8 @@ bool lies_in_a_plane(const Eigen::Matrix3Xd& points) {
 
 MeasuredShapes::MeasuredShapes(const std::vector<Scene>& scenes,
                                const std::vector<MeasuredShape>& shapes,
-                               const MeasuredOptions& options,
-                               std::chrono::steady_clock::time_point begin)
-    : options_(options), begin_(begin) {
+                               const MeasuredOptions& options, const Timer& timer)
+    : options_(options), timer_(timer) {
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     const Eigen::Vector3d up = up_of(scenes[i], options_.pose);
     Aligner aligner(shapes[i], scenes[i].length,
@@ -167,9 +167,8 @@ double MeasuredShapes::way_out_of_plane(std::size_t shape, const Scene& scene,
 energy_model::Equilibrium MeasuredShapes::solve(const energy_model::Problem& problem,
                                                 const std::string& file,
                                                 const energy_model::Equilibrium* start) {
-  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
   const double limit = options_.solve.time_limit;
-  const double left = limit * static_cast<double>(size()) - spent.count();
+  const double left = limit * static_cast<double>(size()) - timer_.seconds();
   if (!(left > 0)) {
     throw ConvergenceError(
         fmt::format("calibrate: not done within {:g} s{}, after {} equilibria (--time-limit)",

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <utility>
 #include <vector>
 
+#include "base/timer.hpp"
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/shape_file.hpp"
 #include "dlo/compare/solution.hpp"
@@ -42,10 +42,10 @@ using Movement = std::pair<Eigen::Index, Eigen::Matrix3Xd>;
 /// fit, and the energy model's solutions that it needs, within one time limit.
 class MeasuredShapes {
  public:
-  /// @param begin  from when on the time limit is
+  /// @param timer  from when on the time limit is
   /// @throws InputError as align()
   MeasuredShapes(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-                 const MeasuredOptions& options, std::chrono::steady_clock::time_point begin);
+                 const MeasuredOptions& options, const Timer& timer);
 
   [[nodiscard]] std::size_t size() const { return shapes_.size(); }
   /// A shape of which only two coordinates are measured.
@@ -117,7 +117,7 @@ class MeasuredShapes {
   Eigen::Index frame_columns_ = 0;
   long solves_ = 0;
   long evaluations_ = 0;
-  std::chrono::steady_clock::time_point begin_;
+  Timer timer_;
 };
 
 }  // namespace dlo::compare

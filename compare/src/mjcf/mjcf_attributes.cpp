@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <sstream>
 #include <utility>
 
 #include "base/number.hpp"
@@ -18,6 +20,11 @@ namespace {
 constexpr double one_degree = std::numbers::pi / 180;
 /// No model has larger numbers, and no product of two of them overflows.
 constexpr double largest_number = 1e12;
+
+std::vector<std::string> words_of(std::string_view text) {
+  std::istringstream words{std::string(text)};
+  return {std::istream_iterator<std::string>(words), {}};
+}
 
 }  // namespace
 
@@ -232,17 +239,15 @@ void MjcfAttributes::require_known(const pugi::xml_node& node) const {
   if (element == nullptr) {
     xml_.fail(node, "cannot be said by a rod's scene, or is unknown (allowed: it left out)");
   }
+  const std::vector<std::string> read = words_of(element->read);
+  const std::vector<std::string> without_effect = words_of(element->without_effect);
   for (const pugi::xml_attribute& attribute : node.attributes()) {
     const std::string_view name = attribute.name();
-    const auto among = [&](const std::vector<std::string_view>& names) {
-      return std::ranges::find(names, name) != names.end();
-    };
-    if (among(element->read) || among(element->without_effect)) continue;
-    const std::vector<std::string> words(element->read.begin(), element->read.end());
+    if (std::ranges::count(read, name) + std::ranges::count(without_effect, name) > 0) continue;
     xml_.fail(node, fmt::format("{} = {}: cannot be said by a rod's scene, or is unknown{} "
                                 "(allowed: {}, and what has no effect at rest)",
                                 printable_piece(name), quoted_piece(attribute.value()),
-                                did_you_mean(name, words), fmt::join(element->read, ", ")));
+                                did_you_mean(name, read), fmt::join(read, ", ")));
   }
 }
 

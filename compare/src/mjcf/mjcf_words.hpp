@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string_view>
-#include <vector>
 
 namespace dlo::compare {
 
@@ -9,8 +8,8 @@ namespace dlo::compare {
 /// shape at rest of a chain of segments.
 struct MjcfElement {
   std::string_view name;
-  std::vector<std::string_view> read;
-  std::vector<std::string_view> without_effect;
+  std::string_view read;  ///< with blanks between
+  std::string_view without_effect;
 };
 
 /// Nothing of an element that has no place in a rod's scene.

@@ -146,10 +146,10 @@ SceneEnergies energies_of(const Moment& moment) {
   return energy;
 }
 
-bool shows_its_end(const BranchWitness& before, const BranchWitness& last, double missed) {
+bool shows_its_end(const BranchWitness& before, const BranchWitness& last, double rejected) {
   const double way = last.at - before.at;
   if (!(way > 0)) return false;
-  const double most = steps_to_end * missed / way;
+  const double most = steps_to_end * rejected / way;
   const double a = before.smallest_eigenvalue;
   const double b = last.smallest_eigenvalue;
   if (std::min(comes_to_zero(a, b), comes_to_zero(a * a, b * b)) <= most) return true;
@@ -221,8 +221,8 @@ void Branch::go_to_frame(Passage& passage) {
     }
     // What is just beyond the end of the branch tells best to what shape the rod has snapped.
     const bool near = made < most_branch_steps && ++snaps <= most_snaps;
-    const double missed = near ? std::min(2 * step, 1 - at) : 1 - at;
-    at += leave(at, missed, passage);
+    const double rejected = near ? std::min(2 * step, 1 - at) : 1 - at;
+    at += leave(at, rejected, passage);
     const double bound = passage.released_bound;
     if (!energy_model::succeeded(now_.rod.status) || passage.released < -bound) return;
     step = 1 - at;
@@ -232,7 +232,7 @@ void Branch::go_to_frame(Passage& passage) {
 
 /// To the shape that a search finds from the end of the branch, a small step away or, where it
 /// finds none there, in the frame. @return the step [frames]
-double Branch::leave(double at, double missed, Passage& passage) {
+double Branch::leave(double at, double rejected, Passage& passage) {
   if (passage.kept) {
     passage.kept = false;
     passage.last_eigenvalue = now_.rod.smallest_eigenvalue;
@@ -240,8 +240,8 @@ double Branch::leave(double at, double missed, Passage& passage) {
     passage.released = 0;
     passage.released_bound = 0;
   }
-  passage.ended = passage.ended && shows_its_end((*seen_)[0], (*seen_)[1], missed);
-  double step = missed;
+  passage.ended = passage.ended && shows_its_end((*seen_)[0], (*seen_)[1], rejected);
+  double step = rejected;
   Moment after{scene_at(at + step), {}};
   after.rod = solver_.follow(frame_problem(after.scene, obstacles_));
   if (!energy_model::succeeded(after.rod.status) && at + step < 1) {

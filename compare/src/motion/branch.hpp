@@ -47,13 +47,13 @@ struct BranchWitness {
   std::vector<energy_model::ContactPart> contacts;
 };
 
-/// Whether a branch has been seen to end before a step that missed it: at a fold the square of the
+/// Whether a branch has been seen to end before a step that left it: at a fold the square of the
 /// smallest eigenvalue comes to zero in proportion to the way that is left, at a bifurcation it
 /// does so itself, and where an obstacle lets go of the rod its force.
-/// @param before, last  the last two shapes on it; @param missed  the step from the last one
+/// @param before, last  the last two shapes on it; @param rejected  the step from the last one
 /// [frames]
 [[nodiscard]] bool shows_its_end(const BranchWitness& before, const BranchWitness& last,
-                                 double missed);
+                                 double rejected);
 
 /// The shapes of a rod at rest in the frames of a motion, each on the branch of the one before as
 /// long as there is one.
@@ -90,7 +90,7 @@ class Branch {
   [[nodiscard]] bool stands() const;
   [[nodiscard]] Scene scene_at(double share) const;
   void go_to_frame(Passage& passage);
-  double leave(double at, double missed, Passage& passage);
+  double leave(double at, double rejected, Passage& passage);
   [[nodiscard]] bool try_follow(Scene scene, double from, double step, Passage& passage);
   void witness(double at);
 

@@ -3,17 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
+#include "base/timer.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/force_model/simulation.hpp"
 #include "polygon/natural_plane.hpp"
 #include "polygon/step_constants.hpp"
+#include "solve/polygon_solution.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -81,7 +82,7 @@ bool ForceTrack::step(const Scene& now, long steps) {
   Discretisation moved = discretise(now, state.settings);
   set_obstacles(now, state.obstacles, moved);
   force_model::Simulation& simulation = *state.simulation;
-  const auto begin = std::chrono::steady_clock::now();
+  const Timer timer;
   for (std::size_t i = 0; i < moved.rod.grips.size(); ++i) {
     simulation.move_grip(i, moved.rod.grips[i].targets, moved.rod.grips[i].reference);
   }
@@ -94,7 +95,7 @@ bool ForceTrack::step(const Scene& now, long steps) {
   for (long i = 0; i < steps && finite; ++i) {
     finite = simulation.step().status != force_model::StepStatus::diverged;
   }
-  state.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  state.seconds = timer.seconds();
   state.discretisation = std::move(moved);
   return finite;
 }
@@ -107,14 +108,7 @@ ForceFrame ForceTrack::frame(const energy_model::Equilibrium& rod,
   frame.shape = state_->discretisation.shape(points);
   frame.error_over_length = distance(frame.shape, rod.sample) / state_->discretisation.length;
   frame.points = resample(frame.shape, arc_length).points;
-  // What an obstacle does to a held point inside a gripper is not felt outside.
-  force_model::Rod without_obstacles = simulation.rod();
-  without_obstacles.walls.clear();
-  without_obstacles.solids.clear();
-  for (const force_model::GripReaction& reaction :
-       force_model::grip_reactions(without_obstacles, points)) {
-    frame.grippers.push_back({reaction.force, reaction.torque});
-  }
+  frame.grippers = gripper_loads(simulation.rod(), points);
   return frame;
 }
 

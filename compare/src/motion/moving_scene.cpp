@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <stdexcept>
 
+#include "base/timer.hpp"
 #include "dlo/compare/error.hpp"
 #include "motion/scene_inertia.hpp"
 #include "motion/trajectory_motion.hpp"
@@ -129,7 +129,7 @@ SimulatedMotion MovingScene::run(const std::vector<double>& times, int terms) co
     if (result.moved.terms > 0) {
       result.too_few_terms = {result.moved.terms, times[result.moved.frames.size()]};
     }
-    const auto begin = std::chrono::steady_clock::now();
+    const Timer timer;
     try {
       result.moved = energy_model::simulate(
           rod_, rest_.sample, since,
@@ -137,8 +137,7 @@ SimulatedMotion MovingScene::run(const std::vector<double>& times, int terms) co
     } catch (const std::invalid_argument& error) {
       refuse(file_, error.what());
     }
-    result.seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    result.seconds = timer.seconds();
     if (result.moved.status != energy_model::SolveStatus::failed) break;
   }
   return result;

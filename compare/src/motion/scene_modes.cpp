@@ -139,9 +139,7 @@ SceneModes scene_modes(const Scene& scene, const ModeOptions& options) {
   }
   try {
     add_polygon(scene, options, result);
-  } catch (const InputError& error) {
-    result.no_polygon = error.what();
-  } catch (const ConvergenceError& error) {
+  } catch (const ResultError& error) {
     result.no_polygon = error.what();
   }
   return result;

@@ -4,11 +4,11 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
+#include "base/timer.hpp"
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/solve.hpp"
@@ -55,7 +55,7 @@ class Tracker {
   /// @return whether there is such a frame
   bool add(std::size_t index) {
     const double time = clock_.time(index);
-    const auto begin = std::chrono::steady_clock::now();
+    const Timer timer;
     Passage passage;
     try {
       if (index == 0) {
@@ -82,7 +82,7 @@ class Tracker {
     frame.energy = energies_of(now);
     frame.time = time;
     frame.followed = passage.kept;
-    frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    frame.seconds = timer.seconds();
     if (index > 0 && !passage.stands) seconds_.push_back(frame.seconds);
     if (index > 0 && !add_balance(passage, frame)) return false;
     add_contact_events(frame);
@@ -155,9 +155,7 @@ class Tracker {
       }
       frame.force = force_->frame(now.rod, result_.arc_length);
       if (!result_.frames.empty()) force_seconds_.push_back(force_->seconds());
-    } catch (const InputError& error) {
-      summary.none = error.what();
-    } catch (const ConvergenceError& error) {
+    } catch (const ResultError& error) {
       summary.none = error.what();
     } catch (const std::invalid_argument& error) {
       summary.none = error.what();
@@ -209,20 +207,6 @@ class Tracker {
 };
 
 }  // namespace
-
-const char* to_string(TrackEvent::Kind kind) {
-  switch (kind) {
-    case TrackEvent::Kind::contact:
-      return "contact";
-    case TrackEvent::Kind::release:
-      return "release";
-    case TrackEvent::Kind::snap:
-      return "snap";
-    case TrackEvent::Kind::lost:
-      break;
-  }
-  return "lost";
-}
 
 Track track(const Scene& scene, const TrackOptions& options, const Progress& progress) {
   return Tracker(scene, options).run(progress);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "dlo/compare/choice.hpp"
 #include "dlo/compare/progress.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/solution.hpp"
@@ -54,7 +55,14 @@ struct TrackEvent {
 };
 
 /// In words, for files.
-[[nodiscard]] const char* to_string(TrackEvent::Kind kind);
+template <>
+struct Choices<TrackEvent::Kind> {
+  /// In the enumeration's order.
+  static constexpr Choice<TrackEvent::Kind> all[] = {{TrackEvent::Kind::contact, "contact", ""},
+                                                     {TrackEvent::Kind::release, "release", ""},
+                                                     {TrackEvent::Kind::snap, "snap", ""},
+                                                     {TrackEvent::Kind::lost, "lost", ""}};
+};
 
 /// Why frames are missing.
 struct TrackStop {

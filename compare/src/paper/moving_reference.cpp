@@ -113,9 +113,9 @@ MovingError moving_error(const MovingExperiment& experiment, const MovingChoices
     const Eigen::Matrix3Xd apart = (points - reference.points[seen]) / table_1().length;
     shapes += apart.squaredNorm() / static_cast<double>(points.cols());
     error.shape_max = std::max(error.shape_max, apart.colwise().norm().maxCoeff());
-    const double missed = (force - reference.forces[seen]).norm();
-    forces += missed * missed;
-    error.force_max = std::max(error.force_max, missed);
+    const double difference = (force - reference.forces[seen]).norm();
+    forces += difference * difference;
+    error.force_max = std::max(error.force_max, difference);
     ++seen;
   };
   const MovingRun run = run_moving_experiment(experiment, choices, observe);

@@ -15,7 +15,7 @@ namespace {
 
 /// Runs that share a curve of the front.
 struct FrontCurve {
-  std::string title;
+  const char* title;
   bool (*holds)(const BenchmarkRun&);
 };
 
@@ -23,6 +23,18 @@ bool is_best_polygon(const BenchmarkRun& run) {
   return run.variant && run.variant->law == BendingLaw::hooke &&
          run.variant->bookkeeping == Bookkeeping::consistent;
 }
+
+constexpr FrontCurve front_curves[] = {
+    {"exact", [](const BenchmarkRun& run) { return run.model == Model::exact; }},
+    {"energy, K terms", [](const BenchmarkRun& run) { return run.model == Model::energy; }},
+    {"chain, N points, hooke, consistent",
+     [](const BenchmarkRun& run) { return run.model == Model::chain && is_best_polygon(run); }},
+    {"chain, N points, other law or bookkeeping",
+     [](const BenchmarkRun& run) { return run.model == Model::chain && !is_best_polygon(run); }},
+    {"force, N points, hooke, consistent",
+     [](const BenchmarkRun& run) { return run.model == Model::force && is_best_polygon(run); }},
+    {"force, N points, other law or bookkeeping",
+     [](const BenchmarkRun& run) { return run.model == Model::force && !is_best_polygon(run); }}};
 
 }  // namespace
 
@@ -36,17 +48,6 @@ Figure front_figure(const SceneBenchmark& scene, std::size_t number) {
           "logarithmic; a line joins the runs that no other run beats in both, each with its N or "
           "K.",
       .csv_file = fmt::format("front_{}.csv", number)};
-  const FrontCurve curves[] = {
-      {"exact", [](const BenchmarkRun& run) { return run.model == Model::exact; }},
-      {"energy, K terms", [](const BenchmarkRun& run) { return run.model == Model::energy; }},
-      {"chain, N points, hooke, consistent",
-       [](const BenchmarkRun& run) { return run.model == Model::chain && is_best_polygon(run); }},
-      {"chain, N points, other law or bookkeeping",
-       [](const BenchmarkRun& run) { return run.model == Model::chain && !is_best_polygon(run); }},
-      {"force, N points, hooke, consistent",
-       [](const BenchmarkRun& run) { return run.model == Model::force && is_best_polygon(run); }},
-      {"force, N points, other law or bookkeeping",
-       [](const BenchmarkRun& run) { return run.model == Model::force && !is_best_polygon(run); }}};
   figure.csv = "curve,model,size,setting,time_s,rms_over_length,front\n";
   const auto add_row = [&figure](const std::string& curve, const BenchmarkRun& run) {
     fmt::format_to(std::back_inserter(figure.csv), "{},{},{},{},{},{},{}\n", curve,
@@ -63,11 +64,11 @@ Figure front_figure(const SceneBenchmark& scene, std::size_t number) {
   PlottedCurve line{.id = "front", .title = "the front", .look = {.dashes = Dashes::dashed}};
   panel.curves.emplace_back();
   std::vector<const BenchmarkRun*> front;
-  for (std::size_t k = 0; k < std::size(curves); ++k) {
+  for (std::size_t k = 0; k < std::size(front_curves); ++k) {
     PlottedCurve points{
-        .id = std::to_string(k + 1), .title = curves[k].title, .look = curve_marks(k)};
+        .id = std::to_string(k + 1), .title = front_curves[k].title, .look = curve_marks(k)};
     for (const BenchmarkRun& run : scene.runs) {
-      if (!curves[k].holds(run)) continue;
+      if (!front_curves[k].holds(run)) continue;
       if (run.front) front.push_back(&run);
       add_row(points.id, run);
       add_point(run, points);

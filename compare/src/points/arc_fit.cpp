@@ -51,6 +51,18 @@ Arcs stepped_arcs(const ArcTarget& target, Arcs arcs, const Eigen::VectorXd& ste
   return arcs;
 }
 
+/// Where arcs begin if those from `first` to `last` are as they are in `next`, and those before
+/// stay.
+std::vector<ArcPlace> moved_begins(std::vector<ArcPlace> begins, const Arcs& next,
+                                   std::size_t first, std::size_t last) {
+  if (first == 0) begins[0] = next.begin;
+  for (std::size_t k = first; k <= last; ++k) {
+    const double from = k == 0 ? 0 : next.arcs[k - 1].end;
+    begins[k + 1] = along_arc(begins[k], next.arcs[k].strain, next.arcs[k].end - from);
+  }
+  return begins;
+}
+
 /// Of the residual by all parameters, but for what slides: differences of the arc that a parameter
 /// belongs to, behind which the others move as a rigid body.
 Eigen::MatrixXd arc_derivative(const ArcTarget& target, const Arcs& arcs) {
@@ -81,12 +93,7 @@ Eigen::MatrixXd arc_derivative(const ArcTarget& target, const Arcs& arcs) {
   };
   // Points of arcs from `first` on, of which those up to `last` are bent and the others rigid.
   const auto move = [&](const Arcs& next, std::size_t first, std::size_t last) {
-    std::vector<ArcPlace> moved = begins;
-    if (first == 0) moved[0] = next.begin;
-    for (std::size_t k = first; k <= last; ++k) {
-      const double from = k == 0 ? 0 : next.arcs[k - 1].end;
-      moved[k + 1] = along_arc(moved[k], next.arcs[k].strain, next.arcs[k].end - from);
-    }
+    const std::vector<ArcPlace> moved = moved_begins(begins, next, first, last);
     const ArcPlace& end = moved[last + 1];
     const Matrix3d turn = end.frame * begins[last + 1].frame.transpose();
     for (Index i = 0; i < target.points.cols(); ++i) {

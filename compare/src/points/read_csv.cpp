@@ -8,6 +8,7 @@
 
 #include "base/number.hpp"
 #include "base/quote.hpp"
+#include "decode/csv_rows.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
 
@@ -28,44 +29,11 @@ struct Columns {
   std::string note = {};  ///< on what is not read
 };
 
-/// A line with fields.
-struct Row {
-  long line;
-  std::vector<std::string_view> fields;
-};
-
 /// Of a number that a row is known by. Points are in the order of their rows.
 constexpr const char* label_names[] = {"node", "id", "index", "point"};
 
-std::string_view trimmed_field(std::string_view text) {
-  const std::size_t start = text.find_first_not_of(" \t\r\"");
-  if (start == std::string_view::npos) return {};
-  return text.substr(start, text.find_last_not_of(" \t\r\"") - start + 1);
-}
-
-/// What separates fields: comma, semicolon, tab or, as '\0', any blanks.
-char separator_of(std::string_view line) {
-  for (const char separator : {',', ';', '\t'}) {
-    if (line.find(separator) != std::string_view::npos) return separator;
-  }
-  return '\0';
-}
-
 /// No table of nodes comes near it.
 constexpr std::size_t most_columns = 64;
-
-/// Up to most_columns, and one more where there are more.
-std::vector<std::string_view> split_fields(std::string_view line, char separator) {
-  std::vector<std::string_view> fields;
-  while (true) {
-    const std::size_t end = separator == '\0' ? line.find_first_of(" \t") : line.find(separator);
-    fields.push_back(trimmed_field(line.substr(0, end)));
-    if (end == std::string_view::npos || fields.size() > most_columns) return fields;
-    line.remove_prefix(end + 1);
-    if (separator != '\0') continue;
-    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
-  }
-}
 
 /// Whether the fourth column is the arc length of points in the first three: it grows, or falls, by
 /// their distances or a little more, in their unit or in metres.
@@ -88,11 +56,11 @@ bool has_arc_length(const std::vector<std::array<double, 4>>& rows) {
 
 /// Whether rows without a header begin with numbers of nodes: distinct integers; where there are
 /// four columns, which may be x, y, z and s, counted from 0 or 1.
-bool begin_with_nodes(const std::vector<Row>& rows) {
+bool begin_with_nodes(const std::vector<CsvRow>& rows) {
   if (rows.size() < 2 || rows.front().fields.size() < 4) return false;
   std::vector<long> nodes;
   std::vector<std::array<double, 4>> starts;
-  for (const Row& row : rows) {
+  for (const CsvRow& row : rows) {
     const std::optional<long> node = as_number<long>(row.fields.front());
     if (!node || row.fields.size() < 4) return false;
     nodes.push_back(*node);
@@ -109,7 +77,7 @@ bool begin_with_nodes(const std::vector<Row>& rows) {
   return std::ranges::adjacent_find(nodes) == nodes.end();
 }
 
-Columns columns_without_header(const std::vector<Row>& rows, const std::string& where) {
+Columns columns_without_header(const std::vector<CsvRow>& rows, const std::string& where) {
   const std::size_t count = rows.front().fields.size();
   Columns columns{.count = count};
   const bool nodes = begin_with_nodes(rows);
@@ -169,8 +137,9 @@ Columns columns_of_header(const std::vector<std::string_view>& fields, const std
   return columns;
 }
 
-void add_row(const std::vector<std::string_view>& fields, const Columns& columns,
-             const std::string& where, long line, RawShape& raw) {
+void add_row(const CsvRow& row, const Columns& columns, RawShape& raw) {
+  const std::vector<std::string_view>& fields = row.fields;
+  const std::string& where = row.where;
   if (fields.size() != columns.count) {
     throw InputError(fmt::format("{}: {} column{} (allowed: {}, as in the first line)", where,
                                  fields.size(), fields.size() == 1 ? "" : "s", columns.count));
@@ -192,42 +161,31 @@ void add_row(const std::vector<std::string_view>& fields, const Columns& columns
   raw.points.push_back({values[0], values[1], values[2]});
   if (columns.of[3]) raw.arc_length.push_back(values[3]);
   if (columns.of[first_of_d1]) raw.d1.push_back({values[4], values[5], values[6]});
-  raw.lines.push_back(line);
+  raw.lines.push_back(row.line);
   require_point_count(raw.points.size(), where);
-}
-
-/// Lines but for blank ones and remarks.
-std::vector<Row> rows_of(std::string_view text) {
-  std::vector<Row> rows;
-  char separator = '\0';
-  for (long number = 1; !text.empty(); ++number) {
-    const std::size_t end = text.find('\n');
-    const std::string_view line = trimmed_field(text.substr(0, end));
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    if (line.empty() || line.front() == '#') continue;
-    if (rows.empty()) separator = separator_of(line);
-    rows.push_back({number, split_fields(line, separator)});
-    // One more than is allowed, beside a header, is refused where it is.
-    if (rows.size() > static_cast<std::size_t>(most_shape_points) + 1) break;
-  }
-  return rows;
 }
 
 }  // namespace
 
 RawShape read_csv_shape(std::string_view text, const std::string& file) {
   RawShape raw;
-  const std::vector<Row> rows = rows_of(text);
+  // One row more than is allowed, beside a header, is refused where it is.
+  const CsvForm form{.separator = CsvForm::of_first_row,
+                     .around = " \t\r\"",
+                     .most_fields = most_columns,
+                     .most_rows = static_cast<std::size_t>(most_shape_points) + 2};
+  std::vector<CsvRow> rows;
+  for_each_csv_row(text, file, form, [&rows](const CsvRow& row) { rows.push_back(row); });
   if (rows.empty()) return raw;
   const std::vector<std::string_view>& first = rows.front().fields;
-  const std::string where = fmt::format("{}:{}", file, rows.front().line);
+  const std::string& where = rows.front().where;
   const bool header = std::none_of(first.begin(), first.end(), [](std::string_view field) {
     return shape_number(field).has_value();
   });
   const Columns columns =
       header ? columns_of_header(first, where) : columns_without_header(rows, where);
   for (std::size_t i = header ? 1 : 0; i < rows.size(); ++i) {
-    add_row(rows[i].fields, columns, fmt::format("{}:{}", file, rows[i].line), rows[i].line, raw);
+    add_row(rows[i], columns, raw);
   }
   if (!columns.note.empty()) raw.notes.push_back(columns.note);
   return raw;

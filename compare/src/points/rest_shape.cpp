@@ -276,26 +276,17 @@ double arc_information(const ArcTarget& target, std::size_t arcs, double sum) {
   return std::log(sum / n + rounding) + p * std::log(n) / n;
 }
 
-}  // namespace
+std::vector<Index> spread_indices(Index count, Index chosen) {
+  std::vector<Index> result;
+  result.reserve(static_cast<std::size_t>(chosen));
+  for (Index k = 0; k < chosen; ++k) result.push_back(k * (count - 1) / (chosen - 1));
+  return result;
+}
 
-RestShape fit_rest_shape(const MeasuredShape& measured, double length) {
-  const MeasuredShape given = forwards(measured);
-  const Index count = given.points.cols();
-  constexpr Index fewest = 5;
-  if (count < fewest) {
-    throw InputError(fmt::format("{}: {} points (allowed: {} or more of a rest shape)", given.file,
-                                 count, fewest));
-  }
-  std::vector<Index> chosen;
-  const Index fitted = std::min(count, most_fitted_points);
-  for (Index k = 0; k < fitted; ++k) chosen.push_back(k * (count - 1) / (fitted - 1));
-  ArcTarget target;
-  target.length = length;
-  target.points = given.points(Eigen::all, chosen);
-  if (given.d1.cols() > 0) target.d1 = given.d1(Eigen::all, chosen);
-  require_small_turns(target, given.file);
-  find_points_plane(target);
-  const Profile profile = profile_of(target);
+/// Arc lengths of the target's points, scaled to the rod's length.
+/// @return the curve's own length [m]
+double place_along(const MeasuredShape& given, const std::vector<Index>& chosen,
+                   const Profile& profile, ArcTarget& target) {
   double curve = 0;
   target.s = {0};
   for (const double segment : profile.segments) target.s.push_back(curve += segment);
@@ -306,75 +297,105 @@ RestShape fit_rest_shape(const MeasuredShape& measured, double length) {
       target.s[k] = given.arc_length[static_cast<std::size_t>(chosen[k])] - given.arc_length[0];
     }
   }
-  if (!(std::abs(curve / length - 1) <= length_tolerance)) {
+  if (!(std::abs(curve / target.length - 1) <= length_tolerance)) {
     throw InputError(
         fmt::format("{}: a curve {:.6g} m long, the rod is {:.6g} m long (allowed: the same within "
                     "{:g} %, which is scaled away)",
-                    given.file, curve, length, 100 * length_tolerance));
+                    given.file, curve, target.length, 100 * length_tolerance));
   }
-  for (double& s : target.s) s *= length / curve;
-  target.s.back() = length;
-  const std::vector<double> s_before = target.s;
+  for (double& s : target.s) s *= target.length / curve;
+  target.s.back() = target.length;
+  return curve;
+}
 
+/// Arcs with the target as it slid along them.
+struct FittedArcs {
+  ArcTarget target;
+  Arcs arcs;
+  double sum = std::numeric_limits<double>::infinity();  ///< of the residuals' squares
+};
+
+/// The nearest of several guesses: cut at jumps of the points' curvature, which noise hides;
+/// equally; where fewer arcs are far.
+FittedArcs fit_arcs(const ArcTarget& target, const Profile& profile, std::vector<Index> cuts,
+                    const FittedArcs& fewer) {
+  const std::size_t arcs = cuts.size() + 1;
+  FittedArcs nearest;
+  const auto attempt = [&](ArcTarget there, Arcs from) {
+    const double left = improve_arcs(there, from, of_candidate);
+    if (left < nearest.sum) nearest = {std::move(there), std::move(from), left};
+  };
+  attempt(target, first_guess(target, profile, cuts));
+  if (arcs == 1) return nearest;
+  for (std::size_t k = 1; k < arcs; ++k) {
+    cuts[k - 1] = static_cast<Index>(k) * profile.strain.cols() / static_cast<Index>(arcs);
+  }
+  attempt(target, first_guess(target, profile, cuts));
+  attempt(fewer.target, cut_where_far(fewer.target, fewer.arcs, arcs));
+  return nearest;
+}
+
+/// As many arcs as the points tell apart.
+FittedArcs best_arcs(const ArcTarget& target, const Profile& profile) {
   const std::vector<Index> cuts = cuts_of(profile.strain, most_rest_arcs - 1);
-  Arcs best, last;
-  ArcTarget best_target, last_target;
+  const Index residuals = target.points.cols() * target.numbers();
+  FittedArcs best, last;
   double least = std::numeric_limits<double>::infinity();
   int worse = 0;
   for (const std::size_t arcs : {1, 2, 3, 4, 6, 8, 12, 16, 24, most_rest_arcs}) {
-    const Index residuals = fitted * target.numbers();
     if (arcs > 1 && (arcs - 1 > cuts.size() || 2 * arc_parameters(target, arcs) > residuals)) break;
-    // Cut at jumps of the points' curvature, which noise hides; equally; where fewer arcs are far.
     const auto end = cuts.begin() + static_cast<std::ptrdiff_t>(arcs - 1);
-    std::vector<Index> equal;
-    for (std::size_t k = 1; k < arcs; ++k) {
-      equal.push_back(static_cast<Index>(k) * profile.strain.cols() / static_cast<Index>(arcs));
-    }
-    ArcTarget own;
-    Arcs guess;
-    double sum = std::numeric_limits<double>::infinity();
-    const auto attempt = [&](ArcTarget there, Arcs from) {
-      const double left = improve_arcs(there, from, of_candidate);
-      if (!(left < sum)) return;
-      sum = left;
-      own = std::move(there);
-      guess = std::move(from);
-    };
-    attempt(target, first_guess(target, profile, {cuts.begin(), end}));
-    if (arcs > 1) {
-      attempt(target, first_guess(target, profile, equal));
-      attempt(last_target, cut_where_far(last_target, last, arcs));
-    }
-    last = guess;
-    last_target = own;
-    const double value = arc_information(target, arcs, sum);
+    last = fit_arcs(target, profile, {cuts.begin(), end}, last);
+    const double value = arc_information(target, arcs, last.sum);
     worse = value < least ? 0 : worse + 1;
     if (value < least) {
       least = value;
-      best = guess;
-      best_target = own;
+      best = last;
     }
     constexpr int enough_worse = 3;
     if (worse == enough_worse) break;
-    if (largest_part(own, guess) <= good_enough_share) break;
+    if (largest_part(last.target, last.arcs) <= good_enough_share) break;
   }
-  (void)improve_arcs(best_target, best, of_result);
+  return best;
+}
+
+}  // namespace
+
+RestShape fit_rest_shape(const MeasuredShape& measured, double length) {
+  const MeasuredShape given = forwards(measured);
+  const Index count = given.points.cols();
+  constexpr Index fewest = 5;
+  if (count < fewest) {
+    throw InputError(fmt::format("{}: {} points (allowed: {} or more of a rest shape)", given.file,
+                                 count, fewest));
+  }
+  const std::vector<Index> chosen = spread_indices(count, std::min(count, most_fitted_points));
+  ArcTarget target;
+  target.length = length;
+  target.points = given.points(Eigen::all, chosen);
+  if (given.d1.cols() > 0) target.d1 = given.d1(Eigen::all, chosen);
+  require_small_turns(target, given.file);
+  find_points_plane(target);
+  const Profile profile = profile_of(target);
+  const double curve = place_along(given, chosen, profile, target);
+  FittedArcs best = best_arcs(target, profile);
+  (void)improve_arcs(best.target, best.arcs, of_result);
 
   RestShape shape{.file = given.file,
                   .points = count,
-                  .arcs = best.arcs,
-                  .begin = best.begin.point,
-                  .first_frame = best.begin.frame};
-  ArcTarget all = best_target;
+                  .arcs = best.arcs.arcs,
+                  .begin = best.arcs.begin.point,
+                  .first_frame = best.arcs.begin.frame};
+  ArcTarget all = best.target;
   all.points = given.points;
   all.d1 = given.d1;
-  all.s = all_arc_lengths(given.points, chosen, best_target.s);
+  all.s = all_arc_lengths(given.points, chosen, best.target.s);
   if (target.knows_s) {
     for (std::size_t i = 0; i < all.s.size(); ++i) {
       all.s[i] = (given.arc_length[i] - given.arc_length[0]) * length / curve;
     }
   }
-  state_error(all, best, shape);
+  state_error(all, best.arcs, shape);
   return shape;
 }
 

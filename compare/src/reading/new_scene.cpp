@@ -135,15 +135,7 @@ std::string toml_choices(Meaning meaning) {
   return one_of(choices);
 }
 
-/// Examples that fit the rod: a pin at its end, a small force, a floor in its reach.
-std::string optional_part(const SceneChoices& choices, const Scene& scene) {
-  const double l = scene.length;
-  const Eigen::Vector3d pin = 0.7 * l * scene.grippers.front().direction.value();
-  const double weight = scene.mass() * scene.gravity.norm();
-  const ForceModelSettings defaults;
-  const double force = weight > 0 ? weight : scene.bending_stiffness() / (l * l);
-  return fmt::format(
-      R"(
+constexpr char optional_lines[] = R"(
 # A clamp lets the rod rotate about its direction unless it holds the rod's frame, by one of
 #   roll = "90 deg"             turned on from the first such clamp's frame, turns counted
 #   frame = [[1, 0, 0], ..]     rows d1, d2, d3; d3 is the direction
@@ -222,8 +214,17 @@ std::string optional_part(const SceneChoices& choices, const Scene& scene) {
 #   c_F              [m/N]  step factor, stepper basic, limited, relative or dynamic
 #   c_h              [-]    share of the last movement, 0 <= c_h < 1, stepper dynamic
 #   l_s              [m]    largest movement per step, stepper limited, relative, dynamic or auto
-)",
-      fmt::arg("torsion", scene.bending_stiffness() / 1.3), fmt::arg("length", l),
+)";
+
+/// Examples that fit the rod: a pin at its end, a small force, a floor in its reach.
+std::string optional_part(const SceneChoices& choices, const Scene& scene) {
+  const double l = scene.length;
+  const Eigen::Vector3d pin = 0.7 * l * scene.grippers.front().direction.value();
+  const double weight = scene.mass() * scene.gravity.norm();
+  const ForceModelSettings defaults;
+  const double force = weight > 0 ? weight : scene.bending_stiffness() / (l * l);
+  return fmt::format(
+      optional_lines, fmt::arg("torsion", scene.bending_stiffness() / 1.3), fmt::arg("length", l),
       fmt::arg("section_from", 0.4 * l), fmt::arg("section_to", 0.45 * l),
       fmt::arg("section_EI", 10 * scene.bending_stiffness()),
       fmt::arg("section_mass", 2 * scene.mass_per_length()), fmt::arg("x", pin.x()),

@@ -10,12 +10,12 @@
 #include <string_view>
 #include <utility>
 
-#include "base/fingerprint.hpp"
 #include "base/input_file.hpp"
 #include "base/number.hpp"
 #include "base/quote.hpp"
 #include "base/text_limits.hpp"
 #include "dlo/compare/error.hpp"
+#include "reading/fingerprint.hpp"
 #include "reading/read_scene.hpp"
 #include "toml/strict_table.hpp"
 

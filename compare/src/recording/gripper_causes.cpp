@@ -106,10 +106,8 @@ std::vector<MotionCause> gripper_causes(const Scene& scene, const TrackOptions& 
       const Eigen::MatrixX3d design = sensitivity(scene, options, recorded, gripper, here);
       result.push_back(constant_cause(gripper, design, all));
       if (auto path = path_cause(gripper, design, all, recorded)) result.push_back(*path);
-    } catch (const InputError&) {
+    } catch (const ResultError&) {
       continue;  // such as one that would draw the rod taut
-    } catch (const ConvergenceError&) {
-      continue;
     }
   }
   return result;

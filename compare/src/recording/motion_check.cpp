@@ -111,10 +111,7 @@ void add_inertia(const Scene& scene, const Track& at_rest, const MotionCheckRequ
         models.options, last);
     models.in_motion = moving.in_motion;
     if (!models.with_inertia) models.no_inertia = stop_text(moving.stopped);
-  } catch (const InputError& error) {
-    if (request.model == MotionModel::with_inertia) throw;
-    models.no_inertia = error.what();
-  } catch (const ConvergenceError& error) {
+  } catch (const ResultError& error) {
     if (request.model == MotionModel::with_inertia) throw;
     models.no_inertia = error.what();
   }
@@ -251,22 +248,6 @@ std::vector<FrameError> errors_without_lag(const MarkerMotion& recorded, const M
 }
 
 }  // namespace
-
-const char* to_string(MotionCause::Kind kind) {
-  switch (kind) {
-    case MotionCause::Kind::lag:
-      return "lag";
-    case MotionCause::Kind::offset:
-      return "offset";
-    case MotionCause::Kind::model:
-      return "model";
-    case MotionCause::Kind::gripper:
-      return "gripper";
-    case MotionCause::Kind::gripper_path:
-      break;
-  }
-  return "gripper_path";
-}
 
 MotionCheck check_motion(const Scene& scene, const MarkerMotion& recorded,
                          const MotionCheckRequest& request, const Progress& progress) {

@@ -59,7 +59,16 @@ struct MotionCause {
 };
 
 /// In words, for files.
-[[nodiscard]] const char* to_string(MotionCause::Kind kind);
+template <>
+struct Choices<MotionCause::Kind> {
+  /// In the enumeration's order.
+  static constexpr Choice<MotionCause::Kind> all[] = {
+      {MotionCause::Kind::lag, "lag", ""},
+      {MotionCause::Kind::offset, "offset", ""},
+      {MotionCause::Kind::model, "model", ""},
+      {MotionCause::Kind::gripper, "gripper", ""},
+      {MotionCause::Kind::gripper_path, "gripper_path", ""}};
+};
 
 /// A recorded motion against its scene's rod, judged: what `dlo check --motion` says, and Python
 /// with it.

@@ -42,7 +42,7 @@ double rms_of(const Eigen::Matrix3Xd& residuals) {
 }
 
 MotionErrors motion_errors(const MarkerMotion& recorded, const Eigen::Matrix3Xd& residuals,
-                           double length) {
+                           double length, std::size_t listed) {
   MotionErrors result;
   std::map<double, Sum> by_time;
   std::map<double, Sum> by_marker;
@@ -53,7 +53,7 @@ MotionErrors motion_errors(const MarkerMotion& recorded, const Eigen::Matrix3Xd&
     by_time[point.time].add(distance, point.arc_length);
     const int third = std::clamp(static_cast<int>(3 * point.arc_length / length), 0, 2);
     by_third[third].add(distance, point.arc_length);
-    if (by_marker.size() <= most_markers) by_marker[point.arc_length].add(distance, 0);
+    if (by_marker.size() <= listed) by_marker[point.arc_length].add(distance, 0);
   }
   result.rms_m = rms_of(residuals);
   for (const auto& [time, sum] : by_time) {
@@ -65,7 +65,7 @@ MotionErrors motion_errors(const MarkerMotion& recorded, const Eigen::Matrix3Xd&
   for (const auto& [third, sum] : by_third) {
     result.thirds.push_back({third * length / 3, (third + 1) * length / 3, sum.rms(), sum.largest});
   }
-  if (by_marker.size() > most_markers) return result;
+  if (by_marker.size() > listed) return result;
   for (const auto& [s, sum] : by_marker) {
     result.markers.push_back({s, s, sum.rms(), sum.largest});
   }

@@ -31,7 +31,7 @@ struct MotionErrors {
   std::vector<FrameError> frames;  ///< by time
   std::size_t worst_frame = 0;     ///< that with the largest RMS
   std::vector<PartError> thirds;   ///< of the rod, that have points
-  std::vector<PartError> markers;  ///< by arc length; none where there are more than most_markers
+  std::vector<PartError> markers;  ///< by arc length; none where there are too many
 };
 
 /// Frames of a simulator have as many points as they like.
@@ -46,7 +46,9 @@ inline constexpr std::size_t most_markers = 30;
 [[nodiscard]] double rms_of(const Eigen::Matrix3Xd& residuals);
 
 /// @param length  of the rod [m]
+/// @param listed  markers, of which a recording with more has none in the list
 [[nodiscard]] MotionErrors motion_errors(const MarkerMotion& recorded,
-                                         const Eigen::Matrix3Xd& residuals, double length);
+                                         const Eigen::Matrix3Xd& residuals, double length,
+                                         std::size_t listed = most_markers);
 
 }  // namespace dlo::compare

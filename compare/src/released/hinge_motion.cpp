@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
+#include "base/timer.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape.hpp"
 
@@ -177,11 +177,10 @@ std::vector<Eigen::Matrix3Xd> hinge_motion(const ReleasedRod& rod, int segments,
   const double interval = times[1] - times[0];
   const auto steps = static_cast<long>(std::ceil(interval / longest));
   std::vector<Eigen::Matrix3Xd> frames = {hinges.points()};
-  const auto begin = std::chrono::steady_clock::now();
+  const Timer timer;
   while (frames.size() < times.size()) {
     for (long i = 0; i < steps; ++i) {
-      const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
-      if (!(spent.count() < options.time_limit)) {
+      if (!(timer.seconds() < options.time_limit)) {
         throw ConvergenceError(
             fmt::format("{}: time limit of {:g} s reached after {:g} s of motion", rod.scene.file,
                         options.time_limit, times[frames.size() - 1]));

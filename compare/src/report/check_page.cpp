@@ -8,7 +8,6 @@
 #include "base/number.hpp"
 #include "base/quote.hpp"
 #include "report/html.hpp"
-#include "report/style.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -75,13 +74,8 @@ std::string figures_of(const CheckPageParts& parts) {
 std::string page_begin(const std::string& title, const std::string& file, bool passes,
                        double judged_m, const ShapeTolerance& tolerance) {
   const char* const word = passes ? "pass" : "fail";
-  std::string out = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta name=\"generator\" content=\"dlo check\">\n<link rel=\"icon\" href=\"data:,\">\n"
-      "<title>{0}: {1}</title>\n<style>{2}</style>\n</head>\n<body>\n<main>\n"
-      "<h1>{0}</h1>\n<div class=\"screen\">\n<div>\n",
-      escape_markup(title), word, report_style);
+  std::string out = html_begin("dlo check", title + ": " + word);
+  out += fmt::format("<main>\n<h1>{}</h1>\n<div class=\"screen\">\n<div>\n", escape_markup(title));
   out += html_badge(passes, word);
   return out + fmt::format("<p>{} is {} away from the rod ({}). Allowed: {}{}.</p>\n",
                            escape_markup(file), millimetres(judged_m),
@@ -98,8 +92,7 @@ std::string page_end(const std::string& reason, const HtmlTable& causes,
   if (!causes.rows.empty()) out += to_html(causes);
   out += "</details>\n<details><summary>All that dlo check says</summary>\n<pre tabindex=\"0\">" +
          escape_lines(parts.text) + "</pre>\n</details>\n";
-  return out + fmt::format("<p class=\"faint\">dlo {}</p>\n</main>\n</body>\n</html>\n",
-                           escape_markup(parts.version));
+  return out + html_end(parts.version);
 }
 
 std::string three_numbers(const MotionCheck& check) {

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "report/style.hpp"
+
 namespace dlo::compare {
 
 std::string page_number(double value) {
@@ -62,6 +64,20 @@ std::string to_html(const std::vector<HtmlNumber>& numbers) {
 std::string html_badge(bool pass, const std::string& words) {
   return fmt::format("<p class=\"badge {}\">{} {}</p>\n", pass ? "pass" : "fail",
                      pass ? "\u2713" : "\u2717", escape_markup(words));
+}
+
+std::string html_begin(const std::string& generator, const std::string& title) {
+  return fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta name=\"generator\" content=\"{}\">\n<link rel=\"icon\" href=\"data:,\">\n"
+      "<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n",
+      generator, escape_markup(title), report_style);
+}
+
+std::string html_end(const std::string& version) {
+  return fmt::format("<p class=\"faint\">dlo {}</p>\n</main>\n</body>\n</html>\n",
+                     escape_markup(version));
 }
 
 }  // namespace dlo::compare

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <string>
 #include <vector>
 
@@ -24,11 +25,24 @@ struct HtmlColumn {
   HtmlCell cell = HtmlCell::number;
 };
 
+/// What a cell of a table shows: a text, a whole number, or as page_number() any other.
+[[nodiscard]] inline std::string cell_text(std::string text) { return text; }
+template <std::integral Number>
+[[nodiscard]] std::string cell_text(Number value) {
+  return std::to_string(value);
+}
+[[nodiscard]] inline std::string cell_text(double value) { return page_number(value); }
+
 /// A table of plain texts.
 struct HtmlTable {
   std::string caption;
   std::vector<HtmlColumn> columns;
   std::vector<std::vector<std::string>> rows;
+
+  template <typename... Cells>
+  void add_row(const Cells&... cells) {
+    rows.push_back({cell_text(cells)...});
+  }
 };
 
 /// The first cell of a row is its head. A table too wide for the page scrolls by itself.
@@ -43,5 +57,11 @@ struct HtmlNumber {
 
 /// A verdict in colour, with a mark and in words.
 [[nodiscard]] std::string html_badge(bool pass, const std::string& words);
+
+/// A page that needs nothing else, up to its body. @param generator  the command that writes it
+[[nodiscard]] std::string html_begin(const std::string& generator, const std::string& title);
+
+/// From the version to the end of a page whose body holds a <main>.
+[[nodiscard]] std::string html_end(const std::string& version);
 
 }  // namespace dlo::compare

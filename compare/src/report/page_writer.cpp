@@ -133,13 +133,8 @@ void PageWriter::figures(const std::string& section) {
 }
 
 std::string PageWriter::finished(const std::string& title, const std::string& data) const {
-  std::string page = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta name=\"generator\" content=\"dlo report\">\n<link rel=\"icon\" href=\"data:,\">\n"
-      "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<header>\n<h1>{0}</h1>\n</"
-      "header>\n",
-      escape_markup(title), report_style);
+  std::string page = html_begin("dlo report", title);
+  page += "<header>\n<h1>" + escape_markup(title) + "</h1>\n</header>\n";
   page += "<nav aria-label=\"Sections\"><ul>\n";
   for (const auto& [id, heading, kind] : sections_) {
     page += fmt::format("<li{}><a href=\"#{}\">{}</a></li>\n", hidden(kind), id,

@@ -5,12 +5,12 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
 
 #include "base/input_file.hpp"
+#include "base/timer.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/error.hpp"
@@ -86,9 +86,7 @@ template <typename Function>
 void try_to(const std::string& what, std::vector<std::string>& failures, const Function& function) {
   try {
     function();
-  } catch (const ConvergenceError& error) {
-    failures.push_back(fmt::format("{}: {}", what, error.what()));
-  } catch (const InputError& error) {
+  } catch (const ResultError& error) {
     failures.push_back(fmt::format("{}: {}", what, error.what()));
   } catch (const std::invalid_argument& error) {
     failures.push_back(fmt::format("{}: {}", what, error.what()));
@@ -231,6 +229,17 @@ void add_benchmark(const std::vector<Scene>& scenes, const Stages& progress, Rep
   if (!together.scenes.empty()) report.benchmark = std::move(together);
 }
 
+/// Scenes whose speed is measured; of files the extremes, whose names the report keeps.
+std::vector<Scene> benchmarked(const std::vector<SceneFile>& files, Report& report) {
+  if (report.paper) return benchmark_scenes();
+  std::vector<Scene> scenes;
+  for (const SceneFile* file : extremes(files)) {
+    scenes.push_back(file->scene);
+    report.benchmark_files.push_back(file->name);
+  }
+  return scenes;
+}
+
 }  // namespace
 
 std::vector<SceneFile> load_scene_files(const std::vector<std::string>& paths) {
@@ -288,22 +297,15 @@ Report make_report(const std::vector<SceneFile>& files, const ReportOptions& opt
       say(fmt::format("{}, {} of {}", what, done, total));
     };
   };
-  const auto start = std::chrono::steady_clock::now();
+  const Timer timer;
   for (const SceneFile& file : files) (void)discretise(file.scene, file.scene.force_model);
   Report report;
   report.options = options;
   report.paper = files.empty();
   if (options.benchmark) {
-    std::vector<Scene> scenes = benchmark_scenes();
-    if (!report.paper) {
-      scenes.clear();
-      for (const SceneFile* file : extremes(files)) {
-        scenes.push_back(file->scene);
-        report.benchmark_files.push_back(file->name);
-      }
-    }
     add_benchmark(
-        scenes, [&](const std::string& what) { say("speed against error: " + what); }, report);
+        benchmarked(files, report),
+        [&](const std::string& what) { say("speed against error: " + what); }, report);
   }
   constexpr std::size_t paper_scene_files = 3;
   say("scenes: both models, and E*/E on the way to rest");
@@ -336,7 +338,7 @@ Report make_report(const std::vector<SceneFile>& files, const ReportOptions& opt
     cases.progress = counted("hard cases");
     try_to("hard cases", report.failures, [&] { report.hard_cases = stability(cases); });
   }
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.seconds = timer.seconds();
   return report;
 }
 

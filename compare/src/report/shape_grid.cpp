@@ -42,9 +42,7 @@ GridCell compare_at(const Scene& scene) {
     cell.rms_over_length = c.deviation.rms_over_length;
     cell.max_over_length = c.deviation.max_m / scene.length;
     cell.max_at = c.deviation.max_at_m / scene.length;
-  } catch (const ConvergenceError& error) {
-    cell.failure = error.what();
-  } catch (const InputError& error) {
+  } catch (const ResultError& error) {
     cell.failure = error.what();
   }
   return cell;

@@ -15,8 +15,6 @@
 namespace dlo::compare {
 namespace {
 
-std::string page_millimetres(double metres) { return page_number(metres * 1e3); }
-
 std::string setting_of(const Comparison& c) {
   return fmt::format("{}, {}, {}", to_string(c.settings.law), to_string(c.settings.bookkeeping),
                      c.settings.points);
@@ -53,9 +51,9 @@ void add_answers(const SceneBenchmark& scene, const char* kind,
                  const std::vector<BenchmarkRun>& runs, const std::vector<BenchmarkAnswer>& answers,
                  HtmlTable& table) {
   for (const BenchmarkAnswer& answer : answers) {
-    table.rows.push_back(
-        {scene.scene, kind, page_percent(answer.error), answer_text(runs, answer.best, {}),
-         answer_text(runs, fastest_within(runs, answer.error, Model::force), Model::force)});
+    table.add_row(
+        scene.scene, kind, page_percent(answer.error), answer_text(runs, answer.best, {}),
+        answer_text(runs, fastest_within(runs, answer.error, Model::force), Model::force));
   }
 }
 
@@ -84,13 +82,10 @@ HtmlTable scene_table(const Report& report) {
                               {"file", HtmlCell::word}}};
   for (const SceneReport& entry : report.scenes) {
     const Scene& scene = entry.file.scene;
-    table.rows.push_back({scene.name, page_number(scene.length),
-                          scene.diameter > 0 ? page_millimetres(scene.diameter) : "",
-                          page_number(scene.bending_stiffness()),
-                          page_number(scene.mass_per_length()), page_number(scene.gamma()),
-                          hold_of(scene),
-                          std::to_string(scene.loads.size() + scene.distributed_loads.size()),
-                          "scenes/" + entry.file.name});
+    table.add_row(scene.name, scene.length,
+                  scene.diameter > 0 ? page_number(scene.diameter * 1e3) : "",
+                  scene.bending_stiffness(), scene.mass_per_length(), scene.gamma(), hold_of(scene),
+                  scene.loads.size() + scene.distributed_loads.size(), "scenes/" + entry.file.name);
   }
   return table;
 }
@@ -112,11 +107,10 @@ HtmlTable deviation_table(const Report& report) {
                               {"unbent rod, RMS / l"}}};
   for_each_comparison(report, [&](const Comparison& c) {
     const Deviation& d = c.deviation;
-    table.rows.push_back(
-        {c.scene, setting_of(c), page_millimetres(d.rms_m), page_percent(d.rms_over_length),
-         page_percent(d.rms_over_movement), page_millimetres(d.max_m), page_number(d.max_at_m),
-         page_millimetres(d.tip_m), page_number(d.angle_rms_rad * 180 / std::numbers::pi),
-         page_number(d.curvature_rms_per_m), page_percent(c.undeformed_rms_over_length)});
+    table.add_row(c.scene, setting_of(c), d.rms_m * 1e3, page_percent(d.rms_over_length),
+                  page_percent(d.rms_over_movement), d.max_m * 1e3, d.max_at_m, d.tip_m * 1e3,
+                  d.angle_rms_rad * 180 / std::numbers::pi, d.curvature_rms_per_m,
+                  page_percent(c.undeformed_rms_over_length));
   });
   return table;
 }
@@ -130,9 +124,8 @@ HtmlTable state_table(const Report& report) {
                               {"stable ones found"},
                               {"unstable ones found"}}};
   for_each_comparison(report, [&](const Comparison& c) {
-    table.rows.push_back({c.scene, setting_of(c), page_number(c.state.energy_J),
-                          std::to_string(c.state.rank), std::to_string(c.state.stable),
-                          std::to_string(c.state.unstable)});
+    table.add_row(c.scene, setting_of(c), c.state.energy_J, c.state.rank, c.state.stable,
+                  c.state.unstable);
   });
   return table;
 }
@@ -151,8 +144,8 @@ HtmlTable budget_table(const Report& report) {
         std::max_element(parts.begin(), parts.end(), [](const auto& a, const auto& b) {
           return std::abs(a.second->share) < std::abs(b.second->share);
         });
-    table.rows.push_back({c.scene, setting_of(c), page_millimetres(c.budget.total_m),
-                          largest->first, page_percent(largest->second->share)});
+    table.add_row(c.scene, setting_of(c), c.budget.total_m * 1e3, largest->first,
+                  page_percent(largest->second->share));
   });
   return table;
 }
@@ -190,12 +183,10 @@ HtmlTable motion_table(const Report& report) {
     const std::string lost = std::to_string(count(Kind::lost));
     const bool beside = track.force.none.empty();
     const double none = std::numeric_limits<double>::quiet_NaN();
-    table.rows.push_back(
-        {motion.file.scene.name, page_number(track.frames.back().time - track.frames.front().time),
-         std::to_string(track.frames.size()), std::to_string(count(Kind::contact, Kind::release)),
-         std::to_string(count(Kind::snap)), lost, page_number(force), page_number(torque),
-         page_percent(beside ? track.force.mean : none),
-         page_percent(beside ? track.force.largest : none), page_number(track.force.lag * 1e3)});
+    table.add_row(motion.file.scene.name, track.frames.back().time - track.frames.front().time,
+                  track.frames.size(), count(Kind::contact, Kind::release), count(Kind::snap), lost,
+                  force, torque, page_percent(beside ? track.force.mean : none),
+                  page_percent(beside ? track.force.largest : none), track.force.lag * 1e3);
   }
   return table;
 }
@@ -209,10 +200,9 @@ HtmlTable modulus_table(const Report& report) {
                               {"RMS there / l"},
                               {"optimum", HtmlCell::word}}};
   for_each_comparison(report, [&](const Comparison& c) {
-    table.rows.push_back({c.scene, setting_of(c), page_number(c.effective_modulus.ratio),
-                          page_millimetres(c.effective_modulus.rms_m),
-                          page_percent(c.effective_modulus.rms_m / c.length),
-                          to_string(c.effective_modulus.optimum)});
+    table.add_row(
+        c.scene, setting_of(c), c.effective_modulus.ratio, c.effective_modulus.rms_m * 1e3,
+        page_percent(c.effective_modulus.rms_m / c.length), to_string(c.effective_modulus.optimum));
   });
   return table;
 }
@@ -277,10 +267,10 @@ HtmlTable front_table(const SceneBenchmark& scene) {
                   {"RMS / l"}}};
   for (const BenchmarkRun& run : scene.runs) {
     if (!run.front) continue;
-    table.rows.push_back({name_of(run), page_number(run.time.median_s * 1e3),
-                          fmt::format("{} to {}", page_number(run.time.lower_quartile_s * 1e3),
-                                      page_number(run.time.upper_quartile_s * 1e3)),
-                          std::to_string(run.evaluations), page_number(run.rms_over_length)});
+    table.add_row(name_of(run), run.time.median_s * 1e3,
+                  fmt::format("{} to {}", page_number(run.time.lower_quartile_s * 1e3),
+                              page_number(run.time.upper_quartile_s * 1e3)),
+                  run.evaluations, run.rms_over_length);
   }
   return table;
 }
@@ -295,11 +285,8 @@ HtmlTable map_table(const StabilityMap& map) {
                               {"measured / predicted"},
                               {"Table 1's c_F / measured"}}};
   for (const MapColumn& column : map.columns) {
-    table.rows.push_back({page_number(column.c_c), page_number(column.c_h),
-                          page_number(column.fastest_mode), page_number(column.predicted),
-                          page_number(column.measured),
-                          page_number(column.measured / column.predicted),
-                          page_number(column.table_1 / column.measured)});
+    table.add_row(column.c_c, column.c_h, column.fastest_mode, column.predicted, column.measured,
+                  column.measured / column.predicted, column.table_1 / column.measured);
   }
   return table;
 }
@@ -313,7 +300,7 @@ HtmlTable hard_case_table(const std::vector<StabilityResult>& results) {
     const bool first_case = result.name == results.front().name;
     if (first_case) table.columns.push_back({to_string(result.stepper), HtmlCell::word});
     if (table.rows.empty() || table.rows.back().front() != result.name) {
-      table.rows.push_back({result.name});
+      table.add_row(result.name);
     }
     table.rows.back().push_back(outcome_cell(result));
   }
@@ -347,15 +334,12 @@ HtmlTable parameter_table(const Report& report) {
   for_each_comparison(report, [&](const Comparison& c) {
     const Parameters& p = c.force.parameters;
     const bool paper = c.settings.law == BendingLaw::paper;
-    table.rows.push_back({c.scene, setting_of(c), page_millimetres(p.segment_length),
-                          paper ? page_number(p.c_b) : "–",
-                          !paper           ? "–"
-                          : c.settings.c_b ? "given"
-                                           : to_string(c.settings.bending_rule),
-                          page_number(p.c_c), page_number(c.force.c_F), page_number(c.force.c_h),
-                          to_string(c.settings.stepper), page_number(p.point_weight),
-                          std::to_string(c.force.steps), page_number(c.force.seconds * 1e3),
-                          page_number(c.energy_seconds * 1e3)});
+    table.add_row(c.scene, setting_of(c), p.segment_length * 1e3, paper ? page_number(p.c_b) : "–",
+                  !paper           ? "–"
+                  : c.settings.c_b ? "given"
+                                   : to_string(c.settings.bending_rule),
+                  p.c_c, c.force.c_F, c.force.c_h, to_string(c.settings.stepper), p.point_weight,
+                  c.force.steps, c.force.seconds * 1e3, c.energy_seconds * 1e3);
   });
   return table;
 }

@@ -4,13 +4,13 @@
 
 #include <Eigen/QR>
 #include <algorithm>
-#include <chrono>
 #include <functional>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "base/timer.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/error.hpp"
@@ -110,25 +110,33 @@ class FixedPoint {
   Eigen::MatrixXd values_;     // of g
 };
 
+/// What comes to rest under drag: the rod without it, and how it is relaxed.
+struct DraggedRod {
+  const Scene& scene;
+  const std::vector<double>& arc_length;
+  const force_model::Rod& dead;
+  const force_model::RelaxOptions& limits;
+  const Simulate& simulate;
+};
+
 /// Rest under a share of the drag: it is frozen on a shape while the polygon comes to
 /// rest, and the shape is sought that is its own rest.
 /// @param moves  by which it counts as not moving [m]
+/// @param steps  added to
 /// @return nothing where it goes on moving, or does not come to rest
-std::optional<RestingRod> rest_under(const Scene& scene, const std::vector<double>& arc_length,
-                                     const force_model::Rod& dead, double share,
-                                     const Eigen::Matrix3Xd& begin, double moves,
-                                     const force_model::RelaxOptions& limits,
-                                     const Simulate& simulate, long& steps) {
+std::optional<RestingRod> rest_under(const DraggedRod& dragged, double share,
+                                     const Eigen::Matrix3Xd& begin, double moves, long& steps) {
   constexpr int most_rounds = 25;
-  const double farthest = 0.25 * scene.length;  // a longer way may lead to another branch
+  // A longer way may lead to another branch.
+  const double farthest = 0.25 * dragged.scene.length;
   FixedPoint search;
   Eigen::Matrix3Xd shape = begin;  // that the drag is frozen on
   Eigen::Matrix3Xd rest = begin;
   for (int round = 0; round < most_rounds; ++round) {
-    force_model::Rod rod = dead;
-    rod.loads += share * drag_forces(scene, arc_length, shape);
-    force_model::Simulation simulation = simulate(rod, rest);
-    const force_model::RelaxResult result = simulation.relax(limits);
+    force_model::Rod rod = dragged.dead;
+    rod.loads += share * drag_forces(dragged.scene, dragged.arc_length, shape);
+    force_model::Simulation simulation = dragged.simulate(rod, rest);
+    const force_model::RelaxResult result = simulation.relax(dragged.limits);
     steps += result.steps;
     if (result.status != force_model::RelaxStatus::at_rest) return std::nullopt;
     rest = simulation.points();
@@ -149,15 +157,14 @@ RestingRod raise_drag(const Scene& scene, const std::vector<double>& arc_length,
   constexpr double least_share = 0.02;  // below, it does not grow
   constexpr double on_the_way = 1e-3;   // of the length, before all of it is there
   const double at_the_end = 10 * limits.tolerance;
-  const force_model::Rod& dead = unloaded.rod();
+  const DraggedRod dragged{scene, arc_length, unloaded.rod(), limits, simulate};
   Eigen::Matrix3Xd points = unloaded.points();
   double reached = 0;
   long steps = 0;
   for (double step = first_share; step > least_share;) {
     const double share = std::min(1.0, reached + step);
-    std::optional<RestingRod> rest =
-        rest_under(scene, arc_length, dead, share, points,
-                   (share < 1 ? on_the_way : at_the_end) * scene.length, limits, simulate, steps);
+    std::optional<RestingRod> rest = rest_under(
+        dragged, share, points, (share < 1 ? on_the_way : at_the_end) * scene.length, steps);
     if (!rest) {
       step /= 2;
       continue;
@@ -178,6 +185,32 @@ RestingRod raise_drag(const Scene& scene, const std::vector<double>& arc_length,
                   scene.file, reached));
 }
 
+ConvergenceError not_at_rest(const Scene& scene, const ForceModelSettings& settings,
+                             const Discretisation& discretisation, const RestingRod& moving) {
+  return ConvergenceError(fmt::format(
+      "{}: the force model did not come to rest: {} after {} steps, about {:.2g} m from it "
+      "(stepper {}, c_F = {:.4g} m/N, c_c = {:.4g} N{})",
+      scene.file, moving.result.message, moving.result.steps, moving.result.remaining_error,
+      to_string(settings.stepper), moving.simulation.options().c_F, discretisation.parameters.c_c,
+      settings.stepper == Stepper::automatic || settings.stepper == Stepper::implicit
+          ? ""
+          : "; stepper auto chooses its constants, a lower c_c lets the others take larger "
+            "steps"));
+}
+
+/// Forces of the grippers, and how the rest was found.
+void add_rest(const RestingRod& rest, Solution& solution) {
+  const force_model::Simulation& simulation = rest.simulation;
+  solution.model = Model::force;
+  solution.message = rest.result.message;
+  solution.grippers = gripper_loads(simulation.rod(), simulation.points());
+  solution.steps = rest.result.steps;
+  solution.c_F = simulation.options().c_F;
+  solution.c_h = simulation.options().c_h;
+  solution.error_estimate = rest.result.remaining_error;
+  solution.to_rest = force_model::check_equilibrium(simulation.rod(), simulation.points()).step;
+}
+
 }  // namespace
 
 Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
@@ -190,7 +223,7 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
   Discretisation discretisation = discretise(dead_scene, settings);
   set_masses(dead_scene, settings, discretisation);
   const SimulationStart start = simulation_start(dead_scene, settings, discretisation, options);
-  const auto begin = std::chrono::steady_clock::now();
+  const Timer timer;
   const auto simulate = [&](const force_model::Rod& rod, const Eigen::Matrix3Xd& points) {
     try {
       return force_model::Simulation(rod, points, step_options(settings, discretisation));
@@ -205,61 +238,37 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
                                          .max_steps = options.max_steps,
                                          .time_limit = options.time_limit,
                                          .interrupted = energy_model::interrupted};
-  force_model::Simulation simulation = simulation_from(start.points);
-  force_model::RelaxResult result = simulation.relax(limits);
+  RestingRod rest{simulation_from(start.points), {}};
+  rest.result = rest.simulation.relax(limits);
   const auto strayed = [&] {
-    return result.status == force_model::RelaxStatus::at_rest && start.rest &&
-           in_another_state(dead_scene, discretisation, simulation.points(), *start.rest);
+    return rest.result.status == force_model::RelaxStatus::at_rest && start.rest &&
+           in_another_state(dead_scene, discretisation, rest.simulation.points(), *start.rest);
   };
   if (strayed()) {
     // It has swung past the chain's state; from a tenth of the way before it it cannot.
-    const long steps = result.steps;
-    simulation = simulation_from(start.points + nearly_there * (*start.rest - start.points));
-    result = simulation.relax(limits);
-    result.steps += steps;
+    const long steps = rest.result.steps;
+    rest.simulation = simulation_from(start.points + nearly_there * (*start.rest - start.points));
+    rest.result = rest.simulation.relax(limits);
+    rest.result.steps += steps;
   }
-  if (result.status != force_model::RelaxStatus::at_rest) {
-    throw ConvergenceError(fmt::format(
-        "{}: the force model did not come to rest: {} after {} steps, about {:.2g} m from it "
-        "(stepper {}, c_F = {:.4g} m/N, c_c = {:.4g} N{})",
-        dead_scene.file, result.message, result.steps, result.remaining_error,
-        to_string(settings.stepper), simulation.options().c_F, discretisation.parameters.c_c,
-        settings.stepper == Stepper::automatic || settings.stepper == Stepper::implicit
-            ? ""
-            : "; stepper auto chooses its constants, a lower c_c lets the others take larger "
-              "steps"));
+  if (rest.result.status != force_model::RelaxStatus::at_rest) {
+    throw not_at_rest(dead_scene, settings, discretisation, rest);
   }
-  const Eigen::Matrix3Xd dead_loads = simulation.rod().loads;
+  const Eigen::Matrix3Xd dead_loads = rest.simulation.rod().loads;
   if (scene.drag) {
-    RestingRod rest = raise_drag(scene, discretisation.arc_length, simulation, limits, simulate);
-    rest.result.steps += result.steps;
-    simulation = std::move(rest.simulation);
-    result = std::move(rest.result);
+    const long steps = rest.result.steps;
+    rest = raise_drag(scene, discretisation.arc_length, rest.simulation, limits, simulate);
+    rest.result.steps += steps;
   }
-  require_unstrained(dead_scene, settings, discretisation, simulation.points(), "force");
-  force_model::Rod rod = simulation.rod();
+  require_unstrained(dead_scene, settings, discretisation, rest.simulation.points(), "force");
+  force_model::Rod rod = rest.simulation.rod();
   rod.loads = dead_loads;  // drag has no energy
   Solution solution =
-      polygon_solution(dead_scene, settings, discretisation, rod, simulation.points());
-  solution.model = Model::force;
-  solution.message = result.message;
+      polygon_solution(dead_scene, settings, discretisation, rod, rest.simulation.points());
+  add_rest(rest, solution);
   if (scene.drag) solution.status = energy_model::SolveStatus::not_verified;
   if (!scene.drag && strayed()) solution.message += ", in another state than the chain";
-  // What an obstacle does to a held point inside a gripper is not felt outside.
-  force_model::Rod without_walls = simulation.rod();
-  without_walls.walls.clear();
-  without_walls.solids.clear();
-  for (const force_model::GripReaction& reaction :
-       force_model::grip_reactions(without_walls, simulation.points())) {
-    solution.grippers.push_back({reaction.force, reaction.torque});
-  }
-  solution.steps = result.steps;
-  solution.c_F = simulation.options().c_F;
-  solution.c_h = simulation.options().c_h;
-  solution.error_estimate = result.remaining_error;
-  solution.to_rest = force_model::check_equilibrium(simulation.rod(), simulation.points()).step;
-  solution.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  solution.seconds = timer.seconds();
   return solution;
 }
 

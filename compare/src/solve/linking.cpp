@@ -13,7 +13,7 @@
 namespace dlo::compare {
 namespace {
 
-/// By how many turns a shape misses those that are held, a whole number. Each passage through
+/// By how many turns a shape differs from those that are held, a whole number. Each passage through
 /// itself takes or gives two.
 double turns_lost(const Linking& part) { return std::round(part.held - part.twist - part.writhe); }
 

@@ -4,12 +4,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <exception>
 #include <optional>
 #include <stdexcept>
 
+#include "base/timer.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
@@ -27,22 +27,6 @@ constexpr double unbounded = std::numeric_limits<double>::infinity();
 constexpr double bound_factor = 2;
 constexpr double largest_response = 0.03;
 constexpr double largest_joint_angle = 0.5;  // [rad]
-
-/// The time that a plan may take.
-class PlanClock {
- public:
-  explicit PlanClock(double limit) : limit_(limit) {}
-
-  /// [s]
-  [[nodiscard]] double left() const {
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
-    return limit_ - spent.count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  double limit_;
-};
 
 std::vector<PlannedSpan> spans_of(const Scene& scene) {
   std::vector<PlannedSpan> spans;
@@ -118,7 +102,7 @@ double polygon_bound(const Scene& scene, const energy_model::Equilibrium& rod, i
 
 /// From the error at one N to the next, by the order of convergence, until it is met or time is up.
 int points_for_target(const Scene& scene, const energy_model::Equilibrium& rod, double target,
-                      const PlanClock& clock) {
+                      const TimeLimit& time) {
   const std::vector<double> s = equal_arc_lengths(scene.length, rod_points);
   const double curvature = std::sqrt(rod.sample(s).curvature.colwise().squaredNorm().maxCoeff());
   int points = 5;
@@ -126,7 +110,7 @@ int points_for_target(const Scene& scene, const energy_model::Equilibrium& rod, 
     points = force_model::points_for_radius(scene.length, 1 / curvature, largest_joint_angle);
   }
   const double order = scene.force_model.bookkeeping == Bookkeeping::consistent ? 2 : 1;
-  while (points <= most_planned_points && clock.left() > 0) {
+  while (points <= most_planned_points && time.left() > 0) {
     const double bound = polygon_bound(scene, rod, points);
     if (bound <= target * scene.length) return points;
     const double growth =
@@ -205,6 +189,101 @@ void look_at_twist(const energy_model::Equilibrium& rod, Plan& plan) {
   for (std::size_t i = 0; i < plan.twist.size(); ++i) plan.twist[i].twist = rod.twists[i].angle;
 }
 
+/// What the shape of the rod bounds.
+struct ShapeBounds {
+  Neglected stretch{.what = "stretch", .models = "energy, exact, chain of rigid segments"};
+  Neglected shear{.what = "shear", .models = "all"};
+  Neglected polygon{.what = "polygon", .models = "chain, force"};
+
+  void set_unbounded(const std::string& why) {
+    for (Neglected* item : {&stretch, &shear, &polygon}) {
+      item->bound_m = unbounded;
+      item->why = why;
+    }
+  }
+};
+
+/// All that is known before anything is solved.
+Plan plan_of(const Scene& scene, double target) {
+  const std::vector<std::size_t> in_reach = obstacles_in_reach(scene, scene.force_model);
+  const std::vector<double> clearances = obstacle_clearances(scene);
+  Plan plan;
+  plan.gamma = scene.gamma();
+  plan.target = target;
+  plan.planar = scene.planar();
+  plan.contact = true;
+  plan.spans = spans_of(scene);
+  plan.twist = twists_of(scene);
+  plan.frame_held = std::any_of(scene.grippers.begin(), scene.grippers.end(),
+                                [](const Gripper& gripper) { return gripper.frame.has_value(); });
+  plan.scene_points = scene.force_model.points;
+  for (std::size_t i = 0; i < clearances.size(); ++i) {
+    plan.obstacles.push_back(
+        {clearances[i], std::find(in_reach.begin(), in_reach.end(), i) != in_reach.end()});
+  }
+  return plan;
+}
+
+/// Of a rod that touches nothing, by the response of a fine polygon.
+void bound_by_response(const Scene& scene, const energy_model::Equilibrium& rod,
+                       const Discretisation& fine, ShapeBounds& bounds) {
+  const PolygonResponse response(scene, fine, rod);
+  const double EA = scene.axial_stiffness();
+  bounds.stretch.bound_m = bounded(response.stretch(EA).moved_m, scene.length);
+  bounds.stretch.why = "tension over EA, as the shape answers it";
+  bounds.shear.bound_m = bounded(response.shear(0.3 * EA), scene.length);
+  bounds.shear.why = "force across over kGA, kG >= 0.3 E";
+  bounds.polygon.bound_m = polygon_bound(scene, rod, scene.force_model.points);
+  bounds.polygon.why =
+      fmt::format("segments instead of curves, hooke law, bookkeeping {}, N = {}",
+                  to_string(scene.force_model.bookkeeping), scene.force_model.points);
+}
+
+/// What the shape says about what is neglected.
+struct LookedAt {
+  ShapeBounds& bounds;
+  Neglected& twist;
+  Neglected& natural;
+};
+
+void bound_by_shape(const Scene& scene, const PlanOptions& options, const LookedAt& items,
+                    Plan& plan) {
+  const TimeLimit time(options.time_limit);
+  std::string why;
+  const std::optional<energy_model::Equilibrium> rod = rod_shape(scene, options.time_limit, why);
+  plan.contact = !rod || touches(*rod);
+  if (rod && !plan.twist.empty()) {
+    look_at_twist(*rod, plan);
+    look_at(scene.without_twist(), *rod, time.left(), items.twist);
+  }
+  if (rod && scene.naturally_bent()) {
+    look_at(scene.without_natural_strain(), *rod, time.left(), items.natural);
+  }
+  const std::optional<Discretisation> fine = hooke_polygon(scene, rod_points);
+  if (!rod) {
+    items.bounds.set_unbounded(why);
+  } else if (plan.contact) {
+    items.bounds.set_unbounded("the rod touches an obstacle");
+  } else if (const std::string none = why_no_polygon(scene); !none.empty()) {
+    items.bounds.set_unbounded(none);
+  } else if (!fine) {
+    items.bounds.set_unbounded("the grips lie closer than any polygon looked at");
+  } else {
+    bound_by_response(scene, *rod, *fine, items.bounds);
+    plan.points = points_for_target(scene, *rod, options.target, time);
+  }
+}
+
+void add_out_of_reach(Plan& plan) {
+  const auto all = plan.obstacles.size();
+  const auto out = static_cast<std::size_t>(
+      std::count_if(plan.obstacles.begin(), plan.obstacles.end(),
+                    [](const PlannedObstacle& obstacle) { return !obstacle.in_reach; }));
+  if (out == 0) return;
+  plan.neglected.push_back({"obstacles out of reach", "all", 0,
+                            fmt::format("{} of {}: no point of the rod gets there", out, all)});
+}
+
 }  // namespace
 
 double Plan::bound(const std::string& what) const {
@@ -223,86 +302,25 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
   // What stretches is planned for by the shape that does not.
   Scene inextensible = scene;
   inextensible.stretch = Stretch::none;
-  const PlanClock clock(options.time_limit);
-  const std::vector<std::size_t> in_reach =
-      obstacles_in_reach(inextensible, inextensible.force_model);
-  const std::vector<double> clearances = obstacle_clearances(inextensible);
-  Plan plan;
-  plan.gamma = inextensible.gamma();
-  plan.target = options.target;
-  plan.planar = inextensible.planar();
-  plan.spans = spans_of(inextensible);
-  plan.twist = twists_of(inextensible);
-  plan.frame_held = std::any_of(inextensible.grippers.begin(), inextensible.grippers.end(),
-                                [](const Gripper& gripper) { return gripper.frame.has_value(); });
-  plan.scene_points = inextensible.force_model.points;
-  for (std::size_t i = 0; i < clearances.size(); ++i) {
-    plan.obstacles.push_back(
-        {clearances[i], std::find(in_reach.begin(), in_reach.end(), i) != in_reach.end()});
-  }
-
-  Neglected stretch{.what = "stretch", .models = "energy, exact, chain of rigid segments"};
-  Neglected shear{.what = "shear", .models = "all"};
-  Neglected polygon{.what = "polygon", .models = "chain, force"};
+  Plan plan = plan_of(inextensible, options.target);
+  ShapeBounds bounds;
   Neglected twist = neglected_twist(inextensible, plan);
   Neglected natural = neglected_natural(inextensible);
-  const auto no_bound = [&](const std::string& why) {
-    for (Neglected* item : {&stretch, &shear, &polygon}) {
-      item->bound_m = unbounded;
-      item->why = why;
-    }
-  };
-  plan.contact = true;
   try {
-    std::string why;
-    const std::optional<energy_model::Equilibrium> rod =
-        rod_shape(inextensible, options.time_limit, why);
-    plan.contact = !rod || touches(*rod);
-    if (rod && !plan.twist.empty()) {
-      look_at_twist(*rod, plan);
-      look_at(inextensible.without_twist(), *rod, clock.left(), twist);
-    }
-    if (rod && inextensible.naturally_bent()) {
-      look_at(inextensible.without_natural_strain(), *rod, clock.left(), natural);
-    }
-    const std::optional<Discretisation> fine = hooke_polygon(inextensible, rod_points);
-    if (!rod) {
-      no_bound(why);
-    } else if (plan.contact) {
-      no_bound("the rod touches an obstacle");
-    } else if (const std::string none = why_no_polygon(inextensible); !none.empty()) {
-      no_bound(none);
-    } else if (!fine) {
-      no_bound("the grips lie closer than any polygon looked at");
-    } else {
-      const PolygonResponse response(inextensible, *fine, *rod);
-      const double EA = inextensible.axial_stiffness();
-      stretch.bound_m = bounded(response.stretch(EA).moved_m, inextensible.length);
-      stretch.why = "tension over EA, as the shape answers it";
-      shear.bound_m = bounded(response.shear(0.3 * EA), inextensible.length);
-      shear.why = "force across over kGA, kG >= 0.3 E";
-      polygon.bound_m = polygon_bound(inextensible, *rod, inextensible.force_model.points);
-      polygon.why = fmt::format("segments instead of curves, hooke law, bookkeeping {}, N = {}",
-                                to_string(inextensible.force_model.bookkeeping), plan.scene_points);
-      plan.points = points_for_target(inextensible, *rod, options.target, clock);
-    }
+    bound_by_shape(inextensible, options, {bounds, twist, natural}, plan);
   } catch (const std::exception& error) {
     // A plan is no reason for a solve to fail.
-    no_bound(fmt::format("not found out: {}", error.what()));
+    bounds.set_unbounded(fmt::format("not found out: {}", error.what()));
   }
   const bool counted = scene.stretch == Stretch::counted;
-  plan.stretch = !counted && stretch.bound_m > options.target * inextensible.length / 10;
-  plan.neglected = {shear, polygon, inertia(inextensible, options.gripper_speed), twist};
-  if (!counted) plan.neglected.insert(plan.neglected.begin(), stretch);
+  plan.stretch = !counted && bounds.stretch.bound_m > options.target * inextensible.length / 10;
+  plan.neglected = {bounds.shear, bounds.polygon, inertia(inextensible, options.gripper_speed),
+                    twist};
+  if (!counted) plan.neglected.insert(plan.neglected.begin(), bounds.stretch);
   if (inextensible.naturally_bent()) plan.neglected.push_back(natural);
   if (friction_in_reach(inextensible)) plan.neglected.push_back(neglected_friction(plan));
   plan.moving = plan.bound("inertia") > options.target * inextensible.length;
-  if (in_reach.size() < inextensible.obstacles.size()) {
-    plan.neglected.push_back({"obstacles out of reach", "all", 0,
-                              fmt::format("{} of {}: no point of the rod gets there",
-                                          inextensible.obstacles.size() - in_reach.size(),
-                                          inextensible.obstacles.size())});
-  }
+  add_out_of_reach(plan);
   return plan;
 }
 

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <vector>
 
+#include "base/timer.hpp"
 #include "dlo/compare/error.hpp"
 #include "polygon/energy_problems.hpp"
 #include "polygon/natural_plane.hpp"
@@ -31,21 +31,6 @@ Strain largest_of(const force_model::Rod& rod, const Eigen::Matrix3Xd& points) {
   result.share = strain[result.segment];
   return result;
 }
-
-/// What is left of a limit of time [s].
-class TimeLeft {
- public:
-  explicit TimeLeft(double seconds) : seconds_(seconds) {}
-
-  [[nodiscard]] double now() const {
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
-    return seconds_ - spent.count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-  double seconds_;
-};
 
 }  // namespace
 
@@ -95,6 +80,18 @@ Solution polygon_solution(const Scene& scene, const ForceModelSettings& settings
   return solution;
 }
 
+std::vector<GripperLoad> gripper_loads(force_model::Rod rod, const Eigen::Matrix3Xd& points) {
+  rod.walls.clear();
+  rod.solids.clear();
+  const std::vector<force_model::GripReaction> reactions = force_model::grip_reactions(rod, points);
+  std::vector<GripperLoad> loads;
+  loads.reserve(reactions.size());
+  for (const force_model::GripReaction& reaction : reactions) {
+    loads.push_back({reaction.force, reaction.torque});
+  }
+  return loads;
+}
+
 void require_unstrained(const Scene& scene, const ForceModelSettings& settings,
                         const Discretisation& discretisation, const Eigen::Matrix3Xd& points,
                         const char* model) {
@@ -116,13 +113,13 @@ LowestPolygon lowest_polygon(const Scene& scene, const ForceModelSettings& setti
   const energy_model::PolygonProblem problem =
       polygon_problem(discretisation.rod, settings.joint_law);
   const double allowed = largest_strain(scene, settings);
-  const TimeLeft left(options.time_limit);
+  const TimeLimit time(options.time_limit);
   energy_model::PolygonOptions polygon_options;
   polygon_options.max_evaluations = options.max_evaluations;
   LowestPolygon lowest;
   bool lowest_is_shape = false;
   for (std::size_t i = 0; i < discretisation.starts.size(); ++i) {
-    polygon_options.time_limit = left.now();
+    polygon_options.time_limit = time.left();
     if (i > 0 && polygon_options.time_limit <= 0) break;
     energy_model::PolygonResult result =
         energy_model::solve_polygon(problem, discretisation.starts[i], polygon_options);
@@ -150,7 +147,7 @@ LowestPolygon lowest_polygon(const Scene& scene, const ForceModelSettings& setti
   if (!takes_twist(scene, settings)) return lowest;
   lowest.untwisted = lowest.result.points;
   lowest.rod = with_frames(scene, discretisation, lowest.untwisted);
-  polygon_options.time_limit = std::max(left.now(), options.time_limit / 4);
+  polygon_options.time_limit = std::max(time.left(), options.time_limit / 4);
   lowest.result = energy_model::twist_polygon(polygon_problem(lowest.rod, settings.joint_law),
                                               lowest.untwisted, polygon_options);
   lowest.evaluations += lowest.result.evaluations;

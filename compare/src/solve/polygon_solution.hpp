@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <vector>
 
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/scene.hpp"
@@ -17,6 +18,11 @@ namespace dlo::compare {
                                         const Discretisation& discretisation,
                                         const force_model::Rod& rod,
                                         const Eigen::Matrix3Xd& points);
+
+/// What the grippers exert on a polygon, in the scene's order. What an obstacle does to a held
+/// point inside a gripper is not felt outside.
+[[nodiscard]] std::vector<GripperLoad> gripper_loads(force_model::Rod rod,
+                                                     const Eigen::Matrix3Xd& points);
 
 /// A polygon that had to stretch or to shrink is no shape of the rod, however well it balances.
 /// @throws ConvergenceError then, with the number of points that may do

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -11,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "base/timer.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
@@ -96,11 +96,8 @@ std::optional<energy_model::Equilibrium> stretched_shape(const Scene& scene,
 /// @throws std::invalid_argument, ConvergenceError if the energy model finds none
 energy_model::Equilibrium exact_shape(const Scene& scene, const energy_model::Problem& problem,
                                       const SolveOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
-  const auto left = [&] {
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
-    return std::max(options.time_limit - spent.count(), std::numeric_limits<double>::min());
-  };
+  const TimeLimit limit(options.time_limit);
+  const auto left = [&] { return std::max(limit.left(), std::numeric_limits<double>::min()); };
   energy_model::ExactOptions exact{.time_limit = options.time_limit};
   if (std::optional<energy_model::Equilibrium> stretched = stretched_shape(scene, problem, exact)) {
     return *std::move(stretched);

@@ -30,10 +30,6 @@ double error_of(const Scene& scene, const energy_model::Equilibrium& a,
 
 }  // namespace
 
-double Stopwatch::seconds() const {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-}
-
 bool Stopwatch::fits(const std::string& name, double predicted_s) {
   constexpr double largest_share = 0.25;
   const double now_left = left();

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "base/timer.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/solution.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
@@ -18,7 +18,7 @@ class Stopwatch {
   Stopwatch(const BenchmarkOptions& options, std::vector<std::string>& skipped)
       : options_(options), skipped_(skipped) {}
 
-  [[nodiscard]] double seconds() const;  ///< since construction
+  [[nodiscard]] double seconds() const { return timer_.seconds(); }  ///< since construction
   void allow(double seconds) { until_ = this->seconds() + seconds; }
   [[nodiscard]] double left() const { return until_ - seconds(); }
 
@@ -37,7 +37,7 @@ class Stopwatch {
 
   const BenchmarkOptions& options_;
   std::vector<std::string>& skipped_;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  Timer timer_;
   double until_ = 0;
 };
 

@@ -5,10 +5,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 
+#include "base/timer.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/reference.hpp"
@@ -88,11 +88,10 @@ BenchmarkRun track_energy(const Scene& scene, int terms, const ReferenceTrack& t
   Frames frames;
   for (int frame = 0; frame < options.frames; ++frame) {
     problem = energy_problem(moved(scene, options, frame));
-    const auto begin = std::chrono::steady_clock::now();
+    const Timer timer;
     const energy_model::Equilibrium rod = solver.follow(problem);
     const Eigen::Matrix3Xd points = rod.sample(s).points;
-    frames.seconds.push_back(
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    frames.seconds.push_back(timer.seconds());
     frames.evaluations += rod.evaluations;
     if (ReferenceTrack::looks_at(frame)) {
       frames.add_error(track.square_error(scene, {s, points}, frame));
@@ -110,10 +109,9 @@ long frame_steps(force_model::Simulation simulation) {
   constexpr int steps = 200;
   std::vector<double> seconds;
   for (int trial = 0; trial < trials; ++trial) {
-    const auto begin = std::chrono::steady_clock::now();
+    const Timer timer;
     for (int i = 0; i < steps; ++i) (void)simulation.step();
-    seconds.push_back(
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    seconds.push_back(timer.seconds());
   }
   const double step_s = timing_of(seconds).median_s / steps;
   return std::max(1L, std::lround(std::floor(frame_s / step_s)));
@@ -133,13 +131,12 @@ BenchmarkRun track_force(const Scene& scene, const ForceVariant& variant, int po
   Frames frames;
   for (int frame = 0; frame < options.frames; ++frame) {
     const Discretisation now = discretise(moved(scene, options, frame), settings);
-    const auto begin = std::chrono::steady_clock::now();
+    const Timer timer;
     for (std::size_t i = 0; i < now.rod.grips.size(); ++i) {
       simulation.move_grip(i, now.rod.grips[i].targets, now.rod.grips[i].reference);
     }
     for (long i = 0; i < steps; ++i) (void)simulation.step();
-    frames.seconds.push_back(
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    frames.seconds.push_back(timer.seconds());
     frames.evaluations += steps;
     if (ReferenceTrack::looks_at(frame)) {
       frames.add_error(track.square_error(scene, now.shape(simulation.points()), frame));

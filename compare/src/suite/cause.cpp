@@ -140,9 +140,7 @@ class Diagnosis {
       if (!is_identified(modulus.optimum)) return std::nullopt;
       if (!(modulus.rms_m <= may_leave * error_m(shape))) return std::nullopt;
       return modulus.ratio;
-    } catch (const ConvergenceError&) {
-      return std::nullopt;
-    } catch (const InputError&) {
+    } catch (const ResultError&) {
       return std::nullopt;
     }
   }
@@ -191,9 +189,7 @@ class Diagnosis {
       if (!is_near && !comes_near) return false;
       add(name, undefined, "the shape is that of the scene without it");
       return true;
-    } catch (const ConvergenceError&) {
-      return false;
-    } catch (const InputError&) {
+    } catch (const ResultError&) {
       return false;
     }
   }
@@ -309,9 +305,7 @@ class Diagnosis {
         add(one.kind == ExplanationKind::file ? "file" : "scene", undefined, one.cause);
         return true;
       }
-    } catch (const ConvergenceError&) {
-      return false;
-    } catch (const InputError&) {
+    } catch (const ResultError&) {
       return false;
     }
     return false;

@@ -2,19 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <system_error>
 
-#include "base/fingerprint.hpp"
 #include "base/input_file.hpp"
 #include "base/output_file.hpp"
+#include "base/timer.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape.hpp"
 #include "dlo/compare/solve.hpp"
 #include "foreign/scene_document.hpp"
+#include "reading/fingerprint.hpp"
 #include "record/field.hpp"
 #include "released/hinge_motion.hpp"
 #include "released/released_rod.hpp"
@@ -85,7 +85,7 @@ void move_own(Model model, const BatteryScene& scene, int points, double time_li
 
 SimulatorRun run_own(Model model, BatteryScene scene, int points, double time_limit) {
   SimulatorRun run;
-  const auto begin = std::chrono::steady_clock::now();
+  const Timer timer;
   scene.scene.file = "scene";  // scenes of one problem have one message
   try {
     if (scene.motion) {
@@ -99,7 +99,7 @@ SimulatorRun run_own(Model model, BatteryScene scene, int points, double time_li
   } catch (const ConvergenceError& error) {
     run.problem = error.what();
   }
-  run.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  run.seconds = timer.seconds();
   return run;
 }
 

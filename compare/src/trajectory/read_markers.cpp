@@ -9,8 +9,8 @@
 #include <tuple>
 
 #include "base/number.hpp"
+#include "decode/csv_rows.hpp"
 #include "dlo/compare/error.hpp"
-#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -39,23 +39,24 @@ std::array<std::size_t, 5> marker_columns_of(const std::vector<std::string_view>
 MarkerMotion parse_markers(std::string_view text, const std::string& file) {
   std::optional<std::array<std::size_t, 5>> columns;
   MarkerMotion result{.file = file, .positions = {}};
-  for_each_row(text, file, [&](const std::vector<std::string_view>& row, const std::string& where) {
+  for_each_csv_row(text, file, {}, [&](const CsvRow& row) {
     if (!columns) {
-      columns = marker_columns_of(row, where);
+      columns = marker_columns_of(row.fields, row.where);
       return;
     }
     std::array<double, 5> values{};
     for (std::size_t k = 0; k < values.size(); ++k) {
-      const std::optional<double> value =
-          row.size() == columns->size() ? as_number<double>(row[(*columns)[k]]) : std::nullopt;
+      const std::optional<double> value = row.fields.size() == columns->size()
+                                              ? as_number<double>(row.fields[(*columns)[k]])
+                                              : std::nullopt;
       if (!value || !std::isfinite(*value)) {
-        throw InputError(fmt::format("{}: {} is no number (allowed: five finite ones a row)", where,
-                                     marker_columns[k]));
+        throw InputError(fmt::format("{}: {} is no number (allowed: five finite ones a row)",
+                                     row.where, marker_columns[k]));
       }
       values[k] = *value;
     }
     if (result.positions.size() == most_positions) {
-      throw InputError(fmt::format("{}: more than {} rows", where, most_positions));
+      throw InputError(fmt::format("{}: more than {} rows", row.where, most_positions));
     }
     result.positions.push_back({values[0], values[1], {values[2], values[3], values[4]}});
   });

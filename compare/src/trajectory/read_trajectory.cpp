@@ -16,6 +16,7 @@
 #include "base/input_file.hpp"
 #include "base/number.hpp"
 #include "base/quote.hpp"
+#include "decode/csv_rows.hpp"
 #include "dlo/compare/error.hpp"
 #include "trajectory/marker_poses.hpp"
 #include "trajectory/read_markers.hpp"
@@ -43,22 +44,6 @@ std::string problem_in(const std::invalid_argument& error) {
   const std::string_view message = error.what();
   const std::size_t name = message.find(": ");
   return std::string(message.substr(name == std::string_view::npos ? 0 : name + 2));
-}
-
-std::string_view trimmed(std::string_view text) {
-  const std::size_t start = text.find_first_not_of(" \t\r");
-  if (start == std::string_view::npos) return {};
-  return text.substr(start, text.find_last_not_of(" \t\r") - start + 1);
-}
-
-std::vector<std::string_view> comma_fields(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (;;) {
-    const std::size_t end = line.find(',');
-    fields.push_back(trimmed(line.substr(0, end)));
-    if (end == std::string_view::npos) return fields;
-    line.remove_prefix(end + 1);
-  }
 }
 
 /// Where each of pose_columns is among a file's.
@@ -149,11 +134,11 @@ Trajectory read_rows(StrictTable& table, std::vector<StrictTable>& rows, const P
 
 /// Whether a file's rows are of markers, which have arc lengths.
 bool is_of_markers(std::string_view text, const std::string& file) {
-  std::optional<bool> found;
-  for_each_row(text, file, [&found](const auto& fields, const std::string& /*where*/) {
-    if (!found) found = std::find(fields.begin(), fields.end(), "s") != fields.end();
+  bool found = false;
+  for_each_csv_row(text, file, {.most_rows = 1}, [&found](const CsvRow& row) {
+    found = std::ranges::find(row.fields, "s") != row.fields.end();
   });
-  return found.value_or(false);
+  return found;
 }
 
 /// Poses of a file. @throws std::invalid_argument as smooth_poses()
@@ -181,33 +166,20 @@ std::string read_beside(const StrictTable& table, std::string_view key, const st
   return read_file(path);
 }
 
-void for_each_row(
-    std::string_view text, const std::string& file,
-    const std::function<void(const std::vector<std::string_view>&, const std::string&)>& take) {
-  text = after_byte_order_mark(text);
-  for (long number = 1; !text.empty(); ++number) {
-    const std::size_t end = text.find('\n');
-    const std::string_view line = trimmed(text.substr(0, end));
-    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    if (line.empty() || line.front() == '#') continue;
-    take(comma_fields(line), fmt::format("{}:{}", file, number));
-  }
-}
-
 Trajectory parse_trajectory(std::string_view text, const std::string& file) {
   std::optional<PoseColumns> columns;
   std::vector<Pose> poses;
-  for_each_row(text, file, [&](const auto& fields, const std::string& where) {
+  for_each_csv_row(text, file, {}, [&](const CsvRow& row) {
     if (!columns) {
-      columns = pose_columns_of(fields, where);
+      columns = pose_columns_of(row.fields, row.where);
       return;
     }
     if (poses.size() == most_poses) {
-      throw InputError(fmt::format("{}: more than {} poses", where, most_poses));
+      throw InputError(fmt::format("{}: more than {} poses", row.where, most_poses));
     }
-    poses.push_back(pose_of(fields, *columns, where));
+    poses.push_back(pose_of(row.fields, *columns, row.where));
     if (poses.size() > 1 && !(poses.back().time > poses[poses.size() - 2].time)) {
-      throw InputError(fmt::format("{}: time = {} is not above that of the row before", where,
+      throw InputError(fmt::format("{}: time = {} is not above that of the row before", row.where,
                                    poses.back().time));
     }
   });

@@ -37,12 +37,6 @@ struct PoseKeys {
                                       const std::string& name, const std::string& scene_file,
                                       const char* allowed);
 
-/// Calls for each row of a CSV file with its fields, the header's too, and "file:line"; empty lines
-/// and those that begin with # are passed over.
-void for_each_row(
-    std::string_view text, const std::string& file,
-    const std::function<void(const std::vector<std::string_view>&, const std::string&)>& take);
-
 /// Poses of a CSV file: a header with time, x, y, z, (all or none) dx, dy, dz and perhaps roll, in
 /// any order, then a row a pose, in s, m and rad; empty lines and those that begin with # are
 /// passed over.

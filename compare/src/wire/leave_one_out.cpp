@@ -1,11 +1,11 @@
 #include "wire/leave_one_out.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <utility>
 
+#include "base/timer.hpp"
 #include "least_squares/measured_shapes.hpp"
 #include "shape/arc_lengths.hpp"
 #include "wire/between_shapes.hpp"
@@ -62,8 +62,7 @@ std::optional<double> repeatability_of(const std::vector<Scene>& scenes, const M
 double distance_from_rod(const Scene& scene, const MeasuredShape& shape,
                          const MaterialFitOptions& options,
                          const energy_model::Equilibrium* known) {
-  MeasuredShapes measured({scene}, {shape}, measured_options(options),
-                          std::chrono::steady_clock::now());
+  MeasuredShapes measured({scene}, {shape}, measured_options(options), Timer());
   double square = measured.alignment(0, measured.solve(0, scene, nullptr)).mean_square;
   if (known != nullptr) {
     const energy_model::Equilibrium near = measured.solve(0, scene, known);

@@ -1,8 +1,8 @@
 #include "wire/wire_fit.hpp"
 
-#include <chrono>
 #include <optional>
 
+#include "base/timer.hpp"
 #include "wire/leave_one_out.hpp"
 #include "wire/wire_optimum.hpp"
 #include "wire/wire_problem.hpp"
@@ -17,8 +17,7 @@ namespace {
 PredictedScene predicted(const WireProblem& problem, const WireOptimum& all, std::size_t left) {
   const std::vector<Scene> scenes = all_but(problem.scenes, left);
   const std::vector<MeasuredShape> shapes = all_but(problem.shapes, left);
-  MeasuredShapes measured(scenes, shapes, measured_options(problem.options),
-                          std::chrono::steady_clock::now());
+  MeasuredShapes measured(scenes, shapes, measured_options(problem.options), Timer());
   const WireProblem others(scenes, shapes, measured, problem.options, problem.density);
   std::vector<Eigen::Index> common;
   for (std::size_t k = 0; k < problem.numbers.size(); ++k) {

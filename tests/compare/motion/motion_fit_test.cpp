@@ -1,7 +1,7 @@
 // Stiffness and damping from recordings that are made by the simulation, with noise: each is of
 // another rod that two grippers, or one, carry another way, and begins in motion.
 
-#include "motion/motion_fit.hpp"
+#include "recording/motion_fit.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

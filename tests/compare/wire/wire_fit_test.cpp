@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -14,6 +13,7 @@
 
 #include "../../sanitized.hpp"
 #include "../../says.hpp"
+#include "base/timer.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/material_fit.hpp"
 #include "dlo/compare/reference.hpp"
@@ -346,13 +346,15 @@ TEST(WireFit, ItsTimeBeganBeforeIt) {
   const MaterialFitOptions options{.natural_curvature_terms = 1, .solve = {.time_limit = 100}};
   const std::vector<Scene> scenes = {picture.said};
   const std::vector<MeasuredShape> shapes = {picture.seen};
-  const auto fit_after = [&](std::chrono::seconds spent) {
-    MeasuredShapes measured(scenes, shapes, {.solve = options.solve},
-                            std::chrono::steady_clock::now() - spent);
+  const Timer timer;
+  const auto fit_within = [&](double time_limit) {
+    MeasuredShapes measured(scenes, shapes, {.solve = {.time_limit = time_limit}}, timer);
     return fit_wire(scenes, shapes, measured, options, {}, false);
   };
-  EXPECT_NO_THROW((void)fit_after(std::chrono::seconds(10)));
-  EXPECT_THROW((void)fit_after(std::chrono::seconds(101)), ConvergenceError);
+  EXPECT_NO_THROW((void)fit_within(100));
+  EXPECT_NO_THROW((void)fit_within(100));
+  // Time for two, which is over already.
+  EXPECT_THROW((void)fit_within(timer.seconds()), ConvergenceError);
 }
 
 // Of more rows than are needed every so many-th stays, with what belongs to it.

@@ -5,9 +5,14 @@
 
 namespace dlo::compare {
 
+/// There is no result: an InputError or a ConvergenceError. The message is one line.
+class ResultError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// Bad input by the user: a file, a key, a value. The message is one line that names all of them
 /// and what is allowed.
-class InputError : public std::runtime_error {
+class InputError : public ResultError {
  public:
   /// @param message  a piece of the input that it quotes may hold control characters; each becomes
   /// a "?", so that a malformed file neither breaks the line nor steers a terminal
@@ -29,8 +34,8 @@ class InputError : public std::runtime_error {
 };
 
 /// A solver did not converge; the message says which one and why.
-class ConvergenceError : public std::runtime_error {
-  using std::runtime_error::runtime_error;
+class ConvergenceError : public ResultError {
+  using ResultError::ResultError;
 };
 
 }  // namespace dlo::compare

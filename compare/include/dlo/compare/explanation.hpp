@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "dlo/compare/choice.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape_check.hpp"
 #include "dlo/compare/shape_file.hpp"
@@ -19,17 +20,14 @@ enum class ExplanationKind {
 };
 
 /// In words, for files.
-[[nodiscard]] constexpr const char* to_string(ExplanationKind kind) {
-  switch (kind) {
-    case ExplanationKind::file:
-      return "file";
-    case ExplanationKind::discretisation:
-      return "discretisation";
-    case ExplanationKind::scene:
-      break;
-  }
-  return "scene";
-}
+template <>
+struct Choices<ExplanationKind> {
+  /// In the enumeration's order.
+  static constexpr Choice<ExplanationKind> all[] = {
+      {ExplanationKind::file, "file", ""},
+      {ExplanationKind::discretisation, "discretisation", ""},
+      {ExplanationKind::scene, "scene", ""}};
+};
 
 /// What may be wrong with a shape, or with the scene that it is held against.
 struct Explanation {

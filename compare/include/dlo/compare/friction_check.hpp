@@ -3,6 +3,7 @@
 #include <limits>
 #include <string>
 
+#include "dlo/compare/choice.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape_check.hpp"
 
@@ -17,7 +18,15 @@ enum class FrictionVerdict {
 };
 
 /// In words, for files.
-[[nodiscard]] const char* to_string(FrictionVerdict verdict);
+template <>
+struct Choices<FrictionVerdict> {
+  /// In the enumeration's order.
+  static constexpr Choice<FrictionVerdict> all[] = {
+      {FrictionVerdict::none_needed, "none_needed", ""},
+      {FrictionVerdict::inside, "inside", ""},
+      {FrictionVerdict::outside, "outside", ""},
+      {FrictionVerdict::not_identified, "not_identified", ""}};
+};
 
 /// What a shape that touches obstacles needs of their friction.
 struct FrictionCheck {

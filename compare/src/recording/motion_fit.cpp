@@ -1,4 +1,4 @@
-#include "motion/motion_fit.hpp"
+#include "recording/motion_fit.hpp"
 
 #include <fmt/format.h>
 #include <gsl/gsl_cdf.h>
@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "dlo/compare/error.hpp"
+#include "recording/motion_residuals.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -197,48 +198,57 @@ Eigen::Map<const Eigen::VectorXd> mapped(const gsl_vector* v) {
   return {v->data, static_cast<Eigen::Index>(v->size)};
 }
 
+auto rows_of(const gsl_matrix* J) {
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  return Eigen::Map<Rows, 0, Eigen::OuterStride<>>(
+      J->data, static_cast<Eigen::Index>(J->size1), static_cast<Eigen::Index>(J->size2),
+      Eigen::OuterStride<>(static_cast<Eigen::Index>(J->tda)));
+}
+
+/// The misfit as GSL calls it: no exception passes GSL, the first is kept.
+struct GslProblem {
+  MotionMisfit& misfit;
+  Eigen::VectorXd logs, residuals;  // of the last call
+  std::exception_ptr failed;
+
+  template <typename Function>
+  int guarded(const Function& function) {
+    try {
+      function();
+    } catch (...) {
+      failed = std::current_exception();
+      return GSL_EFAILED;
+    }
+    return GSL_SUCCESS;
+  }
+  int evaluate(const gsl_vector* x, gsl_vector* f) {
+    return guarded([&] {
+      logs = mapped(x);
+      residuals = misfit.residuals(logs);
+      Eigen::Map<Eigen::VectorXd>(f->data, residuals.size()) = residuals;
+    });
+  }
+  int differentiate(const gsl_vector* x, gsl_matrix* J) {
+    return guarded([&] {
+      const Eigen::VectorXd at = mapped(x);
+      const bool known = logs.size() == at.size() && logs == at;
+      rows_of(J) = design_at(misfit, at, known ? residuals : misfit.residuals(at));
+    });
+  }
+};
+
 /// Levenberg's and Marquardt's steps by GSL.
 NearestMotion least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start, int most_steps) {
-  struct Problem {
-    MotionMisfit& misfit;
-    Eigen::VectorXd logs, residuals;  // of the last call
-    std::exception_ptr failed;
-  } problem{misfit, {}, {}, nullptr};
+  GslProblem problem{misfit, {}, {}, nullptr};
   gsl_multifit_nlinear_fdf fdf{};
   fdf.n = misfit.coordinates();
   fdf.p = static_cast<std::size_t>(start.size());
   fdf.params = &problem;
   fdf.f = [](const gsl_vector* x, void* data, gsl_vector* f) {
-    auto& at = *static_cast<Problem*>(data);
-    try {
-      at.logs = mapped(x);
-      at.residuals = at.misfit.residuals(at.logs);
-    } catch (...) {
-      at.failed = std::current_exception();
-      return static_cast<int>(GSL_EFAILED);
-    }
-    Eigen::Map<Eigen::VectorXd>(f->data, at.residuals.size()) = at.residuals;
-    return static_cast<int>(GSL_SUCCESS);
+    return static_cast<GslProblem*>(data)->evaluate(x, f);
   };
   fdf.df = [](const gsl_vector* x, void* data, gsl_matrix* J) {
-    auto& at = *static_cast<Problem*>(data);
-    try {
-      const Eigen::VectorXd logs = mapped(x);
-      const Eigen::VectorXd here = at.logs.size() == logs.size() && at.logs == logs
-                                       ? at.residuals
-                                       : at.misfit.residuals(logs);
-      const Eigen::MatrixXd design = design_at(at.misfit, logs, here);
-      for (std::size_t i = 0; i < J->size1; ++i) {
-        for (std::size_t k = 0; k < J->size2; ++k) {
-          gsl_matrix_set(J, i, k,
-                         design(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)));
-        }
-      }
-    } catch (...) {
-      at.failed = std::current_exception();
-      return static_cast<int>(GSL_EFAILED);
-    }
-    return static_cast<int>(GSL_SUCCESS);
+    return static_cast<GslProblem*>(data)->differentiate(x, J);
   };
   const gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
   const std::unique_ptr<gsl_multifit_nlinear_workspace, decltype(&gsl_multifit_nlinear_free)> work(
@@ -251,11 +261,7 @@ NearestMotion least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start, 
     const int status = gsl_multifit_nlinear_iterate(work.get());
     result.logs = mapped(gsl_multifit_nlinear_position(work.get()));
     result.residuals = mapped(gsl_multifit_nlinear_residual(work.get()));
-    const gsl_matrix* J = gsl_multifit_nlinear_jac(work.get());
-    using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    result.design = Eigen::Map<const Rows, 0, Eigen::OuterStride<>>(
-        J->data, result.residuals.size(), result.logs.size(),
-        Eigen::OuterStride<>(static_cast<Eigen::Index>(J->tda)));
+    result.design = rows_of(gsl_multifit_nlinear_jac(work.get()));
     if (status != GSL_SUCCESS || is_least(result)) break;
   }
   if (problem.failed) std::rethrow_exception(problem.failed);
@@ -306,37 +312,10 @@ Eigen::VectorXd first_guess(MotionMisfit& misfit) {
   return best;
 }
 
-}  // namespace
-
-MotionFit fit_motion(const Scene& scene, const MarkerMotion& recorded,
-                     const MotionFitOptions& options) {
-  MotionMisfit misfit(scene, recorded, options);
-  MotionFit result;
-  result.file = recorded.file;
-  const std::vector<RecordedFrame>& frames = misfit.frames();
-  result.times = frames.size();
-  result.from = frames.front().time;
-  result.to = frames.back().time;
-  result.coordinates = misfit.coordinates();
-  const auto distance = [&](const Eigen::VectorXd& residuals) {
-    return std::sqrt(residuals.squaredNorm() / (static_cast<double>(residuals.size()) / 3));
-  };
-  if (result.coordinates <= misfit.sought().size()) {
-    throw InputError(recorded.file + ": too few rows");
-  }
-  result.given_rms = distance(misfit.given());
-  constexpr double beginning = 0.2;
-  misfit.look_at(beginning);
-  Eigen::VectorXd start = first_guess(misfit);
-  start[0] = least_squares(misfit, start, most_first_steps).logs[0];
-  misfit.look_at(1);
-  const NearestMotion nearest = least_squares(misfit, start, most_fit_steps);
-  (void)misfit.residuals(nearest.logs);
-  if (!misfit.stopped().empty()) {
-    throw ConvergenceError("the moving rod stopped: " + misfit.stopped());
-  }
-  result.rms = distance(nearest.residuals);
-  const double share = correlated_share(recorded, nearest.residuals);
+/// The numbers sought, with their intervals.
+/// @param share  correlated_share() of the residuals
+void add_numbers(const Scene& scene, const MotionMisfit& misfit, const NearestMotion& nearest,
+                 double share, MotionFit& result) {
   result.effective_coordinates = static_cast<double>(result.coordinates) / share;
   const auto numbers = static_cast<double>(nearest.logs.size());
   const double freedom = std::max(1.0, result.effective_coordinates - numbers);
@@ -369,25 +348,52 @@ MotionFit fit_motion(const Scene& scene, const MarkerMotion& recorded,
         break;
     }
   }
+}
+
+/// What is left of the distances, by marker and of the worst time.
+void add_errors(const MarkerMotion& recorded, const Eigen::VectorXd& residuals, double length,
+                MotionFit& result) {
+  const MotionErrors errors = motion_errors(recorded, residuals.reshaped(3, residuals.size() / 3),
+                                            length, recorded.positions.size());
+  result.rms = errors.rms_m;
+  for (const PartError& marker : errors.markers) {
+    result.by_marker.push_back({marker.from_m, marker.rms_m});
+  }
+  result.markers = errors.markers.size();
+  const FrameError& worst = errors.frames[errors.worst_frame];
+  result.worst = {worst.time, worst.rms_m};
+}
+
+}  // namespace
+
+MotionFit fit_motion(const Scene& scene, const MarkerMotion& recorded,
+                     const MotionFitOptions& options) {
+  MotionMisfit misfit(scene, recorded, options);
+  MotionFit result;
+  result.file = recorded.file;
+  const std::vector<RecordedFrame>& frames = misfit.frames();
+  result.times = frames.size();
+  result.from = frames.front().time;
+  result.to = frames.back().time;
+  result.coordinates = misfit.coordinates();
+  if (result.coordinates <= misfit.sought().size()) {
+    throw InputError(recorded.file + ": too few rows");
+  }
+  const Eigen::VectorXd given = misfit.given();
+  result.given_rms = rms_of(given.reshaped(3, given.size() / 3));
+  constexpr double beginning = 0.2;
+  misfit.look_at(beginning);
+  Eigen::VectorXd start = first_guess(misfit);
+  start[0] = least_squares(misfit, start, most_first_steps).logs[0];
+  misfit.look_at(1);
+  const NearestMotion nearest = least_squares(misfit, start, most_fit_steps);
+  (void)misfit.residuals(nearest.logs);
+  if (!misfit.stopped().empty()) {
+    throw ConvergenceError("the moving rod stopped: " + misfit.stopped());
+  }
+  add_numbers(scene, misfit, nearest, correlated_share(recorded, nearest.residuals), result);
   result.damping = misfit.damping(nearest.logs);
-  std::map<double, std::pair<double, double>> by_marker;
-  for (const RecordedFrame& frame : frames) {
-    double sum = 0;
-    for (std::size_t i = frame.begin; i < frame.end; ++i) {
-      const double square =
-          nearest.residuals.segment<3>(static_cast<Eigen::Index>(3 * i)).squaredNorm();
-      auto& [of_marker, count] = by_marker[recorded.positions[i].arc_length];
-      of_marker += square;
-      count += 1;
-      sum += square;
-    }
-    const double rms = std::sqrt(sum / static_cast<double>(frame.end - frame.begin));
-    if (rms > result.worst.rms) result.worst = {frame.time, rms};
-  }
-  for (const auto& [s, sums] : by_marker) {
-    result.by_marker.push_back({s, std::sqrt(sums.first / sums.second)});
-  }
-  result.markers = by_marker.size();
+  add_errors(recorded, nearest.residuals, scene.length, result);
   result.in_motion = misfit.in_motion();
   result.terms = misfit.terms();
   result.simulations = misfit.simulations();

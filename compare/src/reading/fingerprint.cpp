@@ -1,4 +1,4 @@
-#include "base/fingerprint.hpp"
+#include "reading/fingerprint.hpp"
 
 #include <fmt/format.h>
 
