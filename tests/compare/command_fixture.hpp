@@ -1,10 +1,12 @@
 #pragma once
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
@@ -14,6 +16,7 @@
 #include <vector>
 
 #include "../says.hpp"
+#include "csv_table.hpp"
 #include "folder_fixture.hpp"
 #include "run_command.hpp"
 #include "shell_words.hpp"
@@ -50,11 +53,58 @@ class Command : public Folder {
     return result;
   }
 
+  /// What a command writes to standard output; it has to end well.
+  [[nodiscard]] std::string said(const std::string& arguments) const {
+    const Outcome result = run(arguments);
+    EXPECT_EQ(result.status, 0) << arguments << "\n" << result.err;
+    return result.out;
+  }
+
+  /// Runs a command for the files that it writes; it has to end well.
+  void succeeds(const std::string& arguments) const { (void)said(arguments); }
+
   /// The document of a command.
   [[nodiscard]] nlohmann::json json_of(const std::string& arguments, int status = 0) const {
     const Outcome result = run(arguments + " --format json");
     EXPECT_EQ(result.status, status) << arguments << "\n" << result.err;
     return nlohmann::json::parse(result.out);
+  }
+
+  /// Rows x, y, z, s [m] of the shape that `dlo solve` finds with these arguments.
+  [[nodiscard]] std::vector<std::vector<double>> solved_points(const std::string& arguments) const {
+    return csv_numbers(csv_rows(said("solve " + arguments + " --format csv")), 1);
+  }
+
+  /// Writes rows of numbers below a header, of each as many as the header has names.
+  /// @return the file's path
+  [[nodiscard]] std::string write_table(const std::string& name, const std::string& header,
+                                        const std::vector<std::vector<double>>& rows) const {
+    std::string text = header + "\n";
+    const auto columns = std::count(header.begin(), header.end(), ',') + 1;
+    for (const std::vector<double>& row : rows) {
+      text += fmt::format("{}\n", fmt::join(row.begin(), row.begin() + columns, ","));
+    }
+    return write(name, text);
+  }
+
+  /// Writes the shape that `dlo solve` finds with these arguments. @return the file's path
+  [[nodiscard]] std::string solved_file(const std::string& arguments,
+                                        const std::string& name = "solved.csv") const {
+    succeeds("solve " + arguments + " --format csv -o " + path(name));
+    return path(name);
+  }
+
+  /// The largest difference of a coordinate of two documents' points [m].
+  static double points_apart(const nlohmann::json& a, const nlohmann::json& b) {
+    EXPECT_EQ(a.at("points_m").size(), b.at("points_m").size());
+    double apart = 0;
+    for (std::size_t i = 0; i < a.at("points_m").size(); ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        apart = std::max(apart, std::abs(a.at("points_m")[i][k].get<double>() -
+                                         b.at("points_m")[i][k].get<double>()));
+      }
+    }
+    return apart;
   }
 
   /// A process of the command: for what is about processes.

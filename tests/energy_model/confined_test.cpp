@@ -9,11 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "../says.hpp"
 #include "dlo/energy_model/dynamics.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "dlo/energy_model/vibrations.hpp"
 #include "problems.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -38,18 +40,15 @@ double out_of_plane(const Equilibrium& rod) {
 TEST(ConfinedRod, IsAnEquilibriumThatIsUnstableWhereNothingConfinesIt) {
   for (const double gamma : {0.0, 30.0, 200.0}) {
     const Problem problem = bent_the_wrong_way(gamma, 0.6);
-    const Equilibrium flat = solve_energy(confined(problem));
-    ASSERT_EQ(flat.status, SolveStatus::converged) << flat.message;
+    const Equilibrium flat = test::converged(solve_energy(confined(problem)));
     EXPECT_LT(out_of_plane(flat), 1e-14);
-    const Equilibrium free = solve_energy(problem);
-    ASSERT_EQ(free.status, SolveStatus::converged) << free.message;
+    const Equilibrium free = test::converged(solve_energy(problem));
     EXPECT_GT(out_of_plane(free), 0.01);
     EXPECT_LT(free.energy.total(), flat.energy.total());
     const Equilibrium confirmed = solve_exact(problem, {.start = &flat});
     EXPECT_EQ(confirmed.status, SolveStatus::saddle) << confirmed.message;
     EXPECT_NEAR(confirmed.energy.total(), flat.energy.total(), 1e-8);
-    const std::vector<double> s = equal_arc_lengths(1, 41);
-    EXPECT_LT((confirmed.sample(s).points - flat.sample(s).points).cwiseAbs().maxCoeff(), 1e-8);
+    EXPECT_LT(test::gap_between(confirmed, flat), 1e-8);
   }
 }
 
@@ -57,8 +56,7 @@ TEST(ConfinedRod, IsAnEquilibriumThatIsUnstableWhereNothingConfinesIt) {
 TEST(ConfinedRod, IsTheFreeOneWhereThatStaysInItsPlane) {
   for (const Problem& problem : {test::heavy_cantilever(12, 30), test::two_clamps(40, 0.7)}) {
     const Equilibrium free = solve_energy(problem);
-    const Equilibrium flat = solve_energy(confined(problem));
-    ASSERT_EQ(flat.status, SolveStatus::converged) << flat.message;
+    const Equilibrium flat = test::converged(solve_energy(confined(problem)));
     EXPECT_NEAR(flat.energy.total(), free.energy.total(), 1e-12 * std::abs(free.energy.total()));
   }
 }
@@ -67,20 +65,16 @@ TEST(ConfinedRod, IsTheFreeOneWhereThatStaysInItsPlane) {
 TEST(ConfinedRod, DoesNotFollowAShapeOutOfThePlane) {
   const Problem problem = bent_the_wrong_way(30, 0.6);
   const Equilibrium free = solve_energy(problem);
-  const Equilibrium flat = solve_energy(confined(problem), {.start = &free});
-  ASSERT_EQ(flat.status, SolveStatus::converged) << flat.message;
+  const Equilibrium flat = test::converged(solve_energy(confined(problem), {.start = &free}));
   EXPECT_LT(out_of_plane(flat), 1e-14);
   EXPECT_NEAR(flat.energy.total(), solve_energy(confined(problem)).energy.total(), 1e-9);
 }
 
 TEST(ConfinedRod, RefusesWhatHasNoPlane) {
   const auto refused = [](const Problem& problem, auto&& solve) {
-    try {
-      (void)solve(confined(problem));
-    } catch (const std::invalid_argument& error) {
-      return std::string(error.what()).find("confined_to_plane") != std::string::npos;
-    }
-    return false;
+    return test::says(
+        test::error_of<std::invalid_argument>([&] { return solve(confined(problem)); }),
+        {"confined_to_plane"});
   };
   const auto energy = [](const Problem& problem) { return solve_energy(problem); };
   Problem twisted = bent_the_wrong_way(0, 0.6);

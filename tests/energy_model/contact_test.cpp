@@ -15,6 +15,8 @@
 #include "equilibrium_balance.hpp"
 #include "problems.hpp"
 #include "random_contact.hpp"
+#include "runge_kutta.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -86,14 +88,7 @@ class LyingRod {
     State z = State::Zero();
     constexpr int steps = 1500;
     const double h = unknown[0] / steps;
-    for (int i = 0; i < steps; ++i) {
-      const double t = i * h;
-      const State k1 = rate(t, z);
-      const State k2 = rate(t + h / 2, z + h / 2 * k1);
-      const State k3 = rate(t + h / 2, z + h / 2 * k2);
-      const State k4 = rate(t + h, z + h * k3);
-      z += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
-    }
+    for (int i = 0; i < steps; ++i) z = test::runge_kutta(rate, i * h, z, h);
     width_ = -z[2];
     return {hinged_ ? z[1] * unknown[0] : z[0], z[3] - height};
   }
@@ -111,8 +106,7 @@ TEST(Contact, LyingRodIsThatOfTheElastica) {
       if (!(exact.residual < 1e-10) || exact.b > 1) continue;  // its tip touches
       SCOPED_TRACE("Gamma " + std::to_string(gamma) + ", height " + std::to_string(height));
       ++looked;
-      const Equilibrium result = solve_energy(over_floor(gamma, height));
-      ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+      const Equilibrium result = test::converged(solve_energy(over_floor(gamma, height)));
       ASSERT_EQ(result.contacts.size(), 1);
       const ContactPart& contact = result.contacts[0];
       EXPECT_EQ(contact.kind, ContactKind::lying);
@@ -123,7 +117,7 @@ TEST(Contact, LyingRodIsThatOfTheElastica) {
       EXPECT_NEAR(contact.largest_pressure, gamma, 1e-4 * gamma);  // a difference
       EXPECT_NEAR(result.obstacles[0].y(), exact.R + gamma * (1 - exact.b), 1e-7 * gamma);
       EXPECT_NEAR(result.grips[0].force.y(), gamma * exact.b - exact.R, 1e-7 * gamma);
-      const Samples tip = result.sample(std::array{1.0});
+      const Samples tip = test::sample_at(result, 1);
       EXPECT_NEAR(tip.points(0, 0), exact.tip, 1e-8);
       EXPECT_NEAR(tip.points(1, 0), -height, 1e-12);
     }
@@ -135,8 +129,7 @@ TEST(Contact, LyingRodIsThatOfTheElastica) {
 TEST(Contact, TouchingTipIsThatOfTheElastica) {
   const double gamma = 20;
   const double height = 0.3;
-  const Equilibrium result = solve_energy(over_floor(gamma, height));
-  ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+  const Equilibrium result = test::converged(solve_energy(over_floor(gamma, height)));
   ASSERT_EQ(result.contacts.size(), 1);
   EXPECT_EQ(result.contacts[0].kind, ContactKind::tip);
   const double R = result.contacts[0].force.y();
@@ -152,17 +145,10 @@ TEST(Contact, TouchingTipIsThatOfTheElastica) {
     return State(z[1], (gamma * (1 - s) - R) * std::cos(z[0]), std::cos(z[0]), std::sin(z[0]));
   };
   State z(theta, kappa, point.x(), point.y());
-  for (int i = 0; i < steps; ++i) {
-    const double s = i * h;
-    const State k1 = rate(s, z);
-    const State k2 = rate(s + h / 2, z + h / 2 * k1);
-    const State k3 = rate(s + h / 2, z + h / 2 * k2);
-    const State k4 = rate(s + h, z + h * k3);
-    z += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
-  }
+  for (int i = 0; i < steps; ++i) z = test::runge_kutta(rate, i * h, z, h);
   EXPECT_NEAR(z[1], 0, 1e-8);
   EXPECT_NEAR(z[3], -height, 1e-9);
-  const Samples tip = result.sample(std::array{1.0});
+  const Samples tip = test::sample_at(result, 1);
   EXPECT_NEAR(tip.points(0, 0), z[2], 1e-9);
 }
 
@@ -172,8 +158,7 @@ TEST(Contact, SmallSlopesLiftOffWhereBeamTheorySays) {
   const double gamma = 100;
   double before = 0;
   for (const double height : {1e-3, 1e-4, 1e-5}) {
-    const Equilibrium clamped = solve_energy(over_floor(gamma, height));
-    ASSERT_EQ(clamped.status, SolveStatus::converged) << clamped.message;
+    const Equilibrium clamped = test::converged(solve_energy(over_floor(gamma, height)));
     const double b = std::pow(72 * height / gamma, 0.25);
     ASSERT_EQ(clamped.contacts.size(), 1);
     const double away = std::abs(clamped.contacts[0].begin / b - 1);
@@ -196,8 +181,7 @@ TEST(Contact, HingedRodLiesUpToItsClamp) {
     Problem problem = over_floor(gamma, height);
     problem.grips[0].direction.reset();
     problem.grips.push_back({1, {exact.tip, -height, 0}, Eigen::Vector3d(1, 0, 0)});
-    const Equilibrium result = solve_energy(problem);
-    ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+    const Equilibrium result = test::converged(solve_energy(problem));
     ASSERT_EQ(result.contacts.size(), 1);
     EXPECT_NEAR(result.contacts[0].begin, exact.b, 1e-7);
     EXPECT_NEAR(result.contacts[0].begin_force, exact.R, 1e-5 * gamma);
@@ -250,8 +234,7 @@ void expect_rests(const Problem& problem, const Equilibrium& shape, double panel
     EXPECT_GE(contact.begin_force, -1e-6 * forces);
     EXPECT_GE(contact.end_force, -1e-6 * forces);
     for (const double at : {contact.begin, (contact.begin + contact.end) / 2, contact.end}) {
-      EXPECT_NEAR(n.dot(shape.sample(std::array{at}).points.col(0) - obstacle.body.centre()), 0,
-                  1e-8 * l);
+      EXPECT_NEAR(n.dot(test::point_at(shape, at) - obstacle.body.centre()), 0, 1e-8 * l);
     }
   }
   const BalanceDefects defects =
@@ -294,8 +277,7 @@ TEST(Contact, AClampOnTheFloorCarriesNothingOfWhatLies) {
     SCOPED_TRACE(at);
     Problem problem = over_floor(50, 0);
     problem.grips[0].at = at;
-    const Equilibrium rod = solve_energy(problem);
-    ASSERT_EQ(rod.status, SolveStatus::converged) << rod.message;
+    const Equilibrium rod = test::converged(solve_energy(problem));
     ASSERT_EQ(rod.contacts.size(), 1);
     EXPECT_EQ(rod.contacts[0].begin, 0);
     EXPECT_EQ(rod.contacts[0].end, 1);
@@ -310,18 +292,15 @@ TEST(Contact, StifferAndStifferObstaclesLeadToTheRigidOne) {
   Problem problem = heavy_cantilever(40, 0);
   problem.grips.push_back({1, {0.6, 0.02, 0.3}, Eigen::Vector3d(0.2, 0.3, 1)});
   problem.obstacles = {{obstacle::Body::half_space({0, -0.05, 0}, {0.1, 1, 0.05})}};
-  const Equilibrium rigid = solve_energy(problem);
-  ASSERT_EQ(rigid.status, SolveStatus::converged) << rigid.message;
+  const Equilibrium rigid = test::converged(solve_energy(problem));
   ASSERT_FALSE(rigid.contacts.empty());
   const std::vector<double> s = equal_arc_lengths(1, 101);
   double before = 1;
   for (const double stiffness : {1e4, 1e5, 1e6}) {
     problem.obstacles[0].stiffness = stiffness;
-    const Equilibrium soft = solve_energy(problem);
-    ASSERT_EQ(soft.status, SolveStatus::converged) << soft.message;
+    const Equilibrium soft = test::converged(solve_energy(problem));
     EXPECT_EQ(soft.penetration, 0);  // only a rigid obstacle is penetrated, a soft one yields
-    const double away =
-        (soft.sample(s).points - rigid.sample(s).points).colwise().norm().maxCoeff();
+    const double away = test::gap_between(soft, rigid, s);
     EXPECT_LT(away, before / 2) << stiffness;
     before = away;
   }
@@ -377,8 +356,7 @@ TEST(Contact, OutOfReachChangesNothing) {
   Problem problem = heavy_cantilever(20, 0);
   problem.obstacles = {{obstacle::Body::half_space({0, -2, 0}, {0, 1, 0})}};
   const std::vector<double> s = equal_arc_lengths(1, 101);
-  const Equilibrium free = solve_energy(problem);
-  ASSERT_EQ(free.status, SolveStatus::converged) << free.message;
+  const Equilibrium free = test::converged(solve_energy(problem));
   EXPECT_EQ(free.penetration, 0);
   EXPECT_TRUE(free.contacts.empty());
   const Equilibrium without = solve_energy(heavy_cantilever(20, 0));
@@ -391,7 +369,7 @@ TEST(Contact, OutOfReachChangesNothing) {
 // over l^3, in EI/l^2, at the tip.
 TEST(Contact, APointIsLetGoByAnObstacleThatMovesAway) {
   const Problem free = heavy_cantilever(0.3, 0);
-  const double reach = -solve_energy(free).sample(std::vector<double>{1}).points(1, 0);
+  const double reach = -test::point_at(solve_energy(free), 1).y();
   const std::vector<double> at = equal_arc_lengths(free.length, 10001);
   const Eigen::Matrix3Xd alone = solve_energy(free).sample(at).points;
   // Where the peg's top has to be for its surface to be next to the rod.
@@ -410,15 +388,13 @@ TEST(Contact, APointIsLetGoByAnObstacleThatMovesAway) {
                : obstacle::Body::half_space(top, {0, 1, 0})}};
       return problem;
     };
-    const Equilibrium touching = solve_energy(over(reach - 0.008));
-    ASSERT_EQ(touching.status, SolveStatus::converged);
+    const Equilibrium touching = test::converged(solve_energy(over(reach - 0.008)));
     ASSERT_EQ(touching.contacts.size(), 1U);
     for (const double way : {1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 0.02, 0.1}) {
       SCOPED_TRACE((peg ? "peg " : "floor ") + std::to_string(way));
       const double depth = peg ? 2 * clear_peg : reach;
       for (const Equilibrium* start : {static_cast<const Equilibrium*>(nullptr), &touching}) {
-        const Equilibrium left = solve_energy(over(depth + way), {.start = start});
-        ASSERT_EQ(left.status, SolveStatus::converged) << left.message;
+        const Equilibrium left = test::converged(solve_energy(over(depth + way), {.start = start}));
         EXPECT_TRUE(left.contacts.empty());
         EXPECT_LT((left.sample(at).points - alone).colwise().norm().maxCoeff(), 1e-8);
       }

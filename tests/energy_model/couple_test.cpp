@@ -15,6 +15,7 @@
 #include "equilibrium_balance.hpp"
 #include "problems.hpp"
 #include "random_problems.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -33,17 +34,12 @@ Problem with_couple(Problem problem, double at, double torque) {
   return problem;
 }
 
-double couple_apart(const Equilibrium& a, const Equilibrium& b) {
-  const std::vector<double> s = equal_arc_lengths(1, 41);
-  return (a.sample(s).points - b.sample(s).points).cwiseAbs().maxCoeff();
-}
-
 TEST(Couple, AtTheTipRollsTheRodIntoAnArc) {
   for (const double lambda : {0.8, 2.0, -1.3, 3.5}) {
     const double torque = lambda * pi;  // and the arc's angle
     for (const Solve solve : both) {
-      const Equilibrium result = solve(with_couple(heavy_cantilever(0, 0), 1, torque));
-      ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+      const Equilibrium result =
+          test::converged(solve(with_couple(heavy_cantilever(0, 0), 1, torque)));
       EXPECT_NE(result.message.find("in the plane alone"), std::string::npos) << result.message;
       const std::vector<double> s = {0.25, 1};
       const Samples shape = result.sample(s);
@@ -63,8 +59,8 @@ TEST(Couple, InTheMiddleBendsWhatIsBeforeIt) {
   constexpr double at = 0.4;
   constexpr double torque = 5;
   for (const Solve solve : both) {
-    const Equilibrium result = solve(with_couple(heavy_cantilever(0, 90), at, torque));
-    ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+    const Equilibrium result =
+        test::converged(solve(with_couple(heavy_cantilever(0, 90), at, torque)));
     const std::vector<double> s = {0.2, 0.7};
     const Samples shape = result.sample(s);
     EXPECT_NEAR(shape.curvature.col(0).norm(), torque, 1e-9);
@@ -87,8 +83,7 @@ TEST(Couple, SeenFromTheOtherEndIsTheSame) {
   const std::vector<double> back = {1, 0.7, 0};
   const Equilibrium one = solve_energy(problem);
   for (const Solve solve : both) {
-    const Equilibrium other = solve(reversed);
-    ASSERT_EQ(other.status, SolveStatus::converged) << other.message;
+    const Equilibrium other = test::converged(solve(reversed));
     EXPECT_LT((one.sample(s).points - other.sample(back).points).norm(), 1e-9);
     EXPECT_NEAR(other.energy.load, one.energy.load, 1e-9);
     EXPECT_LT((other.grips[0].torque - one.grips[0].torque).norm(), 1e-8);
@@ -98,7 +93,7 @@ TEST(Couple, SeenFromTheOtherEndIsTheSame) {
 TEST(Couple, OnAClampIsTheGrippersAlone) {
   for (const Solve solve : both) {
     const Equilibrium result = solve(with_couple(heavy_cantilever(2, 0), 0, 3));
-    EXPECT_EQ(couple_apart(result, solve(heavy_cantilever(2, 0))), 0);
+    EXPECT_EQ(test::gap_between(result, solve(heavy_cantilever(2, 0))), 0);
     const double without = solve(heavy_cantilever(2, 0)).grips[0].torque.z();
     EXPECT_NEAR(result.grips[0].torque.z(), without - 3, 1e-12);
   }
@@ -122,7 +117,7 @@ TEST(Couple, EnergyFindsWhatShootingFindsOnRandomCantilevers) {
     const std::vector<Equilibrium> all = all_exact(problem);
     ASSERT_FALSE(all.empty());
     const bool among = std::any_of(all.begin(), all.end(), [&](const Equilibrium& exact) {
-      return succeeded(exact.status) && couple_apart(energy, exact) < 1e-8 &&
+      return succeeded(exact.status) && test::gap_between(energy, exact) < 1e-8 &&
              std::abs(energy.energy.total() - exact.energy.total()) < 1e-8;
     });
     EXPECT_TRUE(among) << energy.message;
@@ -142,14 +137,10 @@ TEST(Couple, BetweenClampsShootingConfirmsTheEnergysShape) {
   curved.torsional_stiffness = 0.8;
   for (const Problem& held : {clamps, pins, overhang, curved}) {
     const Problem problem = with_couple(held, 0.35, 3);
-    const Equilibrium energy = solve_energy(problem);
-    ASSERT_TRUE(succeeded(energy.status)) << energy.message;
+    const Equilibrium energy = test::usable(solve_energy(problem));
     EXPECT_LT(test::balance_of(problem, energy, 0.02).worst(), 1e-7);
-    ExactOptions options;
-    options.start = &energy;
-    const Equilibrium exact = solve_exact(problem, options);
-    ASSERT_TRUE(succeeded(exact.status)) << exact.message;
-    EXPECT_LT(couple_apart(energy, exact), 1e-8);
+    const Equilibrium exact = test::usable(solve_exact(problem, {.start = &energy}));
+    EXPECT_LT(test::gap_between(energy, exact), 1e-8);
     for (std::size_t i = 0; i < 2; ++i) {
       EXPECT_LT((energy.grips[i].torque - exact.grips[i].torque).norm(), 1e-6);
     }
@@ -175,9 +166,8 @@ TEST(Couple, OutOfThePlaneIsForShootingAloneAndNotCalledStable) {
   const Equilibrium exact = solve_exact(problem);
   EXPECT_EQ(exact.status, SolveStatus::not_verified);
   EXPECT_NE(exact.message.find("not judged"), std::string::npos) << exact.message;
-  const std::vector<double> tip = {1};
-  EXPECT_NEAR(exact.sample(tip).points(2, 0), -torque / 2, 1e-8);
-  EXPECT_NEAR(exact.sample(tip).points(1, 0), -1e-3 / 3, 1e-8);
+  EXPECT_NEAR(test::point_at(exact, 1).z(), -torque / 2, 1e-8);
+  EXPECT_NEAR(test::point_at(exact, 1).y(), -1e-3 / 3, 1e-8);
 }
 
 TEST(Couple, IsRefusedWhereItIsNotKnown) {

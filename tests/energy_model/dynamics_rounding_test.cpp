@@ -10,6 +10,8 @@
 #include "dlo/energy_model/dynamics.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
+#include "runge_kutta.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -40,9 +42,7 @@ Dynamics struck_at(const std::vector<double>& breaks, double frame) {
 TEST(DynamicsRounding, FramesAndBreaksThatDifferByRoundingAreOneInstant) {
   constexpr double sum = 0.1 + 0.2;
   static_assert(sum > 0.3);
-  const std::vector<double> tip = {1.0};
-  const Dynamics plain = struck_at({0.3}, 0.3);
-  ASSERT_EQ(plain.status, SolveStatus::converged) << plain.message;
+  const Dynamics plain = test::converged(struck_at({0.3}, 0.3));
   const std::vector<std::pair<std::vector<double>, double>> alike = {
       {{0.3}, sum}, {{sum}, 0.3}, {{0.3, 0.3}, 0.3}, {{0.3, sum}, 0.3}, {{sum, 0.3}, sum}};
   for (std::size_t i = 0; i < alike.size(); ++i) {
@@ -51,7 +51,7 @@ TEST(DynamicsRounding, FramesAndBreaksThatDifferByRoundingAreOneInstant) {
     EXPECT_LT(rounded.energy_error, 1e-6) << i;
     for (std::size_t k = 0; k < 2; ++k) {
       const Eigen::Matrix3Xd apart =
-          rounded.frames[k].sample(tip).points - plain.frames[k].sample(tip).points;
+          test::point_at(rounded.frames[k], 1) - test::point_at(plain.frames[k], 1);
       EXPECT_LT(apart.norm(), 1e-9) << i << " " << k;
     }
   }
@@ -62,18 +62,12 @@ TEST(DynamicsRounding, FramesAndBreaksThatDifferByRoundingAreOneInstant) {
 double pendulum_angle(double g, double a, double time) {
   constexpr int steps = 2000;
   const double h = time / steps;
-  const auto bent = [&](double theta) { return -g * std::sin(theta) - a * std::cos(theta); };
-  double theta = 0;
-  double rate = 0;
-  for (int i = 0; i < steps; ++i) {
-    const double k1 = bent(theta);
-    const double k2 = bent(theta + h / 2 * rate);
-    const double k3 = bent(theta + h / 2 * rate + h * h / 4 * k1);
-    const double k4 = bent(theta + h * rate + h * h / 2 * k2);
-    theta += h * rate + h * h / 6 * (k1 + k2 + k3);
-    rate += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
-  }
-  return theta;
+  const auto rates = [&](double, const Eigen::Vector2d& state) {
+    return Eigen::Vector2d(state[1], -g * std::sin(state[0]) - a * std::cos(state[0]));
+  };
+  Eigen::Vector2d state(0, 0);
+  for (int i = 0; i < steps; ++i) state = test::runge_kutta(rates, i * h, state, h);
+  return state[0];
 }
 
 constexpr double gravity = 9.81;

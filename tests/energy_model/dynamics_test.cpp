@@ -15,6 +15,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
 #include "rigid_polygon.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -53,8 +54,7 @@ Vector3d tip(const MovingFrame& frame) {
 
 Dynamics run(const MovingRod& rod, const StartingShape& start, const std::vector<double>& times,
              const DynamicsOptions& options = {}) {
-  Dynamics result = simulate(rod, start, times, options);
-  EXPECT_EQ(result.status, SolveStatus::converged) << result.message;
+  Dynamics result = test::converged(simulate(rod, start, times, options));
   EXPECT_EQ(result.frames.size(), times.size());
   return result;
 }
@@ -105,8 +105,7 @@ TEST(Dynamics, ReleasedCantileverMovesAsAPolygonAndAsWithMoreTermsAndSmallerStep
 TEST(Dynamics, SmallMotionsAreVibrationsThatDecay) {
   MovingRod rod = moving_cantilever(3);
   const Equilibrium shape = solve_energy(rod.problem);
-  const Vibrations modes = vibrations(rod.problem, rod.inertia, shape);
-  ASSERT_EQ(modes.status, SolveStatus::converged) << modes.message;
+  const Vibrations modes = test::converged(vibrations(rod.problem, rod.inertia, shape));
   for (const std::size_t k : {0U, 1U, 2U}) {
     const VibrationMode& mode = modes.modes[k];
     const double size = 1e-4;
@@ -125,7 +124,7 @@ TEST(Dynamics, SmallMotionsAreVibrationsThatDecay) {
       }
       return samples;
     };
-    const Vector3d rest = shape.sample(std::vector<double>{1.0}).points.col(0);
+    const Vector3d rest = test::point_at(shape, 1);
     const double period = 2 * pi / mode.omega();
     rod.material_damping = 0;
     rod.air_drag = 0;
@@ -150,7 +149,7 @@ TEST(Dynamics, MaterialDampingIsKelvinsAndVoigts) {
   const double period = first_period / std::sqrt(1 - zeta * zeta);
   // What else there is of modes has gone by then.
   const Dynamics result = run(rod, straight_rod(Vector3d::UnitX()), {2 * period, 4 * period});
-  const double rest = solve_energy(rod.problem).sample(std::vector<double>{1.0}).points(1, 0);
+  const double rest = test::point_at(solve_energy(rod.problem), 1).y();
   const double ratio = (tip(result.frames[1]).y() - rest) / (tip(result.frames[0]).y() - rest);
   EXPECT_NEAR(std::log(ratio) / (-2 * omega * zeta * period), 1, 1e-3);
   EXPECT_LT(result.energy_error, 1e-5);
@@ -231,8 +230,7 @@ TEST(Dynamics, DampedGripsComeToHoldWhatTheyHoldInEquilibrium) {
     MovingRod rod = closed_rod(20);
     rod.material_damping = 0.02;
     if (pinned) rod.problem.grips[1].direction.reset();
-    const Equilibrium rest = solve_energy(rod.problem);
-    ASSERT_TRUE(succeeded(rest.status)) << rest.message;
+    const Equilibrium rest = test::usable(solve_energy(rod.problem));
     const Dynamics result = run(rod, rest.sample, {10}, {.terms = 16, .tolerance = 1e-6});
     for (std::size_t i = 0; i < 2; ++i) {
       const Reaction& has = result.frames[0].grips[i];
@@ -404,7 +402,7 @@ TEST(Dynamics, SlowMotionComesToRestingShapes) {
     const Dynamics result = run(rod, begin.sample, {takes / 2}, {.tolerance = 1e-6});
     Problem turned = rod.problem;
     turned.grips[0].direction = rod.motions[0](takes / 2).turn * Vector3d::UnitX();
-    const Vector3d rest = solve_energy(turned).sample(std::vector<double>{1.0}).points.col(0);
+    const Vector3d rest = test::point_at(solve_energy(turned), 1);
     apart[k] = (tip(result.frames[0]) - rest).norm();
   }
   EXPECT_GT(apart[0], 1e-3);
@@ -502,8 +500,7 @@ TEST(Dynamics, IsTheSameInAllUnits) {
     for (std::size_t k = 0; k < 2; ++k) {
       const MovingFrame& a = unit.frames[k];
       const MovingFrame& b = other.frames[k];
-      EXPECT_LT((tip(a) - b.sample(std::vector<double>{length}).points.col(0) / length).norm(),
-                1e-6);
+      EXPECT_LT((tip(a) - test::point_at(b, length) / length).norm(), 1e-6);
       EXPECT_NEAR(b.energy.kinetic / energy, a.energy.kinetic, 1e-6);
       EXPECT_NEAR(b.energy.bending / energy, a.energy.bending, 1e-6);
       EXPECT_NEAR(b.energy.gravity / energy, a.energy.gravity, 1e-6);

@@ -6,17 +6,16 @@
 #include <random>
 
 #include "dlo/energy_model/exact.hpp"
+#include "equilibrium_balance.hpp"
+#include "placement.hpp"
 #include "problems.hpp"
+#include "runge_kutta.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
 using test::heavy_cantilever;
-
-double largest_distance(const Equilibrium& a, const Equilibrium& b, double length) {
-  const std::vector<double> s = equal_arc_lengths(length, 41);
-  return (a.sample(s).points - b.sample(s).points).colwise().norm().maxCoeff();
-}
 
 class EnergyAgainstExact : public testing::TestWithParam<double> {};
 
@@ -29,7 +28,7 @@ TEST_P(EnergyAgainstExact, AgreesAtEveryClampAngle) {
     const Equilibrium exact = solve_exact(problem);
     ASSERT_EQ(energy.status, SolveStatus::converged) << degrees << ": " << energy.message;
     ASSERT_EQ(exact.status, SolveStatus::converged) << degrees << ": " << exact.message;
-    EXPECT_LT(largest_distance(energy, exact, 1), tolerance) << degrees << " deg";
+    EXPECT_LT(test::gap_between(energy, exact), tolerance) << degrees << " deg";
     EXPECT_NEAR(energy.energy.total(), exact.energy.total(), 1e-10 * (1 + gamma)) << degrees;
     EXPECT_NEAR(energy.energy.bending, exact.energy.bending, 1e-9 * (1 + gamma)) << degrees;
     EXPECT_LT((energy.grips[0].torque - exact.grips[0].torque).norm(), 1e-9 * (1 + gamma));
@@ -49,7 +48,7 @@ TEST(Energy, AgreesWithExactUnderInnerAndTipLoads) {
     const Equilibrium energy = solve_energy(problem);
     const Equilibrium exact = solve_exact(problem);
     ASSERT_EQ(energy.status, SolveStatus::converged);
-    EXPECT_LT(largest_distance(energy, exact, 1), 1e-9) << "case " << i;
+    EXPECT_LT(test::gap_between(energy, exact), 1e-9) << "case " << i;
     EXPECT_NEAR(energy.energy.load, exact.energy.load, 1e-9);
   }
 }
@@ -58,7 +57,7 @@ TEST(Energy, EvaluationsOfAHorizontalClampStayFew) {
   const auto evaluations = [](double gamma) {
     const Equilibrium energy = solve_energy(heavy_cantilever(gamma, 0));
     const Equilibrium exact = solve_exact(heavy_cantilever(gamma, 0));
-    EXPECT_LT(largest_distance(energy, exact, 1), 1e-8);
+    EXPECT_LT(test::gap_between(energy, exact), 1e-8);
     return energy.evaluations;
   };
   for (const double gamma : {0.01, 0.1, 0.1845, 0.5, 1.0})
@@ -71,10 +70,9 @@ TEST(Energy, FallsExponentiallyInTheNumberOfTerms) {
   const Equilibrium exact = solve_exact(problem);
   double previous = 1;
   for (const int terms : {2, 4, 8, 12, 16}) {
-    const Equilibrium energy = solve_energy(problem, {.terms = terms});
-    ASSERT_EQ(energy.status, SolveStatus::converged);
+    const Equilibrium energy = test::converged(solve_energy(problem, {.terms = terms}));
     EXPECT_EQ(energy.terms, terms);
-    const double error = largest_distance(energy, exact, 1);
+    const double error = test::gap_between(energy, exact);
     EXPECT_LT(error, previous / 10) << terms << " terms";
     previous = error;
   }
@@ -103,63 +101,37 @@ TEST(Energy, GripperBalancesWeightAndLoadsOnTheDeformedRod) {
   problem.grips[0].position = {0.3, -0.2, 0.1};
   problem.loads = {{0.6, {1, -2, 0}}, {1.0, {0.5, 1, 0}}};
   const Equilibrium energy = solve_energy(problem);
-  Eigen::Vector3d force = energy.grips[0].force + problem.weight_per_length;
-  Eigen::Vector3d torque = energy.grips[0].torque;
-  for (const Load& load : problem.loads) {
-    force += load.force;
-    const std::vector<double> at = {load.at};
-    const Eigen::Vector3d arm = energy.sample(at).points.col(0) - problem.grips[0].position;
-    torque += arm.cross(load.force);
-  }
-  const std::vector<double> s = equal_arc_lengths(1, 2001);
-  const Eigen::Matrix3Xd points = energy.sample(s).points;
-  for (Eigen::Index i = 0; i < 2001; ++i) {
-    const double simpson = (i == 0 || i == 2000 ? 1.0 : i % 2 == 1 ? 4.0 : 2.0) / 6000;
-    const Eigen::Vector3d arm = points.col(i) - problem.grips[0].position;
-    torque += simpson * arm.cross(problem.weight_per_length);
-  }
-  EXPECT_LT(force.norm(), 1e-14);
-  EXPECT_LT(torque.norm(), 1e-8 * 8);  // curvature at the clamp against Simpson's rule
+  const Eigen::Vector3d carried =
+      problem.weight_per_length + problem.loads[0].force + problem.loads[1].force;
+  EXPECT_LT((energy.grips[0].force + carried).norm(), 1e-14);
+  // Curvature at the clamp against quadrature.
+  EXPECT_LT(test::balance_of(problem, energy, 0.01).torque, 5e-9);
 }
 
 TEST(Energy, ScalesWithTheRodAtEqualGamma) {
-  const Equilibrium unit = solve_energy(heavy_cantilever(3, 10));
-  Problem problem = heavy_cantilever(3, 10);
-  problem.length = 0.2;
-  problem.bending_stiffness = 0.07;
-  problem.weight_per_length *= problem.bending_stiffness / (0.2 * 0.2 * 0.2);
-  const Equilibrium scaled = solve_energy(problem);
-  const std::vector<double> tip = {1.0};
-  const std::vector<double> scaled_tip = {0.2};
-  EXPECT_LT((0.2 * unit.sample(tip).points - scaled.sample(scaled_tip).points).norm(), 1e-13);
-  EXPECT_NEAR(scaled.energy.total(), unit.energy.total() * 0.07 / 0.2, 1e-13);
+  const Problem unit = heavy_cantilever(3, 10);
+  const test::Placement other{.length = 0.2, .stiffness = 0.07};
+  const auto found = other.between(solve_energy(unit), solve_energy(other.of(unit)));
+  EXPECT_LT(found.points, 4e-13);
+  EXPECT_LT(found.energy, 2e-13);
 }
 
 TEST(Energy, TurnsWithTheSceneInSpace) {
   Problem problem = heavy_cantilever(4, 25);
   problem.loads = {{0.5, {0.3, 1, 0}}};
-  const Equilibrium original = solve_energy(problem);
-  const Eigen::Matrix3d R =
-      Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, -0.5).normalized()).toRotationMatrix();
-  Problem turned = problem;
-  turned.weight_per_length = R * problem.weight_per_length;
-  turned.grips[0].direction = R * *problem.grips[0].direction;
-  turned.loads[0].force = R * problem.loads[0].force;
-  const Equilibrium result = solve_energy(turned);
-  const std::vector<double> s = equal_arc_lengths(1, 9);
-  EXPECT_LT((R * original.sample(s).points - result.sample(s).points).norm(), 1e-11);
-  EXPECT_LT((R * original.grips[0].torque - result.grips[0].torque).norm(), 1e-10);
+  const Eigen::AngleAxisd turn(1.1, Eigen::Vector3d(1, 2, -0.5).normalized());
+  const test::Placement other{.turn = turn.toRotationMatrix()};
+  const auto found = other.between(solve_energy(problem), solve_energy(other.of(problem)));
+  EXPECT_LT(found.points, 4e-12);
+  EXPECT_LT(found.torque, 1e-10);
 }
 
 TEST(Energy, UprightRodStaysUprightBelowSelfBucklingAndFallsTowardsXAbove) {
-  const std::vector<double> tip = {1.0};
   const double critical = self_buckling_gamma();
-  const Equilibrium below = solve_energy(heavy_cantilever(0.99 * critical, 90));
-  EXPECT_EQ(below.status, SolveStatus::converged);
-  EXPECT_LT((below.sample(tip).points - Eigen::Vector3d(0, 1, 0)).norm(), 1e-12);
-  const Equilibrium above = solve_energy(heavy_cantilever(1.01 * critical, 90));
-  EXPECT_EQ(above.status, SolveStatus::converged);
-  EXPECT_GT(above.sample(tip).points(0, 0), 0.05);
+  const Equilibrium below = test::converged(solve_energy(heavy_cantilever(0.99 * critical, 90)));
+  EXPECT_LT((test::point_at(below, 1) - Eigen::Vector3d(0, 1, 0)).norm(), 1e-12);
+  const Equilibrium above = test::converged(solve_energy(heavy_cantilever(1.01 * critical, 90)));
+  EXPECT_GT(test::point_at(above, 1).x(), 0.05);
 }
 
 /// Points of an upright heavy rod, by Runge-Kutta steps from its free end.
@@ -172,26 +144,18 @@ ShotFromTheTip shoot_from_tip(double gamma, double tip_angle) {
   constexpr Eigen::Index steps = 1000;
   using Real = long double;
   const Real h = Real(1) / steps;
-  const auto bend = [&](Real s, Real angle) { return -Real(gamma) * (1 - s) * std::sin(angle); };
-  Real angle = tip_angle;
-  Real kappa = 0;
-  std::vector<Real> angles(steps + 1, angle);
+  using State = Eigen::Matrix<Real, 2, 1>;  // angle, curvature
+  const auto rates = [&](Real s, const State& at) {
+    return State(at[1], -Real(gamma) * (1 - s) * std::sin(at[0]));
+  };
+  State state(tip_angle, 0);
+  std::vector<Real> angles(steps + 1, state[0]);
   for (Eigen::Index i = steps; i > 0; --i) {
-    const Real s = h * static_cast<Real>(i);
-    const Real k1 = kappa;
-    const Real l1 = bend(s, angle);
-    const Real k2 = kappa - h / 2 * l1;
-    const Real l2 = bend(s - h / 2, angle - h / 2 * k1);
-    const Real k3 = kappa - h / 2 * l2;
-    const Real l3 = bend(s - h / 2, angle - h / 2 * k2);
-    const Real k4 = kappa - h * l3;
-    const Real l4 = bend(s - h, angle - h * k3);
-    angle -= h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
-    kappa -= h / 6 * (l1 + 2 * l2 + 2 * l3 + l4);
-    angles[static_cast<std::size_t>(i) - 1] = angle;
+    state = test::runge_kutta(rates, h * static_cast<Real>(i), state, -h);
+    angles[static_cast<std::size_t>(i) - 1] = state[0];
   }
   ShotFromTheTip shot;
-  shot.base_angle = static_cast<double>(angle);
+  shot.base_angle = static_cast<double>(state[0]);
   shot.points.setZero(2, steps + 1);
   for (Eigen::Index i = 0; i < steps; ++i) {
     const auto from = static_cast<double>(angles[static_cast<std::size_t>(i)]);

@@ -17,6 +17,7 @@
 #include "dlo/energy_model/exact.hpp"
 #include "problems.hpp"
 #include "random_contact.hpp"
+#include "solved.hpp"
 #include "start_along.hpp"
 
 namespace dlo::energy_model {
@@ -105,8 +106,7 @@ TEST(ExactContact, ContradictsNoRandomRodOverATiltedFloor) {
     const Equilibrium exact = solve_exact(problem);
     saddles += exact.status == SolveStatus::saddle ? 1 : 0;
     if (!succeeded(exact.status)) continue;
-    const Equilibrium energy = solve_energy(problem);
-    ASSERT_TRUE(succeeded(energy.status)) << energy.message;
+    const Equilibrium energy = test::usable(solve_energy(problem));
     const std::vector<double> at = equal_arc_lengths(problem.length, 101);
     const Eigen::Matrix3Xd apart = exact.sample(at).points - energy.sample(at).points;
     EXPECT_LT(apart.colwise().norm().maxCoeff(), 1e-8);
@@ -134,8 +134,7 @@ struct Confirmed {
     const Equilibrium energy = solve_energy(problem, {.time_limit = limit, .start = start});
     if (!succeeded(energy.status) || energy.contacts.empty()) return;
     ++touching;
-    const Equilibrium exact = solve_exact(problem, {.start = &energy});
-    EXPECT_TRUE(succeeded(exact.status)) << exact.message;
+    const Equilibrium exact = test::usable(solve_exact(problem, {.start = &energy}));
     ++confirmed;
     ASSERT_EQ(exact.contacts.size(), energy.contacts.size());
     const std::vector<double> at = equal_arc_lengths(problem.length, 101);
@@ -287,8 +286,7 @@ TEST(ExactContact, ARodOverABallFallsOffWhereItsCentreIsAboveTheClampsAxis) {
     return problem;
   };
   for (const bool ball : {true, false}) {
-    Equilibrium last = solve_energy(with(ball, -0.5));
-    ASSERT_TRUE(succeeded(last.status)) << last.message;
+    Equilibrium last = test::usable(solve_energy(with(ball, -0.5)));
     for (const double height : {-0.5, -0.3, -0.1, 0.1, 0.3, 0.5}) {
       SCOPED_TRACE((ball ? "ball " : "peg ") + std::to_string(height));
       Equilibrium exact = solve_exact(with(ball, height), {.start = &last});
@@ -305,7 +303,7 @@ TEST(ExactContact, NoRodWithinAnObstacleIsConfirmed) {
   // The start is at rest without the floor, and says that nothing touches.
   Problem problem = heavy_cantilever(8, 0);
   const Equilibrium free = solve_energy(problem);
-  const double tip = free.sample(std::vector<double>{1}).points(1, 0);
+  const double tip = test::point_at(free, 1).y();
   problem.obstacles = {{obstacle::Body::half_space({0, tip + 1e-3, 0}, {0, 1, 0})}};
   const Equilibrium found = solve_exact(problem, {.start = &free});
   EXPECT_EQ(found.status, SolveStatus::not_verified) << found.message;
@@ -327,8 +325,7 @@ TEST(ExactContact, NoObstacleIsConfirmedToPull) {
   const double aside = 0.1 * (1 / at.tangents(0, 0) - 1);
   for (const bool peg : {false, true}) {
     const double free = peg ? at.points(1, 0) - aside : at.points(1, 1);
-    const Equilibrium touching = solve_energy(over(peg, free + 0.008));
-    ASSERT_EQ(touching.status, SolveStatus::converged) << touching.message;
+    const Equilibrium touching = test::converged(solve_energy(over(peg, free + 0.008)));
     ASSERT_EQ(touching.contacts.size(), 1U);
     EXPECT_TRUE(succeeded(solve_exact(over(peg, free + 0.004), {.start = &touching}).status));
     for (const double way : {1e-4, 1e-3, 0.01}) {
@@ -344,8 +341,7 @@ TEST(ExactContact, ToleranceIsThatOfTheIntegratorWhereTheRodTouchesToo) {
   const Problem problem = over_level_floor(30, 0.1);
   const std::vector<double> at = equal_arc_lengths(problem.length, 33);
   const Eigen::Matrix3Xd fine = solve_exact(problem).sample(at).points;
-  const Equilibrium coarse = solve_exact(problem, {.tolerance = 1e-3});
-  ASSERT_TRUE(succeeded(coarse.status)) << coarse.message;
+  const Equilibrium coarse = test::usable(solve_exact(problem, {.tolerance = 1e-3}));
   const double off = (coarse.sample(at).points - fine).colwise().norm().maxCoeff();
   EXPECT_GT(off, 1e-12);  // it is not taken as 1e-13
   EXPECT_LT(off, 1e-3);

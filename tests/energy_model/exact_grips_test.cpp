@@ -9,18 +9,13 @@
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "problems.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
 using test::heavy_cantilever;
-using test::reference_values;
 using test::two_clamps;
-
-double distance(const Equilibrium& a, const Equilibrium& b) {
-  const std::vector<double> s = equal_arc_lengths(1, 41);
-  return (a.sample(s).points - b.sample(s).points).colwise().norm().maxCoeff();
-}
 
 /// Largest difference of a force or torque at a grip.
 double reaction_distance(const Equilibrium& a, const Equilibrium& b) {
@@ -70,39 +65,6 @@ double total_force(const Problem& problem) {
   return force;
 }
 
-TEST(MultipleShooting, MatchesTheReferenceValuesOfTwoClamps) {
-  const auto expected = reference_values().at("two_clamps").at("Gamma=10, lowest state");
-  const Equilibrium result = solve_exact(two_clamps(10, 0.8));
-  ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
-  const std::vector<double> middle = {0.5};
-  EXPECT_NEAR(result.sample(middle).points(1, 0), expected.at("y_mid").get<double>(), 1e-11);
-  EXPECT_NEAR(result.energy.bending, expected.at("bending_energy").get<double>(), 1e-10);
-  EXPECT_NEAR(result.energy.gravity, expected.at("gravity_energy").get<double>(), 1e-10);
-  EXPECT_NEAR(result.grips[1].force.x(), expected.at("lambda_x").get<double>(), 1e-9);
-  EXPECT_NEAR(result.grips[1].force.y(), expected.at("lambda_y").get<double>(), 1e-9);
-  EXPECT_NEAR(std::abs(result.grips[0].torque.z()),
-              std::abs(expected.at("clamp_moment_0").get<double>()), 1e-9);
-  EXPECT_NEAR(std::abs(result.grips[1].torque.z()),
-              std::abs(expected.at("clamp_moment_L").get<double>()), 1e-9);
-}
-
-TEST(MultipleShooting, MatchesTheReferenceValuesInSpace) {
-  const auto expected = reference_values().at("spatial_cantilever").at("tip P=(0,0,1), Gamma=1");
-  Problem problem = heavy_cantilever(1, 0);
-  problem.loads = {{1.0, {0, 0, 1}}};
-  const Equilibrium result = solve_exact(problem);
-  ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
-  const std::vector<double> tip = {1.0};
-  const Samples samples = result.sample(tip);
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    EXPECT_NEAR(samples.points(i, 0), expected.at("tip")[k].get<double>(), 1e-10);
-    EXPECT_NEAR(samples.tangents(i, 0), expected.at("tip_tangent")[k].get<double>(), 1e-10);
-  }
-  EXPECT_NEAR(result.energy.bending, expected.at("bending_energy").get<double>(), 1e-10);
-  EXPECT_NEAR(result.energy.gravity, expected.at("gravity_energy").get<double>(), 1e-10);
-}
-
 TEST(MultipleShooting, FindsWhatTheScanOfOneClampFinds) {
   // A clamp in the middle makes two cantilevers of the rod, which the scan takes one by one.
   const std::vector<double> s = equal_arc_lengths(0.5, 21);
@@ -110,8 +72,7 @@ TEST(MultipleShooting, FindsWhatTheScanOfOneClampFinds) {
     for (const double degrees : {-60.0, 0.0, 45.0, 80.0}) {
       Problem both = heavy_cantilever(gamma, degrees);
       both.grips[0].at = 0.5;
-      const Equilibrium result = solve_exact(both);
-      ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+      const Equilibrium result = test::converged(solve_exact(both));
       Problem half = heavy_cantilever(gamma, degrees);
       half.length = 0.5;
       const Equilibrium right = solve_exact(half);
@@ -138,9 +99,8 @@ TEST(MultipleShooting, FromANearbyShapeAgreesWithTheScanOfOneClamp) {
       const Equilibrium nearby = solve_exact(heavy_cantilever(0.95 * gamma, degrees));
       const Problem problem = heavy_cantilever(gamma, degrees);
       const Equilibrium scanned = solve_exact(problem);
-      const Equilibrium result = solve_exact(problem, {.start = &nearby});
-      ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
-      EXPECT_LT(distance(result, scanned), 1e-10) << gamma << ", " << degrees;
+      const Equilibrium result = test::converged(solve_exact(problem, {.start = &nearby}));
+      EXPECT_LT(test::gap_between(result, scanned), 1e-10) << gamma << ", " << degrees;
       EXPECT_LT(reaction_distance(result, scanned), 1e-10 * (1 + gamma)) << gamma;
       EXPECT_NEAR(result.energy.total(), scanned.energy.total(), 1e-11 * (1 + gamma));
     }
@@ -155,15 +115,16 @@ TEST(MultipleShooting, AgreesWithTheMinimiserInSpace) {
     ASSERT_EQ(minimum.status, SolveStatus::converged) << i << ": " << minimum.message;
     const Equilibrium searched = solve_exact(problem);
     ASSERT_EQ(searched.status, SolveStatus::converged) << i << ": " << searched.message;
-    EXPECT_LT(distance(searched, minimum), 1e-8) << i << ", forces " << total_force(problem);
+    EXPECT_LT(test::gap_between(searched, minimum), 1e-8)
+        << i << ", forces " << total_force(problem);
     EXPECT_LT(reaction_distance(searched, minimum), 1e-6) << i;
     EXPECT_NEAR(searched.energy.total(), minimum.energy.total(), 1e-8 * (1 + total_force(problem)));
     // The minimiser's shape is confirmed: Newton's method hardly moves it.
     const Equilibrium confirmed = solve_exact(problem, {.start = &minimum});
     ASSERT_EQ(confirmed.status, SolveStatus::converged) << i << ": " << confirmed.message;
     EXPECT_LE(confirmed.evaluations, 6) << i;
-    EXPECT_LT(distance(confirmed, minimum), 1e-8) << i;
-    EXPECT_LT(distance(confirmed, searched), 1e-10) << i;
+    EXPECT_LT(test::gap_between(confirmed, minimum), 1e-8) << i;
+    EXPECT_LT(test::gap_between(confirmed, searched), 1e-10) << i;
   }
 }
 
@@ -174,9 +135,8 @@ TEST(MultipleShooting, AgreesWithTheMinimiserBetweenTwoClampsInThePlane) {
       problem.loads = {{0.3, {0, -gamma / 3, 0}}};
       const Equilibrium minimum = solve_energy(problem);
       ASSERT_EQ(minimum.status, SolveStatus::converged) << gamma << ", " << span;
-      const Equilibrium searched = solve_exact(problem);
-      ASSERT_EQ(searched.status, SolveStatus::converged) << searched.message;
-      EXPECT_LT(distance(searched, minimum), 1e-8) << gamma << ", " << span;
+      const Equilibrium searched = test::converged(solve_exact(problem));
+      EXPECT_LT(test::gap_between(searched, minimum), 1e-8) << gamma << ", " << span;
       EXPECT_LT(reaction_distance(searched, minimum), 1e-6) << gamma << ", " << span;
     }
   }
@@ -187,9 +147,8 @@ TEST(MultipleShooting, TakesForcesThatAreNotParallelBeyondTheScansLimit) {
     Problem problem = heavy_cantilever(gamma, 30);
     problem.loads = {{0.5, {gamma / 3, 0, 0}}, {1.0, {gamma / 5, -gamma / 5, 0}}};
     const Equilibrium minimum = solve_energy(problem);
-    const Equilibrium result = solve_exact(problem);
-    ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
-    EXPECT_LT(distance(result, minimum), 1e-9) << gamma;
+    const Equilibrium result = test::converged(solve_exact(problem));
+    EXPECT_LT(test::gap_between(result, minimum), 1e-9) << gamma;
   }
 }
 
@@ -200,8 +159,7 @@ TEST(MultipleShooting, KeepsTheRodsFirstIntegral) {
     Problem problem = random.two_clamps();
     problem.loads.clear();
     if (i % 2 == 0) problem.weight_per_length.setZero();
-    const Equilibrium result = solve_exact(problem);
-    ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+    const Equilibrium result = test::converged(solve_exact(problem));
     const Eigen::Vector3d w = problem.weight_per_length;
     EXPECT_LT((result.grips[0].force + result.grips[1].force + w).norm(), 1e-10 * (1 + w.norm()));
     const std::vector<double> s = equal_arc_lengths(1, 101);
@@ -223,11 +181,11 @@ TEST(MultipleShooting, IsRightToTheIntegratorsTolerance) {
   RandomProblems random(13);
   const Problem problem = random.two_clamps();
   const Equilibrium finest = solve_exact(problem, {.tolerance = 1e-14});
-  EXPECT_LT(distance(solve_exact(problem), finest), 1e-13);
+  EXPECT_LT(test::gap_between(solve_exact(problem), finest), 1e-13);
   for (const double tolerance : {1e-7, 1e-9, 1e-11}) {
     const Equilibrium result = solve_exact(problem, {.tolerance = tolerance});
     ASSERT_EQ(result.status, SolveStatus::converged) << tolerance << ": " << result.message;
-    EXPECT_LT(distance(result, finest), tolerance) << tolerance;
+    EXPECT_LT(test::gap_between(result, finest), tolerance) << tolerance;
   }
 }
 
@@ -239,12 +197,11 @@ TEST(MultipleShooting, FindsTheArchThatLeansOutOfThePlane) {
   const Equilibrium lowest = all_energy(problem).front();
   EXPECT_NEAR(found[0].energy.total(), lowest.energy.total(), 1e-8);
   const Equilibrium confirmed = solve_exact(problem, {.start = &lowest});
-  EXPECT_LT(distance(confirmed, lowest), 1e-8);
+  EXPECT_LT(test::gap_between(confirmed, lowest), 1e-8);
   // Its mirror image, then one that stays in the plane
   EXPECT_NEAR(found[1].energy.total(), found[0].energy.total(), 1e-8);
-  const std::vector<double> middle = {0.5};
-  EXPECT_GT(std::abs(found[0].sample(middle).points(2, 0)), 0.1);
-  EXPECT_NEAR(found[1].sample(middle).points(2, 0), -found[0].sample(middle).points(2, 0), 1e-8);
+  EXPECT_GT(std::abs(test::point_at(found[0], 0.5).z()), 0.1);
+  EXPECT_NEAR(test::point_at(found[1], 0.5).z(), -test::point_at(found[0], 0.5).z(), 1e-8);
   EXPECT_GT(found[2].energy.total(), found[0].energy.total() + 1);
 }
 
@@ -273,8 +230,7 @@ TEST(MultipleShooting, FindsBothArchesBetweenClampsNearlyInLine) {
 TEST(MultipleShooting, LeavesAShapeWithAZeroModeAlone) {
   // Two clamps on one line and no weight: the arch may turn about that line.
   const Problem problem = two_clamps(0, 0.8);
-  const Equilibrium arch = solve_exact(problem);
-  ASSERT_EQ(arch.status, SolveStatus::converged) << arch.message;
+  const Equilibrium arch = test::converged(solve_exact(problem));
   for (const double angle : {0.0, 0.4, 2.0}) {
     Equilibrium turned = arch;
     const Eigen::Matrix3d rotation =
@@ -289,7 +245,7 @@ TEST(MultipleShooting, LeavesAShapeWithAZeroModeAlone) {
     for (Reaction& grip : turned.grips) grip.force = rotation * grip.force;
     const Equilibrium result = solve_exact(problem, {.start = &turned});
     ASSERT_EQ(result.status, SolveStatus::converged) << angle << ": " << result.message;
-    EXPECT_LT(distance(result, turned), 1e-8) << angle;
+    EXPECT_LT(test::gap_between(result, turned), 1e-8) << angle;
   }
 }
 
@@ -320,7 +276,7 @@ TEST(MultipleShooting, ConfirmsTheMinimiserNearThePolesOfItsAngles) {
     ASSERT_EQ(energy.status, SolveStatus::converged) << "problem " << i << ": " << energy.message;
     const Equilibrium confirmed = solve_exact(problems[i], {.start = &energy});
     ASSERT_EQ(confirmed.status, SolveStatus::converged) << "problem " << i;
-    EXPECT_LT(distance(energy, confirmed), 1e-8) << "problem " << i;
+    EXPECT_LT(test::gap_between(energy, confirmed), 1e-8) << "problem " << i;
     EXPECT_LT(energy.energy.total(), solve_exact(problems[i]).energy.total() + 1e-7)
         << "problem " << i;
   }

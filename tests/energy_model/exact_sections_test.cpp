@@ -9,8 +9,10 @@
 
 #include "dlo/energy_model/exact.hpp"
 #include "equilibrium_balance.hpp"
+#include "placement.hpp"
 #include "problems.hpp"
 #include "random_problems.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -70,11 +72,9 @@ TEST(ExactSections, TendToBeamTheoryWithTheSquareOfTheLoad) {
   for (const double force : {0.02, 0.01, 0.005}) {
     Problem problem = stepped_rod(step, stiffness);
     problem.loads = {{1, {0, -force, 0}}};
-    const Equilibrium result = solve_exact(problem);
-    ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
-    const std::vector<double> tip = {1};
+    const Equilibrium result = test::converged(solve_exact(problem));
     const double beam = force / 3 * (1 - soft + soft / stiffness);
-    const double error = 1 + result.sample(tip).points(1, 0) / beam;
+    const double error = 1 + test::point_at(result, 1).y() / beam;
     if (before > 0) {
       EXPECT_NEAR(before / error, 4, 0.02);
     }
@@ -107,10 +107,9 @@ TEST(ExactSections, AColumnOfTwoStiffnessesBucklesUnderItsLoad) {
   };
   const Equilibrium straight = solve_exact(column(low * (1 - 1e-5)));
   ASSERT_LT(straight.energy.bending, 1e-12);
-  ExactOptions options;
-  options.start = &straight;
   const double below = straight.smallest_eigenvalue;
-  const double above = solve_exact(column(low * (1 + 1e-5)), options).smallest_eigenvalue;
+  const double above =
+      solve_exact(column(low * (1 + 1e-5)), {.start = &straight}).smallest_eigenvalue;
   EXPECT_GT(below, 0);
   EXPECT_LT(above, 0);
   EXPECT_NEAR(below / above, -1, 1e-3);  // the zero is in the middle
@@ -121,12 +120,8 @@ TEST(ExactSections, KeepTheFirstIntegralAndTheMomentOfAWeightlessRod) {
   problem.sections.insert(problem.sections.begin(), {0.2, 0.5, 0.4, 0, Eigen::Vector3d::Zero()});
   const Eigen::Vector3d force(-3, -4, 0);
   problem.loads = {{1, force}};
-  const Equilibrium result = solve_exact(problem);
-  ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
-  const auto state = [&](double s) {
-    const std::vector<double> at = {s};
-    return result.sample(at);
-  };
+  const Equilibrium result = test::converged(solve_exact(problem));
+  const auto state = [&](double s) { return test::sample_at(result, s); };
   const auto integral = [&](double s, double stiffness) {
     const Samples at = state(s);
     return stiffness * at.curvature.col(0).squaredNorm() / 2 + force.dot(at.tangents.col(0));
@@ -151,8 +146,7 @@ TEST(ExactSections, ATautRodOfTwoTorsionalStiffnessesTwistsAsTwoSprings) {
   problem.sections = {{0.3, 0.6, 1, 2, Eigen::Vector3d::Zero()}};
   for (Grip& grip : problem.grips) grip.frame = FrameHold{};
   problem.grips[1].frame->roll = 0.3;
-  const Equilibrium result = solve_exact(problem);
-  ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+  const Equilibrium result = test::converged(solve_exact(problem));
   ASSERT_EQ(result.twists.size(), 1U);
   const double compliance = 0.7 / 0.5 + 0.3 / 2;
   EXPECT_NEAR(result.twists[0].angle, compliance * result.twists[0].torque, 1e-12);
@@ -164,16 +158,13 @@ TEST(ExactSections, ReactionsAreTheDerivativesOfTheEnergy) {
   problem.weight_per_length = {0.3, -3, 0.2};
   problem.sections = {{0.2, 0.45, 4, 0, {0, -9, 1}}, {0.6, 0.7, 0.3, 0, {0, 0, 0}}};
   problem.loads = {{0.65, {0, 1, 2}}};
-  const Equilibrium result = solve_exact(problem);
-  ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+  const Equilibrium result = test::converged(solve_exact(problem));
   constexpr double h = 1e-4;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const auto energy = [&](double shift) {
       Problem moved = problem;
       moved.grips[1].position[axis] += shift;
-      ExactOptions options;
-      options.start = &result;
-      return solve_exact(moved, options).energy.total();
+      return solve_exact(moved, {.start = &result}).energy.total();
     };
     const double rate = (energy(h) - energy(-h)) / (2 * h);
     EXPECT_NEAR(rate, result.grips[1].force[axis], 2e-6 * (1 + result.grips[1].force.norm()));
@@ -207,37 +198,12 @@ Problem random_rod(std::uint64_t number, test::RandomSpace space) {
 
 TEST(ExactSections, UnitsDoNotMatter) {
   const Problem own = random_rod(1, test::RandomSpace::space);
-  constexpr double l = 0.7;
-  constexpr double stiffness = 3e-3;
-  Problem problem = own;
-  problem.length = l;
-  problem.bending_stiffness *= stiffness;
-  problem.weight_per_length *= stiffness / (l * l * l);
-  for (Grip& grip : problem.grips) {
-    grip.at *= l;
-    grip.position *= l;
-  }
-  for (Load& load : problem.loads) {
-    load.at *= l;
-    load.force *= stiffness / (l * l);
-  }
-  for (Section& section : problem.sections) {
-    section = {section.begin * l, section.end * l, section.bending_stiffness * stiffness, 0,
-               section.weight_per_length * stiffness / (l * l * l)};
-  }
-  const Equilibrium expected = solve_exact(own);
-  const Equilibrium result = solve_exact(problem);
-  ASSERT_EQ(expected.status, SolveStatus::converged) << expected.message;
-  ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
-  const Samples a = expected.sample(equal_arc_lengths(1, 11));
-  const Samples b = result.sample(equal_arc_lengths(l, 11));
-  EXPECT_LT((b.points - l * a.points).cwiseAbs().maxCoeff(), 1e-10);
-  EXPECT_NEAR(result.energy.total(), expected.energy.total() * stiffness / l, 1e-12);
-  for (std::size_t g = 0; g < own.grips.size(); ++g) {
-    EXPECT_LT((result.grips[g].force - expected.grips[g].force * stiffness / (l * l)).norm(),
-              1e-11);
-    EXPECT_LT((result.grips[g].torque - expected.grips[g].torque * stiffness / l).norm(), 1e-11);
-  }
+  const test::Placement other{.length = 0.7, .stiffness = 3e-3};
+  const auto found =
+      other.between(test::converged(solve_exact(own)), test::converged(solve_exact(other.of(own))));
+  EXPECT_LT(found.points, 1e-10);
+  EXPECT_LT(found.energy, 2e-10);
+  EXPECT_LT(std::max(found.force, found.torque), 1e-9);
 }
 
 TEST(ExactSections, RandomRodsAreInBalance) {

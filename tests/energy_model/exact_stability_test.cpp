@@ -11,6 +11,7 @@
 #include "dlo/energy_model/exact.hpp"
 #include "equilibrium_balance.hpp"
 #include "problems.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -40,8 +41,7 @@ TEST(SecondVariation, ChangesItsSignWhereAnUprightRodBuckles) {
     // Straight is the only one below, and unstable above.
     const auto straight =
         std::find_if(found.begin(), found.end(), [](const Equilibrium& equilibrium) {
-          const std::vector<double> tip = {1.0};
-          return std::abs(equilibrium.sample(tip).points(0, 0)) < 1e-6;
+          return std::abs(test::point_at(equilibrium, 1).x()) < 1e-6;
         });
     ASSERT_NE(straight, found.end());
     EXPECT_EQ(straight->status, off < 0 ? SolveStatus::converged : SolveStatus::saddle);
@@ -73,8 +73,7 @@ TEST(SecondVariation, CountsTheZeroModeOfARod) {
   // An arch between two pins without weight turns about the line through them.
   Problem arch = heavy_cantilever(0, 0);
   arch.grips = {{0, Eigen::Vector3d::Zero(), std::nullopt}, {1, {0.8, 0, 0}, std::nullopt}};
-  const Equilibrium result = solve_exact(arch);
-  EXPECT_EQ(result.status, SolveStatus::converged) << result.message;
+  const Equilibrium result = test::converged(solve_exact(arch));
   EXPECT_TRUE(says(result, "1 zero mode")) << result.message;
   EXPECT_NEAR(result.smallest_eigenvalue, 0, 1e-7);
   EXPECT_FALSE(says(solve_exact(heavy_cantilever(1, 0)), "for nothing"));
@@ -105,8 +104,7 @@ TEST(Exact, ReturnsTheStableShapeOfTwoPinsNearEachOther) {
   Problem problem = heavy_cantilever(2.0506, 0);
   problem.grips = {{0.506, {0, 0, 0}, std::nullopt},
                    {0.567, {-0.0539556788779, -0.0106264590638, 0}, std::nullopt}};
-  const Equilibrium result = solve_exact(problem);
-  ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+  const Equilibrium result = test::converged(solve_exact(problem));
   EXPECT_GT(result.smallest_eigenvalue, -1e-7);
   EXPECT_LT(result.energy.bending, 17);
   EXPECT_LT(test::balance_of(problem, result, 0.01).worst(), 1e-9);
@@ -180,8 +178,7 @@ TEST(LoadBesideAClamp, CountsOnce) {
       ASSERT_TRUE(succeeded(result.status)) << result.message;
       EXPECT_NEAR(result.grips[0].force.y(), -101, 1e-9);
       // The work of the load at the other end; that at the clamp does none.
-      const std::vector<double> at = {other};
-      const double way = result.sample(at).points(1, 0) - problem.grips[0].position.y();
+      const double way = test::point_at(result, other).y() - problem.grips[0].position.y();
       EXPECT_NEAR(result.energy.load, -way, 1e-6);
     }
   }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "problems.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -13,12 +14,11 @@ TEST(Exact, FollowsTheLinearTheoryForSmallLoads) {
   // Tip of a cantilever: w l^4 / (8 EI) under its weight, P a^2 (3 l - a) / (6 EI) under a load at
   // a
   const double small = 1e-4;
-  const std::vector<double> tip = {1.0};
-  EXPECT_NEAR(solve_exact(heavy_cantilever(small, 0)).sample(tip).points(1, 0), -small / 8,
+  EXPECT_NEAR(test::point_at(solve_exact(heavy_cantilever(small, 0)), 1).y(), -small / 8,
               small * small);
   Problem load = heavy_cantilever(0, 0);
   load.loads = {{0.5, {0, small, 0}}};
-  EXPECT_NEAR(solve_exact(load).sample(tip).points(1, 0), small * 0.25 * 2.5 / 6, small * small);
+  EXPECT_NEAR(test::point_at(solve_exact(load), 1).y(), small * 0.25 * 2.5 / 6, small * small);
 }
 
 TEST(Exact, SatisfiesTheElasticaEverywhere) {
@@ -52,8 +52,7 @@ TEST(Exact, UprightRodHasThreeEquilibriaAboveSelfBuckling) {
   const std::vector<Equilibrium> above = all_exact(heavy_cantilever(8, 90));
   ASSERT_EQ(above.size(), 3U);
   EXPECT_NEAR(above[0].energy.total(), above[1].energy.total(), 1e-9);
-  const std::vector<double> tip = {1.0};
-  EXPECT_GT(above[0].sample(tip).points(0, 0), 0);  // the one towards +x comes first
+  EXPECT_GT(test::point_at(above[0], 1).x(), 0);  // the one towards +x comes first
 }
 
 TEST(Exact, RefusesLoadsBeyondDoublePrecisionAndBadOptions) {
@@ -66,8 +65,7 @@ TEST(Exact, RefusesLoadsBeyondDoublePrecisionAndBadOptions) {
 
 TEST(Samples, RefuseArcLengthsOffTheRod) {
   const Equilibrium result = solve_exact(heavy_cantilever(1, 0));
-  const std::vector<double> beyond = {1.1};
-  EXPECT_THROW((void)result.sample(beyond), std::invalid_argument);
+  EXPECT_THROW((void)test::sample_at(result, 1.1), std::invalid_argument);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../says.hpp"
 #include "base/sized_samples.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
@@ -21,6 +22,7 @@
 #include "random_problems.hpp"
 #include "rolled_clamps.hpp"
 #include "shooting/second_variation.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -380,8 +382,7 @@ TEST(ExactTwist, IsNoneWhereTheRodWithoutFramesHasTheFrame) {
   EXPECT_TRUE(expected.twists.empty());
   Problem problem = askew(0);
   problem.grips[1].frame->d1 = carried_director(expected, held_d1(problem, problem.grips[0]));
-  const Equilibrium twisted = solve_exact(problem);
-  ASSERT_EQ(twisted.status, SolveStatus::converged) << twisted.message;
+  const Equilibrium twisted = test::converged(solve_exact(problem));
   const std::vector<double> s = equal_arc_lengths(1, 21);
   EXPECT_LT((twisted.sample(s).points - expected.sample(s).points).norm(), 1e-8);
   ASSERT_EQ(twisted.twists.size(), 1U);
@@ -394,8 +395,7 @@ TEST(ExactTwist, PutsTheFrameAtTheEndWhereTheRollSays) {
   const Eigen::Vector3d d1 = held_d1(unrolled, unrolled.grips[1]);
   const Eigen::Vector3d t = Eigen::Vector3d(0.8, 0.3, -0.5).normalized();
   for (const double roll : {-2.0, 1.0, 6.0, 12.0}) {
-    const Equilibrium result = solve_exact(askew(roll));
-    ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+    const Equilibrium result = test::converged(solve_exact(askew(roll)));
     const Eigen::Vector3d end =
         turned(carried_director(result, start), t, result.twists.at(0).angle);
     EXPECT_LT((end - turned(d1, t, roll)).norm(), 1e-9) << roll;
@@ -405,8 +405,7 @@ TEST(ExactTwist, PutsTheFrameAtTheEndWhereTheRollSays) {
 TEST(ExactTwist, IsInBalance) {
   Problem problem = askew(3);
   problem.loads = {{0.3, {2, 0, 1}}, {1, {0, 4, 0}}};
-  const Equilibrium result = solve_exact(problem);
-  ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+  const Equilibrium result = test::converged(solve_exact(problem));
   EXPECT_GT(std::abs(result.twists.at(0).torque), 0.5);
   EXPECT_LT(test::balance_of(problem, result, 0.01).worst(), 1e-10);
 }
@@ -419,8 +418,7 @@ TEST(ExactTwist, OfSeveralPartsIsInBalance) {
   problem.torsional_stiffness = 2;
   problem.grips.push_back({1.5, {0.7, 0.5, 0.1}, Eigen::Vector3d(0, 1, 1)});
   problem.grips.push_back({0.6, {0.35, 0.1, 0.15}, std::nullopt});
-  const Equilibrium result = solve_exact(problem);
-  ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+  const Equilibrium result = test::converged(solve_exact(problem));
   ASSERT_EQ(result.twists.size(), 1U);
   EXPECT_EQ(result.twists[0].begin, 0);
   EXPECT_EQ(result.twists[0].end, 1);
@@ -453,10 +451,8 @@ TEST(ExactTwist, StartsFromAnEquilibriumWithoutContinuation) {
       problem.grips[0].frame->d1 = Eigen::Vector3d(0.3, 0, 1);
       problem.grips[1].frame->d1 = Eigen::Vector3d(0.1, -2, 1);
     }
-    const Equilibrium cold = solve_exact(problem);
-    ASSERT_EQ(cold.status, SolveStatus::converged) << cold.message;
-    const Equilibrium again = solve_exact(problem, {.start = &cold});
-    ASSERT_EQ(again.status, SolveStatus::converged) << again.message;
+    const Equilibrium cold = test::converged(solve_exact(problem));
+    const Equilibrium again = test::converged(solve_exact(problem, {.start = &cold}));
     EXPECT_LT(again.evaluations, 6);
     EXPECT_NEAR(again.twists.at(0).angle, cold.twists.at(0).angle, 1e-9);
     const std::vector<double> s = equal_arc_lengths(1, 21);
@@ -466,12 +462,7 @@ TEST(ExactTwist, StartsFromAnEquilibriumWithoutContinuation) {
 
 TEST(ExactTwist, RefusesWhatItCannotTwist) {
   const auto refusal = [](const Problem& problem) {
-    try {
-      (void)solve_exact(problem);
-    } catch (const std::invalid_argument& error) {
-      return std::string(error.what());
-    }
-    return std::string("none");
+    return test::error_of<std::invalid_argument>([&] { return solve_exact(problem); });
   };
   Problem soft = askew(1);
   soft.torsional_stiffness = 0;
@@ -493,8 +484,7 @@ TEST(ExactTwist, SaysHowFarItCame) {
 // A flow of tangents alone ended there: with any tangents held its roll has no equilibrium nearby.
 TEST(ExactTwist, FollowsAStripWhoseRollSnaps) {
   const Problem problem = test::random_problem(500003, test::RandomSpace::strip);
-  const Equilibrium result = solve_exact(problem);
-  EXPECT_EQ(result.status, SolveStatus::converged) << result.message;
+  const Equilibrium result = test::converged(solve_exact(problem));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "problem/split.hpp"
 #include "problems.hpp"
+#include "solved.hpp"
 #include "span/span_solver.hpp"
 
 namespace dlo::energy_model {
@@ -50,11 +51,9 @@ TEST(ExtendStart, AHelixLeadsToNothingLowerThanTheSearch) {
   problem.grips[1].direction = Eigen::Vector3d(1, 0.3, 0.4);
   const Span span = split(problem).front().span;
   ASSERT_FALSE(span.planar);
-  const Equilibrium lowest = solve_energy(problem);
-  ASSERT_EQ(lowest.status, SolveStatus::converged) << lowest.message;
+  const Equilibrium lowest = test::converged(solve_energy(problem));
   for (const double turns : {1.0, -1.0}) {
-    const SpanSolution found = from_helix(span, turns);
-    EXPECT_EQ(found.status, SolveStatus::converged) << found.message;
+    const SpanSolution found = test::converged(from_helix(span, turns));
     EXPECT_GT(found.energy, lowest.energy.total() - 1e-9);
   }
 }

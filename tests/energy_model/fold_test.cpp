@@ -10,6 +10,7 @@
 
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -119,7 +120,7 @@ Equilibrium shape_of(Real gamma, Real tip_angle) {
 }
 
 Eigen::Vector2d tip_of(const Equilibrium& equilibrium) {
-  return equilibrium.sample(std::vector<double>{1}).points.col(0).head<2>();
+  return test::point_at(equilibrium, 1).head<2>();
 }
 
 TEST(Fold, WhatIsCalledConvergedIsAsNearAsItsErrorSays) {

@@ -7,6 +7,7 @@
 
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
+#include "solved.hpp"
 #include "start_along.hpp"
 
 namespace dlo::energy_model {
@@ -17,8 +18,8 @@ using test::heavy_cantilever;
 TEST(WarmStart, AfterASmallTurnOfTheGripperTakesAFewEvaluations) {
   for (const double gamma : {0.2, 10.0, 100.0}) {
     const Equilibrium before = solve_energy(heavy_cantilever(gamma, 0));
-    const Equilibrium after = solve_energy(heavy_cantilever(gamma, 1), {.start = &before});
-    ASSERT_EQ(after.status, SolveStatus::converged);
+    const Equilibrium after =
+        test::converged(solve_energy(heavy_cantilever(gamma, 1), {.start = &before}));
     EXPECT_LE(after.evaluations, 5) << gamma;
     const Equilibrium cold = solve_energy(heavy_cantilever(gamma, 1));
     const std::vector<double> s = equal_arc_lengths(1, 11);
@@ -34,9 +35,8 @@ TEST(WarmStart, FollowsAMovingGripperWithOneSolver) {
     ASSERT_EQ(followed.status, SolveStatus::converged) << followed.message;
     EXPECT_LE(followed.evaluations, 5);
   }
-  const std::vector<double> tip = {1.0};
   const Equilibrium cold = solve_energy(heavy_cantilever(10, 20));
-  EXPECT_LT((followed.sample(tip).points - cold.sample(tip).points).norm(), 1e-10);
+  EXPECT_LT((test::point_at(followed, 1) - test::point_at(cold, 1)).norm(), 1e-10);
 }
 
 double apart(const Equilibrium& a, const Equilibrium& b) {
@@ -73,8 +73,7 @@ TEST(Keep, StaysWhereItWasWhenTheBranchHasEnded) {
     EXPECT_LE(again->evaluations, 3);
     EXPECT_LT(apart(*again, *last), 1e-9);
   }
-  const Equilibrium fallen = solver.follow(heavy_cantilever(10, 100));
-  EXPECT_TRUE(succeeded(fallen.status));
+  const Equilibrium fallen = test::usable(solver.follow(heavy_cantilever(10, 100)));
   EXPECT_GT(apart(fallen, *last), 0.1);
 }
 
@@ -118,8 +117,7 @@ TEST(Keep, FollowsAPointUntilItLiesAndBack) {
   const Equilibrium start =
       test::start_along({{0, 0, 0}, {0.4 + radius, 0, 0}, {0.4 + radius, radius - 0.6, 0}});
   EnergySolver solver({.start = &start});
-  const Equilibrium first = solver.solve(drawn_over_peg(radius, 0.6 * about));
-  ASSERT_EQ(first.status, SolveStatus::converged) << first.message;
+  const Equilibrium first = test::converged(solver.solve(drawn_over_peg(radius, 0.6 * about)));
   ASSERT_EQ(first.contacts.size(), 1U);
   ASSERT_EQ(first.contacts[0].kind, ContactKind::touching);
   const auto kind_at = [&](double tension) {

@@ -10,6 +10,7 @@
 #include "dlo/energy_model/exact.hpp"
 #include "equilibrium_balance.hpp"
 #include "rolled_clamps.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -38,11 +39,9 @@ TEST(GradientFlow, LeavesTheSymmetryThatHasBecomeUnstable) {
   const auto at = [](double roll) {
     return rolled({0.8, 0, 0}, Eigen::Vector3d::UnitX(), 50, 2, roll);
   };
-  const Equilibrium before = solve_exact(at(11));
-  ASSERT_EQ(before.status, SolveStatus::converged) << before.message;
+  const Equilibrium before = test::converged(solve_exact(at(11)));
   EXPECT_LT(asymmetry(before), 1e-9);
-  const Equilibrium after = solve_exact(at(12));
-  ASSERT_EQ(after.status, SolveStatus::converged) << after.message;
+  const Equilibrium after = test::converged(solve_exact(at(12)));
   EXPECT_GT(asymmetry(after), 1e-2);
   EXPECT_GT(after.smallest_eigenvalue, 0);
   EXPECT_LT(test::balance_of(at(12), after, 0.01).worst(), 1e-10);
@@ -62,8 +61,7 @@ TEST(GradientFlow, GivesUpTwistBeyondAFold) {
   EXPECT_LT(after.twists.at(0).angle, before.twists.at(0).angle - 1);
   // Less than the torque before would have put into it.
   EXPECT_LT(after.energy.total(), before.energy.total() + 0.25 * before.twists[0].torque);
-  const Equilibrium energy = solve_energy(at(5.25), {.start = &after});
-  EXPECT_EQ(energy.status, SolveStatus::converged) << energy.message;
+  const Equilibrium energy = test::converged(solve_energy(at(5.25), {.start = &after}));
   EXPECT_NEAR(energy.energy.total(), after.energy.total(), 1e-8);
 }
 

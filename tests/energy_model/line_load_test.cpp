@@ -14,6 +14,7 @@
 #include "problem/split.hpp"
 #include "problems.hpp"
 #include "random_problems.hpp"
+#include "solved.hpp"
 #include "strain/span_energy.hpp"
 
 namespace dlo::energy_model {
@@ -45,11 +46,6 @@ Problem with_random_line_loads(Problem problem, std::uint64_t seed, bool planar)
   return problem;
 }
 
-double load_apart(const Equilibrium& a, const Equilibrium& b) {
-  const std::vector<double> s = equal_arc_lengths(1, 41);
-  return (a.sample(s).points - b.sample(s).points).cwiseAbs().maxCoeff();
-}
-
 TEST(LineLoad, OnAllOfTheRodIsAWeight) {
   Problem tilted = heavy_cantilever(20, 30);
   tilted.loads = {{0.5, {1, 2, 3}}};
@@ -58,9 +54,8 @@ TEST(LineLoad, OnAllOfTheRodIsAWeight) {
     for (const auto& solve : {+[](const Problem& p) { return solve_energy(p); },
                               +[](const Problem& p) { return solve_exact(p); }}) {
       const Equilibrium one = solve(heavy);
-      const Equilibrium other = solve(loaded);
-      ASSERT_EQ(other.status, SolveStatus::converged) << other.message;
-      EXPECT_EQ(load_apart(one, other), 0);
+      const Equilibrium other = test::converged(solve(loaded));
+      EXPECT_EQ(test::gap_between(one, other), 0);
       EXPECT_NEAR(other.energy.load, one.energy.gravity + one.energy.load, 1e-11 * 20);
       EXPECT_NEAR(other.energy.total(), one.energy.total(), 1e-12 * 20);
       EXPECT_EQ(one.grips[0].torque, other.grips[0].torque);
@@ -83,8 +78,8 @@ TEST(LineLoad, PartsAddUp) {
     const Equilibrium exact = solve_exact(problem);
     ASSERT_EQ(energy.status, SolveStatus::converged) << energy.message;
     ASSERT_EQ(exact.status, SolveStatus::converged) << exact.message;
-    EXPECT_LT(load_apart(energy, one), 1e-9);
-    EXPECT_LT(load_apart(exact, one), 1e-11);
+    EXPECT_LT(test::gap_between(energy, one), 1e-9);
+    EXPECT_LT(test::gap_between(exact, one), 1e-11);
     EXPECT_NEAR(exact.energy.load, one.energy.gravity, 1e-10);
     EXPECT_NEAR(energy.energy.load, one.energy.gravity, 1e-9);
     EXPECT_NEAR(energy.energy.gravity, 0, 1e-11);
@@ -105,10 +100,8 @@ TEST(LineLoad, TendsToBeamTheoryWithTheSquareOfTheLoad) {
     for (const double q : {0.4, 0.2, 0.1}) {
       Problem problem = heavy_cantilever(0, 0);
       problem.line_loads = {{a, b, {0, 0, 0}, {0, -q, 0}}};
-      const Equilibrium result = solve(problem);
-      ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
-      const std::vector<double> tip = {1};
-      const double error = 1 + result.sample(tip).points(1, 0) / (q * beam);
+      const Equilibrium result = test::converged(solve(problem));
+      const double error = 1 + test::point_at(result, 1).y() / (q * beam);
       if (before > 0) EXPECT_NEAR(before / error, 4, 0.02);
       before = error;
       EXPECT_LT(std::abs(error), 1e-3);
@@ -125,12 +118,10 @@ void expect_confirmed(const Problem& problem, int& confirmed) {
   for (const Reaction& grip : energy.grips) largest = std::max(largest, grip.force.norm());
   const double panel = std::min(0.02, 0.25 / std::sqrt(largest));
   EXPECT_LT(test::balance_of(problem, energy, panel).worst(), 1e-7);
-  ExactOptions options;
-  options.start = &energy;
-  const Equilibrium exact = solve_exact(problem, options);
+  const Equilibrium exact = solve_exact(problem, {.start = &energy});
   if (!succeeded(exact.status)) return;
   ++confirmed;
-  EXPECT_LT(load_apart(energy, exact), 1e-8);
+  EXPECT_LT(test::gap_between(energy, exact), 1e-8);
   EXPECT_NEAR(energy.energy.load, exact.energy.load, 1e-7 * force);
   EXPECT_NEAR(energy.energy.gravity, exact.energy.gravity, 1e-7 * force);
   for (std::size_t i = 0; i < energy.grips.size(); ++i) {
@@ -173,8 +164,7 @@ TEST(LineLoad, ARodSeenFromItsOtherEndIsTheSame) {
   for (const auto& solve : {+[](const Problem& p) { return solve_energy(p); },
                             +[](const Problem& p) { return solve_exact(p); }}) {
     const Equilibrium one = solve(problem);
-    const Equilibrium other = solve(reversed);
-    ASSERT_EQ(other.status, SolveStatus::converged) << other.message;
+    const Equilibrium other = test::converged(solve(reversed));
     EXPECT_LT((one.sample(s).points - other.sample(back).points).norm(), 1e-10);
   }
 }
@@ -185,9 +175,7 @@ TEST(LineLoad, AShapeThatHasForgottenItIsNoEquilibrium) {
   problem.line_loads = {{0.3, 0.5, {0, 5, 0}, {0, 5, 0}}};
   EXPECT_GT(test::balance_of(problem, without, 0.01).worst(), 1e-3);
   EXPECT_LT(test::balance_of(problem, solve_energy(problem), 0.01).worst(), 1e-7);
-  ExactOptions options;
-  options.start = &without;
-  EXPECT_GT(load_apart(solve_exact(problem, options), without), 1e-4);
+  EXPECT_GT(test::gap_between(solve_exact(problem, {.start = &without}), without), 2e-4);
 }
 
 TEST(LineLoad, OfWhatIsNotOnTheRodIsRefused) {

@@ -7,8 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "../says.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -29,8 +31,7 @@ TEST(ManyLoads, BecomeTheWeightWithTheSquareOfTheirNumber) {
   const std::vector<double> s = {0.5, 1};
   const Eigen::Matrix3Xd weight = solve_energy(heavy_cantilever(12, 10)).sample(s).points;
   const auto apart = [&](int count) {
-    const Equilibrium shape = solve_energy(loaded(count));
-    EXPECT_EQ(shape.status, SolveStatus::converged) << shape.message;
+    const Equilibrium shape = test::converged(solve_energy(loaded(count)));
     return (shape.sample(s).points - weight).norm();
   };
   const double of_30 = apart(30);
@@ -39,14 +40,9 @@ TEST(ManyLoads, BecomeTheWeightWithTheSquareOfTheirNumber) {
 }
 
 TEST(ManyLoads, AreRefusedWhereTheirModelWouldTakeTheMemory) {
-  try {
-    (void)solve_energy(loaded(2000));
-    FAIL() << "solved";
-  } catch (const std::invalid_argument& error) {
-    const std::string message = error.what();
-    EXPECT_NE(message.find("2000 loads"), std::string::npos) << message;
-    EXPECT_NE(message.find("must be at most"), std::string::npos) << message;
-  }
+  EXPECT_TRUE(
+      test::says(test::error_of<std::invalid_argument>([] { return solve_energy(loaded(2000)); }),
+                 {"2000 loads", "must be at most"}));
 }
 
 }  // namespace

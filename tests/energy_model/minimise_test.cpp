@@ -7,6 +7,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "../says.hpp"
+#include "solved.hpp"
+
 namespace dlo::energy_model {
 namespace {
 
@@ -26,12 +29,10 @@ struct ThrowsAtThird {
 TEST(Minimise, ThrowsWhatTheObjectiveThrowsAndStops) {
   ThrowsAtThird objective;
   Eigen::VectorXd x = Eigen::VectorXd::Zero(3);
-  try {
-    (void)minimise_lbfgs(std::ref(objective), x, {1e-12, 100});
-    FAIL() << "nothing was thrown";
-  } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(error.what(), "third evaluation");
-  }
+  EXPECT_EQ(test::error_of<std::runtime_error>([&] {
+              return minimise_lbfgs(std::ref(objective), x, {1e-12, 100});
+            }),
+            "third evaluation");
   EXPECT_EQ(objective.calls, 3);
 }
 
@@ -45,8 +46,7 @@ TEST(Minimise, OfManyUnknownsRemembersAsManyStepsAsFit) {
     return x.dot(gradient) / 2;
   };
   Eigen::VectorXd x = Eigen::VectorXd::Ones(unknowns);
-  const MinimiseResult result = minimise_lbfgs(parabola, x, {1e-6, 1000});
-  EXPECT_TRUE(succeeded(result.status)) << result.message;
+  const MinimiseResult result = test::usable(minimise_lbfgs(parabola, x, {1e-6, 1000}));
   EXPECT_LT(weights.cwiseProduct(x).norm(), 1e-3);
 }
 
@@ -75,8 +75,7 @@ TEST(Minimise, StopsAtASmallGradient) {
     return x.squaredNorm();
   };
   Eigen::VectorXd x = Eigen::VectorXd::Ones(2);
-  const MinimiseResult result = minimise_lbfgs(objective, x, {1e-6, 100});
-  EXPECT_EQ(result.status, SolveStatus::converged);
+  const MinimiseResult result = test::converged(minimise_lbfgs(objective, x, {1e-6, 100}));
   EXPECT_LE(2 * x.norm(), 1e-6);
 }
 

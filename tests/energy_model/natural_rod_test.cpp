@@ -10,13 +10,15 @@
 
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
-#include "equilibrium_balance.hpp"
+#include "kirchhoff_rod.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using test::point_at;
 
 Problem clamped_rod() {
   Problem problem;
@@ -27,100 +29,7 @@ Problem clamped_rod() {
   return problem;
 }
 
-Equilibrium solved_rod(const Problem& problem) {
-  Equilibrium result = solve_energy(problem);
-  EXPECT_EQ(result.status, SolveStatus::converged) << result.message;
-  return result;
-}
-
-Vector3d point_at(const Equilibrium& equilibrium, double s) {
-  return equilibrium.sample(std::vector<double>{s}).points.col(0);
-}
-
-/// Section and strains of the free rod at an arc length.
-struct Local {
-  Vector3d stiffness;  // about d1, d2 and the tangent
-  Vector3d weight, natural;
-};
-
-Local local(const Problem& problem, double s) {
-  const auto stiffness = [](const auto& of) {
-    return Vector3d(of.bending_stiffness, of.bending_stiffness_2.value_or(of.bending_stiffness),
-                    of.torsional_stiffness);
-  };
-  Local here{stiffness(problem), problem.weight_per_length, Vector3d::Zero()};
-  for (std::size_t j = 0; j < problem.natural_strains.size(); ++j) {
-    here.natural += std::legendre(static_cast<unsigned>(j), 2 * s / problem.length - 1) *
-                    problem.natural_strains[j];
-  }
-  for (const Section& section : problem.sections) {
-    if (s < section.begin || s > section.end) continue;
-    here.stiffness = stiffness(section);
-    here.weight = section.weight_per_length;
-    if (section.natural_curvature) here.natural.head<2>() = *section.natural_curvature;
-    if (section.natural_twist) here.natural.z() = *section.natural_twist;
-  }
-  return here;
-}
-
-/// Where a rod ends up that leaves its first grip, at s = 0, with these directors, and carries on
-/// what the grips exert: position, directors, and what is left of force and moment at its end.
-struct Shot {
-  Vector3d point;
-  Matrix3d frame;
-  Vector3d force, moment;
-};
-
-Shot shoot(const Problem& problem, const Equilibrium& solution, const Matrix3d& frame) {
-  Shot shot{problem.grips[0].position, frame, -solution.grips[0].force, -solution.grips[0].torque};
-  std::vector<double> stops = {0, problem.length};
-  for (const Section& section : problem.sections) {
-    stops.insert(stops.end(), {section.begin, section.end});
-  }
-  for (const Grip& grip : problem.grips) stops.push_back(grip.at);
-  std::sort(stops.begin(), stops.end());
-  const auto jump = [&](double at) {
-    for (std::size_t g = 1; g < problem.grips.size(); ++g) {
-      if (problem.grips[g].at != at) continue;
-      shot.force -= solution.grips[g].force;
-      shot.moment -= solution.grips[g].torque;
-    }
-  };
-  for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
-    if (!(stops[i + 1] > stops[i])) continue;
-    constexpr int steps = 1600;
-    const double h = (stops[i + 1] - stops[i]) / steps;
-    for (int k = 0; k < steps; ++k) {
-      const double s = stops[i] + k * h;
-      const auto rate = [&](const Shot& at, double where) {
-        // Not on a section's border, where the section is the next one's.
-        const double inside = std::clamp(where, stops[i] + h / 1e3, stops[i + 1] - h / 1e3);
-        const Local here = local(problem, inside);
-        Vector3d u = at.frame.transpose() * at.moment;
-        u = here.natural + u.cwiseQuotient(here.stiffness);
-        Matrix3d turn;
-        turn << 0, -u.z(), u.y(), u.z(), 0, -u.x(), -u.y(), u.x(), 0;
-        const Vector3d t = at.frame.col(2);
-        return Shot{t, at.frame * turn, -here.weight, -t.cross(at.force)};
-      };
-      const auto moved = [&](const Shot& by, double step) {
-        return Shot{shot.point + step * by.point, shot.frame + step * by.frame,
-                    shot.force + step * by.force, shot.moment + step * by.moment};
-      };
-      const Shot a = rate(shot, s);
-      const Shot b = rate(moved(a, h / 2), s + h / 2);
-      const Shot c = rate(moved(b, h / 2), s + h / 2);
-      const Shot d = rate(moved(c, h), s + h);
-      shot = moved({a.point + 2 * b.point + 2 * c.point + d.point,
-                    a.frame + 2 * b.frame + 2 * c.frame + d.frame,
-                    a.force + 2 * b.force + 2 * c.force + d.force,
-                    a.moment + 2 * b.moment + 2 * c.moment + d.moment},
-                   h / 6);
-    }
-    jump(stops[i + 1]);
-  }
-  return shot;
-}
+Equilibrium solved_rod(const Problem& problem) { return test::converged(solve_energy(problem)); }
 
 /// Directors of a clamp along x whose d1 is y.
 Matrix3d along_x() {
@@ -132,10 +41,10 @@ Matrix3d along_x() {
 /// @param tolerance  of what is left at the end, over EI/l and EI/l^2
 void expect_kirchhoff(const Problem& problem, const Equilibrium& solution, const Matrix3d& frame,
                       double tolerance) {
-  const Shot shot = shoot(problem, solution, frame);
-  EXPECT_LT((shot.point - point_at(solution, problem.length)).norm(), tolerance);
-  EXPECT_LT(shot.force.norm(), 100 * tolerance);
-  EXPECT_LT(shot.moment.norm(), 100 * tolerance);
+  const test::RodEnd end = test::carried_along(problem, solution, frame);
+  EXPECT_LT((end.point - point_at(solution, problem.length)).norm(), tolerance);
+  EXPECT_LT(end.force.norm(), 100 * tolerance);
+  EXPECT_LT(end.moment.norm(), 100 * tolerance);
 }
 
 TEST(NaturalRod, IsItsOwnShapeWithoutForces) {
@@ -209,7 +118,7 @@ TEST(NaturalRod, StaysAHelixUnderItsWrench) {
   Problem free = problem;
   free.natural_strains = {u};
   const Equilibrium helix = solved_rod(free);
-  const Samples end = helix.sample(std::vector<double>{1.0});
+  const Samples end = test::sample_at(helix, 1);
   // t' = u2 d1
   const Vector3d d1 = end.curvature.col(0).normalized();
   problem.grips.push_back({1, end.points.col(0), end.tangents.col(0), FrameHold{d1, 0}});
@@ -271,8 +180,10 @@ TEST(NaturalRod, HangingLeavesItsPlaneWhereItShould) {
   }
 }
 
-TEST(NaturalRod, OfAllKindsObeysKirchhoffsEquations) {
-  std::mt19937_64 random(20261122);  // NOLINT(cert-msc51-cpp): the same rods each time
+/// Rods with natural strains, one and two clamps, with sections and without: all obey Kirchhoff's
+/// equations.
+void expect_kirchhoff_of_random_rods(std::uint64_t seed, bool strip) {
+  std::mt19937_64 random(seed);
   const auto uniform = [&](double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(random);
   };
@@ -281,12 +192,15 @@ TEST(NaturalRod, OfAllKindsObeysKirchhoffsEquations) {
   };
   for (int i = 0; i < 12; ++i) {
     Problem problem = clamped_rod();
+    if (strip) problem.bending_stiffness_2 = uniform(0.2, 6);
     problem.weight_per_length = vector(6);
-    problem.natural_strains = {vector(4), vector(2), vector(1)};
+    if (!strip || i % 4 > 0) problem.natural_strains = {vector(4), vector(2)};
+    if (!strip) problem.natural_strains.push_back(vector(1));
     problem.grips[0].frame = FrameHold{Vector3d::UnitY(), 0};
     if (i % 2 == 1) {
       problem.sections = {{0.2, 0.45, uniform(0.3, 4), uniform(0.2, 3), vector(9)},
                           {0.45, 0.7, uniform(0.3, 4), uniform(0.2, 3), vector(9)}};
+      if (strip) problem.sections[0].bending_stiffness_2 = uniform(0.3, 4);
     }
     if (i % 3 > 0) {
       problem.grips.push_back(
@@ -294,40 +208,15 @@ TEST(NaturalRod, OfAllKindsObeysKirchhoffsEquations) {
       if (i % 3 == 2) problem.grips.back().frame = FrameHold{std::nullopt, uniform(-3, 3)};
     }
     SCOPED_TRACE(i);
-    const Equilibrium result = solved_rod(problem);
-    expect_kirchhoff(problem, result, along_x(), 1e-8);
+    expect_kirchhoff(problem, solved_rod(problem), along_x(), 1e-8);
   }
 }
 
-TEST(Strip, OfAllKindsObeysKirchhoffsEquations) {
-  std::mt19937_64 random(20261123);  // NOLINT(cert-msc51-cpp): the same strips each time
-  const auto uniform = [&](double low, double high) {
-    return std::uniform_real_distribution<double>(low, high)(random);
-  };
-  const auto vector = [&](double size) {
-    return Vector3d(uniform(-size, size), uniform(-size, size), uniform(-size, size));
-  };
-  for (int i = 0; i < 12; ++i) {
-    Problem problem = clamped_rod();
-    problem.bending_stiffness_2 = uniform(0.2, 6);
-    problem.weight_per_length = vector(6);
-    if (i % 4 > 0) problem.natural_strains = {vector(4), vector(2)};
-    problem.grips[0].frame = FrameHold{Vector3d::UnitY(), 0};
-    if (i % 2 == 1) {
-      problem.sections = {{0.2, 0.45, uniform(0.3, 4), uniform(0.2, 3), vector(9)},
-                          {0.45, 0.7, uniform(0.3, 4), uniform(0.2, 3), vector(9)}};
-      problem.sections[0].bending_stiffness_2 = uniform(0.3, 4);
-    }
-    if (i % 3 > 0) {
-      problem.grips.push_back(
-          {1, {uniform(0.3, 0.8), uniform(-0.3, 0.3), uniform(-0.3, 0.3)}, vector(1), {}});
-      if (i % 3 == 2) problem.grips.back().frame = FrameHold{std::nullopt, uniform(-3, 3)};
-    }
-    SCOPED_TRACE(i);
-    const Equilibrium result = solved_rod(problem);
-    expect_kirchhoff(problem, result, along_x(), 1e-8);
-  }
+TEST(NaturalRod, OfAllKindsObeysKirchhoffsEquations) {
+  expect_kirchhoff_of_random_rods(20261122, false);
 }
+
+TEST(Strip, OfAllKindsObeysKirchhoffsEquations) { expect_kirchhoff_of_random_rods(20261123, true); }
 
 TEST(Sections, OfTheRodsOwnKindChangeNothing) {
   Problem problem = clamped_rod();
@@ -368,7 +257,7 @@ TEST(Clamp, ThatLetsTheRodRotatePassesItsTorqueOn) {
       {1, {0.8, 0.1, 0}, Vector3d(1, 0.3, 0.1), FrameHold{Vector3d(0.3, -0.4, 0.9), 0}});
   const Equilibrium whole = solved_rod(problem);
   // Where the rod is anyway a clamp has nothing to do, if it does not hold the twist.
-  const Samples there = whole.sample(std::vector<double>{0.4});
+  const Samples there = test::sample_at(whole, 0.4);
   Problem passed = problem;
   passed.grips.insert(passed.grips.begin() + 1,
                       {0.4, there.points.col(0), there.tangents.col(0), std::nullopt});
@@ -408,8 +297,7 @@ TEST(NaturalRod, HasTheSameDirectorsInBothModels) {
   problem.grips[0].frame = FrameHold{Vector3d::UnitY(), 0.7};
   const std::vector<double> s = {0, 0.2, 0.4, 0.7, 1};
   const Samples energy = solved_rod(problem).sample(s);
-  const Equilibrium shot = solve_exact(problem);
-  ASSERT_EQ(shot.status, SolveStatus::converged) << shot.message;
+  const Equilibrium shot = test::converged(solve_exact(problem));
   const Samples exact = shot.sample(s);
   ASSERT_EQ(energy.d1.cols(), 5);
   ASSERT_EQ(exact.d1.cols(), 5);
@@ -497,8 +385,7 @@ TEST(SectionsOfTheirOwnShape, ObeyKirchhoffsEquationsInBothModels) {
       }
       const Equilibrium energy = solved_rod(problem);
       expect_kirchhoff(problem, energy, along_x(), 1e-8);
-      const Equilibrium exact = solve_exact(problem);
-      ASSERT_EQ(exact.status, SolveStatus::converged) << exact.message;
+      const Equilibrium exact = test::converged(solve_exact(problem));
       expect_kirchhoff(problem, exact, along_x(), 1e-8);
       EXPECT_NEAR(energy.energy.total(), exact.energy.total(), 1e-8);
     }

@@ -11,6 +11,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "problems.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -85,8 +86,7 @@ TEST(NeutralDirections, AnArchThatSnapsHasOneAtItsFold) {
     return problem;
   };
   const auto height = [](const Equilibrium& equilibrium) {
-    const std::vector<double> middle = {0.5};
-    return equilibrium.sample ? equilibrium.sample(middle).points(1, 0) : -1;
+    return equilibrium.sample ? test::point_at(equilibrium, 0.5).y() : -1;
   };
   const std::vector<Equilibrium> all = all_energy(arch(20));
   const auto up = std::find_if(all.begin(), all.end(), [&](const Equilibrium& found) {
@@ -145,8 +145,7 @@ TEST(NeutralDirections, MessagesOfBothSolversCountZeroModes) {
   pendant.grips = {{0, {0, 0, 0}, std::nullopt}, {1, {0, -0.6, 0}, std::nullopt}};
   for (const Problem& problem :
        {arch, pendant, heavy_cantilever(8, 90), heavy_cantilever(20, 90)}) {
-    const Equilibrium energy = solve_energy(problem);
-    EXPECT_EQ(energy.status, SolveStatus::converged);
+    const Equilibrium energy = test::converged(solve_energy(problem));
     EXPECT_EQ(energy.message, "converged, 1 zero mode");
     EXPECT_EQ(energy.message, solve_exact(problem).message);
   }

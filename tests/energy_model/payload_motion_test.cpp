@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "dlo/energy_model/dynamics.hpp"
+#include "runge_kutta.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -54,14 +55,8 @@ class RigidLinks {
   void advance(double to, double longest_step) {
     const int steps = static_cast<int>(std::ceil((to - time_) / longest_step));
     const double dt = (to - time_) / steps;
-    for (int k = 0; k < steps; ++k) {
-      const double t = time_ + k * dt;
-      const Eigen::VectorXd k1 = rates(t, state_);
-      const Eigen::VectorXd k2 = rates(t + dt / 2, state_ + dt / 2 * k1);
-      const Eigen::VectorXd k3 = rates(t + dt / 2, state_ + dt / 2 * k2);
-      const Eigen::VectorXd k4 = rates(t + dt, state_ + dt * k3);
-      state_ += dt / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
-    }
+    const auto rate = [this](double t, const Eigen::VectorXd& state) { return rates(t, state); };
+    for (int k = 0; k < steps; ++k) state_ = test::runge_kutta(rate, time_ + k * dt, state_, dt);
     time_ = to;
   }
 

@@ -15,6 +15,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
 #include "random_contact.hpp"
+#include "solved.hpp"
 #include "start_along.hpp"
 
 namespace dlo::energy_model {
@@ -39,8 +40,7 @@ TEST(Peg, TautRodLeavesItWhereItsCurvatureIsThePegs) {
       // On this side of the peg it would hang from the clamp alone.
       const Equilibrium start =
           test::start_along({{0, 0, 0}, {0.4 + radius, 0, 0}, {0.4 + radius, radius - 0.6, 0}});
-      const Equilibrium rod = solve_energy(problem, {.start = &start});
-      ASSERT_EQ(rod.status, SolveStatus::converged) << rod.message;
+      const Equilibrium rod = test::converged(solve_energy(problem, {.start = &start}));
       ASSERT_EQ(rod.contacts.size(), 1);
       const ContactPart& contact = rod.contacts[0];
       ASSERT_EQ(contact.kind, ContactKind::lying);
@@ -71,8 +71,7 @@ TEST(Table, OverhangLiftsTheRodBehindTheEdge) {
     const Eigen::Vector3d size(1 - overhang + 1, 0.2, 1);
     const Eigen::Vector3d centre(1 - overhang - size.x() / 2, -size.y() / 2, 0);
     problem.obstacles = {{Body::box(centre, Eigen::Matrix3d::Identity(), size, radius)}};
-    const Equilibrium rod = solve_energy(problem);
-    ASSERT_EQ(rod.status, SolveStatus::converged) << rod.message;
+    const Equilibrium rod = test::converged(solve_energy(problem));
     ASSERT_EQ(rod.contacts.size(), 2);
     // What lies is carried by the table, not by the clamp on it, which only keeps the rod from
     // sliding off the edge, across which it is pushed.
@@ -80,7 +79,7 @@ TEST(Table, OverhangLiftsTheRodBehindTheEdge) {
     const Eigen::Vector3d weight(0, gamma, 0);
     const Eigen::Vector3d pushed = rod.contacts[0].force + rod.contacts[1].force;
     EXPECT_LT((pushed + rod.grips[0].force - weight).norm(), 1e-6 * gamma);
-    const Eigen::Vector3d across = rod.sample(std::array{rod.contacts[1].begin}).tangents.col(0);
+    const Eigen::Vector3d across = test::sample_at(rod, rod.contacts[1].begin).tangents.col(0);
     EXPECT_NEAR(rod.contacts[1].force.dot(across), 0, 1e-6 * gamma);
     EXPECT_EQ(rod.contacts[0].kind, ContactKind::lying);
     EXPECT_EQ(rod.contacts[1].kind, ContactKind::touching);
@@ -123,8 +122,7 @@ TEST(Peg, RopeHasTheTensionOfTheFrictionlessCapstan) {
   problem.grips = {{0, {-0.33, -0.28, 0}}, {1, {0.38, -0.29, 0}}};
   problem.obstacles = {{Body::cylinder({0, 0, 0}, {0, 0, 1}, 0.05)}};
   const Equilibrium start = test::start_along({{-0.33, -0.28, 0}, {0, 0.06, 0}, {0.38, -0.29, 0}});
-  const Equilibrium rod = solve_energy(problem, {.start = &start});
-  ASSERT_EQ(rod.status, SolveStatus::converged) << rod.message;
+  const Equilibrium rod = test::converged(solve_energy(problem, {.start = &start}));
   ASSERT_EQ(rod.contacts.size(), 1);
   EXPECT_EQ(rod.contacts[0].kind, ContactKind::lying);
   const Samples ends = rod.sample(std::array{0.0, 1.0});
@@ -183,13 +181,11 @@ TEST(Peg, RandomRodsRestOnBodiesOrSayWhyNot) {
 TEST(Peg, StifferAndStifferOnesLeadToTheRigidOne) {
   Problem problem = heavy_cantilever(100, 0);
   problem.obstacles = {{Body::sphere({0.14, -0.1, 0.01}, 0.08)}};
-  const Equilibrium rigid = solve_energy(problem);
-  ASSERT_EQ(rigid.status, SolveStatus::converged) << rigid.message;
+  const Equilibrium rigid = test::converged(solve_energy(problem));
   double last = 4;
   for (const double stiffness : {1e5, 1e6, 1e7}) {
     problem.obstacles[0].stiffness = stiffness;
-    const Equilibrium soft = solve_energy(problem);
-    ASSERT_TRUE(succeeded(soft.status)) << soft.message;
+    const Equilibrium soft = test::usable(solve_energy(problem));
     const double below = rigid.energy.total() - soft.energy.total();
     EXPECT_GT(below, 0);
     EXPECT_LT(below, last / 3);
@@ -204,11 +200,10 @@ TEST(Peg, AThinOneWithinARodIsSeenWhereverItIs) {
   problem.torsional_stiffness = 0.8;
   for (Grip& grip : problem.grips) grip.frame.emplace();
   problem.grips[1].frame->roll = 1;
-  const Equilibrium free = solve_energy(problem);
-  ASSERT_EQ(free.status, SolveStatus::converged) << free.message;
+  const Equilibrium free = test::converged(solve_energy(problem));
   for (const double at : {0.30025, 0.5001, 0.71234}) {
     for (const double radius : {3e-5, 1e-4, 3e-4}) {
-      const Samples there = free.sample(std::array{at});
+      const Samples there = test::sample_at(free, at);
       const Eigen::Vector3d aside = there.tangents.col(0).unitOrthogonal();
       const Eigen::Vector3d centre = there.points.col(0) + radius / 2 * aside;
       problem.obstacles = {{Body::sphere(centre, radius)}};

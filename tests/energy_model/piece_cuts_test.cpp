@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "random_scenes.hpp"
+#include "solved.hpp"
 #include "span/refinement.hpp"
 #include "span/span_solver.hpp"
 
@@ -31,8 +32,7 @@ SpanSolution solved(const Span& span, int terms, SpanWorkspace& workspace) {
 TEST(PieceCuts, AreWhereASoftRodTurnsBackAndBesideIt) {
   SpanWorkspace workspace;
   Span span = hairpin();
-  const SpanSolution plain = solved(span, 96, workspace);
-  ASSERT_EQ(plain.status, SolveStatus::converged) << plain.message;
+  const SpanSolution plain = test::converged(solved(span, 96, workspace));
   span.cuts = piece_cuts(plain);
   // The lowest point is in the middle, and everything as far from it to both sides.
   const auto is_cut = [&](double s) {
@@ -44,8 +44,7 @@ TEST(PieceCuts, AreWhereASoftRodTurnsBackAndBesideIt) {
   // With as many unknowns the last coefficients are smaller by orders of magnitude.
   constexpr int terms = 24;
   SpanWorkspace other;
-  const SpanSolution cut = solved(span, terms, other);
-  ASSERT_EQ(cut.status, SolveStatus::converged) << cut.message;
+  const SpanSolution cut = test::converged(solved(span, terms, other));
   const int as_many = terms * cut.model->pieces() / plain.model->pieces();
   const SpanSolution uncut = solved(hairpin(), as_many, workspace);
   printf("cut %d pieces tail %g; uncut %d pieces x %d tail %g\n", cut.model->pieces(),
@@ -60,13 +59,11 @@ TEST(PieceCuts, ResolveSoftRodsBetweenManyGrips) {
   for (const std::uint64_t number : {16, 19, 111, 127, 215, 245, 282, 341, 373}) {
     SCOPED_TRACE(number);
     const Problem problem = test::random_problem(number, test::RandomSpace::mixed);
-    const Equilibrium energy = solve_energy(problem);
-    ASSERT_EQ(energy.status, SolveStatus::converged) << energy.message;
+    const Equilibrium energy = test::converged(solve_energy(problem));
     EXPECT_LT(test::defects_of(problem, energy).worst(), 1e-6);
     // Multiple shooting gives up on what is pulled with 1e8 EI/l^2.
     if (number == 19) continue;
-    const Equilibrium exact = solve_exact(problem, {.start = &energy});
-    ASSERT_EQ(exact.status, SolveStatus::converged) << exact.message;
+    const Equilibrium exact = test::converged(solve_exact(problem, {.start = &energy}));
     double distance = 1;
     EXPECT_EQ(test::agreement_of(problem, energy, exact, distance), test::Agreement::same)
         << distance;
@@ -77,12 +74,10 @@ TEST(PieceCuts, OfAShapeAreThoseThatItIsFinishedOn) {
   SpanWorkspace workspace;
   Span span = hairpin();
   span.cuts = piece_cuts(solved(span, 96, workspace));
-  const SpanSolution cut = solved(span, 0, workspace);
-  ASSERT_EQ(cut.status, SolveStatus::converged) << cut.message;
+  const SpanSolution cut = test::converged(solved(span, 0, workspace));
   ASSERT_GT(cut.model->pieces(), 1);
   // The span that it is a shape of need not have them.
-  const SpanSolution finished = finish(cut, SpanOptions(), workspace);
-  EXPECT_EQ(finished.status, SolveStatus::converged) << finished.message;
+  const SpanSolution finished = test::converged(finish(cut, SpanOptions(), workspace));
   EXPECT_EQ(finished.model->pieces(), cut.model->pieces());
   EXPECT_NEAR(finished.energy, cut.energy, 1e-9 * std::abs(cut.energy));
 }

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "polygon/polygon_energy.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -135,8 +136,7 @@ TEST(Polygon, IsTheRigidChainWhenItHasOneClamp) {
       chain.node_forces.row(1).tail(n).setConstant(-gamma * L);
       chain.law = law;
       chain.stiffness = law == JointLaw::paper ? 20 : 1;
-      const ChainResult rigid = solve_chain(chain);
-      ASSERT_TRUE(succeeded(rigid.status));
+      const ChainResult rigid = test::usable(solve_chain(chain));
       PolygonProblem problem;
       problem.rest_lengths = chain.segment_lengths;
       problem.stretch_stiffness = stiff * (1 + gamma);
@@ -147,8 +147,7 @@ TEST(Polygon, IsTheRigidChainWhenItHasOneClamp) {
       problem.held = {{0, {0, 0, 0}}, {1, {L, 0, 0}}};
       Eigen::Matrix3Xd start = Eigen::Matrix3Xd::Zero(3, n + 1);
       for (Eigen::Index i = 0; i < n; ++i) start(0, i + 1) = start(0, i) + problem.rest_lengths[i];
-      const PolygonResult result = solve_polygon(problem, start);
-      ASSERT_TRUE(succeeded(result.status)) << result.message;
+      const PolygonResult result = test::usable(solve_polygon(problem, start));
       // The strain is at most w l / c_c = 1 / stiff.
       EXPECT_LT((result.points.topRows(2) - rigid.points).colwise().norm().maxCoeff(), 2 / stiff)
           << gamma;
@@ -164,8 +163,7 @@ TEST(Polygon, LeavesASaddle) {
   for (Eigen::Index i = 0; i < 42; ++i) {
     start.col(i) = Eigen::Vector3d(0.95 * static_cast<double>(i) / 41, 0, 0);
   }
-  const PolygonResult buckled = solve_polygon(problem, start);
-  ASSERT_TRUE(succeeded(buckled.status)) << buckled.message;
+  const PolygonResult buckled = test::usable(solve_polygon(problem, start));
   // A column clamped at both ends carries 4 pi^2, and more as it bends: about P (1 + e/2), e its
   // relative shortening. The polygon is softer by O(L^2).
   const double thrust = buckled.grip_forces.leftCols<2>().rowwise().sum().x();
@@ -229,20 +227,17 @@ TEST(Polygon, ASoftRopeThatIsCompressedComesToRestInTensOfSteps) {
   problem.obstacles = {{obstacle::Body::half_space({0, -0.1, 0}, Eigen::Vector3d::UnitY()), stiff}};
   Eigen::Matrix3Xd start = arch(problem, 0.5, 0.3);
   start.bottomRows(2) *= 0.05;
-  const PolygonResult rope = solve_polygon(problem, start, {.project_hessian = true});
-  ASSERT_TRUE(succeeded(rope.status)) << rope.message;
+  const PolygonResult rope = test::usable(solve_polygon(problem, start, {.project_hessian = true}));
   EXPECT_LT(rope.evaluations, 150);
 }
 
 TEST(Polygon, ObstaclePushesBackWithItsStiffness) {
   PolygonProblem problem = two_clamps(JointLaw::hooke, 33, 0.9, 20);
-  const PolygonResult free = solve_polygon(problem, arch(problem, 0.9, 0));
-  ASSERT_TRUE(succeeded(free.status));
+  const PolygonResult free = test::usable(solve_polygon(problem, arch(problem, 0.9, 0)));
   const double sag = free.points.row(1).minCoeff();
   problem.obstacles = {
       {obstacle::Body::half_space({0, sag / 2, 0}, Eigen::Vector3d::UnitY()), 1e5}};
-  const PolygonResult held = solve_polygon(problem, arch(problem, 0.9, 0));
-  ASSERT_TRUE(succeeded(held.status)) << held.message;
+  const PolygonResult held = test::usable(solve_polygon(problem, arch(problem, 0.9, 0)));
   const Eigen::ArrayXd depth = (sag / 2 - held.points.row(1).array()).max(0.0);
   EXPECT_GT(depth.maxCoeff(), 0);
   EXPECT_LT(depth.maxCoeff(), 1e-3);
@@ -270,8 +265,8 @@ TEST(Polygon, AToleranceOfLengthsLeavesNoForce) {
   for (const double gamma : {17.0, 19.0, 21.0, 23.0}) {
     PolygonProblem problem = two_clamps(JointLaw::hooke, 17, 0.8, gamma);
     problem.stretch_stiffness = 4e8;
-    const PolygonResult result = solve_polygon(problem, arch(problem, 0.8, 0), {.tolerance = 5e-8});
-    ASSERT_TRUE(succeeded(result.status)) << result.message;
+    const PolygonResult result =
+        test::usable(solve_polygon(problem, arch(problem, 0.8, 0), {.tolerance = 5e-8}));
     const double acting = result.grip_forces.colwise().norm().maxCoeff();
     EXPECT_LT(result.residual, 1e-6 * acting) << gamma;
   }

@@ -16,6 +16,7 @@
 #include "dlo/energy_model/polygon.hpp"
 #include "dlo/energy_model/turns.hpp"
 #include "polygon/polygon_energy.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -153,8 +154,7 @@ TwistedPolygon twisted(const SpatialRod& scene, Eigen::Index points, const Equil
   const Eigen::Matrix3Xd start = solve_energy(without).sample(s).points;
   Eigen::Matrix3Xd held = start;
   for (const HeldPoint& point : problem.held) held.col(point.point) = point.position;
-  const PolygonResult rest = solve_polygon(problem, held);
-  EXPECT_TRUE(succeeded(rest.status)) << rest.message;
+  const PolygonResult rest = test::usable(solve_polygon(problem, held));
   problem.twists = {scene.twist(rest.points)};
   TwistedPolygon polygon{twist_polygon(problem, rest.points), 0};
   const Eigen::Matrix3Xd apart = polygon.result.points - rod.sample(s).points;
@@ -166,8 +166,7 @@ TEST(PolygonTwist, ApproachesTheRodInSecondOrder) {
   for (const double roll : {-2.0, pi, 2 * pi}) {
     SpatialRod scene;
     scene.roll = roll;
-    const Equilibrium rod = solve_energy(scene.rod());
-    ASSERT_TRUE(succeeded(rod.status)) << rod.message;
+    const Equilibrium rod = test::usable(solve_energy(scene.rod()));
     double last_rms = 0;
     double last_twist = 0;
     for (const Eigen::Index points : {20, 40, 80, 160}) {
@@ -190,8 +189,7 @@ TEST(PolygonTwist, OfSeveralTurnsIsTheRodsAndBalances) {
   SpatialRod scene;
   scene.gamma = 1;
   scene.roll = 6 * pi;
-  const Equilibrium rod = solve_energy(scene.rod());
-  ASSERT_TRUE(succeeded(rod.status)) << rod.message;
+  const Equilibrium rod = test::usable(solve_energy(scene.rod()));
   const TwistedPolygon polygon = twisted(scene, 80, rod);
   const PolygonResult& result = polygon.result;
   ASSERT_TRUE(succeeded(result.status)) << result.message;

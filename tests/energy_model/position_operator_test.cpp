@@ -8,6 +8,7 @@
 
 #include "frames/rod_frames.hpp"
 #include "frames/span_shape.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -43,9 +44,7 @@ struct Sampled {
     frames.evaluate(shape.strains, state);
     tangents = state.t.bottomRows(reach.nodes().size());
   }
-  [[nodiscard]] Eigen::Vector3d point(double s) const {
-    return shape.sample(std::vector<double>{s}).points.col(0);
-  }
+  [[nodiscard]] Eigen::Vector3d point(double s) const { return test::point_at(shape, s); }
 };
 
 TEST(PositionOperator, PointsAreThoseOfTheShape) {

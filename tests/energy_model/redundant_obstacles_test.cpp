@@ -11,6 +11,7 @@
 #include "../sanitized.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -89,7 +90,7 @@ TEST(RedundantObstacles, AreAsIfTheyWereNotThere) {
     EXPECT_NEAR(found.energy.total(), alone.energy.total(),
                 1e-9 * std::abs(alone.energy.total()) + 1e-9)
         << i;
-    EXPECT_LT((found.sample(s).points - alone.sample(s).points).cwiseAbs().maxCoeff(), 1e-7) << i;
+    EXPECT_LT(test::gap_between(found, alone, s), 1e-7) << i;
     Eigen::Vector3d pushed = Eigen::Vector3d::Zero();
     for (const Eigen::Vector3d& force : found.obstacles) pushed += force;
     EXPECT_LT((pushed - alone.obstacles.front()).norm(), 1e-6 * (1 + pushed.norm())) << i;
@@ -105,8 +106,7 @@ TEST(RedundantObstacles, ABodyThatSticksOutCounts) {
   problem.obstacles = {{Body::half_space({0, -0.2, 0}, {0, 1, 0})},
                        {Body::box({0.5, -0.2, 0}, axes, {0.3, 0.1, 0.4}, 0.03)},
                        {Body::box({3, -0.2, 0}, axes, {0.3, 0.1, 0.4}, 0.03)}};
-  const Equilibrium found = solve_energy(problem);
-  ASSERT_TRUE(succeeded(found.status)) << found.message;
+  const Equilibrium found = test::usable(solve_energy(problem));
   EXPECT_GT(found.obstacles.at(1).norm(), 0);
   EXPECT_EQ(found.obstacles.at(2).norm(), 0);
   const Eigen::Matrix3Xd points = found.sample(equal_arc_lengths(1, 201)).points;
@@ -123,10 +123,8 @@ TEST(RedundantObstacles, ABlockSunkToItsTopIsNoWall) {
   const Equilibrium alone = solve_energy(problem);
   const Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   problem.obstacles.push_back({Body::box({0.1, -0.25 + 5e-7, 0}, axes, {0.1, 0.1, 4}, 0.01)});
-  const Equilibrium found = solve_energy(problem);
-  ASSERT_TRUE(succeeded(found.status)) << found.message;
-  const std::vector<double> s = equal_arc_lengths(1, 33);
-  EXPECT_LT((found.sample(s).points - alone.sample(s).points).cwiseAbs().maxCoeff(), 1e-8);
+  const Equilibrium found = test::usable(solve_energy(problem));
+  EXPECT_LT(test::gap_between(found, alone), 1e-8);
   EXPECT_LT(found.evaluations, 2 * alone.evaluations);
 }
 
@@ -146,14 +144,12 @@ TEST(RedundantObstacles, ABlockThatStandsOnTheFloorCarriesARodAsADeeperOne) {
                                      Eigen::Matrix3d::Identity(), size, 0.01)}};
       return result;
     };
-    const Equilibrium found = solve_energy(on_block(depth + 0.1));
-    ASSERT_EQ(found.status, SolveStatus::converged) << found.message;
+    const Equilibrium found = test::converged(solve_energy(on_block(depth + 0.1)));
     EXPECT_GT(found.obstacles.at(1).y(), 0);
     EXPECT_LT(found.evaluations, 5000);  // from 1180 and 2322; caught there, 9010 and 16250
-    const Equilibrium deeper = solve_energy(on_block(depth + 0.3), {.start = &found});
-    ASSERT_EQ(deeper.status, SolveStatus::converged) << deeper.message;
-    const std::vector<double> s = equal_arc_lengths(1, 33);
-    EXPECT_LT((found.sample(s).points - deeper.sample(s).points).cwiseAbs().maxCoeff(), 1e-8);
+    const Equilibrium deeper =
+        test::converged(solve_energy(on_block(depth + 0.3), {.start = &found}));
+    EXPECT_LT(test::gap_between(found, deeper), 1e-8);
   }
 }
 

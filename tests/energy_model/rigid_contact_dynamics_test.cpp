@@ -17,6 +17,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
 #include "rigid_polygon.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -146,8 +147,7 @@ TEST(RigidContactDynamics, DampedItComesToRestAsInEquilibrium) {
         std::tuple(peg, 2.0, 16)}) {
     MovingRod rod = cantilever_over(gamma, body);
     rod.material_damping = 0.05;
-    const Equilibrium rest = solve_energy(rod.problem);
-    ASSERT_TRUE(succeeded(rest.status)) << rest.message;
+    const Equilibrium rest = test::usable(solve_energy(rod.problem));
     ASSERT_GT(rest.obstacles[0].norm(), 0.1 * gamma);
     double before = 0;
     for (const double depth : {1e-3, 1e-4}) {
@@ -246,8 +246,7 @@ TEST(RigidContactDynamics, AnObstacleThatTurnsCarriesTheRod) {
   rod.problem.weight_per_length.setZero();
   rod.obstacle_motions = {
       moving({0, -0.1, 0}, Vector3d::UnitX(), {}, Vector3d::UnitZ(), smooth_step(0, 1, 0.5))};
-  const Dynamics result = fall(rod, {0.5, 1, 1.5}, 1e-3);
-  EXPECT_EQ(result.status, SolveStatus::converged) << result.message;
+  const Dynamics result = test::converged(fall(rod, {0.5, 1, 1.5}, 1e-3));
   EXPECT_LT(result.energy_error, 1e-5);
   EXPECT_LE(result.deepest_contact, 1e-3);
   const Eigen::AngleAxisd turn(0.5, Vector3d::UnitZ());

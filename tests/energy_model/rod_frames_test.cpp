@@ -11,6 +11,7 @@
 
 #include "frames/fit_frames.hpp"
 #include "frames/frame_spins.hpp"
+#include "runge_kutta.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -63,14 +64,7 @@ Eigen::Quaterniond integrated(const Eigen::VectorXd& x, int fields, int steps,
   };
   Eigen::Vector4d q(0, 0, 0, 1);
   const double h = 1.0 / steps;
-  for (int i = 0; i < steps; ++i) {
-    const double s = i * h;
-    const Eigen::Vector4d a = rate(s, q);
-    const Eigen::Vector4d b = rate(s + h / 2, q + h / 2 * a);
-    const Eigen::Vector4d c = rate(s + h / 2, q + h / 2 * b);
-    const Eigen::Vector4d d = rate(s + h, q + h * c);
-    q += h / 6 * (a + 2 * b + 2 * c + d);
-  }
+  for (int i = 0; i < steps; ++i) q = test::runge_kutta(rate, i * h, q, h);
   return Eigen::Quaterniond(q).normalized();
 }
 

@@ -10,6 +10,7 @@
 
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -27,7 +28,7 @@ Problem with_block_in_the_way(int seed) {
   Problem problem = heavy_cantilever(gamma, rise);
   const double at = uniform(0.2, 0.4);
   const Equilibrium free = solve_energy(problem);
-  const Eigen::Vector3d point = free.sample(std::vector<double>{at}).points.col(0);
+  const Eigen::Vector3d point = test::point_at(free, at);
   const double turn = std::atan2(point.y(), point.x()) + uniform(-0.3, 0.3);
   const Eigen::Matrix3d axes = Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   const Eigen::Vector3d centre = point + uniform(-0.04, 0.04) * axes.col(1);

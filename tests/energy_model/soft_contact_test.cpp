@@ -14,6 +14,7 @@
 
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -81,15 +82,12 @@ TEST(SoftContact, AThinPegIsSeenBetweenTwoLooks) {
     SCOPED_TRACE(at);
     Problem problem = heavy_cantilever(5, 0);
     const Eigen::Vector3d top =
-        solve_energy(problem).sample(std::vector<double>{at}).points.col(0) +
-        Eigen::Vector3d(0, 0.3 * radius, 0);
+        test::point_at(solve_energy(problem), at) + Eigen::Vector3d(0, 0.3 * radius, 0);
     problem.obstacles = {
         {obstacle::Body::cylinder(top - Eigen::Vector3d(0, radius, 0), {0, 0, 1}, radius)}};
-    const Equilibrium rigid = solve_energy(problem);
-    ASSERT_EQ(rigid.status, SolveStatus::converged) << rigid.message;
+    const Equilibrium rigid = test::converged(solve_energy(problem));
     problem.obstacles[0].stiffness = 1e8;
-    const Equilibrium soft = solve_energy(problem);
-    ASSERT_EQ(soft.status, SolveStatus::converged) << soft.message;
+    const Equilibrium soft = test::converged(solve_energy(problem));
     EXPECT_LT(soft.obstacles[0].y(), rigid.obstacles[0].y());
     EXPECT_NEAR(soft.obstacles[0].y() / rigid.obstacles[0].y(), 1, 0.01);
   }
@@ -187,8 +185,7 @@ TEST(SoftContact, ARodInTheMiddlePlaneOfADeepBoxLeavesIt) {
   const Equilibrium beside = solved(1e-4);
   ASSERT_EQ(middle.status, SolveStatus::converged) << middle.message;
   ASSERT_EQ(beside.status, SolveStatus::converged) << beside.message;
-  const std::vector<double> tip = {1};
-  EXPECT_GT(std::abs(middle.sample(tip).points(2, 0)), 0.01);
+  EXPECT_GT(std::abs(test::point_at(middle, 1).z()), 0.01);
   // By the force across times the way.
   EXPECT_NEAR(middle.energy.total(), beside.energy.total(),
               1.2e-4 * std::abs(middle.obstacles.at(0).z()));
@@ -201,15 +198,12 @@ TEST(SoftContact, WhatIsFollowedIsTheShapeThatItWas) {
   problem.obstacles = {
       {obstacle::Body::cylinder({0.186, -0.561, -0.083}, {0.26, -0.03, 0.965}, 0.12), 8e5}};
   EnergySolver solver;
-  const Equilibrium first = solver.solve(problem);
-  ASSERT_EQ(first.status, SolveStatus::converged) << first.message;
+  const Equilibrium first = test::converged(solver.solve(problem));
   const Equilibrium again = solver.follow(problem);
-  const std::vector<double> s = equal_arc_lengths(1, 21);
   if (solver.followed()) {
-    EXPECT_LT((again.sample(s).points - first.sample(s).points).colwise().norm().maxCoeff(), 1e-6);
+    EXPECT_LT(test::gap_between(again, first), 1e-6);
   }
-  const Equilibrium started = solve_energy(problem, {.start = &first});
-  ASSERT_EQ(started.status, SolveStatus::converged) << started.message;
+  const Equilibrium started = test::converged(solve_energy(problem, {.start = &first}));
   EXPECT_NEAR(started.energy.total(), first.energy.total(), 1e-6);
 }
 

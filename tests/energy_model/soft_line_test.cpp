@@ -12,6 +12,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "dlo/energy_model/taut_line.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -43,8 +44,7 @@ Problem between_clamps(double stiffness) {
 
 /// What points of two shapes are apart at most, over l = 1.
 double lines_apart(const Equilibrium& a, const Equilibrium& b) {
-  const std::vector<double> s = equal_arc_lengths(1, 501);
-  return (a.sample(s).points - b.sample(s).points).colwise().norm().maxCoeff();
+  return test::gap_between(a, b, equal_arc_lengths(1, 501));
 }
 
 // A catenary knows nothing of a stream, nor of what follows a line that is pulled straight.
@@ -81,8 +81,7 @@ TEST(SoftLine, HasTheTensionOfTheCatenary) {
     EXPECT_LT((solved.grips[0].force - Vector3d(-a, 0, 0.3)).norm(), 1e-12);
     EXPECT_LT((solved.grips[1].force - Vector3d(a, 0, 0.7)).norm(), 1e-12);
     EXPECT_LT(solved.error_estimate, 1e-10);
-    const std::vector<double> middle = {0.3};
-    EXPECT_NEAR(solved.sample(middle).points(2, 0), 0.3 + a - std::hypot(a, 0.3), 1e-12);
+    EXPECT_NEAR(test::point_at(solved, 0.3).z(), 0.3 + a - std::hypot(a, 0.3), 1e-12);
   }
 }
 
@@ -95,8 +94,7 @@ TEST(SoftLine, IsAsNearToTheRodAsItSays) {
       const Problem problem = make(stiffness);
       const std::optional<Equilibrium> soft = soft_line(problem);
       ASSERT_TRUE(soft);
-      const Equilibrium rod = solve_energy(problem);
-      ASSERT_EQ(rod.status, SolveStatus::converged) << rod.message;
+      const Equilibrium rod = test::converged(solve_energy(problem));
       const double missed = lines_apart(*soft, rod);
       EXPECT_LT(missed, soft->error_estimate) << stiffness;
       // Second order in the layers' lengths, which is first order in EI.
@@ -144,8 +142,7 @@ Problem on_floor(double stiffness) {
 }
 
 TEST(SoftLine, LiesOnAFloor) {
-  const Equilibrium soft = solve_energy(on_floor(1e-12));
-  ASSERT_EQ(soft.status, SolveStatus::converged) << soft.message;
+  const Equilibrium soft = test::converged(solve_energy(on_floor(1e-12)));
   ASSERT_EQ(soft.contacts.size(), 1U);
   const ContactPart& part = soft.contacts[0];
   // From where it lies the arm is as long as its weight, and its length and way are a catenary's.
@@ -163,8 +160,7 @@ TEST(SoftLine, LiftsOffAsTheRodDoes) {
   const Problem problem = on_floor(1e-5);
   const std::optional<Equilibrium> soft = soft_line(problem);
   ASSERT_TRUE(soft);
-  const Equilibrium rod = solve_energy(problem);
-  ASSERT_TRUE(succeeded(rod.status)) << rod.message;
+  const Equilibrium rod = test::usable(solve_energy(problem));
   EXPECT_LT(lines_apart(*soft, rod), soft->error_estimate);
   ASSERT_EQ(rod.contacts.size(), 1U);
   EXPECT_NEAR(soft->contacts[0].end, rod.contacts[0].end, 1e-3);

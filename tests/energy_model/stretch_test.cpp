@@ -7,9 +7,12 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "../says.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "kirchhoff/rod_flow.hpp"
+#include "runge_kutta.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -30,8 +33,7 @@ TEST(Stretch, OfARodThatHangsIsTheIntegralOfItsTension) {
   problem.weight_per_length = {0, -3, 0};
   problem.grips = {{0, {1, 1, 0}, -Vector3d::UnitY(), {}}};
   problem.loads = {{2, {0, -1.5, 0}}};
-  const Equilibrium solved = solve_exact(problem);
-  ASSERT_EQ(solved.status, SolveStatus::converged) << solved.message;
+  const Equilibrium solved = test::converged(solve_exact(problem));
   const std::vector<double> s = {0, 0.7, 2};
   const Samples shape = solved.sample(s);
   for (std::size_t i = 0; i < s.size(); ++i) {
@@ -64,8 +66,7 @@ TEST(Stretch, OfALineIsTheElasticCatenarys) {
     Problem rigid = problem;
     rigid.axial_stiffness.reset();
     const Equilibrium start = solve_energy(rigid);
-    const Equilibrium solved = solve_exact(problem, {.start = &start});
-    ASSERT_EQ(solved.status, SolveStatus::converged) << solved.message;
+    const Equilibrium solved = test::converged(solve_exact(problem, {.start = &start}));
     tension[i] = solved.grips[1].force.norm() / w;
   }
   const double closed = std::hypot(0.5, 0.6);
@@ -92,20 +93,12 @@ TEST(Stretch, OfACantileverIsThatOfAnIntegrationFromItsClamp) {
   problem.weight_per_length = {0, -2, 0};
   problem.grips = {{0, {0, 0, 0}, Vector3d::UnitX(), {}}};
   problem.loads = {{1, {4, -3, 0}}};
-  const Equilibrium solved = solve_exact(problem);
-  ASSERT_EQ(solved.status, SolveStatus::converged) << solved.message;
+  const Equilibrium solved = test::converged(solve_exact(problem));
   const PlanarStep step{1.3, 60, 2, -solved.grips[0].force.head<2>()};
   Eigen::Vector4d y(0, -solved.grips[0].torque.z(), 0, 0);
   constexpr int steps = 2000;
-  const double h = 1.0 / steps;
-  for (int i = 0; i < steps; ++i) {
-    const double s = i * h;
-    const Eigen::Vector4d a = step.rate(s, y);
-    const Eigen::Vector4d b = step.rate(s + h / 2, y + h / 2 * a);
-    const Eigen::Vector4d c = step.rate(s + h / 2, y + h / 2 * b);
-    const Eigen::Vector4d d = step.rate(s + h, y + h * c);
-    y += h / 6 * (a + 2 * b + 2 * c + d);
-  }
+  const auto rate = [&step](double s, const Eigen::Vector4d& at) { return step.rate(s, at); };
+  for (int i = 0; i < steps; ++i) y = test::runge_kutta(rate, 1.0 * i / steps, y, 1.0 / steps);
   const std::vector<double> tip = {1};
   const Vector3d point = solved.sample(tip).points.col(0);
   EXPECT_NEAR(y[1], 0, 1e-10);
@@ -121,21 +114,18 @@ TEST(Stretch, HoldsARodBetweenClampsThatAreFartherApart) {
   Problem problem = rod(2000);
   problem.length = 2;
   problem.grips = {{0, {1, 0, 0}, Vector3d::UnitX(), {}}, {2, {3.02, 0, 0}, Vector3d::UnitX(), {}}};
-  const Equilibrium solved = solve_exact(problem);
-  ASSERT_EQ(solved.status, SolveStatus::converged) << solved.message;
+  const Equilibrium solved = test::converged(solve_exact(problem));
   EXPECT_NEAR(solved.grips[1].force.x(), 20, 1e-9);
   EXPECT_NEAR(solved.grips[0].force.x(), -20, 1e-9);
   EXPECT_NEAR(solved.energy.stretch, 0.2, 1e-11);
   // Its own length apart, and bent by its weight.
   problem.grips[1].position.x() = 3;
   problem.weight_per_length = {0, -1, 0};
-  const Equilibrium sags = solve_exact(problem);
-  ASSERT_EQ(sags.status, SolveStatus::converged) << sags.message;
-  const std::vector<double> middle = {1};
+  const Equilibrium sags = test::converged(solve_exact(problem));
   // Less than a beam's w l^4 / (384 EI) by what its stretch takes.
   const double beam = std::pow(2.0, 4) / 384;
-  EXPECT_NEAR(sags.sample(middle).points(1, 0), -beam, 0.5 * beam);
-  EXPECT_LT(-sags.sample(middle).points(1, 0), beam);
+  EXPECT_NEAR(test::point_at(sags, 1).y(), -beam, 0.5 * beam);
+  EXPECT_LT(-test::point_at(sags, 1).y(), beam);
   EXPECT_GT(sags.grips[1].force.x(), 0);
 }
 
@@ -145,10 +135,8 @@ TEST(Stretch, MovesTheLoadThatBucklesAColumn) {
     Problem problem = rod(50);
     problem.grips = {{0, {0, 0, 0}, Vector3d::UnitX(), {}}};
     problem.loads = {{1, {-load, 0, 0}}};
-    const Equilibrium solved = solve_exact(problem);
-    ASSERT_EQ(solved.status, SolveStatus::converged) << solved.message;
-    const std::vector<double> tip = {1};
-    const Vector3d point = solved.sample(tip).points.col(0);
+    const Equilibrium solved = test::converged(solve_exact(problem));
+    const Vector3d point = test::point_at(solved, 1);
     if (load < 2.6) {
       EXPECT_NEAR(point.x(), 1 - load / 50, 1e-10);
       EXPECT_GT(solved.smallest_eigenvalue, 0);
@@ -164,10 +152,8 @@ TEST(Stretch, PressesARodBetweenClampsUntilItBuckles) {
     Problem problem = rod(1000);
     problem.grips = {{0, {0, 0, 0}, Vector3d::UnitX(), {}},
                      {1, {1 - delta, 0, 0}, Vector3d::UnitX(), {}}};
-    const Equilibrium solved = solve_exact(problem);
-    ASSERT_EQ(solved.status, SolveStatus::converged) << solved.message;
-    const std::vector<double> middle = {0.5};
-    const double bent = solved.sample(middle).points.col(0).tail<2>().norm();
+    const Equilibrium solved = test::converged(solve_exact(problem));
+    const double bent = test::point_at(solved, 0.5).tail<2>().norm();
     if (1000 * delta * (1 - delta) < 4 * std::pow(std::acos(-1.0), 2)) {
       EXPECT_NEAR(solved.energy.total(), 1000 * delta * delta / 2, 1e-9);
       EXPECT_LT(bent, 1e-9);
@@ -225,12 +211,9 @@ TEST(Stretch, DerivativesAreThoseOfDifferences) {
 TEST(Stretch, IsRefusedByNameByWhatDoesNotStretch) {
   Problem problem = rod(60);
   problem.grips = {{0, {0, 0, 0}, Vector3d::UnitX(), {}}};
-  try {
-    (void)solve_energy(problem);
-    FAIL();
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("solve_exact() alone"), std::string::npos);
-  }
+  EXPECT_TRUE(
+      test::says(test::error_of<std::invalid_argument>([&] { return solve_energy(problem); }),
+                 {"solve_exact() alone"}));
   problem.obstacles = {{obstacle::Body::half_space({0, -1, 0}, Vector3d::UnitY())}};
   EXPECT_THROW((void)solve_exact(problem), std::invalid_argument);
 }

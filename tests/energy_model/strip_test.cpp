@@ -11,9 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "../says.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "random_problems.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -30,9 +32,7 @@ Equilibrium exact(const Problem& problem) { return solve_exact(problem); }
 class BothModels : public testing::TestWithParam<std::pair<const char*, Solver>> {
  protected:
   [[nodiscard]] static Equilibrium solved(const Problem& problem) {
-    Equilibrium result = GetParam().second(problem);
-    EXPECT_EQ(result.status, SolveStatus::converged) << result.message;
-    return result;
+    return test::converged(GetParam().second(problem));
   }
 };
 
@@ -56,11 +56,6 @@ Problem round_rod(Problem of, double stiffness) {
   of.bending_stiffness = stiffness;
   of.bending_stiffness_2.reset();
   return of;
-}
-
-double gap(const Equilibrium& a, const Equilibrium& b) {
-  const std::vector<double> s = equal_arc_lengths(1, 41);
-  return (a.sample(s).points - b.sample(s).points).colwise().norm().maxCoeff();
 }
 
 /// Held in ways that a round rod can be held in too.
@@ -92,7 +87,7 @@ TEST_P(BothModels, EqualStiffnessesAreARoundRod) {
     const Problem& problem = problems[i];
     const Equilibrium two = solved(problem);
     const Equilibrium one = solved(round_rod(problem, 1));
-    EXPECT_LT(gap(two, one), 1e-9);
+    EXPECT_LT(test::gap_between(two, one), 1e-9);
     EXPECT_NEAR(two.energy.bending, one.energy.bending, 1e-9);
     EXPECT_NEAR(two.energy.total(), one.energy.total(), 1e-9);
     for (std::size_t g = 0; g < problem.grips.size(); ++g) {
@@ -120,8 +115,8 @@ TEST_P(BothModels, InAPlaneIsTheRoundRodOfItsStiffnessThere) {
       plain.sections[0].bending_stiffness = about_d2 ? 1.2 : 4;
       plain.sections[0].bending_stiffness_2.reset();
       const Equilibrium two = solved(problem);
-      EXPECT_LT(gap(two, solved(plain)), 1e-9);
-      const Samples samples = two.sample(std::vector<double>{at});
+      EXPECT_LT(test::gap_between(two, solved(plain)), 1e-9);
+      const Samples samples = test::sample_at(two, at);
       const Vector3d d1 = Eigen::AngleAxisd(2 * pi * turns, Vector3d::UnitX()) * Vector3d::UnitY();
       EXPECT_LT((samples.d1.col(0) - d1).norm(), 1e-9);
     }
@@ -139,7 +134,7 @@ TEST_P(BothModels, BendsObliquelyUnderAForceBetweenItsAxes) {
   const Vector3d d1 = Vector3d(0, 1, 1).normalized();
   const Vector3d d2 = Vector3d::UnitX().cross(d1);
   const Vector3d expected = F / 3 * (d1.y() / B2 * d1 + d2.y() / B1 * d2);
-  Vector3d tip = solved(problem).sample(std::vector<double>{1}).points.col(0);
+  Vector3d tip = test::point_at(solved(problem), 1);
   tip.x() = 0;  // second order
   EXPECT_LT((tip - expected).norm(), F * F);
   EXPECT_GT(std::abs(tip.z()), 0.5 * F / 3 * (1 / B1 - 1 / B2) * 0.99);
@@ -173,9 +168,8 @@ double lateral_buckling_load(const Solver& solve, double weak, double torsion, d
   const auto eigenvalue = [&](double load) {
     Problem problem = strip(weak, weak / softness, torsion);
     problem.loads = {{1, {0, -load, 0}}};
-    const Equilibrium result = solve(problem);
-    EXPECT_EQ(result.status, SolveStatus::converged) << result.message;
-    EXPECT_LT(std::abs(result.sample(std::vector<double>{1}).points(2, 0)), 1e-9);
+    const Equilibrium result = test::converged(solve(problem));
+    EXPECT_LT(std::abs(test::point_at(result, 1).z()), 1e-9);
     return result.smallest_eigenvalue;
   };
   const double h = -1e-3 * guess;
@@ -211,7 +205,7 @@ TEST_P(BothModels, BeyondThatLoadLeavesItsPlane) {
   Problem problem = strip(1, 50, 0.6);
   problem.loads = {{1, {0, -3.4, 0}}};
   const Equilibrium result = solved(problem);
-  EXPECT_GT(std::abs(result.sample(std::vector<double>{1}).points(2, 0)), 0.1);
+  EXPECT_GT(std::abs(test::point_at(result, 1).z()), 0.1);
 }
 
 TEST(Strip, ModelsAgreeInSpace) {
@@ -220,11 +214,9 @@ TEST(Strip, ModelsAgreeInSpace) {
     Problem problem = test::random_problem(number, test::RandomSpace::strip);
     problem.weight_per_length *= 0.1;
     SCOPED_TRACE(number);
-    const Equilibrium one = solve_energy(problem);
-    ASSERT_EQ(one.status, SolveStatus::converged) << one.message;
-    const Equilibrium other = solve_exact(problem, {.start = &one});
-    ASSERT_TRUE(succeeded(other.status)) << other.message;
-    EXPECT_LT(gap(one, other), 1e-8);
+    const Equilibrium one = test::converged(solve_energy(problem));
+    const Equilibrium other = test::usable(solve_exact(problem, {.start = &one}));
+    EXPECT_LT(test::gap_between(one, other), 1e-8);
     EXPECT_NEAR(one.energy.total(), other.energy.total(), 1e-8);
     EXPECT_NEAR(one.energy.twisting, other.energy.twisting, 1e-8);
     ++same;
@@ -239,24 +231,18 @@ TEST(Strip, WithoutClampsLiesOnItsSoftSide) {
     problem.grips = {{0, {0, 0, 0}, std::nullopt, std::nullopt},
                      {1, {0.9, 0, 0}, std::nullopt, std::nullopt}};
     problem.weight_per_length = {0, -3, 0};
-    const Equilibrium result = solve_energy(problem);
-    ASSERT_TRUE(succeeded(result.status)) << result.message;
+    const Equilibrium result = test::usable(solve_energy(problem));
     const Equilibrium round = solve_energy(round_rod(problem, std::min(1.0, about_d2)));
     EXPECT_NEAR(result.energy.total(), round.energy.total(), 1e-9);
   }
 }
 
 std::string refused(const Problem& problem) {
-  try {
-    check(problem);
-  } catch (const std::invalid_argument& error) {
-    return error.what();
-  }
-  return "";
+  return test::error_of<std::invalid_argument>([&] { return (check(problem), 0); });
 }
 
 TEST(Strip, WantsPositiveStiffnessesAndTorsion) {
-  EXPECT_EQ(refused(strip(1, 2)), "");
+  EXPECT_EQ(refused(strip(1, 2)), "no error");
   EXPECT_NE(refused(strip(1, 0)).find("bending_stiffness_2"), std::string::npos);
   EXPECT_NE(refused(strip(1, 2, 0)).find("two bending stiffnesses"), std::string::npos);
   Problem problem = strip(1, 2);
@@ -265,10 +251,10 @@ TEST(Strip, WantsPositiveStiffnessesAndTorsion) {
   // A section alone makes directors.
   problem = round_rod(problem, 1);
   problem.sections[0].bending_stiffness_2 = 3;
-  EXPECT_EQ(refused(problem), "");
+  EXPECT_EQ(refused(problem), "no error");
   EXPECT_TRUE(has_material_directors(problem));
   problem.torsional_stiffness = 0;
-  EXPECT_NE(refused(problem), "");
+  EXPECT_NE(refused(problem), "no error");
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "rolled_clamps.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -104,8 +105,7 @@ TEST(Roll, OfAClampThatTurnsRightBackKeepsThePlanesNormal) {
   Problem problem = rolled({0, 0.3, 0}, {-1, 0, 0}, 0);
   problem.grips[0].frame->d1 = Vector3d(0, 0, 1);
   EXPECT_LT((held_d1(problem, problem.grips[1]) - Vector3d::UnitZ()).norm(), 1e-12);
-  const Equilibrium u = solve_energy(problem);
-  EXPECT_EQ(u.status, SolveStatus::converged) << u.message;
+  const Equilibrium u = test::converged(solve_energy(problem));
   EXPECT_NEAR(u.twists.at(0).torque, 0, 1e-9);
   problem.grips[1].position = {0.3, 0, 0};
   EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);

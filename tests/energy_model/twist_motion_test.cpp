@@ -12,6 +12,8 @@
 
 #include "dlo/energy_model/dynamics.hpp"
 #include "dlo/energy_model/energy.hpp"
+#include "runge_kutta.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -125,13 +127,8 @@ class SpringingLinks {
   void advance(double to, double longest_step) {
     const int steps = static_cast<int>(std::ceil((to - time_) / longest_step));
     const double dt = (to - time_) / steps;
-    for (int k = 0; k < steps; ++k) {
-      const Eigen::VectorXd k1 = rates(state_);
-      const Eigen::VectorXd k2 = rates(state_ + dt / 2 * k1);
-      const Eigen::VectorXd k3 = rates(state_ + dt / 2 * k2);
-      const Eigen::VectorXd k4 = rates(state_ + dt * k3);
-      state_ += dt / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
-    }
+    const auto rate = [this](double, const Eigen::VectorXd& state) { return rates(state); };
+    for (int k = 0; k < steps; ++k) state_ = test::runge_kutta(rate, 0.0, state_, dt);
     time_ = to;
   }
 
@@ -208,10 +205,8 @@ TEST(TwistMotion, AStraightenedWireCurlsAsAChainOfLinks) {
     expected.emplace_back((4 * fine.tip() - coarse.tip()) / 3);  // errors go with h^2
   }
   for (const bool spatial : {false, true}) {
-    DynamicsOptions options;
-    options.spatial = spatial;
-    const Dynamics moved = simulate(rod, straight_rod(along), times, options);
-    ASSERT_EQ(moved.status, SolveStatus::converged) << moved.message;
+    const Dynamics moved =
+        test::converged(simulate(rod, straight_rod(along), times, {.spatial = spatial}));
     EXPECT_LT(moved.energy_error, 1e-6);
     for (std::size_t k = 0; k < times.size(); ++k) {
       const Eigen::Vector3d tip = moved.frames[k].sample(std::vector<double>{1.0}).points.col(0);
@@ -232,10 +227,9 @@ TEST(TwistMotion, TorqueOfASlackRodIsThatOfItsTurns) {
   MovingRod rod = moving_rod(problem);
   rod.breaks = {0, 1};
   rod.motions = {nullptr, rolling(problem.grips[1], 1, 1)};
-  const Equilibrium rest = solve_energy(problem);
-  ASSERT_TRUE(succeeded(rest.status));
-  const Dynamics moved = simulate(rod, rest.sample, std::vector<double>{0.25, 0.5, 1});
-  ASSERT_EQ(moved.status, SolveStatus::converged) << moved.message;
+  const Equilibrium rest = test::usable(solve_energy(problem));
+  const Dynamics moved =
+      test::converged(simulate(rod, rest.sample, std::vector<double>{0.25, 0.5, 1}));
   for (const MovingFrame& frame : moved.frames) {
     const Samples ends = frame.sample(std::vector<double>{0, 0.8});
     const double turned = std::atan2(ends.d1.col(1).z(), ends.d1.col(1).y());

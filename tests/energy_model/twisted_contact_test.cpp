@@ -14,6 +14,7 @@
 #include "equilibrium_balance.hpp"
 #include "polygon_of_rod.hpp"
 #include "problems.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -36,8 +37,7 @@ Problem with_floor_at(Problem problem, double height) {
 }
 
 Equilibrium solved_touching(const Problem& problem) {
-  Equilibrium result = solve_energy(problem);
-  EXPECT_TRUE(succeeded(result.status)) << result.message;
+  Equilibrium result = test::usable(solve_energy(problem));
   EXPECT_FALSE(result.contacts.empty());
   EXPECT_LE(result.penetration, allowed_penetration * problem.length);
   return result;
@@ -66,7 +66,7 @@ TEST(TwistedContact, ForcesAndTorquesBalanceOverAPeg) {
     SCOPED_TRACE("roll " + std::to_string(roll));
     Problem problem = framed_rod(30, roll);
     const Equilibrium free = solve_energy(problem);
-    const Eigen::Vector3d middle = free.sample(std::array{0.5}).points.col(0);
+    const Eigen::Vector3d middle = test::point_at(free, 0.5);
     problem.obstacles = {
         {obstacle::Body::cylinder(middle - Eigen::Vector3d(0, 0.03, 0), {0.2, 0, 1}, 0.08)}};
     const Equilibrium result = solved_touching(problem);
@@ -96,8 +96,7 @@ TEST(TwistedContact, PolygonsOfMoreSegmentsComeNearer) {
   double before = 1;
   for (const Eigen::Index segments : {32, 64, 128}) {
     const test::PolygonOfRod polygon(problem, rod, segments);
-    const PolygonResult rest = polygon.at_rest();
-    ASSERT_TRUE(succeeded(rest.status)) << rest.message;
+    const PolygonResult rest = test::usable(polygon.at_rest());
     const double moved = (rest.points - polygon.points).colwise().norm().maxCoeff();
     EXPECT_LT(moved, before / 2);
     before = moved;
@@ -108,8 +107,7 @@ TEST(TwistedContact, PolygonsOfMoreSegmentsComeNearer) {
 TEST(TwistedContact, WhatTouchesOnlyOnceItIsTwistedIsFound) {
   // Without twist the rod hangs in its plane; the wall is beside it.
   Problem problem = framed_rod(5, 6);
-  const Equilibrium free = solve_energy(problem);
-  ASSERT_TRUE(succeeded(free.status)) << free.message;
+  const Equilibrium free = test::usable(solve_energy(problem));
   const auto s = equal_arc_lengths(1, 101);
   const Eigen::VectorXd z = free.sample(s).points.row(2);
   const double side = z.maxCoeff() > -z.minCoeff() ? 1 : -1;
@@ -125,8 +123,7 @@ TEST(TwistedContact, IsFollowedWhileTheFloorRisesAndTheClampTurns) {
   ASSERT_TRUE(succeeded(solver.solve(with_floor_at(framed_rod(60, 1), -0.15)).status));
   for (int i = 1; i <= 5; ++i) {
     const Problem problem = with_floor_at(framed_rod(60, 1 + 0.1 * i), -0.15 + 0.005 * i);
-    const Equilibrium followed = solver.follow(problem);
-    ASSERT_TRUE(succeeded(followed.status)) << followed.message;
+    const Equilibrium followed = test::usable(solver.follow(problem));
     EXPECT_NEAR(followed.energy.total(), solved_touching(problem).energy.total(), 1e-8);
   }
   EXPECT_TRUE(solver.followed());
@@ -135,10 +132,7 @@ TEST(TwistedContact, IsFollowedWhileTheFloorRisesAndTheClampTurns) {
 TEST(TwistedContact, StartedFromItsOwnShapeItIsConfirmed) {
   const Problem problem = with_floor_at(framed_rod(60, 2), -0.15);
   const Equilibrium rod = solved_touching(problem);
-  EnergyOptions options;
-  options.start = &rod;
-  const Equilibrium again = solve_energy(problem, options);
-  ASSERT_TRUE(succeeded(again.status)) << again.message;
+  const Equilibrium again = test::usable(solve_energy(problem, {.start = &rod}));
   EXPECT_NEAR(again.energy.total(), rod.energy.total(), 1e-9);
   EXPECT_LT(again.evaluations, rod.evaluations);
 }

@@ -10,6 +10,7 @@
 
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -64,8 +65,7 @@ std::vector<double> turns(const Samples& samples) {
 TEST(TwistedMaterial, IsWhereBothClampsHoldItWhateverTheTwist) {
   for (const double roll : {0.0, 1.0, -2.5, 2 * pi, 9.0}) {
     const Problem problem = rolled_section(roll);
-    const Equilibrium found = solve_energy(problem);
-    ASSERT_TRUE(succeeded(found.status)) << found.message;
+    const Equilibrium found = test::usable(solve_energy(problem));
     const Samples samples = found.sample(equal_arc_lengths(1, 21));
     expect_unit_and_across(samples);
     // To what the end's frame may miss.
@@ -79,8 +79,7 @@ TEST(TwistedMaterial, TurnsEvenlyAndBySectionsAsTheirTorsionalStiffnessesSay) {
   for (const bool has_section : {false, true}) {
     Problem problem = rolled_section(4);
     if (has_section) problem.sections = {{0.25, 0.5, 1, 2.1, problem.weight_per_length}};
-    const Equilibrium found = solve_energy(problem);
-    ASSERT_TRUE(succeeded(found.status)) << found.message;
+    const Equilibrium found = test::usable(solve_energy(problem));
     const std::vector<double> angles = turns(found.sample(equal_arc_lengths(1, steps + 1)));
     double sum = 0;
     for (Eigen::Index i = 0; i < steps; ++i) {
@@ -100,8 +99,7 @@ TEST(TwistedMaterial, GoesOnWithoutTwistBesideWhatIsTwisted) {
   problem.grips[0].at = 0.2;
   problem.grips[1].at = 0.8;
   problem.grips[1].position = problem.grips[0].position + Vector3d(0.4, 0.1, 0.1);
-  const Equilibrium found = solve_energy(problem);
-  ASSERT_TRUE(succeeded(found.status)) << found.message;
+  const Equilibrium found = test::usable(solve_energy(problem));
   constexpr Eigen::Index steps = 1000;
   const Samples samples = found.sample(equal_arc_lengths(1, steps + 1));
   expect_unit_and_across(samples);
@@ -124,7 +122,7 @@ TEST(TwistedMaterial, IsThatOfARodWithMaterialDirectors) {
   const Equilibrium b = solve_energy(with_directors, {.start = &a});
   ASSERT_TRUE(succeeded(a.status) && succeeded(b.status)) << a.message << ", " << b.message;
   const std::vector<double> s = equal_arc_lengths(1, 41);
-  ASSERT_LT((a.sample(s).points - b.sample(s).points).colwise().norm().maxCoeff(), 1e-8);
+  ASSERT_LT(test::gap_between(a, b, s), 1e-8);
   EXPECT_LT((a.sample(s).d1 - b.sample(s).d1).colwise().norm().maxCoeff(), 1e-7);
 }
 

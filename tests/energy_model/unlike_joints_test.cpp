@@ -8,6 +8,7 @@
 
 #include "dlo/energy_model/chain.hpp"
 #include "dlo/energy_model/polygon.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -114,22 +115,19 @@ TEST(UnlikeJoints, ThePolygonsGradientIsItsEnergysDerivative) {
 TEST(UnlikeJoints, AFreeChainTakesItsTurnsAndHasNoEnergy) {
   ChainProblem problem = bent_chain();
   problem.node_forces.setZero();
-  const ChainResult result = solve_chain(problem);
-  ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+  const ChainResult result = test::converged(solve_chain(problem));
   const Eigen::VectorXd turned = result.angles.tail(n - 1) - result.angles.head(n - 1);
   EXPECT_LT((turned - problem.natural_turns).cwiseAbs().maxCoeff(), 1e-9);
   EXPECT_NEAR(result.bending_energy, 0, 1e-15);
 }
 
 TEST(UnlikeJoints, TheStiffPolygonComesToRestWhereTheRigidChainDoes) {
-  const ChainResult chain = solve_chain(bent_chain());
-  ASSERT_EQ(chain.status, SolveStatus::converged) << chain.message;
+  const ChainResult chain = test::converged(solve_chain(bent_chain()));
   double before = 0;
   for (const double stretch : {1e5, 1e6}) {
     PolygonProblem problem = bent_polygon();
     problem.stretch_stiffness = stretch;
-    const PolygonResult polygon = solve_polygon(problem, straight_start(problem));
-    ASSERT_TRUE(succeeded(polygon.status)) << polygon.message;
+    const PolygonResult polygon = test::usable(solve_polygon(problem, straight_start(problem)));
     EXPECT_TRUE(polygon.points.row(2).isZero(0));
     const double apart = (polygon.points.topRows<2>() - chain.points).cwiseAbs().maxCoeff();
     // What is left is stretch, which falls with its stiffness: some 2 N over it.

@@ -14,6 +14,7 @@
 
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -35,14 +36,12 @@ Grip clamped(double at, const Vector3d& position, const Vector3d& direction) {
 }
 
 Vibrations modes_of(const Problem& problem, int count, std::vector<PointMass> points = {}) {
-  const Equilibrium shape = solve_energy(problem);
-  EXPECT_TRUE(succeeded(shape.status)) << shape.message;
+  const Equilibrium shape = test::usable(solve_energy(problem));
   Inertia inertia;
   inertia.mass_per_length = 1;
   inertia.of_sections.assign(problem.sections.size(), 1);
   inertia.point_masses = std::move(points);
-  Vibrations found = vibrations(problem, inertia, shape, {.count = count});
-  EXPECT_EQ(found.status, SolveStatus::converged) << found.message;
+  Vibrations found = test::converged(vibrations(problem, inertia, shape, {.count = count}));
   return found;
 }
 
@@ -98,8 +97,8 @@ TEST(Vibrations, OfARodHeldStraightAreThoseOfAClampedBeam) {
   for (const Vector3d& along : {Vector3d(1, 0, 0), Vector3d(0.48, -0.6, 0.64)}) {
     const Problem rod = taut_rod(along);
     ASSERT_TRUE(is_held_straight(rod));
-    const Vibrations found = taut_vibrations(rod, {.mass_per_length = 1}, 0, {.count = 6});
-    ASSERT_EQ(found.status, SolveStatus::converged) << found.message;
+    const Vibrations found =
+        test::converged(taut_vibrations(rod, {.mass_per_length = 1}, 0, {.count = 6}));
     ASSERT_EQ(found.modes.size(), 6U);
     for (std::size_t k = 0; k < 6; ++k) {
       const double exact = roots[k / 2] * roots[k / 2];
@@ -253,10 +252,8 @@ TEST(Vibrations, AboutHeavyShapesMeetTheLinearisedEquations) {
     const Vector3d weight(0, -gamma, 0);
     const Vector3d direction = Vector3d(std::cos(0.4), std::sin(0.4), 0);
     const Problem problem = unit_rod(weight, {clamped(0, Vector3d::Zero(), direction)});
-    const Equilibrium shape = solve_exact(problem);
-    ASSERT_TRUE(succeeded(shape.status));
-    const std::vector<double> end = {1};
-    const Samples tip = shape.sample(end);
+    const Equilibrium shape = test::usable(solve_exact(problem));
+    const Samples tip = test::sample_at(shape, 1);
     const auto miss = [&](double omega) {
       return miss_at_clamp(tip.points.col(0), tip.tangents.col(0), direction, weight,
                            omega * omega);

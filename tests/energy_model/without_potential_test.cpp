@@ -19,7 +19,9 @@
 #include "kirchhoff/rod_span.hpp"
 #include "problems.hpp"
 #include "random_problems.hpp"
+#include "runge_kutta.hpp"
 #include "shooting/shooting_system.hpp"
+#include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -62,13 +64,8 @@ TipState tip_rates(const TipRod& rod, const TipState& y) {
 /// Runge and Kutta's classical method from the tip to the clamp.
 TipState integrated_to_clamp(const TipRod& rod, TipState y, int steps = 2000) {
   const double h = -1.0 / steps;
-  for (int i = 0; i < steps; ++i) {
-    const TipState a = tip_rates(rod, y);
-    const TipState b = tip_rates(rod, y + h / 2 * a);
-    const TipState c = tip_rates(rod, y + h / 2 * b);
-    const TipState d = tip_rates(rod, y + h * c);
-    y += h / 6 * (a + 2 * b + 2 * c + d);
-  }
+  const auto rates = [&rod](double, const TipState& at) { return tip_rates(rod, at); };
+  for (int i = 0; i < steps; ++i) y = test::runge_kutta(rates, 1 + i * h, y, h);
   return y;
 }
 
@@ -115,13 +112,11 @@ Eigen::Vector3d dragged_tip(const TipRod& rod, const Eigen::Vector3d& direction,
 }
 
 Eigen::Vector3d place_along(const Equilibrium& shape, double at = 1) {
-  const std::vector<double> s = {at};
-  return shape.sample(s).points.col(0);
+  return test::point_at(shape, at);
 }
 
 Eigen::Vector3d tip_tangent_of(const Equilibrium& shape) {
-  const std::vector<double> s = {1};
-  return shape.sample(s).tangents.col(0);
+  return test::sample_at(shape, 1).tangents.col(0);
 }
 
 Problem held_along(const Eigen::Vector3d& direction) {
@@ -206,8 +201,7 @@ TEST(WithoutPotential, ACoupleAcrossAClampInAnyPlaneRollsTheRodUp) {
   for (const double lambda : {0.8, 2.0}) {
     Problem problem = held_along(direction);
     problem.loads = {{1, {0, 0, 0}, lambda * pi * axis}};
-    const Equilibrium result = solve_exact(problem);
-    ASSERT_TRUE(succeeded(result.status)) << result.message;
+    const Equilibrium result = test::usable(solve_exact(problem));
     const double angle = lambda * pi;
     const Eigen::Vector3d expected =
         std::sin(angle) / angle * direction + (1 - std::cos(angle)) / angle * axis.cross(direction);
@@ -288,9 +282,7 @@ TEST(WithoutPotential, LoadsThatFollowInSpaceTwistAndBendEveryRod) {
     const TipRod rod{{1, second, 0.6}, Eigen::Vector3d::Zero(), {}};
     EXPECT_LT((place_along(result) - followed_tip(rod, clamp, force, torque)).norm(), 1e-9);
     // It is found again from itself.
-    ExactOptions options;
-    options.start = &result;
-    const Equilibrium again = solve_exact(problem, options);
+    const Equilibrium again = solve_exact(problem, {.start = &result});
     expect_balance_alone(again);
     EXPECT_LT((place_along(again) - place_along(result)).norm(), 1e-9);
     EXPECT_LT(again.evaluations, result.evaluations);

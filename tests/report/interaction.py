@@ -149,8 +149,7 @@ def turned(page):
     right, up = scene["view"]
     quarter = 90 // TURN_OF_KEY
     for turn in range(4):
-        for _ in range(quarter):
-            page.press(stage, Keys.SHIFT + Keys.ARROW_RIGHT + Keys.SHIFT)
+        page.press(stage, (Keys.SHIFT + Keys.ARROW_RIGHT + Keys.SHIFT) * quarter)
         if turn == 0:
             expected = width(first) * extent(3 - right - up) / extent(right)
             if abs(width(page.curve(0)) - expected) > 1:

@@ -90,8 +90,7 @@ TEST_F(CalibratedCommand, WhatCalibrateWritesMakesTheShapeRight) {
     const std::string name = std::to_string(static_cast<int>(direction));
     const std::string truth =
         wire("truth" + name, "0.03", "natural_curvature = 0.7\n", direction + 8);
-    ASSERT_EQ(run("solve " + truth + " --samples 30 --format csv -o " + path(name + ".csv")).status,
-              0);
+    succeeds("solve " + truth + " --samples 30 --format csv -o " + path(name + ".csv"));
     scenes += " " + wire("said" + name, "0.05", "", direction);
     shapes += " " + path(name + ".csv");
   }

@@ -28,30 +28,26 @@ class CheckCommand : public Command {
 TEST_F(CheckCommand, ReadsWhatSolveWrites) {
   for (const std::string format : {"csv", "json"}) {
     const std::string file = path("solved." + format);
-    ASSERT_EQ(
-        run(words({"solve", steel(), "--model exact --samples 9 --format", format, "-o", file}))
-            .status,
-        0);
+    succeeds(words({"solve", steel(), "--model exact --samples 9 --format", format, "-o", file}));
     const json document = json_of(words({"check", steel(), "--shape", file, "--tolerance 0.01%"}));
     EXPECT_EQ(document.at("schema"), "dlo/check/1");
     EXPECT_EQ(document.at("verdict"), "pass");
     EXPECT_EQ(document.at("tolerance").at("allowed_m"), 0.5 * 0.0001);
     EXPECT_EQ(document.at("arc_lengths"), "file");
     EXPECT_LT(document.at("deviation").at("rms_m").get<double>(), 1e-9);
-    EXPECT_NEAR(document.at("effective_modulus_ratio").get<double>(), 1, 1e-5);
+    EXPECT_NEAR(document.at("effective_modulus_ratio"), 1, 1e-5);
     EXPECT_EQ(document.at("points_m").size(), 9U);
   }
 }
 
 TEST_F(CheckCommand, ExitStatusIsTheVerdict) {
-  const std::string file = path("chain.csv");
-  ASSERT_EQ(run("solve " + steel() + " --model chain --format csv -o " + file).status, 0);
+  const std::string file = solved_file(steel() + " --model chain");
   // The paper's law is 21 % of the length off, at most 226 mm.
   const std::string check = "check " + steel() + " --shape " + file;
-  EXPECT_EQ(run(check).status, 0);
-  EXPECT_EQ(run(check + " --tolerance 22%").status, 0);
+  succeeds(check);
+  succeeds(check + " --tolerance 22%");
   EXPECT_EQ(run(check + " --tolerance 20%").status, 1);
-  EXPECT_EQ(run(check + " --tolerance \"110 mm\"").status, 0);
+  succeeds(check + " --tolerance \"110 mm\"");
   EXPECT_EQ(run(check + " --tolerance \"110 mm\" --measure max").status, 1);
   const Outcome failed = run(check + " --tolerance 1% --format json");
   EXPECT_EQ(failed.status, 1);
@@ -61,8 +57,7 @@ TEST_F(CheckCommand, ExitStatusIsTheVerdict) {
 }
 
 TEST_F(CheckCommand, WithoutAToleranceTheVerdictIsOfOnePercent) {
-  const std::string file = path("chain.csv");
-  ASSERT_EQ(run("solve " + steel() + " --model chain --format csv -o " + file).status, 0);
+  const std::string file = solved_file(steel() + " --model chain");
   const std::string check = "check " + steel() + " --shape " + file;
   const json by_default = json_of(check);
   const json asked = json_of(check + " --tolerance 1%", 1);
@@ -76,8 +71,7 @@ TEST_F(CheckCommand, WithoutAToleranceTheVerdictIsOfOnePercent) {
 
 // A chain's points are explained by its springs, not by another material: one line says so.
 TEST_F(CheckCommand, AModulusThatIsSupersededIsNoOptimum) {
-  const std::string file = path("chain.csv");
-  ASSERT_EQ(run("solve " + steel() + " --model chain --format csv -o " + file).status, 0);
+  const std::string file = solved_file(steel() + " --model chain");
   const std::string check = "check " + steel() + " --tolerance 1% --shape " + file;
   const json document = json_of(check, 1);
   ASSERT_FALSE(document.at("superseded_by").is_null()) << document.dump();
@@ -87,7 +81,6 @@ TEST_F(CheckCommand, AModulusThatIsSupersededIsNoOptimum) {
 }
 
 TEST_F(CheckCommand, APassBesideAnotherStiffnessSaysWhyBothHold) {
-  const std::string file = path("stiffer.csv");
   const std::string rod = R"(
 [[gripper]]
 at = 0
@@ -98,7 +91,7 @@ length = 1
 mass_per_length = 0.1
 bending_stiffness = )";
   const std::string stiff = scene(rod + "0.6\n");
-  ASSERT_EQ(run("solve " + stiff + " --samples 21 --format csv -o " + file).status, 0);
+  const std::string file = solved_file(stiff + " --samples 21");
   const std::string soft = scene(rod + "0.5\n");
   const std::string words = "E*/E = 1.2 is no contradiction: ";
   const std::string wide = run("check " + soft + " --tolerance 10% --shape " + file).out;
@@ -115,17 +108,14 @@ TEST_F(CheckCommand, TheReportIsOnePage) {
   EXPECT_EQ(run(check + file).status, 2);
   EXPECT_FALSE(std::filesystem::exists(page)) << "nothing is written of what could not be read";
   const std::string solved = path("a<b>&.csv");
-  ASSERT_EQ(
-      run("solve " + steel() + " --model chain --format csv -o " + compare::shell_word(solved))
-          .status,
-      0);
-  ASSERT_EQ(run(check + compare::shell_word(solved)).status, 0);
+  succeeds("solve " + steel() + " --model chain --format csv -o " + compare::shell_word(solved));
+  succeeds(check + compare::shell_word(solved));
   const std::string html = read(page);
   EXPECT_TRUE(says(html, {"<p class=\"badge fail\">", "a&lt;b&gt;&amp;.csv is 106.2"}));
   EXPECT_TRUE(says_none(html, {"a<b>"}));
   EXPECT_TRUE(says(html, {"It would be "})) << "the cause";
   EXPECT_TRUE(says_none(html, {"src=\"http", "href=\"http", "@import", "url("}));
-  ASSERT_EQ(run(check + compare::shell_word(solved) + " --tolerance 30%").status, 0);
+  succeeds(check + compare::shell_word(solved) + " --tolerance 30%");
   EXPECT_TRUE(says(read(page), {"<p class=\"badge pass\">"}));
   // Over one of its inputs it is not written.
   EXPECT_EQ(run("check " + steel() + " --shape " + compare::shell_word(solved) + " --report " +
@@ -137,7 +127,7 @@ TEST_F(CheckCommand, TheReportIsOnePage) {
 TEST_F(CheckCommand, MarkdownIsASummary) {
   const std::string file = path("a|b*.csv");
   const std::string quoted = compare::shell_word(file);
-  ASSERT_EQ(run("solve " + steel() + " --model chain --format csv -o " + quoted).status, 0);
+  succeeds("solve " + steel() + " --model chain --format csv -o " + quoted);
   const std::string check = "check " + steel() + " --format markdown --shape " + quoted;
   const std::string summary = run(check + " --tolerance 1%").out;
   EXPECT_TRUE(summary.starts_with("### \u274c fail: ")) << summary;
@@ -146,14 +136,11 @@ TEST_F(CheckCommand, MarkdownIsASummary) {
 }
 
 TEST_F(CheckCommand, EveryFormatHasTheSameDeviation) {
-  const std::string file = path("chain.csv");
-  ASSERT_EQ(run("solve " + steel() + " --model chain --format csv -o " + file).status, 0);
+  const std::string file = solved_file(steel() + " --model chain");
   const std::string check = "check " + steel() + " --shape " + file;
   const Outcome csv = run(check + " --format csv");
   EXPECT_EQ(std::count(csv.out.begin(), csv.out.end(), '\n'), 2);
-  const std::string header = csv.out.substr(0, csv.out.find('\n'));
-  const std::string row = csv.out.substr(csv.out.find('\n') + 1);
-  EXPECT_EQ(compare::fields_of(header), compare::fields_of(row));
+  EXPECT_TRUE(dlo::test::is_table(csv.out));
   EXPECT_TRUE(says(run(check).out, {"RMS 106.2 mm = 21.23 % of l"}));
 }
 
@@ -177,7 +164,7 @@ TEST_F(CheckCommand, AStretchedOrCutRopeFailsAndIsNamed) {
     for (int i = 0; i <= 10; ++i) text += "0," + std::to_string(-length * i / 10) + "\n";
     return shape(text);
   };
-  EXPECT_EQ(run(check + hanging(1)).status, 0);
+  succeeds(check + hanging(1));
   const Outcome stretched = run(check + hanging(1.1));
   EXPECT_EQ(stretched.status, 1);
   EXPECT_TRUE(
@@ -187,9 +174,7 @@ TEST_F(CheckCommand, AStretchedOrCutRopeFailsAndIsNamed) {
   EXPECT_EQ(cut.status, 1);
   EXPECT_TRUE(says(cut.out, {"shorter than the rod by 200 mm",
                              ", with s = 0.8 to 1 m, which the file does not have"}));
-  const Outcome part = run(check + hanging(0.8) + " --min-seen 70%");
-  EXPECT_EQ(part.status, 0) << part.out;
-  EXPECT_TRUE(says(part.out, {"not judged: s = 0.8 to 1 m"}));
+  EXPECT_TRUE(says(said(check + hanging(0.8) + " --min-seen 70%"), {"not judged: s = 0.8 to 1 m"}));
 }
 
 TEST_F(CheckCommand, AShapeAsLongAsTheRodIsNotCalledShorter) {
@@ -234,29 +219,22 @@ at = 1
 position = [0.9, 0, 0]
 direction = [1, 0, 0]
 )");
-  const Outcome compared = run("compare " + held + " --no-modulus --format csv");
-  EXPECT_EQ(compared.status, 0) << compared.err;
-  EXPECT_TRUE(says_none(compared.out, {"nan", "inf"}));
-  const std::string row = compared.out.substr(compared.out.find('\n') + 1);
-  EXPECT_EQ(std::count(row.begin(), row.end(), ','),
-            std::count(compared.out.begin(),
-                       compared.out.begin() + static_cast<long>(compared.out.find('\n')), ','));
+  const std::string compared = said("compare " + held + " --no-modulus --format csv");
+  EXPECT_TRUE(says_none(compared, {"nan", "inf"}));
+  EXPECT_TRUE(dlo::test::is_table(compared));
 }
 
 TEST_F(CheckCommand, AToleranceIsAShareOrALength) {
-  const std::string file = path("chain.csv");
-  ASSERT_EQ(run("solve " + steel() + " --model chain --format csv -o " + file).status, 0);
-  const std::string check = "check " + steel() + " --no-modulus --format json --shape " + file;
+  const std::string file = solved_file(steel() + " --model chain");
+  const std::string check = "check " + steel() + " --no-modulus --shape " + file;
   for (const std::string tolerance : {"22%", "0.22", "\"110 mm\"", "0.11m"}) {
-    const Outcome result = run(words({check, "--tolerance", tolerance}));
-    EXPECT_EQ(result.status, 0) << tolerance << result.err;
-    EXPECT_NEAR(json::parse(result.out).at("tolerance").at("allowed_m").get<double>(), 0.11, 1e-12);
+    const json document = json_of(words({check, "--tolerance", tolerance}));
+    EXPECT_NEAR(document.at("tolerance").at("allowed_m"), 0.11, 1e-12);
   }
 }
 
 TEST_F(CheckCommand, TheStateIsSaidOnceInWords) {
-  const std::string file = path("solved.csv");
-  ASSERT_EQ(run("solve " + steel() + " --model exact --format csv -o " + file).status, 0);
+  const std::string file = solved_file(steel() + " --model exact");
   const std::string one = run("check " + steel() + " --no-modulus --shape " + file).out;
   EXPECT_TRUE(
       says(one, {"the only stable one found, -0.00293052 J; no other equilibrium found\n"}));
@@ -271,23 +249,13 @@ TEST_F(CheckCommand, ChordLengthsAreOfferedWhereTheyWork) {
 }
 
 TEST_F(CheckCommand, ShapesComeInAnyUnitAndFrame) {
-  const std::string file = path("solved.csv");
-  ASSERT_EQ(run("solve " + steel() + " --model exact --samples 9 --format csv -o " + file).status,
-            0);
   // Millimetres, without s, moved by a metre and turned by a quarter about the vertical.
-  std::ifstream stream(file);
-  std::string line;
-  std::getline(stream, line);
-  std::string moved = "z,y,x\n";
-  while (std::getline(stream, line)) {
-    double x = 0;
-    double y = 0;
-    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf", &x, &y), 2);
-    moved += std::to_string(1e3 * x + 1000) + "," + std::to_string(1e3 * y) + ",0\n";
-  }
-  const std::string check = "check " + steel() + " --shape " + shape(moved) + " --tolerance 0.1%";
-  EXPECT_EQ(run(check + " --unit mm --register").status, 0);
-  EXPECT_EQ(run(check + " --unit mm --register=upright").status, 0);
+  std::vector<std::vector<double>> moved = solved_points(steel() + " --model exact --samples 9");
+  for (std::vector<double>& row : moved) row = {1e3 * row[0] + 1000, 1e3 * row[1], 0};
+  const std::string check = "check " + steel() + " --shape " +
+                            write_table("moved.csv", "z,y,x", moved) + " --tolerance 0.1%";
+  succeeds(check + " --unit mm --register");
+  succeeds(check + " --unit mm --register=upright");
   EXPECT_EQ(run(check + " --unit mm --register=translation").status, 1);
   EXPECT_EQ(run(check + " --unit mm").status, 1);
   EXPECT_EQ(run(check + " --unit cm --register").status, 1);
@@ -297,15 +265,9 @@ TEST_F(CheckCommand, ShapesComeInAnyUnitAndFrame) {
 
 TEST_F(CheckCommand, AWrongUnitIsNoPass) {
   // The whole rod in metres, said to be in millimetres: half a millimetre beside the gripper.
-  const std::string file = path("solved.csv");
-  ASSERT_EQ(run("solve " + steel() + " --model exact --samples 9 --format csv -o " + file).status,
-            0);
-  std::string points;
-  std::ifstream stream(file);
-  for (std::string line; std::getline(stream, line);) {
-    points += line.substr(0, line.rfind(',')) + "\n";
-  }
-  const std::string check = "check " + steel() + " --shape " + shape(points);
+  std::vector<std::vector<double>> points = solved_points(steel() + " --model exact --samples 9");
+  const std::string check =
+      "check " + steel() + " --shape " + write_table("metres.csv", "x,y,z", points);
   const Outcome wrong = run(check + " --unit mm --tolerance 1%");
   EXPECT_EQ(wrong.status, 1);
   EXPECT_TRUE(says(wrong.out, {"as it was read: only 0.", "of the rod: --unit m?"}));
@@ -315,28 +277,24 @@ TEST_F(CheckCommand, AWrongUnitIsNoPass) {
   EXPECT_LT(document.at("seen").at("share").get<double>(), 0.01);
   EXPECT_TRUE(says(document.at("reason").get<std::string>(), {"seen"}));
   EXPECT_TRUE(says(run(check + " --unit mm --tolerance 1% --format csv").out, {",fail,"}));
-  EXPECT_EQ(run(check + " --unit mm --tolerance 1% --min-seen 0.01%").status, 0);
-  EXPECT_EQ(run(check + " --tolerance 1%").status, 0);
+  succeeds(check + " --unit mm --tolerance 1% --min-seen 0.01%");
+  succeeds(check + " --tolerance 1%");
   // Files with arc lengths say that they are too long, others fail and give a hint.
   expect_error("check " + steel() + " --shape " + shape("x,y,s\n0,0,0\n-500,0,500\n"), 2,
                {"s = 500 m", "--unit"});
-  std::string millimetres;
-  std::istringstream lines(points);
-  std::getline(lines, millimetres);
-  millimetres += "\n";
-  for (double x = 0, y = 0, z = 0; std::getline(lines, points);) {
-    ASSERT_EQ(std::sscanf(points.c_str(), "%lf,%lf,%lf", &x, &y, &z), 3);
-    millimetres += std::to_string(1e3 * x) + "," + std::to_string(1e3 * y) + ",0\n";
+  for (std::vector<double>& row : points) {
+    for (double& number : row) number *= 1e3;
   }
-  const Outcome large = run("check " + steel() + " --shape " + shape(millimetres));
-  EXPECT_TRUE(says(large.out, {"times the rod: --unit mm?"}));
+  const std::string large =
+      run("check " + steel() + " --shape " + write_table("mm.csv", "x,y,z", points)).out;
+  EXPECT_TRUE(says(large, {"times the rod: --unit mm?"}));
 }
 
 TEST_F(CheckCommand, SeenRangeAndDirectionAreSaid) {
   const std::string file = shape("x,y,s\n-0.1,0,0.1\n-0.3,0,0.3\n-0.4,-0.01,0.4\n");
   const std::string check = "check " + steel() + " --shape " + file;
   EXPECT_TRUE(says(run(check).out, {"3 points, from s = 0.1 to 0.4 m"}));
-  EXPECT_EQ(run(check + " --tolerance \"1 m\" --min-seen 59%").status, 0);
+  succeeds(check + " --tolerance \"1 m\" --min-seen 59%");
   EXPECT_EQ(run(check + " --tolerance \"1 m\" --min-seen 61%").status, 1);
   for (const std::string share : {"0", "100%", "x"}) {
     expect_error(words({check, "--tolerance 1% --min-seen", share}), 2, {"--min-seen"});
@@ -364,9 +322,7 @@ TEST_F(CheckCommand, BadInputIsOneLineAndStatusTwo) {
 }
 
 TEST_F(CheckCommand, HelpHasAnExample) {
-  const Outcome help = run("check --help");
-  EXPECT_EQ(help.status, 0);
-  EXPECT_TRUE(says(help.out, {"dlo check data/scenes"}));
+  EXPECT_TRUE(says(said("check --help"), {"dlo check data/scenes"}));
 }
 
 }  // namespace

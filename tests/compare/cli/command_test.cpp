@@ -16,220 +16,9 @@ namespace {
 using dlo::test::Command;
 using dlo::test::Outcome;
 using dlo::test::says;
-using dlo::test::says_none;
 using nlohmann::json;
 
 const std::string good = dlo::test::steel_rod + dlo::test::gripper_text("direction = \"-175 deg\"");
-
-TEST_F(Command, SolveWritesTheContractsJsonForEveryModel) {
-  for (const std::string model : {"energy", "chain", "exact", "force"}) {
-    const Outcome result =
-        run("solve " + steel() + " --model " + model + " --samples 11 --format json");
-    ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_EQ(result.err, "");
-    const json document = json::parse(result.out);
-    EXPECT_EQ(document.at("schema"), "dlo/solve/1");
-    EXPECT_EQ(document.at("model"), model);
-    EXPECT_EQ(document.at("converged"), true);
-    const json& error = document.at("error_estimate_over_length");
-    EXPECT_EQ(error.is_null(), model == "chain" || model == "exact") << error;
-    EXPECT_LT(error.is_null() ? 0 : error.get<double>(), 1.01e-7);
-    ASSERT_EQ(document.at("arc_length_m").size(), 11U);
-    ASSERT_EQ(document.at("points_m").size(), 11U);
-    EXPECT_EQ(document.at("arc_length_m").back(), 0.5);
-    const json& energy = document.at("energy_J");
-    EXPECT_NEAR(energy.at("total").get<double>(),
-                energy.at("bending").get<double>() + energy.at("gravity").get<double>() +
-                    energy.at("load").get<double>() + energy.at("stretch").get<double>(),
-                1e-15);
-    EXPECT_NEAR(document.at("grippers")[0].at("force_N")[1].get<double>(), 0.121735143, 1e-6);
-    EXPECT_GE(document.at("solver").at("wall_s").get<double>(), 0);
-    EXPECT_TRUE(document.contains("plan"));
-  }
-}
-
-const std::string two_grippers = "gravity = [0, -9.81, 0]\n" + dlo::test::steel_rod +
-                                 dlo::test::gripper_text("direction = \"30 deg\"") +
-                                 R"([[gripper]]
-at = "40 cm"
-position = [0.3, 0.05, 0.1]
-hold = "pin"
-[[load]]
-at = "20 cm"
-force = [0, -0.5, 0]
-[[obstacle]]
-point = [0, -0.3, 0]
-normal = [0, 1, 0]
-[force_model]
-points = 40
-)";
-
-TEST_F(Command, SolvesSeveralGrippersWithTheModelsForAnyScene) {
-  std::vector<double> middle;
-  for (const std::string model : {"energy", "chain", "force"}) {
-    const json document =
-        json_of("solve " + scene(two_grippers) + " --model " + model + " --samples 11");
-    EXPECT_EQ(document.at("arc_length_m").back(), 0.5);
-    ASSERT_EQ(document.at("grippers").size(), 2U);
-    ASSERT_EQ(document.at("obstacles").size(), 1U);
-    // Weight and load, and nothing touches the floor
-    EXPECT_NEAR(document.at("grippers")[0].at("force_N")[1].get<double>() +
-                    document.at("grippers")[1].at("force_N")[1].get<double>(),
-                0.5 + 0.121735143, 1e-4);
-    EXPECT_EQ(document.at("obstacles")[0].at("force_N")[1].get<double>(), 0);
-    const json& pin = document.at("points_m")[8];
-    EXPECT_NEAR(pin[0].get<double>(), 0.3, 1e-9);
-    EXPECT_NEAR(pin[2].get<double>(), 0.1, 1e-9);
-    middle.push_back(document.at("points_m")[4][1].get<double>());
-  }
-  EXPECT_NEAR(middle[1], middle[0], 5e-4);
-  EXPECT_NEAR(middle[2], middle[1], 1e-6);
-}
-
-TEST_F(Command, CompareTakesSeveralGrippers) {
-  const json entry = json_of("compare " + scene(two_grippers)).at("cases")[0];
-  EXPECT_LT(entry.at("deviation").at("rms_over_length").get<double>(), 1e-3);
-  EXPECT_TRUE(entry.at("undeformed_rms_over_length").is_null());
-  const Outcome text = run("compare " + scene(two_grippers));
-  ASSERT_EQ(text.status, 0) << text.err;
-  EXPECT_TRUE(says_none(text.out, {"nan"}));
-}
-
-TEST_F(Command, TooFewPointsForTheGrippersIsBadInput) {
-  // Half a segment on the pin's far side is 2 cm at most.
-  std::string text = two_grippers;
-  text.replace(text.find("40 cm"), 5, "48 cm");
-  expect_error("solve " + scene(text) + " --model chain --points 13", 2,
-               {"force_model.points = 13", "at least 14 points"});
-  EXPECT_EQ(run("solve " + scene(text) + " --model chain --points 14").status, 0);
-}
-
-TEST_F(Command, SolveGivesOneShapeByBothReferenceModelsForClampsInSpace) {
-  const std::string rope = scene(R"(gravity = [0, -9.81, 0]
-[rod]
-length = "1 m"
-diameter = "4 mm"
-material = { youngs_modulus = "5 GPa", density = 1200 }
-[[gripper]]
-at = 0
-position = [0, 0, 0]
-direction = [1, 0, 0]
-[[gripper]]
-at = "1 m"
-position = [0.6, 0.1, 0.3]
-direction = [1, 0.2, -0.4]
-[[load]]
-at = "40 cm"
-force = [0, 0, "50 mN"]
-)");
-  const auto solve = [&](const std::string& model) {
-    const Outcome result = run("solve " + rope + " --samples 21 --format json --model " + model);
-    EXPECT_EQ(result.status, 0) << result.err;
-    return json::parse(result.out);
-  };
-  const json energy = solve("energy");
-  const json exact = solve("exact");
-  for (std::size_t i = 0; i < 21; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_NEAR(exact.at("points_m")[i][k].get<double>(),
-                  energy.at("points_m")[i][k].get<double>(), 1e-8);
-    }
-  }
-  for (std::size_t g = 0; g < 2; ++g) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_NEAR(exact.at("grippers")[g].at("torque_Nm")[k].get<double>(),
-                  energy.at("grippers")[g].at("torque_Nm")[k].get<double>(), 1e-8);
-    }
-  }
-}
-
-TEST_F(Command, SolveExactTakesAFloorAndRefusesOtherObstacles) {
-  const std::string floor = scene(R"([rod]
-length = 1
-bending_stiffness = 0.01
-mass_per_length = 0.1
-[[gripper]]
-at = 0
-position = [0, 0.1, 0]
-direction = "0 deg"
-[[obstacle]]
-point = [0, 0, 0]
-normal = [0, 1, 0]
-)");
-  const auto solved = [&](const char* model) {
-    return json::parse(run("solve " + floor + " --format json --model " + model).out);
-  };
-  const json exact = solved("exact");
-  const json energy = solved("energy");
-  EXPECT_TRUE(says_none(run("solve " + floor + " --model exact").out, {"solver     0"}));
-  for (const char* key : {"from_m", "to_m"}) {
-    EXPECT_NEAR(exact.at("contacts")[0].at(key).get<double>(),
-                energy.at("contacts")[0].at(key).get<double>(), 1e-7);
-  }
-  const json& last = exact.at("points_m").back();
-  for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_NEAR(last[k].get<double>(), energy.at("points_m").back()[k].get<double>(), 1e-8);
-  }
-  const std::string ball = good + R"([[obstacle]]
-shape = "sphere"
-point = [0, -0.2, 0]
-radius = 0.1
-)";
-  expect_error("solve " + scene(ball + "stiffness = 100\n") + " --model exact", 2,
-               {"obstacle", "energy"});
-}
-
-TEST_F(Command, ExactConfirmsWhatTheEnergyModelSaysTouches) {
-  const std::string peg = scene(R"(gravity = [0, -9.81, 0]
-[rod]
-length = "50 cm"
-diameter = "4 mm"
-material = { youngs_modulus = "100 MPa", density = 1200 }
-[[gripper]]
-at = 0
-position = [-0.2, 0, 0]
-direction = "30 deg"
-[[gripper]]
-at = "50 cm"
-position = [0.16, -0.12, 0]
-direction = "-70 deg"
-[[obstacle]]
-shape = "cylinder"
-point = [0, 0.06, 0]
-axis = [0, 0, 1]
-radius = "30 mm"
-)");
-  const json energy = json_of("solve " + peg);
-  const json exact = json_of("solve " + peg + " --model exact");
-  ASSERT_FALSE(energy.at("contacts").empty());
-  EXPECT_EQ(exact.at("contacts").size(), energy.at("contacts").size());
-  for (std::size_t i = 0; i < energy.at("points_m").size(); ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_NEAR(exact.at("points_m")[i][k].get<double>(),
-                  energy.at("points_m")[i][k].get<double>(), 5e-9);
-    }
-  }
-  EXPECT_TRUE(says(run("solve " + peg + " --model exact").out, {"energy model says touches"}));
-}
-
-TEST_F(Command, SolveMatchesTheReferenceValuesOfThePapersRod) {
-  std::ifstream stream(std::string(DLO_DATA) + "/reference/reference_values.json");
-  const json expected = json::parse(stream).at("paper_rod").at("E=210GPa,phi=-175");
-  const json document = json_of("solve " + steel() + " --samples 17");
-  for (std::size_t i = 0; i < 17; ++i) {
-    EXPECT_NEAR(document.at("points_m")[i][0].get<double>(), expected.at("x_m")[i].get<double>(),
-                5e-9);
-    EXPECT_NEAR(document.at("points_m")[i][1].get<double>(), expected.at("y_m")[i].get<double>(),
-                5e-9);
-  }
-}
-
-TEST_F(Command, SolveWritesCsvThatStartsWithItsHeader) {
-  const Outcome result = run("solve " + steel() + " --samples 3 --format csv");
-  EXPECT_EQ(result.status, 0);
-  EXPECT_EQ(result.out.substr(0, 8), "x,y,z,s\n");
-  EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 4);
-}
 
 TEST_F(Command, CompareWritesTheContractsJson) {
   const json document = json_of("compare " + steel() + " " + scene(good));
@@ -239,56 +28,16 @@ TEST_F(Command, CompareWritesTheContractsJson) {
   EXPECT_EQ(paper.at("law"), "paper");
   EXPECT_EQ(paper.at("bookkeeping"), "paper");
   EXPECT_EQ(paper.at("points"), 16);
-  EXPECT_NEAR(paper.at("parameters").at("c_b").get<double>(), 3574.96, 0.005);
-  EXPECT_NEAR(paper.at("parameters").at("c_c").get<double>(), 659734, 0.5);
-  EXPECT_NEAR(paper.at("effective_modulus_ratio").get<double>(), 0.044, 0.001);
+  EXPECT_NEAR(paper.at("parameters").at("c_b"), 3574.96, 0.005);
+  EXPECT_NEAR(paper.at("parameters").at("c_c"), 659734, 0.5);
+  EXPECT_NEAR(paper.at("effective_modulus_ratio"), 0.044, 0.001);
   for (const char* key : {"rms_m", "max_m", "tip_m", "rms_over_length"}) {
     EXPECT_GT(paper.at("deviation").at(key).get<double>(), 0) << key;
   }
   EXPECT_GT(paper.at("cost").at("force_s").get<double>(), 0);
   const json& hooke = document.at("cases")[1];
   EXPECT_EQ(hooke.at("law"), "hooke");
-  EXPECT_NEAR(hooke.at("effective_modulus_ratio").get<double>(), 1, 0.01);
-}
-
-TEST_F(Command, ExplainSaysWhenTheSceneMovesAndWhyThereIsNoN) {
-  const std::string moving = scene(good + R"([[obstacle]]
-normal = [0, 1, 0]
-[[obstacle.pose]]
-time = 0
-point = [0, -0.03, 0]
-[[obstacle.pose]]
-time = 2
-point = [0, -0.2, 0]
-)");
-  const Outcome text = run("solve " + moving + " --explain");
-  ASSERT_EQ(text.status, 0) << text.err;
-  EXPECT_TRUE(says(text.out, {"static: the scene as it is at 0 s; it moves from 0 to 2 s",
-                              "not determined for 0.1 % of l: the rod touches an obstacle"}));
-}
-
-TEST_F(Command, ExplainShowsThePlanThatJsonAlwaysHas) {
-  const std::string far = scene(good + R"([[obstacle]]
-point = [0, -0.6, 0]
-normal = [0, 1, 0]
-)");
-  for (const std::string command : {"solve ", "compare "}) {
-    EXPECT_TRUE(says_none(run(command + far).out, {"neglected"}));
-    const Outcome text = run(command + far + " --explain --target-error 1e-4");
-    ASSERT_EQ(text.status, 0) << text.err;
-    EXPECT_TRUE(says(text.out, {"planar", "static", "clamp - free", "out of reach", "stretch",
-                                "shear", "at most", "0.01 % of l"}));
-    const json document = json_of(command + far);
-    const json& plan =
-        command == "solve " ? document.at("plan") : document.at("cases")[0].at("plan");
-    EXPECT_EQ(plan.at("geometry"), "planar");
-    EXPECT_EQ(plan.at("obstacles")[0].at("in_reach"), false);
-    EXPECT_NEAR(plan.at("obstacles")[0].at("clearance_m").get<double>(), 0.099, 1e-12);
-    EXPECT_GT(plan.at("neglected")[0].at("bound_m").get<double>(), 0);
-  }
-  // Out of reach, so that exact, which knows no obstacles, takes the scene.
-  EXPECT_EQ(run("solve " + far + " --model exact").status, 0);
-  expect_error("solve " + far + " --target-error 0", 2, {"--target-error"});
+  EXPECT_NEAR(hooke.at("effective_modulus_ratio"), 1, 0.01);
 }
 
 TEST_F(Command, CompareIsReadableAsTextAndCsv) {
@@ -300,7 +49,7 @@ TEST_F(Command, CompareIsReadableAsTextAndCsv) {
 }
 
 TEST_F(Command, PaperPrintsTablesShapesAndTheModulus) {
-  EXPECT_EQ(run("paper --format json -o " + path("paper.json")).status, 0);
+  succeeds("paper --format json -o " + path("paper.json"));
   const json document = json::parse(read(path("paper.json")));
   EXPECT_EQ(document.at("schema"), "dlo/paper/1");
   EXPECT_EQ(document.at("cases").size(), 6U);
@@ -348,12 +97,10 @@ TEST_F(Command, StabilityWritesTheContractsJsonAndFailsForNothingButAutoAndImpli
 
 TEST_F(Command, StabilityMapTakesAScene) {
   const std::string small = " --columns 2 --rows 8 --map-steps 2000";
-  const Outcome text = run("stability --map cF-ch" + small);
-  EXPECT_EQ(text.status, 0) << text.err;
-  EXPECT_TRUE(says(text.out, {"predicted"}));
+  EXPECT_TRUE(says(said("stability --map cF-ch" + small), {"predicted"}));
   const Outcome csv = run("stability " + scene(good) + " --map cF-cc --format csv" + small);
   EXPECT_EQ(std::count(csv.out.begin(), csv.out.end(), '\n'), 1 + 2 * 8) << csv.err;
-  const json document = json::parse(run("stability --map cF-cc --format json" + small).out);
+  const json document = json_of("stability --map cF-cc" + small);
   EXPECT_EQ(document.at("schema"), "dlo/stability-map/1");
   EXPECT_GE(document.at("columns")[0].at("c_F_measured").get<double>(),
             document.at("columns")[0].at("c_F_predicted").get<double>());
@@ -442,10 +189,10 @@ TEST_F(Command, OutputThatCannotBeWrittenLeavesTheOldFileAlone) {
   EXPECT_EQ(read(output), "old");
   expect_error("solve " + steel() + " -o " + path("no/such/folder/x.json"), 2,
                {"no/such/folder/x.json", "cannot be written"});
-  EXPECT_EQ(run("solve " + steel() + " -o " + output).status, 0);
+  succeeds("solve " + steel() + " -o " + output);
   EXPECT_TRUE(says(read(output), {"\"gamma\""}));
   std::filesystem::create_symlink("kept.json", path("link.json"));
-  EXPECT_EQ(run("solve " + steel() + " --format csv -o " + path("link.json")).status, 0);
+  succeeds("solve " + steel() + " --format csv -o " + path("link.json"));
   EXPECT_TRUE(std::filesystem::is_symlink(path("link.json")));
   EXPECT_EQ(read(output).substr(0, 2), "x,");
   std::filesystem::remove(path("link.json"));
@@ -456,7 +203,7 @@ TEST_F(Command, OutputThatCannotBeWrittenLeavesTheOldFileAlone) {
 
 TEST_F(Command, TheExtensionIsTheFormatUnlessOneIsGiven) {
   const auto first_line = [&](const std::string& arguments, const std::string& file) {
-    EXPECT_EQ(run(arguments + " -o " + path(file)).status, 0) << arguments;
+    succeeds(arguments + " -o " + path(file));
     const std::string text = read(path(file));
     return text.substr(0, text.find('\n'));
   };
@@ -486,26 +233,18 @@ TEST_F(Command, NoOptionIsLeftOutInSilence) {
 TEST_F(Command, HelpIsACommandAndUnknownOptionsAreNamed) {
   EXPECT_EQ(run("help").out, run("--help").out);
   EXPECT_EQ(run("help solve").out, run("solve --help").out);
-  EXPECT_EQ(run("help solve").status, 0);
+  succeeds("help solve");
   expect_error("help nothing", 2, {"unknown command nothing"});
   expect_error("-V", 2, {"unknown option -V", "--version"});
   expect_error("--modle", 2, {"unknown option --modle"});
   expect_error("solve --modle", 2, {"--modle", "did you mean --model?"});
 }
 
-TEST_F(Command, SolveSaysWhichGripperHoldsAndPrintsNoMinusZero) {
-  const std::string text = run("solve " + scene(good)).out;
-  EXPECT_TRUE(says(text, {"gripper 1 at s = 0 m (clamp): force ["}));
-  EXPECT_TRUE(says_none(text, {"-0 J", "-0.00000000"}));
-}
-
 TEST_F(Command, HelpHasAnExample) {
   for (const std::string command : {"solve", "compare", "paper", "bench", "stability"}) {
-    const Outcome help = run(command + " --help");
-    EXPECT_EQ(help.status, 0);
-    EXPECT_TRUE(says(help.out, {"Example"})) << command;
+    EXPECT_TRUE(says(said(command + " --help"), {"Example"})) << command;
   }
-  EXPECT_EQ(run("--version").status, 0);
+  succeeds("--version");
 }
 
 }  // namespace

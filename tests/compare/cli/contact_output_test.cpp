@@ -33,15 +33,12 @@ class ContactCommand : public dlo::test::Command {
 
 TEST_F(ContactCommand, CompareSaysWhatTouchesAsSolveDoes) {
   const json solved = json_of("solve " + lying());
-  const Outcome compared = run("compare --no-modulus --format json " + lying());
-  ASSERT_EQ(compared.status, 0) << compared.err;
-  const json document = json::parse(compared.out);
+  const json document = json_of("compare --no-modulus " + lying());
   const json& contacts = document.at("cases").at(0).at("contacts");
   ASSERT_EQ(contacts.size(), 1);
   EXPECT_EQ(contacts[0].at("obstacle"), 1);
   EXPECT_EQ(contacts[0].at("kind"), "lying");
-  EXPECT_NEAR(contacts[0].at("from_m").get<double>(),
-              solved.at("contacts")[0].at("from_m").get<double>(), 1e-8);
+  EXPECT_NEAR(contacts[0].at("from_m"), solved.at("contacts")[0].at("from_m"), 1e-8);
   EXPECT_GT(document.at("cases").at(0).at("budget").at("contact_m").get<double>(), 0);
   const Outcome text = run("compare --no-modulus " + lying());
   EXPECT_TRUE(says(text.out, {"\n                  contact  ",
@@ -52,8 +49,7 @@ TEST_F(ContactCommand, CompareSaysWhatTouchesAsSolveDoes) {
 // not of an obstacle that the rod does not touch.
 TEST_F(ContactCommand, FrictionIsLeftOutAloud) {
   const std::string smooth = lying();
-  std::ifstream file(smooth);
-  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string text = read(smooth);
   const std::string rough = write("rough.toml", text + "friction = 0.3\n");
   const std::size_t second = text.rfind("[[obstacle]]");
   const std::string rough_below =
@@ -73,7 +69,7 @@ TEST_F(ContactCommand, FrictionIsLeftOutAloud) {
     EXPECT_TRUE(says(solve("csv", rough).err, {"neglects the friction"}));
     EXPECT_FALSE(json::parse(solve("json", rough_below).out).contains("neglected"));
   }
-  const json compared = json::parse(run("compare --no-modulus --format json " + rough).out);
+  const json compared = json_of("compare --no-modulus " + rough);
   EXPECT_EQ(compared.at("cases").at(0).at("neglected"), json({"friction"}));
   const std::string told = run("compare --no-modulus " + rough).out;
   EXPECT_TRUE(says(told, {"\n  neglected       friction that the scene has, by both models"}));
@@ -85,22 +81,19 @@ TEST_F(ContactCommand, FrictionIsLeftOutAloud) {
 // A shape that friction may hold is held against the one without: it fails or passes as any other.
 TEST_F(ContactCommand, CheckSaysWhatFrictionAShapeNeeds) {
   const std::string smooth = lying();
-  std::ifstream file(smooth);
-  const std::string rough = write(
-      "rough.toml", std::string{std::istreambuf_iterator<char>(file), {}} + "friction = 0.3\n");
+  const std::string rough = write("rough.toml", read(smooth) + "friction = 0.3\n");
   const std::string mine = path("mine.csv");
-  ASSERT_EQ(run("solve --format csv --samples 40 -o " + mine + " " + smooth).status, 0);
+  succeeds("solve --format csv --samples 40 -o " + mine + " " + smooth);
   const std::string rest = " --no-modulus --tolerance 1% --shape " + mine;
-  const Outcome with = run("check " + rough + rest);
-  EXPECT_EQ(with.status, 0) << with.err;
-  EXPECT_TRUE(says(with.out, {"\n  neglected       friction that the scene has"}));
+  const std::string with = said("check " + rough + rest);
+  EXPECT_TRUE(says(with, {"\n  neglected       friction that the scene has"}));
   EXPECT_TRUE(says_none(run("check " + smooth + rest).out, {"friction"}));
   const json document = json_of("check " + rough + rest);
   EXPECT_EQ(document.at("neglected"), json({"friction"}));
   const Outcome row = run("check --format csv " + rough + rest);
   EXPECT_TRUE(says(row.err, {"has friction"}));
   // Whether friction could hold the shape is told apart: this one needs none.
-  EXPECT_TRUE(says(with.out, {"\n  friction        none is needed: an equilibrium without it"}));
+  EXPECT_TRUE(says(with, {"\n  friction        none is needed: an equilibrium without it"}));
   const json& friction = document.at("friction");
   EXPECT_EQ(friction.at("verdict"), "none_needed");
   EXPECT_EQ(friction.at("factor"), 0);
@@ -125,9 +118,7 @@ TEST_F(ContactCommand, AllModelsTouchTheSameBodies) {
       text.append(std::to_string(points)).append("\n[[obstacle]]\n").append(body);
       std::string line = "solve --format json --samples 13 --model ";
       line.append(model).append(" ").append(write("body.toml", text));
-      const Outcome outcome = run(line);
-      EXPECT_EQ(outcome.status, 0) << outcome.err;
-      return json::parse(outcome.out);
+      return json::parse(said(line));
     };
     const json energy = solve("energy", 16);
     ASSERT_EQ(energy.at("contacts").size(), 1);
@@ -136,14 +127,7 @@ TEST_F(ContactCommand, AllModelsTouchTheSameBodies) {
     for (const std::string model : {"chain", "force"}) {
       for (const int points : {64, 128}) {
         const json polygon = solve(model, points);
-        double apart = 0;
-        for (std::size_t i = 0; i < 13; ++i) {
-          for (std::size_t axis = 0; axis < 2; ++axis) {
-            apart = std::max(apart, std::abs(polygon.at("points_m")[i][axis].get<double>() -
-                                             energy.at("points_m")[i][axis].get<double>()));
-          }
-        }
-        EXPECT_LT(apart, 2e-3 * 0.6) << model << " with " << points;
+        EXPECT_LT(points_apart(polygon, energy), 2e-3 * 0.6) << model << " with " << points;
         const double force = polygon.at("obstacles")[0].at("force_N")[0].get<double>();
         EXPECT_NEAR(force, pushed, 0.2 * pushed) << model << " with " << points;
         EXPECT_NEAR(force, -polygon.at("grippers")[0].at("force_N")[0].get<double>(), 1e-6);
@@ -159,11 +143,10 @@ TEST_F(ContactCommand, SolveSaysWhereARodCrossesItself) {
             "gravity = [0, 0, 0]\n[rod]\nlength = 1\ndiameter = \"2 mm\"\nmaterial = \"nitinol\"\n"
             "natural_curvature = \"9 1/m\"\n"
             "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"0 deg\"\n");
-  const Outcome text = run("solve " + loop);
-  ASSERT_EQ(text.status, 0) << text.err;
+  const std::string text = said("solve " + loop);
   const json document = json_of("solve " + loop);
-  ASSERT_TRUE(document.contains("self_crossing")) << text.out;
-  EXPECT_TRUE(says(text.out, {"\ncrossing   at s = "}));
+  ASSERT_TRUE(document.contains("self_crossing")) << text;
+  EXPECT_TRUE(says(text, {"\ncrossing   at s = "}));
   const json& crossing = document.at("self_crossing");
   EXPECT_LT(crossing.at("distance_m").get<double>(), 2e-3);
   EXPECT_NEAR(crossing.at("s_m")[1].get<double>() - crossing.at("s_m")[0].get<double>(),

@@ -63,23 +63,21 @@ TEST_F(Command, SuggestsTheNearestWord) {
 
 TEST_F(Command, InitWritesASceneThatSolves) {
   const std::string file = path("cable.toml");
-  const Outcome result = run("init " + file + " --length 2m --diameter '6 mm' --material silicone");
-  ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_TRUE(says(result.out, {"dlo solve " + file}));
+  EXPECT_TRUE(says(said("init " + file + " --length 2m --diameter '6 mm' --material silicone"),
+                   {"dlo solve " + file}));
   const Scene scene = dlo::compare::load_scene(file);
   EXPECT_EQ(scene.name, "cable");
   EXPECT_EQ(scene.length, 2);
   EXPECT_EQ(scene.diameter, 0.006);
   EXPECT_EQ(scene.material.name, "silicone");
   for (const std::string model : {"energy", "chain", "exact", "force"}) {
-    EXPECT_EQ(run(words({"solve", file, "--model", model})).status, 0) << model;
+    succeeds(words({"solve", file, "--model", model}));
   }
 }
 
 TEST_F(Command, InitTakesANameAndAMaterialOfOnesOwn) {
   const std::string arguments = "--youngs-modulus '5 MPa' --density 1100 --direction '[0, 0, 1]'";
-  const Outcome result = run("init '" + path("my hose") + "' " + arguments);
-  ASSERT_EQ(result.status, 0) << result.err;
+  const std::string result = said("init '" + path("my hose") + "' " + arguments);
   const Scene scene = dlo::compare::load_scene(path("my_hose.toml"));
   EXPECT_EQ(scene.name, "my hose");
   EXPECT_EQ(scene.material.youngs_modulus, 5e6);
@@ -93,8 +91,8 @@ TEST_F(Command, InitTakesANameAndAMaterialOfOnesOwn) {
 // The same rod in a world whose z is up, with every optional part that it may have.
 TEST_F(Command, InitWritesASceneWithZUp) {
   const std::string rod = " --direction '-30 deg' --length '0.5 m' --up ";
-  ASSERT_EQ(run("init " + path("y.toml") + rod + "y").status, 0);
-  ASSERT_EQ(run("init " + path("z.toml") + rod + "z").status, 0);
+  succeeds("init " + path("y.toml") + rod + "y");
+  succeeds("init " + path("z.toml") + rod + "z");
   const Scene y = dlo::compare::load_scene(path("y.toml"));
   const Scene z = dlo::compare::load_scene(path("z.toml"));
   EXPECT_EQ(z.gravity, Eigen::Vector3d(0, 0, -9.81));
@@ -128,7 +126,7 @@ TEST_F(Command, InitNeverOverwritesUnasked) {
   EXPECT_EQ(read(file), "mine");
   expect_error("init " + path("new.toml") + " --diameter -1", 2, {"--diameter", "-1"});
   EXPECT_FALSE(std::filesystem::exists(path("new.toml")));
-  EXPECT_EQ(run("init --force " + file).status, 0);
+  succeeds("init --force " + file);
   EXPECT_NO_THROW((void)dlo::compare::load_scene(file));
 }
 
@@ -136,12 +134,10 @@ TEST_F(Command, InitTakesAnyNameAndNamesTheOptionThatIsWrong) {
   // Names that look like numbers, need quotes in a shell, or are too long for a file.
   for (const std::string name : {"2025", "nan", "it's", "a \"b\""}) {
     const std::string quoted = name == "it's" ? "it\\'s" : "'" + name + "'";
-    const Outcome result = run("init " + path("") + quoted);
-    ASSERT_EQ(result.status, 0) << result.err;
+    const std::string result = said("init " + path("") + quoted);
     // The command that the text gives is one that a shell takes.
-    const std::size_t at = result.out.find("dlo solve ") + 4;
-    EXPECT_EQ(run(result.out.substr(at, result.out.find("      ", at) - at)).status, 0)
-        << result.out;
+    const std::size_t at = result.find("dlo solve ") + 4;
+    EXPECT_EQ(run(result.substr(at, result.find("      ", at) - at)).status, 0) << result;
   }
   EXPECT_EQ(dlo::compare::load_scene(path("2025.toml")).name, "2025");
   expect_error("init " + path(std::string(300, 'a')), 2, {"too long"});
@@ -218,8 +214,7 @@ TEST(SceneText, ExplainsEveryKeyThatAScenesTablesKnow) {
 }
 
 TEST_F(Command, MaterialsListsEveryMaterialWithValues) {
-  const Outcome text = run("materials");
-  EXPECT_EQ(text.status, 0);
+  const std::string text = said("materials");
   const nlohmann::json document = json_of("materials");
   EXPECT_EQ(document.at("schema"), "dlo/materials/1");
   const auto& known = dlo::compare::materials();
@@ -227,7 +222,7 @@ TEST_F(Command, MaterialsListsEveryMaterialWithValues) {
   for (std::size_t i = 0; i < known.size(); ++i) {
     EXPECT_EQ(document["materials"][i]["youngs_modulus_Pa"], known[i].youngs_modulus);
     EXPECT_EQ(document["materials"][i]["density_kg_per_m3"], known[i].density);
-    EXPECT_TRUE(says(("\n" + text.out), {"\n" + known[i].name + " "}));
+    EXPECT_TRUE(says(("\n" + text), {"\n" + known[i].name + " "}));
   }
 }
 

@@ -97,10 +97,8 @@ class MjcfCommand : public Command {
 
 TEST_F(MjcfCommand, FiveModelsComeToTheirVerdictInOneCommand) {
   for (const std::string& name : models) {
-    const Outcome result = run(words({"check", model(name), "--shape", starts(name)}) +
-                               "--tolerance 0.1% --format json");
-    ASSERT_EQ(result.status, 0) << name << result.err;
-    const json document = json::parse(result.out);
+    const json document =
+        json_of(words({"check", model(name), "--shape", starts(name)}) + "--tolerance 0.1%");
     EXPECT_EQ(document.at("verdict"), "pass") << name << document.at("reason");
     EXPECT_EQ(document.at("points_m").size(),
               document.at("model").at("segments").get<std::size_t>() + 1)
@@ -133,10 +131,9 @@ TEST_F(MjcfCommand, TheModelIsToldWithItsNumbers) {
 }
 
 TEST_F(MjcfCommand, OtherCommandsTakeModelsToo) {
-  const Outcome solved = run("solve " + model("chain.xml") + " --format json");
-  ASSERT_EQ(solved.status, 0) << solved.err;
-  EXPECT_EQ(json::parse(solved.out).at("scene"), "chain of 20 bodies");
-  EXPECT_EQ(run("scene " + model("two_constraints.xml")).status, 0);
+  const std::string solved = said("solve " + model("chain.xml") + " --format json");
+  EXPECT_EQ(json::parse(solved).at("scene"), "chain of 20 bodies");
+  succeeds("scene " + model("two_constraints.xml"));
 }
 
 /// A text with some piece of it gone, doubled, exchanged or of another character.

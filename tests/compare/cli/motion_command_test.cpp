@@ -33,11 +33,9 @@ class MotionCommand : public dlo::test::Command {
   }
   /// Markers at a quarter, half, three quarters and the end of the rod with inertia.
   void write_markers(const std::string& name, double late = 0) const {
-    const Outcome track = run(words({"track", path("swung.toml"),
-                                     "--no-force --dynamic --damping 0.01 --frame-rate 40 "
-                                     "--samples 5 --shapes --format json"}));
-    ASSERT_EQ(track.status, 0) << track.err;
-    const json document = json::parse(track.out);
+    const json document = json_of(words({"track", path("swung.toml"),
+                                         "--no-force --dynamic --damping 0.01 --frame-rate 40 "
+                                         "--samples 5 --shapes"}));
     std::string text = "time,s,x,y,z\n";
     for (const json& frame : document.at("dynamic").at("frames")) {
       for (std::size_t i = 1; i < 5; ++i) {
@@ -58,27 +56,26 @@ class MotionCommand : public dlo::test::Command {
 TEST_F(MotionCommand, CheckJudgesMarkersByTheRodThatIsAsked) {
   write_markers("markers.csv");
   const std::string tolerance = path("markers.csv") + " --tolerance 0.1%";
-  const Outcome right = run(check(tolerance + " --dynamic --damping 0.01"));
-  EXPECT_EQ(right.status, 0) << right.out << right.err;
-  EXPECT_THAT(right.out, HasSubstr("markers         s = 0.1 m: RMS"));
-  EXPECT_THAT(right.out, HasSubstr("it has inertia"));
-  EXPECT_THAT(right.out, HasSubstr("verdict         pass: RMS"));
+  const std::string right = said(check(tolerance + " --dynamic --damping 0.01"));
+  EXPECT_THAT(right, HasSubstr("markers         s = 0.1 m: RMS"));
+  EXPECT_THAT(right, HasSubstr("it has inertia"));
+  EXPECT_THAT(right, HasSubstr("verdict         pass: RMS"));
   const Outcome wrong = run(check(tolerance + " --damping 0.01"));
   EXPECT_EQ(wrong.status, 1);
   EXPECT_THAT(wrong.out, HasSubstr("if the rod has inertia (--dynamic)"));
   EXPECT_THAT(wrong.out, HasSubstr("verdict         fail: RMS"));
   // Nobody asked for a tolerance.
-  EXPECT_EQ(run(check(path("markers.csv"))).status, 0);
+  succeeds(check(path("markers.csv")));
 }
 
 TEST_F(MotionCommand, CheckTellsLagAndFramesInEveryFormat) {
   write_markers("late.csv", 0.02);
   const std::string late = path("late.csv") + " --dynamic --damping 0.01 --from 0";
   EXPECT_THAT(run(check(late)).out, HasSubstr("lag             20 ms late: RMS"));
-  const json document = json::parse(run(check(late + " --format json")).out);
+  const json document = json_of(check(late));
   EXPECT_EQ(document.at("schema"), "dlo/motion_check/1");
   EXPECT_EQ(document.at("model"), "with_inertia");
-  EXPECT_NEAR(document.at("lag_s").get<double>(), 0.02, 1e-4);
+  EXPECT_NEAR(document.at("lag_s"), 0.02, 1e-4);
   EXPECT_LT(document.at("rms_without_lag_m").get<double>(), 1e-5);
   EXPECT_EQ(document.at("frames").size(), 13U);
   EXPECT_EQ(document.at("causes").at(0).at("kind"), "lag");
@@ -96,9 +93,7 @@ TEST_F(MotionCommand, CheckDrawsTheWorstFrameAndWritesAPage) {
   write_markers("late.csv", 0.02);
   const std::string late =
       check(path("late.csv") + " --from 0 --dynamic --damping 0.01 --frame-rate 200");
-  const Outcome sketch = run(late + " --plot -");
-  EXPECT_EQ(sketch.status, 0) << sketch.err;
-  EXPECT_THAT(sketch.out, HasSubstr("x to the right"));
+  EXPECT_THAT(said(late + " --plot -"), HasSubstr("x to the right"));
   const Outcome page = run(late + " --report " + path("page.html"));
   ASSERT_EQ(page.status, 0) << page.err;
   const std::string html = read(path("page.html"));
@@ -110,15 +105,11 @@ TEST_F(MotionCommand, CheckDrawsTheWorstFrameAndWritesAPage) {
 
 TEST_F(MotionCommand, CheckTakesTheFramesThatTrackWrites) {
   const std::string series = path("rod.vtk.series");
-  ASSERT_EQ(
-      run(words({"track", path("swung.toml"), "--no-force --frame-rate 50 --paraview", series}))
-          .status,
-      0);
+  succeeds(words({"track", path("swung.toml"), "--no-force --frame-rate 50 --paraview", series}));
   for (const std::string& frames : {series, path("")}) {
-    const Outcome right = run(check(frames + " --tolerance 0.01%"));
-    EXPECT_EQ(right.status, 0) << right.out << right.err;
-    EXPECT_THAT(right.out, HasSubstr("656 points at 16 times"));
-    EXPECT_THAT(right.out, HasSubstr("it is quasi-static"));
+    const std::string right = said(check(frames + " --tolerance 0.01%"));
+    EXPECT_THAT(right, HasSubstr("656 points at 16 times"));
+    EXPECT_THAT(right, HasSubstr("it is quasi-static"));
   }
 }
 
@@ -153,7 +144,7 @@ TEST_F(MotionCommand, MeasuredPosesAreSmoothedBelowTheirCutoff) {
       words({"track", path("smooth.toml"), "--no-force --from 0.5 --to 1.5 --frame-rate 37"}));
   for (const json& frame : document.at("frames")) {
     // A gain of 0.001 is left of it: 1 / (1 + (sqrt(2) - 1) / sin(pi / 20)^4).
-    EXPECT_NEAR(frame.at("grippers").at(0).at("position_m").at(0).get<double>(),
+    EXPECT_NEAR(frame.at("grippers").at(0).at("position_m").at(0),
                 0.1 * frame.at("time_s").get<double>(), 2e-6);
   }
   write("fast.toml", rod + way + "cutoff = \"50 Hz\"\n");
@@ -169,8 +160,8 @@ TEST_F(MotionCommand, CalibrateFindsTheStiffnessThatMovedTheMarkers) {
       words({"calibrate", path("softer.toml"), "--motion", path("markers.csv")});
   const json document = json::parse(run(calibrate + "--format json").out);
   EXPECT_EQ(document.at("schema"), "dlo/motion_fit/1");
-  EXPECT_NEAR(document.at("stiffness").at("value").get<double>(), 0.02, 1e-4);
-  EXPECT_NEAR(document.at("damping_s").at("value").get<double>(), 0.01, 1e-3);
+  EXPECT_NEAR(document.at("stiffness").at("value"), 0.02, 1e-4);
+  EXPECT_NEAR(document.at("damping_s").at("value"), 0.01, 1e-3);
   expect_error(calibrate + "--format csv", 2, {"--motion: has no format csv"});
 }
 

@@ -1,5 +1,5 @@
-// What leaves the command: every byte is written or its loss is told, nothing is destroyed on the
-// way, and no name or number breaks a format.
+// What leaves the command: every byte is written or its loss is told, and nothing is destroyed on
+// the way.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -8,76 +8,30 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
-#include <regex>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "../../sanitized.hpp"
-#include "base/display.hpp"
-#include "base/number.hpp"
 #include "base/output_file.hpp"
-#include "base/quote.hpp"
 #include "base/temporary_path.hpp"
-#include "command_fixture.hpp"
 #include "dlo/compare/error.hpp"
-#include "format/json.hpp"
-#include "format/solution_output.hpp"
-#include "scene_text.hpp"
+#include "output_fixture.hpp"
 
 namespace {
 
+using dlo::test::Output;
+
 using dlo::test::says;
-using dlo::test::says_none;
 
 namespace fs = std::filesystem;
 
-using dlo::compare::display;
 using dlo::compare::InputError;
 using dlo::compare::OutputError;
 using dlo::compare::OutputFile;
 using dlo::compare::OutputTarget;
-using dlo::compare::valid_utf8;
 using dlo::test::Outcome;
-
-const std::string held_at_both_ends =
-    "name = \"both ends\"\n" + dlo::test::steel_rod + dlo::test::level_clamp + R"([[gripper]]
-at = "50 cm"
-position = [0.45, 0, 0]
-direction = "0 deg"
-)";
-
-class Output : public dlo::test::Command {
- protected:
-  /// A line of bash that may be more than one command; its standard error is what they write there.
-  [[nodiscard]] Outcome bash(const std::string& script) const {
-    std::ofstream(path("script")) << "cd " << path("") << "\ndlo=" << DLO_COMMAND << "\n"
-                                  << script << "\n";
-    return run_line("bash " + path("script"));
-  }
-
-  void write_scene(const std::string& name) const { write(name, read(steel())); }
-
-  [[nodiscard]] std::vector<std::string> files() const {
-    std::vector<std::string> names = Command::files();
-    std::erase_if(names, [](const auto& name) { return name == "script" || name == "stderr"; });
-    return names;
-  }
-
-  [[nodiscard]] static bool one_line(const std::string& text) {
-    return std::count(text.begin(), text.end(), '\n') == 1 && text.ends_with('\n');
-  }
-
-  /// Refused with status 2 before the scene is solved, which would end with status 3.
-  void expect_refused(const std::string& arguments, const std::vector<std::string>& names) const {
-    expect_error(arguments + " --max-evaluations 1", 2, names);
-  }
-};
 
 TEST_F(Output, ThatIsLostOnStandardOutputIsAnError) {
   for (const std::string arguments :
@@ -209,10 +163,10 @@ TEST_F(Output, AnInputIsNeverWrittenOver) {
     EXPECT_EQ(read(scene), text) << name;
   }
   // What else is read: shapes, parameters, materials, shards, baselines, a sweep's part.
-  ASSERT_EQ(run("solve " + scene + " --format csv -o " + path("shape")).status, 0);
-  ASSERT_EQ(run("calibrate " + scene + " -o " + path("params.toml")).status, 0);
-  ASSERT_EQ(run("regress " + scene + " --update --baseline " + path("base.toml")).status, 0);
-  ASSERT_EQ(run("sweep " + scene + " --vary gamma=1 --shard 1/1 -o " + path("shard")).status, 0);
+  succeeds("solve " + scene + " --format csv -o " + path("shape"));
+  succeeds("calibrate " + scene + " -o " + path("params.toml"));
+  succeeds("regress " + scene + " --update --baseline " + path("base.toml"));
+  succeeds("sweep " + scene + " --vary gamma=1 --shard 1/1 -o " + path("shard"));
   write("materials.toml", read(std::string(DLO_DATA) + "/materials.toml"));
   write("x.part", text);
   const auto reads = [&](const std::string& name, const std::string& arguments) {
@@ -241,7 +195,7 @@ TEST_F(Output, AnInputIsNeverWrittenOver) {
   EXPECT_TRUE(says(appended.err, {"standard output"}));
   EXPECT_EQ(read(scene), text);
   // A baseline that is written anew is its own input.
-  EXPECT_EQ(run("regress " + scene + " --update --baseline " + path("base.toml")).status, 0);
+  succeeds("regress " + scene + " --update --baseline " + path("base.toml"));
 }
 
 TEST_F(Output, ThatHasNoPlaceIsRefusedBeforeAnythingIsComputed) {
@@ -367,196 +321,6 @@ TEST_F(Output, HelpAndManualPageSayEveryExitStatus) {
   const std::size_t section = page.find(".Sh EXIT STATUS");
   for (const std::string item : {".It 0", ".It 1", ".It 2", ".It 3", ".It 4", ".It 5"}) {
     EXPECT_NE(page.find(item, section), std::string::npos) << item;
-  }
-}
-
-/// Fields of a line of CSV without line ends in its fields.
-std::vector<std::string> fields_of(const std::string& line) {
-  std::vector<std::string> fields(1);
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"') quoted = !quoted;
-    if (c == ',' && !quoted) {
-      fields.emplace_back();
-    } else {
-      fields.back() += c;
-    }
-  }
-  return fields;
-}
-
-TEST_F(Output, NoNumberIsNanOrInfinity) {
-  write("both.toml", held_at_both_ends);
-  write("weightless.toml", "gravity = [0, 0, 0]\n" + read(steel()));
-  write_scene("cable.toml");
-  const std::string own = read(path("weightless.toml"));
-  // The scene has a gravity of its own.
-  write("weightless.toml",
-        std::regex_replace(own, std::regex("\ngravity = [^\n]*"), "\n# gravity: none"));
-  ASSERT_EQ(bash("$dlo solve cable.toml --samples 21 --format csv | head -n 16 >seen.csv").status,
-            0);
-  ASSERT_EQ(bash("$dlo regress both.toml cable.toml --update --baseline base.toml").status, 0);
-  const std::regex not_a_number("[+-]?(nan|inf|infinity)(\\([^)]*\\))?", std::regex::icase);
-  int empty = 0;
-  for (const std::string command :
-       {"solve both.toml", "compare both.toml", "compare weightless.toml",
-        "check cable.toml --shape seen.csv",
-        "check weightless.toml --shape seen.csv --tolerance 99%",
-        "calibrate cable.toml --shape seen.csv", "calibrate cable.toml --law hooke --target 5%",
-        "stability --case unequal --stepper basic --max-steps 2000", "stability --case pulled",
-        "stability --map cF-cc --columns 2 --rows 4 --map-steps 50",
-        "sweep both.toml --model compare-chain --vary gamma=0,1",
-        "regress both.toml cable.toml --baseline base.toml", "materials"}) {
-    const Outcome csv = bash("$dlo " + command + " --format csv");
-    std::istringstream lines(csv.out);
-    std::string line;
-    std::getline(lines, line);
-    const std::size_t columns = fields_of(line).size();
-    EXPECT_GT(columns, 3U) << command << csv.err;
-    int rows = 0;
-    for (; std::getline(lines, line); ++rows) {
-      const std::vector<std::string> fields = fields_of(line);
-      EXPECT_EQ(fields.size(), columns) << command << "\n" << line;
-      for (const std::string& field : fields) {
-        EXPECT_FALSE(std::regex_match(field, not_a_number)) << command << "\n" << line;
-        if (field.empty()) ++empty;
-      }
-    }
-    EXPECT_GT(rows, 0) << command;
-    // JSON has one writer; those with most numbers that are none have to do.
-    if (command != "compare both.toml" && command != "stability --case pulled") continue;
-    const Outcome json = bash("$dlo " + command + " --format json");
-    EXPECT_FALSE(nlohmann::json::parse(json.out, nullptr, false).is_discarded()) << command;
-  }
-  EXPECT_GT(empty, 10);  // or nothing of this was tried
-}
-
-TEST(Shown, IsZeroBelowTheErrorOfTheData) {
-  using dlo::compare::shown;
-  for (const double rounding : {-7.965e-33, 4.8e-18, -0.0, 1e-9}) {
-    EXPECT_EQ(shown(rounding, 1), 0);
-    EXPECT_FALSE(std::signbit(shown(rounding, 1)));
-  }
-  for (const double number : {1.1e-9, -2e-9, 3.0}) EXPECT_EQ(shown(number, 1), number);
-  EXPECT_EQ(shown(1e-12, 1e-6), 1e-12);  // of a small scene
-  EXPECT_EQ(shown(1e-12, 0), 1e-12);     // of one without a size
-  EXPECT_TRUE(std::isnan(shown(NAN, 1)));
-  EXPECT_EQ(shown(INFINITY, 1), INFINITY);
-  // A taut rod's forces are large beside its weight.
-  EXPECT_EQ(dlo::cli::shown(Eigen::Vector3d(1e4, -1e-6, 1), 1), Eigen::Vector3d(1e4, 0, 1));
-}
-
-// Forces, torques and energies of these scenes have parts that symmetry or balance makes zero.
-TEST_F(Output, TextHasNoNumberThatIsRounding) {
-  const std::regex rounding("[0-9]e-(?:1[3-9]|[2-9][0-9])");
-  const std::string scenes = std::string(DLO_DATA) + "/scenes/";
-  const std::string commands[] = {"solve " + scenes + "spring_steel_175.toml",
-                                  "solve " + scenes + "spring_steel_175.toml --model exact",
-                                  "solve " + scenes + "side_load.toml",
-                                  "solve " + scenes + "twisted_wire.toml",
-                                  "solve " + scenes + "spliced_cable.toml --model chain",
-                                  "compare " + steel() + " --law hooke --bookkeeping consistent",
-                                  "track " + scenes + "buckling_wire.toml --no-force",
-                                  "track " + scenes + "corner_routing.toml --no-force"};
-  for (const std::string& command : commands) {
-    const Outcome text = run(command);
-    EXPECT_EQ(text.status, 0) << text.err;
-    std::smatch found;
-    EXPECT_FALSE(std::regex_search(text.out, found, rounding)) << command << "\n" << text.out;
-  }
-  // Documents keep what they have: nothing is lost there.
-  const std::string json = run(commands[6] + " --format json").out;
-  EXPECT_TRUE(std::regex_search(json, rounding));
-}
-
-TEST(Json, KeysWithANewNameAreThereByTheOldOneToo) {
-  const dlo::cli::Json document = {{"equilibria", {{{"smallest_eigenvalue", -3.5}}}},
-                                   {"neglected", {"twist"}},
-                                   {"events", {{{"smallest_eigenvalue_before", 0.5}}}},
-                                   {"not_identified", nullptr},
-                                   {"reference_verified", true}};
-  const auto read = nlohmann::json::parse(dlo::cli::json_text(document));
-  EXPECT_EQ(read.at("equilibria")[0].at("smallest_curvature"), -3.5);
-  EXPECT_EQ(read.at("equilibria")[0].at("smallest_eigenvalue"), -3.5);
-  EXPECT_EQ(read.at("left_out"), read.at("neglected"));
-  EXPECT_EQ(read.at("events")[0].at("smallest_curvature_before"), 0.5);
-  EXPECT_TRUE(read.at("not_told").is_null());
-  EXPECT_EQ(read.at("reference_resolved"), true);
-  EXPECT_EQ(read.size(), 8U);  // nothing else is new
-}
-
-TEST(Csv, UndefinedNumbersAreEmpty) {
-  using dlo::compare::csv_number;
-  EXPECT_EQ(csv_number(NAN) + csv_number(INFINITY) + csv_number(-INFINITY), "");
-  EXPECT_EQ(csv_number(-0.0), "0");
-  EXPECT_EQ(csv_number(1. / 3), "0.3333333333");
-  EXPECT_EQ(csv_number(1. / 3, 3), "0.333");
-}
-
-TEST(Display, RepairsUtf8AndShowsNoControls) {
-  const std::string good = "\xc3\xa9 \xe2\x82\xac \xf0\x9f\x98\x80 ~";
-  EXPECT_EQ(valid_utf8(good), good);
-  EXPECT_EQ(display(good), good);
-  const std::string bad = "\xef\xbf\xbd";
-  EXPECT_EQ(valid_utf8("a\xffz"), "a" + bad + "z");
-  EXPECT_EQ(valid_utf8("\xc3"), bad);                                // cut off
-  EXPECT_EQ(valid_utf8("\xc0\x80"), bad + bad);                      // longer than needed
-  EXPECT_EQ(valid_utf8("\xed\xa0\x80"), bad + bad + bad);            // a surrogate
-  EXPECT_EQ(valid_utf8("\xf4\x90\x80\x80"), bad + bad + bad + bad);  // above U+10FFFF
-  EXPECT_EQ(valid_utf8("\n\x1b"), "\n\x1b");
-  EXPECT_EQ(display(std::string("a\n\x1b[31m\x7f\0z", 10)), "a??[31m??z");
-  EXPECT_EQ(display("\xc2\x9b"
-                    "31m"),
-            "?31m");  // the one-character escape of terminals
-}
-
-TEST_F(Output, NamesThatAreNoTextBreakNoFormat) {
-  const std::string name = "w\xff\x1b[31mire";
-  write(name + ".toml", std::regex_replace(read(steel()), std::regex("name = [^\n]*\n"), ""));
-  const auto quoted = [](const std::string& file) { return "'" + file + "'"; };
-  const std::string scene = quoted(name + ".toml");
-  ASSERT_EQ(bash("$dlo solve " + scene + " --format csv -o " + quoted(name)).status, 0);
-  for (const std::string& command :
-       {"solve " + scene, "check " + scene + " --shape " + quoted(name),
-        "calibrate " + scene + " --shape " + quoted(name), "compare " + scene}) {
-    const Outcome json = bash("$dlo " + command + " --format json");
-    EXPECT_EQ(json.status, 0) << json.err;
-    EXPECT_FALSE(nlohmann::json::parse(json.out, nullptr, false).is_discarded()) << command;
-    const std::string text = bash("$dlo " + command).out;
-    EXPECT_EQ(text.find_first_of("\x1b\xff"), std::string::npos) << text;
-    EXPECT_TRUE(says(text, {"w\xef\xbf\xbd?[31mire"}));
-  }
-  // A baseline holds the name that its scene has the next time.
-  const std::string regress = "$dlo regress " + scene + " --baseline b.toml --junit j.xml";
-  ASSERT_EQ(bash(regress + " --update").status, 0);
-  const Outcome again = bash(regress);
-  EXPECT_EQ(again.status, 0) << again.out << again.err;
-  EXPECT_TRUE(says(again.out, {"1 same"}));
-  EXPECT_EQ(again.out.find_first_of("\x1b\xff"), std::string::npos) << again.out;
-  const std::string junit = read(path("j.xml"));
-  EXPECT_EQ(valid_utf8(junit), junit);
-}
-
-TEST_F(Output, TextHoldsNoControlCharactersOfNames) {
-  write("evil.toml", std::regex_replace(read(steel()), std::regex("name = [^\n]*\n"),
-                                        "name = \"a\\u001b[31m\\u009b\\n  verdict  pass\"\n"));
-  ASSERT_EQ(bash("$dlo solve evil.toml --samples 9 --format csv -o shape.csv").status, 0);
-  for (const std::string command :
-       {"solve evil.toml --explain", "compare evil.toml --explain",
-        "check evil.toml --shape shape.csv", "calibrate evil.toml --shape shape.csv",
-        "calibrate evil.toml", "regress evil.toml --baseline b.toml --update",
-        "regress evil.toml --baseline b.toml",
-        "stability evil.toml --map cF-cc --columns 1 --rows 4 --map-steps 50",
-        "bench evil.toml --seconds 0.1"}) {
-    const Outcome result = bash("$dlo " + command);
-    EXPECT_EQ(result.status, 0) << command << result.err;
-    for (const std::string& text : {result.out, result.err}) {
-      EXPECT_EQ(display(std::regex_replace(text, std::regex("\n"), " ")),
-                std::regex_replace(text, std::regex("\n"), " "))
-          << command;
-      EXPECT_TRUE(says_none(text, {"\n  verdict  pass"})) << command;
-    }
-    EXPECT_TRUE(says(result.out + result.err, {"a?[31m??"})) << command;
   }
 }
 

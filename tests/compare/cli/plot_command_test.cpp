@@ -70,8 +70,7 @@ TEST_F(PlotCommand, DrawsASceneOfAnyName) {
     if (std::string_view(name).starts_with("'\\")) {
       key = std::string("name = '''\n") + name + "'''\n";
     }
-    const Outcome drawn = run("solve " + scene(key + rest) + " --plot " + path("n.svg"));
-    ASSERT_EQ(drawn.status, 0) << name << drawn.err;
+    const std::string drawn = said("solve " + scene(key + rest) + " --plot " + path("n.svg"));
     std::string picture = read(path("n.svg"));
     for (const std::string around : {"<![CDATA[", "]]>"}) {
       // What is left of them is none of a section's own.
@@ -84,10 +83,7 @@ TEST_F(PlotCommand, DrawsASceneOfAnyName) {
 }
 
 TEST_F(PlotCommand, CheckDrawsAndKeepsItsVerdict) {
-  ASSERT_EQ(
-      run("solve " + steel() + " --model chain --law hooke --format csv -o " + path("mine.csv"))
-          .status,
-      0);
+  succeeds("solve " + steel() + " --model chain --law hooke --format csv -o " + path("mine.csv"));
   const std::string check =
       "check " + steel() + " --no-modulus --shape " + path("mine.csv") + " --format csv";
   expect_picture(check, "a.svg");
@@ -100,20 +96,18 @@ TEST_F(PlotCommand, CheckDrawsAndKeepsItsVerdict) {
 TEST_F(PlotCommand, CompareDrawsEachScene) {
   const std::string other = std::string(DLO_DATA) + "/scenes/spring_steel_135.toml";
   for (const char* file : {"a.svg", "a.png"}) {
-    const Outcome drawn =
-        run("compare --no-modulus " + steel() + " " + other + " --plot " + path(file));
-    EXPECT_EQ(drawn.status, 0) << drawn.err;
+    const std::string drawn =
+        said("compare --no-modulus " + steel() + " " + other + " --plot " + path(file));
     expect_drawn(file);
   }
   EXPECT_THAT(read(path("a.svg")), HasSubstr("135"));
 }
 
 TEST_F(PlotCommand, CalibrateDraws) {
-  ASSERT_EQ(run("solve " + steel() + " --samples 8 --format csv -o " + path("s.csv")).status, 0);
+  succeeds("solve " + steel() + " --samples 8 --format csv -o " + path("s.csv"));
   for (const char* file : {"a.svg", "a.png"}) {
-    const Outcome drawn = run("calibrate " + steel() + " --noise '1 mm' --shape " + path("s.csv") +
-                              " --plot " + path(file));
-    EXPECT_EQ(drawn.status, 0) << drawn.err;
+    const std::string drawn = said("calibrate " + steel() + " --noise '1 mm' --shape " +
+                                   path("s.csv") + " --plot " + path(file));
     expect_drawn(file);
   }
   EXPECT_THAT(read(path("a.svg")), HasSubstr("95 % interval"));
@@ -122,8 +116,8 @@ TEST_F(PlotCommand, CalibrateDraws) {
 
 TEST_F(PlotCommand, BenchDraws) {
   for (const char* file : {"a.svg", "a.png"}) {
-    const Outcome drawn = run("bench " + steel() + " --seconds 1 --repeats 1 --plot " + path(file));
-    EXPECT_EQ(drawn.status, 0) << drawn.err;
+    const std::string drawn =
+        said("bench " + steel() + " --seconds 1 --repeats 1 --plot " + path(file));
     expect_drawn(file);
   }
 }
@@ -132,9 +126,8 @@ TEST_F(PlotCommand, SweepDrawsLinesAndMaps) {
   const std::string sweep = "sweep " + steel();
   expect_picture(sweep + " --vary gamma=log:0.1:10:3", "a.svg");
   expect_picture(sweep + " --vary gamma=log:0.1:10:3 --vary rod.length=lin:0.4:0.6:7", "b.png");
-  const Outcome filed =
-      run(sweep + " --vary gamma=1,2 -o " + path("s.csv") + " --plot " + path("c.svg"));
-  EXPECT_EQ(filed.status, 0) << filed.err;
+  const std::string filed =
+      said(sweep + " --vary gamma=1,2 -o " + path("s.csv") + " --plot " + path("c.svg"));
   expect_drawn("c.svg");
   expect_error(
       sweep + " --vary gamma=1 --vary rod.length=1 --vary gripper.0.at=0 --plot " + path("d.svg"),

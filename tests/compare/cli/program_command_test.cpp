@@ -75,7 +75,7 @@ TEST_F(ProgramCommand, BenchSaysFailuresInTextAndTables) {
 TEST_F(ProgramCommand, RegressKeepsAProgramsErrorByItsName) {
   const std::string arguments =
       "regress --model chain --baseline " + path("b.toml") + " " + cable();
-  ASSERT_EQ(run(arguments + hinges("mine") + "--update").status, 0);
+  succeeds(arguments + hinges("mine") + "--update");
   EXPECT_THAT(read(path("b.toml")), HasSubstr("program = \"mine\"\npoints = 16\n"));
   const Outcome same = run(arguments + hinges("mine"));
   EXPECT_EQ(same.status, 0) << same.out;

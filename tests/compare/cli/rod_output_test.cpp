@@ -33,13 +33,12 @@ class RodCommand : public dlo::test::Command {
 
 TEST_F(RodCommand, SolveSaysThatTheTorsionalStiffnessIsAssumed) {
   for (const std::string model : {"energy", "chain"}) {
-    const Outcome text = run("solve --explain --model " + model + " " + hose());
-    ASSERT_EQ(text.status, 0) << text.err;
-    EXPECT_TRUE(says(text.out, {"\nassumed    torsional stiffness GJ = EI / 1.3 = 0.06154 N m^2",
-                                "  assumed         torsional stiffness"}));
+    EXPECT_TRUE(says(said("solve --explain --model " + model + " " + hose()),
+                     {"\nassumed    torsional stiffness GJ = EI / 1.3 = 0.06154 N m^2",
+                      "  assumed         torsional stiffness"}));
     const json document = json_of("solve --model " + model + " " + hose());
     const json& assumed = document.at("assumed");
-    EXPECT_NEAR(assumed.at("torsional_stiffness_Nm2").get<double>(), 0.08 / 1.3, 1e-15);
+    EXPECT_NEAR(assumed.at("torsional_stiffness_Nm2"), 0.08 / 1.3, 1e-15);
     EXPECT_EQ(assumed.at("poisson_ratio"), 0.3);
   }
   const json straight = json_of("solve " + by_stiffness("0.08"));
@@ -78,42 +77,38 @@ TEST_F(RodCommand, ASolvedShapeWithFramesIsARestShape) {
   };
   for (const std::string format : {"csv", "vtk"}) {
     const std::string coil = rod("helix = { radius = \"2 cm\", pitch = \"5 cm\" }");
-    ASSERT_EQ(run("solve " + coil + " --samples 81 -o " + path("coil." + format)).status, 0);
-    const Outcome again = run("solve " + rod("rest_shape = \"coil." + format + "\""));
-    ASSERT_EQ(again.status, 0) << again.err;
-    EXPECT_TRUE(says(again.out, {"m of 1 arc (RMS ", " m), d1 within "}));
+    succeeds("solve " + coil + " --samples 81 -o " + path("coil." + format));
+    EXPECT_TRUE(says(said("solve " + rod("rest_shape = \"coil." + format + "\"")),
+                     {"m of 1 arc (RMS ", " m), d1 within "}));
     const json document = json_of("solve " + path("scene.toml"));
     EXPECT_LT(document.at("rest_shape").at("largest_angle_rad").get<double>(), 1e-7);
-    EXPECT_EQ(run("check " + path("scene.toml") + " --shape " + path("coil." + format)).status, 0);
+    succeeds("check " + path("scene.toml") + " --shape " + path("coil." + format));
   }
 }
 
 TEST_F(RodCommand, ComparesByTheStiffnessThatIsGiven) {
   const std::string rod = by_stiffness("0.08");
-  const Outcome text = run("compare " + rod);
-  ASSERT_EQ(text.status, 0) << text.err;
-  EXPECT_TRUE(says(text.out, {"  EI*/EI          1.0"}));
-  EXPECT_TRUE(says_none(text.out, {"  E*/E"}));
-  ASSERT_EQ(run("solve " + rod + " --format csv -o " + path("shape.csv")).status, 0);
+  const std::string text = said("compare " + rod);
+  EXPECT_TRUE(says(text, {"  EI*/EI          1.0"}));
+  EXPECT_TRUE(says_none(text, {"  E*/E"}));
+  succeeds("solve " + rod + " --format csv -o " + path("shape.csv"));
   const json check = json_of("check " + rod + " --shape " + path("shape.csv"));
-  EXPECT_NEAR(check.at("effective_bending_stiffness_Nm2").get<double>(), 0.08, 1e-6);
+  EXPECT_NEAR(check.at("effective_bending_stiffness_Nm2"), 0.08, 1e-6);
   EXPECT_FALSE(check.contains("effective_modulus_Pa"));
 }
 
 TEST_F(RodCommand, CalibrateFindsTheStiffnessThatIsGiven) {
-  ASSERT_EQ(run("solve " + by_stiffness("0.08") + " --format csv -o " + path("shape.csv")).status,
-            0);
+  succeeds("solve " + by_stiffness("0.08") + " --format csv -o " + path("shape.csv"));
   const std::string calibrate =
       "calibrate " + by_stiffness("0.03") + " --shape " + path("shape.csv");
-  const Outcome text = run(calibrate);
-  ASSERT_EQ(text.status, 0) << text.err;
-  EXPECT_EQ(text.out.rfind("EI          0.08 N m^2, 95 %", 0), 0U) << text.out;
+  const std::string text = said(calibrate);
+  EXPECT_EQ(text.rfind("EI          0.08 N m^2, 95 %", 0), 0U) << text;
   const json document = json_of(calibrate);
-  EXPECT_NEAR(document.at("bending_stiffness_Nm2").get<double>(), 0.08, 1e-6);
+  EXPECT_NEAR(document.at("bending_stiffness_Nm2"), 0.08, 1e-6);
   EXPECT_LE(document.at("interval_95_Nm2")[0].get<double>(), 0.0800001);
   EXPECT_FALSE(document.contains("youngs_modulus_Pa"));
   EXPECT_EQ(run(calibrate + " --format csv").out.rfind("bending_stiffness_Nm2,low_Nm2,", 0), 0U);
-  ASSERT_EQ(run(calibrate + " -o " + path("fit.toml")).status, 0);
+  succeeds(calibrate + " -o " + path("fit.toml"));
   // They are lines of a scene's [rod].
   const dlo::compare::Scene fitted =
       dlo::compare::parse_scene("[rod]\nlength = 1\n" + read(path("fit.toml")) +
@@ -135,12 +130,9 @@ TEST_F(RodCommand, AModelWithoutNaturalCurvatureSaysSoAndWhatItCosts) {
           .err,
       {"intrinsically curved"}));
   EXPECT_EQ(run("sweep --model chain --vary rod.natural_curvature=0,1 " + hose()).err, "");
-  EXPECT_EQ(run("stability --map cF-cc --columns 2 --rows 2 --map-steps 100 " + hose()).status, 0);
-  const Outcome text = run("compare --no-modulus " + paper);
-  ASSERT_EQ(text.status, 0) << text.err;
-  EXPECT_TRUE(says(text.out, {"neglected       natural curvature"}));
-  const json entry =
-      json::parse(run("compare --no-modulus --format json " + paper).out).at("cases")[0];
+  succeeds("stability --map cF-cc --columns 2 --rows 2 --map-steps 100 " + hose());
+  EXPECT_TRUE(says(said("compare --no-modulus " + paper), {"neglected       natural curvature"}));
+  const json entry = json_of("compare --no-modulus " + paper).at("cases")[0];
   EXPECT_EQ(entry.at("neglected"), json({"natural curvature"}));
   // The free hose is a circle: without its curvature the end is decimetres off.
   const json& budget = entry.at("budget");
@@ -149,8 +141,7 @@ TEST_F(RodCommand, AModelWithoutNaturalCurvatureSaysSoAndWhatItCosts) {
   double sum = 0;
   for (const auto& [name, share] : budget.at("shares_of_total").items()) sum += share.get<double>();
   EXPECT_NEAR(sum, 1, 1e-9);
-  const json hooke =
-      json::parse(run("compare --no-modulus --format json " + hose()).out).at("cases")[0];
+  const json hooke = json_of("compare --no-modulus " + hose()).at("cases")[0];
   EXPECT_FALSE(hooke.contains("neglected"));
   EXPECT_FALSE(hooke.at("budget").contains("natural_curvature_m"));
   // With it the force model is the rod but for its segments.

@@ -28,9 +28,7 @@ using Words = std::vector<std::string>;
 class RunCommand : public Command {};
 
 TEST_F(RunCommand, IsTheProcess) {
-  ASSERT_EQ(
-      run("solve " + steel() + " --model force --points 8 --format csv -o " + path("s.csv")).status,
-      0);
+  succeeds("solve " + steel() + " --model force --points 8 --format csv -o " + path("s.csv"));
   // The search for what would make the shape right tells of its time.
   const std::string check = "check " + steel() + " --no-explanation --shape " + path("s.csv");
   const struct {

@@ -79,7 +79,7 @@ TEST_F(SweepCommand, WritesATableToStandardOutputOrAFile) {
   EXPECT_EQ(printed.err, "");
   EXPECT_EQ(printed.out.substr(0, 40), "row,gamma,gripper.0.direction [deg],tip_");
   EXPECT_EQ(std::count(printed.out.begin(), printed.out.end(), '\n'), 7);
-  EXPECT_EQ(run(arguments + " -o " + path("a.csv")).status, 0);
+  succeeds(arguments + " -o " + path("a.csv"));
   EXPECT_EQ(read(path("a.csv")), printed.out);
   EXPECT_EQ(run(arguments + " --threads 5").out, printed.out);
 }
@@ -117,7 +117,7 @@ TEST_F(SweepCommand, RefusesAPictureOverWordsBeforeItComputes) {
 
 TEST_F(SweepCommand, KilledTwentyTimesGivesTheFileOfAnUnbrokenRun) {
   const std::string vary = "gamma=log:0.1:100:20000";
-  ASSERT_EQ(run("sweep " + steel() + " --vary " + vary + " -o " + path("whole.csv")).status, 0);
+  succeeds("sweep " + steel() + " --vary " + vary + " -o " + path("whole.csv"));
   const std::uintmax_t size = std::filesystem::file_size(path("whole.csv"));
   std::mt19937 random(5);
   std::uniform_int_distribution<std::uintmax_t> bytes(0, size / 24);
@@ -129,7 +129,7 @@ TEST_F(SweepCommand, KilledTwentyTimesGivesTheFileOfAnUnbrokenRun) {
       std::filesystem::remove(path("killed.csv"));
     }
   }
-  ASSERT_EQ(run("sweep " + steel() + " --vary " + vary + " -o " + path("killed.csv")).status, 0);
+  succeeds("sweep " + steel() + " --vary " + vary + " -o " + path("killed.csv"));
   expect_same_files("whole.csv", "killed.csv");
   EXPECT_FALSE(std::filesystem::exists(path("killed.csv.part")));
 }
@@ -140,29 +140,26 @@ TEST_F(SweepCommand, MergedShardsHoldEveryRowOfManyBlocks) {
   const std::string vary = "gamma=lin:1:17:2401";
   for (const char* shard : {"1/2", "2/2"}) {
     const std::string line = words({"sweep", steel(), "--vary", vary, "--shard", shard, "-o"});
-    ASSERT_EQ(run(line + path("part.{shard}.csv")).status, 0);
+    succeeds(line + path("part.{shard}.csv"));
   }
   for (const char* part : {"part.1-of-2.csv", "part.2-of-2.csv"}) {
     EXPECT_GT(std::filesystem::file_size(path(part)), 65536U + 1000U);
   }
-  ASSERT_EQ(run("sweep --merge " + path("part.*") + " -o " + path("all.csv")).status, 0);
-  std::istringstream lines(read(path("all.csv")));
-  std::string line;
-  std::getline(lines, line);
-  EXPECT_EQ(line, "row,gamma,tip_x_m,tip_y_m,tip_z_m,energy_J,evaluations,terms,status");
+  succeeds("sweep --merge " + path("part.*") + " -o " + path("all.csv"));
+  const std::string all = read(path("all.csv"));
+  EXPECT_TRUE(
+      all.starts_with("row,gamma,tip_x_m,tip_y_m,tip_z_m,energy_J,evaluations,terms,status\n"));
+  const std::vector<dlo::test::CsvRow> table = dlo::test::csv_rows(all);
+  ASSERT_EQ(table.size(), 1U + rows);
   const dlo::compare::Scene scene = dlo::compare::load_scene(steel());
-  int count = 0;
-  for (; std::getline(lines, line); ++count) {
+  for (int count = 0; count < rows; ++count) {
+    const dlo::test::CsvRow& row = table[static_cast<std::size_t>(count) + 1];
     const double gamma = 1 + 16. * count / (rows - 1);
-    std::istringstream fields(line);
-    std::vector<double> numbers;
-    for (std::string field; numbers.size() < 8 && std::getline(fields, field, ',');) {
-      numbers.push_back(std::stod(field));
-    }
-    ASSERT_EQ(numbers.size(), 8U) << line;
-    EXPECT_EQ(numbers[0], count);
-    EXPECT_NEAR(numbers[1], gamma, 1e-10 * gamma);
-    EXPECT_TRUE(line.ends_with(",ok")) << line;
+    ASSERT_EQ(row.size(), 9U) << count;
+    const auto number = [&row](std::size_t column) { return std::stod(row[column]); };
+    EXPECT_EQ(number(0), count);
+    EXPECT_NEAR(number(1), gamma, 1e-10 * gamma);
+    EXPECT_EQ(row[8], "ok") << count;
     if (count % 80 != 0) continue;
     // A single solve of the same scene.
     dlo::compare::Scene alone = scene;
@@ -171,16 +168,15 @@ TEST_F(SweepCommand, MergedShardsHoldEveryRowOfManyBlocks) {
         dlo::compare::solve(alone, dlo::compare::Model::energy, {}, {alone.length});
     const Eigen::Vector3d tip = solution.shape.points.rightCols<1>();
     for (int k = 0; k < 3; ++k) {
-      EXPECT_NEAR(numbers[static_cast<std::size_t>(k) + 2], tip[k], 1e-9) << line;
+      EXPECT_NEAR(number(static_cast<std::size_t>(k) + 2), tip[k], 1e-9) << count;
     }
-    EXPECT_NEAR(numbers[5], solution.energy.total(), 1e-9) << line;
+    EXPECT_NEAR(number(5), solution.energy.total(), 1e-9) << count;
   }
-  EXPECT_EQ(count, rows);
 }
 
 TEST_F(SweepCommand, SaysThatItGoesOn) {
   const std::string line = "sweep " + steel() + " --vary gamma=1,2,3,4 --shard 1/1 -o ";
-  ASSERT_EQ(run(line + path("a.csv")).status, 0);
+  succeeds(line + path("a.csv"));
   const std::string whole = read(path("a.csv"));
   // Two rows and a half are left of a run that was killed.
   const std::string part = whole.substr(0, whole.find("\n2,") + 20);
@@ -199,39 +195,39 @@ TEST_F(SweepCommand, RanksOfMpirunAreShards) {
   ::setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
   ::setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
   const std::string sweep = "sweep " + steel() + " --vary gamma=log:0.1:10:50 -o ";
-  ASSERT_EQ(run(sweep + path("whole.csv")).status, 0);
+  succeeds(sweep + path("whole.csv"));
   const std::string line = "mpirun --oversubscribe -n 3 " DLO_COMMAND " " + sweep + "'" +
                            path("{shard}.csv") + "' 2>" + path("log");
   ASSERT_EQ(std::system(line.c_str()), 0) << read(path("log"));
   EXPECT_TRUE(says(read(path("log")), {"shard 3/3"}));
-  ASSERT_EQ(run("sweep --merge " + path("*-of-3.csv") + " -o " + path("merged.csv")).status, 0);
+  succeeds("sweep --merge " + path("*-of-3.csv") + " -o " + path("merged.csv"));
   expect_same_files("whole.csv", "merged.csv");
 }
 
 TEST_F(SweepCommand, GnuParallelRunsShards) {
   const std::string sweep = "sweep " + steel() + " --vary gamma=log:0.1:10:50 -o ";
-  ASSERT_EQ(run(sweep + path("whole.csv")).status, 0);
+  succeeds(sweep + path("whole.csv"));
   const std::string line = "parallel --will-cite -j 2 " DLO_COMMAND " " + sweep +
                            path("part{}.csv") + " --shard {}/4 ::: 1 2 3 4 2>" + path("log");
   ASSERT_EQ(std::system(line.c_str()), 0) << read(path("log"));
-  ASSERT_EQ(run("sweep --merge " + path("part*.csv") + " -o " + path("merged.csv")).status, 0);
+  succeeds("sweep --merge " + path("part*.csv") + " -o " + path("merged.csv"));
   expect_same_files("whole.csv", "merged.csv");
 }
 
 TEST_F(SweepCommand, TasksOfASlurmArrayAreShards) {
   const std::string sweep = "sweep " + steel() + " --vary gamma=log:0.1:10:50 -o ";
-  ASSERT_EQ(run(sweep + path("whole.csv")).status, 0);
+  succeeds(sweep + path("whole.csv"));
   ::setenv("SLURM_ARRAY_TASK_MIN", "1", 1);
   ::setenv("SLURM_ARRAY_TASK_COUNT", "2", 1);
   for (const char* task : {"1", "2"}) {
     ::setenv("SLURM_ARRAY_TASK_ID", task, 1);
-    ASSERT_EQ(run(sweep + path("task_{shard}.csv")).status, 0);
+    succeeds(sweep + path("task_{shard}.csv"));
   }
   const dlo::test::Outcome other = run(sweep + path("task_1-of-2.csv"));
   EXPECT_EQ(other.status, 2);
   EXPECT_TRUE(says(other.err, {"is shard 1/2, this is 2/2"}));
   ::unsetenv("SLURM_ARRAY_TASK_ID");
-  ASSERT_EQ(run("sweep --merge " + path("task_*.csv") + " -o " + path("merged.csv")).status, 0);
+  succeeds("sweep --merge " + path("task_*.csv") + " -o " + path("merged.csv"));
   expect_same_files("whole.csv", "merged.csv");
 }
 

@@ -64,7 +64,7 @@ TEST_F(Terminal, ADumbTerminalGetsPlainText) {
 }
 
 TEST_F(Terminal, ColoursAreForTerminalsThatWantThem) {
-  ASSERT_EQ(run("solve " + steel() + " --format csv -o " + path("s.csv")).status, 0);
+  succeeds("solve " + steel() + " --format csv -o " + path("s.csv"));
   const std::string check = "check " + steel() + " --tolerance 1% --shape " + path("s.csv");
   const std::string green = "\x1b[32mpass\x1b[0m";
   EXPECT_TRUE(says(seen("TERM=xterm", check), {green}));

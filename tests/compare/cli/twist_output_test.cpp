@@ -141,16 +141,14 @@ TEST_F(TwistCommand, ModelsOfThePolygonHaveItWithTheLawHooke) {
   const double torque = rod.at("twist").at("parts")[0].at("torque_Nm").get<double>();
   for (const std::string model : {"chain", "force"}) {
     const std::string solve = "solve --points 60 --model " + model + " " + wire();
-    const Outcome text = run(solve);
-    ASSERT_EQ(text.status, 0) << text.err;
-    EXPECT_TRUE(says_none(text.out, {"neglected"}));
-    EXPECT_TRUE(says(text.out, {"\ntwist      "}));
+    const std::string text = said(solve);
+    EXPECT_TRUE(says_none(text, {"neglected"}));
+    EXPECT_TRUE(says(text, {"\ntwist      "}));
     const json document = json_of(solve);
     EXPECT_FALSE(document.contains("neglected"));
     const json& part = document.at("twist").at("parts")[0];
-    EXPECT_NEAR(part.at("torque_Nm").get<double>(), torque, 0.01 * torque);
-    EXPECT_NEAR(document.at("grippers")[1].at("axial_torque_Nm").get<double>(), torque,
-                0.01 * torque);
+    EXPECT_NEAR(part.at("torque_Nm"), torque, 0.01 * torque);
+    EXPECT_NEAR(document.at("grippers")[1].at("axial_torque_Nm"), torque, 0.01 * torque);
     EXPECT_EQ(run(solve + " --format csv").err, "");
   }
   EXPECT_EQ(run("sweep --model chain --vary gamma=1 " + wire()).err, "");
@@ -174,25 +172,22 @@ TEST_F(TwistCommand, CommandsThatUseThemSaySo) {
 }
 
 TEST_F(TwistCommand, AComparisonSaysThatTheForceModelHasNone) {
-  const Outcome text = run("compare --no-modulus --law paper " + wire());
-  ASSERT_EQ(text.status, 0) << text.err;
-  EXPECT_TRUE(says(text.out, {"neglected       twist that the scene has, by the force model",
-                              "\n                  twist            "}));
-  const json document =
-      json::parse(run("compare --no-modulus --law paper --format json " + wire()).out);
+  EXPECT_TRUE(says(said("compare --no-modulus --law paper " + wire()),
+                   {"neglected       twist that the scene has, by the force model",
+                    "\n                  twist            "}));
+  const json document = json_of("compare --no-modulus --law paper " + wire());
   EXPECT_EQ(document.at("cases")[0].at("neglected"), json({"twist"}));
   EXPECT_GT(document.at("cases")[0].at("budget").at("twist_m").get<double>(), 0.01);
-  const json hooke = json::parse(run("compare --no-modulus --format json " + wire()).out);
+  const json hooke = json_of("compare --no-modulus " + wire());
   EXPECT_FALSE(hooke.at("cases")[0].contains("neglected"));
   EXPECT_FALSE(hooke.at("cases")[0].at("budget").contains("twist_m"));
 }
 
 TEST_F(TwistCommand, ExplainTellsTheAngle) {
-  const Outcome text = run("solve --explain " + wire());
-  ASSERT_EQ(text.status, 0) << text.err;
+  const std::string text = said("solve --explain " + wire());
   EXPECT_TRUE(says(
-      text.out, {"twist           yes: the grippers turn it by 180 degrees from 0 to 0.5 m",
-                 "degrees stay as twist", "distance from the lowest shape without it", "spatial"}));
+      text, {"twist           yes: the grippers turn it by 180 degrees from 0 to 0.5 m",
+             "degrees stay as twist", "distance from the lowest shape without it", "spatial"}));
 }
 
 TEST_F(TwistCommand, TheEnergyModelGivesTorqueAndEnergyOfTheTwist) {
@@ -205,13 +200,9 @@ TEST_F(TwistCommand, TheEnergyModelGivesTorqueAndEnergyOfTheTwist) {
   EXPECT_LT(angle, pi);
   const double torque = part.at("torque_Nm").get<double>();
   EXPECT_NEAR(torque, 7.93e-3 * angle / 0.5, 1e-9 * torque);
-  EXPECT_NEAR(document.at("energy_J").at("twisting").get<double>(), torque * angle / 2,
-              1e-9 * torque * angle);
-  EXPECT_NEAR(document.at("grippers")[1].at("axial_torque_Nm").get<double>(), torque,
-              1e-6 * torque);
-  const Outcome exact = run("solve --model exact --format json " + wire());
-  ASSERT_EQ(exact.status, 0) << exact.err;
-  EXPECT_NEAR(json::parse(exact.out).at("twist").at("total_rad").get<double>(), angle, 1e-8);
+  EXPECT_NEAR(document.at("energy_J").at("twisting"), torque * angle / 2, 1e-9 * torque * angle);
+  EXPECT_NEAR(document.at("grippers")[1].at("axial_torque_Nm"), torque, 1e-6 * torque);
+  EXPECT_NEAR(json_of("solve --model exact " + wire()).at("twist").at("total_rad"), angle, 1e-8);
 }
 
 }  // namespace

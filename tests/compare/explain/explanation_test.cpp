@@ -1,4 +1,4 @@
-// Shapes that are wrong in one way, and what is said of them; chains that are right in theirs.
+// Shapes that are wrong in one way, and what is said of them.
 
 #include "dlo/compare/explanation.hpp"
 
@@ -18,8 +18,7 @@
 #include "../../says.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/scene_file.hpp"
-#include "explain/own_polygon.hpp"
-#include "hinged_chain.hpp"
+#include "judged_shape.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -27,16 +26,14 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
-using test::HingedChain;
+using test::clamped;
+using test::expect_named;
+using test::judged;
+using test::JudgedShape;
+using test::made;
 using test::says;
 
 constexpr double degree = std::numbers::pi / 180;
-
-Scene clamped(const std::string& rod = "") {
-  return parse_scene("[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0.5\n" + rod +
-                         "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"20 deg\"\n",
-                     "clamped.toml");
-}
 
 Scene between_clamps(const std::string& rod = "", const std::string& last = "") {
   return parse_scene(
@@ -53,47 +50,6 @@ MeasuredShape shape_of(const Scene& scene, int count = 41) {
   shape.file = "mine.csv";
   shape.points = rod.sample(equal_arc_lengths(scene.length, count)).points;
   return shape;
-}
-
-MeasuredShape made(Matrix3Xd points) {
-  MeasuredShape shape;
-  shape.file = "mine.csv";
-  shape.points = std::move(points);
-  return shape;
-}
-
-struct Outcome {
-  ShapeJudgement judgement;
-  std::vector<Explanation> explanations;
-};
-
-Outcome judged(const Scene& scene, const MeasuredShape& shape, double share = 0.01,
-               bool largest = false) {
-  const ShapeCheckOptions options{.modulus = ModulusSearch::no};
-  const ShapeCheck check = check_shape(scene, shape, options);
-  const ShapeTolerance tolerance{.allowed_m = share * scene.length, .largest = largest};
-  Outcome outcome;
-  if (!judge(check, tolerance).pass) {
-    outcome.explanations = explain_shape(scene, shape, check, options);
-  }
-  outcome.judgement =
-      with_explanation(judge_with_chains(scene, check, tolerance), outcome.explanations, tolerance);
-  return outcome;
-}
-
-/// Fails, and the best explanation has these words and leaves less than a tenth of the tolerance.
-void expect_named(const std::string& what, const Scene& scene, const MeasuredShape& shape,
-                  const std::vector<std::string>& words, double left_m = 1e-3) {
-  SCOPED_TRACE(what);
-  const Outcome outcome = judged(scene, shape);
-  EXPECT_FALSE(outcome.judgement.pass);
-  ASSERT_FALSE(outcome.explanations.empty()) << outcome.judgement.reason;
-  const Explanation& best = outcome.explanations.front();
-  for (const std::string& word : words) {
-    EXPECT_TRUE(says(best.cause, {word}));
-    EXPECT_TRUE(says(outcome.judgement.reason, {word}));
-  }
-  EXPECT_LT(best.rms_m, left_m);
 }
 
 TEST(Explanation, NamesWhatIsWrongWithAFile) {
@@ -154,14 +110,14 @@ TEST(Explanation, NamesWhatIsWrongWithAFile) {
 // How far a file is that was read in a wrong way says nothing: what is wrong with it comes first.
 TEST(Explanation, AFileThatIsReadWronglyIsNamedFirst) {
   const Scene scene = clamped();
-  const Outcome wrong = judged(scene, made(1000 * shape_of(scene).points));
+  const JudgedShape wrong = judged(scene, made(1000 * shape_of(scene).points));
   EXPECT_TRUE(
       says(wrong.judgement.reason, {"mm if the file is in mm, not in metres; as it was read: "}));
   EXPECT_EQ(wrong.judgement.reason.find("RMS"), 0U) << wrong.judgement.reason;
   // Here the scene is wrong as well.
   Scene softer = scene;
   softer.scale_modulus(0.3);
-  const Outcome other = judged(scene, shape_of(softer));
+  const JudgedShape other = judged(scene, shape_of(softer));
   EXPECT_TRUE(says(other.judgement.reason, {"; it would be "}));
 }
 
@@ -323,114 +279,12 @@ TEST(Explanation, AnotherReasonThatLeavesLessOutdoesTheStiffness) {
   EXPECT_TRUE(says(turned->cause, {"gripper 1 is rotated"}));
 }
 
-// A right chain of few hinges is percents away from the rod: it is called what it is, and passes;
-// one with other springs does not.
-TEST(Explanation, AChainOfHingesIsRightInItsOwnWay) {
-  const Scene scene = clamped();
-  for (const int segments : {10, 20, 40}) {
-    SCOPED_TRACE(segments);
-    const double h = 1.0 / segments;
-    const std::vector<double> whole(static_cast<std::size_t>(segments), h);
-    const Outcome hinged = judged(scene, made(HingedChain(whole, h, 1, false).points()));
-    EXPECT_TRUE(hinged.judgement.pass) << hinged.judgement.reason;
-    EXPECT_TRUE(says(hinged.judgement.reason, {"with a hinge at the clamp", "discretisation"}));
-    const Outcome welded = judged(scene, made(HingedChain(whole, h, 1, true).points()));
-    EXPECT_TRUE(welded.judgement.pass) << welded.judgement.reason;
-    EXPECT_TRUE(says(welded.judgement.reason, {"welded"}));
-    std::vector<double> half(static_cast<std::size_t>(segments) + 1, h);
-    half.front() = half.back() = h / 2;
-    const Outcome middle = judged(scene, made(HingedChain(half, h, 1, true).points()));
-    EXPECT_TRUE(middle.judgement.pass) << middle.judgement.reason;
-    EXPECT_TRUE(middle.explanations.empty());  // near the rod itself
-    expect_named("half as stiff", scene, made(HingedChain(whole, h, 0.5, false).points()),
-                 {"with a hinge at the clamp", "springs of 0.", "times EI/h"});
-  }
-}
-
-// That is so whether or not anything is explained, and whatever else explains it.
-TEST(Explanation, TheVerdictKnowsChainsWithoutAnyExplanation) {
-  const Scene scene = clamped();
-  const MeasuredShape right =
-      made(HingedChain(std::vector<double>(20, 0.05), 0.05, 1, false).points());
-  const ShapeCheck check = check_shape(scene, right, {.modulus = ModulusSearch::no});
-  for (const bool largest : {false, true}) {
-    const ShapeTolerance tolerance{.allowed_m = 0.01, .largest = largest};
-    EXPECT_FALSE(judge(check, tolerance).pass);
-    const ShapeJudgement alone = judge_with_chains(scene, check, tolerance);
-    EXPECT_TRUE(alone.pass) << alone.reason;
-    EXPECT_EQ(with_explanation(alone, explain_shape(scene, right, check, {}), tolerance).reason,
-              alone.reason);
-  }
-  const MeasuredShape soft =
-      made(HingedChain(std::vector<double>(20, 0.05), 0.05, 0.8, false).points());
-  const ShapeCheck soft_check = check_shape(scene, soft, {.modulus = ModulusSearch::no});
-  const ShapeJudgement alone = judge_with_chains(scene, soft_check, {.allowed_m = 1e-3});
-  EXPECT_FALSE(alone.pass);
-  const ShapeJudgement explained =
-      with_explanation(alone, explain_shape(scene, soft, soft_check, {}), {.allowed_m = 1e-3});
-  EXPECT_FALSE(explained.pass);
-  EXPECT_EQ(explained.reason.find(alone.reason), 0);
-}
-
-// Its springs are EI/h, and linear in the angle: so they are called, where the angles are large
-// enough for it to show.
-TEST(Explanation, AChainsSpringsAreCalledByTheirLaw) {
-  Scene rope = clamped();
-  rope.scale_modulus(0.2);
-  const HingedChain chain(std::vector<double>(20, 0.05), 0.05, 0.2, true);
-  const Outcome outcome = judged(rope, made(chain.points()));
-  EXPECT_TRUE(outcome.judgement.pass) << outcome.judgement.reason;
-  EXPECT_TRUE(says(outcome.judgement.reason, {"its springs EI/h and linear in the angle"}));
-  Shape shape;
-  shape.points = chain.points();
-  for (const OwnPolygon& one : own_polygons(rope, shape, Springs::fitted)) {
-    if (one.clamp != ChainClamp::welded) continue;
-    EXPECT_EQ(one.law, energy_model::JointLaw::linear);
-    EXPECT_TRUE(one.law_shows);
-    EXPECT_NEAR(one.stiffness, 1, 1e-3);
-    EXPECT_LT(one.rms_m, 1e-5);
-    for (const energy_model::JointLaw law :
-         {energy_model::JointLaw::hooke, energy_model::JointLaw::binormal}) {
-      for (const OwnPolygon& other : own_polygons(rope, shape, Springs::fitted, law)) {
-        if (other.clamp == ChainClamp::welded) EXPECT_LT(other.stiffness, 0.997);
-      }
-    }
-  }
-}
-
-// It is nearer to the rod than the others; a tolerance of 0.2 % tells them apart.
-TEST(Explanation, AChainClampedInTheMiddleOfASegmentIsKnown) {
-  std::vector<double> lengths(11, 0.1);
-  lengths.front() = lengths.back() = 0.05;
-  const Matrix3Xd right = HingedChain(lengths, 0.1, 1, true).points();
-  const Outcome outcome = judged(clamped(), made(right), 0.002);
-  ASSERT_FALSE(outcome.explanations.empty());
-  const Explanation& best = outcome.explanations.front();
-  EXPECT_TRUE(says(best.cause, {"in the middle of a segment"}));
-  EXPECT_LT(best.rms_m, 1e-4);
-  for (const Explanation& other : outcome.explanations) {
-    const bool middle = other.cause.find("in the middle of a segment") != std::string::npos;
-    const bool chain = other.cause.find("a chain of") != std::string::npos;
-    if (chain && !middle) {
-      EXPECT_GT(other.rms_m, 10 * best.rms_m) << other.cause;
-    }
-  }
-}
-
-// A chain that is right but for its tip is right in the mean, and not everywhere.
-TEST(Explanation, AChainIsHeldAgainstTheMeasureThatWasAsked) {
-  Matrix3Xd points = HingedChain(std::vector<double>(20, 0.05), 0.05, 1, false).points();
-  points.rightCols<1>() += Vector3d(0.003, 0.0045, 0);
-  EXPECT_TRUE(judged(clamped(), made(points)).judgement.pass);
-  EXPECT_FALSE(judged(clamped(), made(points), 0.01, true).judgement.pass);
-}
-
 TEST(Explanation, OfARightShapeThereIsNone) {
   const Scene scene = between_clamps();
   // The two ends of a rod between pins say nothing of it, nor of its unstable neighbours.
   Matrix3Xd ends(3, 2);
   ends << 0, 0.7, 0, 0.1, 0, 0;
-  const Outcome two = judged(held("hold = \"pin\"", "hold = \"pin\""), made(ends));
+  const JudgedShape two = judged(held("hold = \"pin\"", "hold = \"pin\""), made(ends));
   EXPECT_FALSE(two.judgement.pass);
   EXPECT_TRUE(two.explanations.empty());
   EXPECT_TRUE(judged(scene, shape_of(scene)).judgement.pass);

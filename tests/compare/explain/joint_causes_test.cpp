@@ -172,7 +172,7 @@ TEST(JointCauses, AnotherSceneIsNoFaultOfTheFile) {
   }
 }
 
-/// As HingedChain is of it.
+/// As hinged_chain() is of it.
 Scene hinged_scene(const std::string& more = "") {
   return parse_scene(
       "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0.5\n[[gripper]]\nat = 0\n"
@@ -184,11 +184,11 @@ Scene hinged_scene(const std::string& more = "") {
 // Its bodies begin at its hinges, and where the last one ends is no body's begin.
 TEST(JointCauses, AChainOfBodiesWhoseLastEndIsMissingIsCalledThat) {
   constexpr int segments = 8;
-  const test::HingedChain chain(std::vector<double>(segments, 1.0 / segments), 1.0 / segments, 1,
-                                false);
+  const Eigen::Matrix3Xd chain =
+      test::hinged_chain(std::vector<double>(segments, 1.0 / segments), 1.0 / segments, 1, false);
   MeasuredShape shape;
   shape.file = "xpos.csv";
-  shape.points = chain.points().leftCols(segments);
+  shape.points = chain.leftCols(segments);
   const std::vector<Explanation> found = explained(hinged_scene(), shape);
   ASSERT_FALSE(found.empty());
   EXPECT_EQ(found.front().cause,
@@ -207,7 +207,7 @@ TEST(JointCauses, AChainOfBodiesWhoseLastEndIsMissingIsCalledThat) {
 // What a floor does to the end of a chain is a force on it: as large as keeps it on the floor.
 TEST(JointCauses, AChainOnAFloorIsRightInItsOwnWay) {
   const auto chain = [](double lift) {
-    return test::HingedChain(std::vector<double>(10, 0.1), 0.1, 1, false, lift).points();
+    return test::hinged_chain(std::vector<double>(10, 0.1), 0.1, 1, false, lift);
   };
   const double height = chain(0)(1, 10) + 0.1;
   double low = 0;

@@ -154,8 +154,7 @@ class SceneCommand : public dlo::test::Command {};
 
 TEST_F(SceneCommand, WritesTheDocumentAndTheSameForPeople) {
   const std::string twisted = std::string(DLO_DATA) + "/scenes/twisted_wire.toml";
-  const dlo::test::Outcome result = run("scene --points 8 -o " + path("s.json") + " " + twisted);
-  ASSERT_EQ(result.status, 0) << result.err;
+  const std::string result = said("scene --points 8 -o " + path("s.json") + " " + twisted);
   const ordered_json document = ordered_json::parse(read(path("s.json")));
   Scene scene = load_scene(twisted);
   scene.force_model.points = 8;

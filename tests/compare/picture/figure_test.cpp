@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "csv_table.hpp"
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_check.hpp"
@@ -54,17 +55,7 @@ PlottedCurve titled(const Panel& panel, const std::string& title) {
 
 /// Rows of a series in the CSV file.
 std::vector<std::vector<double>> rows_of(const Figure& figure, const std::string& series) {
-  std::vector<std::vector<double>> rows;
-  std::istringstream csv(figure.csv);
-  for (std::string line; std::getline(csv, line);) {
-    if (line.rfind(series + ",", 0) != 0) continue;
-    std::istringstream fields(line.substr(series.size() + 1));
-    std::vector<double>& row = rows.emplace_back();
-    for (std::string field; std::getline(fields, field, ',');) {
-      row.push_back(field.empty() ? NAN : std::strtod(field.c_str(), nullptr));
-    }
-  }
-  return rows;
+  return test::csv_numbers(test::rows_of_series(figure.csv, series), 0, 1);
 }
 
 double extent(const PlotAxis& axis) { return axis.to.value() - axis.from.value(); }

@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "csv_table.hpp"
 #include "report/report.hpp"
 
 namespace dlo::compare {
@@ -33,19 +34,9 @@ struct Motion {
 constexpr std::size_t corner_routing = 0;
 constexpr std::size_t buckling_wire = 1;
 
-using Rows = std::vector<std::vector<std::string>>;
-
 /// Of a CSV file, without its header.
-Rows rows_of(const std::string& csv) {
-  Rows rows;
-  std::istringstream stream(csv.substr(csv.find('\n') + 1));
-  for (std::string line; std::getline(stream, line);) {
-    if (line.empty()) continue;
-    std::istringstream fields(line);
-    std::vector<std::string>& row = rows.emplace_back();
-    for (std::string field; std::getline(fields, field, ',');) row.push_back(field);
-  }
-  return rows;
+std::vector<test::CsvRow> rows_of(const std::string& csv) {
+  return test::csv_rows(csv.substr(csv.find('\n') + 1));
 }
 
 TEST(TrackFigures, StripHasTheShapesOfItsFrames) {
@@ -105,7 +96,7 @@ TEST(TrackFigures, NothingOfAStripLeavesItsCell) {
 TEST(TrackFigures, ForcesAreThoseOfTheFrames) {
   const Motion motion(corner_routing, 50);
   const Figure forces = motion.figures().forces;
-  const Rows rows = rows_of(forces.csv);
+  const std::vector<test::CsvRow> rows = rows_of(forces.csv);
   const std::size_t frames = motion.followed.frames.size();
   ASSERT_EQ(rows.size(), 2 * frames);
   for (std::size_t i = 0; i < rows.size(); ++i) {

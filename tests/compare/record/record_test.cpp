@@ -38,48 +38,25 @@ class Record : public Command {
     text.erase(text.find(still), still.size());
     return scene(text + "trajectory = \"move.csv\"\n");
   }
-  static std::vector<std::string> fields(const std::string& line) {
-    std::vector<std::string> list;
-    std::istringstream stream(line);
-    for (std::string field; std::getline(stream, field, ',');) list.push_back(field);
-    return list;
-  }
-  /// What the first row of a table has in a column.
-  static std::string in_first_row(const std::string& csv, const std::string& column) {
-    std::istringstream lines(csv);
-    std::string header;
-    std::string row;
-    std::getline(lines, header);
-    std::getline(lines, row);
-    const std::vector<std::string> names = fields(header);
-    const std::vector<std::string> values = fields(row);
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      if (names[i] == column) return values.at(i);
-    }
-    return "no column " + column + " in " + header;
-  }
-  [[nodiscard]] std::string out(const std::string& command) const {
-    const Outcome outcome = run(command);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return outcome.out;
-  }
 };
 
 TEST_F(Record, ANumberOfAShapeStandsInEachCommandsOutput) {
   const std::string moving = moving_wire();
-  const std::string text = out(words({"solve", wire()}));
-  const Json solved = Json::parse(out(words({"solve", wire(), "--format json"})));
-  const std::string swept = out(words({"sweep", wire(), "--vary gamma=1"}));
+  const std::string text = said(words({"solve", wire()}));
+  const Json solved = Json::parse(said(words({"solve", wire(), "--format json"})));
+  const std::string swept = said(words({"sweep", wire(), "--vary gamma=1"}));
   const std::string track = words({"track", moving, "--no-force --frame-rate 10"});
-  const std::string tracked = out(track + "--format csv");
-  const Json frame = Json::parse(out(track + "--format json")).at("frames").at(0);
+  const std::string tracked = said(track + "--format csv");
+  const Json frame = Json::parse(said(track + "--format json")).at("frames").at(0);
   int places = 0;
   for (const Field<SolvedShape>& number : dlo::compare::shape_numbers()) {
     const double value = solved.at(number.key()).get<double>();
     EXPECT_TRUE(std::isfinite(value)) << number.key();
-    EXPECT_NEAR(frame.at(number.key()).get<double>(), value, 1e-6) << number.key();
-    EXPECT_NEAR(std::stod(in_first_row(tracked, number.key())), value, 1e-6) << number.key();
-    EXPECT_TRUE(std::isfinite(std::stod(in_first_row(swept, number.key())))) << number.key();
+    EXPECT_NEAR(frame.at(number.key()), value, 1e-6) << number.key();
+    EXPECT_NEAR(std::stod(dlo::test::in_first_row(tracked, number.key())), value, 1e-6)
+        << number.key();
+    EXPECT_TRUE(std::isfinite(std::stod(dlo::test::in_first_row(swept, number.key()))))
+        << number.key();
     if ((number.places & dlo::compare::in_text) != 0) {
       EXPECT_TRUE(says(text, {std::string(number.words)})) << number.key();
     }
@@ -87,7 +64,7 @@ TEST_F(Record, ANumberOfAShapeStandsInEachCommandsOutput) {
   }
   EXPECT_GE(places, 3);
   // Half a turn is held, part of which is writhe.
-  EXPECT_NEAR(solved.at("link_turns").get<double>(), 0.5, 1e-3);
+  EXPECT_NEAR(solved.at("link_turns"), 0.5, 1e-3);
   EXPECT_NEAR(solved.at("twist_turns").get<double>() + solved.at("writhe_turns").get<double>(), 0.5,
               1e-3);
   EXPECT_TRUE(says(text, {"turns      0.500 = twist "}));
@@ -95,8 +72,8 @@ TEST_F(Record, ANumberOfAShapeStandsInEachCommandsOutput) {
 
 TEST_F(Record, AShapeWithoutFramesHasNoTurns) {
   const std::string rod = std::string(DLO_DATA) + "/scenes/spring_steel_175.toml";
-  EXPECT_TRUE(says_none(out(words({"solve", rod, "--format json"})), {"turns"}));
-  EXPECT_EQ(out(words({"sweep", rod, "--vary gamma=1"})).substr(0, 66),
+  EXPECT_TRUE(says_none(said(words({"solve", rod, "--format json"})), {"turns"}));
+  EXPECT_EQ(said(words({"sweep", rod, "--vary gamma=1"})).substr(0, 66),
             "row,gamma,tip_x_m,tip_y_m,tip_z_m,energy_J,evaluations,terms,statu");
 }
 

@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "../../says.hpp"
+#include "csv_table.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/force_model_settings.hpp"
@@ -148,22 +149,17 @@ TEST_F(ReportFolder, DrawsShapesWhereTheyAre) {
   const Report report = make_report({heavy_file()}, small_report());
   (void)write_report(report, {}, folder());
   // The CSV's force model, point by point.
-  std::istringstream csv(text_of(place() / "report" / "shapes_1.csv"));
+  const auto rows = test::csv_numbers(
+      test::rows_of_series(text_of(place() / "report" / "shapes_1.csv"), "force"), 0, 1);
   const Shape& shape = report.scenes.front().comparisons.front().force.shape;
-  std::size_t row = 0;
-  for (std::string line; std::getline(csv, line);) {
-    if (line.rfind("force,", 0) != 0) continue;
-    std::istringstream fields(line.substr(6));
-    for (const double expected :
-         {shape.arc_length.at(row), shape.points(0, static_cast<Eigen::Index>(row)),
-          shape.points(1, static_cast<Eigen::Index>(row))}) {
-      std::string field;
-      std::getline(fields, field, ',');
-      EXPECT_NEAR(std::stod(field), expected, 1e-9);
+  ASSERT_EQ(rows.size(), shape.arc_length.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_NEAR(rows[i].at(0), shape.arc_length[i], 1e-9);
+    for (Eigen::Index k = 0; k < 2; ++k) {
+      EXPECT_NEAR(rows[i].at(static_cast<std::size_t>(k) + 1),
+                  shape.points(k, static_cast<Eigen::Index>(i)), 1e-9);
     }
-    ++row;
   }
-  EXPECT_EQ(row, shape.arc_length.size());
 }
 
 // A rod that hangs down onto a floor, beside a wall that it does not reach: the outline ends where
@@ -182,13 +178,9 @@ TEST_F(ReportFolder, DrawsTheObstaclesInReachAndWhatTouches) {
   (void)write_report(report, {}, folder());
   ASSERT_FALSE(report.scenes.front().comparisons.empty());
   ASSERT_FALSE(report.scenes.front().comparisons.front().contacts.empty());
-  std::istringstream csv(text_of(place() / "report" / "shapes_1.csv"));
   std::map<std::string, std::vector<double>> heights;
-  for (std::string line; std::getline(csv, line);) {
-    std::vector<std::string> fields;
-    std::istringstream stream(line);
-    for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
-    if (fields.at(0) != "series") heights[fields.at(0)].push_back(std::stod(fields.at(3)));
+  for (const test::CsvRow& row : test::csv_rows(text_of(place() / "report" / "shapes_1.csv"))) {
+    if (row.at(0) != "series") heights[row.at(0)].push_back(std::stod(row.at(3)));
   }
   ASSERT_EQ(heights.count("obstacle_1_xy"), 1U);
   EXPECT_EQ(heights.count("obstacle_2_xy"), 0U) << "out of reach";
@@ -209,14 +201,10 @@ TEST_F(ReportFolder, ShowsTheCurvatureThatTheRodHas) {
   SceneFile file = heavy_file();
   file.scene.force_model = {.points = 64};
   (void)write_report(make_report({file}, small_report()), {}, folder());
-  std::istringstream csv(text_of(place() / "report" / "shapes_1.csv"));
   std::map<double, double> rod;
   std::map<double, double> joints;
-  for (std::string line; std::getline(csv, line);) {
-    std::vector<std::string> fields;
-    std::istringstream stream(line);
-    for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
-    if (fields.size() < 6 || fields[0] == "series") continue;
+  for (const test::CsvRow& fields : test::csv_rows(text_of(place() / "report" / "shapes_1.csv"))) {
+    if (fields.size() < 6 || fields[0] == "series" || fields[5].empty()) continue;
     (fields[0] == "energy" ? rod : joints)[std::stod(fields[1])] = std::stod(fields[5]);
   }
   ASSERT_EQ(rod.size(), 201U);

@@ -175,9 +175,8 @@ force = [0, -1, 0]
 
 TEST_F(Command, SolveWritesVtkThatCheckReadsBack) {
   const std::string file = path("shape.vtk");
-  ASSERT_EQ(run("solve " + steel() + " --format vtk -o " + file).status, 0);
-  const auto check =
-      nlohmann::json::parse(run("check " + steel() + " --format json --shape " + file).out);
+  succeeds("solve " + steel() + " --format vtk -o " + file);
+  const auto check = json_of("check " + steel() + " --shape " + file);
   EXPECT_EQ(check.at("arc_lengths"), "file");
   // check compares with the state that it finds from a start of its own; the energy model's last
   // step is 1e-11 l at most.

@@ -112,12 +112,13 @@ class MotionSuite : public dlo::test::Command {
   }
   /// The card of mover.py, by its defect.
   [[nodiscard]] json scene_card(const std::string& defect, const std::string& more = "") const {
-    const Outcome result = run(
-        "suite --format json --points 6 --scenes motion_vibration --with mover='/usr/bin/python3 " +
-        std::string(DLO_DATA) + "/../tests/compare/suite/mover.py " + defect +
-        " {scene} {points} {shape}'" + more);
-    EXPECT_EQ(result.status, 0) << result.err;
-    return json::parse(result.out).at("cards").at(0).at("scenes").at(0);
+    return json_of("suite --points 6 --scenes motion_vibration --with mover='/usr/bin/python3 " +
+                   std::string(DLO_DATA) + "/../tests/compare/suite/mover.py " + defect +
+                   " {scene} {points} {shape}'" + more)
+        .at("cards")
+        .at(0)
+        .at("scenes")
+        .at(0);
   }
 };
 
@@ -157,10 +158,8 @@ TEST_F(MotionSuite, AFinishedMotionIsNotRunAgain) {
 }
 
 TEST_F(MotionSuite, OwnChainConvergesAndForceHasNoMotion) {
-  const Outcome result =
-      run("suite --points 8 --with chain --with force --scenes motion_payload --format json");
-  ASSERT_EQ(result.status, 0) << result.err;
-  const json cards = json::parse(result.out).at("cards");
+  const json cards =
+      json_of("suite --points 8 --with chain --with force --scenes motion_payload").at("cards");
   const json chain = cards.at(0).at("scenes").at(0);
   EXPECT_EQ(chain.at("right"), true) << chain.dump(1);
   EXPECT_GT(chain.at("order"), 1.3);  // of so few points

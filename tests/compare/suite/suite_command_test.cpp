@@ -31,9 +31,7 @@ class SuiteCommand : public dlo::test::Command {
     if (run_line("[ -x /usr/bin/python3 ]").status != 0) GTEST_SKIP() << "no python3";
   }
   [[nodiscard]] json card_of(const std::string& arguments) const {
-    const Outcome result = run("suite --format json " + arguments);
-    EXPECT_EQ(result.status, 0) << result.err;
-    return json::parse(result.out).at("cards").at(0);
+    return json_of("suite " + arguments).at("cards").at(0);
   }
   static std::set<std::string> causes(const json& card) {
     std::set<std::string> names;
@@ -78,15 +76,14 @@ TEST_F(SuiteCommand, HasOurPolygonsWithThePapersLawToo) {
     const std::string same = " --with same='" + std::string(DLO_COMMAND) + " solve " + DLO_DATA +
                              "/suite/scenes/weight_10.toml --law paper --points {points} --model " +
                              model + " --format csv -o {shape}'";
-    const Outcome result = run("suite --format json --points 8 --scenes weight_10 --with " + model +
-                               "_paper --with " + model + same);
-    ASSERT_EQ(result.status, 0) << result.err;
-    const json cards = json::parse(result.out).at("cards");
+    const json cards = json_of("suite --points 8 --scenes weight_10 --with " + model +
+                               "_paper --with " + model + same)
+                           .at("cards");
     const auto error = [&](std::size_t card, std::size_t run) {
       return cards.at(card).at("scenes").at(0).at("runs").at(run).at("rms_over_length");
     };
     for (const std::size_t run : {0, 1, 2}) {
-      EXPECT_NEAR(error(0, run).get<double>(), error(2, run).get<double>(), 1e-6) << model;
+      EXPECT_NEAR(error(0, run), error(2, run), 1e-6) << model;
       EXPECT_GT(error(0, run).get<double>(), 5 * error(1, run).get<double>()) << model;
     }
   }
@@ -94,7 +91,7 @@ TEST_F(SuiteCommand, HasOurPolygonsWithThePapersLawToo) {
   const json cubic = card_of("--points 8 --with chain_paper --scenes weight_1,clamps_step");
   EXPECT_EQ(causes(cubic), Names{"springs with a power of the angle"}) << cubic.dump(1);
   for (const json& scene : cubic.at("scenes")) {
-    EXPECT_NEAR(scene.at("causes").at(0).at("factor").get<double>(), 3, 0.01);
+    EXPECT_NEAR(scene.at("causes").at(0).at("factor"), 3, 0.01);
   }
   const json card = card_of("--with chain_paper --scenes motion_vibration");
   EXPECT_EQ(card.at("total").at("not_supported"), 1);
@@ -166,7 +163,7 @@ TEST_F(SuiteCommand, AFailureIsNoMissingSupport) {
 
 TEST_F(SuiteCommand, AnEarlierCardIsAGate) {
   const std::string scenes = " --scenes weight_1,weight_10,bending ";
-  ASSERT_EQ(run("suite --with chain --format json -o " + path("card.json") + scenes).status, 0);
+  succeeds("suite --with chain --format json -o " + path("card.json") + scenes);
   const std::string gate = " --baseline " + path("card.json");
   const Outcome same = run("suite --with chain" + scenes + gate);
   EXPECT_EQ(same.status, 0) << same.out;
@@ -182,17 +179,15 @@ TEST_F(SuiteCommand, AnEarlierCardIsAGate) {
   const Outcome worse = run("suite --with chain" + scenes + gate);
   EXPECT_EQ(worse.status, 1);
   EXPECT_THAT(worse.out, HasSubstr("worse                chain, weight: error"));
-  EXPECT_EQ(run("suite --with force --scenes weight_1" + gate).status, 0);  // it is new
+  succeeds("suite --with force --scenes weight_1" + gate);  // it is new
   std::ofstream(path("card.json")) << "{}";
   EXPECT_EQ(run("suite --with chain" + scenes + gate).status, 2);
 }
 
 TEST_F(SuiteCommand, WritesTheCardInEachForm) {
-  const Outcome result =
-      run("suite --with chain --scenes weight_1,strip_flat --markdown " + path("card.md") +
-          " --junit " + path("card.xml") + " --html " + path("card.html"));
-  ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("chain: 1 of 2 scenes right, 1 not supported"));
+  EXPECT_THAT(said("suite --with chain --scenes weight_1,strip_flat --markdown " + path("card.md") +
+                   " --junit " + path("card.xml") + " --html " + path("card.html")),
+              HasSubstr("chain: 1 of 2 scenes right, 1 not supported"));
   EXPECT_THAT(read(path("card.md")), HasSubstr("| weight | 1 of 1 |"));
   const std::string xml = read(path("card.xml"));
   EXPECT_THAT(xml, HasSubstr("tests=\"2\" failures=\"0\" errors=\"0\" skipped=\"1\""));

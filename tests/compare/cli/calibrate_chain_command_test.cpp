@@ -1,0 +1,165 @@
+// What the command calibrate fits of a chain and of the force model, as a user runs it.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "calibrate_fixture.hpp"
+
+namespace {
+
+using dlo::test::CalibrateCommand;
+using dlo::test::Outcome;
+using dlo::test::says;
+using dlo::test::says_none;
+using nlohmann::json;
+
+TEST_F(CalibrateCommand, TellsTheJointsOfAChain) {
+  const std::string a = scene_of("a.toml", "5 GPa", 0);
+  const std::string chain = words({"calibrate", a, "--shape", seen(a, "a.csv"), "--segments 12"});
+  const json chains = json_of(chain).at("chains");
+  ASSERT_EQ(chains.size(), 3U);
+  EXPECT_EQ(chains[0].at("clamp"), "hinge");
+  EXPECT_EQ(chains[2].at("clamp"), "middle");
+  EXPECT_NEAR(chains[2].at("over_bending_stiffness_per_length"), 1, 0.02);
+  EXPECT_EQ(chains[1].at("parameters")[2].at("name"), "add_rod bend_stiffness before 1.2.0");
+  EXPECT_EQ(chains[1].at("parameters")[3].at("name"), "add_rod bend_stiffness 1.2.0 to 1.4");
+  const std::string text = run(chain).out;
+  EXPECT_TRUE(says(
+      text, {"12 segments of 0.08333 m, a hinge at the clamp", "PyElastica youngs_modulus = "}));
+  expect_error(words({"calibrate", a, "--shape", path("a.csv"), "--segments 3"}), 2,
+               {"--segments", "3"});
+  // Of the scene's own rod, which is that of the shape.
+  const std::string own = words({"calibrate", a, "--segments 12"});
+  const json bare = json_of(own).at("chains");
+  ASSERT_EQ(bare.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const char* const joint = "joint_stiffness_Nm_per_rad";
+    EXPECT_NEAR(bare[i].at(joint).get<double>() / chains[i].at(joint).get<double>(), 1, 1e-3);
+  }
+  EXPECT_TRUE(says(run(own).out, {"Isaac Sim  PhysicsDriveAPI:rotX stiffness = "}));
+  expect_error(own + " --format csv", 2, {"--segments", "csv"});
+  // Of unequal segments, as a file has them, each joint has its own.
+  std::ofstream(path("joints.csv")) << "0,0,0\n0.2,0,0\n0.5,0,0\n0.6,0,0\n0.8,0,0\n1,0,0\n";
+  for (const std::string& unequal :
+       {words({"calibrate", a, "--segments", path("joints.csv")}),
+        words({"calibrate", a, "--shape", path("a.csv"), "--segments", path("joints.csv")})}) {
+    const json of = json_of(unequal).at("chains");
+    ASSERT_EQ(of.size(), 2U);
+    EXPECT_EQ(of[1].at("clamp"), "welded");
+    const json joints = of[1].at("joints");
+    ASSERT_EQ(joints.size(), 4U);
+    EXPECT_NEAR(joints[1].at("at_m"), 0.5, 0.02);
+    const char* const joint = "joint_stiffness_Nm_per_rad";
+    // Between 0.3 and 0.1 m as between 0.2 and 0.2 m, but for 0.2 and 0.3 m.
+    EXPECT_NEAR(joints[1].at(joint).get<double>() / joints[3].at(joint).get<double>(), 1, 1e-3);
+    EXPECT_NEAR(joints[1].at(joint).get<double>() / joints[0].at(joint).get<double>(), 1.25, 1e-3);
+    EXPECT_TRUE(of[1].at("parameters").empty());
+    const std::string told = run(unequal).out;
+    EXPECT_TRUE(says(told, {"5 segments of 0.1 to 0.3 m, a hinge at the clamp",
+                            "times EI/h, h the mean of its two segments"}));
+  }
+  expect_error(words({"calibrate", a, "--segments", path("none.csv")}), 2, {"none.csv"});
+}
+
+TEST_F(CalibrateCommand, WritesParametersThatTheOtherCommandsRead) {
+  const std::string a = scene_of("a.toml", "5 GPa", 0);
+  const std::string b = scene_of("b.toml", "5 GPa", -30);
+  for (const std::string law : {"hooke", "paper"}) {
+    const std::string file = path(law + ".toml");
+    const std::string calibrate = words({"calibrate", a, "--holdout", b, "--law", law});
+    EXPECT_TRUE(says(said(words({calibrate, "-o", file})), {"hold-out"}));
+    const json fit = json_of(calibrate);
+    const json compared = json_of(words({"compare", b, "--parameters", file})).at("cases")[0];
+    EXPECT_EQ(compared.at("law"), law);
+    EXPECT_EQ(compared.at("points"), fit.at("parameters").at("points"));
+    EXPECT_NEAR(compared.at("deviation").at("rms_over_length"),
+                fit.at("deviation").at("worst_holdout_rms_over_length"), 1e-7);
+    // What is printed of every scene is what its printed parameters give.
+    const json fitted = json_of(words({"compare", a, "--parameters", file})).at("cases")[0];
+    EXPECT_NEAR(fitted.at("deviation").at("rms_over_length"),
+                fit.at("scenes")[0].at("rms_over_length"), 1e-7);
+    const double worst = std::max(fitted.at("deviation").at("rms_over_length").get<double>(),
+                                  compared.at("deviation").at("rms_over_length").get<double>());
+    EXPECT_EQ(fit.at("reached").get<bool>(), worst <= fit.at("target").get<double>());
+    EXPECT_NEAR(compared.at("parameters").at("c_F").get<double>() /
+                    fit.at("parameters").at("c_F").get<double>(),
+                1, 1e-8);
+    // What the command line says goes before the file.
+    EXPECT_EQ(json_of(words({"solve", a, "--model chain --parameters", file, "--points 9"}))
+                  .at("points_m")
+                  .size(),
+              9U);
+  }
+}
+
+TEST_F(CalibrateCommand, AMissedTargetIsStatusOne) {
+  const std::string a = scene_of("a.toml", "2 GPa", 0);
+  succeeds("calibrate " + a + " --target 0.1%");
+  EXPECT_EQ(run("calibrate " + a + " --target 0.001% --points 16").status, 1);
+  EXPECT_EQ(run("calibrate " + a + " --law paper --target 0.1%").status, 1);
+  succeeds("calibrate " + a + " --law paper");
+}
+
+TEST_F(CalibrateCommand, TellsWhatMadeTheTargetMissed) {
+  const std::string stiff = scene_of("a.toml", "5 GPa", 0);
+  const auto missed = [&](const std::string& arguments) {
+    const Outcome result = run("calibrate " + arguments);
+    EXPECT_EQ(result.status, 1) << arguments;
+    return result.out;
+  };
+  // Segments alone are off: stretch is not what is wrong.
+  const std::string coarse = missed(stiff + " --target 0.01% --points 8");
+  EXPECT_TRUE(says(coarse, {"N = 8 is too few"}));
+  EXPECT_TRUE(coarse.find("without\n  --points") != std::string::npos ||
+              coarse.find("without --points") != std::string::npos)
+      << coarse;
+  EXPECT_TRUE(says_none(coarse, {"A E: the rod"}));
+  // A rod of 500 kPa stretches under its weight by more than the target.
+  const std::string soft = scene_of("soft.toml", "500 kPa", -90);
+  const json fit = json::parse(missed(soft + " --target 0.01% --points 24 --format json"));
+  EXPECT_FALSE(fit.at("reached").get<bool>());
+  const double stretch = fit.at("scenes")[0].at("stretch_rms_over_length").get<double>();
+  // Hanging straight, l = 1 m: u(s) = rho g (s - s^2 / 2) / E, from the half of a segment on that
+  // the gripper holds.
+  const double held = fit.at("parameters").at("segment_length_m").get<double>() / 2;
+  const double scale = 1200 * 9.81 / 500e3;
+  const auto u = [&](double s) { return scale * (s - s * s / 2); };
+  const double mean_square = scale * scale * 2 / 15 - 2 * u(held) * scale / 3 + u(held) * u(held);
+  EXPECT_NEAR(stretch, std::sqrt(mean_square), 0.005 * stretch);
+  ASSERT_EQ(fit.at("why_missed").size(), 1U);
+  EXPECT_TRUE(says(fit.at("why_missed")[0].get<std::string>(), {"c_c is A E"}));
+  EXPECT_TRUE(says(missed(stiff + " --law paper --target 0.001%"), {"law paper"}));
+  // The parameter file says where c_c is from and whether it is good enough.
+  const std::string toml =
+      run("calibrate " + soft + " --target 0.01% --points 24 --format toml").out;
+  EXPECT_TRUE(says(toml, {"# Target 0.01 %: not reached."}));
+  EXPECT_TRUE(says(toml, {"stretch stiffness: A E of the rod\n"}));
+  EXPECT_TRUE(says(run("calibrate " + stiff + " --c-c 200 --format toml").out,
+                   {"stretch stiffness: as given\n"}));
+  EXPECT_TRUE(
+      says(run("calibrate " + stiff + " --format toml").out, {"tenth of the target at most"}));
+}
+
+TEST_F(CalibrateCommand, KeepsAStepperThatHasNoParameters) {
+  const std::string scene = scene_of("wire.toml", "5 MPa", 20);
+  const std::string file = path("parameters.toml");
+  for (const std::string stepper : {"implicit", "verlet"}) {
+    EXPECT_TRUE(
+        says(said("calibrate " + scene + " --points 12 --stepper " + stepper + " -o " + file),
+             {"stepper " + stepper + ", which has no parameters"}));
+    const std::string text = read(file);
+    EXPECT_TRUE(says(text, {"stepper = \"" + stepper + "\"\n"}));
+    EXPECT_TRUE(says_none(text, {"c_F"}));
+    succeeds("solve " + scene + " --model force --parameters " + file);
+  }
+  const json document = json_of("calibrate " + scene + " --points 12 --stepper implicit");
+  EXPECT_EQ(document.at("parameters").at("stepper"), "implicit");
+  EXPECT_TRUE(document.at("parameters").at("c_F").is_null());
+}
+
+}  // namespace

@@ -1,0 +1,207 @@
+// What leaves the command: no name or number breaks a format.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include "base/display.hpp"
+#include "base/number.hpp"
+#include "base/quote.hpp"
+#include "dlo/compare/error.hpp"
+#include "format/json.hpp"
+#include "format/solution_output.hpp"
+#include "output_fixture.hpp"
+#include "scene_text.hpp"
+
+namespace {
+
+using dlo::test::Output;
+
+using dlo::test::says;
+using dlo::test::says_none;
+
+using dlo::compare::display;
+using dlo::compare::valid_utf8;
+using dlo::test::Outcome;
+
+const std::string held_at_both_ends =
+    "name = \"both ends\"\n" + dlo::test::steel_rod + dlo::test::level_clamp + R"([[gripper]]
+at = "50 cm"
+position = [0.45, 0, 0]
+direction = "0 deg"
+)";
+
+TEST_F(Output, NoNumberIsNanOrInfinity) {
+  write("both.toml", held_at_both_ends);
+  write("weightless.toml", "gravity = [0, 0, 0]\n" + read(steel()));
+  write_scene("cable.toml");
+  const std::string own = read(path("weightless.toml"));
+  // The scene has a gravity of its own.
+  write("weightless.toml",
+        std::regex_replace(own, std::regex("\ngravity = [^\n]*"), "\n# gravity: none"));
+  ASSERT_EQ(bash("$dlo solve cable.toml --samples 21 --format csv | head -n 16 >seen.csv").status,
+            0);
+  ASSERT_EQ(bash("$dlo regress both.toml cable.toml --update --baseline base.toml").status, 0);
+  const std::regex not_a_number("[+-]?(nan|inf|infinity)(\\([^)]*\\))?", std::regex::icase);
+  int empty = 0;
+  for (const std::string command :
+       {"solve both.toml", "compare both.toml", "compare weightless.toml",
+        "check cable.toml --shape seen.csv",
+        "check weightless.toml --shape seen.csv --tolerance 99%",
+        "calibrate cable.toml --shape seen.csv", "calibrate cable.toml --law hooke --target 5%",
+        "stability --case unequal --stepper basic --max-steps 2000", "stability --case pulled",
+        "stability --map cF-cc --columns 2 --rows 4 --map-steps 50",
+        "sweep both.toml --model compare-chain --vary gamma=0,1",
+        "regress both.toml cable.toml --baseline base.toml", "materials"}) {
+    const Outcome csv = bash("$dlo " + command + " --format csv");
+    const std::vector<dlo::test::CsvRow> rows = dlo::test::csv_rows(csv.out);
+    ASSERT_GT(rows.size(), 1U) << command << csv.err;
+    EXPECT_GT(rows.front().size(), 3U) << command << csv.err;
+    for (const dlo::test::CsvRow& row : rows) {
+      EXPECT_EQ(row.size(), rows.front().size()) << command << "\n" << csv.out;
+      for (const std::string& field : row) {
+        EXPECT_FALSE(std::regex_match(field, not_a_number)) << command << "\n" << csv.out;
+        if (field.empty()) ++empty;
+      }
+    }
+    // JSON has one writer; those with most numbers that are none have to do.
+    if (command != "compare both.toml" && command != "stability --case pulled") continue;
+    const Outcome json = bash("$dlo " + command + " --format json");
+    EXPECT_FALSE(nlohmann::json::parse(json.out, nullptr, false).is_discarded()) << command;
+  }
+  EXPECT_GT(empty, 10);  // or nothing of this was tried
+}
+
+TEST(Shown, IsZeroBelowTheErrorOfTheData) {
+  using dlo::compare::shown;
+  for (const double rounding : {-7.965e-33, 4.8e-18, -0.0, 1e-9}) {
+    EXPECT_EQ(shown(rounding, 1), 0);
+    EXPECT_FALSE(std::signbit(shown(rounding, 1)));
+  }
+  for (const double number : {1.1e-9, -2e-9, 3.0}) EXPECT_EQ(shown(number, 1), number);
+  EXPECT_EQ(shown(1e-12, 1e-6), 1e-12);  // of a small scene
+  EXPECT_EQ(shown(1e-12, 0), 1e-12);     // of one without a size
+  EXPECT_TRUE(std::isnan(shown(NAN, 1)));
+  EXPECT_EQ(shown(INFINITY, 1), INFINITY);
+  // A taut rod's forces are large beside its weight.
+  EXPECT_EQ(dlo::cli::shown(Eigen::Vector3d(1e4, -1e-6, 1), 1), Eigen::Vector3d(1e4, 0, 1));
+}
+
+// Forces, torques and energies of these scenes have parts that symmetry or balance makes zero.
+TEST_F(Output, TextHasNoNumberThatIsRounding) {
+  const std::regex rounding("[0-9]e-(?:1[3-9]|[2-9][0-9])");
+  const std::string scenes = std::string(DLO_DATA) + "/scenes/";
+  const std::string commands[] = {"solve " + scenes + "spring_steel_175.toml",
+                                  "solve " + scenes + "spring_steel_175.toml --model exact",
+                                  "solve " + scenes + "side_load.toml",
+                                  "solve " + scenes + "twisted_wire.toml",
+                                  "solve " + scenes + "spliced_cable.toml --model chain",
+                                  "compare " + steel() + " --law hooke --bookkeeping consistent",
+                                  "track " + scenes + "buckling_wire.toml --no-force",
+                                  "track " + scenes + "corner_routing.toml --no-force"};
+  for (const std::string& command : commands) {
+    const std::string text = said(command);
+    std::smatch found;
+    EXPECT_FALSE(std::regex_search(text, found, rounding)) << command << "\n" << text;
+  }
+  // Documents keep what they have: nothing is lost there.
+  const std::string json = run(commands[6] + " --format json").out;
+  EXPECT_TRUE(std::regex_search(json, rounding));
+}
+
+TEST(Json, KeysWithANewNameAreThereByTheOldOneToo) {
+  const dlo::cli::Json document = {{"equilibria", {{{"smallest_eigenvalue", -3.5}}}},
+                                   {"neglected", {"twist"}},
+                                   {"events", {{{"smallest_eigenvalue_before", 0.5}}}},
+                                   {"not_identified", nullptr},
+                                   {"reference_verified", true}};
+  const auto read = nlohmann::json::parse(dlo::cli::json_text(document));
+  EXPECT_EQ(read.at("equilibria")[0].at("smallest_curvature"), -3.5);
+  EXPECT_EQ(read.at("equilibria")[0].at("smallest_eigenvalue"), -3.5);
+  EXPECT_EQ(read.at("left_out"), read.at("neglected"));
+  EXPECT_EQ(read.at("events")[0].at("smallest_curvature_before"), 0.5);
+  EXPECT_TRUE(read.at("not_told").is_null());
+  EXPECT_EQ(read.at("reference_resolved"), true);
+  EXPECT_EQ(read.size(), 8U);  // nothing else is new
+}
+
+TEST(Csv, UndefinedNumbersAreEmpty) {
+  using dlo::compare::csv_number;
+  EXPECT_EQ(csv_number(NAN) + csv_number(INFINITY) + csv_number(-INFINITY), "");
+  EXPECT_EQ(csv_number(-0.0), "0");
+  EXPECT_EQ(csv_number(1. / 3), "0.3333333333");
+  EXPECT_EQ(csv_number(1. / 3, 3), "0.333");
+}
+
+TEST(Display, RepairsUtf8AndShowsNoControls) {
+  const std::string good = "\xc3\xa9 \xe2\x82\xac \xf0\x9f\x98\x80 ~";
+  EXPECT_EQ(valid_utf8(good), good);
+  EXPECT_EQ(display(good), good);
+  const std::string bad = "\xef\xbf\xbd";
+  EXPECT_EQ(valid_utf8("a\xffz"), "a" + bad + "z");
+  EXPECT_EQ(valid_utf8("\xc3"), bad);                                // cut off
+  EXPECT_EQ(valid_utf8("\xc0\x80"), bad + bad);                      // longer than needed
+  EXPECT_EQ(valid_utf8("\xed\xa0\x80"), bad + bad + bad);            // a surrogate
+  EXPECT_EQ(valid_utf8("\xf4\x90\x80\x80"), bad + bad + bad + bad);  // above U+10FFFF
+  EXPECT_EQ(valid_utf8("\n\x1b"), "\n\x1b");
+  EXPECT_EQ(display(std::string("a\n\x1b[31m\x7f\0z", 10)), "a??[31m??z");
+  EXPECT_EQ(display("\xc2\x9b"
+                    "31m"),
+            "?31m");  // the one-character escape of terminals
+}
+
+TEST_F(Output, NamesThatAreNoTextBreakNoFormat) {
+  const std::string name = "w\xff\x1b[31mire";
+  write(name + ".toml", std::regex_replace(read(steel()), std::regex("name = [^\n]*\n"), ""));
+  const auto quoted = [](const std::string& file) { return "'" + file + "'"; };
+  const std::string scene = quoted(name + ".toml");
+  ASSERT_EQ(bash("$dlo solve " + scene + " --format csv -o " + quoted(name)).status, 0);
+  for (const std::string& command :
+       {"solve " + scene, "check " + scene + " --shape " + quoted(name),
+        "calibrate " + scene + " --shape " + quoted(name), "compare " + scene}) {
+    const Outcome json = bash("$dlo " + command + " --format json");
+    EXPECT_EQ(json.status, 0) << json.err;
+    EXPECT_FALSE(nlohmann::json::parse(json.out, nullptr, false).is_discarded()) << command;
+    const std::string text = bash("$dlo " + command).out;
+    EXPECT_EQ(text.find_first_of("\x1b\xff"), std::string::npos) << text;
+    EXPECT_TRUE(says(text, {"w\xef\xbf\xbd?[31mire"}));
+  }
+  // A baseline holds the name that its scene has the next time.
+  const std::string regress = "$dlo regress " + scene + " --baseline b.toml --junit j.xml";
+  ASSERT_EQ(bash(regress + " --update").status, 0);
+  const Outcome again = bash(regress);
+  EXPECT_EQ(again.status, 0) << again.out << again.err;
+  EXPECT_TRUE(says(again.out, {"1 same"}));
+  EXPECT_EQ(again.out.find_first_of("\x1b\xff"), std::string::npos) << again.out;
+  const std::string junit = read(path("j.xml"));
+  EXPECT_EQ(valid_utf8(junit), junit);
+}
+
+TEST_F(Output, TextHoldsNoControlCharactersOfNames) {
+  write("evil.toml", std::regex_replace(read(steel()), std::regex("name = [^\n]*\n"),
+                                        "name = \"a\\u001b[31m\\u009b\\n  verdict  pass\"\n"));
+  ASSERT_EQ(bash("$dlo solve evil.toml --samples 9 --format csv -o shape.csv").status, 0);
+  for (const std::string command :
+       {"solve evil.toml --explain", "compare evil.toml --explain",
+        "check evil.toml --shape shape.csv", "calibrate evil.toml --shape shape.csv",
+        "calibrate evil.toml", "regress evil.toml --baseline b.toml --update",
+        "regress evil.toml --baseline b.toml",
+        "stability evil.toml --map cF-cc --columns 1 --rows 4 --map-steps 50",
+        "bench evil.toml --seconds 0.1"}) {
+    const Outcome result = bash("$dlo " + command);
+    EXPECT_EQ(result.status, 0) << command << result.err;
+    for (const std::string& text : {result.out, result.err}) {
+      EXPECT_EQ(display(std::regex_replace(text, std::regex("\n"), " ")),
+                std::regex_replace(text, std::regex("\n"), " "))
+          << command;
+      EXPECT_TRUE(says_none(text, {"\n  verdict  pass"})) << command;
+    }
+    EXPECT_TRUE(says(result.out + result.err, {"a?[31m??"})) << command;
+  }
+}
+
+}  // namespace

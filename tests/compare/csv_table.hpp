@@ -1,0 +1,80 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdlib>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace dlo::test {
+
+using CsvRow = std::vector<std::string>;
+
+/// Fields of a line of CSV without line ends in its fields; quotes stay.
+inline CsvRow csv_fields(const std::string& line) {
+  CsvRow fields(1);
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"') quoted = !quoted;
+    if (c == ',' && !quoted) {
+      fields.emplace_back();
+    } else {
+      fields.back() += c;
+    }
+  }
+  return fields;
+}
+
+/// Rows of CSV text, its header first; empty lines are left out.
+inline std::vector<CsvRow> csv_rows(const std::string& text) {
+  std::vector<CsvRow> rows;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.empty()) rows.push_back(csv_fields(line));
+  }
+  return rows;
+}
+
+/// Whether CSV text is a table: rows below a header, of as many fields each.
+inline bool is_table(const std::string& text) {
+  const std::vector<CsvRow> rows = csv_rows(text);
+  return rows.size() > 1 && std::all_of(rows.begin(), rows.end(), [&](const CsvRow& row) {
+           return row.size() == rows.front().size();
+         });
+}
+
+/// The number of a field; NaN if it is empty.
+inline double csv_number_of(const std::string& field) {
+  return field.empty() ? NAN : std::strtod(field.c_str(), nullptr);
+}
+
+/// The numbers of rows from one on. @param skip  columns before them
+inline std::vector<std::vector<double>> csv_numbers(const std::vector<CsvRow>& rows,
+                                                    std::size_t first, std::size_t skip = 0) {
+  std::vector<std::vector<double>> numbers;
+  for (std::size_t i = first; i < rows.size(); ++i) {
+    std::vector<double>& row = numbers.emplace_back();
+    for (std::size_t k = skip; k < rows[i].size(); ++k) row.push_back(csv_number_of(rows[i][k]));
+  }
+  return numbers;
+}
+
+/// What the first row below the header has in a column.
+inline std::string in_first_row(const std::string& text, const std::string& column) {
+  const std::vector<CsvRow> rows = csv_rows(text);
+  const auto name = std::find(rows.at(0).begin(), rows.at(0).end(), column);
+  if (name == rows.at(0).end()) throw std::runtime_error("no column " + column + " in " + text);
+  return rows.at(1).at(static_cast<std::size_t>(name - rows.at(0).begin()));
+}
+
+/// The rows that begin with a series' name.
+inline std::vector<CsvRow> rows_of_series(const std::string& text, const std::string& series) {
+  std::vector<CsvRow> rows = csv_rows(text);
+  std::erase_if(rows, [&](const CsvRow& row) { return row.front() != series; });
+  return rows;
+}
+
+}  // namespace dlo::test

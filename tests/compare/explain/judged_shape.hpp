@@ -1,0 +1,69 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../../says.hpp"
+#include "dlo/compare/explanation.hpp"
+#include "dlo/compare/scene_file.hpp"
+
+namespace dlo::test {
+
+/// A rod of 0.5 kg/m whose clamp points 20 degrees up. @param rod  more keys of it
+inline compare::Scene clamped(const std::string& rod = "") {
+  return compare::parse_scene(
+      "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0.5\n" + rod +
+          "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"20 deg\"\n",
+      "clamped.toml");
+}
+
+/// Points as a file has them.
+inline compare::MeasuredShape made(Eigen::Matrix3Xd points) {
+  compare::MeasuredShape shape;
+  shape.file = "mine.csv";
+  shape.points = std::move(points);
+  return shape;
+}
+
+/// What is said of a shape, and what would explain it.
+struct JudgedShape {
+  compare::ShapeJudgement judgement;
+  std::vector<compare::Explanation> explanations;
+};
+
+/// @param share  of the length that is allowed; `largest` rather than in the mean
+inline JudgedShape judged(const compare::Scene& scene, const compare::MeasuredShape& shape,
+                          double share = 0.01, bool largest = false) {
+  const compare::ShapeCheckOptions options{.modulus = compare::ModulusSearch::no};
+  const compare::ShapeCheck check = compare::check_shape(scene, shape, options);
+  const compare::ShapeTolerance tolerance{.allowed_m = share * scene.length, .largest = largest};
+  JudgedShape outcome;
+  if (!compare::judge(check, tolerance).pass) {
+    outcome.explanations = compare::explain_shape(scene, shape, check, options);
+  }
+  outcome.judgement = compare::with_explanation(compare::judge_with_chains(scene, check, tolerance),
+                                                outcome.explanations, tolerance);
+  return outcome;
+}
+
+/// Fails, and the best explanation has these words and leaves less than a tenth of the tolerance.
+inline void expect_named(const std::string& what, const compare::Scene& scene,
+                         const compare::MeasuredShape& shape, const std::vector<std::string>& words,
+                         double left_m = 1e-3) {
+  SCOPED_TRACE(what);
+  const JudgedShape outcome = judged(scene, shape);
+  EXPECT_FALSE(outcome.judgement.pass);
+  ASSERT_FALSE(outcome.explanations.empty()) << outcome.judgement.reason;
+  const compare::Explanation& best = outcome.explanations.front();
+  for (const std::string& word : words) {
+    EXPECT_TRUE(says(best.cause, {word}));
+    EXPECT_TRUE(says(outcome.judgement.reason, {word}));
+  }
+  EXPECT_LT(best.rms_m, left_m);
+}
+
+}  // namespace dlo::test

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "dlo/energy_model/equilibrium.hpp"
+#include "dlo/energy_model/status.hpp"
+
+namespace dlo::test {
+
+/// A solver's result, which has to have converged: its message ends the test otherwise.
+template <typename Result>
+[[nodiscard]] Result converged(Result result) {
+  EXPECT_EQ(result.status, energy_model::SolveStatus::converged) << result.message;
+  if (result.status != energy_model::SolveStatus::converged) {
+    throw std::runtime_error("not converged: " + result.message);
+  }
+  return result;
+}
+
+/// A solver's result whose shape can be used: its message ends the test otherwise.
+template <typename Result>
+[[nodiscard]] Result usable(Result result) {
+  if (!succeeded(result.status)) throw std::runtime_error("no shape: " + result.message);
+  return result;
+}
+
+/// What a shape, such as an equilibrium or a frame of a motion, is at one arc length [m].
+template <typename Shape>
+auto sample_at(const Shape& shape, double s) {
+  return shape.sample(std::span<const double>(&s, 1));
+}
+
+template <typename Shape>
+Eigen::Vector3d point_at(const Shape& shape, double s) {
+  return sample_at(shape, s).points.col(0);
+}
+
+/// Largest distance of two shapes' points at the same arc lengths [m].
+/// @param s  of a rod of unit length unless they are given
+template <typename Shape>
+double gap_between(const Shape& a, const Shape& b,
+                   const std::vector<double>& s = energy_model::equal_arc_lengths(1, 41)) {
+  return (a.sample(s).points - b.sample(s).points).colwise().norm().maxCoeff();
+}
+
+}  // namespace dlo::test
