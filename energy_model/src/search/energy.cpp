@@ -155,8 +155,9 @@ class EnergySolver::State {
                                                         const SpanOptions& options, bool warm) {
     if (placed.frames) {
       RememberedTwist& memory = twists_[index];
+      if (!warm) memory = {};
       std::vector<SpanSolution> found =
-          solve_twisted(placed, problem, options, options_.start, warm, memory, workspace_);
+          solve_twisted(placed, problem, options, options_.start, memory, workspace_);
       memory.twisted.remember(found.front(), placed);
       if (memory.twisted.is_known()) memory.twist = found.front().model->twist(found.front().x);
       return found;

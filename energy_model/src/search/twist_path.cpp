@@ -399,18 +399,17 @@ SpanSolution twist_to(const EndFrame& frame, const Span& span, double stiffness,
   return solution;
 }
 
-SpanSolution twist_from(const TangentField& field, double twist, const Eigen::Vector3d& end_d1,
-                        const Span& span, double stiffness, const SpanOptions& options,
-                        SpanWorkspace& workspace) {
+SpanSolution twist_from(const TangentField& field, const EndFrame& frame, const Span& span,
+                        double stiffness, const SpanOptions& options, SpanWorkspace& workspace) {
   Span twisted = span;
   twisted.planar = false;
-  twisted.twist = Span::Twist{stiffness, end_d1};
+  twisted.twist = Span::Twist{stiffness, frame.d1};
   SpanSolution solution;
   // The shape does not say how many terms it takes.
   for (int terms = unknown_terms;; terms = std::min(max_terms, 3 * terms / 2)) {
     solution = workspace.empty_solution(twisted, terms);
     SpanEnergy& model = *solution.model;
-    solution.x = model.with_twist(model.fit(field(model.nodes())), twist);
+    solution.x = model.with_twist(model.fit(field(model.nodes())), frame.twist);
     newton_solve(solution, {.load = span.total_load(), .deadline = &options.deadline},
                  workspace.newton());
     const bool more = terms < max_terms && 3 * model.size() / 2 < most_unknowns;

@@ -39,12 +39,9 @@ struct UntwistedShape {
                                     const UntwistedShape& untwisted, const SpanOptions& options,
                                     SpanWorkspace& workspace);
 
-/// The equilibrium next to a twisted shape that is known: its tangents, and its twist, whole turns
-/// counted.
-/// @param end_d1  Span::Twist::end_d1
-[[nodiscard]] SpanSolution twist_from(const TangentField& field, double twist,
-                                      const Eigen::Vector3d& end_d1, const Span& span,
-                                      double stiffness, const SpanOptions& options,
-                                      SpanWorkspace& workspace);
+/// The equilibrium next to a twisted shape that is known, by its tangents and its twist.
+[[nodiscard]] SpanSolution twist_from(const TangentField& field, const EndFrame& frame,
+                                      const Span& span, double stiffness,
+                                      const SpanOptions& options, SpanWorkspace& workspace);
 
 }  // namespace dlo::energy_model

@@ -44,7 +44,7 @@ class TwistedSpan {
       return std::nullopt;
     }
     SpanSolution solution =
-        next_to(field_of(start, placed_, l), part->angle, held_end_d1(held_, placed_.span),
+        next_to(field_of(start, placed_, l), {held_end_d1(held_, placed_.span), part->angle},
                 known_contacts(start, placed_, l));
     if (!is_known(solution)) return std::nullopt;
     return solution;
@@ -68,8 +68,9 @@ class TwistedSpan {
   /// The last twisted shape, turned on.
   [[nodiscard]] SpanSolution followed(const RememberedTwist& memory, double turned,
                                       const EndFrame& frame) const {
-    SpanSolution solution = next_to(memory.twisted.field(placed_), memory.twist + turned, frame.d1,
-                                    memory.twisted.last.model->span().contacts);
+    SpanSolution solution =
+        next_to(memory.twisted.field(placed_), {frame.d1, memory.twist + turned},
+                memory.twisted.last.model->span().contacts);
     solution.followed = is_known(solution);
     return solution;
   }
@@ -92,12 +93,11 @@ class TwistedSpan {
 
  private:
   /// The equilibrium next to a twisted shape that is known.
-  [[nodiscard]] SpanSolution next_to(const TangentField& field, double twist,
-                                     const Eigen::Vector3d& end_d1,
+  [[nodiscard]] SpanSolution next_to(const TangentField& field, const EndFrame& frame,
                                      std::vector<Span::Contact> contacts) const {
     Span span = placed_.span;
     if (auto moved = moved_contacts(span, std::move(contacts))) span.contacts = std::move(*moved);
-    return twist_from(field, twist, end_d1, span, held_.stiffness, options_, workspace_);
+    return twist_from(field, frame, span, held_.stiffness, options_, workspace_);
   }
 
   const PlacedSpan& placed_;
@@ -111,17 +111,16 @@ class TwistedSpan {
 
 std::vector<SpanSolution> solve_twisted(const PlacedSpan& placed, const Problem& problem,
                                         const SpanOptions& options, const Equilibrium* start,
-                                        bool warm, RememberedTwist& memory,
-                                        SpanWorkspace& workspace) {
+                                        RememberedTwist& memory, SpanWorkspace& workspace) {
   const TwistedSpan span(placed, problem, options, workspace);
-  const bool follows = warm && memory.twisted.is_known() && !options.wants_all();
+  const bool follows = memory.twisted.is_known() && !options.wants_all();
   if (start != nullptr && !options.wants_all() && !follows) {
     if (std::optional<SpanSolution> known = span.from_known(*start)) {
       return list_of(std::move(*known));
     }
   }
   std::vector<SpanSolution> untwisted =
-      span.without_twist(warm && memory.untwisted.is_known() ? &memory.untwisted : nullptr);
+      span.without_twist(memory.untwisted.is_known() ? &memory.untwisted : nullptr);
   SpanSolution& best = untwisted.front();
   memory.untwisted.remember(best, placed);
   if (!succeeded(best.status)) return untwisted;

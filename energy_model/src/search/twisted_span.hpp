@@ -16,9 +16,10 @@ namespace dlo::energy_model {
 /// it is solved without twist, and the clamp is turned from what is stable there. Never empty, best
 /// first.
 /// @param start null: none is known
-/// @param memory of the last call, if `options` may start from it; that without twist is renewed
+/// @param memory of the last call, empty where nothing is to follow it; the shape without twist is
+///               renewed
 [[nodiscard]] std::vector<SpanSolution> solve_twisted(
     const PlacedSpan& placed, const Problem& problem, const SpanOptions& options,
-    const Equilibrium* start, bool warm, RememberedTwist& memory, SpanWorkspace& workspace);
+    const Equilibrium* start, RememberedTwist& memory, SpanWorkspace& workspace);
 
 }  // namespace dlo::energy_model

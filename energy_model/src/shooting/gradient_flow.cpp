@@ -57,18 +57,16 @@ std::vector<Eigen::Matrix3d> frames_beside(const RodSpan& span, const SpanEquili
   return frames;
 }
 
-/// One step, from nodes near `aim` and to it.
-SpanEquilibrium step(const RodSpan& span, RodMesh mesh, const std::vector<RodState>& nodes,
-                     const std::vector<Eigen::Matrix3d>& aim, double duration,
-                     const ClampFrames& frames, ShootingOptions options) {
+/// A mesh whose nodes are pulled to the directions of `aim`, for a step of this duration.
+RodMesh pulled(const RodSpan& span, RodMesh mesh, const std::vector<Eigen::Matrix3d>& aim,
+               double duration) {
   for (Eigen::Index i = 1; i < mesh.intervals(); ++i) {
     const double pull = (mesh.s[i + 1] - mesh.s[i - 1]) / (2 * duration);
     const Eigen::Matrix3d& R = aim[static_cast<std::size_t>(i)];
     mesh.pull.col(i) = pull * R.col(2);
     if (!span.round()) mesh.pull_d1.col(i) = pull * R.col(0);
   }
-  options.max_iterations = flow_iterations;
-  return close_span(span, mesh, nodes, frames, options);
+  return mesh;
 }
 
 }  // namespace
@@ -78,6 +76,8 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
                                 const ClampFrames& frames, const ShootingOptions& options) {
   SpanEquilibrium failed;
   failed.message = "the gradient flow did not converge";
+  ShootingOptions step = options;
+  step.max_iterations = flow_iterations;
   double duration = first_duration;
   int departures = 0;
   int wait = 0;  // steps before the next longer one
@@ -86,7 +86,8 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
       failed.message = to_string(SolveStatus::time_limit);
       break;
     }
-    SpanEquilibrium result = step(span, mesh, start, aim, duration, frames, options);
+    SpanEquilibrium result =
+        close_span(span, pulled(span, mesh, aim, duration), start, frames, step);
     failed.shots += result.shots;
     std::vector<Eigen::Matrix3d> reached = frames_of(result.nodes);
     const double turn = widest_turn(span, reached, aim);

@@ -233,7 +233,6 @@ RodVariation ShootingSystem::variation_by(Eigen::Index placed) const {
 bool ShootingSystem::interval_equations(const ShootingPoint& point, Eigen::Index i,
                                         Rows& rows) const {
   const Eigen::Index positions = positions_.cols();
-  const Eigen::Index turns = turns_.cols();
   const RodState& node = point.nodes[static_cast<std::size_t>(i)];
   const RodState& next = point.nodes[static_cast<std::size_t>(i + 1)];
   const double force = rate_ * rate_;
@@ -278,7 +277,7 @@ bool ShootingSystem::interval_equations(const ShootingPoint& point, Eigen::Index
              push.with(std::move(pulled)));
   }
   const Eigen::Matrix3Xd free = frame_equations(next, i + 1, rows);
-  if (free.cols() == turns) return true;
+  if (free.cols() == turns_.cols()) return true;
   // What of the moment is continuous, but for what pulls the tangent and d1: m = ... - t x q.
   const Eigen::MatrixXd kept =
       free.cols() == 0
