@@ -185,7 +185,7 @@ void SpanEnergy::hessian(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>&
     at.carried = -at.carried;
     const SpatialPoint here = in_space(at);
     grips_.turn_derivatives(here, multipliers, at.couples, at.curvatures);
-    at.hessian.add(frames_, {&at.carried, at.couples}, at.curvatures, at.frames, result);
+    at.frame_hessian.add(frames_, {&at.carried, at.couples}, at.curvatures, at.frames, result);
     if (has_psi()) grips_.add_twist_hessian(here, -multipliers[constraints() - 1], result);
   }
   if (!has_soft_obstacles() && !contacts_.curved()) return;

@@ -35,7 +35,7 @@ struct SpanPoint {
   Eigen::VectorXd along, by_unknown;
   std::vector<Eigen::Vector3d> couples;     // by piece
   std::vector<Eigen::Matrix3d> curvatures;  // by piece
-  FrameHessian hessian;
+  FrameHessian frame_hessian;
 
   /// At the nodes, 3 x nodes.
   [[nodiscard]] Eigen::Matrix3Xd tangents() const { return t.transpose(); }
