@@ -13,7 +13,7 @@ class OptionGroup {
       : defaults_(*command.option_defaults()), before_(defaults_.get_group()) {
     defaults_.group(name);
   }
-  // CLI11 refuses names of groups with control characters; this one was a group's.
+  // CLI11 refuses names with newlines, and this one was a group's.
   ~OptionGroup() { defaults_.group(before_); }  // NOLINT(bugprone-exception-escape)
   OptionGroup(const OptionGroup&) = delete;
   OptionGroup& operator=(const OptionGroup&) = delete;
