@@ -185,9 +185,9 @@ RestingRod raise_drag(const Scene& scene, const std::vector<double>& arc_length,
                   scene.file, reached));
 }
 
-ConvergenceError not_at_rest(const Scene& scene, const ForceModelSettings& settings,
-                             const Discretisation& discretisation, const RestingRod& moving) {
-  return ConvergenceError(fmt::format(
+std::string why_not_at_rest(const Scene& scene, const ForceModelSettings& settings,
+                            const Discretisation& discretisation, const RestingRod& moving) {
+  return fmt::format(
       "{}: the force model did not come to rest: {} after {} steps, about {:.2g} m from it "
       "(stepper {}, c_F = {:.4g} m/N, c_c = {:.4g} N{})",
       scene.file, moving.result.message, moving.result.steps, moving.result.remaining_error,
@@ -195,7 +195,7 @@ ConvergenceError not_at_rest(const Scene& scene, const ForceModelSettings& setti
       settings.stepper == Stepper::automatic || settings.stepper == Stepper::implicit
           ? ""
           : "; stepper auto chooses its constants, a lower c_c lets the others take larger "
-            "steps"));
+            "steps");
 }
 
 /// Forces of the grippers, and how the rest was found.
@@ -252,7 +252,7 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
     rest.result.steps += steps;
   }
   if (rest.result.status != force_model::RelaxStatus::at_rest) {
-    throw not_at_rest(dead_scene, settings, discretisation, rest);
+    throw ConvergenceError(why_not_at_rest(dead_scene, settings, discretisation, rest));
   }
   const Eigen::Matrix3Xd dead_loads = rest.simulation.rod().loads;
   if (scene.drag) {
