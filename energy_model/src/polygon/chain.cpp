@@ -10,7 +10,7 @@
 #include "base/minimise.hpp"
 #include "base/require.hpp"
 #include "polygon/fold_angle.hpp"
-#include "polygon/unlike_joints.hpp"
+#include "polygon/require_polygon.hpp"
 
 namespace dlo::energy_model {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "dlo/energy_model/chain.hpp"
 #include "dlo/energy_model/polygon.hpp"
 
 namespace dlo::energy_model {
@@ -10,5 +11,10 @@ namespace dlo::energy_model {
 /// range
 void require_polygon(const PolygonProblem& problem, const Eigen::Ref<const Eigen::Matrix3Xd>& start,
                      const PolygonOptions& options);
+
+/// What the joints of chains and polygons of n segments may be.
+/// @throws std::invalid_argument naming `problem` and the first number that is out of range
+void require_unlike_joints(const char* problem, JointLaw law, const Eigen::VectorXd& stiffnesses,
+                           const Eigen::VectorXd& natural_turns, Eigen::Index n);
 
 }  // namespace dlo::energy_model
