@@ -6,6 +6,8 @@
 #include <fstream>
 #include <limits>
 #include <sstream>
+#include <type_traits>
+#include <utility>
 
 #include "dlo/compare/calibrated_rod.hpp"
 #include "dlo/compare/error.hpp"
@@ -150,8 +152,8 @@ void SceneOptions::add_force_model_to(CLI::App& command) {
         },
         words);
   };
-  const auto choice = [&add]<typename Value>(const char* name, Value Settings::*field,
-                                             const std::string& of_what = "") {
+  const auto choice = [&add](const char* name, auto field, const std::string& of_what = "") {
+    using Value = std::remove_reference_t<decltype(std::declval<Settings&>().*field)>;
     add(name, of_what + compare::meanings<Value>(), [field](Settings& settings, const auto& text) {
       settings.*field = compare::from_name<Value>(text);
     })->check(CLI::IsMember(compare::names<Value>()));
