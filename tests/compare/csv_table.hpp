@@ -7,6 +7,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace dlo::test {
@@ -56,8 +57,9 @@ inline std::vector<std::vector<double>> csv_numbers(const std::vector<CsvRow>& r
                                                     std::size_t first, std::size_t skip = 0) {
   std::vector<std::vector<double>> numbers;
   for (std::size_t i = first; i < rows.size(); ++i) {
-    std::vector<double>& row = numbers.emplace_back();
+    std::vector<double> row;
     for (std::size_t k = skip; k < rows[i].size(); ++k) row.push_back(csv_number_of(rows[i][k]));
+    numbers.push_back(std::move(row));
   }
   return numbers;
 }
