@@ -200,7 +200,7 @@ class Certification {
  private:
   /// @return whether it meets the equations of equilibrium
   [[nodiscard]] bool evaluate() {
-    point_ = solution_.at_x();
+    solution_.point = point_ = solution_.at_x();
     ++solution_.evaluations;
     solution_.energy = point_->energy;
     gradient_ = point_->gradient - point_->jacobian.transpose() * solution_.multipliers;
