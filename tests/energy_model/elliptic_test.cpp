@@ -1,6 +1,6 @@
 // Elliptic integrals against published numbers and against both solvers.
 
-#include "dlo/energy_model/elliptic.hpp"
+#include "elliptic.hpp"
 
 #include <gtest/gtest.h>
 
@@ -85,12 +85,6 @@ TEST(TipDeflection, BucklesBeyondEulersLoadOnly) {
   EXPECT_NEAR(buckled.tip_angle, std::sqrt(0.008), 1e-4);
   EXPECT_GT(buckled.tip.y(), 0);
   EXPECT_EQ(tip_deflection(1000, 0).tip, Eigen::Vector2d(1, 0));
-}
-
-TEST(TipDeflection, RefusesLoadsOutOfRange) {
-  EXPECT_THROW((void)tip_deflection(-1, 0), std::invalid_argument);
-  EXPECT_THROW((void)tip_deflection(1e6, 0), std::invalid_argument);
-  EXPECT_THROW((void)tip_deflection(1, NAN), std::invalid_argument);
 }
 
 }  // namespace

@@ -127,7 +127,7 @@ TEST(Energy, TurnsWithTheSceneInSpace) {
 }
 
 TEST(Energy, UprightRodStaysUprightBelowSelfBucklingAndFallsTowardsXAbove) {
-  const double critical = self_buckling_gamma();
+  const double critical = test::self_buckling_gamma;
   const Equilibrium below = test::converged(solve_energy(heavy_cantilever(0.99 * critical, 90)));
   EXPECT_LT((test::point_at(below, 1) - Eigen::Vector3d(0, 1, 0)).norm(), 1e-12);
   const Equilibrium above = test::converged(solve_energy(heavy_cantilever(1.01 * critical, 90)));

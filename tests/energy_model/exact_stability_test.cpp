@@ -35,7 +35,7 @@ TEST(SecondVariation, OfAnUnloadedRodIsThatOfTheLinearTheory) {
 }
 
 TEST(SecondVariation, ChangesItsSignWhereAnUprightRodBuckles) {
-  const double critical = self_buckling_gamma();
+  const double critical = test::self_buckling_gamma;
   for (const double off : {-1e-4, 1e-4}) {
     const std::vector<Equilibrium> found = all_exact(heavy_cantilever(critical * (1 + off), 90));
     // Straight is the only one below, and unstable above.

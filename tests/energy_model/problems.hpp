@@ -11,6 +11,10 @@
 
 namespace dlo::test {
 
+/// Gamma = w l^3 / (EI) at which an upright clamped rod buckles under its own weight: z^3 with z
+/// the first root of sqrt(3) Ai(-z) + Bi(-z). The digits are those of reference_values.json.
+constexpr double self_buckling_gamma = 7.837347438943483;
+
 /// A rod of unit length and stiffness under its weight Gamma along -y, clamped at the origin.
 inline energy_model::Problem heavy_cantilever(double gamma, double degrees) {
   energy_model::Problem problem;

@@ -14,6 +14,7 @@
 
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
+#include "problems.hpp"
 #include "solved.hpp"
 
 namespace dlo::energy_model {
@@ -272,7 +273,7 @@ TEST(Vibrations, AboutHeavyShapesMeetTheLinearisedEquations) {
 
 // Upright beyond self-buckling the straight rod falls; short of it, slower and slower.
 TEST(Vibrations, OfAnUprightRodStopWhereItBuckles) {
-  const double buckles = self_buckling_gamma();
+  const double buckles = test::self_buckling_gamma;
   double before = 1e9;
   for (const double share : {0.5, 0.9, 0.99}) {
     const Vibrations found = modes_of(

@@ -91,8 +91,8 @@ std::optional<energy_model::Equilibrium> stretched_shape(const Scene& scene,
   }
 }
 
-/// By the exact model on its own, or, of a rod that touches what it does not find by itself,
-/// from what the energy model says touches: its contacts are confirmed or corrected.
+/// Solves by the exact model. Where an obstacle is in reach, the energy model detects the contacts,
+/// and the exact model confirms or corrects them.
 /// @throws std::invalid_argument, ConvergenceError if the energy model finds none
 energy_model::Equilibrium exact_shape(const Scene& scene, const energy_model::Problem& problem,
                                       const SolveOptions& options) {
@@ -107,23 +107,18 @@ energy_model::Equilibrium exact_shape(const Scene& scene, const energy_model::Pr
       problem.obstacles.begin(), problem.obstacles.end(),
       [](const energy_model::Obstacle& obstacle) { return std::isfinite(obstacle.stiffness); });
   if (problem.obstacles.empty() || yields) return energy_model::solve_exact(problem, exact);
-  try {
-    energy_model::Equilibrium own = energy_model::solve_exact(problem, exact);
-    if (energy_model::succeeded(own.status)) return own;
-  } catch (const std::invalid_argument&) {
-    // Of its own accord it knows one clamp over half-spaces.
-  }
-  const energy_model::Equilibrium told =
+  const energy_model::Equilibrium detected =
       energy_model::solve_energy(problem, {.time_limit = left()});
-  if (!energy_model::succeeded(told.status)) {
-    throw ConvergenceError(fmt::format(
-        "{}: the energy model, which tells the exact one what touches, did not converge: {}",
-        scene.file, told.message));
+  if (!energy_model::succeeded(detected.status)) {
+    throw ConvergenceError(
+        fmt::format("{}: the energy model, which detects the contacts that exact confirms, did not "
+                    "converge: {}",
+                    scene.file, detected.message));
   }
-  exact.start = &told;
+  exact.start = &detected;
   exact.time_limit = left();
   energy_model::Equilibrium confirmed = energy_model::solve_exact(problem, exact);
-  confirmed.message += ", from what the energy model says touches";
+  confirmed.message += ", with the contacts that the energy model detected";
   return confirmed;
 }
 

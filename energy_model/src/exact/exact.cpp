@@ -1,14 +1,9 @@
 #include "dlo/energy_model/exact.hpp"
 
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_roots.h>
-#include <gsl/gsl_sf_airy.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -16,7 +11,6 @@
 #include "base/deadline.hpp"
 #include "base/lowest_combinations.hpp"
 #include "base/require.hpp"
-#include "base/silence_gsl.hpp"
 #include "dlo/energy_model/soft_line.hpp"
 #include "dlo/energy_model/taut_line.hpp"
 #include "exact/planar_shooting.hpp"
@@ -29,7 +23,6 @@
 #include "shooting/solved_rod.hpp"
 #include "shooting/span_shooting.hpp"
 #include "touching/confirm_contacts.hpp"
-#include "touching/raise_weight.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -140,17 +133,13 @@ Found search_touching(const Problem& problem, const ExactOptions& options,
     require(load.at_begin == load.at_end, "solve_exact", "force per length of a line load",
             load.at_end.norm(), "constant where there are obstacles");
   }
+  const auto obstacles = static_cast<double>(problem.obstacles.size());
+  require(options.start != nullptr, "solve_exact", "number of obstacles", obstacles,
+          "0, or a start with the contacts to confirm, such as solve_energy()'s");
   std::optional<Equilibrium> found =
-      options.start == nullptr
-          ? raise_weight(problem, options.tolerance, deadline)
-          : confirm_contacts(problem, *options.start, options.tolerance, deadline);
-  require(
-      found.has_value(), "solve_exact", "number of obstacles",
-      static_cast<double>(problem.obstacles.size()),
-      options.start == nullptr
-          ? "0, or rigid half-spaces under a loaded rod with one clamp at its begin, or a start "
-            "has to say what touches"
-          : "0, or rigid ones that a rod without natural strains touches between its grips");
+      confirm_contacts(problem, *options.start, options.tolerance, deadline);
+  require(found.has_value(), "solve_exact", "number of obstacles", obstacles,
+          "0, or rigid ones that a rod without natural strains touches between its grips");
   return {{*std::move(found)}, false, ""};
 }
 
@@ -207,26 +196,6 @@ std::vector<Equilibrium> all_exact(const Problem& problem, const ExactOptions& o
 
 Equilibrium solve_exact(const Problem& problem, const ExactOptions& options) {
   return std::move(solve(problem, options).front());
-}
-
-double self_buckling_gamma() {
-  silence_gsl();
-  const auto residual = [](double z, void*) {
-    return std::sqrt(3.0) * gsl_sf_airy_Ai(-z, GSL_PREC_DOUBLE) +
-           gsl_sf_airy_Bi(-z, GSL_PREC_DOUBLE);
-  };
-  gsl_function function{residual, nullptr};
-  const std::unique_ptr<gsl_root_fsolver, decltype(&gsl_root_fsolver_free)> solver(
-      gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
-  gsl_root_fsolver_set(solver.get(), &function, 1.5, 2.5);
-  int status = GSL_CONTINUE;
-  while (status == GSL_CONTINUE) {
-    gsl_root_fsolver_iterate(solver.get());
-    status = gsl_root_test_interval(gsl_root_fsolver_x_lower(solver.get()),
-                                    gsl_root_fsolver_x_upper(solver.get()), 0, 1e-15);
-  }
-  const double z = gsl_root_fsolver_root(solver.get());
-  return z * z * z;
 }
 
 }  // namespace dlo::energy_model

@@ -124,11 +124,18 @@ class ClosedRod {
   double force_unit_;
 };
 
-enum class Judged { no, yes };
+/// Whether the rod is intrinsically straight and its obstacles are rigid.
+bool can_confirm(const Problem& problem) {
+  const bool rigid =
+      std::none_of(problem.obstacles.begin(), problem.obstacles.end(),
+                   [](const Obstacle& obstacle) { return std::isfinite(obstacle.stiffness); });
+  return rigid && problem.natural_strains.empty();
+}
 
-std::optional<Equilibrium> solve_contacts(const Problem& problem, const Equilibrium& shape,
-                                          Judged judged, double tolerance,
-                                          const Deadline& deadline) {
+}  // namespace
+
+std::optional<Equilibrium> confirm_contacts(const Problem& problem, const Equilibrium& shape,
+                                            double tolerance, const Deadline& deadline) {
   if (!can_confirm(problem) || !shape.sample || shape.grips.size() != problem.grips.size()) {
     return std::nullopt;
   }
@@ -144,35 +151,16 @@ std::optional<Equilibrium> solve_contacts(const Problem& problem, const Equilibr
     failed.message = "Newton's method did not close the shots with the contacts of the start";
     return failed;
   }
-  if (judged == Judged::yes) complete(start->span, tolerance, closed);
+  complete(start->span, tolerance, closed);
   Equilibrium result = assemble(problem, {{start->span}, {closed}}, tolerance);
   const ClosedRod rod(problem, *start, closed, tolerance);
   rod.add_contacts(result);
-  const std::string objection = judged == Judged::yes ? rod.objection(result) : "not judged";
+  const std::string objection = rod.objection(result);
   if (!objection.empty()) {
     result.status = SolveStatus::not_verified;
     result.message = objection;
   }
   return result;
-}
-
-}  // namespace
-
-bool can_confirm(const Problem& problem) {
-  const bool rigid =
-      std::none_of(problem.obstacles.begin(), problem.obstacles.end(),
-                   [](const Obstacle& obstacle) { return std::isfinite(obstacle.stiffness); });
-  return rigid && problem.natural_strains.empty();
-}
-
-std::optional<Equilibrium> close_contacts(const Problem& problem, const Equilibrium& shape,
-                                          double tolerance, const Deadline& deadline) {
-  return solve_contacts(problem, shape, Judged::no, tolerance, deadline);
-}
-
-std::optional<Equilibrium> confirm_contacts(const Problem& problem, const Equilibrium& shape,
-                                            double tolerance, const Deadline& deadline) {
-  return solve_contacts(problem, shape, Judged::yes, tolerance, deadline);
 }
 
 }  // namespace dlo::energy_model

@@ -8,10 +8,6 @@
 
 namespace dlo::energy_model {
 
-/// Whether the contacts of a problem's rod can be confirmed: it is intrinsically straight and its
-/// obstacles are rigid.
-[[nodiscard]] bool can_confirm(const Problem& problem);
-
 /// The equilibrium next to a shape that says which parts of the rod touch which obstacles: of a rod
 /// that is intrinsically straight, held by any grips, on rigid bodies of any form. Whether it is
 /// one is judged here: gaps, forces and pressures of the right sign, a positive second variation.
@@ -23,10 +19,5 @@ namespace dlo::energy_model {
                                                           const Equilibrium& shape,
                                                           double tolerance,
                                                           const Deadline& deadline);
-
-/// The same on a way to another shape: not judged, without energies.
-[[nodiscard]] std::optional<Equilibrium> close_contacts(const Problem& problem,
-                                                        const Equilibrium& shape, double tolerance,
-                                                        const Deadline& deadline);
 
 }  // namespace dlo::energy_model

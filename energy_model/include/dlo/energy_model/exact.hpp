@@ -28,17 +28,17 @@ struct ExactOptions {
 /// problem (Kirchhoff's equations; Love, Mathematical Theory of Elasticity, ch. 18-19)
 ///     r' = t,  R' = R hat(u),  m = R diag(EI_1, EI_2, GJ) (u - u0),  m' = n x t,  n' = -w - f(t),
 /// R = (d1, d2, t), m and n what lies beyond s exerts, f the drag; no basis, no code of
-/// solve_energy(). What it searches, and which contact it can confirm, says
-/// energy_model/doc/exact.md.
+/// solve_energy(). energy_model/doc/exact.md describes what it searches and which contacts it
+/// confirms. It detects no contact: where there are obstacles, ExactOptions::start has to hold the
+/// contacts.
 ///
 /// Where a load has no potential (has_potential()), it is the equilibrium that the lowest one under
 /// the others goes over into as that load and all couples grow from nothing; `not_verified`, since
 /// no energy says whether it is stable. Its energies are without such loads.
 /// @return the lowest `converged` shape, else the lowest other one, else why there is none; its
 /// stability is that of the second variation by finite elements on its own shape
-/// @throws std::invalid_argument if the problem or an option is out of range; of obstacles those
-/// that yield, any where a rod has natural strains, and contact that is neither detected nor told
-/// by a start; of a round straight rod a clamp without a frame between two that hold theirs
+/// @throws std::invalid_argument if the problem or an option is out of range; of obstacles any
+/// without a start, those that yield, any where a rod has natural strains; of a round straight rod a clamp without a frame between two that hold theirs
 Equilibrium solve_exact(const Problem& problem, const ExactOptions& options = {});
 
 /// Every equilibrium that the scan or the search finds, `converged` ones first, by energy, then
@@ -49,9 +49,5 @@ Equilibrium solve_exact(const Problem& problem, const ExactOptions& options = {}
 /// @throws std::invalid_argument as solve_exact()
 [[nodiscard]] std::vector<Equilibrium> all_exact(const Problem& problem,
                                                  const ExactOptions& options = {});
-
-/// Gamma = w l^3 / (EI) at which an upright rod buckles under its own weight: z^3 with z the first
-/// root of sqrt(3) Ai(-z) + Bi(-z).
-[[nodiscard]] double self_buckling_gamma();
 
 }  // namespace dlo::energy_model

@@ -22,9 +22,8 @@ struct TipDeflection {
 /// (Love, Mathematical Theory of Elasticity, art. 262). Of several equilibria it is the one without
 /// inflection, which has the lowest energy; a rod pressed along its axis beyond pi^2/4 buckles
 /// towards +y.
-/// @param load   P l^2 / (EI), >= 0 and <= 4e4
+/// @param load   P l^2 / (EI), in [0, 4e4]: beyond, k'^2 is below what GSL's Carlson functions take
 /// @param angle  of the force against +x, any [rad]
-/// @throws std::invalid_argument if an argument is out of range
 [[nodiscard]] TipDeflection tip_deflection(double load, double angle);
 
 }  // namespace dlo::energy_model
