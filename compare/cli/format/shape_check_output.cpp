@@ -11,6 +11,7 @@
 #include "format/solution_output.hpp"
 #include "record/csv_table.hpp"
 #include "record/solution_fields.hpp"
+#include "scene/reach.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -59,47 +60,6 @@ Json model_json(const compare::Scene& scene) {
           {"torsional_stiffness_Nm2",
            scene.torsional_stiffness ? Json(*scene.torsional_stiffness) : Json()},
           {"notes", scene.model->notes}};
-}
-
-void add_friction(std::string& out, const compare::FrictionCheck& friction) {
-  append(out, "  neglected       friction that the scene has: all above is without it\n");
-  const auto needed = [&] {
-    std::string text =
-        fmt::format("{:.3g} +- {:.2g} times the scene's", friction.factor, friction.factor_error);
-    if (std::isfinite(friction.coefficient)) {
-      append(text, ", a coefficient of {:.3g}", friction.coefficient);
-    }
-    return text;
-  };
-  switch (friction.verdict) {
-    case compare::FrictionVerdict::none_needed:
-      append(out, "  friction        none is needed: an equilibrium without it is {:.3g} mm away\n",
-             friction.rms_m * 1e3);
-      return;
-    case compare::FrictionVerdict::inside:
-      append(out, "  friction        can hold this shape: it needs {}\n", needed());
-      return;
-    case compare::FrictionVerdict::outside:
-      append(out, "  friction        cannot hold this shape: it needs {}\n", needed());
-      return;
-    case compare::FrictionVerdict::not_identified:
-      break;
-  }
-  append(out, "  friction        not identified: {}\n", friction.reason);
-  if (std::isfinite(friction.factor)) {
-    append(out, "                  (between {:.3g} and {:.3g} times the scene's, each +- {:.2g})\n",
-           friction.least_factor, friction.factor, friction.factor_error);
-  }
-}
-
-Json friction_json(const compare::FrictionCheck& friction) {
-  return {{"verdict", compare::to_string(friction.verdict)},
-          {"reason", friction.reason.empty() ? Json() : Json(friction.reason)},
-          {"factor", friction.factor},
-          {"least_factor", friction.least_factor},
-          {"factor_error", friction.factor_error},
-          {"coefficient", friction.coefficient},
-          {"rms_m", friction.rms_m}};
 }
 
 /// A text as one cell of a table of Markdown, none of its characters a mark.
@@ -202,7 +162,9 @@ std::string shape_check_text(const CheckPage& page) {
     add_modulus(out, c.effective_modulus, NAN, c.stiffness, c.modulus);
   }
   add_state(out, c.state, scene.length, "the shape");
-  if (report.friction) add_friction(out, *report.friction);
+  if (compare::friction_in_reach(scene)) {
+    append(out, "  neglected       friction that the scene has: all above is without it\n");
+  }
   add_explanations(out, report);
   append(out, "  verdict         {}: {}\n",
          page.verdict.empty() ? verdict_of(report.judgement) : page.verdict,
@@ -261,10 +223,7 @@ Json shape_check_json(const compare::CheckResult& report) {
                 {"rms_m", explanation.rms_m}};
       });
   result["state"] = to_json(c.state);
-  if (report.friction) {
-    result["neglected"] = {"friction"};
-    result["friction"] = friction_json(*report.friction);
-  }
+  if (compare::friction_in_reach(report.scene)) result["neglected"] = {"friction"};
   result["arc_length_m"] = s;
   result["points_m"] = points_json(c.alignment.shape.points);
   result["reference_points_m"] = points_json(c.reference.points);
@@ -301,8 +260,7 @@ std::string shape_check_csv(const compare::CheckResult& report) {
       "max_at_m=deviation/max_at_m,worst_point=deviation/worst_point,tip_m=deviation/tip_m,"
       "movement_m,effective_modulus_ratio,rms_at_effective_modulus_m,optimum,"
       "tolerance_m=tolerance/allowed_m,verdict,seen_share=seen/share,reason,"
-      "whole_rms_m=deviation/whole_rms_m,whole_max_m=deviation/whole_max_m,"
-      "friction=friction/verdict,friction_factor=friction/factor");
+      "whole_rms_m=deviation/whole_rms_m,whole_max_m=deviation/whole_max_m");
   return table.header() + table.row(shape_check_json(report));
 }
 

@@ -8,7 +8,6 @@
 
 #include "base/number.hpp"
 #include "explain/segment_starts.hpp"
-#include "scene/reach.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -85,7 +84,6 @@ CheckResult check(const Scene& scene, const MeasuredShape& shape, const CheckReq
                      .tolerance = request.tolerance.value_or(default_tolerance(scene.length)),
                      .pose = request.shape.pose,
                      .notes = whole.notes};
-  if (friction_in_reach(scene)) result.friction = check_friction(scene, result.check);
   result.judgement = judge_with_chains(scene, result.check, result.tolerance);
   const bool is_near = judge(result.check, result.tolerance).pass;
   if (is_near || request.explaining == Explaining::no) return result;

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "dlo/compare/explanation.hpp"
-#include "dlo/compare/friction_check.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape.hpp"
 #include "dlo/compare/shape_check.hpp"
@@ -33,7 +32,6 @@ struct CheckResult {
   ShapeJudgement judgement;                       ///< pass or fail, with its reason
   std::vector<Explanation> explanations;          ///< of a shape that is not near, the best first
   std::optional<Explanation> supersedes_modulus;  ///< what explains it better than any stiffness
-  std::optional<FrictionCheck> friction;          ///< where an obstacle in reach has friction
   PoseFreedom pose = PoseFreedom::known;          ///< what was unknown of the shape's frame
   std::vector<std::string> notes;                 ///< what of the shape was taken for what
 
