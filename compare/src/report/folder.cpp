@@ -104,8 +104,6 @@ class FolderInMaking {
     const fs::path old = folder_.path() / "old";
     std::error_code error;
     const bool replace = fs::exists(to);
-    // A signal must not take the old report with it.
-    folder_.keep();
     if (replace) fs::rename(to, old, error);
     if (error) fail_to_write(to, error.message());
     fs::rename(report(), to, error);

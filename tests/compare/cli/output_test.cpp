@@ -85,10 +85,8 @@ TEST_F(Output, ABrokenPipeIsSilent) {
 
 TEST_F(Output, DevicesPipesAndLinksStayWhatTheyAre) {
   write_scene("cable.toml");
-  ASSERT_EQ(bash("$dlo sweep cable.toml --vary gamma=1,2,3 --shard 1/1 -o part.csv").status, 0);
-  for (const std::string command :
-       {"$dlo solve cable.toml --samples 3 --format csv", "$dlo sweep cable.toml --vary gamma=1,2",
-        "$dlo sweep --merge part.csv"}) {
+  for (const std::string command : {"$dlo solve cable.toml --samples 3 --format csv",
+                                    "$dlo sweep cable.toml --vary gamma=1,2"}) {
     ASSERT_EQ(bash(command + " -o plain.csv").status, 0) << command;
     const std::string expected = read(path("plain.csv"));
     EXPECT_GT(expected.size(), 80U);
@@ -116,7 +114,7 @@ TEST_F(Output, DevicesPipesAndLinksStayWhatTheyAre) {
     for (const char* name : {"pipe", "near.csv", "far.csv", "folder", "all", "got", "via"}) {
       fs::remove_all(path(name));
     }
-    EXPECT_EQ(files(), (std::vector<std::string>{"cable.toml", "part.csv"})) << command;
+    EXPECT_EQ(files(), std::vector<std::string>{"cable.toml"}) << command;
   }
 }
 
@@ -162,13 +160,11 @@ TEST_F(Output, AnInputIsNeverWrittenOver) {
                    {"--baseline", same, "is read too"});
     EXPECT_EQ(read(scene), text) << name;
   }
-  // What else is read: shapes, parameters, materials, shards, baselines, a sweep's part.
+  // What else is read: shapes, parameters, materials, baselines.
   succeeds("solve " + scene + " --format csv -o " + path("shape"));
   succeeds("calibrate " + scene + " -o " + path("params.toml"));
   succeeds("regress " + scene + " --update --baseline " + path("base.toml"));
-  succeeds("sweep " + scene + " --vary gamma=1 --shard 1/1 -o " + path("shard"));
   write("materials.toml", read(std::string(DLO_DATA) + "/materials.toml"));
-  write("x.part", text);
   const auto reads = [&](const std::string& name, const std::string& arguments) {
     const std::string before = read(path(name));
     EXPECT_GT(before.size(), 100U);
@@ -180,10 +176,6 @@ TEST_F(Output, AnInputIsNeverWrittenOver) {
   reads("params.toml", words({"solve", scene, "--model chain --parameters", path("params.toml")}));
   reads("materials.toml", words({"solve", scene, "--materials", path("materials.toml")}));
   reads("base.toml", words({"regress", scene, "--baseline", path("base.toml")}));
-  reads("shard", words({"sweep --merge", path("shard")}));
-  expect_error(words({"sweep", path("x.part"), "--restart --vary gamma=1 -o", path("x")}), 2,
-               {"x.part", "is read too"});
-  EXPECT_EQ(read(path("x.part")), text);
   expect_error(words({"init --force --materials", path("materials.toml"), path("materials.toml")}),
                2, {"materials.toml", "is read too"});
   expect_refused(words({"regress", scene, "--baseline", path("base.toml"), "--junit", path("twice"),
@@ -208,7 +200,7 @@ TEST_F(Output, ThatHasNoPlaceIsRefusedBeforeAnythingIsComputed) {
   expect_refused(solve + "''", {"--output", "empty"});
   fs::create_symlink("loop", path("loop"));
   expect_refused(solve + path("loop"), {"--output", "loop", "symbolic links"});
-  expect_refused("sweep " + steel() + " --vary gamma=1 -o " + path("none/{shard}.csv"),
+  expect_refused("sweep " + steel() + " --vary gamma=1 -o " + path("none/a.csv"),
                  {"--output", "there is no folder", path("none")});
   expect_refused("sweep " + steel() + " --vary gamma=1 -o ''", {"--output", "empty"});
   expect_refused("regress " + steel() + " --update --baseline " + path("none/b.toml"),
@@ -222,47 +214,24 @@ TEST_F(Output, ThatHasNoPlaceIsRefusedBeforeAnythingIsComputed) {
   expect_refused(solve + path("closed/a.csv"), {"closed/a.csv", "Permission denied"});
 }
 
-TEST_F(Output, ASignalLeavesNothingUnfinished) {
-  const auto ended_by = [&](int number, bool ignored) {
-    const pid_t child = ::fork();
-    if (child == 0) {
-      (void)std::signal(number, ignored ? SIG_IGN : SIG_DFL);
-      dlo::compare::remove_temporaries_at_signals();
-      OutputFile file(path("a.csv"));
-      file.append("half");
-      fs::create_directories(path("tree/a/b/c/d/e/f/g"));
-      write("tree/a/b/c/d/e/f/g/a.toml", "a");
-      const rlimit no_core = {0, 0};
-      (void)::setrlimit(RLIMIT_CORE, &no_core);
-      const dlo::compare::TemporaryPath tree(path("tree"));
-      if (files().size() != 2) ::_exit(9);
-      (void)std::raise(number);
-      file.finish();
-      ::_exit(0);
-    }
-    int status = 0;
-    ::waitpid(child, &status, 0);
-    return status;
-  };
-  const int last_of_all = SIGRTMAX;
-  for (const int number :
-       {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGQUIT, SIGABRT, SIGALRM, SIGUSR1, SIGUSR2, SIGXCPU,
-        SIGXFSZ, SIGPROF, SIGVTALRM, SIGIO, SIGPWR, SIGSYS, SIGTRAP, last_of_all}) {
-    const int status = ended_by(number, false);
-    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == number) << number << " " << status;
-    EXPECT_EQ(files(), std::vector<std::string>{}) << number;
+// A process that a signal ends leaves its target as it was, and beside it one file .dlo-*.tmp.
+TEST_F(Output, ASignalLeavesTheTargetAsItWas) {
+  write("a.csv", "old");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    dlo::compare::end_group_at_signals();
+    OutputFile file(path("a.csv"));
+    file.append("half");
+    (void)std::raise(SIGTERM);
+    ::_exit(0);
   }
-  for (const int number : {SIGCHLD, SIGCONT, SIGURG, SIGWINCH}) {
-    const int status = ended_by(number, false);  // which end nothing
-    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << number << " " << status;
-    EXPECT_EQ(read(path("a.csv")), "half") << number;
-    fs::remove(path("a.csv"));
-    fs::remove_all(path("tree"));
-  }
-  const int status = ended_by(SIGHUP, true);  // as nohup does
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
-  EXPECT_EQ(files(), (std::vector<std::string>{"a.csv", "tree"}));
-  EXPECT_EQ(read(path("a.csv")), "half");
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGTERM) << status;
+  EXPECT_EQ(read(path("a.csv")), "old");
+  const std::vector<std::string> left = files();
+  ASSERT_EQ(left.size(), 2U);
+  EXPECT_TRUE(left[0].starts_with(".dlo-") && left[0].ends_with(".tmp")) << left[0];
 }
 
 TEST_F(Output, WithoutFinishNothingHasHappened) {
