@@ -1,13 +1,16 @@
 #include <fmt/format.h>
 
-#include <cstdlib>
+#include <algorithm>
+#include <cstdint>
 #include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
+#include "base/number.hpp"
 #include "base/output_file.hpp"
-#include "base/words.hpp"
-#include "batch/read_sweep.hpp"
-#include "batch/sweep_file.hpp"
-#include "batch/sweep_merge.hpp"
+#include "batch/sweep.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
 #include "option/output.hpp"
@@ -26,11 +29,9 @@ struct SweepOptions {
   std::vector<std::string> vary;
   std::string model = "energy";
   std::string format = "csv";
-  std::string shard;
+  std::string part;
   std::string output;
   int threads = 0;
-  bool restart = false;
-  bool merge = false;
   SceneOptions scene;
   PlotOptions plot;
 };
@@ -61,31 +62,19 @@ void plot(const SweepOptions& options, const compare::Sweep& sweep,
   });
 }
 
-/// Rows of a finished sweep's file, behind its header.
-std::vector<std::string> rows_of_file(const std::string& path, const std::string& header) {
-  std::vector<std::string> rows;
-  compare::LineReader reader(path);
-  bool behind_header = false;
-  for (std::string line; reader.next(line);) {
-    if (behind_header) rows.push_back(line + "\n");
-    behind_header = behind_header || line + "\n" == header;
+/// Rows I, I + N, ... of --part I/N, counted from 1; all rows without it.
+compare::RowRange chosen_rows(const std::string& part, std::int64_t rows) {
+  if (part.empty()) return {0, rows};
+  constexpr std::int64_t most_parts = 1'000'000'000;
+  const std::size_t slash = std::min(part.find('/'), part.size());
+  const auto index = compare::as_number<std::int64_t>(std::string_view(part).substr(0, slash));
+  const auto count = compare::as_number<std::int64_t>(
+      std::string_view(part).substr(std::min(slash + 1, part.size())));
+  if (!index || !count || *index < 1 || *index > *count || *count > most_parts) {
+    throw compare::InputError(
+        fmt::format("--part {}: must be I/N (allowed: 1 <= I <= N <= {})", part, most_parts));
   }
-  return rows;
-}
-
-std::optional<compare::Shard> chosen_shard(const std::string& text) {
-  if (text == "none") return std::nullopt;
-  if (!text.empty()) return compare::parse_shard(text);
-  std::optional<compare::Shard> shard =
-      compare::shard_from_environment([](const char* name) { return std::getenv(name); });
-  if (shard) say("shard {} (from {})", shard->name(), shard->source);
-  return shard;
-}
-
-/// {shard} in a file's name becomes 2-of-4, or "all" without shards.
-std::string output_path(const std::string& path, const std::optional<compare::Shard>& shard) {
-  return compare::with_places(
-      path, {{"{shard}", shard ? fmt::format("{}-of-{}", shard->index, shard->count) : "all"}});
+  return {*index - 1, rows, *count};
 }
 
 compare::Sweep sweep_of(const SweepOptions& options) {
@@ -114,37 +103,39 @@ void warn_of_polygons_in(const compare::Sweep& sweep, const std::string& model) 
   }
 }
 
-void warn_of_rows_without_result(const compare::SweepOutcome& outcome, const std::string& file) {
-  if (outcome.without_result == 0) return;
-  say("{}: {} of {} scenes have no result, the column status says why", file,
-      outcome.without_result, outcome.rows);
-}
-
-void print_sweep(const SweepOptions& options, const compare::Sweep& sweep,
-                 const std::optional<compare::Shard>& shard) {
-  if (shard) write_standard_output(compare::sweep_identity(sweep, shard));
-  write_standard_output(sweep.header());
-  const std::int64_t rows = sweep.grid().size();
-  compare::SweepOutcome outcome;
-  std::vector<std::string> drawn;
-  const auto print_row = [&](const std::string& line) {
-    write_standard_output(line);
-    if (options.plot.draws()) drawn.push_back(line);
-    ++outcome.rows;
-    if (!line.ends_with(",ok\n")) ++outcome.without_result;
-  };
-  sweep.run(shard ? compare::rows_of(*shard, rows) : compare::RowRange{0, rows}, options.threads,
-            print_row);
-  plot(options, sweep, drawn);
-  warn_of_rows_without_result(outcome, "sweep");
-}
-
-void run_merge(const SweepOptions& options) {
-  if (options.output.empty()) throw compare::InputError("--merge: -o FILE is required");
-  if (!options.vary.empty() || !options.shard.empty()) {
-    throw compare::InputError("--merge: takes the shards' files only (allowed: -o)");
+/// Computes rows and writes them, each as soon as those before it are written.
+void write_rows(const SweepOptions& options, const compare::Sweep& sweep,
+                const compare::RowRange& rows) {
+  std::optional<compare::OutputFile> file;
+  std::optional<ProgressBar> bar;
+  if (!options.output.empty()) {
+    file.emplace(options.output);
+    bar.emplace("sweep");
   }
-  warn_of_rows_without_result(compare::merge_sweep(options.files, options.output), options.output);
+  const auto write = [&](const std::string& text) {
+    file ? file->append(text) : write_standard_output(text);
+  };
+  write(sweep.header());
+  const std::int64_t count =
+      (std::max(rows.last - rows.first, std::int64_t{0}) + rows.step - 1) / rows.step;
+  const std::int64_t rarely = count / 1000 + 1;
+  std::int64_t done = 0;
+  std::int64_t without_result = 0;
+  std::vector<std::string> drawn;
+  sweep.run(rows, options.threads, [&](const std::string& line) {
+    write(line);
+    if (options.plot.draws()) drawn.push_back(line);
+    if (!line.ends_with(",ok\n")) ++without_result;
+    ++done;
+    if (bar && (done % rarely == 0 || done == count)) bar->show(done, count);
+  });
+  if (file) file->finish();
+  bar.reset();
+  if (without_result > 0) {
+    say("{}: {} of {} scenes have no result, the column status says why",
+        file ? options.output : "sweep", without_result, done);
+  }
+  plot(options, sweep, drawn);
 }
 
 /// One --vary may be followed by several fields; what has a "=" is one of them, not a file.
@@ -156,12 +147,13 @@ void sort_words(SweepOptions& options) {
   options.files.erase(fields, options.files.end());
 }
 
-/// What a picture cannot be made of, before anything is computed.
+/// @throws InputError if the picture cannot be drawn, before anything is computed
 void require_drawable(const SweepOptions& options) {
   options.plot.require_drawable({.format = "csv"});
   if (!options.plot.draws()) return;
-  if (options.merge) {
-    throw compare::InputError("--plot: not with --merge (allowed: with the sweep itself)");
+  if (!options.part.empty()) {
+    throw compare::InputError(fmt::format(
+        "--plot: --part {} has a part of the rows (allowed: the whole sweep)", options.part));
   }
   if (options.vary.size() > 2) {
     throw compare::InputError(
@@ -169,11 +161,7 @@ void require_drawable(const SweepOptions& options) {
   }
 }
 
-void run(SweepOptions options, const std::vector<std::string>& inputs) {
-  if (options.merge) {
-    require_drawable(options);
-    return run_merge(options);
-  }
+void run(SweepOptions options) {
   if (!options.vary.empty()) sort_words(options);
   require_drawable(options);
   if (options.files.size() != 1) {
@@ -187,41 +175,8 @@ void run(SweepOptions options, const std::vector<std::string>& inputs) {
   const compare::Sweep sweep = sweep_of(options);
   if (options.plot.draws()) compare::require_drawable(swept_fields(sweep.grid()));
   warn_of_polygons_in(sweep, options.model);
-  const std::optional<compare::Shard> shard = chosen_shard(options.shard);
-  if (shard && options.plot.draws()) {
-    throw compare::InputError(fmt::format(
-        "--plot: shard {} has a part of the rows (allowed: the whole sweep)", shard->name()));
-  }
-  if (options.output.empty()) return print_sweep(options, sweep, shard);
-  const std::string path = output_path(options.output, shard);
-  check_output("--output", path, inputs);
-  const compare::OutputTarget target = compare::output_target(path);
-  if (target.kind == compare::OutputTarget::Kind::file) {
-    check_output("--output", target.path + ".part", inputs);
-  }
-  bool was_resumed = false;
-  const compare::SweepOutcome outcome = [&] {
-    ProgressBar bar("sweep");
-    const compare::SweepFileOptions file_options{
-        .threads = options.threads,
-        .restart = options.restart,
-        .progress =
-            [&](std::int64_t done, std::int64_t rows) {
-              const std::int64_t rarely = rows / 1000 + 1;
-              if (done % rarely == 0 || done == rows) bar.show(done, rows);
-            },
-        .resumed =
-            [&](std::int64_t rows) {
-              was_resumed = true;
-              bar.remark(fmt::format("{}: resumed: {} rows kept", path, rows));
-            }};
-    return compare::write_sweep(sweep, shard, path, file_options);
-  }();
-  if (shard && outcome.rows > 0 && outcome.found == outcome.rows && !was_resumed) {
-    say("{}: finished already, {} rows", path, outcome.rows);
-  }
-  warn_of_rows_without_result(outcome, path);
-  if (options.plot.draws()) plot(options, sweep, rows_of_file(path, sweep.header()));
+  const compare::RowRange rows = chosen_rows(options.part, sweep.grid().size());
+  write_rows(options, sweep, rows);
 }
 
 }  // namespace
@@ -230,8 +185,7 @@ void add_sweep(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("sweep", "a grid over any fields of a scene, as a table (CSV)");
   const auto options = std::make_shared<SweepOptions>();
-  command->add_option("FILE", options->files, "scene file (TOML); with --merge the shards' files")
-      ->required();
+  command->add_option("FILE", options->files, "scene file (TOML)")->required();
   command
       ->add_option("--vary", options->vary,
                    "a field and its values, once for each field: a dotted path such as "
@@ -246,21 +200,13 @@ void add_sweep(CLI::App& app) {
   command->add_option("--model", options->model, compare::meanings<compare::SweepModel>())
       ->check(CLI::IsMember(compare::names<compare::SweepModel>()))
       ->capture_default_str();
-  command
-      ->add_option("-o,--output", options->output,
-                   "write to FILE (FILE.part until it is finished; after a kill the same command "
-                   "goes on there) instead of standard output; {shard} in it becomes 2-of-4")
+  command->add_option("-o,--output", options->output, "write to FILE instead of standard output")
       ->type_name("FILE");
-  command->add_flag("--restart", options->restart, "throw away what an earlier run has left");
   command->add_option("--threads", options->threads, "0: all cores")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
-  command
-      ->add_option("--shard", options->shard,
-                   "compute part i of n, or none; default: what SLURM_ARRAY_TASK_ID and "
-                   "OMPI_COMM_WORLD_RANK say")
-      ->type_name("i/n");
-  command->add_flag("--merge", options->merge, "put finished shards together");
+  command->add_option("--part", options->part, "compute only the rows I, I+N, I+2N, ..., from 1")
+      ->type_name("I/N");
   options->plot.add_to(*command, "the results over one field, or over two,", Sketches::none);
   options->scene.add_solvers_to(*command);
   // It varies what a file says, before that is a scene.
@@ -271,13 +217,9 @@ void add_sweep(CLI::App& app) {
       "Example:\n"
       "  dlo sweep data/scenes/spring_steel_175.toml --vary gamma=log:0.1:10:5 \\\n"
       "      --vary gripper.0.direction=\"-90 deg\",\"0 deg\" -o map.csv --plot map.svg\n"
-      "In parts, then merged (mpirun and Slurm arrays choose --shard by themselves):\n"
-      "  dlo sweep data/scenes/cable.toml --vary gamma=log:1:10:9 --shard 1/2 -o "
-      "'part.{shard}.csv'\n"
-      "  dlo sweep data/scenes/cable.toml --vary gamma=log:1:10:9 --shard 2/2 -o "
-      "'part.{shard}.csv'\n"
-      "  dlo sweep --merge part.*-of-*.csv -o all.csv");
-  command->callback([options, command] { run(*options, input_files(*command)); });
+      "One of two parts:\n"
+      "  dlo sweep data/scenes/cable.toml --vary gamma=log:1:10:9 --part 1/2 -o part.1.csv");
+  command->callback([options] { run(*options); });
 }
 
 }  // namespace dlo::cli

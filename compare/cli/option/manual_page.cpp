@@ -97,12 +97,6 @@ If set and not empty, no colours.
 If
 .Dq dumb ,
 neither colours nor progress bars.
-.It Ev SLURM_ARRAY_TASK_ID , Ev OMPI_COMM_WORLD_RANK
-The shard that
-.Nm Cm sweep
-computes, unless
-.Fl \-shard
-says otherwise.
 .El
 .Sh FILES
 Scenes, materials, parameters and baselines are TOML files.

@@ -109,8 +109,8 @@ void reserve_standard_descriptors();
 void check_output(const std::string& option, const std::string& file,
                   const std::vector<std::string>& inputs);
 
-/// check_output() for every file that the command's options name, standard output included. What
-/// holds {shard} has no name yet; a folder is its command's own business.
+/// check_output() for every file that the command's options name, standard output included.
+/// A folder is its command's own business.
 void check_outputs(const CLI::App& command);
 
 /// Files that the command's arguments and options name for reading.

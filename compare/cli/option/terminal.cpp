@@ -57,12 +57,6 @@ void ProgressBar::stage(const std::string& text) {
     draw(text.empty() ? what_ + " ..." : fmt::format("{}: {} ...", what_, compare::display(text)));
 }
 
-void ProgressBar::remark(const std::string& line) {
-  if (visible_) write_standard_error("\r\x1b[K");
-  say_line(line);
-  drawn_.clear();
-}
-
 void ProgressBar::draw(const std::string& line) {
   // A line that wraps could not be erased.
   std::string shown = compare::valid_utf8(line.substr(0, columns_of_terminal(STDERR_FILENO) - 1));

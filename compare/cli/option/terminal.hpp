@@ -17,8 +17,6 @@ class ProgressBar {
   void show(std::int64_t done, std::int64_t total);
   /// Where no share is known: what is being done.
   void stage(const std::string& text);
-  /// A line that stays, such as say() writes.
-  void remark(const std::string& line);
 
  private:
   void draw(const std::string& line);

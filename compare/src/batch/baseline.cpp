@@ -10,7 +10,6 @@
 #include "base/input_file.hpp"
 #include "base/output_file.hpp"
 #include "base/quote.hpp"
-#include "batch/locked_file.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/solution.hpp"
@@ -102,21 +101,12 @@ std::vector<BaselineCase> present_baseline(const std::string& path) {
 
 void replace_baseline(const std::string& path, const std::vector<BaselineCase>& read,
                       const std::vector<BaselineCase>& cases) {
-  LockedFile lock(path + ".lock", LockedFile::Held::wait);
-  try {
-    if (baseline_text(present_baseline(path)) != baseline_text(read)) {
-      throw OutputError(path +
-                        ": left as it is: another process has changed it since it was read "
-                        "(allowed: one update at a time)");
-    }
-    OutputFile file(path);
-    file.append(baseline_text(cases));
-    file.finish();
-  } catch (...) {
-    lock.remove();
-    throw;
+  if (baseline_text(present_baseline(path)) != baseline_text(read)) {
+    throw OutputError(path +
+                      ": left as it is: another process has changed it since it was read "
+                      "(allowed: one update at a time)");
   }
-  lock.remove();
+  write_file(path, baseline_text(cases));
 }
 
 std::string baseline_text(std::vector<BaselineCase> cases) {

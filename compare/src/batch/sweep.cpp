@@ -22,7 +22,6 @@
 #include "dlo/compare/solution.hpp"
 #include "dlo/compare/solve.hpp"
 #include "parallel/threads.hpp"
-#include "reading/fingerprint.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -72,8 +71,10 @@ void run_rows(RowRange rows, int threads, const Make& make, const Take& take) {
   const std::size_t window = rows_per_thread * static_cast<std::size_t>(workers);
   std::int64_t next = rows.first;
   const auto next_row = [&](tbb::flow_control& control) {
-    if (next == rows.last) control.stop();
-    return next++;
+    const std::int64_t row = next;
+    if (row >= rows.last) control.stop();
+    next += rows.step;
+    return row;
   };
   execute(arena, [&] {
     tbb::parallel_pipeline(
@@ -140,18 +141,6 @@ Scene Sweep::scene(std::int64_t row) const {
   return scene_.with(values);
 }
 
-std::string Sweep::identity() const {
-  std::string grid;
-  for (const Axis& axis : grid_.axes()) {
-    grid += fmt::format("{} {} {} {} {} {} {}\n", axis.field, static_cast<int>(axis.spacing),
-                        axis.first, axis.last, axis.unit, axis.count, fmt::join(axis.values, ","));
-  }
-  const std::string options = fmt::format("{} {} {} {}", options_.terms, options_.max_evaluations,
-                                          options_.max_steps, options_.rest_tolerance);
-  return fmt::format("scene {}, grid {}, model {}, options {}", scene_.fingerprint(),
-                     fingerprint(grid), to_string(model_), fingerprint(options));
-}
-
 std::vector<SweepColumn> Sweep::result_columns() const {
   const Model model = solver_of(model_);
   std::vector<SweepColumn> columns;
@@ -187,15 +176,6 @@ std::string Sweep::header() const {
     line += (line.empty() ? "" : ",") + csv_field(column.name);
   }
   return line + "\n";
-}
-
-std::string Sweep::row_start(std::int64_t row) const {
-  const std::vector<std::int64_t> indices = grid_.indices(row);
-  std::string line = fmt::format("{},", row);
-  for (std::size_t i = 0; i < indices.size(); ++i) {
-    line += csv_field(grid_.axes()[i].number(indices[i])) + ",";
-  }
-  return line;
 }
 
 std::vector<SweepCell> Sweep::solved(const Scene& scene) const {
@@ -273,7 +253,11 @@ std::vector<SweepCell> Sweep::cells(std::int64_t row) const {
 }
 
 std::string Sweep::row(std::int64_t row) const {
-  std::string line = row_start(row);
+  const std::vector<std::int64_t> indices = grid_.indices(row);
+  std::string line = fmt::format("{},", row);
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    line += csv_field(grid_.axes()[i].number(indices[i])) + ",";
+  }
   const char* separator = "";
   for (const SweepCell& cell : results(row)) {
     line += separator + std::visit(CsvCell(), cell);

@@ -50,13 +50,11 @@ struct SweepColumn {
 /// A cell: nothing where a row has no result. A count is whole, in a column of numbers too.
 using SweepCell = std::variant<std::monostate, std::int64_t, double, std::string>;
 
-/// Rows first <= row < last.
+/// Rows first, first + step, ... below last.
 struct RowRange {
   std::int64_t first = 0;  ///< the first row, from 0
   std::int64_t last = 0;   ///< one past the last row
-
-  /// The same rows.
-  bool operator==(const RowRange&) const = default;
+  std::int64_t step = 1;   ///< > 0
 };
 
 /// A scene, a grid over its fields, and what to compute. Every row of the table that it describes
@@ -70,10 +68,6 @@ class Sweep {
   /// Over the scene's fields.
   [[nodiscard]] const Grid& grid() const { return grid_; }
 
-  /// What the rows depend on, in words and fingerprints: "scene ..., grid ..., model ..., options
-  /// ...". Sweeps with the same identity have the same rows.
-  [[nodiscard]] std::string identity() const;
-
   /// row, one column for each varied field (of numbers if all its values are), the results, status.
   ///
   /// All models: gamma (unless it is varied), tip_x_m, tip_y_m, tip_z_m (the rod's end at s = l),
@@ -84,9 +78,6 @@ class Sweep {
   [[nodiscard]] std::vector<SweepColumn> columns() const;
   /// Their names, as a CSV line.
   [[nodiscard]] std::string header() const;
-
-  /// How a row begins: its number and its fields, each with a comma behind it.
-  [[nodiscard]] std::string row_start(std::int64_t row) const;
 
   /// The scene of a row. @throws InputError if the grid's values make none
   [[nodiscard]] Scene scene(std::int64_t row) const;

@@ -15,7 +15,6 @@
 #include "base/quote.hpp"
 #include "base/text_limits.hpp"
 #include "dlo/compare/error.hpp"
-#include "reading/fingerprint.hpp"
 #include "reading/read_scene.hpp"
 #include "toml/strict_table.hpp"
 
@@ -187,17 +186,12 @@ struct SceneTemplate::Parsed {
   std::string name;
   std::vector<Material> materials;
   std::optional<double> bending_stiffness;  // with the file's own values, if it has a GJ
-  std::string fingerprint;
   MissingElements missing;
 };
 
 SceneTemplate::SceneTemplate(const std::string& text, std::string name,
                              std::vector<Material> known_materials, MissingElements missing,
                              const std::string& folder) {
-  std::string all = name + '\n' + text;
-  for (const Material& material : known_materials) {
-    all += fmt::format("\n{} {} {}", material.name, material.youngs_modulus, material.density);
-  }
   SceneSource source = parse_scene_source(text, name);
   toml::table& root = source.root;
   name = source.where;
@@ -207,12 +201,9 @@ SceneTemplate::SceneTemplate(const std::string& text, std::string name,
                                              (std::filesystem::path(folder) / *points).string());
   }
   const std::optional<double> EI = bending_stiffness_with_torsion(root, name, known_materials);
-  parsed_ = std::make_shared<const Parsed>(Parsed{std::move(root), std::move(name),
-                                                  std::move(known_materials), EI,
-                                                  compare::fingerprint(all), missing});
+  parsed_ = std::make_shared<const Parsed>(
+      Parsed{std::move(root), std::move(name), std::move(known_materials), EI, missing});
 }
-
-const std::string& SceneTemplate::fingerprint() const { return parsed_->fingerprint; }
 
 Scene SceneTemplate::with(const std::vector<SceneField>& values) const {
   toml::table root = parsed_->root;

@@ -37,9 +37,6 @@ class SceneTemplate {
   /// The scene with other values. @throws InputError as parse_scene, and if a path leads nowhere
   [[nodiscard]] Scene with(const std::vector<SceneField>& values) const;
 
-  /// 16 hexadecimal digits that stand for the file's text and name and for the known materials.
-  [[nodiscard]] const std::string& fingerprint() const;
-
  private:
   struct Parsed;  // keeps TOML out of this header
   std::shared_ptr<const Parsed> parsed_;

@@ -19,8 +19,6 @@
 
 #include "../../says.hpp"
 #include "batch/baseline.hpp"
-#include "batch/sweep_file.hpp"
-#include "batch/sweep_merge.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/material.hpp"
 #include "dlo/compare/scene.hpp"
@@ -44,15 +42,14 @@ std::string input_error_of(const std::function<void()>& read) {
 class Reading : public dlo::test::Folder {};
 
 /// Of every reader of a file the message for this one.
-std::vector<std::string> messages_of_all_readers(const std::string& file, const std::string& out) {
+std::vector<std::string> messages_of_all_readers(const std::string& file) {
   using namespace dlo::compare;
   return {input_error_of([&] { (void)load_scene(file); }),
           input_error_of([&] { (void)load_scene_template(file); }),
           input_error_of([&] { (void)load_parameters(file); }),
           input_error_of([&] { (void)load_materials(file); }),
           input_error_of([&] { (void)load_baseline(file); }),
-          input_error_of([&] { (void)load_shape(file, 1); }),
-          input_error_of([&] { (void)merge_sweep({file}, out); })};
+          input_error_of([&] { (void)load_shape(file, 1); })};
 }
 
 // A terminal hands out what was written to it; when its other end is closed, reading fails.
@@ -79,21 +76,21 @@ TEST_F(Reading, AnErrorAfterThePartThatCouldBeReadIsAnError) {
 }
 
 TEST_F(Reading, EveryReaderTellsAReadErrorAndADirectory) {
-  for (const std::string& message : messages_of_all_readers("/proc/self/mem", path("o"))) {
+  for (const std::string& message : messages_of_all_readers("/proc/self/mem")) {
     EXPECT_EQ(message, "/proc/self/mem: cannot be read (Input/output error)");
   }
-  for (const std::string& message : messages_of_all_readers(path(""), path("o"))) {
+  for (const std::string& message : messages_of_all_readers(path(""))) {
     EXPECT_EQ(message, path("") + ": cannot be read (Is a directory)");
   }
 }
 
 TEST_F(Reading, EveryReaderTellsWhyAFileCannotBeOpened) {
   std::filesystem::create_symlink(path("loop"), path("loop"));
-  for (const std::string& message : messages_of_all_readers(path("loop"), path("o"))) {
+  for (const std::string& message : messages_of_all_readers(path("loop"))) {
     EXPECT_TRUE(says(message, {"Too many levels of symbolic links"}));
   }
   write("here.toml", "x");
-  for (const std::string& message : messages_of_all_readers(path("here"), path("o"))) {
+  for (const std::string& message : messages_of_all_readers(path("here"))) {
     EXPECT_TRUE(
         says(message, {"(No such file or directory, but " + path("here.toml") + " is there)"}));
   }
@@ -108,7 +105,7 @@ TEST_F(Reading, TellsThatNoMoreFilesCanBeOpened) {
   rlimit few = before;
   few.rlim_cur = static_cast<rlim_t>(next);
   ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
-  const std::vector<std::string> messages = messages_of_all_readers(path("a.toml"), path("o"));
+  const std::vector<std::string> messages = messages_of_all_readers(path("a.toml"));
   ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
   for (const std::string& message : messages) {
     EXPECT_EQ(message, path("a.toml") + ": cannot be read (Too many open files)");
@@ -240,25 +237,6 @@ TEST(TextLimits, OfVariedFields) {
   };
   EXPECT_TRUE(says(vary("a" + repeated(".a", 60'000), "1"), {"too many dotted parts"}));
   EXPECT_TRUE(says(vary("gravity", repeated("[", 60'000)), {"brackets within brackets"}));
-}
-
-TEST_F(Reading, AForgedShardIsRefused) {
-  const std::string fingerprint = "0123456789abcdef";
-  const auto merge = [&](const std::string& model, const std::string& rows) {
-    write("shard", "# dlo sweep 1: scene " + fingerprint + ", grid " + fingerprint + ", model " +
-                       model + ", options " + fingerprint + "; shard 1/1; " + rows + "\nrow\n");
-    return input_error_of([&] { (void)dlo::compare::merge_sweep({path("shard")}, path("o")); });
-  };
-  EXPECT_TRUE(says(merge("energy", "1 rows from 0 of 1"), {"not finished"}));
-  EXPECT_TRUE(
-      says(merge(std::string(300'000, 'a'), "1 rows from 0 of 1"), {"is no shard of a sweep"}));
-  EXPECT_TRUE(
-      says(merge(std::string(1'200'000, 'a'), "1 rows from 0 of 1"), {"the line is too long"}));
-  for (const std::string rows :
-       {"2 rows from 0 of 1", "1 rows from 2 of 2", "99999999999999999 rows from 0 of 1",
-        "-1 rows from 0 of 1", "1 rows from 0 of 1 ", "1 rows from 0 of"}) {
-    EXPECT_TRUE(says(merge("energy", rows), {"is no shard of a sweep"})) << rows;
-  }
 }
 
 }  // namespace

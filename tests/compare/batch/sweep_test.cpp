@@ -7,14 +7,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
-#include <map>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "../../says.hpp"
-#include "batch/shard.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/scene_file.hpp"
@@ -26,7 +24,6 @@ using dlo::compare::Axis;
 using dlo::compare::Grid;
 using dlo::compare::InputError;
 using dlo::compare::parse_axis;
-using dlo::compare::RowRange;
 using dlo::compare::Scene;
 using dlo::compare::SceneTemplate;
 using dlo::compare::Sweep;
@@ -258,66 +255,20 @@ TEST(Sweep, AnyPartOfAnEnormousGridIsAtHand) {
   EXPECT_TRUE(says(text, {"999999999999999,2,2,"}));
 }
 
-TEST(Shard, BlocksTileTheRows) {
-  for (const std::int64_t rows : {0, 1, 7, 100, 101}) {
-    std::int64_t next = 0;
-    for (std::int64_t i = 1; i <= 8; ++i) {
-      const RowRange part = dlo::compare::rows_of({i, 8, ""}, rows);
-      EXPECT_EQ(part.first, next);
-      EXPECT_LE(part.last - part.first, rows / 8 + 1);
-      next = part.last;
+TEST(Sweep, PartsAreEachNthRow) {
+  const Sweep whole = sweep({"gamma=lin:1:2:10"});
+  for (const std::int64_t count : {1, 3, 12}) {
+    std::vector<std::string> found(10);
+    for (std::int64_t part = 0; part < count; ++part) {
+      std::int64_t row = part;
+      whole.run({part, 10, count}, 2, [&](const std::string& line) {
+        found.at(static_cast<std::size_t>(row)) = line;
+        row += count;
+      });
     }
-    EXPECT_EQ(next, rows);
-  }
-}
-
-std::string shard_of(const std::map<std::string, std::string>& environment) {
-  const auto shard = dlo::compare::shard_from_environment([&](const char* name) {
-    const auto found = environment.find(name);
-    return found == environment.end() ? nullptr : found->second.c_str();
-  });
-  return shard ? shard->name() : "none";
-}
-
-TEST(Shard, IsTakenFromSlurmAndOpenMpi) {
-  EXPECT_EQ(shard_of({}), "none");
-  EXPECT_EQ(shard_of({{"SLURM_ARRAY_TASK_ID", "7"},
-                      {"SLURM_ARRAY_TASK_MIN", "5"},
-                      {"SLURM_ARRAY_TASK_COUNT", "4"}}),
-            "3/4");
-  EXPECT_EQ(shard_of({{"SLURM_ARRAY_TASK_ID", "9"},
-                      {"SLURM_ARRAY_TASK_MIN", "1"},
-                      {"SLURM_ARRAY_TASK_MAX", "13"},
-                      {"SLURM_ARRAY_TASK_STEP", "4"},
-                      {"SLURM_ARRAY_TASK_COUNT", "4"}}),
-            "3/4");
-  EXPECT_EQ(shard_of({{"OMPI_COMM_WORLD_RANK", "0"}, {"OMPI_COMM_WORLD_SIZE", "3"}}), "1/3");
-  EXPECT_EQ(shard_of({{"SLURM_ARRAY_TASK_ID", "1"},
-                      {"SLURM_ARRAY_TASK_MIN", "0"},
-                      {"SLURM_ARRAY_TASK_COUNT", "2"},
-                      {"OMPI_COMM_WORLD_RANK", "2"},
-                      {"OMPI_COMM_WORLD_SIZE", "3"}}),
-            "6/6");
-}
-
-TEST(Shard, RefusesAnEnvironmentThatDoesNotSayWhich) {
-  using Environment = std::map<std::string, std::string>;
-  const Environment cases[] = {{{"SLURM_ARRAY_TASK_ID", "7"}},
-                               {{"OMPI_COMM_WORLD_RANK", "1"}},
-                               {{"OMPI_COMM_WORLD_RANK", "x"}, {"OMPI_COMM_WORLD_SIZE", "3"}},
-                               {{"OMPI_COMM_WORLD_RANK", "3"}, {"OMPI_COMM_WORLD_SIZE", "3"}},
-                               {{"OMPI_COMM_WORLD_RANK", "-1"}, {"OMPI_COMM_WORLD_SIZE", "3"}},
-                               // --array=1,3,7
-                               {{"SLURM_ARRAY_TASK_ID", "3"},
-                                {"SLURM_ARRAY_TASK_MIN", "1"},
-                                {"SLURM_ARRAY_TASK_MAX", "7"},
-                                {"SLURM_ARRAY_TASK_COUNT", "3"}}};
-  for (const Environment& environment : cases) {
-    EXPECT_THROW((void)shard_of(environment), InputError) << environment.begin()->first;
-  }
-  for (const char* text :
-       {"", "1", "0/3", "4/3", "1/0", "-1/3", "1/3x", "a/b", "1//3", "/", "1/"}) {
-    EXPECT_THROW((void)dlo::compare::parse_shard(text), InputError) << text;
+    for (std::int64_t row = 0; row < 10; ++row) {
+      EXPECT_EQ(found[static_cast<std::size_t>(row)], whole.row(row)) << count;
+    }
   }
 }
 

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/quote.hpp"
-#include "batch/read_sweep.hpp"
 #include "command_fixture.hpp"
 
 namespace {

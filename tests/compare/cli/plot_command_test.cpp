@@ -132,8 +132,8 @@ TEST_F(PlotCommand, SweepDrawsLinesAndMaps) {
   expect_error(
       sweep + " --vary gamma=1 --vary rod.length=1 --vary gripper.0.at=0 --plot " + path("d.svg"),
       2, {"--plot", "3 fields", "allowed: one or two"});
-  expect_error(sweep + " --vary gamma=1 --shard 1/2 --plot " + path("d.svg"), 2,
-               {"--plot", "shard 1/2", "allowed"});
+  expect_error(sweep + " --vary gamma=1 --part 1/2 --plot " + path("d.svg"), 2,
+               {"--plot", "--part 1/2", "allowed"});
 }
 
 TEST_F(PlotCommand, StabilityDrawsItsMap) {

@@ -36,8 +36,7 @@ class Terminal : public Command {
 };
 
 TEST_F(Terminal, ProgressIsShownAndErased) {
-  const std::string grid =
-      "sweep " + steel() + " --vary gamma=log:0.1:1:40 --threads 2 --restart -o ";
+  const std::string grid = "sweep " + steel() + " --vary gamma=log:0.1:1:40 --threads 2 -o ";
   const std::string text = seen("TERM=xterm", grid + path("a.csv"));
   EXPECT_TRUE(says(text, {"sweep [", "100 %, 40 of 40", erased}));
   // Nothing is left behind the last erasure but script's own last line.
