@@ -68,6 +68,6 @@ install(DIRECTORY doc DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT command
 install(DIRECTORY compare/doc DESTINATION ${CMAKE_INSTALL_DOCDIR}/compare COMPONENT command)
 install(DIRECTORY compare/python/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}/compare/python
   COMPONENT command)
-install(FILES data/materials.toml data/effective_modulus.csv
+install(FILES data/materials.toml data/effective_modulus.csv data/simulators.toml
   DESTINATION ${dlo_data_dir} COMPONENT command)
 install(DIRECTORY data/scenes data/shapes data/mujoco data/suite DESTINATION ${dlo_data_dir} COMPONENT command)

@@ -3,8 +3,10 @@
 import copy
 import gc
 import json
+import math
 import pickle
 import subprocess
+import tomllib
 
 import numpy
 import pytest
@@ -190,6 +192,22 @@ def test_calibrate_finds_the_modulus_it_was_given(cable):
     low, high = fit.interval
     assert low <= 5e6 <= high
     assert "calibrated" in fit.to_toml()
+
+
+def test_each_simulator_makes_the_same_joint_of_its_parameter(root):
+    """A joint's stiffness follows from each parameter by its unit; a capsule has the mass of its segment."""
+    numbers = {"k": 0.2, "k_b": 0.19, "h": 0.05, "r": 0.004, "m": 0.06, "pi": math.pi}
+    k, k_b, h, r, m, pi = numbers.values()
+    joint = {"N m/rad": 1, "N m/deg": 180 / pi, "N m^2": 1 / h, "Pa": pi * r**4 / 4 / h}
+    with open(root / "data/simulators.toml", "rb") as file:
+        parameters = tomllib.load(file)["parameters"]
+    assert len({(each["program"], each["version"], each["name"]) for each in parameters}) == 14
+    for each in parameters:
+        value = eval(each["formula"], {}, numbers)
+        if each["unit"] == "kg/m^3":
+            assert value * pi * (r**2 * h + 4 / 3 * r**3) == pytest.approx(m * h)
+        else:
+            assert value * joint[each["unit"]] == pytest.approx(k_b if "k_b" in each["formula"] else k), each
 
 
 def test_calibrate_gives_each_joint_of_unequal_segments_its_spring(cable):

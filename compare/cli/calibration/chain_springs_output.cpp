@@ -68,11 +68,11 @@ std::string chains_text(const std::vector<compare::ChainSprings>& chains) {
            chain.joints.empty() ? "" : ", h the mean of its two segments");
     append(out, "            ({:.4g} mm from the rod on {}, RMS)\n", chain.rms_m * 1e3,
            compare::display(chain.scene));
-    out += joints_text(chain);
-    for (const compare::SimulatorParameter& parameter : compare::simulator_parameters(chain)) {
-      append(out, "              {:<10} {} = {:.5g} {}\n", parameter.simulator, parameter.name,
-             parameter.value, parameter.unit);
+    if (chain.joints.empty() && chain.binormal_stiffness > 0) {
+      append(out, "            ({:.5g} N m/rad a joint of discrete elastic rods)\n",
+             chain.binormal_stiffness);
     }
+    out += joints_text(chain);
   }
   return out;
 }
@@ -87,8 +87,7 @@ Json chains_json(const std::vector<compare::ChainSprings>& chains) {
                       {"joint_stiffness_Nm_per_rad", chain.stiffness},
                       {"binormal_stiffness_Nm_per_rad", chain.binormal_stiffness},
                       {"over_bending_stiffness_per_length", chain.over_rod},
-                      {"rms_m", chain.rms_m},
-                      {"parameters", Json::array()}});
+                      {"rms_m", chain.rms_m}});
     if (!chain.joints.empty()) {
       result.back()["segment_lengths_m"] = chain.segment_lengths;
       result.back()["joints"] =
@@ -97,12 +96,6 @@ Json chains_json(const std::vector<compare::ChainSprings>& chains) {
                     {"joint_stiffness_Nm_per_rad", joint.stiffness},
                     {"binormal_stiffness_Nm_per_rad", joint.binormal_stiffness}};
           });
-    }
-    for (const compare::SimulatorParameter& parameter : compare::simulator_parameters(chain)) {
-      result.back()["parameters"].push_back({{"simulator", parameter.simulator},
-                                             {"name", parameter.name},
-                                             {"unit", parameter.unit},
-                                             {"value", parameter.value}});
     }
   }
   return result;

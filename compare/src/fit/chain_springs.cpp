@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <utility>
 
 #include "dlo/compare/error.hpp"
@@ -48,7 +47,6 @@ bool has_clamp_at(const Scene& scene, double at) {
 /// @param h  the length of a whole segment, of unequal ones the mean [m]
 std::vector<ChainSprings> springs_of(const Scene& scene, const energy_model::Equilibrium& rod,
                                      const Eigen::VectorXd& shares, double h) {
-  const double second_moment = std::numbers::pi * std::pow(scene.diameter, 4) / 64;
   const Shape joints = points_apart(rod, scene.length, shares);
   const std::vector<OwnPolygon> binormal =
       own_polygons(scene, joints, Springs::fitted, energy_model::JointLaw::binormal);
@@ -61,9 +59,7 @@ std::vector<ChainSprings> springs_of(const Scene& scene, const energy_model::Equ
                      .segment_length = h,
                      .stiffness = chain.stiffness * scene.bending_stiffness() / h,
                      .over_rod = chain.stiffness,
-                     .rms_m = chain.rms_m,
-                     .mass_per_length = scene.mass() / scene.length,
-                     .diameter = scene.diameter});
+                     .rms_m = chain.rms_m});
     ChainSprings& own = found.back();
     for (std::size_t i = 0; i < chain.joints.size(); ++i) {
       own.joints.push_back({.at = chain.joints[i], .stiffness = chain.springs[i]});
@@ -75,7 +71,6 @@ std::vector<ChainSprings> springs_of(const Scene& scene, const energy_model::Equ
         own.joints[i].binormal_stiffness = other.springs[i];
       }
     }
-    if (second_moment > 0) own.equivalent_modulus = own.stiffness * h / second_moment;
   }
   return found;
 }
@@ -146,44 +141,6 @@ std::vector<double> segment_lengths(const Eigen::Matrix3Xd& points) {
     lengths.push_back((points.col(i) - points.col(i - 1)).norm());
   }
   return lengths;
-}
-
-std::vector<SimulatorParameter> simulator_parameters(const ChainSprings& chain) {
-  if (!chain.joints.empty()) return {};
-  const double joint = chain.stiffness;
-  const double h = chain.segment_length;
-  std::vector<SimulatorParameter> all = {
-      {"MuJoCo", "joint stiffness", "N m/rad", joint},
-      {"Bullet", "btGeneric6DofSpring2Constraint::setStiffness", "N m/rad", joint},
-      // 1.2.0 stopped dividing it by the length of a segment.
-      {"Newton", "add_rod bend_stiffness before 1.2.0", "N m^2", joint * h},
-      {"Newton", "add_rod bend_stiffness 1.2.0 to 1.4", "N m/rad", joint},
-      {"Newton", "add_joint_cable bend_stiffness to 1.4", "N m/rad", joint},
-      {"Drake", "RevoluteSpring stiffness", "N m/rad", joint},
-      {"PhysX", "PxD6JointDrive stiffness", "N m/rad", joint},
-      // USD keeps angles in degrees.
-      {"Isaac Sim", "PhysicsDriveAPI:rotX stiffness", "N m/deg", joint * std::numbers::pi / 180}};
-  if (chain.binormal_stiffness > 0) {
-    all.push_back(
-        {"Newton", "add_rod bend_stiffness since 1.5", "N m/rad", chain.binormal_stiffness});
-    all.push_back({"Newton", "Rod bend_rigidity since 1.6", "N m^2", chain.binormal_stiffness * h});
-  }
-  if (chain.diameter > 0 && chain.mass_per_length > 0) {
-    const double r = chain.diameter / 2;
-    const double capsule = std::numbers::pi * r * r * (h + 4 * r / 3);
-    for (const char* simulator : {"MuJoCo", "Newton"}) {
-      all.push_back(
-          {simulator, "density of a capsule", "kg/m^3", chain.mass_per_length * h / capsule});
-    }
-  }
-  if (chain.equivalent_modulus > 0) {
-    all.push_back({"MuJoCo", "cable plugin bend", "Pa", chain.equivalent_modulus});
-    // Its first element is held whole, as that of a welded chain.
-    if (chain.clamp == ChainClamp::welded) {
-      all.push_back({"PyElastica", "youngs_modulus", "Pa", chain.equivalent_modulus});
-    }
-  }
-  return all;
 }
 
 }  // namespace dlo::compare

@@ -4,10 +4,7 @@
 
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <numeric>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "dlo/compare/error.hpp"
@@ -85,40 +82,6 @@ TEST(ChainSprings, BetweenTwoClampsBothEndsAreHeldAlike) {
   EXPECT_LT(chains.at(ChainClamp::middle).rms_m, 2e-3);
 }
 
-// What each simulator makes of its number is the joint that was meant: MuJoCo's plugin takes
-// E pi r^4 / 4 / h, Newton's add_rod divided by h before 1.2.0 and its Rod does, USD counts
-// degrees. A capsule, a cylinder and a ball, weighs what its segment does.
-TEST(ChainSprings, SimulatorsTakeTheSameJointEachByItsOwnNumber) {
-  const Scene scene = test::heavy_scene(5, 0);
-  for (const auto& [clamp, chain] : springs_of(scene, 24)) {
-    std::map<std::string, double> joints;
-    const double r = scene.diameter / 2;
-    const double h = chain.segment_length;
-    for (const SimulatorParameter& parameter : simulator_parameters(chain)) {
-      if (std::string_view(parameter.unit) == "kg/m^3") {
-        const double volume = std::numbers::pi * (r * r * h + 4 * r * r * r / 3);
-        EXPECT_NEAR(parameter.value * volume / (scene.mass_per_length() * h), 1, 1e-12);
-        continue;
-      }
-      const double per_unit =
-          std::string_view(parameter.unit) == "Pa"
-              ? std::numbers::pi * std::pow(scene.diameter / 2, 4) / 4 / chain.segment_length
-          : std::string_view(parameter.unit) == "N m^2"   ? 1 / chain.segment_length
-          : std::string_view(parameter.unit) == "N m/deg" ? 180 / std::numbers::pi
-                                                          : 1;
-      joints[std::string(parameter.simulator) + ' ' + parameter.name] = parameter.value * per_unit;
-    }
-    EXPECT_EQ(joints.size(), clamp == ChainClamp::welded ? 12U : 11U);
-    for (const auto& [name, joint] : joints) {
-      const bool is_binormal = name == "Newton add_rod bend_stiffness since 1.5" ||
-                               name == "Newton Rod bend_rigidity since 1.6";
-      EXPECT_NEAR(joint / (is_binormal ? chain.binormal_stiffness : chain.stiffness), 1, 1e-12)
-          << name << ' ' << to_string(clamp);
-    }
-    EXPECT_NEAR(chain.equivalent_modulus / scene.material.youngs_modulus, chain.over_rod, 1e-9);
-  }
-}
-
 const std::vector<double>& unequal_lengths() {
   static const std::vector<double> lengths = {0.08, 0.11, 0.05, 0.09, 0.12, 0.04,
                                               0.13, 0.1,  0.07, 0.06, 0.15};
@@ -158,7 +121,6 @@ TEST(ChainSprings, OfUnequalSegmentsTheyAreThoseOfBeamTheory) {
     EXPECT_NEAR(hinge.joints[i].stiffness / k, 1, 1e-6);
     EXPECT_NEAR(hinge.joints[i].binormal_stiffness / k, 1, 1e-3);
   }
-  EXPECT_TRUE(simulator_parameters(hinge).empty());
 }
 
 // Laid into another solver of chains the printed springs leave what is said of them, and no other
@@ -219,12 +181,6 @@ TEST(ChainSprings, OfSegmentsOfAnotherRodThereAreNone) {
         std::vector<double>(10, 0.2), std::vector<double>{0.5, 0, 0.25, 0.25},
         std::vector<double>{}}) {
     EXPECT_THROW((void)chain_springs(scene, wrong, {}), InputError) << wrong.size();
-  }
-}
-
-TEST(ChainSprings, WithoutADiameterNoSimulatorTakesAModulus) {
-  for (const SimulatorParameter& parameter : simulator_parameters({.stiffness = 1})) {
-    EXPECT_STRNE(parameter.unit, "Pa");
   }
 }
 

@@ -146,11 +146,6 @@ struct ChainSprings {
   /// The same of a chain whose joints have the energy of discrete elastic rods,
   /// k (2 tan(angle/2))^2 / 2: their k [N m/rad].
   double binormal_stiffness = 0;
-  /// Young's modulus of a solid round rod of the scene's diameter with EI / h of one joint [Pa]; 0
-  /// without a diameter.
-  double equivalent_modulus = 0;
-  double mass_per_length = 0;  ///< of the scene's rod, in the mean [kg/m]
-  double diameter = 0;         ///< of the scene's rod [m]; 0: not known
   /// Of unequal segments, scaled to the rod's length [m]; empty: all are equal.
   std::vector<double> segment_lengths;
   std::vector<ChainJoint> joints;  ///< of unequal segments, along the rod; else empty

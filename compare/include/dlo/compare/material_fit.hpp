@@ -9,26 +9,6 @@
 
 namespace dlo::compare {
 
-/// One number of a simulator's chain, by the name that it has there.
-struct SimulatorParameter {
-  const char* simulator = "";  ///< such as MuJoCo
-  const char* name = "";       ///< what takes it
-  const char* unit = "";       ///< in which it is taken
-  double value = 0;            ///< in that unit
-};
-
-/// A chain as the parameters of simulators that have such chains. Springs: MuJoCo 3 (joints, and
-/// its plugin `mujoco.elasticity.cable`, which divides E I by h itself), Bullet 3, Drake,
-/// PyElastica 0.3 (E of a rod whose first element is held), Newton (`ModelBuilder.add_rod`, which
-/// divided by h before version 1.2.0, has had the energy of discrete elastic rods since 1.5, and
-/// since 1.6 takes a `Rod` whose `bend_rigidity` it divides by h; `add_joint_cable`, which never
-/// divided), the angular drives of D6 joints in PhysX 5, and in USD for Isaac Sim, which has them
-/// per degree. Masses: the density of a capsule that weighs what its segment does, although its
-/// half-spheres reach over the segment's ends, rho = mass / (pi r^2 h + 4/3 pi r^3). Those that
-/// take a modulus or a density only if the diameter is known. None of a chain of unequal segments,
-/// which has no one number: ChainSprings::joints has those of each joint.
-[[nodiscard]] std::vector<SimulatorParameter> simulator_parameters(const ChainSprings& chain);
-
 /// Young's modulus, one for all scenes, from a measured shape of each: least squares on the energy
 /// model's shapes, over the modulus, each shape's frame and, where the file has no arc lengths, the
 /// place of each point along its rod.
