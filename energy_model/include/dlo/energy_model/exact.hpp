@@ -38,7 +38,8 @@ struct ExactOptions {
 /// @return the lowest `converged` shape, else the lowest other one, else why there is none; its
 /// stability is that of the second variation by finite elements on its own shape
 /// @throws std::invalid_argument if the problem or an option is out of range; of obstacles any
-/// without a start, those that yield, any where a rod has natural strains; of a round straight rod a clamp without a frame between two that hold theirs
+/// without a start, those that yield, any where a rod has natural strains; of a round straight rod
+/// a clamp without a frame between two that hold theirs
 Equilibrium solve_exact(const Problem& problem, const ExactOptions& options = {});
 
 /// Every equilibrium that the scan or the search finds, `converged` ones first, by energy, then
