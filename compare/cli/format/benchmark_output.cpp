@@ -87,7 +87,6 @@ Json run_json(const BenchmarkRun& run, const char* kind) {
                  {"evaluations", run.program.empty() ? Json(run.evaluations) : Json()},
                  {"rms_over_length", run.rms_over_length},
                  {"front", run.front}};
-  result["work"] = Json(result.at("evaluations"));  // its name before 0.2, which takes it away
   if (run.variant) {
     result["law"] = compare::to_string(run.variant->law);
     result["bookkeeping"] = compare::to_string(run.variant->bookkeeping);
@@ -190,7 +189,7 @@ Json benchmark_json(const compare::BenchmarkReport& report) {
 std::string benchmark_csv(const compare::BenchmarkReport& report) {
   const compare::CsvTable table(
       "scene,kind,model,size,setting,time_s:4,lower_quartile_s:4,upper_quartile_s:4,repeats,"
-      "evaluations,rms_over_length:6,front,problem,work");
+      "evaluations,rms_over_length:6,front,problem");
   const Json document = benchmark_json(report);
   std::string out = table.text(document.at("runs"));
   for (Json failure : document.at("failures")) {

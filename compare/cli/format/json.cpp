@@ -1,26 +1,9 @@
 #include "format/json.hpp"
 
 namespace dlo::cli {
-namespace {
-
-void add_old_keys(Json& document) {
-  if (!document.is_structured()) return;
-  for (Json& value : document) add_old_keys(value);
-  if (!document.is_object()) return;
-  Json old = Json::object();
-  for (const auto& [key, value] : document.items()) {
-    const std::string before(compare::name_before(key));
-    if (!before.empty()) old[before] = value;
-  }
-  document.update(old);
-}
-
-}  // namespace
 
 std::string json_text(const Json& document) {
-  Json whole = document;
-  add_old_keys(whole);
-  return whole.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Json modulus_json(const compare::EffectiveModulus& modulus) {

@@ -21,7 +21,7 @@ using compare::text_or_null;
 using compare::to_json;
 
 /// A document as every command writes it: NaN and infinity are null, and what is no UTF-8 in the
-/// name of a file becomes U+FFFD. Keys that had another name before 0.2 are there by both.
+/// name of a file becomes U+FFFD.
 [[nodiscard]] std::string json_text(const Json& document);
 
 [[nodiscard]] Json modulus_json(const compare::EffectiveModulus& modulus);

@@ -256,7 +256,6 @@ std::string material_csv(const compare::Calibration& report) {
       "effective_degrees_of_freedom=correlation/effective_degrees_of_freedom");
   table.add(fmt::format("{0}{1},{0}_low={0}_interval_95{1}/0,{0}_high={0}_interval_95{1}/1",
                         torsion_key().name, torsion_key().unit));
-  table.add("not_told=not_identified");  // its name before 0.2
   return table.header() + table.row(material_json(report));
 }
 

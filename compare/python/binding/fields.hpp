@@ -42,7 +42,7 @@ void bind_array(py::class_<Object, Options...>& bound, const char* name, const O
       words);
 }
 
-/// The attributes of a record, and those that had another name before 0.2.
+/// Binds the fields of a record as attributes.
 /// @param of  a result of the record's type, of an object of the class
 template <typename Object, typename... Options, typename T, typename Of>
 void bind_fields(py::class_<Object, Options...>& bound, std::span<const compare::Field<T>> fields,
@@ -59,13 +59,8 @@ void bind_fields(py::class_<Object, Options...>& bound, std::span<const compare:
             return get(of(object));
           }
         };
-        const std::string name(field.name);
-        bound.def_property_readonly(name.c_str(), value, field.python_words().c_str());
-        const std::string before(compare::name_before(name));
-        if (before.empty()) return;
-        bound.def_property_readonly(
-            before.c_str(), value,
-            (name + " by its name before 0.2, which takes it away.").c_str());
+        bound.def_property_readonly(std::string(field.name).c_str(), value,
+                                    field.python_words().c_str());
       }
     };
     std::visit(bind, field.get);

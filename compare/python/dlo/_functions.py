@@ -117,7 +117,6 @@ def check(
     measure=TEXT,
     min_seen=NUMBER,
     register=TEXT,
-    pose=TEXT,
     arc_lengths=TEXT,
     modulus=TRUTH,
     explain=TRUTH,
@@ -137,7 +136,6 @@ def check(
     measure: str = "rms",
     min_seen: Optional[float] = None,
     register: str = "known",
-    pose: Optional[str] = None,
     arc_lengths: str = "auto",
     modulus: bool = True,
     explain: bool = True,
@@ -159,8 +157,7 @@ def check(
     tolerance: "1%" or 0.01 of the rod's length, or "2 mm"; the Check then passes or fails.
     measure: "rms" or "max", what is held against it. min_seen: the points are a part of the rod, and
     of less than this share no verdict passes; None: they are all of it. register: what is unknown of
-    the points' frame, "known" (nothing), "translation", "upright" or "rigid"; pose: its name before
-    0.2. arc_lengths: "auto",
+    the points' frame, "known" (nothing), "translation", "upright" or "rigid". arc_lengths: "auto",
     "file" (those given), "nearest" or "chord". modulus: look for E*/E. explain: of a shape that
     fails look for candidate causes, which takes longer than all else. materials,
     calibrated: as of solve().
@@ -193,7 +190,7 @@ def check(
     if points is None:
         raise InputError("check: nothing to check (allowed: points, or motion)")
     what.update(
-        min_seen=min_seen, pose=pose or register, arc_lengths=arc_lengths, modulus=bool(modulus)
+        min_seen=min_seen, pose=register, arc_lengths=arc_lengths, modulus=bool(modulus)
     )
     data = data_of(scene, materials, None, calibrated)
     taken: Any = file_name(points, "points") if is_file(points) else points
@@ -244,7 +241,6 @@ def plan(
     target=NUMBER,
     points=INTEGER,
     register=TEXT,
-    pose=TEXT,
     arc_lengths=TEXT,
     density=TRUTH,
     torsional_stiffness=TRUTH,
@@ -270,7 +266,6 @@ def calibrate(
     target: Optional[float] = None,
     points: Optional[int] = None,
     register: str = "known",
-    pose: Optional[str] = None,
     arc_lengths: str = "auto",
     density: bool = False,
     torsional_stiffness: bool = False,
@@ -319,7 +314,7 @@ def calibrate(
         held_out = [data_of(cast(SceneLike, scene), materials, time, calibrated) for scene in holdout]
         return ForceModelFit(*_dlo.calibrate_force_model(data, held_out, points, target, limits))
     what = {
-        "pose": pose or register,
+        "pose": register,
         "arc_lengths": arc_lengths,
         "density": bool(density),
         "torsional_stiffness": bool(torsional_stiffness),

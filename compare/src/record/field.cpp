@@ -10,20 +10,6 @@
 
 namespace dlo::compare {
 
-std::string_view name_before(std::string_view name) {
-  constexpr std::pair<std::string_view, std::string_view> names[] = {
-      {"neglected", "left_out"},
-      {"not_identified", "not_told"},
-      {"reference_verified", "reference_resolved"},
-      {"smallest_eigenvalue", "smallest_curvature"},
-      {"smallest_eigenvalue_before", "smallest_curvature_before"},
-  };
-  for (const auto& [now, before] : names) {
-    if (now == name) return before;
-  }
-  return {};
-}
-
 Json json_of(const Numbers& numbers) {
   Json object = Json::object();
   for (const auto& [name, value] : numbers) object[name] = value;

@@ -57,10 +57,6 @@ struct Field {
   }
 };
 
-/// The name before 0.2 of a key of JSON or an attribute of Python, which takes it away; empty:
-/// none.
-[[nodiscard]] std::string_view name_before(std::string_view name);
-
 /// As JSON has a value of a field's type.
 [[nodiscard]] Json json_of(const Numbers& numbers);
 template <typename Value>

@@ -62,7 +62,6 @@ TEST_F(ContactCommand, FrictionIsLeftOutAloud) {
     const json with = json::parse(solve("json", rough).out);
     const json without = json::parse(solve("json", smooth).out);
     EXPECT_EQ(with.at("neglected"), json({"friction"}));
-    EXPECT_EQ(with.at("left_out"), with.at("neglected"));
     EXPECT_EQ(with.at("points_m"), without.at("points_m"));
     EXPECT_FALSE(without.contains("neglected"));
     EXPECT_TRUE(says(solve("text", rough).out, {"\nneglected  friction: the scene has it, model"}));

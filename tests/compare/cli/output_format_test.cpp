@@ -113,22 +113,6 @@ TEST_F(Output, TextHasNoNumberThatIsRounding) {
   EXPECT_TRUE(std::regex_search(json, rounding));
 }
 
-TEST(Json, KeysWithANewNameAreThereByTheOldOneToo) {
-  const dlo::cli::Json document = {{"equilibria", {{{"smallest_eigenvalue", -3.5}}}},
-                                   {"neglected", {"twist"}},
-                                   {"events", {{{"smallest_eigenvalue_before", 0.5}}}},
-                                   {"not_identified", nullptr},
-                                   {"reference_verified", true}};
-  const auto read = nlohmann::json::parse(dlo::cli::json_text(document));
-  EXPECT_EQ(read.at("equilibria")[0].at("smallest_curvature"), -3.5);
-  EXPECT_EQ(read.at("equilibria")[0].at("smallest_eigenvalue"), -3.5);
-  EXPECT_EQ(read.at("left_out"), read.at("neglected"));
-  EXPECT_EQ(read.at("events")[0].at("smallest_curvature_before"), 0.5);
-  EXPECT_TRUE(read.at("not_told").is_null());
-  EXPECT_EQ(read.at("reference_resolved"), true);
-  EXPECT_EQ(read.size(), 8U);  // nothing else is new
-}
-
 TEST(Csv, UndefinedNumbersAreEmpty) {
   using dlo::compare::csv_number;
   EXPECT_EQ(csv_number(NAN) + csv_number(INFINITY) + csv_number(-INFINITY), "");

@@ -31,7 +31,6 @@ void add(Json& list, std::span<const Field<SolvedShape>> fields, bool everywhere
                     {"json", in(dlo::compare::in_json, field.json_path())},
                     {"csv", in(dlo::compare::in_csv, field.key())},
                     {"python", in(dlo::compare::in_python, std::string(field.name))},
-                    {"before", dlo::compare::name_before(field.name)},
                     {"everywhere", everywhere}});
   }
 }
