@@ -14,10 +14,8 @@
 
 #include "base/output_file.hpp"
 #include "command/commands.hpp"
-#include "completion/completion.hpp"
 #include "dlo/compare/error.hpp"
 #include "option/help.hpp"
-#include "option/manual.hpp"
 #include "option/option_values.hpp"
 #include "option/output.hpp"
 
@@ -29,21 +27,6 @@ void build(CLI::App& app) {
   app.formatter(help_formatter());
   app.set_help_flag("-h,--help", "this help; with a command, its options");
   app.set_version_flag("--version", "dlo " DLO_VERSION, "the version");
-  const auto add_text = [&app](const char* name, std::string (*text)(const CLI::App&),
-                               const char* words) {
-    const auto print = [&app, text] {
-      write_standard_output(text(app));
-      throw CLI::Success();
-    };
-    app.add_flag_callback(name, print, words)->group("Set up");
-  };
-  add_text("--man-page", manual_page, "print the manual page (mdoc)");
-  add_text("--bash-completion", bash_completion,
-           "print completion for bash: source <(dlo --bash-completion)");
-  add_text("--zsh-completion", zsh_completion,
-           "print completion for zsh: source <(dlo --zsh-completion)");
-  add_text("--fish-completion", fish_completion,
-           "print completion for fish: dlo --fish-completion | source");
   for (const Task& task : tasks()) {
     for (const auto add : task.commands) {
       add(app);

@@ -1,6 +1,6 @@
 # cpack -G DEB makes Debian packages of a build with static libraries: libdlo-force-model-dev for
 # programs that embed the force model, libdlo-dev for the other two libraries, the command dlo, and
-# python3-dlo where the Python module is built; dpkg-shlibdeps finds the libraries that these two need. Whoever gives them to others sets
+# python3-dlo where the Python module is built; help2man makes the manual page of the command; dpkg-shlibdeps finds the libraries that these two need. Whoever gives them to others sets
 # CPACK_PACKAGE_CONTACT to an address that answers.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "the dlo authors <dlo@localhost>" CACHE STRING "Maintainer of the packages")

@@ -158,7 +158,6 @@ OptionText option_text(const CLI::Option& option) {
   }
   text.default_value = option.get_default_str();
   text.description = option.get_description();
-  text.repeated = option.get_expected_max() >= CLI::detail::expected_max_vector_size;
   return text;
 }
 

@@ -9,7 +9,7 @@
 
 namespace dlo::cli {
 
-/// An option or argument as help, manual page and completion tell it.
+/// The texts of an option or argument, for the help and for checks of outputs.
 struct OptionText {
   std::vector<std::string> names;  ///< "--points", or "SCENE" of an argument
   std::string value;               ///< "FILE", "INT"; empty for a flag
@@ -18,7 +18,6 @@ struct OptionText {
   std::string default_value;
   std::string description;
   bool optional_value = false;  ///< a flag that takes a value behind "="
-  bool repeated = false;
 
   /// "FILE", "{text,json,csv}" or nothing.
   [[nodiscard]] std::string value_text() const;
