@@ -53,7 +53,7 @@ headers, and files for CMake and pkg-config. They need Eigen only.")
 dlo_debian(libdlo-dev COMPONENTS energy_model compare SECTION libdevel
   DEPENDS "libdlo-force-model-dev (= ${PROJECT_VERSION})" "libeigen3-dev (>= 3.4)"
     "libnlopt-dev (>= 2.7)" "libgsl-dev (>= 2.7)" "libtomlplusplus-dev (>= 3.3)"
-    "libfmt-dev (>= 9)" "libpugixml-dev (>= 1.13)" "zlib1g-dev (>= 1.2)"
+    "libfmt-dev (>= 9)" "libpugixml-dev (>= 1.13)"
   DESCRIPTION "physical shapes of rods and comparison of rod models
 The static libraries dlo::energy_model (shapes of minimal bending and gravity
 energy) and dlo::compare (scenes, and how far the shapes of two models are

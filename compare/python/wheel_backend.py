@@ -1,7 +1,7 @@
 """Makes a wheel of the module dlo: what `pip install .` calls (PEP 517). It needs what builds the
 command (.ci/setup python), and nothing of Python but its standard library.
 
-The wheel holds the shared libraries that are not part of every Debian (NLopt, GSL, fmt, oneTBB, pugixml, zlib), so
+The wheel holds the shared libraries that are not part of every Debian (NLopt, GSL, fmt, oneTBB, pugixml), so
 that it works where neither they nor the sources are.
 """
 

@@ -1,6 +1,7 @@
 """The examples run, and every page shows what its Python prints."""
 
 import contextlib
+import importlib.util
 import io
 import os
 import pathlib
@@ -41,6 +42,8 @@ def test_page_shows_what_it_prints(name, tmp_path, monkeypatch):
     found = list(blocks((ROOT / name).read_text()))
     assert found
     for code, shown in found:
+        if "vtkmodules" in code and importlib.util.find_spec("vtkmodules") is None:
+            continue  # .ci/nightly installs it
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed):
             exec(compile(code, name, "exec"), names)

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/input_file.hpp"
 #include "calibration/calibrate_options.hpp"
 #include "calibration/calibrated_toml.hpp"
 #include "calibration/chain_springs_output.hpp"
@@ -17,7 +18,6 @@
 #include "option/exit_status.hpp"
 #include "option/terminal.hpp"
 #include "picture/fit_figure.hpp"
-#include "recording/recorded_frames.hpp"
 #include "series/motion_fit_output.hpp"
 #include "trajectory/read_markers.hpp"
 
@@ -118,7 +118,8 @@ void run_motion(const CalibrateOptions& options, bool format_is_given) {
     throw compare::InputError("--motion: of one scene (allowed: one SCENE)");
   }
   const compare::Scene scene = options.overrides.load(options.scenes.front());
-  const compare::MarkerMotion recorded = compare::load_recording(options.motion, scene.length);
+  const compare::MarkerMotion recorded =
+      compare::parse_markers(compare::read_file(options.motion), options.motion);
   const compare::MotionFit found = with_progress("calibrate", [&](const auto& /*unknown*/) {
     return compare::fit_motion(scene, recorded, {.solve = options.overrides.solve()});
   });

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/output_file.hpp"
+#include "base/input_file.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/check.hpp"
 #include "dlo/compare/error.hpp"
@@ -23,9 +24,9 @@
 #include "picture/check_figure.hpp"
 #include "picture/motion_figure.hpp"
 #include "recording/motion_check.hpp"
-#include "recording/recorded_frames.hpp"
 #include "report/check_page.hpp"
 #include "series/motion_check_output.hpp"
+#include "trajectory/read_markers.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -141,7 +142,8 @@ void run_motion(const CheckOptions& options) {
     request.tolerance = shape_tolerance("--tolerance", options.tolerance, scene.length);
   }
   request.solve = options.overrides.solve();
-  const compare::MarkerMotion recorded = compare::load_recording(options.motion, scene.length);
+  const compare::MarkerMotion recorded =
+      compare::parse_markers(compare::read_file(options.motion), options.motion);
   const compare::MotionCheck result = with_progress("check", [&](const auto& progress) {
     return compare::check_motion(scene, recorded, request, progress);
   });
@@ -166,9 +168,8 @@ void add_motion_to(CLI::App& command, CheckOptions& options) {
       command
           .add_option("--motion", options.motion,
                       "instead of a shape: a CSV file of markers on the rod, time,s,x,y,z in s and "
-                      "m, a FILE.vtk.series of frames, a folder of them, or a FILE.npz with t and "
-                      "points")
-          ->type_name("FILE|DIR");
+                      "m")
+          ->type_name("FILE");
   command
       .add_flag("--dynamic", options.dynamic,
                 "with --motion: hold it against the rod with its inertia, not at rest")
@@ -206,7 +207,7 @@ void add_check(CLI::App& app) {
       ->required();
   command
       ->add_option("--shape", options->shape,
-                   "CSV, JSON, VTK polyline or NumPy array (FILE.npz:KEY)")
+                   "CSV, JSON, legacy VTK polyline or NumPy array (FILE.npy)")
       ->type_name("FILE");
   command->add_option(
       "--tolerance", options->tolerance.allowed,

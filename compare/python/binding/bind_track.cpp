@@ -7,6 +7,8 @@
 #include <variant>
 #include <vector>
 
+#include "base/display.hpp"
+#include "base/input_file.hpp"
 #include "bind_scene.hpp"
 #include "errors.hpp"
 #include "format/json.hpp"
@@ -18,7 +20,6 @@
 #include "picture/track_figure.hpp"
 #include "recording/motion_check.hpp"
 #include "recording/motion_fit.hpp"
-#include "recording/recorded_frames.hpp"
 #include "series/dynamic_track_series.hpp"
 #include "series/motion_check_output.hpp"
 #include "series/motion_fit_output.hpp"
@@ -65,13 +66,13 @@ py::object track(const SharedScene& shared, const py::dict& what, const py::obje
   return result;
 }
 
-/// Rows of time, arc length, x, y, z, or the name of a file or folder.
+/// Rows of time, arc length, x, y, z, or the name of a file.
 using RecordedRows = std::variant<py::bytes, std::vector<std::vector<double>>>;
 
-compare::MarkerMotion recorded_motion(const RecordedRows& rows, const std::string& name,
-                                      double length) {
+compare::MarkerMotion recorded_motion(const RecordedRows& rows, const std::string& name) {
   if (const auto* file = std::get_if<py::bytes>(&rows)) {
-    return compare::load_recording(std::string(*file), length);
+    const std::string path(*file);
+    return compare::parse_markers(compare::read_file(path), compare::valid_utf8(path));
   }
   std::string text = "time,s,x,y,z\n";
   for (const std::vector<double>& row : std::get<1>(rows)) {
@@ -84,7 +85,7 @@ std::pair<std::string, std::string> calibrate_motion(const SharedScene& shared,
                                                      const RecordedRows& rows,
                                                      const std::string& name,
                                                      const py::dict& limits) {
-  const compare::MarkerMotion recorded = recorded_motion(rows, name, shared->scene.length);
+  const compare::MarkerMotion recorded = recorded_motion(rows, name);
   const compare::SolveOptions solve = verified_options(limits);
   const compare::MotionFit found = run_long([&](Signals& /*signals*/) {
     return compare::fit_motion(shared->scene, recorded, {.solve = solve});
@@ -111,7 +112,7 @@ std::pair<std::string, std::string> check_motion(const SharedScene& shared,
     request.tolerance = cli::shape_tolerance(
         "tolerance", {*allowed, what["measure"].cast<std::string>(), std::nullopt}, scene.length);
   }
-  const compare::MarkerMotion recorded = recorded_motion(rows, "motion", scene.length);
+  const compare::MarkerMotion recorded = recorded_motion(rows, "motion");
   const compare::MotionCheck found = run_long([&](Signals& signals) {
     return compare::check_motion(scene, recorded, request,
                                  [&](auto, auto) { signals.throw_if_stopped(); });

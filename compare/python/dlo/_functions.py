@@ -163,8 +163,7 @@ def check(
     calibrated: as of solve().
 
     With motion in place of points a MotionCheck of a scene that moves: rows of time [s], arc length, x, y,
-    z [m], shape (R, 5), or the name of a file of markers, of a FILE.vtk.series, of a folder of frames, or of
-    a FILE.npz with t [s], shape (T,), points [m], shape (T, n, 3), and if known s [m], shape (n,).
+    z [m], shape (R, 5), or the name of a CSV file of these.
     dynamic: hold it against the rod with inertia, of that damping [s], drag [N s/m^2] and
     quadratic_drag [N s^2/m^3], not at rest. begin: of the rod's motion [s]; None: the recording's.
     frame_rate: of the rod [Hz]; None: as needed.

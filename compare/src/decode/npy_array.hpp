@@ -8,16 +8,11 @@
 #include <vector>
 
 #include "decode/binary.hpp"
-#include "decode/zip_archive.hpp"
 
 namespace dlo::compare {
 
-/// How NumPy's files begin (numpy.lib.format), and zip archives.
+/// First bytes of a file of one array that NumPy saves (numpy.lib.format).
 inline constexpr std::string_view npy_magic = "\x93NUMPY";
-inline constexpr std::string_view zip_magic = "PK\x03\x04";
-
-/// Bytes from the begin of an array that have its header.
-inline constexpr std::size_t longest_npy_start = 10'012;
 
 /// An array as NumPy saves it, of any integers or of 32 or 64 bit floating-point numbers, in any
 /// order of bytes and axes.
@@ -50,13 +45,5 @@ class NpyArray {
   std::vector<std::size_t> shape_;
   std::size_t begin_ = 0;  // of the numbers
 };
-
-/// As NumPy knows an archive's entry: its name without ".npy".
-[[nodiscard]] std::string npz_key(const ZipArchive::Entry& entry);
-/// That of an archive with this key, none without.
-[[nodiscard]] const ZipArchive::Entry* find_npz_entry(const ZipArchive& archive,
-                                                      const std::string& key);
-/// The keys of an archive, in quotes, for messages; the first eight of them.
-[[nodiscard]] std::string npz_keys(const ZipArchive& archive);
 
 }  // namespace dlo::compare

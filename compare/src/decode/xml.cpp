@@ -82,4 +82,13 @@ bool looks_like_xml(std::string_view text) {
   return start != std::string_view::npos && text[start] == '<';
 }
 
+void refuse_archives(std::string_view bytes, const std::string& file) {
+  const bool is_zip = bytes.starts_with("PK\x03\x04");
+  if (!is_zip && !looks_like_xml(bytes)) return;
+  throw InputError(fmt::format(
+      "{}: {}, which is not read (allowed: CSV; of shapes JSON, .npy and legacy VTK too; "
+      "doc/howto/read_nodes.md shows how Python converts it)",
+      file, is_zip ? "a zip archive such as NPZ" : "XML such as VTU or VTP"));
+}
+
 }  // namespace dlo::compare

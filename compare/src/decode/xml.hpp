@@ -35,4 +35,8 @@ class XmlFile {
 /// Whether a text, but for blanks, begins as XML does.
 [[nodiscard]] bool looks_like_xml(std::string_view text);
 
+/// @throws InputError with the page that shows how to read them if a file of points or markers is
+/// a NumPy archive (NPZ) or XML, as VTK's VTU and VTP are
+void refuse_archives(std::string_view bytes, const std::string& file);
+
 }  // namespace dlo::compare

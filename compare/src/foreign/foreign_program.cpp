@@ -26,7 +26,6 @@
 #include "foreign/child_process.hpp"
 #include "foreign/command_words.hpp"
 #include "foreign/scene_document.hpp"
-#include "recording/recorded_frames.hpp"
 #include "shape/curve.hpp"
 #include "shape/shape_measure.hpp"
 
@@ -213,18 +212,13 @@ bool is_shape(const std::string& text) {
   }
 }
 
-void read_motion(const std::string& file, double length, ForeignRun& result) {
-  std::error_code unknown;
-  if (std::filesystem::is_directory(file, unknown) || file.ends_with(".vtk.series")) {
-    result.motion = load_recording(file, length);
-    return;
-  }
+void read_motion(const std::string& file, ForeignRun& result) {
   const std::string text = read_regular_file(file, shape_name);
   result.not_supported = is_shape(text);
   if (result.not_supported) {
     result.problem = "wrote a shape at rest, no frames (time,s,x,y,z)";
   } else {
-    result.motion = parse_recording(text, shape_name, length);
+    result.motion = parse_markers(text, shape_name);
   }
 }
 
@@ -240,10 +234,8 @@ ForeignRun run_foreign(const ForeignProgram& program, Scene scene, int points, d
 }
 
 ForeignRun run_foreign_motion(const ForeignProgram& program, const std::string& document,
-                              int points, double length, double time_limit) {
-  return run_on_document(
-      program, document, points, time_limit,
-      [length](const std::string& file, ForeignRun& result) { read_motion(file, length, result); });
+                              int points, double time_limit) {
+  return run_on_document(program, document, points, time_limit, read_motion);
 }
 
 void require_held_ends(const Scene& scene, const Shape& laid, bool told) {

@@ -50,10 +50,9 @@ struct ForeignRun {
                                      double time_limit);
 
 /// The same of a motion: {scene} has the document, and the program writes frames as
-/// load_recording() takes them. One shape that it writes is no failure: it has no motion.
-/// @param length  of the rod [m]
+/// parse_markers() takes them. One shape that it writes is no failure: it has no motion.
 [[nodiscard]] ForeignRun run_foreign_motion(const ForeignProgram& program,
-                                            const std::string& document, int points, double length,
+                                            const std::string& document, int points,
                                             double time_limit);
 
 /// An end that a gripper holds is where that is: to 1 % of the length, and to what a file says that

@@ -13,8 +13,4 @@ namespace dlo::compare {
 /// file's name asks for (shape_name). @throws InputError naming the file
 [[nodiscard]] RawShape read_npy_shape(std::string_view bytes, const std::string& file);
 
-/// Reads a shape from NumPy's archive of arrays: that which the file's name asks for, or the one of
-/// points. @throws InputError naming the file, and the arrays if there are several
-[[nodiscard]] RawShape read_npz_shape(std::string_view bytes, const std::string& file);
-
 }  // namespace dlo::compare

@@ -16,7 +16,6 @@
 #include "points/read_json.hpp"
 #include "points/read_npy.hpp"
 #include "points/read_vtk.hpp"
-#include "points/read_vtk_xml.hpp"
 #include "points/shape_name.hpp"
 
 namespace dlo::compare {
@@ -138,7 +137,7 @@ double arc_length_unit(const RawShape& raw, const std::string& file, double unit
 
 RawShape read_any_shape(std::string_view text, const std::string& file, double unit) {
   if (text.starts_with(npy_magic)) return read_npy_shape(text, file);
-  if (text.starts_with(zip_magic)) return read_npz_shape(text, file);
+  refuse_archives(text, file);
   text = after_byte_order_mark(text);
   const std::size_t start = text.find_first_not_of(" \t\r\n");
   if (start == std::string_view::npos) {
@@ -147,7 +146,6 @@ RawShape read_any_shape(std::string_view text, const std::string& file, double u
   }
   const std::string_view content = text.substr(start);
   if (content.starts_with("# vtk")) return read_vtk_shape(text, file);
-  if (looks_like_xml(content)) return read_vtk_xml_shape(text, file);
   if (content.front() == '[' || content.front() == '{') return read_json_shape(text, file, unit);
   return read_csv_shape(text, file);
 }

@@ -104,7 +104,7 @@ struct MotionCheck {
 /// A cause is one if it takes at least half of the mean square distance.
 inline constexpr double cause_may_leave = 0.7;
 
-/// Holds a recording, by markers or by frames (load_recording()), against the rod that follows the
+/// Holds a recording, by markers (parse_markers()), against the rod that follows the
 /// scene's grippers. Points are compared at their own times and arc lengths; the rod is
 /// interpolated, not the recording. Both models are run where the scene allows both; one is judged.
 /// @param recorded  by time, then by arc length

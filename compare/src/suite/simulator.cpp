@@ -106,7 +106,7 @@ SimulatorRun run_own(Model model, BatteryScene scene, int points, double time_li
 SimulatorRun run_program(const ForeignProgram& program, const BatteryScene& scene, int points,
                          double time_limit) {
   ForeignRun run = scene.motion ? run_foreign_motion(program, battery_document(scene, points),
-                                                     points, scene.scene.length, time_limit)
+                                                     points, time_limit)
                                 : run_foreign(program, scene.scene, points, time_limit);
   SimulatorRun result;
   result.problem = run.problem;

@@ -10,6 +10,7 @@
 
 #include "base/number.hpp"
 #include "decode/csv_rows.hpp"
+#include "decode/xml.hpp"
 #include "dlo/compare/error.hpp"
 
 namespace dlo::compare {
@@ -37,6 +38,7 @@ std::array<std::size_t, 5> marker_columns_of(const std::vector<std::string_view>
 }  // namespace
 
 MarkerMotion parse_markers(std::string_view text, const std::string& file) {
+  refuse_archives(text, file);
   std::optional<std::array<std::size_t, 5>> columns;
   MarkerMotion result{.file = file, .positions = {}};
   for_each_csv_row(text, file, {}, [&](const CsvRow& row) {

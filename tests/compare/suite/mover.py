@@ -36,14 +36,6 @@ def main():
         rows.append((t, [(x, y * factor, z) for x, y, z in begin]))
     if defect == "short":
         rows = rows[:5]
-    if defect == "folder":
-        os.mkdir(shape_file)
-        for i, (t, frame) in enumerate(rows):
-            with open(f"{shape_file}/f{i:03}.vtk", "w") as file:
-                file.write(f"# vtk DataFile Version 3.0\nrod, t = {t} s\nASCII\nDATASET POLYDATA\nPOINTS {len(frame)} double\n")
-                file.write("".join(f"{x} {y} {z}\n" for x, y, z in frame))
-                file.write(f"LINES 1 {len(frame) + 1}\n{len(frame)} {' '.join(str(k) for k in range(len(frame)))}\n")
-        return
     with open(shape_file, "w") as file:
         file.write("time,s,x,y,z\n")
         for t, frame in rows:

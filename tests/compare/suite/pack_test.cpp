@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -165,16 +166,25 @@ TEST(Pack, CommittedOneHasEveryScene) {
   EXPECT_LT(bytes, 1'000'000U);
 }
 
-// As other programs read it: the polyline, and arc lengths in metres.
+/// Numbers of an ASCII DataArray, which begins behind `tag`.
+std::vector<double> numbers_after(const std::string& text, const std::string& tag) {
+  const std::size_t begin = text.find('>', text.find(tag)) + 1;
+  std::istringstream words(text.substr(begin, text.find('<', begin) - begin));
+  return {std::istream_iterator<double>(words), {}};
+}
+
 TEST(Pack, VtuHasThePointsOfTheCsv) {
   int files = 0;
   for (const BatteryScene& scene : builtin_battery().scenes) {
     if (scene.motion) continue;
     const std::string stem = DLO_DATA "/suite/answers/" + scene.id;
-    const dlo::compare::MeasuredShape grid = dlo::compare::load_shape(stem + ".vtu");
+    const std::string grid = text_of(stem + ".vtu");
     const dlo::compare::MeasuredShape table = dlo::compare::load_shape(stem + ".csv");
-    ASSERT_EQ(grid.points, table.points) << scene.id;
-    ASSERT_EQ(grid.arc_length, table.arc_length) << scene.id;
+    const std::vector<double> points = numbers_after(grid, "NumberOfComponents");
+    ASSERT_EQ(points.size(), static_cast<std::size_t>(table.points.size())) << scene.id;
+    ASSERT_EQ(Eigen::Matrix3Xd::Map(points.data(), 3, table.points.cols()), table.points)
+        << scene.id;
+    ASSERT_EQ(numbers_after(grid, "arc_length_m"), table.arc_length) << scene.id;
     ++files;
   }
   EXPECT_GE(files, 50);

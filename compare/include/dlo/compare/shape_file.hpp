@@ -34,11 +34,8 @@ inline constexpr long most_shape_points = 100'000;
 ///     VTK: legacy, ASCII, DATASET POLYDATA with POINTS and one polyline in LINES (or several that
 ///          follow on from each other); without LINES the points in their order. The point data
 ///          arc_length_m of a FIELD, as `dlo solve` writes it; such a file is in metres. Its d1.
-///          Of the XML formats VTP and VTU likewise, their arrays as ASCII, base64 or appended,
-///          plain or packed by zlib.
-///     NumPy: an array M x 2 or M x 3, or an archive with one; of several the one that the name
-///          chooses, FILE.npz:KEY, and of frames x M x 3 the one at FILE.npy:INDEX or
-///          FILE.npz:KEY:INDEX, from 0 or, negative, from the end.
+///     NumPy: an array M x 2 or M x 3; of frames x M x 3 the one at FILE.npy:INDEX, from 0 or,
+///          negative, from the end.
 /// A missing z is zero.
 /// @param file  its name, for messages and to choose an array;
 /// @param unit  what the file's numbers are in [m]
@@ -56,7 +53,7 @@ inline constexpr long most_shape_points = 100'000;
     const Eigen::Ref<const Eigen::Matrix3Xd>& points, const std::vector<double>& arc_length,
     const std::string& name, const Eigen::Ref<const Eigen::Matrix3Xd>& d1 = Eigen::Matrix3Xd());
 
-/// The file that a shape's name is of: without :KEY and :INDEX, unless a file has that name.
+/// Returns the file of a shape's name: without :INDEX, unless a file has that name.
 [[nodiscard]] std::string file_of_shape(const std::string& name);
 
 /// Reads a shape file. @param path  a file, or an array of it as above @throws InputError as
