@@ -72,11 +72,4 @@ inline std::string in_first_row(const std::string& text, const std::string& colu
   return rows.at(1).at(static_cast<std::size_t>(name - rows.at(0).begin()));
 }
 
-/// The rows that begin with a series' name.
-inline std::vector<CsvRow> rows_of_series(const std::string& text, const std::string& series) {
-  std::vector<CsvRow> rows = csv_rows(text);
-  std::erase_if(rows, [&](const CsvRow& row) { return row.front() != series; });
-  return rows;
-}
-
 }  // namespace dlo::test

@@ -61,23 +61,3 @@ def test_regress_fails_what_has_changed(scene, tmp_path):
     ]:
         with pytest.raises(dlo.InputError, match=words):
             call()
-
-
-def test_report_is_the_commands(root, tmp_path):
-    folder = tmp_path / "page"
-    made = dlo.report(root / "data/scenes/cable.toml", folder=folder, quick=True)
-    page = folder / "index.html"
-    assert made.page == str(page)
-    text = page.read_text()
-    assert made.failures == [] and made.verdict and "dlo.report([" in text
-    first = made.verdict[0]
-    # One line of plain text: its spaces are plain ones.
-    assert str(made).startswith(first) and repr(made) == f"<dlo.Report {' '.join(first.split())}>"
-    with pytest.raises(dlo.InputError, match="which is read too"):
-        dlo.report(folder / "scenes/cable.toml", folder=folder)
-    with pytest.raises(dlo.InputError, match="allowed: a new or empty folder"):
-        dlo.report(root / SCENE, folder=tmp_path)
-    with pytest.raises(dlo.InputError, match="0 < tolerance < 1"):
-        dlo.report(root / SCENE, folder=folder, tolerance=2)
-    with pytest.raises(dlo.InputError, match=r"scenes: a Scene \(allowed: the name"):
-        dlo.report([dlo.Scene.from_file(root / SCENE)], folder=folder)

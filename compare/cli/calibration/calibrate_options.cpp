@@ -185,7 +185,7 @@ void CalibrateOptions::add_to(CLI::App& command) {
       ->excludes(wanted)
       ->excludes(holdout)
       ->group(measured);
-  plot.add_to(command, "points on the fitted rod, and E's profile likelihood,", Sketches::none)
+  plot.add_to(command, "points on the fitted rod, and E's profile likelihood,")
       ->needs(shape)
       ->group(measured);
   shape_options.add_to(command, ChordLengths::not_exact_enough);

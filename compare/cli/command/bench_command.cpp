@@ -27,7 +27,7 @@ struct BenchOptions {
 };
 
 void run(const BenchOptions& options) {
-  options.plot.require_drawable(options.output);
+  options.plot.require_drawable();
   compare::BenchmarkOptions benchmark = options.benchmark;
   benchmark.programs = compare::parse_foreign_programs(options.programs);
   std::vector<compare::Scene> scenes;
@@ -48,7 +48,7 @@ void run(const BenchOptions& options) {
     compare::PictureRow fronts;
     for (const compare::SceneBenchmark& scene : report.scenes) {
       if (compare::has_run(scene.runs)) {
-        fronts.push_back({compare::front_figure(scene, fronts.size() + 1)});
+        fronts.push_back({compare::front_figure(scene)});
       }
     }
     return compare::Picture{{fronts}};
@@ -79,7 +79,7 @@ void add_bench(CLI::App& app) {
       ->check(number_between(1e-3, 1e9))
       ->capture_default_str();
   add_output_options(*command, options->output);
-  options->plot.add_to(*command, "error against time, with the front,", Sketches::none);
+  options->plot.add_to(*command, "error against time, with the front,");
   command->footer(
       "Examples:\n"
       "  dlo bench data/scenes/spring_steel_175.toml --seconds 2 --plot front.svg\n"

@@ -60,7 +60,7 @@ std::vector<compare::MeasuredShape> load_shapes(const std::vector<std::string>& 
 }
 
 void run_material(const CalibrateOptions& options, bool format_is_given) {
-  options.plot.require_drawable(options.output);
+  options.plot.require_drawable();
   std::vector<compare::Scene> scenes = load_all(options.scenes, options.overrides);
   const std::vector<compare::MeasuredShape> shapes =
       load_shapes(options.shapes, options, scenes, 0);

@@ -1,16 +1,16 @@
 #include <fmt/format.h>
 
+#include <functional>
 #include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "base/output_file.hpp"
 #include "base/input_file.hpp"
+#include "base/output_file.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/check.hpp"
 #include "dlo/compare/error.hpp"
-#include "figure/gnuplot.hpp"
 #include "format/json.hpp"
 #include "format/shape_check_output.hpp"
 #include "option/exit_status.hpp"
@@ -51,42 +51,19 @@ compare::Picture picture_of(const compare::CheckResult& report) {
   return compare::check_picture(report.scene, report.check, report.tolerance.allowed_m);
 }
 
-/// The parts of a page, whole without a picture where gnuplot is missing.
-compare::CheckPageParts page_parts(const CheckOptions& options, const compare::Picture& picture,
-                                   const std::string& text) {
-  compare::CheckPageParts parts{.text = text, .version = DLO_VERSION};
-  for (const compare::PictureRow& row : picture.rows) {
-    for (const std::vector<compare::Figure>& column : row) {
-      for (const compare::Figure& figure : column) {
-        parts.figures.push_back({.figure = figure});
-        compare::PageFigure& drawn = parts.figures.back();
-        try {
-          const std::string svg = drawn_picture({{{{figure}}}}, compare::PictureFormat::svg,
-                                                "--report " + options.report);
-          drawn.svg = compare::inline_svg(svg, figure);
-        } catch (const compare::OutputError& error) {
-          drawn.failure = error.what();
-        }
-      }
-    }
-  }
-  return parts;
-}
-
-void plot(const CheckOptions& options, const compare::CheckResult& report) {
-  const compare::Scene& scene = report.scene;
-  options.plot.draw([&] { return picture_of(report); });
-  options.plot.sketch(scene, [&] {
-    constexpr int samples = 201;
-    const std::vector<double> s = compare::equal_arc_lengths(scene.length, samples);
-    return std::vector<compare::SpatialLine>{
-        {.points = report.check.rod.sample(s).points},
-        {.points = report.check.alignment.shape.points, .joined = false}};
-  });
+/// Writes the page that --report asks for.
+template <typename Result>
+void write_page(const CheckOptions& options, const Result& result,
+                const std::function<compare::Picture()>& picture, const std::string& text) {
+  if (options.report.empty()) return;
+  compare::PageResult page = compare::page_result(result);
+  page.pictures = page_pictures(picture(), "check", "--report " + options.report);
+  page.details = text;
+  compare::write_file(options.report, compare::page_html({page}, "dlo check", DLO_VERSION));
 }
 
 void run(const CheckOptions& options) {
-  options.plot.require_drawable(options.output);
+  options.plot.require_drawable();
   const compare::Scene scene = options.overrides.load(options.scene);
   const compare::MeasuredShape shape = options.shapes.load(options.shape);
   compare::CheckRequest request{
@@ -108,31 +85,15 @@ void run(const CheckOptions& options) {
                                 .json = [&] { return json_text(shape_check_json(result)); },
                                 .csv = [&] { return shape_check_csv(result); },
                                 .markdown = [&] { return shape_check_markdown(result); }});
-  plot(options, result);
-  if (!options.report.empty()) {
-    const std::string text = shape_check_text({result, page.unit_hint});
-    compare::write_file(options.report,
-                        compare::check_page(result, page_parts(options, picture_of(result), text)));
-  }
+  const auto picture = [&] { return picture_of(result); };
+  options.plot.draw(picture);
+  write_page(options, result, picture, shape_check_text({result, page.unit_hint}));
   const bool was_asked = !options.tolerance.allowed.empty();
   if (was_asked && !result.passes()) end_with(ExitStatus::outside_tolerance);
 }
 
-void plot_motion(const CheckOptions& options, const compare::MotionCheck& check) {
-  options.plot.draw([&] { return compare::motion_check_picture(check); });
-  options.plot.sketch(compare::scene_at(check.scene, check.worst_shapes.time), [&] {
-    return std::vector<compare::SpatialLine>{
-        {.points = check.worst_shapes.rod.points},
-        {.points = check.worst_shapes.recorded.points, .joined = false}};
-  });
-  if (options.report.empty()) return;
-  const compare::CheckPageParts parts =
-      page_parts(options, compare::motion_check_picture(check), motion_check_text(check));
-  compare::write_file(options.report, compare::motion_check_page(check, parts));
-}
-
 void run_motion(const CheckOptions& options) {
-  options.plot.require_drawable(options.output);
+  options.plot.require_drawable();
   const compare::Scene scene = options.overrides.load(options.scene);
   warn_of_friction(scene);
   compare::MotionCheckRequest request = options.moving;
@@ -157,7 +118,9 @@ void run_motion(const CheckOptions& options) {
        .markdown = []() -> std::string {
          throw compare::InputError("--motion: has no format markdown (allowed: text, json, csv)");
        }});
-  plot_motion(options, result);
+  const auto picture = [&] { return compare::motion_check_picture(result); };
+  options.plot.draw(picture);
+  write_page(options, result, picture, motion_check_text(result));
   if (request.tolerance && !result.passes) end_with(ExitStatus::outside_tolerance);
 }
 
@@ -240,8 +203,7 @@ void add_check(CLI::App& app) {
   options->plot.add_to(
       *command,
       "the points on the rod, and their distances along it; of a motion the worst frame, "
-      "and the distances against time",
-      Sketches::offered);
+      "and the distances against time");
   add_motion_to(*command, *options);
   command->footer(
       "Example, with dlo in place of your simulator:\n"

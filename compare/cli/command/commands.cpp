@@ -8,7 +8,7 @@ const std::vector<Task>& tasks() {
       {"See a shape", {add_solve, add_scene}},
       {"Is my simulator's shape right?", {add_check, add_suite}},
       {"Get parameters", {add_calibrate}},
-      {"How far is the force model from physics, and why?", {add_compare, add_report, add_paper}},
+      {"How far is the force model from physics, and why?", {add_compare, add_paper}},
       {"What does accuracy cost?", {add_bench, add_stability}},
       {"How does it move?", {add_track, add_modes}},
       {"Many scenes", {add_sweep}},

@@ -18,7 +18,6 @@ void add_paper(CLI::App& app);
 void add_bench(CLI::App& app);
 void add_stability(CLI::App& app);
 void add_regress(CLI::App& app);
-void add_report(CLI::App& app);
 void add_scene(CLI::App& app);
 void add_sweep(CLI::App& app);
 void add_modes(CLI::App& app);

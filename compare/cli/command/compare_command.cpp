@@ -2,6 +2,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/output_file.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/solution.hpp"
@@ -14,6 +15,7 @@
 #include "option/terminal.hpp"
 #include "picture/budget_figure.hpp"
 #include "picture/comparison_figure.hpp"
+#include "report/check_page.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -25,23 +27,42 @@ struct CompareOptions {
   PlanOptions plan;
   OutputOptions output;
   PlotOptions plot;
+  std::string report;
 };
 
-/// Of each scene a row: shapes and budget, beside curvature and deviation along the rod.
+/// Returns a row of figures: shapes and budget, beside curvature and deviation along the rod.
+compare::PictureRow comparison_row(const compare::Scene& scene,
+                                   const compare::Comparison& comparison) {
+  compare::ComparisonFigures figures = compare::comparison_figures(scene, comparison);
+  return {{figures.shapes, compare::budget_figure(comparison)},
+          {figures.curvature, figures.deviation}};
+}
+
 compare::Picture comparison_picture(const std::vector<compare::Scene>& scenes,
                                     const std::vector<compare::Comparison>& comparisons) {
   compare::Picture picture;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
-    const std::vector<compare::Comparison> one = {comparisons[i]};
-    compare::ComparisonFigures figures = compare::comparison_figures(scenes[i], one, i + 1);
-    picture.rows.push_back({{figures.shapes, compare::budget_figure(one, i + 1)},
-                            {figures.curvature, figures.deviation}});
+    picture.rows.push_back(comparison_row(scenes[i], comparisons[i]));
   }
   return picture;
 }
 
+/// Writes the page that --report asks for.
+void write_page(const std::string& file, const std::vector<compare::Scene>& scenes,
+                const std::vector<compare::Comparison>& comparisons) {
+  if (file.empty()) return;
+  std::vector<compare::PageResult> results;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    compare::PageResult& page = results.emplace_back(compare::page_result(comparisons[i]));
+    page.pictures = page_pictures({{comparison_row(scenes[i], comparisons[i])}},
+                                  fmt::format("scene-{}", i + 1), "--report " + file);
+    page.details = comparison_text(comparisons[i]);
+  }
+  compare::write_file(file, compare::page_html(results, "dlo compare", DLO_VERSION));
+}
+
 void run(const CompareOptions& options) {
-  options.plot.require_drawable(options.output);
+  options.plot.require_drawable();
   std::vector<compare::Scene> scenes;
   std::vector<compare::Comparison> comparisons;
   std::string plans;
@@ -81,6 +102,7 @@ void run(const CompareOptions& options) {
                                 .json = [&] { return json_text(comparisons_json(comparisons)); },
                                 .csv = [&] { return comparisons_csv(comparisons); }});
   options.plot.draw([&] { return comparison_picture(scenes, comparisons); });
+  write_page(options.report, scenes, comparisons);
   if (!unverified.empty()) throw compare::ConvergenceError(unverified);
 }
 
@@ -95,8 +117,12 @@ void add_compare(CLI::App& app) {
   options->overrides.add_to(*command);
   options->plan.add_to(*command);
   add_output_options(*command, options->output);
-  options->plot.add_to(*command, "both shapes, curvature, deviation along the rod and its budget",
-                       Sketches::none);
+  options->plot.add_to(*command, "both shapes, curvature, deviation along the rod and its budget");
+  command
+      ->add_option("--report", options->report,
+                   "write a page, FILE.html: verdict, pictures, numbers and error budget of each "
+                   "scene")
+      ->type_name("FILE");
   command->footer(
       "Examples:\n  dlo compare data/scenes/spring_steel_175.toml --law hooke --bookkeeping "
       "consistent\n  dlo compare data/scenes/spring_steel_175.toml --plot both.svg");

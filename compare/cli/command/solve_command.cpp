@@ -90,18 +90,11 @@ void plot(const SolveOptions& options, const compare::SolveOptions& solve,
   options.plot.draw([&] {
     return compare::solution_picture(scene, drawn_solutions(options, solve, scene, solved));
   });
-  options.plot.sketch(scene, [&] {
-    std::vector<compare::SpatialLine> lines;
-    for (const compare::Solution& solution : drawn_solutions(options, solve, scene, solved)) {
-      lines.push_back({.points = solution.shape.points});
-    }
-    return lines;
-  });
 }
 
 void run(const SolveOptions& options) {
   require_format_for(options);
-  options.plot.require_drawable(options.output);
+  options.plot.require_drawable();
   const compare::Scene scene = options.overrides.load(options.scene);
   say_assumptions(scene);
   const auto model = compare::from_name<compare::Model>(options.model);
@@ -174,8 +167,7 @@ void add_solve(CLI::App& app) {
   std::vector<std::string> formats = compare::names<Format>();
   formats.emplace_back("vtk");
   add_output_options(*command, options->output, formats);
-  options->plot.add_to(*command, "shape and curvature (with --all: of every equilibrium)",
-                       Sketches::offered);
+  options->plot.add_to(*command, "shape and curvature (with --all: of every equilibrium)");
   command->footer(
       "Examples:\n"
       "  dlo solve data/scenes/spring_steel_175.toml --model exact --samples 5\n"

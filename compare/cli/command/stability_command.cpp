@@ -45,7 +45,7 @@ bool fails(const StabilityResult& result) {
 }
 
 void run_map(StabilityOptions& options) {
-  options.plot.require_drawable(options.output);
+  options.plot.require_drawable();
   options.grid.axis = options.map == "cF-cc" ? compare::MapAxis::c_c : compare::MapAxis::c_h;
   options.grid.threads = options.threads;
   const compare::Scene scene =
@@ -133,7 +133,7 @@ void add_stability(CLI::App& app) {
   add_case_options(*command, *options);
   add_map_options(*command, *options);
   add_output_options(*command, options->output);
-  options->plot.add_to(*command, "the map", Sketches::none)->needs(map_option)->group("Map");
+  options->plot.add_to(*command, "the map")->needs(map_option)->group("Map");
   command->footer(
       "Exit status 1: stepper auto or implicit does not pass a case.\n"
       "Examples:\n  dlo stability --case folded\n  dlo stability --map cF-cc --columns 8 --plot "

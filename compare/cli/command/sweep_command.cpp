@@ -149,7 +149,7 @@ void sort_words(SweepOptions& options) {
 
 /// @throws InputError if the picture cannot be drawn, before anything is computed
 void require_drawable(const SweepOptions& options) {
-  options.plot.require_drawable({.format = "csv"});
+  options.plot.require_drawable();
   if (!options.plot.draws()) return;
   if (!options.part.empty()) {
     throw compare::InputError(fmt::format(
@@ -207,7 +207,7 @@ void add_sweep(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--part", options->part, "compute only the rows I, I+N, I+2N, ..., from 1")
       ->type_name("I/N");
-  options->plot.add_to(*command, "the results over one field, or over two,", Sketches::none);
+  options->plot.add_to(*command, "the results over one field, or over two,");
   options->scene.add_solvers_to(*command);
   // It varies what a file says, before that is a scene.
   command->remove_option(command->get_option("--calibrated"));

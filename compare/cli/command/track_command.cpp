@@ -45,7 +45,7 @@ void throw_if_stopped(const compare::Scene& scene, const std::optional<compare::
 }
 
 void run(const TrackCommand& command) {
-  command.plot.require_drawable(command.output);
+  command.plot.require_drawable();
   const compare::Scene scene = command.overrides.load(command.scene);
   warn_of_friction(scene);
   compare::TrackRequest request = command.request;
@@ -123,7 +123,7 @@ void add_track(CLI::App& app) {
           "write FILE such as rod.vtk.series for ParaView, and rod_00000.vtk, .. beside it")
       ->type_name("FILE");
   options->overrides.add_moving_to(*command);
-  options->plot.add_to(*command, "shapes over time and the grippers' forces", Sketches::none);
+  options->plot.add_to(*command, "shapes over time and the grippers' forces");
   add_output_options(*command, options->output);
   command->footer(
       "Exit status 3: the motion asks for what cannot be, such as grippers farther apart than\n"

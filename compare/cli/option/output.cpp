@@ -63,12 +63,12 @@ bool has_long_name(const CLI::Option& option, std::initializer_list<std::string>
 /// Whether the option names a file or folder to write, whatever its value.
 bool is_written_file(const CLI::Option& option) {
   return has_long_name(option,
-                       {"output", "junit", "paraview", "report", "markdown", "html", "write"});
+                       {"output", "junit", "paraview", "plot", "report", "markdown", "write"});
 }
 
 /// Whether the option names files that are read, as far as its help says so.
 bool is_read(const CLI::Option& option) {
-  if (has_long_name(option, {"plot"}) || is_written_file(option)) return false;
+  if (is_written_file(option)) return false;
   const OptionText text = option_text(option);
   const auto names_files = [](const std::string& word) {
     return word.starts_with("SCENE") || word.starts_with("FILE");
@@ -91,8 +91,6 @@ std::vector<std::string> input_files_but(const CLI::App& command, const CLI::Opt
 
 bool is_written(const CLI::App& command, const CLI::Option& option) {
   if (is_written_file(option)) return true;
-  // "-" is standard output.
-  if (has_long_name(option, {"plot"})) return option.results() != std::vector<std::string>{"-"};
   return has_long_name(option, {"baseline"}) &&
          command.get_option_no_throw("--update") != nullptr && command.count("--update") > 0;
 }

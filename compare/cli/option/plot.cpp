@@ -12,7 +12,6 @@
 #include "dlo/compare/error.hpp"
 #include "figure/gnuplot.hpp"
 #include "figure/gnuplot_script.hpp"
-#include "option/terminal.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -34,34 +33,26 @@ std::optional<compare::PictureFormat> format_of(const std::string& file) {
 
 }  // namespace
 
-CLI::Option* PlotOptions::add_to(CLI::App& command, const std::string& what, Sketches sketches) {
-  offers_sketch_ = sketches == Sketches::offered;
+CLI::Option* PlotOptions::add_to(CLI::App& command, const std::string& what) {
   return command
       .add_option("--plot", file_,
-                  "draw " + what + " into FILE.svg, FILE.png or FILE.pdf (by gnuplot)" +
-                      (offers_sketch_ ? "; -: sketch the shape in characters" : ""))
+                  "draw " + what + " into FILE.svg, FILE.png or FILE.pdf (by gnuplot)")
       ->type_name("FILE");
 }
 
-void PlotOptions::require_drawable(const OutputOptions& output) const {
-  if (sketches() && output.file.empty() && !output.is(Format::text)) {
-    throw compare::InputError(
-        fmt::format("--plot -: standard output has the format {} (allowed: a sketch with --format "
-                    "text or with -o FILE, or --plot FILE.svg, .png or .pdf)",
-                    output.format));
-  }
+void PlotOptions::require_drawable() const {
   if (!draws()) return;
   if (!format_of(file_)) {
     throw compare::InputError(
         fmt::format("--plot {}: a picture of unknown format (allowed: a file that ends with .svg, "
-                    ".png or .pdf{})",
-                    file_, offers_sketch_ ? ", or - for a sketch" : ""));
+                    ".png or .pdf)",
+                    file_));
   }
   if (compare::gnuplot_version(drawing_folder("--plot").path()).empty()) {
     throw compare::InputError(
         fmt::format("--plot {}: needs the program gnuplot, which is not found (Debian: "
-                    "gnuplot-nox){}",
-                    file_, offers_sketch_ ? "; --plot - sketches without it" : ""));
+                    "gnuplot-nox)",
+                    file_));
   }
 }
 
@@ -85,15 +76,26 @@ std::string drawn_picture(const compare::Picture& picture, compare::PictureForma
   return compare::read_file((folder.path() / output).string());
 }
 
-void PlotOptions::sketch(const compare::Scene& scene,
-                         const std::function<std::vector<compare::SpatialLine>()>& lines) const {
-  if (!sketches()) return;
-  constexpr int widest = 72;
-  constexpr int highest = 20;  // leaves room for text on 24 lines
-  const int columns = std::min(widest, columns_of_standard_output());
-  write_standard_output(compare::sketch_of(
-      scene, lines(), columns, highest,
-      is_utf8_locale() ? compare::SketchMarks::braille : compare::SketchMarks::ascii));
+std::vector<compare::PagePicture> page_pictures(const compare::Picture& picture,
+                                                const std::string& name,
+                                                const std::string& option) {
+  std::vector<compare::PagePicture> pictures;
+  for (const compare::PictureRow& row : picture.rows) {
+    for (const std::vector<compare::Figure>& column : row) {
+      for (const compare::Figure& figure : column) {
+        compare::PagePicture& drawn = pictures.emplace_back();
+        try {
+          const std::string svg =
+              drawn_picture({{{{figure}}}}, compare::PictureFormat::svg, option);
+          drawn.svg =
+              compare::inline_svg(svg, fmt::format("{}-{}", name, pictures.size()), figure.title);
+        } catch (const compare::OutputError& error) {
+          drawn.failure = error.what();
+        }
+      }
+    }
+  }
+  return pictures;
 }
 
 }  // namespace dlo::cli

@@ -65,18 +65,6 @@ void ProgressBar::draw(const std::string& line) {
   write_standard_error(fmt::format("\r{}\x1b[K", drawn_));
 }
 
-int columns_of_standard_output() { return static_cast<int>(columns_of_terminal(STDOUT_FILENO)); }
-
-bool is_utf8_locale() {
-  std::string_view locale;
-  for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
-    if (locale.empty()) locale = environment(name);
-  }
-  std::string lower(locale);
-  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return lower.find("utf-8") != std::string::npos || lower.find("utf8") != std::string::npos;
-}
-
 std::string verdict_word(const std::string& word, bool good, const std::string& file) {
   const bool colours =
       file.empty() && is_terminal(STDOUT_FILENO) && environment("NO_COLOR").empty();

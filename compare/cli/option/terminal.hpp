@@ -33,12 +33,6 @@ auto with_progress(const std::string& what, const Run& run) {
   return run([&bar](std::int64_t done, std::int64_t total) { bar.show(done, total); });
 }
 
-/// How wide the terminal of standard output is; 80 where it is none.
-[[nodiscard]] int columns_of_standard_output();
-
-/// Whether the environment's locale (LC_ALL, else LC_CTYPE, else LANG) has UTF-8 characters.
-[[nodiscard]] bool is_utf8_locale();
-
 /// A word of a verdict in green or red, if the results go to a terminal that shows colours: not
 /// with NO_COLOR, not "dumb", not into a file. @param file  of -o, empty for standard output
 [[nodiscard]] std::string verdict_word(const std::string& word, bool good, const std::string& file);

@@ -9,7 +9,6 @@
 #include "base/display.hpp"
 #include "base/quote.hpp"
 #include "option/output.hpp"
-#include "report/html.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -196,28 +195,43 @@ std::string cards_junit(const std::vector<Card>& cards) {
       all.scenes, all.solved, all.failed, suites);
 }
 
-std::string cards_page(const std::vector<Card>& cards, const std::string& version) {
-  std::string out = compare::html_begin("dlo suite", "dlo suite") + "<main>\n";
-  for (const Card& card : cards) {
-    const CardGroup total = card.total();
-    append(out, "<h1>{}</h1>\n", compare::escape_markup(card.simulator));
-    out += compare::html_badge(total.right == total.solved && total.failed == 0, summary(card));
-    compare::HtmlTable table{
-        "Largest RMS distance from the rod over its length, by classes", {}, {}};
-    for (const std::string& name : head_of(card)) table.columns.push_back({name});
-    table.columns.front().cell = compare::HtmlCell::word;
-    table.columns.back().cell = compare::HtmlCell::text;
-    for (const CardGroup& group : card.groups()) table.rows.push_back(row_of(group));
-    out += compare::to_html(table);
-    compare::HtmlTable scenes{
-        "", {{"scene", compare::HtmlCell::text}, {"what", compare::HtmlCell::text}}, {}};
-    for (const auto& [ids, wrong] : wrong_scenes(card)) scenes.rows.push_back({ids, wrong});
-    if (!scenes.rows.empty()) {
-      out += "<details><summary>Scenes that are not right, and why</summary>\n" +
-             compare::to_html(scenes) + "</details>\n";
-    }
+compare::Figure card_figure(const Card& card) {
+  compare::Panel panel{.x = {.label = "N", .logarithmic = true},
+                       .y = {.label = "largest RMS distance over l", .logarithmic = true}};
+  const std::vector<CardGroup> groups = card.groups();
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    panel.curves.push_back({.title = groups[i].name,
+                            .look = compare::curve_look(i),
+                            .x = {card.points.begin(), card.points.end()},
+                            .y = groups[i].largest});
   }
-  return out + compare::html_end(version);
+  return {.title = card.simulator + ": error of each class against N",
+          .panels = {std::move(panel)}};
+}
+
+compare::PageResult card_page(const Card& card) {
+  const CardGroup total = card.total();
+  const bool passes = total.right == total.solved && total.failed == 0;
+  compare::PageResult page{
+      .title = card.simulator,
+      .passes = passes,
+      .verdict = summary(card),
+      .summary = fmt::format("Suite {}. A scene is right within 1 % of the length (RMS).",
+                             card.battery_version),
+      .cause = {},
+      .numbers = {{"right", std::to_string(total.right), fmt::format("of {}", total.scenes)},
+                  {"order of convergence", order_word(total.order), "the smallest"},
+                  {"time", fmt::format("{:.2g} s", total.seconds), "of all runs"}},
+      .pictures = {},
+      .table = {"Largest RMS distance from the rod over its length, by classes", head_of(card), {}},
+      .details = {}};
+  const std::string causes = causes_words(total);
+  if (!causes.empty()) page.cause = "Causes: " + causes + ".";
+  for (const CardGroup& group : card.groups()) page.table.rows.push_back(row_of(group));
+  for (const auto& [scenes, wrong] : wrong_scenes(card)) {
+    append(page.details, "{}: {}\n", scenes, wrong);
+  }
+  return page;
 }
 
 std::string changes_text(const std::vector<compare::GroupChange>& changes) {

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "figure/layout.hpp"
+#include "report/page.hpp"
 #include "suite/card.hpp"
 #include "suite/gate.hpp"
 
@@ -17,9 +19,12 @@ namespace dlo::cli {
 /// A test case for each scene: a failure unless it is right, skipped if it is not supported.
 [[nodiscard]] std::string cards_junit(const std::vector<compare::Card>& cards);
 
-/// A page of one screen for each simulator, with a badge; needs no other file.
-[[nodiscard]] std::string cards_page(const std::vector<compare::Card>& cards,
-                                     const std::string& version);
+/// Draws the largest error of each class against N.
+[[nodiscard]] compare::Figure card_figure(const compare::Card& card);
+
+/// Returns a card for a page, without pictures: the causes of its wrong scenes, its numbers by
+/// class, and the wrong scenes as details.
+[[nodiscard]] compare::PageResult card_page(const compare::Card& card);
 
 /// A line for each class that has changed.
 [[nodiscard]] std::string changes_text(const std::vector<compare::GroupChange>& changes);

@@ -9,6 +9,7 @@
 #include "option/exit_status.hpp"
 #include "option/option_values.hpp"
 #include "option/output.hpp"
+#include "option/plot.hpp"
 #include "option/scene_options.hpp"
 #include "option/share.hpp"
 #include "option/terminal.hpp"
@@ -28,7 +29,7 @@ struct SuiteOptions {
   compare::CardOptions card;
   std::string markdown;
   std::string junit;
-  std::string page;
+  std::string report;
   std::string baseline;
   compare::RegressionTolerance tolerance;
   OutputOptions output;
@@ -38,6 +39,18 @@ void write_pack(const SuiteOptions& options, const std::string& version,
                 const std::vector<compare::BatteryScene>& scenes) {
   compare::write_pack(options.pack, compare::certified_pack(version, scenes, options.card.threads));
   say("{} answers in {}", scenes.size(), options.pack);
+}
+
+/// Writes the page that --report asks for.
+void write_page(const std::string& file, const std::vector<compare::Card>& cards) {
+  if (file.empty()) return;
+  std::vector<compare::PageResult> results;
+  for (const compare::Card& card : cards) {
+    compare::PageResult& page = results.emplace_back(card_page(card));
+    page.pictures = page_pictures({{{{card_figure(card)}}}},
+                                  "card-" + std::to_string(results.size()), "--report " + file);
+  }
+  write_output({.file = file}, compare::page_html(results, "dlo suite", DLO_VERSION));
 }
 
 void write_cards(const SuiteOptions& options, const std::string& version,
@@ -56,7 +69,7 @@ void write_cards(const SuiteOptions& options, const std::string& version,
                                 .json = [&] { return json_text(compare::cards_json(cards)); }});
   if (!options.markdown.empty()) write_output({.file = options.markdown}, cards_markdown(cards));
   if (!options.junit.empty()) write_output({.file = options.junit}, cards_junit(cards));
-  if (!options.page.empty()) write_output({.file = options.page}, cards_page(cards, DLO_VERSION));
+  write_page(options.report, cards);
   if (options.baseline.empty()) return;
   const std::vector<compare::GroupChange> changes =
       compare::compare_cards(before, cards, options.tolerance);
@@ -120,7 +133,10 @@ void add_suite(CLI::App& app) {
   command->add_option("--markdown", options->markdown, "write the cards as Markdown too")
       ->type_name("FILE");
   command->add_option("--junit", options->junit, "and as JUnit XML")->type_name("FILE");
-  command->add_option("--html", options->page, "and as a page with a badge")->type_name("FILE");
+  command
+      ->add_option("--report", options->report,
+                   "and as a page, FILE.html: verdict, causes, picture and numbers")
+      ->type_name("FILE");
   command
       ->add_option("--write", options->pack,
                    "write the answers as a pack: JSON with a schema, and points as CSV and VTU")
@@ -132,7 +148,7 @@ void add_suite(CLI::App& app) {
   add_output_options(*command, options->output, {"text", "json"});
   command->footer(
       "Examples:\n"
-      "  dlo suite --with chain --with force --scenes weight,ends --html card.html\n"
+      "  dlo suite --with chain --with force --scenes weight,ends --report card.html\n"
       "  dlo suite --with mine='python3 mine.py {scene} {points} {shape}' --state runs --scenes "
       "floor\n"
       "  dlo suite --write answers --scenes floor");

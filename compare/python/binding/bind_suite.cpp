@@ -145,7 +145,9 @@ py::object suite(const py::object& function, const std::string& name, const py::
     text += "\n" + *changed;
   }
   return make_result(text, cli::json_text(compare::cards_json(cards)), cli::cards_markdown(cards),
-                     cli::cards_junit(cards), cli::cards_page(cards, DLO_VERSION), changed, passes);
+                     cli::cards_junit(cards),
+                     compare::page_html({cli::card_page(cards.front())}, "dlo suite", DLO_VERSION),
+                     changed, passes);
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ py::object track(const SharedScene& shared, const py::dict& what, const py::obje
   py::object result = make_result(text, cli::track_json(found.track, scene, found.options,
                                                         {.every = 1, .points = true}, dynamic));
   result.attr("_strip") = panel_dict(
-      compare::track_figures(scene, {found.track, dynamic}, found.options, 1).strip.panels.front());
+      compare::track_figures(scene, {found.track, dynamic}, found.options).strip.panels.front());
   const std::optional<compare::TrackStop>& stopped =
       dynamic != nullptr ? dynamic->stopped : found.track.stopped;
   if (stopped) {

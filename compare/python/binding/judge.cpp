@@ -239,7 +239,7 @@ void bind_comparison(py::module_& module) {
       bound, "energy_points", [](const Comparison& r) -> const auto& { return r.reference.points; },
       "The energy model there [m], shape (N, 3), read only.");
   bind_picture(bound,
-               [](const Comparison& c) { return compare::comparison_drawing(c.of->scene, {c}); });
+               [](const Comparison& c) { return compare::comparison_drawing(c.of->scene, c); });
   bound
       .def_property_readonly(
           "deviation",

@@ -14,7 +14,6 @@ PYBIND11_MODULE(_dlo, module) {
   dlo::python::bind_judge(module);
   dlo::python::bind_studies(module);
   dlo::python::bind_regress(module);
-  dlo::python::bind_report(module);
   dlo::python::bind_suite(module);
   dlo::python::bind_track(module);
   dlo::python::bind_force_model(module);

@@ -13,7 +13,6 @@ void bind_solve(py::module_& module);
 void bind_judge(py::module_& module);
 void bind_studies(py::module_& module);
 void bind_regress(py::module_& module);
-void bind_report(py::module_& module);
 void bind_suite(py::module_& module);
 void bind_track(py::module_& module);
 void bind_force_model(py::module_& module);

@@ -7,7 +7,7 @@
 
 Scenes       Scene, clamp, pin, load, distributed_load, obstacle, section, materials
 One shape    solve, solve_all, check, compare, plan, calibrate
-Many         sweep, regress, report, bench, stability, modes, suite
+Many         sweep, regress, bench, stability, modes, suite
 Motion       track
 In a loop    ForceModel, Batch
 Errors       InputError (a ValueError), ConvergenceError (a RuntimeError)
@@ -27,7 +27,6 @@ from ._documents import (
     MotionCheck,
     Plan,
     Regression,
-    Report,
     ScoreCard,
     Stability,
     Track,
@@ -52,7 +51,7 @@ from ._parts import (
     section,
 )
 from ._scene import Scene, materials
-from ._studies import bench, modes, regress, report, stability, suite, sweep, track
+from ._studies import bench, modes, regress, stability, suite, sweep, track
 
 __all__ = [
     "Batch",
@@ -76,7 +75,6 @@ __all__ = [
     "Obstacle",
     "Plan",
     "Regression",
-    "Report",
     "Scene",
     "ScoreCard",
     "Section",
@@ -98,7 +96,6 @@ __all__ = [
     "pin",
     "plan",
     "regress",
-    "report",
     "section",
     "solve",
     "solve_all",

@@ -308,13 +308,6 @@ def suite(
     what: dict[str, Any],
     make_result: Callable[..., Any],
 ) -> Any: ...
-def report(
-    scenes: Sequence[Union[str, bytes]],
-    folder: Union[str, bytes],
-    what: dict[str, Any],
-    call: str,
-    make_result: Callable[..., Any],
-) -> Any: ...
 def hard_cases(
     name_contains: str, steppers: Sequence[str], max_steps: Optional[int], threads: int
 ) -> tuple[str, str]: ...

@@ -271,42 +271,8 @@ class ScoreCard(Document):
         return self._junit
 
     def to_html(self) -> str:
-        """What `dlo suite --html` writes: a page with a badge."""
+        """What `dlo suite --report` writes, without its picture: a page with a badge."""
         return self._html
-
-
-class Report:
-    """A page that was written; of report(). str() is what the command prints."""
-
-    def __init__(
-        self,
-        page: str,
-        verdict: list[str],
-        failures: list[str],
-        figures_missing: int,
-        why_missing: str,
-        seconds: float,
-    ) -> None:
-        self.page = page
-        """Path of its index.html."""
-        self.verdict = verdict
-        """What it comes to, a sentence each, the most important first."""
-        self.failures = failures
-        """What did not converge."""
-        self.figures_missing = figures_missing
-        """That the page has no picture of; why_missing says why."""
-        self.why_missing = why_missing
-        self.seconds = seconds
-        """That it took [s]."""
-
-    def __str__(self) -> str:
-        return "\n".join([*self.verdict, "", self.page])
-
-    def __repr__(self) -> str:
-        return _show.line(self)
-
-    def _repr_html_(self) -> str:
-        return _show.html(self)
 
 
 class Calibration(Document):

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from . import _dlo
 from ._arguments import COUNT, INTEGER, LIST, NUMBER, TABLE, TEXT, TEXTS, TRUTH, checked, require
-from ._documents import Benchmark, Modes, Regression, Report, ScoreCard, Stability, Track
+from ._documents import Benchmark, Modes, Regression, ScoreCard, Stability, Track
 from ._errors import InputError
 from ._files import FileName, file_name, file_text
 from ._functions import is_file, many, shape_pair
@@ -163,36 +163,6 @@ def regress(
 
     found: Regression = _dlo.regress(data, file, bool(update), what, told, limits)
     return found
-
-
-@checked(tolerance=NUMBER, quick=TRUTH, threads=INTEGER)
-def report(
-    scenes: Union[FileName, Iterable[FileName]] = (),
-    *,
-    folder: FileName,
-    tolerance: float = 0.01,
-    quick: bool = False,
-    threads: int = 0,
-) -> Report:
-    """Writes a page for people, with verdict, shapes, errors, speed, stability: `dlo report`.
-
-    scenes: names of scene files, or of folders with *.toml; none: the paper's three scenes and two that
-    tell more. folder: to make; a report in it is replaced, anything else refused. tolerance: RMS up to
-    which a shape counts as right, share of the length. quick: a benchmark of 1 s, a coarse map, no hard
-    cases. threads: 0: as many as the machine has.
-
-    Raises InputError, or ConvergenceError where something did not converge: its result is the page with
-    the rest.
-    """
-    names: Any = [scenes] if is_file(scenes) else scenes
-    require("scenes", names, LIST)
-    files = [file_name(name, "scenes", "the name of a file or of a folder") for name in names]
-    call = f"dlo.report({[os.fsdecode(name) for name in files]}, folder={os.fspath(folder)!r}"
-    if quick:
-        call += ", quick=True"
-    what = {"tolerance": float(tolerance), "quick": bool(quick), "threads": threads}
-    made: Report = _dlo.report(files, file_name(folder, "folder"), what, call + ")", Report)
-    return made
 
 
 def _card_text(baseline: Optional[Union[ScoreCard, FileName]]) -> Optional[tuple[str, str]]:

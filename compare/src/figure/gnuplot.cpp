@@ -65,11 +65,11 @@ std::string run_script(const std::string& script, const std::string& output,
   return "gnuplot failed: " + (message.empty() ? problem : message);
 }
 
-std::string inline_svg(const std::string& svg, const Figure& figure) {
+std::string inline_svg(const std::string& svg, const std::string& name, const std::string& title) {
   const std::size_t element = svg.find("<svg");
   const std::size_t end = svg.rfind("</svg>");
   if (element == std::string::npos || end == std::string::npos) {
-    throw std::invalid_argument(fmt::format("inline_svg: {}: no svg element", figure.name));
+    throw std::invalid_argument(fmt::format("inline_svg: {}: no svg element", name));
   }
   std::string body = svg.substr(element + 4, end - element - 4);
   for (const char* tag : {"title", "desc"}) {
@@ -78,18 +78,13 @@ std::string inline_svg(const std::string& svg, const Figure& figure) {
     const std::size_t to = body.find(close);
     if (from < to && to != std::string::npos) body.erase(from, to + close.size() - from);
   }
-  body = with_places(body, {{" id='", " id='" + figure.name + "-"},
-                            {" id=\"", " id=\"" + figure.name + "-"},
-                            {"href='#", "href='#" + figure.name + "-"},
-                            {"href=\"#", "href=\"#" + figure.name + "-"}});
-  const std::size_t attributes = body.find('>');
-  const std::string head =
-      fmt::format(">\n<title id=\"{0}-title\">{1}</title>\n<desc id=\"{0}-desc\">{2}</desc>",
-                  figure.name, escape_markup(figure.title), escape_markup(figure.description));
-  body.replace(attributes, 1, head);
-  return fmt::format(
-      "<svg role=\"img\" aria-labelledby=\"{0}-title\" aria-describedby=\"{0}-desc\"{1}</svg>\n",
-      figure.name, body);
+  body = with_places(body, {{" id='", " id='" + name + "-"},
+                            {" id=\"", " id=\"" + name + "-"},
+                            {"href='#", "href='#" + name + "-"},
+                            {"href=\"#", "href=\"#" + name + "-"}});
+  body.replace(body.find('>'), 1,
+               fmt::format(">\n<title id=\"{}-title\">{}</title>", name, escape_markup(title)));
+  return fmt::format("<svg role=\"img\" aria-labelledby=\"{}-title\"{}</svg>\n", name, body);
 }
 
 }  // namespace dlo::compare

@@ -3,12 +3,10 @@
 #include <filesystem>
 #include <string>
 
-#include "figure/layout.hpp"
-
 namespace dlo::compare {
 
 /// Version of the gnuplot that would draw, as it says it; empty if there is none.
-/// @param folder  the report's own, where nobody else has files, to run it in
+/// @param folder  where nobody else has files, to run it in
 [[nodiscard]] std::string gnuplot_version(const std::filesystem::path& folder);
 
 /// Runs a script in the folder of its CSV files, where it draws a file.
@@ -16,9 +14,10 @@ namespace dlo::compare {
 [[nodiscard]] std::string run_script(const std::string& script, const std::string& output,
                                      const std::filesystem::path& folder);
 
-/// An SVG file as an element of a page: without prolog, with the figure's title and description,
-/// identifiers beginning with its name.
+/// Returns an SVG file as an element of a page: without prolog, with a title.
+/// @param name  begins all identifiers, unique in the page
 /// @throws std::invalid_argument if there is no svg element
-[[nodiscard]] std::string inline_svg(const std::string& svg, const Figure& figure);
+[[nodiscard]] std::string inline_svg(const std::string& svg, const std::string& name,
+                                     const std::string& title);
 
 }  // namespace dlo::compare

@@ -15,13 +15,6 @@ namespace {
 constexpr const char* zero_width_space = "\xe2\x80\x8b";
 
 constexpr int title_line_pixels = 22;
-constexpr int title_margin = 14;
-
-int height_of(const Figure& figure) {
-  int height = 0;
-  for (const Panel& panel : figure.panels) height += laid_out(panel).full_height();
-  return height;
-}
 
 /// A title in lines that fit above a figure.
 std::vector<std::string> title_lines(const std::string& title) {
@@ -38,14 +31,22 @@ std::vector<std::string> title_lines(const std::string& title) {
   return lines;
 }
 
-int titled_height(const Figure& figure) {
-  return title_margin + title_line_pixels * static_cast<int>(title_lines(figure.title).size()) +
-         height_of(figure);
+/// Height of a panel [pixels]; the first one of a figure has its title.
+int height_of(const Figure& figure, std::size_t panel) {
+  const int title =
+      panel > 0 ? 0 : title_line_pixels * static_cast<int>(title_lines(figure.title).size());
+  return title + laid_out(figure.panels[panel]).full_height();
+}
+
+int height_of(const Figure& figure) {
+  int height = 0;
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) height += height_of(figure, i);
+  return height;
 }
 
 int height_of(const std::vector<Figure>& column) {
   int height = 0;
-  for (const Figure& figure : column) height += titled_height(figure);
+  for (const Figure& figure : column) height += height_of(figure);
   return height;
 }
 
@@ -83,122 +84,67 @@ std::string style_of(const Look& look) {
                      has_marks ? mark_style(look) : "");
 }
 
-/// Places on a canvas, from its top left corner [pixels], as gnuplot counts them.
+/// Size of a picture [pixels].
 struct Canvas {
   int width = figure_width;
   int height = 0;
-
-  [[nodiscard]] double x(double pixels) const { return pixels / width; }
-  [[nodiscard]] double y(double pixels) const { return 1 - pixels / height; }
 };
 
-/// A script in the making.
+/// A script in the making. gnuplot places tics and legends.
 class Script {
  public:
   explicit Script(const Canvas& canvas) : canvas_(canvas) {}
 
-  /// @param left, top  its place on the canvas [pixels]
-  void add_panels(const Figure& figure, double left, double top, const std::string& title = {}) {
-    std::string first = title;
-    for (const Panel& described : figure.panels) {
-      const Panel panel = laid_out(described);
-      add_frame(panel, left, top);
-      out_ += first;
-      first.clear();
+  /// @param left, top  upper left corner of the figure [pixels]
+  void add_figure(const Figure& figure, int left, int top) {
+    for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+      const Panel panel = laid_out(figure.panels[i]);
+      const int height = height_of(figure, i);
+      add("reset\nset origin {:.6f},{:.6f}\nset size {:.6f},{:.6f}\n",
+          static_cast<double>(left) / canvas_.width,
+          1 - static_cast<double>(top + height) / canvas_.height,
+          static_cast<double>(figure_width) / canvas_.width,
+          static_cast<double>(height) / canvas_.height);
+      if (i == 0) add_title(figure.title);
+      if (panel.equal_aspect) add("set size ratio -1\n");
+      add("set grid linecolor rgb '#808080'\n");
+      out_ += panel.has_legend ? "set key below left Left reverse vertical maxcols 1\n"
+                               : "set key off\n";
       add_axis(panel.x, 'x');
       add_axis(panel.y, 'y');
       add_texts(panel);
-      add_plot(panel, left, top);
-      top += panel.full_height();
+      add_plot(panel);
+      top += height;
     }
-  }
-  [[nodiscard]] std::string title(const Figure& figure, double left, double top) const {
-    // In a multiplot a label is drawn with the plot after it.
-    int number = 10;
-    std::string out;
-    for (const std::string& line : title_lines(figure.title)) {
-      top += title_line_pixels;
-      fmt::format_to(std::back_inserter(out), "set label {} {} at screen {:.6f},{:.6f} left\n",
-                     number++, gnuplot_string(line), canvas_.x(left + from_the_left),
-                     canvas_.y(top + title_margin - title_line_pixels / 2.0));
-    }
-    return out;
   }
   [[nodiscard]] const std::string& text() const { return out_; }
 
  private:
-  static constexpr double from_the_left = 8;  // [pixels]
-
   template <typename... Arguments>
   void add(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
     fmt::format_to(std::back_inserter(out_), format, std::forward<Arguments>(arguments)...);
   }
 
-  void add_frame(const Panel& panel, double left, double top) {
-    constexpr double above = 20;
-    const double plot_top = top + top_margin;
-    const double plot_bottom = plot_top + panel.height;
-    add("reset\n"
-        "set key off\n"
-        "set grid linecolor rgb '#808080'\n"
-        "set lmargin at screen {:.6f}\n"
-        "set rmargin at screen {:.6f}\n"
-        "set tmargin at screen {:.6f}\n"
-        "set bmargin at screen {:.6f}\n",
-        canvas_.x(left + panel.left), canvas_.x(left + panel.left + panel.width()),
-        canvas_.y(plot_top), canvas_.y(plot_bottom));
-    add_legend(panel, left, top + panel.legend_top());
-    // The upright axis's name stands level above it, where no number is in its way.
-    add("set xlabel {}\nset label 1 {} at screen {:.6f},{:.6f} left\n",
-        gnuplot_string(panel.x.label), gnuplot_string(panel.y.label),
-        canvas_.x(left + from_the_left), canvas_.y(plot_top - above));
-    if (panel.equal_aspect) {
-      add("# equal aspect: {:.6g} pixels a metre on both axes\n",
-          panel.width() / (*panel.x.to - *panel.x.from));
-    }
-  }
-
-  /// Drawn as it is laid out: gnuplot's own key breaks into columns where a plot is flat, onto what
-  /// is beside it.
-  void add_legend(const Panel& panel, double left, double top) {
-    constexpr double sample = 30;
-    constexpr double gap = 10;
-    int number = 1000;
-    const double from = left + from_the_left;
-    double at = top + key_row_pixels / 2.0;
-    for (const PlottedCurve& curve : panel.curves) {
-      if (!panel.has_legend || curve.title.empty()) continue;
-      const Look& look = curve.look;
-      const auto place = [&](double right, double down) {
-        return fmt::format("screen {:.6f},{:.6f}", canvas_.x(from + right), canvas_.y(at + down));
-      };
-      ++number;
-      constexpr double thick = 5;
-      if (!look.fill.empty()) {
-        add("set object {} rectangle from {} to {} {}\n", number, place(0, -thick),
-            place(sample, thick), fill_style(look));
-      } else if (look.width > 0) {
-        add("set arrow {} from {} to {} nohead linecolor rgb '{}' {}\n", number, place(0, 0),
-            place(sample, 0), look.colour, line_style(look));
-      }
-      if (look.mark != Mark::none) {
-        add("set label {} '' at {} point linecolor rgb '{}' {}\n", number, place(sample / 2, 0),
-            look.colour, mark_style(look));
-      }
-      add("set label {} {} at {} left\n", number + 1000, gnuplot_string(curve.title),
-          place(sample + gap, 0));
-      at += key_row_pixels;
-    }
+  void add_title(const std::string& title) {
+    std::vector<std::string> lines = title_lines(title);
+    for (std::string& line : lines) line = gnuplot_string(line);
+    add("set title {}\n", fmt::join(lines, R"(."\n".)"));
   }
 
   void add_axis(const PlotAxis& axis, char name) {
+    add("set {}label {}\n", name, gnuplot_string(axis.label));
     if (axis.logarithmic) add("set logscale {}\n", name);
-    add("set {}range [{:.10g}:{:.10g}]\nunset {}tics\n", name, *axis.from, *axis.to, name);
+    add("set {}range [{:.10g}:{:.10g}]\nset {}tics nomirror\n", name, *axis.from, *axis.to, name);
+    if (!axis.tics) return;
     std::vector<std::string> tics;
     for (const Tic& tic : *axis.tics) {
       tics.push_back(fmt::format("{} {:.10g}", gnuplot_string(tic.label), tic.at));
     }
-    if (!tics.empty()) add("set {}tics nomirror ({})\n", name, fmt::join(tics, ", "));
+    if (tics.empty()) {
+      add("unset {}tics\n", name);
+    } else {
+      add("set {}tics ({})\n", name, fmt::join(tics, ", "));
+    }
   }
 
   void add_texts(const Panel& panel) {
@@ -225,7 +171,7 @@ class Script {
   }
 
   /// Boxes with borders of their own colour, which leave no stripes between them.
-  std::string add_cells(const Cells& cells, const Panel& panel, double left, double top) {
+  std::string add_cells(const Cells& cells) {
     const std::string name = fmt::format("$numbers_{}", ++blocks_);
     const auto [least, most] = cells.range();
     add("{} << EOD\n", name);
@@ -238,32 +184,24 @@ class Script {
           csv_number(cells.x[column]), csv_number(cells.x[column + 1]), csv_number(cells.y[row]),
           csv_number(cells.y[row + 1]), csv_number(cells.values[i]));
     }
-    const bool differ = most > least;
-    const double spread = differ ? most - least : std::max(1e-9, std::abs(least));
-    add("EOD\nset palette defined (0 '{}', 0.5 '{}', 1 '{}')\nset cbrange [{:.10g}:{:.10g}]\n"
-        "set cbtics ('{:.3g}' {:.10g}",
-        cell_colours[0], cell_colours[1], cell_colours[2], least, least + spread, least, least);
-    if (differ) add(", '{0:.3g}' {0:.10g}, '{1:.3g}' {1:.10g}", (least + most) / 2, most);
-    const double bottom = top + top_margin + panel.height + axis_pixels;
-    constexpr double bar = 12;
-    constexpr double inset = 24;  // for half of the numbers at its ends
-    add(")\nset colorbox user horizontal origin screen {:.6f},{:.6f} size screen {:.6f},{:.6f}\n",
-        canvas_.x(left + panel.left + inset), canvas_.y(bottom + bar),
-        canvas_.x(panel.width() - 2 * inset), bar / canvas_.height);
+    const double spread = most > least ? most - least : std::max(1e-9, std::abs(least));
+    add("EOD\nset palette defined (0 '{}', 0.5 '{}', 1 '{}')\nset cbrange [{:.10g}:{:.10g}]\n",
+        cell_colours[0], cell_colours[1], cell_colours[2], least, least + spread);
     return fmt::format(
         "{} using 1:2:3:4:5:6:7 notitle with boxxyerror fillstyle solid 1 border linewidth 0.5 "
         "linecolor palette",
         name);
   }
 
-  void add_plot(const Panel& panel, double left, double top) {
+  void add_plot(const Panel& panel) {
     std::vector<std::string> plots;
     if (panel.cells && panel.cells->range().first <= panel.cells->range().second) {
-      plots.push_back(add_cells(*panel.cells, panel, left, top));
+      plots.push_back(add_cells(*panel.cells));
     }
     for (const PlottedCurve& curve : panel.curves) {
-      const std::string numbers = add_numbers(curve);
-      plots.push_back(numbers + " notitle " + style_of(curve.look));
+      const std::string title =
+          panel.shows_title(curve) ? "title " + gnuplot_string(curve.title) : "notitle";
+      plots.push_back(fmt::format("{} {} {}", add_numbers(curve), title, style_of(curve.look)));
     }
     if (plots.empty()) plots.emplace_back("NaN notitle");
     add("plot {}\n", fmt::join(plots, ", \\\n  "));
@@ -300,11 +238,6 @@ std::string terminal(PictureFormat format, const Canvas& canvas) {
   return {};
 }
 
-std::string whole_script(const std::string& head, const std::string& output, const Script& script) {
-  return head + "set encoding utf8\nset output " + gnuplot_string(output) + "\nset multiplot\n" +
-         script.text() + "unset multiplot\n";
-}
-
 }  // namespace
 
 std::string gnuplot_string(const std::string& text) {
@@ -324,18 +257,6 @@ std::string gnuplot_string(const std::string& text) {
   return result + "\"";
 }
 
-std::string figure_script(const Figure& figure) {
-  const Canvas canvas{.height = height_of(figure)};
-  Script script(canvas);
-  script.add_panels(figure, 0, 0);
-  const std::string head = fmt::format(
-      "# gnuplot {0}.gp draws {0}.svg; its numbers are in {1}, too\n"
-      "set terminal svg size {2},{3} dynamic noenhanced font 'sans-serif,16' rounded linewidth "
-      "1.3\n",
-      figure.name, figure.csv_file, canvas.width, canvas.height);
-  return whole_script(head, figure.name + ".svg", script);
-}
-
 std::string picture_script(const Picture& picture, PictureFormat format,
                            const std::string& output) {
   Canvas canvas;
@@ -344,22 +265,21 @@ std::string picture_script(const Picture& picture, PictureFormat format,
     canvas.height += height_of(row);
   }
   Script script(canvas);
-  double top = 0;
+  int top = 0;
   for (const PictureRow& row : picture.rows) {
-    double left = 0;
+    int left = 0;
     for (const std::vector<Figure>& column : row) {
-      double below = top;
+      int below = top;
       for (const Figure& figure : column) {
-        const int height = titled_height(figure);
-        script.add_panels(figure, left, below + height - height_of(figure),
-                          script.title(figure, left, below));
-        below += height;
+        script.add_figure(figure, left, below);
+        below += height_of(figure);
       }
       left += figure_width;
     }
     top += height_of(row);
   }
-  return whole_script(terminal(format, canvas), output, script);
+  return terminal(format, canvas) + "set encoding utf8\nset output " + gnuplot_string(output) +
+         "\nset multiplot\n" + script.text() + "unset multiplot\n";
 }
 
 }  // namespace dlo::compare

@@ -1,17 +1,12 @@
 #include "figure/layout.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string_view>
 #include <utility>
 
 namespace dlo::compare {
 namespace {
-
-constexpr int right_margin = figure_width - 76 - plot_width;  // [pixels]
 
 /// Colours after Okabe and Ito, darker, so that they stand out inverted as well, each with its own
 /// dashes and marks, so that none is told by colour alone.
@@ -36,85 +31,6 @@ void widen(PlotRange& range, const std::vector<double>& values) {
     if (!std::isfinite(value)) continue;
     range = {std::min(range[0], value), std::max(range[1], value)};
   }
-}
-
-/// A number at an axis, with as many digits as its neighbours a step away differ in.
-std::string number_at(double at, double step) {
-  constexpr int usual = 6;
-  if (std::abs(at) < step / 2) return "0";
-  const int needed = static_cast<int>(std::ceil(std::log10(std::abs(at) / step) - 1e-9)) + 1;
-  return fmt::format("{:.{}g}", at, std::max(usual, needed));
-}
-
-std::vector<Tic> linear_tics(const PlotAxis& axis, double step) {
-  std::vector<Tic> tics;
-  constexpr double round = 1e-9;
-  for (double k = std::ceil(*axis.from / step - round); k * step <= *axis.to + round * step; ++k) {
-    tics.push_back({k * step, number_at(k * step, step)});
-  }
-  return tics;
-}
-
-/// Powers of ten, every so many, or with twice and five times as much between.
-std::vector<Tic> logarithmic_tics(const PlotAxis& axis, int every) {
-  std::vector<Tic> tics;
-  constexpr double round = 1e-9;
-  const int first = static_cast<int>(std::floor(std::log10(*axis.from)));
-  for (int k = first; std::pow(10, k) <= *axis.to * (1 + round); ++k) {
-    if (every > 1 && k % every != 0) continue;
-    for (const int factor : {1, 2, 5}) {
-      if (factor > 1 && every > 0) break;
-      const double at = factor * std::pow(10, k);
-      if (at < *axis.from * (1 - round) || at > *axis.to * (1 + round)) continue;
-      tics.push_back({at, fmt::format("{:.6g}", at)});
-    }
-  }
-  // All in one way.
-  const bool is_any_long = std::any_of(
-      tics.begin(), tics.end(), [](const Tic& tic) { return tic.at >= 1e5 || tic.at < 1e-4; });
-  for (Tic& tic : tics) {
-    if (is_any_long) tic.label = fmt::format("{:.0e}", tic.at);
-  }
-  return tics;
-}
-
-double scaled(const PlotAxis& axis, double value) {
-  return axis.logarithmic ? std::log10(value) : value;
-}
-
-/// Of an axis that is so many pixels long.
-double pixels_between(const PlotAxis& axis, double from, double to, double pixels) {
-  return (scaled(axis, to) - scaled(axis, from)) /
-         (scaled(axis, *axis.to) - scaled(axis, *axis.from)) * pixels;
-}
-
-enum class Direction { level, upright };
-
-bool have_room(const std::vector<Tic>& tics, const PlotAxis& axis, double pixels,
-               Direction direction) {
-  constexpr double gap = 8;
-  constexpr double line = 24;
-  for (std::size_t i = 1; i < tics.size(); ++i) {
-    const double needed =
-        direction == Direction::upright
-            ? line
-            : (text_width(tics[i - 1].label) + text_width(tics[i].label)) / 2 + gap;
-    if (pixels_between(axis, tics[i - 1].at, tics[i].at, pixels) < needed) return false;
-  }
-  return true;
-}
-
-std::vector<Tic> tics_with_room(const PlotAxis& axis, double pixels, Direction direction) {
-  constexpr int longest = 64;  // of the ranges and numbers of decades that doubles have
-  std::vector<Tic> tics;
-  for (int k = 1; k <= longest; k *= 2) {
-    tics = axis.logarithmic ? logarithmic_tics(axis, k / 2)
-                            : linear_tics(axis, tic_step((*axis.to - *axis.from) * k));
-    if (tics.size() < 2 && axis.logarithmic)
-      tics = linear_tics(axis, tic_step(*axis.to - *axis.from));
-    if (have_room(tics, axis, pixels, direction)) break;
-  }
-  return tics;
 }
 
 /// What is drawn, and a little more.
@@ -189,24 +105,12 @@ std::pair<double, double> Cells::range() const {
   return {range[0], range[1]};
 }
 
-std::vector<std::string> Panel::titles() const {
-  std::vector<std::string> titles;
-  for (const PlottedCurve& curve : curves) {
-    if (has_legend && !curve.title.empty()) titles.push_back(curve.title);
-  }
-  return titles;
-}
-
-int Panel::width() const { return figure_width - right_margin - left; }
-
-int Panel::legend_top() const {
-  constexpr int scale = 48;  // of cells' colours, with their numbers
-  return top_margin + height + axis_pixels + (cells ? scale : 0);
-}
-
 int Panel::full_height() const {
-  constexpr int below = 8;  // as far as the largest mark reaches
-  return legend_top() + static_cast<int>(titles().size()) * key_row_pixels + below;
+  constexpr int axes = 90;  // the numbers and the name of the level axis, and space above the plot
+  constexpr int legend_row = 20;
+  const auto rows = std::count_if(curves.begin(), curves.end(),
+                                  [this](const PlottedCurve& curve) { return shows_title(curve); });
+  return height + axes + legend_row * static_cast<int>(rows);
 }
 
 Panel laid_out(Panel panel) {
@@ -221,38 +125,7 @@ Panel laid_out(Panel panel) {
     put_at_edge(text.x, panel.x);
     put_at_edge(text.y, panel.y);
   }
-  if (!panel.y.tics) panel.y.tics = tics_with_room(panel.y, panel.height, Direction::upright);
-  if (!panel.equal_aspect) {  // whose limits fit its width
-    constexpr int beside = 16;
-    for (const Tic& tic : *panel.y.tics) {
-      panel.left =
-          std::max(panel.left, beside + static_cast<int>(std::ceil(text_width(tic.label))));
-    }
-  }
-  if (!panel.x.tics) panel.x.tics = tics_with_room(panel.x, panel.width(), Direction::level);
-  // A number half of which would be outside of the picture.
-  for (Tic& tic : *panel.x.tics) {
-    const double right = pixels_between(panel.x, tic.at, *panel.x.to, panel.width()) + right_margin;
-    if (text_width(tic.label) / 2 > right) tic.label.clear();
-  }
   return panel;
-}
-
-double tic_step(double range) {
-  const double power = std::pow(10, std::floor(std::log10(range)));
-  const double leading = range / power;
-  return power * (leading >= 5 ? 1 : leading >= 2 ? 0.5 : 0.2);
-}
-
-double text_width(const std::string& text) {
-  constexpr double letter = 10.2;
-  constexpr double narrow = 5.8;
-  constexpr std::string_view narrow_ones = " .,:;-'|()[]fijlrt";
-  double width = 0;
-  for (const char c : text) {
-    width += narrow_ones.find(c) == std::string_view::npos ? letter : narrow;
-  }
-  return width;
 }
 
 }  // namespace dlo::compare

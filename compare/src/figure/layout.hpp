@@ -37,7 +37,7 @@ inline constexpr std::size_t curve_colours = 6;
 /// What is drawn in one look. Coordinates that are infinite are at the plot's edge; at NaN a line
 /// ends, and the next begins after it.
 struct PlottedCurve {
-  std::string id;     ///< its name in the CSV file, where there is one
+  std::string id;     ///< its name in the script
   std::string title;  ///< in the legend; empty: not there
   Look look;
   std::vector<double> x, y;
@@ -74,10 +74,10 @@ struct PlotAxis {
   std::string label;
   std::optional<double> from, to;  ///< none: what is drawn needs it
   bool logarithmic = false;
-  std::optional<std::vector<Tic>> tics;  ///< none: as many as have room
+  std::optional<std::vector<Tic>> tics;  ///< none: those that the plotting program chooses
 };
 
-/// A plot of a figure. Its legend is below it.
+/// A plot of a figure. gnuplot or matplotlib places its tics, and its legend below it.
 struct Panel {
   int height = 330;  ///< of the plot itself [pixels]
   PlotAxis x, y;
@@ -86,34 +86,23 @@ struct Panel {
   std::vector<PlottedCurve> curves;
   std::vector<Text> texts;
   std::optional<Cells> cells;
-  bool equal_aspect = false;  ///< as many pixels a metre on all axes, by its limits
+  bool equal_aspect = false;  ///< as many pixels a metre on all axes
   bool has_legend = true;     ///< or its curves' titles are in another one's
-  int left = 76;              ///< from the figure's edge to the plot [pixels]
 
-  /// Titles in the legend.
-  [[nodiscard]] std::vector<std::string> titles() const;
-  /// Of the plot itself [pixels].
-  [[nodiscard]] int width() const;
-  /// Where the legend begins, from the upright axis's name down [pixels].
-  [[nodiscard]] int legend_top() const;
-  /// With the axes' names and the legend [pixels].
+  /// Whether the legend shows a curve.
+  [[nodiscard]] bool shows_title(const PlottedCurve& curve) const {
+    return has_legend && !curve.title.empty();
+  }
+  /// Height of the plot with its axes and legend [pixels].
   [[nodiscard]] int full_height() const;
 };
 
-/// A panel as it is drawn: with limits, tics and room for these, without infinite coordinates and
-/// curves of nothing.
+/// Returns a panel as it is drawn: with limits, without infinite coordinates and curves of nothing.
 [[nodiscard]] Panel laid_out(Panel panel);
 
 /// A figure: plots below each other.
 struct Figure {
-  std::string name;         ///< stem of its files
-  std::string section;      ///< of the page
-  std::string title;        ///< one line
-  std::string description;  ///< what it shows, for those who do not see it
-  std::string command;      ///< of a shell in the report's folder, gives the numbers
-  std::string given;        ///< which of the numbers, if not all
-  std::string csv_file;     ///< beside it in a report
-  std::string csv;          ///< what is in it; empty if another figure has the same file
+  std::string title;  ///< one line
   std::vector<Panel> panels;
 };
 
@@ -125,22 +114,9 @@ struct Picture {
   std::vector<PictureRow> rows;
 };
 
-/// Of every figure [pixels], small enough for its text to be read on a page of 375.
+/// Width of every figure [pixels], small enough for its text to be read on a page of 375.
 inline constexpr int figure_width = 460;
-/// Of a plot in its figure [pixels], unless its numbers need more room.
+/// Width of a plot in its figure, about [pixels].
 inline constexpr int plot_width = 358;
-
-/// Of a panel, above its plot [pixels].
-inline constexpr int top_margin = 38;
-/// The numbers and the name of its level axis [pixels].
-inline constexpr int axis_pixels = 78;
-/// A line of its legend [pixels].
-inline constexpr int key_row_pixels = 24;
-
-/// 1, 2 or 5 times a power of ten, such that five to ten fit into a range > 0.
-[[nodiscard]] double tic_step(double range);
-
-/// Width of a text of letters 16 pixels high [pixels], about.
-[[nodiscard]] double text_width(const std::string& text);
 
 }  // namespace dlo::compare

@@ -9,7 +9,6 @@
 #include <optional>
 #include <utility>
 
-#include "base/quote.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/obstacle/outline.hpp"
 #include "scene/reach.hpp"
@@ -112,13 +111,9 @@ std::vector<View> views_of(const Scene& scene, const Eigen::Matrix3Xd& points) {
   return {{others[0], up}, {others[0], others[1]}};
 }
 
-std::vector<double> drawn_arc_lengths(double length) {
-  return equal_arc_lengths(length, curve_samples);
-}
-
 Series rod_series(const Reference& rod, const Scene& scene, const View& view) {
   Series series{.id = "energy", .title = "energy model (the rod itself)", .look = {.width = 2}};
-  series.arc_length = drawn_arc_lengths(scene.length);
+  series.arc_length = equal_arc_lengths(scene.length, curve_samples);
   const energy_model::Samples samples = rod(series.arc_length);
   series.points = samples.points;
   const std::optional<Eigen::Vector3d> normal = normal_to_reader(scene, view, series.points);
@@ -219,23 +214,6 @@ std::vector<Series> obstacle_series(const Scene& scene, const std::vector<View>&
     }
   }
   return all;
-}
-
-std::string series_csv(const std::vector<Series>& all) {
-  std::string csv = "series,s_m,x_m,y_m,z_m,curvature_per_m\n";
-  for (const Series& series : all) {
-    for (std::size_t i = 0; i < series.arc_length.size(); ++i) {
-      const Eigen::Vector3d point = series.points.col(static_cast<Eigen::Index>(i));
-      if (point.hasNaN()) {
-        csv += '\n';  // as where a line ends
-        continue;
-      }
-      csv += fmt::format("{},{},{},{},{},{}\n", series.id, csv_number(series.arc_length[i]),
-                         csv_number(point.x()), csv_number(point.y()), csv_number(point.z()),
-                         series.curvature.empty() ? "" : csv_number(series.curvature[i]));
-    }
-  }
-  return csv;
 }
 
 }  // namespace dlo::compare

@@ -20,7 +20,7 @@ inline constexpr const char* axis_names = "xyz";
 
 /// One shape of a figure.
 struct Series {
-  std::string id;     ///< in the CSV
+  std::string id;     ///< its name in the script
   std::string title;  ///< in the key; empty: not there
   Look look;
   Eigen::Matrix3Xd points;  ///< [m]; a column of NaN: a line ends before it, the next begins after
@@ -58,9 +58,6 @@ struct Drawing {
 /// @param points  of the rod [m]
 [[nodiscard]] std::vector<View> views_of(const Scene& scene, const Eigen::Matrix3Xd& points);
 
-/// Arc lengths [m] at which continuous rods are drawn.
-[[nodiscard]] std::vector<double> drawn_arc_lengths(double length);
-
 /// A rod as a line, with its curvature; where it stays in a plane that turns to the left is
 /// positive.
 [[nodiscard]] Series rod_series(const Reference& rod, const Scene& scene, const View& view);
@@ -88,8 +85,5 @@ using RodPoints = std::function<Eigen::Matrix3Xd(const std::vector<double>&)>;
 [[nodiscard]] std::vector<Series> obstacle_series(const Scene& scene,
                                                   const std::vector<View>& views,
                                                   const Eigen::Matrix3Xd& rod);
-
-/// Series as a CSV file.
-[[nodiscard]] std::string series_csv(const std::vector<Series>& all);
 
 }  // namespace dlo::compare

@@ -1,15 +1,12 @@
 #pragma once
 
-#include <cstddef>
-#include <vector>
-
 #include "dlo/compare/comparison.hpp"
 #include "figure/layout.hpp"
 
 namespace dlo::compare {
 
-/// The error budgets of a scene's comparisons as bars, a part below the other: their share of the
-/// total with sign, and their RMS in words; `number` (from 1) is part of its name.
-[[nodiscard]] Figure budget_figure(const std::vector<Comparison>& comparisons, std::size_t number);
+/// Draws the error budget of a comparison as bars, one part below the other: its share of the total
+/// with sign, and its RMS in words. Parts of less than 0.005 % are omitted.
+[[nodiscard]] Figure budget_figure(const Comparison& comparison);
 
 }  // namespace dlo::compare

@@ -49,7 +49,7 @@ Figure distance_figure(const Scene& scene, const ShapeCheck& check,
                    .x = {check.deviation.max_at_m},
                    .y = {check.deviation.max_m * 1e3}}};
   add_levels(panel, check.deviation.rms_m, allowed_m, check.deviation.max_m, scene.length);
-  return {.name = "distance", .title = "Distance along the rod", .panels = {std::move(panel)}};
+  return {.title = "Distance along the rod", .panels = {std::move(panel)}};
 }
 
 }  // namespace
@@ -116,8 +116,7 @@ Drawing check_drawing(const Scene& scene, const ShapeCheck& check) {
 
 Picture check_picture(const Scene& scene, const ShapeCheck& check,
                       std::optional<double> allowed_m) {
-  Figure shapes{
-      .name = "shapes", .title = scene.name, .panels = shape_panels(check_drawing(scene, check))};
+  Figure shapes{.title = scene.name, .panels = shape_panels(check_drawing(scene, check))};
   return {{{{shapes}, {distance_figure(scene, check, allowed_m)}}}};
 }
 

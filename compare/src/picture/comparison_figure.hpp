@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/scene.hpp"
@@ -14,20 +13,17 @@ namespace dlo::compare {
 [[nodiscard]] std::string setting_name(const ForceModelSettings& settings);
 
 /// What a picture shows of a scene's shapes.
-[[nodiscard]] Drawing comparison_drawing(const Scene& scene,
-                                         const std::vector<Comparison>& comparisons);
+[[nodiscard]] Drawing comparison_drawing(const Scene& scene, const Comparison& comparison);
 
-/// What figures show of a scene's comparisons.
+/// Figures of a comparison.
 struct ComparisonFigures {
   Figure shapes;     ///< of both models, at equal aspect
-  Figure curvature;  ///< along the rod; its numbers are in the CSV file of the shapes
+  Figure curvature;  ///< along the rod
   Figure deviation;  ///< distance of the force model from the rod, along the rod
 };
 
-/// Of a scene; `number` (from 1) is part of their names.
-/// @param comparisons  one or more of this scene: the first as the scene says, one more otherwise
+/// Draws a comparison of a scene.
 [[nodiscard]] ComparisonFigures comparison_figures(const Scene& scene,
-                                                   const std::vector<Comparison>& comparisons,
-                                                   std::size_t number);
+                                                   const Comparison& comparison);
 
 }  // namespace dlo::compare

@@ -26,9 +26,7 @@ Figure shape_figure(const Scene& scene, const FittedShape& shape, std::size_t nu
                  .points = shape.alignment.shape.points,
                  .arc_length = shape.alignment.shape.arc_length});
   for (Series& gripper : gripper_series(scene)) all.push_back(std::move(gripper));
-  return {.name = fmt::format("shape_{}", number),
-          .title = shape.scene,
-          .panels = shape_panels({views, std::move(all)})};
+  return {.title = shape.scene, .panels = shape_panels({views, std::move(all)})};
 }
 
 Figure profile_figure(const NamedValue& stiffness, const MaterialFit& fit) {
@@ -68,8 +66,7 @@ Figure profile_figure(const NamedValue& stiffness, const MaterialFit& fit) {
          .x = {*value.value},
          .y = {0}});
   }
-  return {.name = "profile",
-          .title = fmt::format("Profile likelihood of {}", stiffness.name),
+  return {.title = fmt::format("Profile likelihood of {}", stiffness.name),
           .panels = {std::move(panel)}};
 }
 

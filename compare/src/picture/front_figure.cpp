@@ -8,8 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "base/quote.hpp"
-
 namespace dlo::compare {
 namespace {
 
@@ -38,23 +36,7 @@ constexpr FrontCurve front_curves[] = {
 
 }  // namespace
 
-Figure front_figure(const SceneBenchmark& scene, std::size_t number) {
-  Figure figure{
-      .name = fmt::format("front_{}", number),
-      .section = "speed",
-      .title = fmt::format("{}, Gamma = {:.4g}: error against time", scene.scene, scene.gamma),
-      .description =
-          "Error (RMS over the length) against the time to it from straight, both "
-          "logarithmic; a line joins the runs that no other run beats in both, each with its N or "
-          "K.",
-      .csv_file = fmt::format("front_{}.csv", number)};
-  figure.csv = "curve,model,size,setting,time_s,rms_over_length,front\n";
-  const auto add_row = [&figure](const std::string& curve, const BenchmarkRun& run) {
-    fmt::format_to(std::back_inserter(figure.csv), "{},{},{},{},{},{},{}\n", curve,
-                   to_string(run.model), run.size, csv_field(setting_of(run)),
-                   csv_number(run.time.median_s), csv_number(run.rms_over_length),
-                   run.front ? 1 : 0);
-  };
+Figure front_figure(const SceneBenchmark& scene) {
   const auto add_point = [](const BenchmarkRun& run, PlottedCurve& curve) {
     curve.x.push_back(run.time.median_s * 1e3);
     curve.y.push_back(run.rms_over_length);
@@ -70,7 +52,6 @@ Figure front_figure(const SceneBenchmark& scene, std::size_t number) {
     for (const BenchmarkRun& run : scene.runs) {
       if (!front_curves[k].holds(run)) continue;
       if (run.front) front.push_back(&run);
-      add_row(points.id, run);
       add_point(run, points);
     }
     panel.curves.push_back(std::move(points));
@@ -79,7 +60,6 @@ Figure front_figure(const SceneBenchmark& scene, std::size_t number) {
     return a->time.median_s < b->time.median_s;
   });
   for (const BenchmarkRun* run : front) {
-    add_row(line.id, *run);
     add_point(*run, line);
     if (run->size == 0) continue;
     panel.texts.push_back({.x = line.x.back(),
@@ -89,8 +69,8 @@ Figure front_figure(const SceneBenchmark& scene, std::size_t number) {
                            .dy = 5});
   }
   panel.curves.front() = std::move(line);
-  figure.panels = {std::move(panel)};
-  return figure;
+  return {.title = fmt::format("{}, Gamma = {:.4g}: error against time", scene.scene, scene.gamma),
+          .panels = {std::move(panel)}};
 }
 
 }  // namespace dlo::compare

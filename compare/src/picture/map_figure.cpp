@@ -5,30 +5,15 @@
 #include <string>
 #include <utility>
 
-#include "base/quote.hpp"
 #include "polygon/step_constants.hpp"
 
 namespace dlo::compare {
 
 Figure map_figure(const StabilityMap& map) {
-  Figure figure{
-      .name = "stability_map",
-      .section = "stability",
-      .title = map.scene + ": largest stable c_F",
-      .description = fmt::format(
-          "Grid of step factors c_F over {}, each point by what became of the rod: stable, growing "
-          "within bounds, or diverged. Lines for the predicted limit, the measured one, and Table "
-          "1's proportion.",
-          map.axis == MapAxis::c_c ? "stretch stiffnesses c_c, both logarithmic"
-                                   : "shares c_h of the last step, c_F logarithmic"),
-      .csv_file = "stability_map.csv"};
-  figure.csv = "kind,c_c_N,c_h,c_F_m_per_N\n";
   const bool over_c_c = map.axis == MapAxis::c_c;
   Panel panel{.x = {.label = over_c_c ? "c_c [N]" : "c_h", .logarithmic = over_c_c},
               .y = {.label = "c_F [m/N]", .logarithmic = true}};
   const auto add = [&](const auto& at, double c_F, PlottedCurve& curve) {
-    figure.csv += fmt::format("{},{},{},{}\n", curve.id, csv_number(at.c_c), csv_number(at.c_h),
-                              csv_number(c_F));
     curve.x.push_back(over_c_c ? at.c_c : at.c_h);
     curve.y.push_back(c_F);
   };
@@ -67,8 +52,7 @@ Figure map_figure(const StabilityMap& map) {
     for (const MapColumn& column : map.columns) add(column, column.*limit, curve);
     panel.curves.push_back(std::move(curve));
   }
-  figure.panels = {std::move(panel)};
-  return figure;
+  return {.title = map.scene + ": largest stable c_F", .panels = {std::move(panel)}};
 }
 
 }  // namespace dlo::compare

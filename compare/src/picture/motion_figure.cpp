@@ -68,10 +68,7 @@ Figure error_figure(const MotionCheck& check) {
   add({.x = {check.worst().time}, .y = {check.worst().rms_m * 1e3}},
       fmt::format("the worst frame, at {:.4g} s", check.worst().time), worst_look());
   add_levels(panel, errors.rms_m, check.tolerance.allowed_m, errors.largest_m, check.scene.length);
-  return {.name = "errors",
-          .title = "Distance of each frame",
-          .description = "Distances of a recording's points from the rod against time.",
-          .panels = {std::move(panel)}};
+  return {.title = "Distance of each frame", .panels = {std::move(panel)}};
 }
 
 }  // namespace
@@ -104,10 +101,8 @@ Drawing worst_frame_drawing(const MotionCheck& check) {
 }
 
 Picture motion_check_picture(const MotionCheck& check) {
-  Figure shapes{.name = "worst_frame",
-                .title = fmt::format("{}: the worst frame, at {:.4g} s", check.scene.name,
+  Figure shapes{.title = fmt::format("{}: the worst frame, at {:.4g} s", check.scene.name,
                                      check.worst().time),
-                .description = "The recording's points in its worst frame, and the rod then.",
                 .panels = shape_panels(worst_frame_drawing(check))};
   return {{{{std::move(shapes)}, {error_figure(check)}}}};
 }

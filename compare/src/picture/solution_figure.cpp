@@ -86,11 +86,9 @@ Drawing solution_drawing(const Scene& scene, const std::vector<Solution>& soluti
 
 Picture solution_picture(const Scene& scene, const std::vector<Solution>& solutions) {
   const Drawing drawing = solution_drawing(scene, solutions);
-  Figure shapes{.name = "shapes",
-                .title = solutions.size() == 1 ? scene.name : scene.name + ": all equilibria found",
+  Figure shapes{.title = solutions.size() == 1 ? scene.name : scene.name + ": all equilibria found",
                 .panels = shape_panels(drawing)};
-  Figure curvature{.name = "curvature",
-                   .title = "Curvature along the rod",
+  Figure curvature{.title = "Curvature along the rod",
                    .panels = {curvature_panel(drawing.series, are_planar(scene, solutions))}};
   return {{{{shapes}, {curvature}}}};
 }

@@ -141,8 +141,7 @@ Picture sweep_picture(const std::vector<SweptField>& fields, const std::string& 
   for (const std::string& result : results) {
     const std::vector<double> values = column_of(header, rows, result);
     columns.push_back(
-        {{.name = result,
-          .title = result + " against " + fields.front().column +
+        {{.title = result + " against " + fields.front().column +
                    (fields.size() > 1 ? " and " + fields[1].column : ""),
           .panels = {lines ? lines_panel(fields, result, values) : map_panel(fields, values)}}});
   }

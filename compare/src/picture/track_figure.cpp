@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <set>
 #include <string>
 #include <utility>
 
-#include "base/quote.hpp"
 #include "figure/series.hpp"
 #include "motion/frame_clock.hpp"
 
@@ -143,13 +141,8 @@ std::vector<Series> series_of(const Scene& now, const TrackShapes& shapes, std::
   return all;
 }
 
-Figure strip_figure(const Scene& scene, const TrackShapes& shapes, const TrackOptions& options,
-                    std::size_t number) {
+Figure strip_figure(const Scene& scene, const TrackShapes& shapes, const TrackOptions& options) {
   const Track& track = shapes.track;
-  Figure figure{.name = fmt::format("strip_{}", number),
-                .section = "motion",
-                .title = scene.name + ": shapes over time",
-                .csv_file = fmt::format("strip_{}.csv", number)};
   const FrameClock clock(scene, {.from = options.from, .to = options.to}, options.rates);
   const std::vector<std::size_t> frames = shown_frames(track.frames.size());
   const Eigen::Matrix3Xd points = points_of(shapes, frames);
@@ -161,7 +154,6 @@ Figure strip_figure(const Scene& scene, const TrackShapes& shapes, const TrackOp
           0, fmt::format("{} [m]; a cell is {:.3g} m wide", axis_names[view.right], cells.size[0])),
       .y = cells.axis(1, fmt::format("{} [m]", axis_names[view.up])),
       .equal_aspect = true};
-  std::vector<Series> written;
   std::set<std::string> titles;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const TrackFrame& frame = track.frames[frames[i]];
@@ -171,46 +163,18 @@ Figure strip_figure(const Scene& scene, const TrackShapes& shapes, const TrackOp
                            .words = fmt::format("t = {:.4g} s", frame.time),
                            .dx = 4,
                            .dy = -label_pixels / 2});
-    for (Series& series :
+    for (const Series& series :
          series_of(clock.scene(scene, frames[i]), shapes, frames[i], view, cells)) {
-      series.id += fmt::format("_{}", i + 1);
-      PlottedCurve curve{.id = series.id, .look = series.look};
+      PlottedCurve curve{.id = fmt::format("{}_{}", series.id, i + 1), .look = series.look};
       if (titles.insert(series.title).second) curve.title = series.title;
       for (const auto& point : series.points.colwise()) {
         curve.x.push_back(point[view.right] + shift[0]);
         curve.y.push_back(point[view.up] + shift[1]);
       }
       panel.curves.push_back(std::move(curve));
-      written.push_back(std::move(series));
     }
   }
-  figure.csv = series_csv(written);
-  figure.description = fmt::format(
-      "{} shapes of {}, from {:.4g} to {:.4g} s, row by row, all at one scale and at equal aspect.",
-      frames.size(), scene.name, track.frames.front().time, track.frames.back().time);
-  figure.panels = {std::move(panel)};
-  return figure;
-}
-
-void add_rows(const char* rod, double time, std::size_t gripper, const GripperLoad& load,
-              std::string& csv) {
-  fmt::format_to(std::back_inserter(csv), "{},{},{},{},{}\n", rod, csv_number(time), gripper + 1,
-                 csv_number(load.force.norm()), csv_number(load.torque.norm()));
-}
-
-/// One gripper after the other, since what is missing between two points ends a line.
-std::string force_csv(const Scene& scene, const TrackShapes& shapes) {
-  std::string csv = "rod,time_s,gripper,force_N,torque_Nm\n";
-  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
-    for (const TrackFrame& frame : shapes.track.frames) {
-      add_rows("at_rest", frame.time, i, frame.grippers[i], csv);
-    }
-    if (shapes.moving == nullptr) continue;
-    for (const DynamicFrame& frame : shapes.moving->frames) {
-      add_rows("moving", frame.time, i, frame.grippers[i], csv);
-    }
-  }
-  return csv;
+  return {.title = scene.name + ": shapes over time", .panels = {std::move(panel)}};
 }
 
 /// Of all grippers against time.
@@ -256,33 +220,23 @@ Panel load_panel(const Scene& scene, const TrackShapes& shapes, const char* labe
   return panel;
 }
 
-Figure force_figure(const Scene& scene, const TrackShapes& shapes, std::size_t number) {
-  Figure figure{.name = fmt::format("forces_{}", number),
-                .section = "motion",
-                .title = scene.name + ": what the grippers exert",
-                .description =
-                    "Amounts of each gripper's force and torque on the energy model's "
-                    "rod against time; upright lines where something begins or ends to "
-                    "touch, and where the rod snaps.",
-                .csv_file = fmt::format("forces_{}.csv", number),
-                .csv = force_csv(scene, shapes)};
+Figure force_figure(const Scene& scene, const TrackShapes& shapes) {
   Panel force = load_panel(scene, shapes, "force [N]", &GripperLoad::force);
   force.has_legend = false;
   Panel torque = load_panel(scene, shapes, "torque [N m]", &GripperLoad::torque);
-  figure.panels = {std::move(force), std::move(torque)};
-  return figure;
+  return {.title = scene.name + ": what the grippers exert",
+          .panels = {std::move(force), std::move(torque)}};
 }
 
 }  // namespace
 
 TrackFigures track_figures(const Scene& scene, const TrackShapes& shapes,
-                           const TrackOptions& options, std::size_t number) {
-  return {.strip = strip_figure(scene, shapes, options, number),
-          .forces = force_figure(scene, shapes, number)};
+                           const TrackOptions& options) {
+  return {.strip = strip_figure(scene, shapes, options), .forces = force_figure(scene, shapes)};
 }
 
 Picture track_picture(const Scene& scene, const TrackShapes& shapes, const TrackOptions& options) {
-  TrackFigures figures = track_figures(scene, shapes, options, 1);
+  TrackFigures figures = track_figures(scene, shapes, options);
   return {{{{std::move(figures.strip)}, {std::move(figures.forces)}}}};
 }
 

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstddef>
-
 #include "dlo/compare/scene.hpp"
 #include "figure/layout.hpp"
 #include "motion/dynamic_track.hpp"
@@ -27,9 +25,8 @@ struct TrackFigures {
 };
 
 /// @param options  that the track was made with
-/// @param number   part of their names, from 1
 [[nodiscard]] TrackFigures track_figures(const Scene& scene, const TrackShapes& shapes,
-                                         const TrackOptions& options, std::size_t number);
+                                         const TrackOptions& options);
 
 /// Both beside each other.
 [[nodiscard]] Picture track_picture(const Scene& scene, const TrackShapes& shapes,

@@ -2,17 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <sstream>
 
 #include "base/number.hpp"
-#include "base/quote.hpp"
-#include "report/html.hpp"
+#include "judge/budget_parts.hpp"
 
 namespace dlo::compare {
 namespace {
 
 std::string millimetres(double metres) { return page_number(metres * 1e3) + "\u00a0mm"; }
+
+std::string percent(double share) { return page_number(share * 100) + "\u00a0%"; }
 
 /// What would explain a shape that fails; empty if nothing does.
 std::string cause_of(const CheckResult& result) {
@@ -22,123 +23,114 @@ std::string cause_of(const CheckResult& result) {
                      best.kind == ExplanationKind::discretisation ? "it were " : "", best.cause);
 }
 
-std::string three_numbers(const CheckResult& result) {
-  const ShapeCheck& check = result.check;
-  const Deviation& d = check.deviation;
-  const EffectiveModulus& modulus = check.effective_modulus;
-  const bool told = is_identified(modulus.optimum) && !result.supersedes_modulus;
-  const std::string why_not = result.supersedes_modulus  ? "no measure of the material"
-                              : modulus.why_none.empty() ? "not identified"
-                                                         : modulus.why_none;
-  return to_html(std::vector<HtmlNumber>{
-      {"RMS distance", millimetres(d.rms_m), page_percent(d.rms_over_length) + " of the length"},
-      {"largest", millimetres(d.max_m), fmt::format("at s = {:.4g} m", d.max_at_m)},
-      {"E*/E", told ? page_number(modulus.ratio) : "\u2013",
-       told ? millimetres(modulus.rms_m) + " away with it" : why_not}});
+std::string summary_of(const std::string& what, double judged_m, const ShapeTolerance& tolerance) {
+  return fmt::format("{} is {} away from the rod ({}). Allowed: {}{}.", what, millimetres(judged_m),
+                     tolerance.largest ? "largest distance" : "RMS",
+                     millimetres(tolerance.allowed_m),
+                     tolerance.by_default ? ", 1\u00a0% of the length, by default" : "");
 }
 
-/// escape_markup() of lines, which stay lines.
-std::string escape_lines(const std::string& text) {
-  std::string out;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line);) out += escape_markup(line) + "\n";
-  return out;
+std::vector<PageNumber> distances(const Deviation& d) {
+  return {{"RMS distance", millimetres(d.rms_m), percent(d.rms_over_length) + " of the length"},
+          {"largest", millimetres(d.max_m), fmt::format("at s = {:.4g} m", d.max_at_m)}};
 }
 
-HtmlTable cause_table() {
-  return {"What would explain it", {{"cause", HtmlCell::text}, {"RMS then"}}, {}};
-}
+PageTable cause_table() { return {"What would explain it", {"cause", "RMS then"}, {}}; }
 
-HtmlTable causes(const CheckResult& result) {
-  HtmlTable table = cause_table();
-  for (const Explanation& explanation : result.explanations) {
-    table.rows.push_back({explanation.cause, millimetres(explanation.rms_m)});
-  }
-  return table;
-}
-
-std::string figures_of(const CheckPageParts& parts) {
-  std::string out = "<div class=\"figures\">\n";
-  for (const PageFigure& entry : parts.figures) {
-    if (!entry.svg.empty()) {
-      out += "<figure>\n" + entry.svg + "</figure>\n";
-    } else {
-      out += fmt::format("<p class=\"missing\">A figure is missing: {}.</p>\n",
-                         escape_markup(entry.failure));
-    }
-  }
-  return out + "</div>\n";
-}
-
-/// The page's head, and what its screen begins with.
-std::string page_begin(const std::string& title, const std::string& file, bool passes,
-                       double judged_m, const ShapeTolerance& tolerance) {
-  const char* const word = passes ? "pass" : "fail";
-  std::string out = html_begin("dlo check", title + ": " + word);
-  out += fmt::format("<main>\n<h1>{}</h1>\n<div class=\"screen\">\n<div>\n", escape_markup(title));
-  out += html_badge(passes, word);
-  return out + fmt::format("<p>{} is {} away from the rod ({}). Allowed: {}{}.</p>\n",
-                           escape_markup(file), millimetres(judged_m),
-                           tolerance.largest ? "largest distance" : "RMS",
-                           millimetres(tolerance.allowed_m),
-                           tolerance.by_default ? ", 1\u00a0% of the length, by default" : "");
-}
-
-/// What is folded below the screen, and the page's end.
-std::string page_end(const std::string& reason, const HtmlTable& causes,
-                     const CheckPageParts& parts) {
-  std::string out = figures_of(parts) + "</div>\n";
-  out += "<details><summary>Reason and causes</summary>\n<p>" + escape_markup(reason) + ".</p>\n";
-  if (!causes.rows.empty()) out += to_html(causes);
-  out += "</details>\n<details><summary>All that dlo check says</summary>\n<pre tabindex=\"0\">" +
-         escape_lines(parts.text) + "</pre>\n</details>\n";
-  return out + html_end(parts.version);
-}
-
-std::string three_numbers(const MotionCheck& check) {
-  const FrameError& worst = check.worst();
-  const double length = check.scene.length;
-  const bool lags = std::isfinite(check.lag);
-  return to_html(std::vector<HtmlNumber>{
-      {"RMS distance", millimetres(shown(check.errors.rms_m, length)),
-       page_percent(shown(check.errors.rms_m, length) / length) + " of the length"},
-      {"worst frame", millimetres(shown(worst.rms_m, length)),
-       fmt::format("at {:.4g} s", worst.time)},
-      {"lag", lags ? page_number(check.lag * 1e3) + "\u00a0ms" : "\u2013",
-       lags ? millimetres(shown(check.lag_rms_m, length)) + " away without it"
-            : "none that explains much"}});
-}
+const char* verdict_of(bool passes) { return passes ? "pass" : "fail"; }
 
 }  // namespace
 
-std::string check_page(const CheckResult& result, const CheckPageParts& parts) {
-  std::string out = page_begin(result.check.scene, result.check.file, result.passes(),
-                               result.judgement.judged_m, result.tolerance);
-  const std::string cause = cause_of(result);
-  if (!cause.empty()) out += "<p><strong>" + escape_markup(cause) + "</strong></p>\n";
+PageResult page_result(const CheckResult& result) {
+  const EffectiveModulus& modulus = result.check.effective_modulus;
+  const bool identified = is_identified(modulus.optimum) && !result.supersedes_modulus;
+  const std::string why_not = result.supersedes_modulus  ? "no measure of the material"
+                              : modulus.why_none.empty() ? "not identified"
+                                                         : modulus.why_none;
+  PageResult page{
+      .title = result.check.scene,
+      .passes = result.passes(),
+      .verdict = verdict_of(result.passes()),
+      .summary = summary_of(result.check.file, result.judgement.judged_m, result.tolerance),
+      .cause = cause_of(result),
+      .numbers = distances(result.check.deviation),
+      .pictures = {},
+      .table = cause_table()};
   const std::string both = other_stiffness_within(result);
-  if (!both.empty()) out += "<p>" + escape_markup(both) + ".</p>\n";
-  out += three_numbers(result) + "</div>\n";
-  return out + page_end(result.judgement.reason, causes(result), parts);
+  if (!both.empty()) page.summary += " " + both + ".";
+  page.numbers.push_back({"E*/E", identified ? page_number(modulus.ratio) : "\u2013",
+                          identified ? millimetres(modulus.rms_m) + " away with it" : why_not});
+  for (const Explanation& explanation : result.explanations) {
+    page.table.rows.push_back({explanation.cause, millimetres(explanation.rms_m)});
+  }
+  return page;
 }
 
-std::string motion_check_page(const MotionCheck& check, const CheckPageParts& parts) {
-  std::string out = page_begin(check.scene.name, check.file, check.passes,
-                               shown(check.judged_m, check.scene.length), check.tolerance);
-  const auto left = [&](const MotionCause& cause) {
-    return millimetres(shown(cause.rms_m, check.scene.length));
-  };
+PageResult page_result(const MotionCheck& check) {
+  const double length = check.scene.length;
+  const auto left = [&](double metres) { return millimetres(shown(metres, length)); };
+  const double rms_m = shown(check.errors.rms_m, length);
+  const bool lags = std::isfinite(check.lag);
+  PageResult page{
+      .title = check.scene.name,
+      .passes = check.passes,
+      .verdict = verdict_of(check.passes),
+      .summary = summary_of(check.file, shown(check.judged_m, length), check.tolerance),
+      .cause = {},
+      .numbers = {{"RMS distance", millimetres(rms_m), percent(rms_m / length) + " of the length"},
+                  {"worst frame", left(check.worst().rms_m),
+                   fmt::format("at {:.4g} s", check.worst().time)},
+                  {"lag", lags ? page_number(check.lag * 1e3) + "\u00a0ms" : "\u2013",
+                   lags ? left(check.lag_rms_m) + " away without it" : "none that explains much"}},
+      .pictures = {},
+      .table = cause_table()};
+  for (const MotionCause& cause : check.causes) {
+    page.table.rows.push_back({cause.words, left(cause.rms_m)});
+  }
   if (!check.passes && !check.causes.empty()) {
     const MotionCause& best = check.causes.front();
-    out += fmt::format("<p><strong>It would be {} away if {}.</strong></p>\n", left(best),
-                       escape_markup(best.words));
+    page.cause = fmt::format("It would be {} away if {}.", left(best.rms_m), best.words);
   }
-  out += three_numbers(check) + "</div>\n";
-  HtmlTable table = cause_table();
-  for (const MotionCause& cause : check.causes) {
-    table.rows.push_back({cause.words, left(cause)});
+  return page;
+}
+
+PageResult page_result(const Comparison& comparison) {
+  const ShapeTolerance tolerance = default_tolerance(comparison.length);
+  const bool passes = comparison.deviation.rms_m <= tolerance.allowed_m;
+  const EffectiveModulus& modulus = comparison.effective_modulus;
+  const bool identified = is_identified(modulus.optimum);
+  PageResult page{
+      .title = comparison.scene,
+      .passes = passes,
+      .verdict = verdict_of(passes),
+      .summary = summary_of(
+          fmt::format("The force model (law {}, bookkeeping {}, N = {})",
+                      to_string(comparison.settings.law),
+                      to_string(comparison.settings.bookkeeping), comparison.settings.points),
+          comparison.deviation.rms_m, tolerance),
+      .cause = {},
+      .numbers = distances(comparison.deviation),
+      .pictures = {},
+      .table = {
+          "Error budget: shares of the deviation add up to 100 %", {"part", "RMS", "share"}, {}}};
+  if (!comparison.unverified.empty()) {
+    page.summary += fmt::format(" The energy model is not verified: {}.", comparison.unverified);
   }
-  return out + page_end(check.reason, table, parts);
+  page.numbers.push_back({"E*/E", identified ? page_number(modulus.ratio) : "\u2013",
+                          identified                 ? millimetres(modulus.rms_m) + " away with it"
+                          : modulus.why_none.empty() ? "not identified"
+                                                     : modulus.why_none});
+  const auto parts = shown_parts(comparison);
+  for (const auto& [name, part] : parts) {
+    page.table.rows.push_back({name, millimetres(part->rms_m), percent(part->share)});
+  }
+  const auto largest =
+      std::ranges::max_element(parts, {}, [](const auto& part) { return part.second->share; });
+  if (!passes && largest != parts.end()) {
+    page.cause = fmt::format("Largest part of the deviation: {}, {}.", largest->first,
+                             percent(largest->second->share));
+  }
+  return page;
 }
 
 }  // namespace dlo::compare

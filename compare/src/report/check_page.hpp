@@ -1,26 +1,20 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "dlo/compare/check.hpp"
+#include "dlo/compare/comparison.hpp"
 #include "recording/motion_check.hpp"
 #include "report/page.hpp"
 
 namespace dlo::compare {
 
-/// What a page has beside the result.
-struct CheckPageParts {
-  std::vector<PageFigure> figures = {};  ///< of check_picture(), or of motion_check_picture()
-  std::string text = {};                 ///< all that `dlo check` says
-  std::string version = {};              ///< of dlo
-};
+/// Returns a judged shape for a page, without pictures and details.
+[[nodiscard]] PageResult page_result(const CheckResult& result);
 
-/// A judged shape as a page of one screen: verdict, cause, the three numbers and the picture;
-/// below, folded, all that is known. One file, nothing to be fetched, no script.
-[[nodiscard]] std::string check_page(const CheckResult& result, const CheckPageParts& parts);
+/// Returns a judged motion for a page, without pictures and details.
+[[nodiscard]] PageResult page_result(const MotionCheck& check);
 
-/// A judged motion likewise.
-[[nodiscard]] std::string motion_check_page(const MotionCheck& check, const CheckPageParts& parts);
+/// Returns a comparison for a page, without pictures and details. It passes if the RMS is within
+/// default_tolerance(); its cause is the largest part of the error budget.
+[[nodiscard]] PageResult page_result(const Comparison& comparison);
 
 }  // namespace dlo::compare

@@ -8,13 +8,8 @@ namespace dlo::compare::builtin {
 
 extern const std::string_view materials_toml;
 extern const std::string_view tables_toml;
-extern const std::string_view buckling_wire_toml;
-extern const std::string_view corner_routing_toml;
-extern const std::string_view long_rod_toml;
-extern const std::string_view side_load_toml;
 extern const std::string_view spring_steel_135_toml;
 extern const std::string_view spring_steel_175_toml;
 extern const std::string_view spring_steel_215_toml;
-extern const std::string_view swung_rod_toml;
 
 }  // namespace dlo::compare::builtin

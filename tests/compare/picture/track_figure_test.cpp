@@ -7,61 +7,56 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <sstream>
+#include <string>
 
-#include "csv_table.hpp"
-#include "report/report.hpp"
+#include "dlo/compare/scene_file.hpp"
 
 namespace dlo::compare {
 namespace {
 
-/// One of the moving scenes that the command has built in, with few frames.
+/// A moving scene of data/, with few frames.
 struct Motion {
-  explicit Motion(std::size_t file, double frame_rate) : scene(report_moving_files()[file].scene) {
+  explicit Motion(const std::string& name, double frame_rate)
+      : scene(load_scene(DLO_DATA "/scenes/" + name + ".toml")) {
     options.rates = scene.track;
     options.rates.frames = frame_rate;
     followed = track(scene, options);
   }
-  [[nodiscard]] TrackFigures figures() const {
-    return track_figures(scene, {followed}, options, 1);
-  }
+  [[nodiscard]] TrackFigures figures() const { return track_figures(scene, {followed}, options); }
 
   Scene scene;
   TrackOptions options;
   Track followed;
 };
 
-constexpr std::size_t corner_routing = 0;
-constexpr std::size_t buckling_wire = 1;
-
-/// Of a CSV file, without its header.
-std::vector<test::CsvRow> rows_of(const std::string& csv) {
-  return test::csv_rows(csv.substr(csv.find('\n') + 1));
-}
-
 TEST(TrackFigures, StripHasTheShapesOfItsFrames) {
-  const Motion motion(corner_routing, 20);
+  const Motion motion("corner_routing", 20);
   const Figure strip = motion.figures().strip;
-  std::map<std::string, int> counts;
-  for (const auto& row : rows_of(strip.csv)) ++counts[row.front()];
-  const int samples = static_cast<int>(motion.followed.arc_length.size());
-  for (int i = 1; i <= 9; ++i) EXPECT_EQ(counts["energy_" + std::to_string(i)], samples) << i;
-  EXPECT_EQ(counts.count("energy_10"), 0U);
-  // 41 frames: the fifth of nine is the one in the middle.
+  const Panel& panel = strip.panels.front();
+  std::map<std::string, const PlottedCurve*> curves;
+  for (const PlottedCurve& curve : panel.curves) curves[curve.id] = &curve;
+  const std::size_t samples = motion.followed.arc_length.size();
+  for (int i = 1; i <= 9; ++i) {
+    ASSERT_TRUE(curves.contains("energy_" + std::to_string(i))) << i;
+    EXPECT_EQ(curves.at("energy_" + std::to_string(i))->x.size(), samples) << i;
+  }
+  EXPECT_FALSE(curves.contains("energy_10"));
+  // 41 frames: the fifth of nine is the one in the middle, at one scale in its cell.
   const TrackFrame& middle = motion.followed.frames.at(20);
-  Eigen::Index point = 0;
-  for (const auto& row : rows_of(strip.csv)) {
-    if (row.front() != "energy_5") continue;
-    EXPECT_NEAR(std::stod(row[2]), middle.shape.points(0, point), 1e-9);
-    EXPECT_NEAR(std::stod(row[3]), middle.shape.points(1, point), 1e-9);
-    ++point;
+  const PlottedCurve& drawn = *curves.at("energy_5");
+  for (std::size_t k = 1; k < samples; ++k) {
+    const auto at = static_cast<Eigen::Index>(k);
+    EXPECT_NEAR(drawn.x[k] - drawn.x[0], middle.shape.points(0, at) - middle.shape.points(0, 0),
+                1e-9);
+    EXPECT_NEAR(drawn.y[k] - drawn.y[0], middle.shape.points(1, at) - middle.shape.points(1, 0),
+                1e-9);
   }
   EXPECT_EQ(strip.panels.front().texts.at(4).words, "t = 1 s");
 }
 
 // A wall goes on without end, and the cells beside it are not its place.
 TEST(TrackFigures, NothingOfAStripLeavesItsCell) {
-  const Motion motion(buckling_wire, 20);
+  const Motion motion("buckling_wire", 20);
   const Figure strip = motion.figures().strip;
   const Panel& panel = strip.panels.front();
   const double right = panel.x.to.value();
@@ -94,16 +89,17 @@ TEST(TrackFigures, NothingOfAStripLeavesItsCell) {
 
 // Every gripper's curve is in one piece, and the upright lines are at the times of the events.
 TEST(TrackFigures, ForcesAreThoseOfTheFrames) {
-  const Motion motion(corner_routing, 50);
+  const Motion motion("corner_routing", 50);
   const Figure forces = motion.figures().forces;
-  const std::vector<test::CsvRow> rows = rows_of(forces.csv);
-  const std::size_t frames = motion.followed.frames.size();
-  ASSERT_EQ(rows.size(), 2 * frames);
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const GripperLoad& load = motion.followed.frames[i % frames].grippers[i / frames];
-    EXPECT_EQ(rows[i][2], std::to_string(i / frames + 1));
-    EXPECT_NEAR(std::stod(rows[i][3]), load.force.norm(), 1e-9 * load.force.norm());
-    EXPECT_NEAR(std::stod(rows[i][4]), load.torque.norm(), 1e-9 * load.torque.norm());
+  for (const std::size_t gripper : {0U, 1U}) {
+    const PlottedCurve& force = forces.panels.at(0).curves.at(gripper);
+    const PlottedCurve& torque = forces.panels.at(1).curves.at(gripper);
+    ASSERT_EQ(force.y.size(), motion.followed.frames.size());
+    for (std::size_t i = 0; i < force.y.size(); ++i) {
+      const GripperLoad& load = motion.followed.frames[i].grippers[gripper];
+      EXPECT_EQ(force.y[i], load.force.norm());
+      EXPECT_EQ(torque.y[i], load.torque.norm());
+    }
   }
   ASSERT_FALSE(motion.followed.events.empty());
   std::multiset<double> drawn;

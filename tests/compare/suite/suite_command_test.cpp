@@ -186,13 +186,17 @@ TEST_F(SuiteCommand, AnEarlierCardIsAGate) {
 
 TEST_F(SuiteCommand, WritesTheCardInEachForm) {
   EXPECT_THAT(said("suite --with chain --scenes weight_1,strip_flat --markdown " + path("card.md") +
-                   " --junit " + path("card.xml") + " --html " + path("card.html")),
+                   " --junit " + path("card.xml") + " --report " + path("card.html")),
               HasSubstr("chain: 1 of 2 scenes right, 1 not supported"));
   EXPECT_THAT(read(path("card.md")), HasSubstr("| weight | 1 of 1 |"));
   const std::string xml = read(path("card.xml"));
   EXPECT_THAT(xml, HasSubstr("tests=\"2\" failures=\"0\" errors=\"0\" skipped=\"1\""));
   EXPECT_EQ(std::system(("xmllint --noout " + path("card.xml")).c_str()), 0);
-  EXPECT_THAT(read(path("card.html")), HasSubstr("class=\"badge"));
+  const std::string page = read(path("card.html"));
+  EXPECT_THAT(page, HasSubstr("<p class=\"badge pass\">\u2713 1 of 2 scenes right"));
+  EXPECT_THAT(page, HasSubstr("weight"));
+  EXPECT_EQ(page.find("<script"), std::string::npos);
+  if (run_line("gnuplot --version").status == 0) EXPECT_THAT(page, HasSubstr("<svg role=\"img\""));
 }
 
 TEST_F(SuiteCommand, TellsWhatItIsAskedWrongly) {
