@@ -166,9 +166,9 @@ void CalibrateOptions::add_to(CLI::App& command) {
   add_numbers_of_wire(command, shape);
   command
       .add_option("--motion", motion,
-                  "recorded motion of the rod, a CSV file of markers, time,s,x,y,z in s and m, or "
-                  "frames as check takes them: stiffness over mass and damping")
-      ->type_name("FILE|DIR")
+                  "recorded motion of the rod, a CSV file of markers, time,s,x,y,z in s and m: "
+                  "stiffness over mass and damping")
+      ->type_name("FILE")
       ->excludes(shape)
       ->excludes(holdout)
       ->excludes(wanted)
