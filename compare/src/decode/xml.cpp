@@ -7,7 +7,6 @@
 
 #include "base/input_file.hpp"
 #include "base/quote.hpp"
-#include "dlo/compare/error.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -74,6 +73,21 @@ void XmlFile::fail(const pugi::xml_node& node, const char* attribute,
   const pugi::xml_attribute given = node.attribute(attribute);
   throw InputError(fmt::format("{}: {} {}{}: {}", where(node), tag_of(node), attribute,
                                given ? " = " + quoted_piece(given.value()) : "", problem));
+}
+
+void XmlRefusals::add(const std::string& message) {
+  if (std::ranges::find(messages_, message) == messages_.end()) messages_.push_back(message);
+}
+
+void XmlRefusals::throw_if_any() const {
+  if (messages_.empty()) return;
+  constexpr std::size_t most = 10;
+  const std::size_t shown = std::min(messages_.size(), most);
+  std::string text = fmt::format(
+      "{}",
+      fmt::join(messages_.begin(), messages_.begin() + static_cast<std::ptrdiff_t>(shown), "; "));
+  if (shown < messages_.size()) text += fmt::format("; and {} more", messages_.size() - shown);
+  throw InputError(text);
 }
 
 bool looks_like_xml(std::string_view text) {

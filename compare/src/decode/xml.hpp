@@ -3,6 +3,9 @@
 #include <pugixml.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "dlo/compare/error.hpp"
 
 namespace dlo::compare {
 
@@ -30,6 +33,27 @@ class XmlFile {
   std::string file_;
   std::string text_;
   pugi::xml_document document_;
+};
+
+/// Collects the refusals of a file, so that one message names all of them.
+class XmlRefusals {
+ public:
+  /// Calls a reader and keeps the message of an InputError that it throws.
+  template <class Reader>
+  void attempt(const Reader& reader) {
+    try {
+      reader();
+    } catch (const InputError& error) {
+      add(error.what());
+    }
+  }
+  /// @throws InputError with all messages on one line, if there is any
+  void throw_if_any() const;
+
+ private:
+  void add(const std::string& message);
+
+  std::vector<std::string> messages_;  // each once
 };
 
 /// Whether a text, but for blanks, begins as XML does.

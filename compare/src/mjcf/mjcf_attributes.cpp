@@ -32,22 +32,25 @@ std::string toml_vector(const Eigen::Vector3d& v) {
   return fmt::format("[{:.17g}, {:.17g}, {:.17g}]", v.x(), v.y(), v.z());
 }
 
-MjcfAttributes::MjcfAttributes(const XmlFile& xml) : xml_(xml), angle_(one_degree) {
+MjcfAttributes::MjcfAttributes(const XmlFile& xml, XmlRefusals& refusals)
+    : xml_(xml), refusals_(refusals), angle_(one_degree) {
   const pugi::xml_node root = xml.root();
   if (std::string_view(root.name()) != "mujoco") {
     xml_.fail(root, "is no scene (allowed: a scene as TOML, or MJCF, whose element is <mujoco>)");
   }
-  require_known(root);
+  refusals_.attempt([&] { require_known(root); });
   for (const pugi::xml_node& part : root.children()) {
     const std::string_view name = part.name();
     if (part.type() != pugi::node_element || mjcf_without_effect(name)) continue;
-    if (name == "include") {
-      xml_.fail(part, "is not followed (allowed: one file, as mj_saveLastXML writes it)");
-    }
     if (name == "contact") continue;  // read with the obstacles
-    require_known(part);
-    if (name == "compiler") read_compiler(part);
-    if (name == "default") add_defaults(part, "");
+    refusals_.attempt([&] {
+      if (name == "include") {
+        xml_.fail(part, "is not followed (allowed: one file, as mj_saveLastXML writes it)");
+      }
+      require_known(part);
+      if (name == "compiler") read_compiler(part);
+      if (name == "default") add_defaults(part, "");
+    });
   }
 }
 
@@ -237,15 +240,16 @@ MjcfPose MjcfAttributes::pose(const pugi::xml_node& node, const std::string& chi
 void MjcfAttributes::require_known(const pugi::xml_node& node) const {
   const MjcfElement* element = mjcf_element(node.name());
   if (element == nullptr) {
-    xml_.fail(node, "cannot be said by a rod's scene, or is unknown (allowed: it left out)");
+    xml_.fail(node,
+              "has no counterpart in a rod's scene, or is unknown (allowed: a model without it)");
   }
   const std::vector<std::string> read = words_of(element->read);
   const std::vector<std::string> without_effect = words_of(element->without_effect);
   for (const pugi::xml_attribute& attribute : node.attributes()) {
     const std::string_view name = attribute.name();
     if (std::ranges::count(read, name) + std::ranges::count(without_effect, name) > 0) continue;
-    xml_.fail(node, fmt::format("{} = {}: cannot be said by a rod's scene, or is unknown{} "
-                                "(allowed: {}, and what has no effect at rest)",
+    xml_.fail(node, fmt::format("{} = {}: has no counterpart in a rod's scene, or is unknown{} "
+                                "(allowed: {}, and attributes without effect at rest)",
                                 printable_piece(name), quoted_piece(attribute.value()),
                                 did_you_mean(name, read), fmt::join(read, ", ")));
   }

@@ -22,10 +22,14 @@ using MjcfPose = Eigen::Isometry3d;
 /// All that reads throws InputErrors of the form "file:line: <element> attribute = "value": ...".
 class MjcfAttributes {
  public:
-  /// @throws InputError if the file is no MJCF, or a part of it has no place in a rod's scene
-  explicit MjcfAttributes(const XmlFile& xml);
+  /// Reads units and default classes.
+  /// @param refusals  receives the parts of the file that a rod's scene cannot represent
+  /// @throws InputError if the file is not MJCF
+  MjcfAttributes(const XmlFile& xml, XmlRefusals& refusals);
 
   [[nodiscard]] const XmlFile& xml() const { return xml_; }
+  /// Refusals of the whole file, added to by all readers of it.
+  [[nodiscard]] XmlRefusals& refusals() const { return refusals_; }
   /// What the file's own defaults say of elements below one that has a childclass.
   [[nodiscard]] const std::string& known_class(const pugi::xml_node& node, const char* attribute,
                                                const std::string& outside) const;
@@ -68,6 +72,7 @@ class MjcfAttributes {
     std::string parent;
   };
   const XmlFile& xml_;
+  XmlRefusals& refusals_;
   std::map<std::string, Class, std::less<>> classes_;
   std::string main_ = "main";
   double angle_ = 0;  ///< unit of angles [rad]

@@ -81,12 +81,10 @@ MjcfJoint read_mjcf_joint(const MjcfAttributes& attributes, const pugi::xml_node
     joint.type = MjcfJoint::Type::free;
     return joint;
   }
-  if (attributes.text(node, "type", childclass).value_or("") == "slide") {
-    xml.fail(node, "type", "of a chain whose segments do not slide (allowed: ball, hinge, free)");
-  }
   constexpr MjcfJoint::Type types[] = {MjcfJoint::Type::hinge, MjcfJoint::Type::ball,
-                                       MjcfJoint::Type::free};
-  joint.type = types[attributes.choice(node, "type", {"hinge", "ball", "free"}, childclass)];
+                                       MjcfJoint::Type::free, MjcfJoint::Type::slide};
+  joint.type =
+      types[attributes.choice(node, "type", {"hinge", "ball", "free", "slide"}, childclass)];
   joint.place = at * attributes.vector(node, "pos", childclass).value_or(Eigen::Vector3d::Zero());
   const Eigen::Vector3d axis =
       attributes.vector(node, "axis", childclass).value_or(Eigen::Vector3d::UnitZ());

@@ -11,13 +11,16 @@ namespace dlo::compare {
 
 /// A joint of a body.
 struct MjcfJoint {
-  enum class Type { hinge, ball, free };
+  enum class Type { hinge, ball, free, slide };
   Type type = Type::hinge;
   Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< in the body [m]
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< of a hinge, unit, in the body
   double stiffness = 0;                             ///< [N m/rad]
   bool is_limited = false;                          ///< it has a range
   pugi::xml_node node;                              ///< for messages
+
+  /// Whether it lets two segments rotate against each other.
+  [[nodiscard]] bool rotates() const { return type == Type::hinge || type == Type::ball; }
 };
 
 /// The plugin mujoco.elasticity.cable of a body.

@@ -23,7 +23,8 @@ constexpr double straight = 1e-6;
 /// Finds the chain, segment by segment.
 class ChainFinder {
  public:
-  ChainFinder(const XmlFile& xml, const MjcfWorld& world) : xml_(xml), world_(world) {}
+  ChainFinder(const MjcfAttributes& attributes, const MjcfWorld& world)
+      : xml_(attributes.xml()), refusals_(attributes.refusals()), world_(world) {}
 
   [[nodiscard]] MjcfChain find() {
     const std::vector<std::size_t> bodies = bodies_along();
@@ -33,6 +34,8 @@ class ChainFinder {
     set_diameter();
     set_rest_shape();
     set_joints();
+    refusals_.throw_if_any();
+    set_sections();
     chain_.words = world_.composite
                        ? "a composite cable"
                        : fmt::format("a chain of bodies with {} joints",
@@ -54,6 +57,10 @@ class ChainFinder {
     xml_.fail(body_of(segment).node, fmt::format("{} {}", name_of(segment.body), problem));
   }
 
+  void refuse(const MjcfSegment& segment, const std::string& problem) const {
+    refusals_.attempt([&] { fail(segment, problem); });
+  }
+
   /// Where a body's segment begins, in the body.
   [[nodiscard]] Vector3d begin_of(std::size_t body) const {
     const std::vector<MjcfJoint>& joints = world_.bodies[body].joints;
@@ -72,6 +79,11 @@ class ChainFinder {
     for (std::size_t i = 1; i < world_.bodies.size(); ++i) {
       const MjcfBody& body = world_.bodies[i];
       if (!body.moves) continue;
+      if (is_empty(i)) {
+        chain_.notes.push_back(
+            fmt::format("{} is ignored: it has no mass and no joint", name_of(i)));
+        continue;
+      }
       if (!along.empty() && body.parent != along.back()) {
         xml_.fail(body.node, fmt::format("{} is not in {}: a branch, or a second chain (allowed: "
                                          "one chain, each body in the one before)",
@@ -101,6 +113,14 @@ class ChainFinder {
                 "is the only body of its chain (allowed: two segments or more)");
     }
     return along;
+  }
+
+  /// Whether a body is only a name for a place.
+  [[nodiscard]] bool is_empty(std::size_t i) const {
+    const MjcfBody& body = world_.bodies[i];
+    const auto is_inside = [i](const MjcfBody& other) { return other.parent == i; };
+    return body.joints.empty() && body.geoms.empty() && !(body.mass > 0) &&
+           std::none_of(world_.bodies.begin() + 1, world_.bodies.end(), is_inside);
   }
 
   /// Whether a body that does not move is the first segment: as long as the next one, with a geom
@@ -158,27 +178,21 @@ class ChainFinder {
     const double h = chain_.segments.front().length();
     for (const MjcfSegment& segment : chain_.segments) {
       if (are_alike(segment.length(), h)) continue;
-      fail(segment, fmt::format("is {:.6g} m long, and the first segment {:.6g} m (allowed: "
-                                "segments of one length)",
-                                segment.length(), h));
+      refuse(segment, fmt::format("is {:.6g} m long, and the first segment {:.6g} m (allowed: "
+                                  "segments of one length)",
+                                  segment.length(), h));
     }
   }
 
   void set_mass() {
-    const double first = body_of(chain_.segments.front()).mass;
     for (const MjcfSegment& segment : chain_.segments) {
       const MjcfBody& body = body_of(segment);
-      if (!are_alike(body.mass, first)) {
-        fail(segment, fmt::format("weighs {:.6g} kg, and the first segment {:.6g} kg (allowed: "
-                                  "one mass per length)",
-                                  body.mass, first));
-      }
       chain_.mass += body.mass;
       const Vector3d from_begin = body.centre - segment.begin;
       const double along = from_begin.dot(segment.direction());
       const double across = (from_begin - along * segment.direction()).norm();
       if (body.mass > 0 && across > on_axis * segment.length()) {
-        fail(segment, fmt::format("has its mass {:.4g} m off its axis (allowed: on it)", across));
+        refuse(segment, fmt::format("has its mass {:.4g} m off its axis (allowed: on it)", across));
       }
       const double off = along / segment.length() - 0.5;
       if (body.mass > 0 && std::abs(off) > off_middle_) off_middle_ = std::abs(off);
@@ -204,7 +218,8 @@ class ChainFinder {
       const Vector3d t = body_of(segment).pose.linear() * segment.direction();
       if (before.norm() > 0 && before.cross(t).norm() > straight) chain_.is_curved = true;
       if (before.norm() > 0 && before.dot(t) < 0) {
-        fail(segment, "is rotated by more than a right angle from the one before (allowed: less)");
+        refuse(segment,
+               "is rotated by more than a right angle from the one before (allowed: less)");
       }
       before = t;
     }
@@ -220,13 +235,16 @@ class ChainFinder {
   }
 
   void set_joints();
-  void set_spring(const MjcfSegment& segment, const MjcfSpring& spring);
+  void set_sections();
+  void require_axis(const MjcfSegment& segment, const MjcfSpring& spring) const;
+  [[nodiscard]] MjcfSection section(double from, double to) const;
 
   const XmlFile& xml_;
+  XmlRefusals& refusals_;
   const MjcfWorld& world_;
   MjcfChain chain_;
-  double off_middle_ = 0;    // of the masses, in segments
-  bool has_spring_ = false;  // one is known already
+  double off_middle_ = 0;            // of the masses, in segments
+  std::vector<MjcfSpring> springs_;  // of the joints between segments, in their order
 };
 
 /// EI is a spring times the length that it stands for, half of both its segments.
@@ -234,42 +252,76 @@ void ChainFinder::set_joints() {
   for (std::size_t i = 1; i < chain_.segments.size(); ++i) {
     const MjcfSegment& segment = chain_.segments[i];
     const double h = (segment.length() + chain_.segments[i - 1].length()) / 2;
-    set_spring(segment, mjcf_spring(xml_, body_of(segment), segment.direction(), h));
+    refusals_.attempt([&] {
+      springs_.push_back(mjcf_spring(xml_, body_of(segment), segment.direction(), h));
+      require_axis(segment, springs_.back());
+      if (springs_.back().bending > 0) return;
+      fail(segment,
+           "has no spring in its joint (allowed: stiffness > 0, or the plugin "
+           "mujoco.elasticity.cable with bend > 0)");
+    });
   }
-  if (!(chain_.bending_stiffness > 0)) {
-    fail(chain_.segments[1],
-         "has no spring in its joint (allowed: stiffness > 0, or the plugin "
-         "mujoco.elasticity.cable with bend > 0)");
+  if (springs_.empty()) return;
+  const bool twists = std::ranges::all_of(springs_, [](const auto& s) { return s.twisting > 0; });
+  for (const MjcfSpring& spring : springs_) {
+    const auto count = static_cast<double>(springs_.size());
+    chain_.bending_stiffness += spring.bending / count;
+    if (twists) chain_.torsional_stiffness += spring.twisting / count;
   }
+  chain_.hinge = springs_.front().hinge;
   chain_.spring = chain_.bending_stiffness / chain_.segments.front().length();
   for (const MjcfSegment& segment : chain_.segments) {
-    for (const MjcfJoint& joint : body_of(segment).joints) {
-      if (!joint.is_limited) continue;
-      chain_.notes.emplace_back("limits of joints are taken for not reached");
-      return;
-    }
+    if (!std::ranges::any_of(body_of(segment).joints, &MjcfJoint::is_limited)) continue;
+    chain_.notes.emplace_back("limits of joints are assumed not to be reached");
+    return;
   }
 }
 
-void ChainFinder::set_spring(const MjcfSegment& segment, const MjcfSpring& spring) {
-  if (!std::exchange(has_spring_, true)) {
-    chain_.bending_stiffness = spring.bending;
-    chain_.torsional_stiffness = spring.twisting;
-    chain_.hinge = spring.hinge;
-  }
-  const bool one_plane = spring.hinge.norm() > 0;
-  if (chain_.hinge.cross(spring.hinge).norm() > straight ||
-      (chain_.hinge.norm() > 0) != one_plane) {
-    xml_.fail(body_of(segment).joints.front().node, "axis",
-              "is another one than that of the joint before (allowed: the same in all bodies)");
-  }
-  if (are_alike(spring.bending, chain_.bending_stiffness) &&
-      are_alike(spring.twisting, chain_.torsional_stiffness)) {
+void ChainFinder::require_axis(const MjcfSegment& segment, const MjcfSpring& spring) const {
+  const Vector3d& first = springs_.front().hinge;
+  if (first.cross(spring.hinge).norm() <= straight &&
+      (first.norm() > 0) == (spring.hinge.norm() > 0)) {
     return;
   }
-  fail(segment, fmt::format("has a joint of EI = {:.6g} N m^2, and the joint before {:.6g} N m^2 "
-                            "(allowed: one stiffness)",
-                            spring.bending, chain_.bending_stiffness));
+  xml_.fail(body_of(segment).joints.front().node, "axis",
+            "differs from the axis of the first joint (allowed: one axis for all bodies)");
+}
+
+/// Stiffnesses and mass between two neighbouring ends or middles of segments.
+MjcfSection ChainFinder::section(double from, double to) const {
+  const double h = chain_.length / static_cast<double>(chain_.segments.size());
+  const double middle = (from + to) / 2;
+  const auto segment = static_cast<std::size_t>(middle / h);
+  // The spring of joint i, between segments i and i + 1, stands for what is nearest to it.
+  const double joint =
+      std::clamp(std::round(middle / h) - 1, 0.0, static_cast<double>(springs_.size()) - 1);
+  const MjcfSpring& spring = springs_[static_cast<std::size_t>(joint)];
+  return {from, to, spring.bending, chain_.torsional_stiffness > 0 ? spring.twisting : 0,
+          body_of(chain_.segments[segment]).mass / h};
+}
+
+void ChainFinder::set_sections() {
+  const std::size_t halves = 2 * chain_.segments.size();
+  const double half = chain_.length / static_cast<double>(halves);
+  std::vector<MjcfSection>& sections = chain_.sections;
+  for (std::size_t i = 0; i < halves; ++i) {
+    const double from = static_cast<double>(i) * half;
+    MjcfSection next = section(from, i + 1 == halves ? chain_.length : from + half);
+    const bool goes_on = !sections.empty() &&
+                         are_alike(sections.back().bending_stiffness, next.bending_stiffness) &&
+                         are_alike(sections.back().torsional_stiffness, next.torsional_stiffness) &&
+                         are_alike(sections.back().mass_per_length, next.mass_per_length);
+    if (goes_on) {
+      sections.back().to = next.to;
+    } else {
+      sections.push_back(next);
+    }
+  }
+  if (sections.size() == 1) return sections.clear();
+  const auto [softest, stiffest] =
+      std::ranges::minmax(springs_, {}, [](const MjcfSpring& spring) { return spring.bending; });
+  chain_.notes.push_back(fmt::format("the cable has {} sections, EI {:.4g} to {:.4g} N m^2",
+                                     sections.size(), softest.bending, stiffest.bending));
 }
 
 }  // namespace
@@ -281,8 +333,8 @@ std::optional<std::size_t> MjcfChain::segment_of(std::size_t body) const {
   return std::nullopt;
 }
 
-MjcfChain find_mjcf_chain(const XmlFile& xml, const MjcfWorld& world) {
-  return ChainFinder(xml, world).find();
+MjcfChain find_mjcf_chain(const MjcfAttributes& attributes, const MjcfWorld& world) {
+  return ChainFinder(attributes, world).find();
 }
 
 }  // namespace dlo::compare

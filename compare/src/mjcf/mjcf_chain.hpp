@@ -20,15 +20,25 @@ struct MjcfSegment {
   [[nodiscard]] Eigen::Vector3d direction() const { return (end - begin).normalized(); }
 };
 
+/// A part of a cable with the same stiffness and mass per length.
+struct MjcfSection {
+  double from = 0, to = 0;         ///< arc lengths [m]
+  double bending_stiffness = 0;    ///< EI [N m^2]
+  double torsional_stiffness = 0;  ///< GJ [N m^2]; 0: none
+  double mass_per_length = 0;      ///< [kg/m]
+};
+
 /// The cable of a model, as a rod.
 struct MjcfChain {
   std::vector<MjcfSegment> segments;
   double length = 0;               ///< [m]
   double mass = 0;                 ///< [kg]
-  double bending_stiffness = 0;    ///< EI [N m^2]
-  double torsional_stiffness = 0;  ///< GJ [N m^2]; 0: none, of hinges
-  double diameter = 0;             ///< of its geoms [m]; 0: they are not round
-  double spring = 0;               ///< of a joint between two segments [N m/rad]
+  double bending_stiffness = 0;    ///< EI [N m^2], the mean of the joints
+  double torsional_stiffness = 0;  ///< GJ [N m^2], the mean of the joints; 0: none, of hinges
+  /// Empty if all segments have the same mass and all joints the same springs; else the whole rod.
+  std::vector<MjcfSection> sections;
+  double diameter = 0;  ///< of its geoms [m]; 0: they are not round
+  double spring = 0;    ///< of a joint between two segments [N m/rad]
   /// Axis of hinges that bend it in one plane only, in the world; zero: it bends everywhere.
   Eigen::Vector3d hinge = Eigen::Vector3d::Zero();
   bool is_curved = false;          ///< where it is free of stress
@@ -40,7 +50,7 @@ struct MjcfChain {
 };
 
 /// Finds the one chain of bodies and what a rod like it has.
-/// @throws InputError naming file, line, element and attribute of what no uniform rod has
-[[nodiscard]] MjcfChain find_mjcf_chain(const XmlFile& xml, const MjcfWorld& world);
+/// @throws InputError naming file, line, element and attribute of what no rod has
+[[nodiscard]] MjcfChain find_mjcf_chain(const MjcfAttributes& attributes, const MjcfWorld& world);
 
 }  // namespace dlo::compare

@@ -31,10 +31,12 @@ class HoldFinder {
     for (const pugi::xml_node& equality : xml_.root().children("equality")) {
       for (const pugi::xml_node& constraint : equality.children()) {
         if (!constrained) break;
-        if (constraint.type() == pugi::node_element && add(constraint)) is_soft = true;
+        if (constraint.type() != pugi::node_element) continue;
+        attributes_.refusals().attempt([&] { is_soft = add(constraint) || is_soft; });
       }
     }
     if (is_soft) notes.emplace_back("constraints, which are soft, are taken for rigid grippers");
+    attributes_.refusals().throw_if_any();
     if (holds_.empty()) {
       xml_.fail(world_.bodies[chain_.segments.front().body].node,
                 "begins a cable that nothing holds (allowed: a first body without a free joint, or "

@@ -81,8 +81,10 @@ std::string shape_text(const MjcfGeom& geom, const MjcfPose& pose) {
 
 }  // namespace
 
-std::string mjcf_obstacles(const XmlFile& xml, const MjcfWorld& world, const MjcfChain& chain,
-                           const std::vector<MjcfHold>& holds, std::vector<std::string>& notes) {
+std::string mjcf_obstacles(const MjcfAttributes& attributes, const MjcfWorld& world,
+                           const MjcfChain& chain, const std::vector<MjcfHold>& holds,
+                           std::vector<std::string>& notes) {
+  const XmlFile& xml = attributes.xml();
   const std::set<std::string> apart = excluded(xml, world, chain);
   const MjcfBody& last = world.bodies[chain.segments.back().body];
   std::string text;
@@ -108,10 +110,11 @@ std::string mjcf_obstacles(const XmlFile& xml, const MjcfWorld& world, const Mjc
       }
       const std::string shape = shape_text(geom, pose);
       if (shape.empty()) {
-        xml.fail(
-            geom.node, "type",
-            "of what the cable may touch (allowed: plane, sphere, capsule, box; or contype and "
-            "conaffinity 0)");
+        attributes.refusals().attempt([&] {
+          xml.fail(geom.node, "type",
+                   "of a geom that the cable may touch (allowed: plane, sphere, capsule, box; or "
+                   "contype and conaffinity 0)");
+        });
       }
       text += "\n[[obstacle]]\n" + shape;
       double friction = geom.friction;

@@ -11,7 +11,7 @@ namespace dlo::compare {
 /// The geoms of what does not move that collide with a cable, as tables [[obstacle]] of a scene.
 /// @param notes  on such as are neglected, added to
 /// @throws InputError naming file, line and element of one that no obstacle is like
-[[nodiscard]] std::string mjcf_obstacles(const XmlFile& xml, const MjcfWorld& world,
+[[nodiscard]] std::string mjcf_obstacles(const MjcfAttributes& attributes, const MjcfWorld& world,
                                          const MjcfChain& chain, const std::vector<MjcfHold>& holds,
                                          std::vector<std::string>& notes);
 

@@ -99,6 +99,20 @@ std::string rod_text(const MjcfWorld& world, const MjcfChain& chain) {
   return text;
 }
 
+std::string sections_text(const MjcfChain& chain) {
+  std::string text;
+  for (const MjcfSection& section : chain.sections) {
+    append(text,
+           "\n[[section]]\nfrom = {:.17g}\nto = {:.17g}\nbending_stiffness = {:.17g}\n"
+           "mass_per_length = {:.17g}\n",
+           section.from, section.to, section.bending_stiffness, section.mass_per_length);
+    if (section.torsional_stiffness > 0) {
+      append(text, "torsional_stiffness = {:.17g}\n", section.torsional_stiffness);
+    }
+  }
+  return text;
+}
+
 /// What has been derived and taken for what.
 ModelChain told(const MjcfWorld& world, const MjcfChain& chain,
                 const std::vector<std::string>& notes) {
@@ -116,20 +130,24 @@ ModelChain told(const MjcfWorld& world, const MjcfChain& chain,
 
 MjcfScene mjcf_scene(std::string_view text, const std::string& file) {
   const XmlFile xml(text, file);
-  const MjcfAttributes attributes(xml);
-  Options options = read_options(attributes);
+  XmlRefusals refusals;
+  const MjcfAttributes attributes(xml, refusals);
+  Options options;
+  refusals.attempt([&] { options = read_options(attributes); });
   const MjcfWorld world = read_mjcf_world(attributes);
-  const MjcfChain chain = find_mjcf_chain(xml, world);
+  refusals.throw_if_any();
+  const MjcfChain chain = find_mjcf_chain(attributes, world);
   require_in_plane(xml, world, chain, options.gravity);
-  std::vector<std::string> notes;
+  std::vector<std::string> notes = world.notes;
   const std::vector<MjcfHold> holds =
       find_mjcf_holds(attributes, world, chain, options.equality, notes);
   const std::string name =
       xml.root().attribute("model").as_string(std::filesystem::path(file).stem().c_str());
   std::string scene = fmt::format("name = {}\ngravity = {}\n", toml_string(valid_utf8(name)),
                                   toml_vector(options.gravity));
-  scene += rod_text(world, chain) + grippers_text(holds);
-  if (options.contact) scene += mjcf_obstacles(xml, world, chain, holds, notes);
+  scene += rod_text(world, chain) + sections_text(chain) + grippers_text(holds);
+  if (options.contact) scene += mjcf_obstacles(attributes, world, chain, holds, notes);
+  refusals.throw_if_any();
   return {std::move(scene), told(world, chain, notes)};
 }
 

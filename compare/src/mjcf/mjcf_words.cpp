@@ -57,8 +57,9 @@ const MjcfElement* mjcf_element(std::string_view name) {
 }
 
 bool mjcf_without_effect(std::string_view name) {
-  constexpr std::string_view all[] = {"visual",   "statistic", "size",  "asset",  "sensor",
-                                      "keyframe", "custom",    "light", "camera", "skin"};
+  constexpr std::string_view all[] = {"visual", "statistic", "size",    "asset",
+                                      "sensor", "keyframe",  "custom",  "light",
+                                      "camera", "skin",      "actuator"};
   return std::ranges::find(all, name) != std::end(all);
 }
 

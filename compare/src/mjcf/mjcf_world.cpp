@@ -1,8 +1,13 @@
 #include "mjcf/mjcf_world.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
 #include <string_view>
 #include <utility>
 
+#include "base/quote.hpp"
 #include "mjcf/mjcf_composite.hpp"
 #include "mjcf/mjcf_words.hpp"
 
@@ -26,6 +31,8 @@ class WorldReader {
     for (const pugi::xml_node& node : worlds) {
       read_children(node, {0, MjcfPose::Identity(), ""});
     }
+    fix_base();
+    note_ignored();
     return std::move(world_);
   }
 
@@ -39,17 +46,25 @@ class WorldReader {
 
   void read_children(const pugi::xml_node& parent, const Around& around) {
     // Bodies come behind all else of the body that they are in.
-    for (const pugi::xml_node& node : parent.children()) {
-      if (node.type() == pugi::node_element) read_part(node, around);
+    const auto attempt = [&](const pugi::xml_node& node, const auto& read) {
+      attributes_.refusals().attempt([&] { read(node); });
+    };
+    for (const pugi::xml_node& each : parent.children()) {
+      if (each.type() != pugi::node_element) continue;
+      attempt(each, [&](const pugi::xml_node& node) { read_part(node, around); });
     }
-    for (const pugi::xml_node& node : parent.children()) {
-      const std::string_view name = node.name();
-      if (name == "body") read_body(node, around);
-      if (name == "frame") read_children(node, within(node, around));
-      if (name == "composite") {
-        add_mjcf_composite(attributes_, node, world_.bodies[around.body].pose * around.at,
-                           around.body, world_);
-      }
+    for (const pugi::xml_node& each : parent.children()) {
+      attempt(each, [&](const pugi::xml_node& node) { read_inner(node, around); });
+    }
+  }
+
+  void read_inner(const pugi::xml_node& node, const Around& around) {
+    const std::string_view name = node.name();
+    if (name == "body") read_body(node, around);
+    if (name == "frame") read_children(node, within(node, around));
+    if (name == "composite") {
+      add_mjcf_composite(attributes_, node, world_.bodies[around.body].pose * around.at,
+                         around.body, world_);
     }
   }
 
@@ -73,12 +88,11 @@ class WorldReader {
                               around.at * attributes_.pose(node, around.childclass)});
     } else if (around.body > 0 && (name == "joint" || name == "freejoint")) {
       body.joints.push_back(read_mjcf_joint(attributes_, node, around.at, around.childclass));
-      body.moves = true;
     } else if (around.body > 0 && name == "plugin") {
       body.plugin = read_mjcf_plugin(attributes_, node);
     } else if (around.body == 0 || name != "inertial") {
       xml_.fail(node,
-                "cannot be said by a rod's scene here, or is unknown (allowed: body, geom, "
+                "has no counterpart in a rod's scene here, or is unknown (allowed: body, geom, "
                 "site, frame, composite, and of a body joint, inertial, plugin)");
     }
   }
@@ -91,7 +105,6 @@ class WorldReader {
     body.node = node;
     body.pose =
         world_.bodies[around.body].pose * around.at * attributes_.pose(node, around.childclass);
-    body.moves = world_.bodies[around.body].moves;
     attributes_.require_zero(node, "gravcomp", "takes a part of the weight away", "");
     const std::size_t index = world_.bodies.size();
     world_.bodies.push_back(std::move(body));
@@ -100,6 +113,56 @@ class WorldReader {
     const Around inside{index, MjcfPose::Identity(), childclass};
     read_children(node, inside);
     set_mjcf_mass(attributes_, node.child("inertial"), world_.bodies[index]);
+  }
+
+  /// Removes joints that only carry the whole cable about, and finds the bodies that move.
+  void fix_base() {
+    using Type = MjcfJoint::Type;
+    const bool held = !xml_.root().select_node("equality/*[not(@active='false')]").node().empty();
+    const auto carries = [&](const MjcfJoint& joint) {
+      return joint.type == Type::slide || (joint.type == Type::free && !held);
+    };
+    std::size_t last = 0;  // body that can bend the cable
+    for (std::size_t i = 1; i < world_.bodies.size(); ++i) {
+      if (std::ranges::any_of(world_.bodies[i].joints, &MjcfJoint::rotates)) last = i;
+    }
+    for (std::size_t i = 1; i < world_.bodies.size(); ++i) {
+      MjcfBody& body = world_.bodies[i];
+      const bool at_base = i <= last && !world_.bodies[body.parent].moves;
+      if (at_base && std::erase_if(body.joints, carries) > 0) {
+        world_.notes.push_back(fmt::format(
+            "slide or free joint of {} is ignored: the base is fixed where the model puts it",
+            body.name.empty() ? fmt::format("body {}", i) : quoted_piece(body.name)));
+      }
+      for (const MjcfJoint& joint : body.joints) {
+        if (joint.type != Type::slide) continue;
+        attributes_.refusals().attempt([&] {
+          xml_.fail(joint.node, "type",
+                    "slide of a segment (allowed: ball, hinge; slide and free at the base alone)");
+        });
+      }
+      body.moves = world_.bodies[body.parent].moves || !body.joints.empty();
+    }
+  }
+
+  void note_ignored() {
+    const pugi::xml_node root = xml_.root();
+    std::set<std::string_view> held;
+    for (const auto& used : root.select_nodes("equality/*/@site1 | equality/*/@site2")) {
+      held.insert(used.attribute().value());
+    }
+    const auto sites = root.select_nodes("worldbody//site");
+    const auto loose = std::count_if(sites.begin(), sites.end(), [&](const auto& site) {
+      return !held.contains(site.node().attribute("name").value());
+    });
+    std::vector<std::string> parts;
+    const auto add = [&](std::size_t count, const char* name) {
+      if (count > 0) parts.push_back(fmt::format("{} {}{}", count, name, count == 1 ? "" : "s"));
+    };
+    add(root.select_nodes("actuator/*").size(), "actuator");
+    add(root.select_nodes("sensor/*").size(), "sensor");
+    add(static_cast<std::size_t>(loose), "site");
+    if (!parts.empty()) world_.notes.push_back(fmt::format("ignored: {}", fmt::join(parts, ", ")));
   }
 
   const MjcfAttributes& attributes_;

@@ -19,7 +19,8 @@ struct MjcfSite {
 struct MjcfWorld {
   std::vector<MjcfBody> bodies;
   std::vector<MjcfSite> sites;
-  pugi::xml_node composite;  ///< of the cable; none if its bodies are written out
+  pugi::xml_node composite;        ///< of the cable; none if its bodies are written out
+  std::vector<std::string> notes;  ///< on ignored parts of the model
 };
 
 /// @throws InputError naming file, line, element and attribute that a rod's scene cannot say
