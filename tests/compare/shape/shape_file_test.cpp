@@ -153,7 +153,7 @@ TEST(ShapeFile, RefusesMalformedVtkWithFileAndLine) {
   const std::string head = vtk_head;
   const std::string points = head + vtk_points;
   expect_refused({
-      {"<VTKFile type=\"PolyData\">", {"mine:1: not well-formed XML"}},
+      {"<VTKFile type=\"PolyData\">", {"mine: XML such as VTU or VTP", "read_nodes.md"}},
       {points + "POINT_DATA 3\nFIELD f 1\narc_length_m 1 2 double\n0 1\n", {"mine:10", "3 values"}},
       {points + "POINT_DATA 3\nFIELD f 1\narc_length_m 1 3 double\n0 1 b\n", {"mine:11", "\"b\""}},
       {points + "POINT_DATA 3\nFIELD f 1\narc_length_m 1 3 double\n0 1 1\n", {"s = 1 after 1"}},
