@@ -102,9 +102,7 @@ TEST_F(PlotCommand, CompareReportsEachScene) {
       "[force_model]\nlaw = \"hooke\"\nbookkeeping = \"consistent\"\n"
       "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = 0\n");
   const std::string command = "compare " + steel() + " " + gentle;
-  const Outcome plain = run(command);
-  const Outcome reported = run(command + " --report " + path("both.html"));
-  EXPECT_EQ(reported.out, plain.out);
+  succeeds(command + " --report " + path("both.html"));
   const std::string page = read(path("both.html"));
   EXPECT_THAT(page, HasSubstr("<p class=\"badge fail\">"));
   EXPECT_THAT(page, HasSubstr("<p class=\"badge pass\">"));
