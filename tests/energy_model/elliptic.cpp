@@ -5,7 +5,6 @@
 #include <gsl/gsl_sf_ellint.h>
 
 #include <cmath>
-#include <memory>
 #include <numbers>
 
 #include "base/silence_gsl.hpp"
@@ -68,12 +67,14 @@ double residual(double x, void* data) {
 /// The x at which the rod has its length; the first integral grows with x and is not less than it.
 double solve_length(Length length) {
   gsl_function function{residual, &length};
-  const std::unique_ptr<gsl_root_fsolver, decltype(&gsl_root_fsolver_free)> solver(
-      gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
-  gsl_root_fsolver_set(solver.get(), &function, 0, length.root_load + 1);
+  const auto solver =
+      gsl_owned(gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
+  if (gsl_root_fsolver_set(solver.get(), &function, 0, length.root_load + 1) != GSL_SUCCESS) {
+    return NAN;
+  }
   constexpr int most_iterations = 200;
   for (int i = 0; i < most_iterations; ++i) {
-    if (gsl_root_fsolver_iterate(solver.get()) != GSL_SUCCESS) break;
+    if (gsl_root_fsolver_iterate(solver.get()) != GSL_SUCCESS) return NAN;
     if (gsl_root_test_interval(gsl_root_fsolver_x_lower(solver.get()),
                                gsl_root_fsolver_x_upper(solver.get()), 0, 4e-16) == GSL_SUCCESS) {
       break;

@@ -1,12 +1,12 @@
 #include "fit/material_alone.hpp"
 
 #include <fmt/format.h>
-#include <gsl/gsl_cdf.h>
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "base/gsl.hpp"
 #include "fit/material_errors.hpp"
 #include "fit/systematic_residuals.hpp"
 #include "wire/identifiable.hpp"
@@ -94,7 +94,8 @@ void draw_profile(MaterialProfiles& material, const LogProfile::Interval& interv
 std::string warning_of(const MaterialProfiles& material, double squares,
                        const std::optional<double>& noise) {
   const double nu = material.freedom();
-  if (noise && nu > 0 && squares > std::pow(*noise, 2) * gsl_cdf_chisq_Qinv(1e-3, nu)) {
+  if (noise && nu > 0 &&
+      squares > std::pow(*noise, 2) * gsl_distribution(gsl_cdf_chisq_Qinv, 1e-3, nu)) {
     return fmt::format(
         "the rod does not fit these shapes: its residuals are {:.3g} times what the given noise "
         "explains, so the interval means nothing",

@@ -1,10 +1,9 @@
 #include "fit/material_errors.hpp"
 
-#include <gsl/gsl_cdf.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "base/gsl.hpp"
 #include "wire/between_shapes.hpp"
 #include "wire/identifiable.hpp"
 
@@ -79,8 +78,9 @@ double MaterialErrors::level(std::size_t number) const {
 
 double MaterialErrors::rival_level(std::size_t number) const {
   const double nu = std::max(1.0, effects_[number].degrees_of_freedom);
-  const double excess_of_all = options_.noise ? gsl_cdf_chisq_Qinv(1e-3, fitted_)
-                                              : fitted_ * gsl_cdf_fdist_Qinv(1e-3, fitted_, nu);
+  const double excess_of_all =
+      options_.noise ? gsl_distribution(gsl_cdf_chisq_Qinv, 1e-3, fitted_)
+                     : fitted_ * gsl_distribution(gsl_cdf_fdist_Qinv, 1e-3, fitted_, nu);
   return std::max(level(number), least_ + variance_ * excess(number) * excess_of_all);
 }
 

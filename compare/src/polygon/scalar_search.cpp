@@ -8,7 +8,8 @@
 #include <cmath>
 #include <exception>
 #include <limits>
-#include <memory>
+
+#include "base/gsl.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -30,13 +31,6 @@ double call_for_gsl(double x, void* data) {
     watched.error = std::current_exception();
   }
   return std::numeric_limits<double>::infinity();
-}
-
-/// GSL aborts the program on errors unless told otherwise; every call looks at its result instead.
-/// Set once, so that threads do not set it at the same time.
-void keep_gsl_from_aborting() {
-  static const bool silent = gsl_set_error_handler_off() != nullptr;
-  (void)silent;
 }
 
 }  // namespace
@@ -61,11 +55,11 @@ Minimum minimum_near(const Function& function, const Scan& scan, double toleranc
   Minimum result{scan.x[best], scan.value[best]};
   // Of equal values the first is the best, which may be an end.
   if (!scan.is_bracketed()) return result;
-  keep_gsl_from_aborting();
+  silence_gsl();
   Watched watched{&function};
   gsl_function gsl{call_for_gsl, &watched};
-  const std::unique_ptr<gsl_min_fminimizer, decltype(&gsl_min_fminimizer_free)> minimiser(
-      gsl_min_fminimizer_alloc(gsl_min_fminimizer_brent), gsl_min_fminimizer_free);
+  const auto minimiser =
+      gsl_owned(gsl_min_fminimizer_alloc(gsl_min_fminimizer_brent), gsl_min_fminimizer_free);
   // A value that is not finite makes GSL stop; the scan's best then stands.
   if (gsl_min_fminimizer_set_with_values(minimiser.get(), &gsl, result.x, result.value,
                                          scan.x[best - 1], scan.value[best - 1], scan.x[best + 1],
@@ -97,7 +91,7 @@ Minimum minimum_near(const Function& function, const Scan& scan, double toleranc
 
 double crossing(const Function& function, double inside, double outside, double level,
                 double tolerance) {
-  keep_gsl_from_aborting();
+  silence_gsl();
   // Brent's method interpolates, so what is infinite is made merely large.
   const Function finite = [&](double x) {
     const double value = function(x);
@@ -105,8 +99,8 @@ double crossing(const Function& function, double inside, double outside, double 
   };
   Watched watched{&finite, level};
   gsl_function gsl{call_for_gsl, &watched};
-  const std::unique_ptr<gsl_root_fsolver, decltype(&gsl_root_fsolver_free)> solver(
-      gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
+  const auto solver =
+      gsl_owned(gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
   if (gsl_root_fsolver_set(solver.get(), &gsl, std::min(inside, outside),
                            std::max(inside, outside)) != GSL_SUCCESS) {
     return outside;

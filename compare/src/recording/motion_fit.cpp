@@ -1,7 +1,6 @@
 #include "recording/motion_fit.hpp"
 
 #include <fmt/format.h>
-#include <gsl/gsl_cdf.h>
 #include <gsl/gsl_multifit_nlinear.h>
 
 #include <Eigen/QR>
@@ -10,9 +9,9 @@
 #include <exception>
 #include <limits>
 #include <map>
-#include <memory>
 #include <utility>
 
+#include "base/gsl.hpp"
 #include "dlo/compare/error.hpp"
 #include "recording/motion_residuals.hpp"
 
@@ -25,6 +24,9 @@ constexpr double log_difference = 3e-3;
 constexpr int most_fit_steps = 40;
 /// On the beginning, where next to nothing says how it is damped.
 constexpr int most_first_steps = 6;
+/// Movement of the rod that is none, divided by the rod length: ten times the error of a step of
+/// the simulation.
+constexpr double no_movement = 1e-6;
 /// A number is looked for within this factor of where it begins.
 constexpr double widest_factor = 1e4;
 
@@ -115,6 +117,19 @@ class MotionMisfit {
   /// Of the scene as it is.
   Eigen::VectorXd given() { return simulated(scene_, options_.damping); }
 
+  /// Checks that the last simulation moves the rod at the markers between the recorded times.
+  /// @throws InputError if it does not: every stiffness and damping then fits the recording
+  void require_movement() const {
+    if (!stopped_.empty() || movement_ > no_movement * scene_.length) return;
+    const TimeSpan motion = *motion_of(scene_);
+    throw InputError(fmt::format(
+        "{}: the rod does not move at the markers of all {} rows, time = {:g} to {:g} s, so they "
+        "identify neither stiffness nor damping (allowed: times in which it moves; {} moves it "
+        "from {:g} to {:g} s)",
+        recorded_.file, recorded_.positions.size(), frames_.front().time, frames_.back().time,
+        scene_.file, motion.begin, motion.end));
+  }
+
   /// Why the last simulation did not come to its end; empty: it did.
   [[nodiscard]] const std::string& stopped() const { return stopped_; }
 
@@ -134,12 +149,15 @@ class MotionMisfit {
     stopped_ = run.moved.frames.size() < times.size() ? run.why_stopped() : "";
     if (!stopped_.empty()) return result;
     terms_ = run.moved.terms;
+    movement_ = 0;
     for (std::size_t k = 0; k < looked_at_; ++k) {
       std::vector<double> s;
       for (std::size_t i = frames_[k].begin; i < frames_[k].end; ++i) {
         s.push_back(*on_rod(recorded_.positions[i].arc_length, scene.length));
       }
       const Eigen::Matrix3Xd points = run.moved.frames[k].sample(s).points;
+      const Eigen::Matrix3Xd moved = points - run.moved.frames.front().sample(s).points;
+      movement_ = std::max(movement_, moved.colwise().norm().maxCoeff());
       for (std::size_t i = 0; i < s.size(); ++i) {
         const std::size_t row = frames_[k].begin + i;
         result.segment<3>(static_cast<Eigen::Index>(3 * row)) =
@@ -159,6 +177,7 @@ class MotionMisfit {
   int simulations_ = 0;
   int terms_ = 0;  // that the last one took; 0: none yet
   bool in_motion_ = false;
+  double movement_ = 0;  // largest distance of a marker from where the last simulation began [m]
   std::string stopped_;
 };
 
@@ -240,6 +259,7 @@ struct GslProblem {
 /// Levenberg's and Marquardt's steps by GSL.
 NearestMotion least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start, int most_steps) {
   GslProblem problem{misfit, {}, {}, nullptr};
+  silence_gsl();
   gsl_multifit_nlinear_fdf fdf{};
   fdf.n = misfit.coordinates();
   fdf.p = static_cast<std::size_t>(start.size());
@@ -251,20 +271,25 @@ NearestMotion least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start, 
     return static_cast<GslProblem*>(data)->differentiate(x, J);
   };
   const gsl_multifit_nlinear_parameters parameters = gsl_multifit_nlinear_default_parameters();
-  const std::unique_ptr<gsl_multifit_nlinear_workspace, decltype(&gsl_multifit_nlinear_free)> work(
-      gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &parameters, fdf.n, fdf.p),
-      &gsl_multifit_nlinear_free);
+  const auto work =
+      gsl_owned(gsl_multifit_nlinear_alloc(gsl_multifit_nlinear_trust, &parameters, fdf.n, fdf.p),
+                gsl_multifit_nlinear_free);
   const gsl_vector_const_view first = gsl_vector_const_view_array(start.data(), fdf.p);
-  gsl_multifit_nlinear_init(&first.vector, &fdf, work.get());
+  int status = gsl_multifit_nlinear_init(&first.vector, &fdf, work.get());
   NearestMotion result;
-  for (int step = 0; step < most_steps && !problem.failed; ++step) {
-    const int status = gsl_multifit_nlinear_iterate(work.get());
+  for (int step = 0; step < most_steps && status == GSL_SUCCESS; ++step) {
+    status = gsl_multifit_nlinear_iterate(work.get());
     result.logs = mapped(gsl_multifit_nlinear_position(work.get()));
     result.residuals = mapped(gsl_multifit_nlinear_residual(work.get()));
     result.design = rows_of(gsl_multifit_nlinear_jac(work.get()));
-    if (status != GSL_SUCCESS || is_least(result)) break;
+    if (is_least(result)) break;
   }
   if (problem.failed) std::rethrow_exception(problem.failed);
+  // Without progress the last position is the least to rounding.
+  if (status != GSL_SUCCESS && status != GSL_ENOPROG) {
+    throw ConvergenceError(
+        fmt::format("the least-squares fit to the recording stopped: {}", gsl_strerror(status)));
+  }
   return result;
 }
 
@@ -323,7 +348,7 @@ void add_numbers(const Scene& scene, const MotionMisfit& misfit, const NearestMo
       nearest.residuals.squaredNorm() / (static_cast<double>(result.coordinates) - numbers);
   result.noise = std::sqrt(variance);
   const Eigen::MatrixXd covariance = share * variance * inverse_normal(nearest.design);
-  const double quantile = gsl_cdf_tdist_Pinv(0.975, freedom);
+  const double quantile = gsl_distribution(gsl_cdf_tdist_Pinv, 0.975, freedom);
   for (std::size_t i = 0; i < misfit.sought().size(); ++i) {
     const auto k = static_cast<Eigen::Index>(i);
     const double value = misfit.value(i, nearest.logs[k]);
@@ -380,6 +405,7 @@ MotionFit fit_motion(const Scene& scene, const MarkerMotion& recorded,
     throw InputError(recorded.file + ": too few rows");
   }
   const Eigen::VectorXd given = misfit.given();
+  misfit.require_movement();
   result.given_rms = rms_of(given.reshaped(3, given.size() / 3));
   constexpr double beginning = 0.2;
   misfit.look_at(beginning);

@@ -1,12 +1,12 @@
 #include "wire/between_shapes.hpp"
 
-#include <gsl/gsl_cdf.h>
-
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <limits>
+
+#include "base/gsl.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -221,11 +221,11 @@ std::optional<ScatterBetweenShapes> scatter_between(const std::vector<ShapeEstim
   if (telling.size() < 2) return std::nullopt;
   const auto freedom = static_cast<double>(telling.size() - 1);
   const Spread together = spread(telling, 0);
-  const double chance = gsl_cdf_chisq_Q(together.squares, freedom);
+  const double chance = gsl_distribution(gsl_cdf_chisq_Q, together.squares, freedom);
   if (!(chance < significant_chance)) return std::nullopt;
   const double between = variance_between(telling, freedom);
-  const double with =
-      gsl_cdf_tdist_Pinv(0.975, freedom) / std::sqrt(spread(telling, between).precision);
+  const double with = gsl_distribution(gsl_cdf_tdist_Pinv, 0.975, freedom) /
+                      std::sqrt(spread(telling, between).precision);
   const double without = quantile / std::sqrt(together.precision);
   return ScatterBetweenShapes{.relative_deviation = std::sqrt(between),
                               .chance = chance,

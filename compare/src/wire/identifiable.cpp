@@ -1,11 +1,11 @@
 #include "wire/identifiable.hpp"
 
 #include <fmt/format.h>
-#include <gsl/gsl_cdf.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "base/gsl.hpp"
 #include "scene/reach.hpp"
 
 namespace dlo::compare {
@@ -31,7 +31,8 @@ std::string why_unforced(const Scene& scene) {
 
 double interval_quantile(const std::optional<double>& noise, double freedom) {
   constexpr double one_side = 0.975;
-  return noise ? gsl_cdf_ugaussian_Pinv(one_side) : gsl_cdf_tdist_Pinv(one_side, freedom);
+  return noise ? gsl_distribution(gsl_cdf_ugaussian_Pinv, one_side)
+               : gsl_distribution(gsl_cdf_tdist_Pinv, one_side, freedom);
 }
 
 FittedValue fitted_value(double logarithm, const LogProfile::Interval& interval, double unit,

@@ -1,7 +1,6 @@
 #include "wire/wire_result.hpp"
 
 #include <fmt/format.h>
-#include <gsl/gsl_cdf.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/gsl.hpp"
 #include "wire/between_shapes.hpp"
 #include "wire/identifiable.hpp"
 
@@ -65,7 +65,7 @@ class WireIntervals {
     constexpr double significant = 0.05;
     const double squares = optimum_.errors().squares;
     const double freedom = optimum_.errors().freedom_of_squares;
-    if (!(gsl_cdf_chisq_Q(squares, freedom) < significant)) return 1;
+    if (!(gsl_distribution(gsl_cdf_chisq_Q, squares, freedom) < significant)) return 1;
     const double times = std::sqrt(squares / freedom);
     warn(fit, fmt::format("the residuals are {:.3g} times what the given noise explains; the "
                           "interval is as much wider",

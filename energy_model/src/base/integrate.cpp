@@ -4,7 +4,6 @@
 #include <gsl/gsl_odeiv2.h>
 
 #include <cmath>
-#include <memory>
 
 #include "base/silence_gsl.hpp"
 
@@ -13,13 +12,6 @@ namespace {
 
 constexpr int most_integrator_steps = 20000;
 
-template <class T, void (*release)(T*)>
-struct Release {
-  void operator()(T* pointer) const { release(pointer); }
-};
-template <class T, void (*release)(T*)>
-using Owned = std::unique_ptr<T, Release<T, release>>;
-
 }  // namespace
 
 bool integrate(int (*rates)(double, const double*, double*, void*), void* data, double length,
@@ -27,11 +19,11 @@ bool integrate(int (*rates)(double, const double*, double*, void*), void* data, 
   silence_gsl();
   const std::size_t size = y.size();
   gsl_odeiv2_system system{rates, nullptr, size, data};
-  const Owned<gsl_odeiv2_step, gsl_odeiv2_step_free> step(
-      gsl_odeiv2_step_alloc(gsl_odeiv2_step_rk8pd, size));
-  const Owned<gsl_odeiv2_control, gsl_odeiv2_control_free> control(
-      gsl_odeiv2_control_y_new(tolerance, tolerance));
-  const Owned<gsl_odeiv2_evolve, gsl_odeiv2_evolve_free> evolve(gsl_odeiv2_evolve_alloc(size));
+  const auto step =
+      gsl_owned(gsl_odeiv2_step_alloc(gsl_odeiv2_step_rk8pd, size), gsl_odeiv2_step_free);
+  const auto control =
+      gsl_owned(gsl_odeiv2_control_y_new(tolerance, tolerance), gsl_odeiv2_control_free);
+  const auto evolve = gsl_owned(gsl_odeiv2_evolve_alloc(size), gsl_odeiv2_evolve_free);
   double s = 0;
   double h = length / 4;
   for (int i = 0; i < most_integrator_steps && s < length; ++i) {

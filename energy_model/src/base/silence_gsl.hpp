@@ -2,12 +2,28 @@
 
 #include <gsl/gsl_errno.h>
 
+#include <memory>
+#include <new>
+
 namespace dlo::energy_model {
 
-/// GSL aborts the program on errors unless told otherwise; every call looks at its result instead.
+/// Turns off GSL's error handler, which aborts the program. Every function that calls GSL calls
+/// this first and checks each status.
 inline void silence_gsl() {
   static const bool silent = gsl_set_error_handler_off() != nullptr;
   (void)silent;
+}
+
+/// An object that GSL has allocated, with the function that frees it.
+template <class T>
+using GslOwned = std::unique_ptr<T, void (*)(T*)>;
+
+/// Takes ownership of an object that GSL has allocated.
+/// @throws std::bad_alloc if it is null, as GSL's functions return without its error handler
+template <class T>
+[[nodiscard]] GslOwned<T> gsl_owned(T* object, void (*release)(T*)) {
+  if (object == nullptr) throw std::bad_alloc();
+  return {object, release};
 }
 
 }  // namespace dlo::energy_model

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <memory>
 #include <numbers>
 
 #include "base/silence_gsl.hpp"
@@ -89,8 +88,8 @@ double slope_of(double start, void* data) {
 double refine_root(Shooter& shooter, double (*function_of)(double, void*), double low,
                    double high) {
   gsl_function function{function_of, &shooter};
-  const std::unique_ptr<gsl_root_fsolver, decltype(&gsl_root_fsolver_free)> solver(
-      gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
+  const auto solver =
+      gsl_owned(gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
   bool good = gsl_root_fsolver_set(solver.get(), &function, low, high) == GSL_SUCCESS;
   for (int i = 0; i < 200 && good; ++i) {
     good = gsl_root_fsolver_iterate(solver.get()) == GSL_SUCCESS;

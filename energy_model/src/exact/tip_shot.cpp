@@ -7,8 +7,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <memory>
 #include <numbers>
+
+#include "base/silence_gsl.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -73,18 +74,18 @@ bool integrate(const TipFrame& frame, double start, double tolerance,
   const std::size_t n = changes ? components_and_changes : components;
   TipSection section{frame.weight, Eigen::Vector2d::Zero(), changes};
   gsl_odeiv2_system system{section_rates, nullptr, n, &section};
-  const std::unique_ptr<gsl_odeiv2_step, decltype(&gsl_odeiv2_step_free)> step(
-      gsl_odeiv2_step_alloc(gsl_odeiv2_step_rk8pd, n), gsl_odeiv2_step_free);
-  const std::unique_ptr<gsl_odeiv2_evolve, decltype(&gsl_odeiv2_evolve_free)> evolve(
-      gsl_odeiv2_evolve_alloc(n), gsl_odeiv2_evolve_free);
+  silence_gsl();
+  const auto step =
+      gsl_owned(gsl_odeiv2_step_alloc(gsl_odeiv2_step_rk8pd, n), gsl_odeiv2_step_free);
+  const auto evolve = gsl_owned(gsl_odeiv2_evolve_alloc(n), gsl_odeiv2_evolve_free);
   // psi may start exponentially small, and its relative error is what counts then.
   const double small = std::max(std::min(std::abs(start), 1.0), 1e-300);
   const double angle_scale = frame.parallel() ? small : 1.0;
   const std::array<double, components_and_changes> scale = {angle_scale, angle_scale, 1, 1,
                                                             1,           1,           1, 1};
-  const std::unique_ptr<gsl_odeiv2_control, decltype(&gsl_odeiv2_control_free)> control(
-      gsl_odeiv2_control_scaled_new(tolerance, tolerance, 1, 0, scale.data(), n),
-      gsl_odeiv2_control_free);
+  const auto control =
+      gsl_owned(gsl_odeiv2_control_scaled_new(tolerance, tolerance, 1, 0, scale.data(), n),
+                gsl_odeiv2_control_free);
 
   TipState state{};
   state[psi] = start;

@@ -3,6 +3,7 @@
 #include <gsl/gsl_linalg.h>
 
 #include <Eigen/Eigenvalues>
+#include <stdexcept>
 
 #include "base/silence_gsl.hpp"
 
@@ -51,7 +52,9 @@ void PolygonFactor::solve_banded(Eigen::Ref<Eigen::VectorXd> vector) {
   const gsl_matrix_view factor = view_of(factor_);
   gsl_vector_view entries =
       gsl_vector_view_array(vector.data(), static_cast<std::size_t>(vector.size()));
-  gsl_linalg_ldlt_band_svx(&factor.matrix, &entries.vector);
+  if (gsl_linalg_ldlt_band_svx(&factor.matrix, &entries.vector) != GSL_SUCCESS) {
+    throw std::logic_error("PolygonFactor: the vector has another size than the factor");
+  }
 }
 
 }  // namespace dlo::energy_model

@@ -156,4 +156,17 @@ TEST_F(MotionCommand, CalibrateFindsTheStiffnessThatMovedTheMarkers) {
   expect_error(calibrate + "--format csv", 2, {"--motion: has no format csv"});
 }
 
+// After the scene's motion, and within less than any time that counts.
+TEST_F(MotionCommand, CalibrateRefusesRowsInWhichTheRodDoesNotMove) {
+  const std::string header = "time,s,x,y,z\n";
+  write("after.csv", header + "50,0.3,0,-0.3,0\n50.1,0.3,0,-0.3,0\n50.2,0.3,0,-0.3,0\n");
+  write("short.csv", header + "0,0.2,0.1,-0.17,0\n0,0.4,0.2,-0.3,0\n3e-13,0.2,0.1,-0.17,0\n");
+  const auto refused = [&](const std::string& file, const std::string& time) {
+    expect_error(words({"calibrate", path("swung.toml"), "--motion", path(file)}), 2,
+                 {file + ": the rod does not move", "all 3 rows", time, "from 0 to 0.3 s"});
+  };
+  refused("after.csv", "time = 50 to 50.2 s");
+  refused("short.csv", "time = 0 to 3e-13 s");
+}
+
 }  // namespace
