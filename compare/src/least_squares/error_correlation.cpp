@@ -11,8 +11,10 @@ namespace {
 
 /// Residuals beyond the fitted numbers with which a correlation is looked for.
 constexpr Eigen::Index least_degrees_of_freedom = 5;
-/// Columns of the design below this share of the largest are rounding: the fit leaves them free.
-constexpr double rank_tolerance = 1e-8;
+/// Part of a design column, divided by the column, that the columns before it do not explain and
+/// that is an error: shapes are right to 1e-10 l, and derivatives are their differences over
+/// strides of 1e-3 that move them by some 0.1 l.
+constexpr double rank_tolerance = 1e-6;
 /// A gain of twice the log likelihood that independent errors reach in one case of twenty or fewer,
 /// between the 2.71 of one parameter at its bound and the 5.99 of two (measured: see the tests).
 constexpr double significant_gain = 5;
@@ -43,19 +45,6 @@ Stacked stacked(const std::vector<ResidualSeries>& series) {
     row += count;
   }
   return result;
-}
-
-/// An orthonormal basis of the columns' span, without those that are rounding.
-Eigen::MatrixXd basis_of(Eigen::MatrixXd columns) {
-  if (columns.cols() == 0) return columns;
-  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
-    const double norm = columns.col(k).norm();
-    if (norm > 0) columns.col(k) /= norm;
-  }
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
-  qr.setThreshold(rank_tolerance);
-  const Eigen::Index rank = qr.rank();
-  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), rank);
 }
 
 /// Columns turned into independent innovations of unit variance by the Kalman filter of
@@ -179,6 +168,18 @@ double squared_entries(const std::vector<double>& step, const ErrorCovariance& c
 }
 
 }  // namespace
+
+Eigen::MatrixXd basis_of(Eigen::MatrixXd columns) {
+  if (columns.cols() == 0) return columns;
+  for (Eigen::Index k = 0; k < columns.cols(); ++k) {
+    const double norm = columns.col(k).norm();
+    if (norm > 0) columns.col(k) /= norm;
+  }
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(columns);
+  qr.setThreshold(rank_tolerance);
+  const Eigen::Index rank = qr.rank();
+  return qr.householderQ() * Eigen::MatrixXd::Identity(columns.rows(), rank);
+}
 
 std::vector<ResidualSeries> thinned(const std::vector<ResidualSeries>& series) {
   constexpr Eigen::Index most_rows = 250;

@@ -23,6 +23,11 @@ struct ErrorCovariance {
   double length = 0;  ///< of correlation [m]
 };
 
+/// Returns an orthonormal basis of the span of design columns, which may have any scale. A column
+/// that the others explain up to the errors of derivatives by differences counts as explained: two
+/// numbers that move all points alike have one column in the basis.
+[[nodiscard]] Eigen::MatrixXd basis_of(Eigen::MatrixXd columns);
+
 /// With no more than 250 rows each, equally many left out between two: enough to tell covariances
 /// apart, of which hundreds are tried.
 [[nodiscard]] std::vector<ResidualSeries> thinned(const std::vector<ResidualSeries>& series);

@@ -14,8 +14,10 @@ struct GaussNewtonOptions {
   double least_noise = 0;       ///< it is taken to be no less [m]
   double lowest = -std::numeric_limits<double>::infinity();  ///< of the first number
   double highest = std::numeric_limits<double>::infinity();  ///< of the first number
-  double last_step = 0.01;  ///< share of every number's standard deviation below which it ends
-  double least_gain = 0;    ///< share of the deviance that a step has to promise to be made
+  /// Largest step of any number, divided by its standard deviation, with which the iteration ends;
+  /// with the default the fourth digits of numbers and intervals hold.
+  double last_step = 1e-5;
+  double least_gain = 0;  ///< share of the deviance that a step has to promise to be made
 };
 
 /// The least deviance of measured shapes over numbers that change their scenes: least squares with

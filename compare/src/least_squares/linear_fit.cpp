@@ -60,9 +60,9 @@ Eigen::MatrixXd posterior_under(const std::vector<ResidualSeries>& series, const
 VarianceEstimate variance_under(const std::vector<ResidualSeries>& series,
                                 const ErrorCovariance& errors, Eigen::Index frames) {
   const LinearFit fit = linear_fit(series, errors, frames);
-  const Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> design(fit.design);
-  const auto freedom = static_cast<double>(fit.freedom - design.rank());
-  const Eigen::VectorXd left = fit.residual - fit.design * design.solve(fit.residual);
+  const Eigen::MatrixXd basis = basis_of(fit.design);
+  const auto freedom = static_cast<double>(fit.freedom - basis.cols());
+  const Eigen::VectorXd left = fit.residual - basis * (basis.transpose() * fit.residual).eval();
   return {left.squaredNorm() / std::max(1.0, freedom), freedom};
 }
 

@@ -15,9 +15,9 @@ namespace {
 /// much of it.
 constexpr int most_weights = 3;
 constexpr double weight_tolerance = 0.1;
-/// An end of the interval is right if the deviance there is its quantile's square to this share.
-constexpr double end_tolerance = 0.05;
-constexpr int most_ends = 6;
+/// Relative error of the root of the deviance at an end of the interval: below the printed digits.
+constexpr double end_tolerance = 1e-5;
+constexpr int most_ends = 12;
 
 }  // namespace
 
@@ -94,13 +94,21 @@ std::optional<double> WireOptimum::end(double side) {
   const double farthest = side > 0 ? range.highest - values()[0] : values()[0] - range.lowest;
   constexpr double jump = 4;
   double distance = linear;
+  double before = 0;  // the distance of the last step, and the root of the deviance there
+  double reached_before = 0;
   for (int i = 0; i < most_ends; ++i) {
     if (!(distance < farthest)) return std::nullopt;
     const double excess = unlikelihood(values()[0] + side * distance);
     const double reached = std::sqrt(std::max(0.0, excess));
     if (!(reached < jump * wanted)) return linear;
     if (std::abs(reached - wanted) <= end_tolerance * wanted) break;
-    distance *= std::clamp(wanted / std::max(reached, 1e-300), 0.5, 2.0);
+    // The secant; the root grows about in proportion to the distance, from 0.
+    const double slope = (reached - reached_before) / (distance - before);
+    const double next = slope > 0 ? distance + (wanted - reached) / slope
+                                  : distance * wanted / std::max(reached, 1e-300);
+    before = distance;
+    reached_before = reached;
+    distance = std::clamp(next, distance / 2, distance * 2);
   }
   return distance;
 }
