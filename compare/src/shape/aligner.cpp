@@ -25,6 +25,9 @@ constexpr Eigen::Index most_coarse_points = 200;
 constexpr double least_squares_gain = 1e-9;
 /// Of a mean square: more than noise makes of the points that are left out.
 constexpr double clearly_worse = 4;
+/// Share of the rod by which a file may be longer or shorter for its ends to be the
+/// rod's: what lengths along a dozen points of a smooth rod and single precision leave.
+constexpr double end_slack = 1e-3;
 /// Share of the rod by which a file may be shorter and is taken for all of it.
 constexpr double whole_slack = 0.03;
 /// Places along the rod at which a part of it may lie.
@@ -62,6 +65,9 @@ Aligner::Aligner(const MeasuredShape& shape, double length, const AlignOptions& 
     along.arc_length = lengths_along(along.points);
     const double total = along.arc_length.back();
     is_whole_ = total >= (1 - whole_slack) * length;
+    // A chain's polyline is as long as the rod, a curve through points on it by its arcs.
+    has_rod_ends_ = total >= (1 - end_slack) * length &&
+                    polyline_length(along.points) <= (1 + end_slack) * length;
     if (rule_ == ArcLengths::chord || total > length) along = stretched_to_rod(std::move(along));
   }
   ways_[1].points = along.points.rowwise().reverse();
@@ -280,6 +286,10 @@ Alignment Aligner::finished(const Placed& placed, bool reversed, const Curve& cu
   std::vector<double>& s = result.shape.arc_length;
   std::partial_sum(s.begin(), s.end(), s.begin(),
                    [](double before, double next) { return std::max(before, next); });
+  if (has_rod_ends_) {
+    s.front() = 0;
+    s.back() = length_;
+  }
   result.shape.points = placed.pose.applied(ways_[reversed ? 1 : 0].points);
   const Eigen::Matrix3Xd gaps = result.shape.points - curve.points(s);
   result.rms_m = std::sqrt(weighted_mean_square(gaps, weights(s, result.shape.points)));

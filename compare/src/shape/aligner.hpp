@@ -67,8 +67,9 @@ class Aligner {
   double length_;
   AlignOptions options_;
   ArcLengths rule_ = ArcLengths::nearest;
-  bool is_whole_ = false;    // as long as the rod
-  std::array<Way, 2> ways_;  // along, against
+  bool is_whole_ = false;      // as long as the rod, or nearly
+  bool has_rod_ends_ = false;  // as long as the rod: its ends are laid on the rod's
+  std::array<Way, 2> ways_;    // along, against
 };
 
 }  // namespace dlo::compare

@@ -43,6 +43,13 @@ std::vector<double> file_arc_lengths(const MeasuredShape& shape, double length) 
   return s;
 }
 
+double polyline_length(const Eigen::Matrix3Xd& points) {
+  return (points.rightCols(points.cols() - 1) - points.leftCols(points.cols() - 1))
+      .colwise()
+      .norm()
+      .sum();
+}
+
 std::vector<double> lengths_along(const Eigen::Matrix3Xd& points) {
   const Eigen::Index count = points.cols();
   const Eigen::Matrix3Xd chords = points.rightCols(count - 1) - points.leftCols(count - 1);

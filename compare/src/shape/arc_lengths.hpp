@@ -14,6 +14,9 @@ namespace dlo::compare {
 /// The file's own, within the rod [m]. @throws InputError if it has none, or they leave the rod
 [[nodiscard]] std::vector<double> file_arc_lengths(const MeasuredShape& shape, double length);
 
+/// Sum of the chords [m]. @param points  [m], 3 x M, M >= 1
+[[nodiscard]] double polyline_length(const Eigen::Matrix3Xd& points);
+
 /// Lengths along a curve through the points [m]: each chord d with the mean curvature k at its ends
 /// is an arc of d (1 + (k d)^2 / 24).
 [[nodiscard]] std::vector<double> lengths_along(const Eigen::Matrix3Xd& points);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "dlo/compare/deviation.hpp"
+#include "shape/arc_lengths.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -13,13 +14,6 @@ constexpr double counted_stretch = 0.01;
 /// Arc lengths that are nearer to an end than this share of the length are at it: the accuracy with
 /// which nearest points are found.
 constexpr double end_rounding = 1e-9;
-
-double polyline_length(const Eigen::Matrix3Xd& points) {
-  return (points.rightCols(points.cols() - 1) - points.leftCols(points.cols() - 1))
-      .colwise()
-      .norm()
-      .sum();
-}
 
 enum class RodEnd { start, end };
 
