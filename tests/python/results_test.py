@@ -49,6 +49,19 @@ def test_a_frame_is_found_by_the_commands_word(cable):
     assert found.passed
 
 
+def test_a_pass_of_a_stiff_rod_is_not_significant(command):
+    beam = dlo.Scene(length=4, bending_stiffness=4e4, mass_per_length=2,
+                     grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction="0 deg")])
+    line = [[0, 0], [2, 0], [4, 0]]
+    check = dlo.check(beam, line, tolerance="1%", modulus=False)
+    assert check.passed and check.verdict == "pass" and check.significant is False
+    assert check.deflection == pytest.approx(2 * 9.81 * 4**4 / (8 * 4e4), rel=1e-3)
+    check = dlo.check(beam, line, tolerance="5% of deflection", modulus=False)
+    assert not check.passed and check.significant is None
+    assert dlo.check(beam, dlo.solve(beam).points, tolerance="5% of deflection").significant is True
+    assert dlo.check(beam, line, measure="max", min_seen=0.2).json["tolerance"]["measure"] == "max"
+
+
 def test_check_is_the_commands(root, command):
     scene = root / "data/scenes/cable.toml"
     shape = root / "data/shapes/cable.csv"

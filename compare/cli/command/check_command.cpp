@@ -73,13 +73,12 @@ void run(const CheckOptions& options) {
           .arc_lengths = options.shapes.arc_lengths(),
           .modulus = options.no_modulus ? compare::ModulusSearch::no : compare::ModulusSearch::yes,
           .solve = options.overrides.solve()}};
-  if (!options.tolerance.allowed.empty()) {
-    request.tolerance = shape_tolerance("--tolerance", options.tolerance, scene.length);
-  }
+  request.tolerance = shape_tolerance("--tolerance", options.tolerance, scene.length);
   const compare::CheckResult result = compare::check(scene, shape, request);
-  const CheckPage page{
-      result, options.shapes.unit_hint(result.check.polyline_length_m, scene.length),
-      verdict_word(result.passes() ? "pass" : "fail", result.passes(), options.output.file)};
+  const CheckPage page{result,
+                       options.shapes.unit_hint(result.check.polyline_length_m, scene.length),
+                       verdict_word(compare::to_string(result.judgement.verdict), result.passes(),
+                                    options.output.file)};
   if (options.output.is(Format::csv)) warn_of_friction(scene);
   write_output(options.output, {.text = [&] { return shape_check_text(page); },
                                 .json = [&] { return json_text(shape_check_json(result)); },
@@ -88,8 +87,7 @@ void run(const CheckOptions& options) {
   const auto picture = [&] { return picture_of(result); };
   options.plot.draw(picture);
   write_page(options, result, picture, shape_check_text({result, page.unit_hint}));
-  const bool was_asked = !options.tolerance.allowed.empty();
-  if (was_asked && !result.passes()) end_with(ExitStatus::outside_tolerance);
+  if (options.tolerance.allowed && !result.passes()) end_with(ExitStatus::outside_tolerance);
 }
 
 void run_motion(const CheckOptions& options) {
@@ -99,9 +97,7 @@ void run_motion(const CheckOptions& options) {
   compare::MotionCheckRequest request = options.moving;
   if (options.dynamic) request.model = compare::MotionModel::with_inertia;
   if (options.no_explanation) request.explaining = compare::Explaining::no;
-  if (!options.tolerance.allowed.empty()) {
-    request.tolerance = shape_tolerance("--tolerance", options.tolerance, scene.length);
-  }
+  request.tolerance = shape_tolerance("--tolerance", options.tolerance, scene.length);
   request.solve = options.overrides.solve();
   const compare::MarkerMotion recorded =
       compare::parse_markers(compare::read_file(options.motion), options.motion);
@@ -121,7 +117,7 @@ void run_motion(const CheckOptions& options) {
   const auto picture = [&] { return compare::motion_check_picture(result); };
   options.plot.draw(picture);
   write_page(options, result, picture, motion_check_text(result));
-  if (request.tolerance && !result.passes) end_with(ExitStatus::outside_tolerance);
+  if (options.tolerance.allowed && !result.passes) end_with(ExitStatus::outside_tolerance);
 }
 
 /// A recorded motion instead of a shape.
@@ -174,8 +170,9 @@ void add_check(CLI::App& app) {
       ->type_name("FILE");
   command->add_option(
       "--tolerance", options->tolerance.allowed,
-      "the deviation allowed, 1% or 0.01 of the length or \"2 mm\"; exit status 1 beyond it. "
-      "Without it the verdict is that of 1%, and the exit status 0");
+      "the deviation allowed: 1% or 0.01 of the length, \"5% of deflection\" (of a stiff rod, by "
+      "its weight and loads) or \"2 mm\"; exit status 1 beyond it. Without it the verdict is that "
+      "of 1%, and the exit status 0");
   command
       ->add_option("--measure", options->tolerance.measure,
                    "the deviation that is held against the tolerance")

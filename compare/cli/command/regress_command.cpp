@@ -23,12 +23,14 @@ struct RegressOptions {
   std::string junit;
   std::string model = "force";
   bool update = false;
+  std::string growth;  // of --tolerance
   compare::RegressionTolerance tolerance;
   SceneOptions overrides;
   OutputOptions output;
 };
 
-void run(const RegressOptions& options) {
+void run(RegressOptions options) {
+  if (!options.growth.empty()) set_growth("--tolerance", options.growth, options.tolerance);
   // An unreadable baseline is told before minutes of solving.
   const std::vector<compare::BaselineCase> baseline =
       options.update ? compare::present_baseline(options.baseline)
@@ -85,6 +87,11 @@ void add_regress(CLI::App& app) {
       ->check(CLI::IsMember({"force", "chain"}))
       ->capture_default_str();
   add_growth_options(*command, options->tolerance);
+  command
+      ->add_option("--tolerance", options->growth,
+                   "in place of --absolute: a share of the length such as 1%, or \"5% of "
+                   "deflection\" (of a stiff rod, by its weight and loads)")
+      ->excludes("--absolute");
   add_program_options(*command, options->programs);
   options->overrides.add_to(*command);
   add_output_options(*command, options->output);

@@ -72,10 +72,6 @@ std::string markdown(const std::string& text) {
   return out;
 }
 
-const char* verdict_of(const compare::ShapeJudgement& judgement) {
-  return judgement.pass ? "pass" : "fail";
-}
-
 /// What of the rod the file shows.
 void add_seen(std::string& out, const compare::CheckResult& report, const std::string& unit_hint) {
   const compare::ShapeCheck& c = report.check;
@@ -167,7 +163,7 @@ std::string shape_check_text(const CheckPage& page) {
   }
   add_explanations(out, report);
   append(out, "  verdict         {}: {}\n",
-         page.verdict.empty() ? verdict_of(report.judgement) : page.verdict,
+         page.verdict.empty() ? compare::to_string(report.judgement.verdict) : page.verdict,
          report.judgement.reason);
   const std::string both = compare::other_stiffness_within(report);
   if (!both.empty()) append(out, "                  ({})\n", both);
@@ -209,11 +205,15 @@ Json shape_check_json(const compare::CheckResult& report) {
       report.supersedes_modulus ? Json(report.supersedes_modulus->cause) : Json();
   result["tolerance"] = {{"measure", report.tolerance.largest ? "max" : "rms"},
                          {"allowed_m", report.tolerance.allowed_m},
+                         {"of_deflection", report.tolerance.deflection_share > 0},
                          {"least_seen_share", report.tolerance.least_seen_share},
                          {"part", report.tolerance.part},
                          {"default", report.tolerance.by_default}};
   result["judged_m"] = report.judgement.judged_m;
-  result["verdict"] = verdict_of(report.judgement);
+  result["verdict"] = compare::to_string(report.judgement.verdict);
+  const std::optional<bool>& significant = report.judgement.significant;
+  result["significant"] = significant ? Json(*significant) : Json();
+  result["deflection_m"] = report.deflection_m;
   result["reason"] = report.judgement.reason;
   result["explanations"] =
       json_list(report.explanations, [](const compare::Explanation& explanation) -> Json {
@@ -233,7 +233,7 @@ Json shape_check_json(const compare::CheckResult& report) {
 std::string shape_check_markdown(const compare::CheckResult& report) {
   const compare::ShapeCheck& c = report.check;
   std::string out = fmt::format("### {} {}: {}\n\n{}\n\n", report.passes() ? "\u2705" : "\u274c",
-                                verdict_of(report.judgement), markdown(c.scene),
+                                compare::to_string(report.judgement.verdict), markdown(c.scene),
                                 markdown(report.judgement.reason));
   append(out, "| | |\n|---|---|\n");
   append(out, "| shape | {} |\n", markdown(c.file));
@@ -260,7 +260,8 @@ std::string shape_check_csv(const compare::CheckResult& report) {
       "max_at_m=deviation/max_at_m,worst_point=deviation/worst_point,tip_m=deviation/tip_m,"
       "movement_m,effective_modulus_ratio,rms_at_effective_modulus_m,optimum,"
       "tolerance_m=tolerance/allowed_m,verdict,seen_share=seen/share,reason,"
-      "whole_rms_m=deviation/whole_rms_m,whole_max_m=deviation/whole_max_m");
+       "whole_rms_m=deviation/whole_rms_m,whole_max_m=deviation/whole_max_m,"
+       "significant,deflection_m");
   return table.header() + table.row(shape_check_json(report));
 }
 

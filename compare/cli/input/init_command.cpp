@@ -53,6 +53,14 @@ std::string next_steps(const compare::Scene& scene, const std::string& file) {
          "  dlo check {0} --shape mine.csv      is your simulator's shape right?\n"
          "  dlo calibrate {0} -o params.toml    parameters of the force model\n",
          compare::shell_word(file));
+  constexpr double stiff = 1;  // Gamma; a level cantilever then sags by Gamma / 8 of its length
+  if (scene.gamma() < stiff) {
+    append(
+        out,
+        "The rod is stiff: level, it sags by about {:.2g} % of its length. Check it with\n"
+        "  --tolerance \"5% of deflection\"   a share of that sag, which a straight line misses\n",
+        scene.gamma() / 8 * 100);
+  }
   return out;
 }
 

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "dlo/compare/choice.hpp"
@@ -53,8 +54,8 @@ double tolerance_m(const std::string& name, const std::string& text, double leng
       value = text.ends_with('%') ? 0 : compare::parse_quantity(text, compare::Dimension::length);
     } catch (const compare::InputError&) {
       throw compare::InputError(fmt::format(
-          "{} = {}: neither a share of the length nor a length (allowed: such as 1%, 0.01 "
-          "or \"2 mm\")",
+          "{} = {}: neither a share of the length nor a length (allowed: such as 1%, 0.01, "
+          "\"5% of deflection\" or \"2 mm\")",
           name, text));
     }
     if (value > 0) return value;
@@ -75,6 +76,33 @@ CLI::Validator share_of_length() {
 CLI::Validator share_up_to(double high) {
   return share_that([high](double share) { return share >= 0 && share <= high; }, "",
                     fmt::format("1% or 0.01, 0 to {:g}", high));
+}
+
+std::optional<double> deflection_share(const std::string& name, const std::string& text) {
+  constexpr std::string_view suffix = " of deflection";
+  if (!text.ends_with(suffix)) return std::nullopt;
+  try {
+    const double share = share_from(text.substr(0, text.size() - suffix.size()));
+    if (share > 0 && share < 1) return share;
+  } catch (const compare::InputError&) {
+    // Said below, as of a share that is out of range.
+  }
+  throw compare::InputError(fmt::format(
+      "{} = {}: no share of the deflection (allowed: such as \"5% of deflection\", above 0, below "
+      "100%)",
+      name, text));
+}
+
+void set_growth(const std::string& name, const std::string& text,
+                compare::RegressionTolerance& tolerance) {
+  const std::optional<double> of_deflection = deflection_share(name, text);
+  tolerance.of_deflection = of_deflection.has_value();
+  std::string share = text;
+  const std::string problem = of_deflection ? "" : share_of_length()(share);
+  if (!problem.empty()) {
+    throw compare::InputError(fmt::format("{}: {}; or \"5% of deflection\"", name, problem));
+  }
+  tolerance.absolute = of_deflection ? *of_deflection : share_from(share);
 }
 
 void add_growth_options(CLI::App& command, compare::RegressionTolerance& tolerance) {
@@ -111,9 +139,16 @@ compare::ShapeTolerance shape_tolerance(const std::string& name, const Tolerance
   if (words.measure != "rms" && words.measure != "max") {
     compare::refuse_choice(words.measure, {"rms", "max"});
   }
-  compare::ShapeTolerance tolerance{.allowed_m = tolerance_m(name, words.allowed, length),
-                                    .largest = words.measure == "max",
-                                    .part = words.min_seen.has_value()};
+  compare::ShapeTolerance tolerance = compare::default_tolerance(length);
+  if (words.allowed) {
+    tolerance.by_default = false;
+    tolerance.deflection_share = deflection_share(name, *words.allowed).value_or(0);
+    if (!(tolerance.deflection_share > 0)) {
+      tolerance.allowed_m = tolerance_m(name, *words.allowed, length);
+    }
+  }
+  tolerance.largest = words.measure == "max";
+  tolerance.part = words.min_seen.has_value();
   if (words.min_seen) tolerance.least_seen_share = *words.min_seen;
   return tolerance;
 }

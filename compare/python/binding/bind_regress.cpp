@@ -11,22 +11,27 @@
 #include "format/regression_output.hpp"
 #include "long_call.hpp"
 #include "module.hpp"
+#include "option/share.hpp"
 #include "solve_options.hpp"
 
 namespace dlo::python {
 namespace {
 
-/// @param what  model, programs, relative, absolute  @param make_result  of text, JSON, JUnit XML
+/// @param what  model, programs, relative, absolute, tolerance  @param make_result  of text, JSON,
+/// JUnit XML
 py::object regress(const std::vector<SharedScene>& scenes, const std::string& file, bool update,
                    const py::dict& what, const py::object& make_result, const py::dict& limits) {
   const auto model = what["model"].cast<std::string>();
   if (model != "force" && model != "chain") compare::refuse_choice(model, {"force", "chain"});
-  const compare::RegressRequest request{.model = compare::from_name<compare::Model>(model),
-                                        .programs = compare::parse_foreign_programs(
-                                            what["programs"].cast<std::vector<std::string>>()),
-                                        .tolerance = {.relative = what["relative"].cast<double>(),
-                                                      .absolute = what["absolute"].cast<double>()},
-                                        .solve = verified_options(limits)};
+  compare::RegressRequest request{.model = compare::from_name<compare::Model>(model),
+                                  .programs = compare::parse_foreign_programs(
+                                      what["programs"].cast<std::vector<std::string>>()),
+                                  .tolerance = {.relative = what["relative"].cast<double>(),
+                                                .absolute = what["absolute"].cast<double>()},
+                                  .solve = verified_options(limits)};
+  if (const auto growth = what["tolerance"].cast<std::optional<std::string>>()) {
+    cli::set_growth("tolerance", *growth, request.tolerance);
+  }
   bool written = false;
   const compare::Regression found = run_long([&](Signals& signals) {
     // An unreadable baseline is told before minutes of solving.

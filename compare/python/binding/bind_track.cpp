@@ -108,10 +108,10 @@ std::pair<std::string, std::string> check_motion(const SharedScene& shared,
       .explaining =
           what["explain"].cast<bool>() ? compare::Explaining::yes : compare::Explaining::no,
       .solve = verified_options(limits)};
-  if (const auto allowed = what["tolerance"].cast<std::optional<std::string>>()) {
-    request.tolerance = cli::shape_tolerance(
-        "tolerance", {*allowed, what["measure"].cast<std::string>(), std::nullopt}, scene.length);
-  }
+  request.tolerance = cli::shape_tolerance("tolerance",
+                                           {what["tolerance"].cast<std::optional<std::string>>(),
+                                            what["measure"].cast<std::string>(), std::nullopt},
+                                           scene.length);
   const compare::MarkerMotion recorded = recorded_motion(rows, "motion");
   const compare::MotionCheck found = run_long([&](Signals& signals) {
     return compare::check_motion(scene, recorded, request,

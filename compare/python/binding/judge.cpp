@@ -72,12 +72,11 @@ std::shared_ptr<CheckResult> check(const SharedScene& scene, const py::object& p
                 .modulus = what["modulus"].cast<bool>() ? compare::ModulusSearch::yes
                                                         : compare::ModulusSearch::no,
                 .solve = verified_options(limits)}};
-  if (const auto allowed = what["tolerance"].cast<std::optional<std::string>>()) {
-    request.tolerance = cli::shape_tolerance("tolerance",
-                                             {*allowed, what["measure"].cast<std::string>(),
-                                              what["min_seen"].cast<std::optional<double>>()},
-                                             scene->scene.length);
-  }
+  request.tolerance = cli::shape_tolerance(
+      "tolerance",
+      {what["tolerance"].cast<std::optional<std::string>>(), what["measure"].cast<std::string>(),
+       what["min_seen"].cast<std::optional<double>>()},
+      scene->scene.length);
   return std::make_shared<CheckResult>(
       run_long([&](Signals& /*signals*/) { return compare::check(scene->scene, shape, request); }));
 }
@@ -172,6 +171,29 @@ FitDocuments calibrate_force_model(const std::vector<SharedScene>& scenes,
           cli::json_text(cli::force_model_json(fit)), cli::force_model_toml(fit)};
 }
 
+/// The properties of a Check that state the verdict.
+template <typename Bound>
+void bind_verdict(Bound& bound) {
+  const auto of = [](auto get) { return [get](const CheckResult& r) { return get(r); }; };
+  using Report = CheckResult;
+  bound
+      .def_property_readonly(
+          "passed", of([](const Report& r) { return r.passes(); }),
+          "Whether the shape is within the tolerance, 1 % of the length if none was given.")
+      .def_property_readonly(
+          "verdict",
+          of([](const Report& r) { return std::string(compare::to_string(r.judgement.verdict)); }),
+          "\"pass\", \"fail\", or \"undetermined\": within the tolerance, but the points do not "
+          "determine the rod.")
+      .def_property_readonly("significant",
+                             of([](const Report& r) { return r.judgement.significant; }),
+                             "Of a pass: whether the rod without weight and loads would not pass "
+                             "too; None where neither acts or its shape was not found.")
+      .def_property_readonly("deflection", of([](const Report& r) { return r.deflection_m; }),
+                             "Largest distance between the rod with and without weight and loads "
+                             "[m]; NaN where neither a pass nor the tolerance needs it.");
+}
+
 void bind_check(py::module_& module) {
   const auto of = [](auto get) { return [get](const CheckResult& r) { return get(r); }; };
   using Report = CheckResult;
@@ -190,10 +212,8 @@ void bind_check(py::module_& module) {
       bound, "reference", [](const Report& r) -> const auto& { return r.check.reference.points; },
       "The energy model there [m], shape (M, 3), read only.");
   bind_picture(bound, of([](const Report& r) { return compare::check_drawing(r.scene, r.check); }));
+  bind_verdict(bound);
   bound
-      .def_property_readonly(
-          "passed", of([](const Report& r) { return r.judgement.pass; }),
-          "Whether the shape is within the tolerance, 1 % of the length if none was given.")
       .def_property_readonly("reason", of([](const Report& r) { return r.judgement.reason; }),
                              "Why, in words.")
       .def_property_readonly("rms", of([](const Report& r) { return r.check.deviation.rms_m; }),

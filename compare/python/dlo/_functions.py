@@ -154,8 +154,8 @@ def check(
 
     points: positions along the rod [m], shape (M, 3) or (M, 2) with z = 0; from either end, stretches
     may be missing; or the name of a file that `dlo check --shape` reads, in metres. arc_length: where along the rod they are [m], shape (M,), if that is known.
-    tolerance: "1%" or 0.01 of the rod's length, or "2 mm"; the Check then passes or fails.
-    measure: "rms" or "max", what is held against it. min_seen: the points are a part of the rod, and
+    tolerance: "1%" or 0.01 of the rod's length, "5% of deflection" (of a stiff rod, by its weight and loads),
+    or "2 mm"; None: 1 % of the length. measure: "rms" or "max", what is held against it. min_seen: the points are a part of the rod, and
     of less than this share no verdict passes; None: they are all of it. register: what is unknown of
     the points' frame, "known" (nothing), "translation", "upright" or "rigid". arc_lengths: "auto",
     "file" (those given), "nearest" or "chord". modulus: look for E*/E. explain: of a shape that

@@ -12,7 +12,8 @@ def words(result: Any) -> str:
     """One line: the verdict, where there is one."""
     passed = getattr(result, "passed", None)
     if passed is not None:
-        return f"{'pass' if passed else 'fail'}: {', '.join(result.reason.splitlines())}"
+        verdict = getattr(result, "verdict", "pass" if passed else "fail")
+        return f"{verdict}: {', '.join(result.reason.splitlines())}"
     deviation = getattr(result, "deviation", None)
     if deviation is not None:
         return f"RMS {1e3 * deviation['rms_m']:.4g} mm"

@@ -10,12 +10,24 @@ import numpy
 from numpy.typing import NDArray
 
 from . import _dlo
-from ._arguments import COUNT, INTEGER, LIST, NUMBER, TABLE, TEXT, TEXTS, TRUTH, checked, require
+from ._arguments import (
+    COUNT,
+    INTEGER,
+    LIST,
+    NUMBER,
+    QUANTITY,
+    TABLE,
+    TEXT,
+    TEXTS,
+    TRUTH,
+    checked,
+    require,
+)
 from ._documents import Benchmark, Modes, Regression, ScoreCard, Stability, Track
 from ._errors import InputError
 from ._files import FileName, file_name, file_text
 from ._functions import is_file, many, shape_pair
-from ._scene import Calibrated, Scene, SceneLike, as_scene, data_of
+from ._scene import Calibrated, Quantity, Scene, SceneLike, as_scene, data_of
 from ._time_limit import within
 
 
@@ -122,7 +134,13 @@ def bench(
 
 
 @checked(
-    update=TRUTH, model=TEXT, relative=NUMBER, absolute=NUMBER, programs=TEXTS, time=NUMBER
+    update=TRUTH,
+    model=TEXT,
+    relative=NUMBER,
+    absolute=NUMBER,
+    tolerance=QUANTITY,
+    programs=TEXTS,
+    time=NUMBER,
 )
 def regress(
     scenes: Union[SceneLike, Iterable[SceneLike]],
@@ -132,6 +150,7 @@ def regress(
     model: str = "force",
     relative: float = 0.01,
     absolute: float = 1e-6,
+    tolerance: Optional[Quantity] = None,
     programs: Sequence[str] = (),
     time: Optional[float] = None,
     materials: Optional[FileName] = None,
@@ -141,8 +160,9 @@ def regress(
     """Shape errors against a baseline under version control: `dlo regress`.
 
     baseline: a file's name; update: write it anew, of these scenes and no others. model: "force" or
-    "chain". An error may change by relative of it and absolute of the rod's length. programs: somebody
-    else's, "NAME=COMMAND" as the command's --with. time, materials,
+    "chain". An error may change by relative of it and absolute of the rod's length. tolerance: in place
+    of absolute, "1%" of the length or "5% of deflection" (of a stiff rod, by its weight and loads). programs:
+    somebody else's, "NAME=COMMAND" as the command's --with. time, materials,
     calibrated: as of solve().
 
     Raises InputError, or ConvergenceError where a scene of an update is not solved and the baseline is
@@ -154,6 +174,7 @@ def regress(
         "programs": list(programs),
         "relative": float(relative),
         "absolute": float(absolute),
+        "tolerance": None if tolerance is None else str(tolerance),
     }
     file = file_name(baseline, "baseline")
     name = os.fsdecode(file) if update else ""

@@ -290,7 +290,8 @@ void judge_case(RegressionResult& result, const MeasuredCase& measurement,
                                  percent(result.measured->rms));
     return;
   }
-  compare_errors(result, tolerance);
+  compare_errors(result, {.relative = tolerance.relative,
+                          .absolute = tolerance.absolute * measurement.deflection_share});
   const std::string change = change_between(*known, measurement.entry);
   if (change.empty()) return;
   result.verdict = RegressionVerdict::changed;

@@ -49,8 +49,9 @@ struct Choices<RegressionVerdict> {
 
 /// A share e of the rod's length has changed if it is off by more than absolute + relative * e.
 struct RegressionTolerance {
-  double relative = 0.01;  ///< share of the error
-  double absolute = 1e-6;  ///< share of the rod's length
+  double relative = 0.01;      ///< share of the error
+  double absolute = 1e-6;      ///< share of the rod's length
+  bool of_deflection = false;  ///< `absolute` is a share of the deflection (TrivialShape) instead
 };
 
 /// One case against its baseline.
@@ -66,6 +67,8 @@ struct RegressionResult {
 struct MeasuredCase {
   BaselineCase entry;   ///< without errors if it was not solved
   std::string problem;  ///< of the solver; empty if there is none
+  /// TrivialShape::deflection_m over the length, for a tolerance of it; else 1.
+  double deflection_share = 1;
 };
 
 /// Runs somebody else's program on a scene, with as many points as that says, and measures its

@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "dlo/compare/error.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/shape_check.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -13,8 +15,15 @@ namespace {
 MeasuredCase measured_case(const Scene& scene, const RegressRequest& request,
                            const ForeignProgram* program) {
   try {
-    if (program != nullptr) return measure_program(scene, *program, request.solve);
-    return {measure_case(scene, request.model, request.solve), ""};
+    MeasuredCase result = program != nullptr
+                              ? measure_program(scene, *program, request.solve)
+                              : MeasuredCase{measure_case(scene, request.model, request.solve), ""};
+    if (request.tolerance.of_deflection) {
+      const energy_model::Equilibrium loaded = solve_reference(scene, Model::energy, request.solve);
+      result.deflection_share =
+          required_deflection(scene, trivial_shape(scene, loaded, request.solve)) / scene.length;
+    }
+    return result;
   } catch (const ConvergenceError& error) {
     BaselineCase entry = case_of(scene, program != nullptr ? Model::force : request.model);
     if (program != nullptr) entry.program = program->name;

@@ -40,17 +40,21 @@ std::string point_text(const Eigen::Vector3d& point) {
                      shown(point.z(), large));
 }
 
-ShapeNear near_by(const Shape& shape, const Scene& scene, double tolerance, bool largest) {
-  if (!(tolerance > 0)) {
+ShapeNear near_by(const Shape& shape, const Scene& scene, ToleranceShare tolerance, bool largest) {
+  if (!(tolerance.share > 0)) {
     throw std::invalid_argument(
-        fmt::format("tolerance of a shape = {}, must be > 0, a share of the length", tolerance));
+        fmt::format("tolerance of a shape = {}, must be > 0, a share of the {}", tolerance.share,
+                    tolerance.of_deflection ? "deflection" : "length"));
   }
   if (const std::string problem = problem_of(shape, scene.length); !problem.empty()) {
     return {false, "the shape " + problem};
   }
   const CheckResult result =
       check(scene, shape_of(shape.points, shape.arc_length, "shape"),
-            {.tolerance = ShapeTolerance{.allowed_m = tolerance * scene.length, .largest = largest},
+            {.tolerance =
+                 ShapeTolerance{.allowed_m = tolerance.share * scene.length,
+                                .largest = largest,
+                                .deflection_share = tolerance.of_deflection ? tolerance.share : 0},
              .shape = {.modulus = ModulusSearch::no}});
   const ShapeCheck& c = result.check;
   return {result.passes(),
@@ -60,13 +64,34 @@ ShapeNear near_by(const Shape& shape, const Scene& scene, double tolerance, bool
                       point_text(c.rod.sample(std::vector{c.deviation.max_at_m}).points.col(0)))};
 }
 
+bool is_loaded(const Scene& scene) {
+  return scene.gravity.norm() > 0 || !scene.loads.empty() || !scene.distributed_loads.empty() ||
+         scene.drag;
+}
+
+/// Sets whether a shape that passes is significant, and says it if it is not.
+void judge_significance(const ShapeCheckOptions& options,
+                        const std::optional<TrivialShape>& trivial, CheckResult& result) {
+  if (!trivial) return;
+  result.deflection_m = trivial->deflection_m;
+  const bool trivial_passes =
+      judge(check_trivial_shape(*trivial, result.scene, result.check, options), result.tolerance)
+          .passes();
+  result.judgement.significant = !trivial_passes;
+  if (!trivial_passes) return;
+  result.judgement.reason +=
+      "; not significant for stiffness or weight: the rod without weight and loads would pass too";
+}
+
 }  // namespace
 
 std::string other_stiffness_within(const CheckResult& result) {
   const EffectiveModulus& modulus = result.check.effective_modulus;
   constexpr double hardly_another = 0.05;
-  const bool is_near = judge(result.check, result.tolerance).pass;  // not only as a chain
-  if (!is_near || !is_identified(modulus.optimum) || std::abs(modulus.ratio - 1) < hardly_another) {
+  const bool is_near = judge(result.check, result.tolerance).passes();  // not only as a chain
+  const bool is_significant = result.judgement.significant.value_or(true);
+  if (!is_near || !is_significant || !is_identified(modulus.optimum) ||
+      std::abs(modulus.ratio - 1) < hardly_another) {
     return {};
   }
   const double at_E =
@@ -84,8 +109,21 @@ CheckResult check(const Scene& scene, const MeasuredShape& shape, const CheckReq
                      .tolerance = request.tolerance.value_or(default_tolerance(scene.length)),
                      .pose = request.shape.pose,
                      .notes = whole.notes};
+  std::optional<TrivialShape> trivial;
+  const auto find_trivial = [&] {
+    if (!trivial) trivial = trivial_shape(scene, result.check.rod, request.shape.solve);
+  };
+  if (result.tolerance.deflection_share > 0) {
+    find_trivial();
+    result.deflection_m = required_deflection(scene, trivial);
+    result.tolerance.allowed_m = result.tolerance.deflection_share * result.deflection_m;
+  }
   result.judgement = judge_with_chains(scene, result.check, result.tolerance);
-  const bool is_near = judge(result.check, result.tolerance).pass;
+  if (result.passes() && is_loaded(scene)) {
+    find_trivial();
+    judge_significance(request.shape, trivial, result);
+  }
+  const bool is_near = judge(result.check, result.tolerance).verdict != ShapeVerdict::fail;
   if (is_near || request.explaining == Explaining::no) return result;
   result.explanations = explain_shape(scene, whole, result.check, request.shape);
   result.judgement = with_explanation(result.judgement, result.explanations, result.tolerance);
@@ -93,11 +131,11 @@ CheckResult check(const Scene& scene, const MeasuredShape& shape, const CheckReq
   return result;
 }
 
-ShapeNear shape_near(const Shape& shape, const Scene& scene, double tolerance) {
+ShapeNear shape_near(const Shape& shape, const Scene& scene, ToleranceShare tolerance) {
   return near_by(shape, scene, tolerance, false);
 }
 
-ShapeNear shape_within(const Shape& shape, const Scene& scene, double tolerance) {
+ShapeNear shape_within(const Shape& shape, const Scene& scene, ToleranceShare tolerance) {
   return near_by(shape, scene, tolerance, true);
 }
 

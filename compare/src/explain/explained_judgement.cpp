@@ -14,7 +14,7 @@ constexpr double far_beyond = 10;
 ShapeJudgement judge_with_chains(const Scene& scene, const ShapeCheck& check,
                                  const ShapeTolerance& tolerance) {
   ShapeJudgement result = judge(check, tolerance);
-  if (result.pass) return result;
+  if (result.passes()) return result;
   const Shape& shape = check.alignment.shape;
   for (const OwnPolygon& chain : own_polygons(scene, shape, Springs::as_the_rod)) {
     const double distance = tolerance.largest ? chain.max_m : chain.rms_m;
@@ -27,7 +27,7 @@ ShapeJudgement judge_with_chains(const Scene& scene, const ShapeCheck& check,
                     fmt::format("; the rod itself is {:.4g} mm = {:.3g} % of l away, all of it ",
                                 result.judged_m * 1e3, result.judged_m / check.length_m * 100) +
                     "discretisation";
-    result.pass = true;
+    result.verdict = ShapeVerdict::pass;
     break;
   }
   return result;
@@ -36,7 +36,7 @@ ShapeJudgement judge_with_chains(const Scene& scene, const ShapeCheck& check,
 ShapeJudgement with_explanation(ShapeJudgement judgement,
                                 const std::vector<Explanation>& explanations,
                                 const ShapeTolerance& tolerance) {
-  if (judgement.pass || explanations.empty()) return judgement;
+  if (judgement.passes() || explanations.empty()) return judgement;
   const Explanation& best = explanations.front();
   const bool is_misread = judgement.judged_m > far_beyond * tolerance.allowed_m;
   if (best.kind == ExplanationKind::file && is_misread && best.rms_m <= tolerance.allowed_m) {

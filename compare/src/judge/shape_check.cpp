@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "dlo/compare/comparison.hpp"
+#include "dlo/compare/error.hpp"
 #include "dlo/compare/plan.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"
@@ -164,13 +165,47 @@ void add_seen_part(const MeasuredShape& shape, const std::vector<double>& s, dou
   check.seen_share = (s.back() - s.front()) / length;
 }
 
+AlignOptions align_options(const Scene& scene, const ShapeCheckOptions& options) {
+  return {
+      .pose = options.pose, .arc_lengths = options.arc_lengths, .up = up_of(scene, options.pose)};
+}
+
+/// Compares a laid shape with an equilibrium: all of ShapeCheck but the state and E*/E.
+ShapeCheck compared(const Scene& scene, const MeasuredShape& shape, Alignment laid,
+                    const energy_model::Equilibrium& rod) {
+  ShapeCheck result;
+  result.scene = scene.name;
+  result.file = shape.file;
+  result.gamma = scene.gamma();
+  result.length_m = scene.length;
+  result.stiffness = scene.stiffness();
+  result.alignment = std::move(laid);
+  const Alignment& alignment = result.alignment;
+  const Measured measured = measure(alignment, rod.sample, scene.length);
+  const std::vector<double>& s = measured.arc_length;
+  result.reference = {s, measured.reference};
+  result.rod = rod;
+  const std::optional<Eigen::Matrix3Xd> straight = straight_rod(scene, s);
+  result.movement_m = straight ? rms(s, *straight - result.reference.points) : NAN;
+  result.deviation = measured_deviation(scene, alignment, rod.sample, measured, result.movement_m);
+  result.excess_m = measured.excess_at_start_m + measured.excess_at_end_m;
+  result.between = parts_between(s, rod.sample, scene.length);
+  const WholeRod whole = whole_of(measured, alignment, rod.sample, scene.length);
+  result.whole_rms_m = whole.rms_m;
+  result.whole_max_m = whole.max_m;
+
+  add_worst_point(shape, measured, result);
+  add_seen_part(shape, s, scene.length, result);
+  result.hint = hint_of(result, measured);
+  result.direction_is_clear = alignment.other_rms_m > 1.05 * alignment.rms_m;
+  return result;
+}
+
 }  // namespace
 
 ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
                        const ShapeCheckOptions& options) {
-  const AlignOptions align_options{
-      .pose = options.pose, .arc_lengths = options.arc_lengths, .up = up_of(scene, options.pose)};
-  const Aligner aligner(shape, scene.length, align_options);
+  const Aligner aligner(shape, scene.length, align_options(scene, options));
   const energy_model::Equilibrium lowest = solve_reference(scene, Model::energy, options.solve);
   const std::vector<energy_model::Equilibrium> states = all_states(scene, lowest, options.solve);
   std::vector<Alignment> alignments;
@@ -184,39 +219,14 @@ ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
     if (energy_model::succeeded(state.status) && nearer) nearest = alignments.size() - 1;
   }
   const energy_model::Equilibrium& energy = states[nearest];
-  ShapeCheck result;
-  result.scene = scene.name;
-  result.file = shape.file;
-  result.gamma = scene.gamma();
-  result.length_m = scene.length;
-  result.stiffness = scene.stiffness();
-  result.alignment = std::move(alignments[nearest]);
+  ShapeCheck result = compared(scene, shape, std::move(alignments[nearest]), energy);
   result.state = describe_state(scene, states, nearest, from_shape);
-  const Alignment& alignment = result.alignment;
-  const Measured measured = measure(alignment, energy.sample, scene.length);
-  const std::vector<double>& s = measured.arc_length;
-  result.reference = {s, measured.reference};
-  result.rod = energy;
-  const std::optional<Eigen::Matrix3Xd> straight = straight_rod(scene, s);
-  result.movement_m = straight ? rms(s, *straight - result.reference.points) : NAN;
-  result.deviation =
-      measured_deviation(scene, alignment, energy.sample, measured, result.movement_m);
-  result.excess_m = measured.excess_at_start_m + measured.excess_at_end_m;
-  result.between = parts_between(s, energy.sample, scene.length);
-  const WholeRod whole = whole_of(measured, alignment, energy.sample, scene.length);
-  result.whole_rms_m = whole.rms_m;
-  result.whole_max_m = whole.max_m;
-
-  add_worst_point(shape, measured, result);
-  add_seen_part(shape, s, scene.length, result);
-  result.hint = hint_of(result, measured);
-  result.direction_is_clear = alignment.other_rms_m > 1.05 * alignment.rms_m;
-  const double offset = distance_from_line(alignment.shape.points);
+  const double offset = distance_from_line(result.alignment.shape.points);
   result.turn_is_clear = options.pose != PoseFreedom::rigid ||
-                         offset > std::max(3 * alignment.rms_m, 1e-6 * scene.length);
+                         offset > std::max(3 * result.alignment.rms_m, 1e-6 * scene.length);
 
   if (options.modulus == ModulusSearch::no) return result;
-  const Aligner thin(thinned(shape), scene.length, align_options);
+  const Aligner thin(thinned(shape), scene.length, align_options(scene, options));
   const ShapeDistance distance = [&](const energy_model::Equilibrium& reference) {
     const Alignment laid = thin.align(Curve(reference.sample, scene.length));
     return measure(laid, reference.sample, scene.length).rms_m;
@@ -224,6 +234,58 @@ ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
   result.effective_modulus = fit_effective_modulus(scene, distance, energy, options.solve);
   result.modulus = result.effective_modulus.ratio * result.stiffness.value;
   return result;
+}
+
+std::optional<TrivialShape> trivial_shape(const Scene& scene,
+                                          const energy_model::Equilibrium& loaded,
+                                          const SolveOptions& options) {
+  Scene unloaded = scene;
+  unloaded.gravity.setZero();
+  unloaded.loads.clear();
+  unloaded.distributed_loads.clear();
+  unloaded.drag.reset();
+  SolveOptions from_loaded = options;
+  from_loaded.start = &loaded;
+  TrivialShape result;
+  try {
+    result.rod = solve_reference(unloaded, Model::energy, from_loaded);
+  } catch (const ResultError&) {
+    return std::nullopt;
+  }
+  constexpr int samples = 201;
+  const std::vector<double> s = equal_arc_lengths(scene.length, samples);
+  result.deflection_m =
+      (result.rod.sample(s).points - loaded.sample(s).points).colwise().norm().maxCoeff();
+  return result;
+}
+
+double required_deflection(const Scene& scene, const std::optional<TrivialShape>& trivial) {
+  constexpr double least = 1e-6;  // of the length; a smaller one is not known well enough
+  if (!trivial) {
+    throw ConvergenceError(fmt::format(
+        "{}: a tolerance of deflection: no equilibrium without weight and loads was found",
+        scene.file));
+  }
+  if (!(trivial->deflection_m >= least * scene.length)) {
+    throw InputError(fmt::format(
+        "{}: a tolerance of deflection: weight and loads deflect the rod by {:.3g} mm only "
+        "(allowed: from {:g} of its length on; else a tolerance such as 1% or \"2 mm\")",
+        scene.file, trivial->deflection_m * 1e3, least));
+  }
+  return trivial->deflection_m;
+}
+
+ShapeCheck check_trivial_shape(const TrivialShape& trivial, const Scene& scene,
+                               const ShapeCheck& check, const ShapeCheckOptions& options) {
+  MeasuredShape shape;
+  shape.file = check.file;
+  shape.points = trivial.rod.sample(check.reference.arc_length).points;
+  if (check.alignment.arc_lengths == ArcLengths::file) {
+    shape.arc_length = check.reference.arc_length;
+  }
+  const Aligner aligner(shape, scene.length, align_options(scene, options));
+  Alignment laid = aligner.align(Curve(check.rod.sample, scene.length));
+  return compared(scene, shape, std::move(laid), check.rod);
 }
 
 }  // namespace dlo::compare

@@ -46,7 +46,10 @@ ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance) {
     untold.push_back(arc_range(part.from_m, part.to_m));
   }
   const bool enough = seen >= tolerance.least_seen_share;
-  result.pass = near && enough && (tolerance.part || untold.empty());
+  const bool determined = enough && (tolerance.part || untold.empty());
+  result.verdict = !near        ? ShapeVerdict::fail
+                   : determined ? ShapeVerdict::pass
+                                : ShapeVerdict::undetermined;
 
   std::vector<std::string> reasons;
   if (!enough) {
@@ -59,9 +62,13 @@ ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance) {
   }
   constexpr double rounding = 1e-6;
   const std::string missing = missing_parts(check, rounding * check.length_m);
-  std::string deviation = fmt::format(
-      "{} {:.4g} mm, allowed {:.4g} mm = {:.4g} % of l", tolerance.largest ? "largest" : "RMS",
-      result.judged_m * 1e3, tolerance.allowed_m * 1e3, tolerance.allowed_m / check.length_m * 100);
+  const bool of_deflection = tolerance.deflection_share > 0;
+  const double share =
+      of_deflection ? tolerance.deflection_share : tolerance.allowed_m / check.length_m;
+  std::string deviation =
+      fmt::format("{} {:.4g} mm, allowed {:.4g} mm = {:.4g} % of {}",
+                  tolerance.largest ? "largest" : "RMS", result.judged_m * 1e3,
+                  tolerance.allowed_m * 1e3, share * 100, of_deflection ? "the deflection" : "l");
   if (tolerance.by_default) deviation += ", the default";
   if (!missing.empty()) {
     deviation += tolerance.part ? "; not judged: " : ", with ";

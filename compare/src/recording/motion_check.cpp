@@ -251,6 +251,11 @@ std::vector<FrameError> errors_without_lag(const MarkerMotion& recorded, const M
 
 MotionCheck check_motion(const Scene& scene, const MarkerMotion& recorded,
                          const MotionCheckRequest& request, const Progress& progress) {
+  if (request.tolerance && request.tolerance->deflection_share > 0) {
+    throw InputError(
+        "a tolerance of deflection: a recorded motion has no single one (allowed: a share of the "
+        "length such as 1%, or a length such as \"2 mm\")");
+  }
   const RecordedTimes times = times_of(scene, recorded);
   const Models models = run_models(scene, times, request, progress);
   MotionCheck check{.scene = scene,

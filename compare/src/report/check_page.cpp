@@ -50,7 +50,7 @@ PageResult page_result(const CheckResult& result) {
   PageResult page{
       .title = result.check.scene,
       .passes = result.passes(),
-      .verdict = verdict_of(result.passes()),
+      .verdict = to_string(result.judgement.verdict),
       .summary = summary_of(result.check.file, result.judgement.judged_m, result.tolerance),
       .cause = cause_of(result),
       .numbers = distances(result.check.deviation),

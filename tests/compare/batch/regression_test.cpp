@@ -23,8 +23,10 @@ using dlo::compare::baseline_text;
 using dlo::compare::BaselineCase;
 using dlo::compare::InputError;
 using dlo::compare::judge_regression;
+using dlo::compare::MeasuredCase;
 using dlo::compare::read_baseline;
 using dlo::compare::RegressionResult;
+using dlo::compare::RegressionTolerance;
 using dlo::compare::RegressionVerdict;
 using dlo::test::error_of;
 using dlo::test::says;
@@ -108,6 +110,19 @@ TEST(Regression, ToleratesAShareOfTheErrorAndAShareOfTheRod) {
   EXPECT_EQ(verdict(before, entry("a", 0.0438)), RegressionVerdict::better);
   EXPECT_EQ(verdict(entry("a", 0), entry("a", 3e-4)), RegressionVerdict::same);
   EXPECT_EQ(verdict(before, entry("a", NAN)), RegressionVerdict::worse);
+}
+
+TEST(Regression, ToleratesAShareOfTheDeflection) {
+  const auto judged = [](double now) {
+    MeasuredCase measured{entry("a", now), ""};
+    measured.deflection_share = 0.02;
+    const RegressionTolerance tolerance{
+        .relative = 0, .absolute = 0.05, .of_deflection = true};  // 0.001 of the length
+    return judge_regression({entry("a", 0.05)}, {measured}, tolerance).front().verdict;
+  };
+  // The errors of an entry are 1, 2 and 3 times this.
+  EXPECT_EQ(judged(0.0503), RegressionVerdict::same);
+  EXPECT_EQ(judged(0.0504), RegressionVerdict::worse);
 }
 
 TEST(Regression, OneWorseErrorOutweighsBetterOnes) {

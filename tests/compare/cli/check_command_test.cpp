@@ -68,6 +68,73 @@ TEST_F(CheckCommand, WithoutAToleranceTheVerdictIsOfOnePercent) {
   EXPECT_TRUE(says(run(check).out, {"allowed 5 mm = 1 % of l, the default"}));
 }
 
+TEST_F(CheckCommand, MeasureAndTheSeenShareCountWithoutATolerance) {
+  // RMS 106 mm, largest 226 mm.
+  const std::string check =
+      "check " + steel() + " --shape " + solved_file(steel() + " --model chain");
+  const json largest = json_of(check + " --measure max");
+  EXPECT_EQ(largest.at("tolerance").at("measure"), "max");
+  EXPECT_EQ(largest.at("tolerance").at("default"), true);
+  EXPECT_EQ(largest.at("judged_m"), largest.at("deviation").at("whole_max_m"));
+  const json part = json_of(check + " --min-seen 20%");
+  EXPECT_EQ(part.at("tolerance").at("part"), true);
+  EXPECT_EQ(part.at("tolerance").at("least_seen_share"), 0.2);
+}
+
+TEST_F(CheckCommand, AToleranceMayBeAShareOfTheDeflection) {
+  const std::string stiff = scene(R"(
+[rod]
+length = "4 m"
+bending_stiffness = 4e4
+mass_per_length = 2
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = "0 deg"
+)");
+  const std::string check = "check " + stiff + " --shape " + shape("x,y\n0,0\n2,0\n4,0\n");
+  const json line = json_of(check + " --tolerance 1%");
+  EXPECT_EQ(line.at("verdict"), "pass");
+  EXPECT_EQ(line.at("significant"), false);
+  EXPECT_TRUE(says(run(check).out, {"not significant for stiffness or weight"}));
+  const json failed = json_of(check + " --tolerance \"5% of deflection\"", 1);
+  EXPECT_EQ(failed.at("verdict"), "fail");
+  EXPECT_TRUE(failed.at("significant").is_null());
+  EXPECT_EQ(failed.at("tolerance").at("of_deflection"), true);
+  const double sag = 2 * 9.81 * 256 / (8 * 4e4);  // w l^4 / (8 EI)
+  EXPECT_NEAR(failed.at("deflection_m"), sag, 1e-3 * sag);
+  EXPECT_DOUBLE_EQ(failed.at("tolerance").at("allowed_m"),
+                   0.05 * failed.at("deflection_m").get<double>());
+  for (const std::string share : {"0% of deflection", "100% of deflection", "x of deflection"}) {
+    const Outcome refused = run(check + " --tolerance \"" + share + "\"");
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_TRUE(says(refused.err, {"--tolerance = " + share + ": no share of the deflection"}));
+  }
+  const std::string recorded = write("markers", "time,s,x,y,z\n0,1,1,0,0\n1,1,1,0,0\n");
+  const Outcome moving =
+      run("check " + stiff + " --motion " + recorded + " --tolerance \"5% of deflection\"");
+  EXPECT_TRUE(says(moving.err, {"a recorded motion has no single one"})) << moving.out;
+}
+
+TEST_F(CheckCommand, AFileThatDoesNotDetermineTheRodIsUndetermined) {
+  const std::string heavy = scene(R"(
+[rod]
+length = 1
+bending_stiffness = 0.01
+mass_per_length = 0.1
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = "0 deg"
+)");
+  const std::string file = solved_file(heavy + " --samples 4");
+  const json document = json_of("check " + heavy + " --tolerance 1% --shape " + file, 1);
+  EXPECT_EQ(document.at("verdict"), "undetermined");
+  EXPECT_LT(document.at("judged_m"), 1e-6);
+  EXPECT_TRUE(document.at("explanations").empty());
+  EXPECT_TRUE(says(document.at("reason"), {"the points do not determine the rod at s = "}));
+}
+
 // A chain's points are explained by its springs, not by another material: one line says so.
 TEST_F(CheckCommand, AModulusThatIsSupersededIsNoOptimum) {
   const std::string file = solved_file(steel() + " --model chain");

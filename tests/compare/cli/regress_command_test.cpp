@@ -53,6 +53,24 @@ TEST_F(RegressCommand, UpdateIsStableAndTheSameShapesPass) {
   EXPECT_EQ(read(path("b.toml")), before);
 }
 
+TEST_F(RegressCommand, MayTolerateAShareOfTheDeflection) {
+  const std::string check = "check " + steel() + " --tolerance '1% of deflection' --shape " +
+                            solved_file(steel() + " --samples 21");
+  const double deflection = json_of(check).at("deflection_m").get<double>() / 0.5;  // of l
+  const double tip =
+      json_of(arguments_ + steel()).at("cases")[0].at("measured").at("tip_over_length");
+  const auto grown_by = [&](double shares_of_deflection) {
+    set("tip_over_length", std::to_string(tip - shares_of_deflection * deflection));
+    return run(arguments_ + steel() + " --relative 0 --tolerance '5% of deflection'").status;
+  };
+  EXPECT_EQ(grown_by(0.049), 0);
+  EXPECT_EQ(grown_by(0.051), 1);
+  const dlo::test::Outcome refused = run(arguments_ + steel() + " --tolerance '2 mm'");
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_TRUE(says(refused.err, {"2 mm is no share", "5% of deflection"}));
+  EXPECT_EQ(run(arguments_ + steel() + " --tolerance 1% --absolute 1%").status, 2);
+}
+
 // What another process writes in the meantime stays; so of two updates at once one is told.
 TEST_F(RegressCommand, UpdateLeavesABaselineThatHasChangedSinceItWasRead) {
   const std::string other = std::string(DLO_DATA) + "/scenes/spring_steel_135.toml";

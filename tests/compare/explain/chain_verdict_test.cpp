@@ -33,15 +33,15 @@ TEST(Explanation, AChainOfHingesIsRightInItsOwnWay) {
     const double h = 1.0 / segments;
     const std::vector<double> whole(static_cast<std::size_t>(segments), h);
     const JudgedShape hinged = judged(scene, made(hinged_chain(whole, h, 1, false)));
-    EXPECT_TRUE(hinged.judgement.pass) << hinged.judgement.reason;
+    EXPECT_TRUE(hinged.judgement.passes()) << hinged.judgement.reason;
     EXPECT_TRUE(says(hinged.judgement.reason, {"with a hinge at the clamp", "discretisation"}));
     const JudgedShape welded = judged(scene, made(hinged_chain(whole, h, 1, true)));
-    EXPECT_TRUE(welded.judgement.pass) << welded.judgement.reason;
+    EXPECT_TRUE(welded.judgement.passes()) << welded.judgement.reason;
     EXPECT_TRUE(says(welded.judgement.reason, {"welded"}));
     std::vector<double> half(static_cast<std::size_t>(segments) + 1, h);
     half.front() = half.back() = h / 2;
     const JudgedShape middle = judged(scene, made(hinged_chain(half, h, 1, true)));
-    EXPECT_TRUE(middle.judgement.pass) << middle.judgement.reason;
+    EXPECT_TRUE(middle.judgement.passes()) << middle.judgement.reason;
     EXPECT_TRUE(middle.explanations.empty());  // near the rod itself
     expect_named("half as stiff", scene, made(hinged_chain(whole, h, 0.5, false)),
                  {"with a hinge at the clamp", "springs of 0.", "times EI/h"});
@@ -55,19 +55,19 @@ TEST(Explanation, TheVerdictKnowsChainsWithoutAnyExplanation) {
   const ShapeCheck check = check_shape(scene, right, {.modulus = ModulusSearch::no});
   for (const bool largest : {false, true}) {
     const ShapeTolerance tolerance{.allowed_m = 0.01, .largest = largest};
-    EXPECT_FALSE(judge(check, tolerance).pass);
+    EXPECT_FALSE(judge(check, tolerance).passes());
     const ShapeJudgement alone = judge_with_chains(scene, check, tolerance);
-    EXPECT_TRUE(alone.pass) << alone.reason;
+    EXPECT_TRUE(alone.passes()) << alone.reason;
     EXPECT_EQ(with_explanation(alone, explain_shape(scene, right, check, {}), tolerance).reason,
               alone.reason);
   }
   const MeasuredShape soft = made(hinged_chain(std::vector<double>(20, 0.05), 0.05, 0.8, false));
   const ShapeCheck soft_check = check_shape(scene, soft, {.modulus = ModulusSearch::no});
   const ShapeJudgement alone = judge_with_chains(scene, soft_check, {.allowed_m = 1e-3});
-  EXPECT_FALSE(alone.pass);
+  EXPECT_FALSE(alone.passes());
   const ShapeJudgement explained =
       with_explanation(alone, explain_shape(scene, soft, soft_check, {}), {.allowed_m = 1e-3});
-  EXPECT_FALSE(explained.pass);
+  EXPECT_FALSE(explained.passes());
   EXPECT_EQ(explained.reason.find(alone.reason), 0);
 }
 
@@ -78,7 +78,7 @@ TEST(Explanation, AChainsSpringsAreCalledByTheirLaw) {
   rope.scale_modulus(0.2);
   const Eigen::Matrix3Xd chain = hinged_chain(std::vector<double>(20, 0.05), 0.05, 0.2, true);
   const JudgedShape outcome = judged(rope, made(chain));
-  EXPECT_TRUE(outcome.judgement.pass) << outcome.judgement.reason;
+  EXPECT_TRUE(outcome.judgement.passes()) << outcome.judgement.reason;
   EXPECT_TRUE(says(outcome.judgement.reason, {"its springs EI/h and linear in the angle"}));
   Shape shape;
   shape.points = chain;
@@ -120,8 +120,8 @@ TEST(Explanation, AChainClampedInTheMiddleOfASegmentIsKnown) {
 TEST(Explanation, AChainIsHeldAgainstTheMeasureThatWasAsked) {
   Matrix3Xd points = hinged_chain(std::vector<double>(20, 0.05), 0.05, 1, false);
   points.rightCols<1>() += Vector3d(0.003, 0.0045, 0);
-  EXPECT_TRUE(judged(clamped(), made(points)).judgement.pass);
-  EXPECT_FALSE(judged(clamped(), made(points), 0.01, true).judgement.pass);
+  EXPECT_TRUE(judged(clamped(), made(points)).judgement.passes());
+  EXPECT_FALSE(judged(clamped(), made(points), 0.01, true).judgement.passes());
 }
 
 }  // namespace

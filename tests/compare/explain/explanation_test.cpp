@@ -104,7 +104,7 @@ TEST(Explanation, NamesWhatIsWrongWithAFile) {
   expect_named("noise", scene, made(right + noise), {"noise"}, 0.01);
   MeasuredShape against = made(right);
   against.arc_length = equal_arc_lengths(1, 41);
-  EXPECT_TRUE(judged(scene, against).judgement.pass);
+  EXPECT_TRUE(judged(scene, against).judgement.passes());
 }
 
 // How far a file is that was read in a wrong way says nothing: what is wrong with it comes first.
@@ -285,10 +285,10 @@ TEST(Explanation, OfARightShapeThereIsNone) {
   Matrix3Xd ends(3, 2);
   ends << 0, 0.7, 0, 0.1, 0, 0;
   const JudgedShape two = judged(held("hold = \"pin\"", "hold = \"pin\""), made(ends));
-  EXPECT_FALSE(two.judgement.pass);
+  EXPECT_FALSE(two.judgement.passes());
   EXPECT_TRUE(two.explanations.empty());
-  EXPECT_TRUE(judged(scene, shape_of(scene)).judgement.pass);
-  EXPECT_TRUE(judged(scene, shape_of(scene, 9)).judgement.pass);
+  EXPECT_TRUE(judged(scene, shape_of(scene)).judgement.passes());
+  EXPECT_TRUE(judged(scene, shape_of(scene, 9)).judgement.passes());
 }
 
 }  // namespace

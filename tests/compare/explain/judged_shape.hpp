@@ -42,7 +42,7 @@ inline JudgedShape judged(const compare::Scene& scene, const compare::MeasuredSh
   const compare::ShapeCheck check = compare::check_shape(scene, shape, options);
   const compare::ShapeTolerance tolerance{.allowed_m = share * scene.length, .largest = largest};
   JudgedShape outcome;
-  if (!compare::judge(check, tolerance).pass) {
+  if (!compare::judge(check, tolerance).passes()) {
     outcome.explanations = compare::explain_shape(scene, shape, check, options);
   }
   outcome.judgement = compare::with_explanation(compare::judge_with_chains(scene, check, tolerance),
@@ -56,7 +56,7 @@ inline void expect_named(const std::string& what, const compare::Scene& scene,
                          double left_m = 1e-3) {
   SCOPED_TRACE(what);
   const JudgedShape outcome = judged(scene, shape);
-  EXPECT_FALSE(outcome.judgement.pass);
+  EXPECT_FALSE(outcome.judgement.passes());
   ASSERT_FALSE(outcome.explanations.empty()) << outcome.judgement.reason;
   const compare::Explanation& best = outcome.explanations.front();
   for (const std::string& word : words) {

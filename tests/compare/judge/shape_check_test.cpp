@@ -5,13 +5,16 @@
 #include <cmath>
 
 #include "../../sanitized.hpp"
+#include "../../says.hpp"
 #include "dlo/compare/alignment.hpp"
+#include "dlo/compare/check.hpp"
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"
+#include "dlo/compare/solve.hpp"
 #include "measured_shapes.hpp"
 #include "scenes.hpp"
 
@@ -112,6 +115,20 @@ TEST(ShapeCheck, AFileThatIsCutOffKeepsItsFrame) {
   }
 }
 
+// Nearest to the tip of a chain that hangs farther out than the rod is a point inside the rod.
+TEST(ShapeCheck, TheEndsOfAFileAsLongAsTheRodAreTheRods) {
+  Scene scene = heavy_scene(1000, 0);
+  scene.force_model.points = 12;
+  const MeasuredShape chain{"chain", solve(scene, Model::chain).shape.points, {}};
+  for (const MeasuredShape& file : {chain, test::reversed(chain)}) {
+    const ShapeCheck check = check_shape(scene, file, {.modulus = ModulusSearch::no});
+    EXPECT_EQ(check.alignment.arc_lengths, ArcLengths::nearest);
+    EXPECT_EQ(check.reference.arc_length.front(), 0);
+    EXPECT_EQ(check.reference.arc_length.back(), 1);
+    EXPECT_EQ(check.seen_share, 1);
+  }
+}
+
 // Between clamps that lean up a heavy rod hangs out of its plane, to either side. Neither side is
 // wrong, and the modulus is the one of the shape's own side.
 TEST(ShapeCheck, ComparesWithTheStateThatTheShapeIsIn) {
@@ -185,6 +202,78 @@ TEST(ShapeCheck, TheRotationOfAStraightShapeIsNotIdentifiable) {
   MeasuredShape line{"line", Eigen::Matrix3Xd::Zero(3, 5), {}};
   line.points.row(2) = Eigen::RowVectorXd::LinSpaced(5, 0, 1);
   EXPECT_FALSE(check_shape(scene, line, {.pose = PoseFreedom::rigid}).turn_is_clear);
+}
+
+CheckResult verdict_of(const Scene& scene, const Eigen::Matrix3Xd& points, double share,
+                       double of_deflection = 0) {
+  return check(scene, {"mine.csv", points, {}},
+               {.tolerance = ShapeTolerance{.allowed_m = share * scene.length,
+                                            .deflection_share = of_deflection},
+                .explaining = Explaining::no,
+                .shape = {.modulus = ModulusSearch::no}});
+}
+
+// A cantilever of small Gamma sags by w s^2 (6 l^2 - 4 l s + s^2) / (24 EI), at its tip by Gamma l
+// / 8.
+TEST(Significance, APassThatAStraightLineWouldHaveTooSaysSo) {
+  constexpr double gamma = 0.08;
+  const Scene scene = heavy_scene(gamma, 0);
+  const std::vector<double> s = equal_arc_lengths(1, 21);
+  const Eigen::Matrix3Xd right = exact_shape(scene, s).points;
+  Eigen::Matrix3Xd line = Eigen::Matrix3Xd::Zero(3, 21);
+  Eigen::Matrix3Xd half = right;
+  for (Eigen::Index i = 0; i < 21; ++i) {
+    const double at = s[static_cast<std::size_t>(i)];
+    line(0, i) = at;
+    EXPECT_NEAR(right(1, i), -gamma / 24 * at * at * (6 - 4 * at + at * at), 1e-3 * gamma / 8);
+    half(1, i) /= 2;
+  }
+  for (const Eigen::Matrix3Xd& points : {right, half, line}) {
+    const CheckResult passed = verdict_of(scene, points, 0.01);
+    EXPECT_TRUE(passed.passes());
+    EXPECT_EQ(passed.judgement.significant, false);
+    EXPECT_NEAR(passed.deflection_m, gamma / 8, 1e-3 * gamma / 8);
+    EXPECT_TRUE(test::says(passed.judgement.reason,
+                           {"; not significant for stiffness or weight: the rod without weight and "
+                            "loads would pass too"}));
+    EXPECT_EQ(other_stiffness_within(passed), "");
+  }
+  const CheckResult significant = verdict_of(scene, right, 0.01, 0.05);
+  EXPECT_TRUE(significant.passes()) << significant.judgement.reason;
+  EXPECT_EQ(significant.judgement.significant, true);
+  EXPECT_NEAR(significant.tolerance.allowed_m, 0.05 * gamma / 8, 1e-3 * gamma / 8);
+  EXPECT_FALSE(verdict_of(scene, half, 0.01, 0.05).passes());
+  EXPECT_FALSE(verdict_of(scene, line, 0.01, 0.05).passes());
+}
+
+TEST(Significance, OfARodThatBendsAPassIsSignificant) {
+  const Scene scene = heavy_scene(10, 0);
+  const CheckResult passed =
+      verdict_of(scene, exact_shape(scene, equal_arc_lengths(1, 21)).points, 0.01);
+  EXPECT_EQ(passed.judgement.significant, true);
+  EXPECT_GT(passed.deflection_m, 0.1);
+}
+
+// What weight and loads do not deflect has no share of it, and they say nothing of the stiffness.
+TEST(Significance, OfARodThatHangsStraightThereIsNoDeflection) {
+  const Scene scene = heavy_scene(10, -90);
+  const Eigen::Matrix3Xd points = exact_shape(scene, equal_arc_lengths(1, 21)).points;
+  EXPECT_EQ(verdict_of(scene, points, 0.01).judgement.significant, false);
+  const std::string refused =
+      test::error_of<InputError>([&] { return verdict_of(scene, points, 0.01, 0.05); });
+  EXPECT_TRUE(test::says(refused, {"a tolerance of deflection", "1e-06 of its length"}));
+}
+
+TEST(Significance, TheTrivialShapeKeepsNaturalCurvatureAndGrippers) {
+  Scene scene = heavy_scene(20, 0);
+  scene.natural_strain.y() = 1.5;
+  const energy_model::Equilibrium loaded = solve_reference(scene, Model::energy);
+  const std::optional<TrivialShape> trivial = trivial_shape(scene, loaded);
+  ASSERT_TRUE(trivial);
+  // An arc of radius 1/1.5 to the left of its clamp.
+  const Eigen::Vector3d tip = trivial->rod.sample(std::vector{1.0}).points.col(0);
+  EXPECT_LT((tip - Eigen::Vector3d(std::sin(1.5), 1 - std::cos(1.5), 0) / 1.5).norm(), 1e-8);
+  EXPECT_GE(trivial->deflection_m, (tip - loaded.sample(std::vector{1.0}).points.col(0)).norm());
 }
 
 TEST(ShapeCheck, UprightNeedsGravity) {

@@ -18,6 +18,7 @@ namespace {
 
 using dlo::compare::IsShapeOf;
 using dlo::compare::IsShapeWithin;
+using dlo::compare::of_deflection;
 using dlo::compare::Scene;
 using dlo::compare::Shape;
 using dlo::compare::shape_near;
@@ -81,6 +82,21 @@ TEST(ShapeMatcher, KnowsAChainByItsPoints) {
   const auto verdict = shape_near(chain, bent(), 1e-3);
   EXPECT_TRUE(verdict.near) << verdict.explanation;
   EXPECT_THAT(verdict.explanation, HasSubstr("right for a chain of 20 segments"));
+}
+
+TEST(ShapeMatcher, TakesAShareOfTheDeflection) {
+  const Scene stiff = dlo::test::heavy_scene(0.08, 0);  // sags by 1 % of its length
+  Shape shape = dlo::compare::solve(stiff, dlo::compare::Model::exact).shape;
+  EXPECT_SHAPE_NEAR(shape, stiff, of_deflection(0.05));
+  shape.points.row(1).setZero();
+  const auto line = shape_near(shape, stiff, 0.01);
+  EXPECT_TRUE(line.near);
+  EXPECT_THAT(line.explanation, HasSubstr("not significant for stiffness or weight"));
+  EXPECT_THAT(shape_near(shape, stiff, of_deflection(0.05)).explanation,
+              HasSubstr("= 5 % of the deflection"));
+  EXPECT_THAT(shape, Not(IsShapeWithin(stiff, of_deflection(0.05))));
+  EXPECT_NONFATAL_FAILURE(EXPECT_THAT(shape, IsShapeOf(stiff, of_deflection(0.05))),
+                          "is the shape of heavy within 5 % of the deflection");
 }
 
 TEST(ShapeMatcher, SaysWhatIsNoShape) {

@@ -66,8 +66,8 @@ constexpr double bow = 20.0 / 24 * 0.05 * 0.05 * 0.25;
 
 /// Whether it passes as the whole rod, RMS and largest deviation held against the same length.
 bool passes(const ShapeCheck& check, double allowed_m) {
-  return judge(check, {.allowed_m = allowed_m}).pass &&
-         judge(check, {.allowed_m = allowed_m, .largest = true}).pass;
+  return judge(check, {.allowed_m = allowed_m}).passes() &&
+         judge(check, {.allowed_m = allowed_m, .largest = true}).passes();
 }
 
 class AnyRightShape : public testing::TestWithParam<bool> {
@@ -189,11 +189,11 @@ TEST_P(AnyRightShape, ACutFileIsNamed) {
       EXPECT_LE(check.whole_rms_m, (1 + 1e-4) * std::sqrt(std::pow(1 - seen, 3) / 3));
       EXPECT_GT(check.whole_rms_m, 0.5 * std::sqrt(std::pow(1 - seen, 3) / 3));
       const ShapeJudgement whole = judge(check, {.allowed_m = 0.0015});
-      EXPECT_FALSE(whole.pass) << kept;
+      EXPECT_FALSE(whole.passes()) << kept;
       EXPECT_TRUE(says(whole.reason, {"to 1 m, which the file does not have"}));
       const ShapeJudgement part =
           judge(check, {.allowed_m = 0.0015, .least_seen_share = 0.2, .part = true});
-      EXPECT_TRUE(part.pass) << part.reason;
+      EXPECT_TRUE(part.passes()) << part.reason;
       EXPECT_TRUE(says(part.reason, {"not judged: s = "}));
     }
   });
@@ -207,11 +207,11 @@ TEST_P(AnyRightShape, PartsThatThePointsDoNotDetermineAreNamed) {
   const ShapeCheck check = right.check(right.points(right.s), column_s());
   EXPECT_LT(check.whole_max_m, 1e-7);
   const ShapeJudgement judgement = judge(check, {.allowed_m = 0.01});
-  EXPECT_FALSE(judgement.pass);
+  EXPECT_EQ(judgement.verdict, ShapeVerdict::undetermined);
   EXPECT_TRUE(says(judgement.reason,
                    {"do not determine the rod at s = 0.02 to 1 m", "only 2 % of the rod is seen"}));
-  EXPECT_FALSE(judge(check, {.allowed_m = 0.01, .least_seen_share = 0.1, .part = true}).pass);
-  EXPECT_TRUE(judge(check, {.allowed_m = 0.01, .least_seen_share = 0.01, .part = true}).pass);
+  EXPECT_FALSE(judge(check, {.allowed_m = 0.01, .least_seen_share = 0.1, .part = true}).passes());
+  EXPECT_TRUE(judge(check, {.allowed_m = 0.01, .least_seen_share = 0.01, .part = true}).passes());
 }
 
 TEST(ShapeMeasure, PointsPastTheTipCount) {
@@ -247,7 +247,8 @@ TEST(ShapeMeasure, DenseNoiseIsNoExcess) {
   EXPECT_GT(check.polyline_length_m, 3);
   EXPECT_LT(check.excess_m, 0.015);
   EXPECT_LT(check.deviation.rms_m, 2e-3 * std::sqrt(3.0) * 1.5);
-  EXPECT_TRUE(judge(check, {.allowed_m = 0.01}).pass) << judge(check, {.allowed_m = 0.01}).reason;
+  EXPECT_TRUE(judge(check, {.allowed_m = 0.01}).passes())
+      << judge(check, {.allowed_m = 0.01}).reason;
 }
 
 TEST(ShapeMeasure, TheRmsIsNeverAboveTheLargest) {
@@ -278,11 +279,11 @@ ShapeCheck seen(double share) {
 }
 
 TEST(ShapeJudgement, LessThanHalfOfTheRodIsNeverAPass) {
-  EXPECT_TRUE(judge(seen(0.501), {.allowed_m = 0.01}).pass);
-  EXPECT_FALSE(judge(seen(0.499), {.allowed_m = 0.01}).pass);
-  EXPECT_TRUE(judge(seen(0.501), {.allowed_m = 0.01, .part = true}).pass);
+  EXPECT_TRUE(judge(seen(0.501), {.allowed_m = 0.01}).passes());
+  EXPECT_FALSE(judge(seen(0.499), {.allowed_m = 0.01}).passes());
+  EXPECT_TRUE(judge(seen(0.501), {.allowed_m = 0.01, .part = true}).passes());
   const ShapeJudgement less = judge(seen(0.499), {.allowed_m = 0.01, .part = true});
-  EXPECT_FALSE(less.pass);
+  EXPECT_EQ(less.verdict, ShapeVerdict::undetermined);
   EXPECT_TRUE(says(less.reason, {"only 49.9 % of the rod is seen, needed 50 %"}));
 }
 
@@ -293,12 +294,12 @@ TEST(ShapeJudgement, HoldsWhatIsMissingAgainstTheWholeRodOnly) {
   check.whole_rms_m = 0.02;
   check.whole_max_m = 0.1;
   EXPECT_EQ(judge(check, {.allowed_m = 0.01}).judged_m, 0.02);
-  EXPECT_FALSE(judge(check, {.allowed_m = 0.01}).pass);
-  EXPECT_TRUE(judge(check, {.allowed_m = 0.03}).pass);
-  EXPECT_FALSE(judge(check, {.allowed_m = 0.03, .largest = true}).pass);
+  EXPECT_EQ(judge(check, {.allowed_m = 0.01}).verdict, ShapeVerdict::fail);
+  EXPECT_TRUE(judge(check, {.allowed_m = 0.03}).passes());
+  EXPECT_FALSE(judge(check, {.allowed_m = 0.03, .largest = true}).passes());
   EXPECT_EQ(judge(check, {.allowed_m = 0.01, .part = true}).judged_m, 0.001);
-  EXPECT_TRUE(judge(check, {.allowed_m = 0.01, .part = true}).pass);
-  EXPECT_FALSE(judge(check, {.allowed_m = 0.001, .largest = true, .part = true}).pass);
+  EXPECT_TRUE(judge(check, {.allowed_m = 0.01, .part = true}).passes());
+  EXPECT_FALSE(judge(check, {.allowed_m = 0.001, .largest = true, .part = true}).passes());
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <ostream>
+#include <sstream>
+#include <string>
 #include <utility>
 
 #include "dlo/compare/check.hpp"
@@ -12,6 +14,7 @@
 ///
 ///     EXPECT_SHAPE_NEAR(shape, load_scene("wire.toml"), 1e-3);         // 0.1 % of the length
 ///     EXPECT_THAT(shape, dlo::compare::IsShapeOf(scene, 1e-3));         // with gmock
+///     EXPECT_SHAPE_NEAR(shape, scene, dlo::compare::of_deflection(0.05));  // of a stiff rod
 ///
 /// `shape` is a dlo::compare::Shape (points at arc lengths, in m, in the scene's frame),
 /// `tolerance` the RMS deviation that is allowed, as a share of the rod's length: what `dlo check`
@@ -33,7 +36,7 @@
 namespace dlo::compare {
 
 /// What a matcher asks of a shape: shape_near or shape_within.
-using ShapeTest = ShapeNear (*)(const Shape& shape, const Scene& scene, double tolerance);
+using ShapeTest = ShapeNear (*)(const Shape& shape, const Scene& scene, ToleranceShare tolerance);
 
 /// What EXPECT_SHAPE_NEAR and EXPECT_SHAPE_WITHIN call.
 struct ShapeAssertion {
@@ -42,7 +45,7 @@ struct ShapeAssertion {
   /// The outcome of a test, with the arguments as written.
   testing::AssertionResult operator()(const char* shape_text, const char* scene_text,
                                       const char* tolerance_text, const Shape& shape,
-                                      const Scene& scene, double tolerance) const {
+                                      const Scene& scene, ToleranceShare tolerance) const {
     const ShapeNear result = test(shape, scene, tolerance);
     if (result.near) return testing::AssertionSuccess();
     return testing::AssertionFailure()
@@ -57,8 +60,8 @@ class ShapeMatcher {
   /// for GoogleTest
   using is_gtest_matcher = void;
 
-  /// @param tolerance  share of the length [-], > 0
-  ShapeMatcher(ShapeTest test, Scene scene, double tolerance)
+  /// @param tolerance  share of the length or of_deflection() [-], > 0
+  ShapeMatcher(ShapeTest test, Scene scene, ToleranceShare tolerance)
       : test_(test), scene_(std::move(scene)), tolerance_(tolerance) {}
 
   /// Whether the shape is the scene's; streams why, or why not.
@@ -68,29 +71,32 @@ class ShapeMatcher {
     return result.near;
   }
   /// What is expected.
-  void DescribeTo(std::ostream* out) const {
-    *out << "is the shape of " << scene_.name << " within " << tolerance_ * 100 << " % of l";
-  }
+  void DescribeTo(std::ostream* out) const { *out << "is" << what(); }
   /// What is not expected.
-  void DescribeNegationTo(std::ostream* out) const {
-    *out << "is not the shape of " << scene_.name << " within " << tolerance_ * 100 << " % of l";
-  }
+  void DescribeNegationTo(std::ostream* out) const { *out << "is not" << what(); }
 
  private:
+  [[nodiscard]] std::string what() const {
+    std::ostringstream text;
+    text << " the shape of " << scene_.name << " within " << tolerance_.share * 100 << " % of "
+         << (tolerance_.of_deflection ? "the deflection" : "l");
+    return text.str();
+  }
+
   ShapeTest test_;
   Scene scene_;
-  double tolerance_;
+  ToleranceShare tolerance_;
 };
 
 // GoogleTest's names for what GoogleTest calls and for what stands beside its matchers.
 /// EXPECT_THAT(shape, IsShapeOf(scene, 1e-3)): see shape_near.
 // NOLINTNEXTLINE(readability-identifier-naming)
-inline ShapeMatcher IsShapeOf(Scene scene, double tolerance) {
+inline ShapeMatcher IsShapeOf(Scene scene, ToleranceShare tolerance) {
   return {shape_near, std::move(scene), tolerance};
 }
 /// EXPECT_THAT(shape, IsShapeWithin(scene, 1e-3)): see shape_within.
 // NOLINTNEXTLINE(readability-identifier-naming)
-inline ShapeMatcher IsShapeWithin(Scene scene, double tolerance) {
+inline ShapeMatcher IsShapeWithin(Scene scene, ToleranceShare tolerance) {
   return {shape_within, std::move(scene), tolerance};
 }
 

@@ -67,4 +67,29 @@ struct ShapeCheck {
 [[nodiscard]] ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
                                      const ShapeCheckOptions& options = {});
 
+/// Equilibrium of a scene without weight and loads, the shape that depends on neither stiffness nor
+/// weight: grippers, obstacles and natural curvature stay.
+struct TrivialShape {
+  energy_model::Equilibrium rod;  ///< stable
+  double deflection_m = 0;        ///< largest distance from the rod with weight and loads [m]
+};
+
+/// Finds the trivial shape that belongs to an equilibrium: weight and loads are removed, and the
+/// solver starts from that equilibrium. Empty if no stable one is found.
+[[nodiscard]] std::optional<TrivialShape> trivial_shape(const Scene& scene,
+                                                        const energy_model::Equilibrium& loaded,
+                                                        const SolveOptions& options = {});
+
+/// Returns the deflection, for a tolerance that is a share of it [m].
+/// @throws InputError if it is below 1e-6 of the length, ConvergenceError without a trivial shape
+[[nodiscard]] double required_deflection(const Scene& scene,
+                                         const std::optional<TrivialShape>& trivial);
+
+/// Compares the trivial shape with the equilibrium that a shape was compared with, at the shape's
+/// arc lengths and by the same options, without E*/E.
+/// @param check  of check_shape()
+[[nodiscard]] ShapeCheck check_trivial_shape(const TrivialShape& trivial, const Scene& scene,
+                                             const ShapeCheck& check,
+                                             const ShapeCheckOptions& options);
+
 }  // namespace dlo::compare
