@@ -307,15 +307,14 @@ class Verdicts {
     Scene chain = scene;
     chain.force_model.points = 9 + random.below(53);
     chain.force_model.joint_law = law;
-    if (random.chance(0.5)) chain.force_model.bookkeeping = Bookkeeping::paper;
     const bool has_s = random.chance(0.5);
     const auto file_of = [&](const Scene& of) {
       const Shape shape = solve(of, Model::chain, {.time_limit = time_limit}).shape;
       return MeasuredShape{"chain", shape.points, has_s ? shape.arc_length : std::vector<double>{}};
     };
     const MeasuredShape right = file_of(chain);
-    const std::string what = std::to_string(right.points.cols() - 1) + " segments, " +
-                             to_string(law) + ", " + to_string(chain.force_model.bookkeeping);
+    const std::string what =
+        std::to_string(right.points.cols() - 1) + " segments, " + to_string(law);
     judge(scene, states, {'d', what, right});
     chain.scale_modulus(0.7);
     const MeasuredShape soft = file_of(chain);

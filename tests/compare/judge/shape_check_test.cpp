@@ -124,8 +124,8 @@ TEST(ShapeCheck, TheEndsOfAFileAsLongAsTheRodAreTheRods) {
     const ShapeCheck check = check_shape(scene, file, {.modulus = ModulusSearch::no});
     EXPECT_EQ(check.alignment.arc_lengths, ArcLengths::nearest);
     EXPECT_EQ(check.reference.arc_length.front(), 0);
-    EXPECT_EQ(check.reference.arc_length.back(), 1);
-    EXPECT_EQ(check.seen_share, 1);
+    EXPECT_DOUBLE_EQ(check.reference.arc_length.back(), 1);
+    EXPECT_DOUBLE_EQ(check.seen_share, 1);
   }
 }
 

@@ -27,7 +27,8 @@ enum class ArcLengths {
   chord,      ///< the points are the whole rod: lengths along the polyline, with a correction for
               ///< the bow over each chord, scaled to the rod's; a dozen points know them to 1e-4 l
   nearest,    ///< each the curve's nearest point, in order: parts may be missing. Differences along
-              ///< the curve are invisible. The ends of a file as long as the rod are the rod's.
+              ///< the curve are invisible. With PointWeights::by_length the ends of a file as long
+              ///< as the rod are the rod's.
 };
 
 /// Of the frame.
