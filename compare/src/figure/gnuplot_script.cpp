@@ -88,6 +88,7 @@ std::string style_of(const Look& look) {
 struct Canvas {
   int width = figure_width;
   int height = 0;
+  int legend_font = 13;  ///< smaller than other text, so that no title is cut off [points]
 };
 
 /// A script in the making. gnuplot places tics and legends.
@@ -108,8 +109,12 @@ class Script {
       if (i == 0) add_title(figure.title);
       if (panel.equal_aspect) add("set size ratio -1\n");
       add("set grid linecolor rgb '#808080'\n");
-      out_ += panel.has_legend ? "set key below left Left reverse vertical maxcols 1\n"
-                               : "set key off\n";
+      if (panel.has_legend) {
+        add("set key below left Left reverse vertical maxcols 1 samplen 2 font ',{}'\n",
+            canvas_.legend_font);
+      } else {
+        add("set key off\n");
+      }
       add_axis(panel.x, 'x');
       add_axis(panel.y, 'y');
       add_texts(panel);
@@ -259,7 +264,8 @@ std::string gnuplot_string(const std::string& text) {
 
 std::string picture_script(const Picture& picture, PictureFormat format,
                            const std::string& output) {
-  Canvas canvas;
+  // The other formats' text is 12 points high where that of SVG is 16 pixels.
+  Canvas canvas{.legend_font = format == PictureFormat::svg ? 13 : 10};
   for (const PictureRow& row : picture.rows) {
     canvas.width = std::max(canvas.width, figure_width * static_cast<int>(row.size()));
     canvas.height += height_of(row);
