@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dlo/compare/force_model_settings.hpp"
+#include "paper/modulus_history.hpp"
 #include "paper/recomputed_tables.hpp"
 
 namespace dlo::compare {
@@ -72,6 +73,15 @@ TEST(PaperReport, MeasuresTheEffectiveModulusAtRestAndOnTheWay) {
   EXPECT_EQ(hooke.settings.bookkeeping, Bookkeeping::consistent);
   EXPECT_NEAR(hooke.modulus.ratio, 1, 0.02);
   EXPECT_FALSE(report.assumptions.empty());
+}
+
+TEST(ModulusHistory, FindsWhenARatioIsPassed) {
+  std::vector<ModulusAtTime> times;
+  for (const double t : {1., 10., 100.}) {
+    times.push_back({.time_s = t, .modulus = {.ratio = 10 / t}});
+  }
+  EXPECT_NEAR(time_at_ratio(times, 1. / 3), 30, 1e-9);  // E*/E = 10 s / t
+  EXPECT_TRUE(std::isnan(time_at_ratio(times, 0.01)));
 }
 
 }  // namespace
