@@ -26,7 +26,7 @@ from ._arguments import (
 from ._documents import Benchmark, Modes, Regression, ScoreCard, Stability, Track
 from ._errors import InputError
 from ._files import FileName, file_name, file_text
-from ._functions import is_file, many, shape_pair
+from ._functions import many, shape_pair
 from ._scene import Calibrated, Quantity, Scene, SceneLike, as_scene, data_of
 from ._time_limit import within
 
