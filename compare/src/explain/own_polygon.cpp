@@ -7,7 +7,9 @@
 #include <limits>
 #include <utility>
 
+#include "dlo/compare/bending_rule.hpp"
 #include "dlo/compare/deviation.hpp"
+#include "dlo/compare/error.hpp"
 #include "dlo/energy_model/polygon.hpp"
 #include "dlo/obstacle/body.hpp"
 #include "scene/reach.hpp"
@@ -35,20 +37,44 @@ constexpr double another_chain = 0.05;
 /// Of what is below, as a share of the length, the chain's own stretch is a part: no law shows.
 constexpr double least_showing = 1e-5;
 
-/// Lengths of the segments as shares of the rod.
+/// Largest strain of a segment of a chain at rest [-]. Segments stretch by a millionth; a crushed
+/// or torn one belongs to a polygon that is not the chain.
+constexpr double largest_chain_strain = 1e-3;
+
+/// Returns the lengths of the segments, scaled so that their sum is the rod's length.
 Eigen::VectorXd rest_lengths(const Eigen::Matrix3Xd& points, double length) {
   const Eigen::Index n = points.cols() - 1;
   const Eigen::VectorXd chords = (points.rightCols(n) - points.leftCols(n)).colwise().norm();
   return chords * (length / chords.sum());
 }
 
+/// Returns c_b of the paper's law [N], as models force and chain have it in this scene; if they
+/// have none, that of Formula 21 for the curvature 1/l.
+double paper_stiffness(const Scene& scene, Eigen::Index segments, ChainClamp clamp) {
+  ForceModelSettings settings = scene.force_model;
+  settings.law = BendingLaw::paper;
+  settings.joint_law.reset();
+  settings.points = static_cast<int>(segments) + 1;
+  settings.bookkeeping = clamp == ChainClamp::middle ? Bookkeeping::consistent : Bookkeeping::paper;
+  if (settings.bookkeeping == Bookkeeping::consistent) settings.point_weight.reset();
+  try {
+    return discretise(scene, settings).parameters.c_b;
+  } catch (const InputError&) {
+    return paper_bending_stiffness(BendingRule::formula_21, scene.bending_stiffness(),
+                                   1 / scene.length, scene.length / static_cast<double>(segments));
+  }
+}
+
 class Chain {
  public:
-  Chain(const Scene& scene, const Shape& shape, ChainClamp clamp, LastPoint last)
-      : scene_(scene), points_(shape.points), clamp_(clamp), last_(last) {
-    inner_ = rest_lengths(points_, scene.length);
+  /// @param points  where the search for the rest shape starts, and what it is compared with [m]
+  /// @param lengths  of the segments between them [m]
+  Chain(const Scene& scene, const Eigen::Matrix3Xd& points, Eigen::VectorXd lengths,
+        ChainClamp clamp, LastPoint last)
+      : scene_(scene), points_(points), clamp_(clamp), last_(last), inner_(std::move(lengths)) {
     s_.push_back(0);
     for (const double L : inner_) s_.push_back(s_.back() + L);
+    s_.back() = scene.length;  // but for rounding it is
   }
 
   /// Whether the chain is one of this scene.
@@ -69,14 +95,28 @@ class Chain {
     options.max_evaluations = most_polygon_evaluations;
     options.in_stages = false;
     const energy_model::PolygonResult rest = energy_model::solve_polygon(problem, start(), options);
-    if (!energy_model::succeeded(rest.status)) return std::nullopt;
+    if (!energy_model::succeeded(rest.status) || is_strained(rest.points)) return std::nullopt;
     Eigen::Matrix3Xd gaps = points_ - rest.points.middleCols(before_, points_.cols());
     if (last_ == LastPoint::missing) gaps.rightCols<1>().setZero();
     return gaps;
   }
 
-  /// Sets its joints and their springs.
+  /// Gives the chain the paper's joints, and, if it is welded, the paper's points of equal weight.
+  void set_paper_law() {
+    problem_.stiffness = paper_stiffness(scene_, inner_.size(), clamp_);
+    problem_.stiffnesses.resize(0);
+    if (clamp_ != ChainClamp::welded) return;
+    const auto count = static_cast<double>(points_.cols());
+    const Eigen::Vector3d weight = scene_.weight_between(0, scene_.length) / count;
+    problem_.node_forces += (-weights_).colwise() + weight;
+  }
+
+  /// Sets its joints and their springs, or c_b of the paper's law.
   void add_springs(OwnPolygon& polygon) const {
+    if (polygon.law == JointLaw::paper) {
+      polygon.paper_stiffness = polygon.stiffness * problem_.stiffness;
+      return;
+    }
     const Eigen::VectorXd& h = problem_.rest_lengths;
     for (Eigen::Index j = 0; j + 1 < h.size(); ++j) {
       const double EI =
@@ -89,7 +129,17 @@ class Chain {
 
   [[nodiscard]] double rms_of(const Eigen::Matrix3Xd& gaps) const { return rms(s_, gaps); }
 
+  /// Returns the chain from which the file's points have these gaps.
+  [[nodiscard]] Shape at_rest(const Eigen::Matrix3Xd& gaps) const { return {s_, points_ - gaps}; }
+
  private:
+  [[nodiscard]] bool is_strained(const Eigen::Matrix3Xd& points) const {
+    const Eigen::VectorXd& h = problem_.rest_lengths;
+    const Eigen::VectorXd lengths =
+        (points.rightCols(h.size()) - points.leftCols(h.size())).colwise().norm();
+    return !((lengths - h).cwiseAbs().cwiseQuotient(h).maxCoeff() <= largest_chain_strain);
+  }
+
   [[nodiscard]] std::optional<Eigen::Index> point_at(double at) const {
     for (std::size_t i = 0; i < s_.size(); ++i) {
       if (std::abs(s_[i] - at) < 1e-6 * scene_.length) return static_cast<Eigen::Index>(i);
@@ -113,6 +163,8 @@ class Chain {
       if (*point != 0 && *point != n) return false;
       (*point == 0 ? first : last) = &gripper;
     }
+    is_clamped_at_start_ = first != nullptr;
+    is_clamped_at_end_ = last != nullptr;
     const bool hinged = clamp_ == ChainClamp::hinge;
     before_ = first != nullptr && hinged ? 1 : 0;
     after_ = last != nullptr && hinged ? 1 : 0;
@@ -130,7 +182,7 @@ class Chain {
     if (first == nullptr && last == nullptr) return hinged;  // pins hold all chains alike
     if (clamp_ != ChainClamp::middle) return true;
     const auto is_half = [](double end, double beside) {
-      return std::abs(end / beside - 0.5) < 0.05;
+      return std::abs(end / beside - 0.5) < 0.1;
     };
     return (first == nullptr || is_half(inner_[0], inner_[1])) &&
            (last == nullptr || is_half(inner_[n - 1], inner_[n - 2]));
@@ -151,22 +203,30 @@ class Chain {
     if (clamp_ == ChainClamp::middle) {
       // The spring is that between two whole segments.
       problem_.stiffnesses.setConstant(problem_.rest_lengths.size() - 1, stiffness);
-      problem_.stiffnesses[0] *= (inner_[0] + inner_[1]) / (2 * inner_[1]);
-      problem_.stiffnesses[n - 2] *= (inner_[n - 1] + inner_[n - 2]) / (2 * inner_[n - 2]);
+      const auto whole = [&](Eigen::Index half, Eigen::Index next) {
+        return (inner_[half] + inner_[next]) / (2 * inner_[half] + inner_[next]);
+      };
+      if (is_clamped_at_start_) problem_.stiffnesses[0] *= whole(0, 1);
+      if (is_clamped_at_end_) problem_.stiffnesses[n - 2] *= whole(n - 1, n - 2);
     }
     problem_.node_forces.setZero(3, n + 1 + before_ + after_);
+    weights_.setZero(3, n + 1 + before_ + after_);
     for (Eigen::Index i = 0; i <= n; ++i) {
       const double at = s_[static_cast<std::size_t>(i)];
       const double begin = i == 0 ? 0 : at - inner_[i - 1] / 2;
       const double end = i == n ? l : at + inner_[i] / 2;
-      problem_.node_forces.col(i + before_) = scene_.weight_between(begin, std::min(l, end)) +
-                                              scene_.distributed_between(begin, std::min(l, end));
+      weights_.col(i + before_) = scene_.weight_between(begin, std::min(l, end));
+      problem_.node_forces.col(i + before_) =
+          weights_.col(i + before_) + scene_.distributed_between(begin, std::min(l, end));
     }
     for (const PointLoad& load : scene_.loads) {
-      const auto nearest = std::min_element(s_.begin(), s_.end(), [&](double a, double b) {
-        return std::abs(a - load.at) < std::abs(b - load.at);
-      });
-      problem_.node_forces.col(nearest - s_.begin() + before_) += load.force;
+      // A load between two points acts on both by the lever rule, as in discretise().
+      const Eigen::Index right =
+          std::upper_bound(s_.begin() + 1, s_.end() - 1, load.at) - s_.begin();
+      const double left_at = s_[static_cast<std::size_t>(right - 1)];
+      const double share = std::clamp((load.at - left_at) / inner_[right - 1], 0.0, 1.0);
+      problem_.node_forces.col(right - 1 + before_) += (1 - share) * load.force;
+      problem_.node_forces.col(right + before_) += share * load.force;
     }
     const double h = l / static_cast<double>(n);
     for (const std::size_t i : obstacles_in_reach(scene_)) {
@@ -192,7 +252,9 @@ class Chain {
   Eigen::VectorXd inner_;  // rest lengths of the file's own segments
   std::vector<double> s_;  // of the file's points
   energy_model::PolygonProblem problem_;
+  Eigen::Matrix3Xd weights_;             // the part of node_forces that is gravity [N]
   Eigen::Index before_ = 0, after_ = 0;  // points beyond the rod's ends
+  bool is_clamped_at_start_ = false, is_clamped_at_end_ = false;
 };
 
 double largest(const Eigen::Matrix3Xd& gaps) {
@@ -218,7 +280,9 @@ std::optional<OwnPolygon> fitted(const Chain& chain, Eigen::Matrix3Xd gaps, Chai
     gaps = std::move(*next);
     if (std::abs(way) < found) break;
   }
-  return OwnPolygon{clamp, chain.rms_of(gaps), largest(gaps), std::exp(log_factor), law};
+  OwnPolygon result{clamp, chain.rms_of(gaps), largest(gaps), std::exp(log_factor), law};
+  result.rest = chain.at_rest(gaps);
+  return result;
 }
 
 std::optional<OwnPolygon> with_law(const Chain& chain, ChainClamp clamp, Springs springs,
@@ -226,7 +290,9 @@ std::optional<OwnPolygon> with_law(const Chain& chain, ChainClamp clamp, Springs
   std::optional<Eigen::Matrix3Xd> gaps = chain.gaps(1, law);
   if (!gaps) return std::nullopt;
   if (springs == Springs::fitted) return fitted(chain, std::move(*gaps), clamp, law);
-  return OwnPolygon{clamp, chain.rms_of(*gaps), largest(*gaps), 1, law};
+  OwnPolygon found{clamp, chain.rms_of(*gaps), largest(*gaps), 1, law};
+  found.rest = chain.at_rest(*gaps);
+  return found;
 }
 
 /// With the law that comes nearest, the first one if none shows.
@@ -295,8 +361,9 @@ std::vector<OwnPolygon> own_polygons(const Scene& scene, const Shape& shape, Spr
   if (!plain || segments < 4 || segments > most_segments) return {};
   std::vector<OwnPolygon> found;
   for (const ChainClamp clamp : {ChainClamp::hinge, ChainClamp::welded, ChainClamp::middle}) {
-    Chain chain(scene, shape, clamp, last);
+    Chain chain(scene, shape.points, rest_lengths(shape.points, scene.length), clamp, last);
     if (!chain.exists()) continue;
+    if (law == JointLaw::paper) chain.set_paper_law();
     const std::optional<OwnPolygon> one = law ? with_law(chain, clamp, springs, *law)
                                               : with_best_law(chain, clamp, springs, scene.length);
     if (!one) continue;
@@ -304,6 +371,16 @@ std::vector<OwnPolygon> own_polygons(const Scene& scene, const Shape& shape, Spr
     chain.add_springs(found.back());
   }
   return found;
+}
+
+std::optional<Shape> chain_at_rest(const Scene& scene, const Shape& start, const OwnPolygon& like) {
+  const auto n = static_cast<Eigen::Index>(start.arc_length.size()) - 1;
+  const Eigen::Map<const Eigen::VectorXd> s(start.arc_length.data(), n + 1);
+  Chain chain(scene, start.points, s.tail(n) - s.head(n), like.clamp, LastPoint::there);
+  if (!chain.exists()) return std::nullopt;
+  const std::optional<Eigen::Matrix3Xd> gaps = chain.gaps(like.stiffness, like.law);
+  if (!gaps) return std::nullopt;
+  return chain.at_rest(*gaps);
 }
 
 }  // namespace dlo::compare

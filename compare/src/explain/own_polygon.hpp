@@ -38,6 +38,8 @@ struct OwnPolygon {
   std::vector<double> joints;  ///< where its springs are: arc lengths [m]
   std::vector<double>
       springs;  ///< each EI over half of both its segments, times stiffness [N m/rad]
+  double paper_stiffness = 0;  ///< c_b of the paper's law [N]; 0 of another law
+  Shape rest;  ///< the chain's points at rest, those that the file's points are compared with
 };
 
 /// The words for a chain's clamps.
@@ -60,5 +62,11 @@ struct OwnPolygon {
 [[nodiscard]] std::vector<OwnPolygon> own_polygons(
     const Scene& scene, const Shape& shape, Springs springs,
     std::optional<energy_model::JointLaw> law = std::nullopt, LastPoint last = LastPoint::there);
+
+/// Returns the points at rest of a chain with the clamps, springs and Hookean law of another one,
+/// found by a local search; nothing if that search finds no equilibrium.
+/// @param start  where the search starts; its arc lengths are those of the chain's points
+[[nodiscard]] std::optional<Shape> chain_at_rest(const Scene& scene, const Shape& start,
+                                                 const OwnPolygon& like);
 
 }  // namespace dlo::compare

@@ -320,4 +320,16 @@ double PolygonResponse::discretisation() const {
   return moved_rms(points_along(start, steps) - rod_points_);
 }
 
+double bound_of_response(double response, double length) {
+  constexpr double factor = 2;
+  constexpr double largest_response = 0.03;
+  return response <= largest_response * length ? factor * response
+                                               : std::numeric_limits<double>::infinity();
+}
+
+double polygon_bound(const Scene& scene, const Discretisation& polygon,
+                     const energy_model::Equilibrium& rod) {
+  return bound_of_response(PolygonResponse(scene, polygon, rod).discretisation(), scene.length);
+}
+
 }  // namespace dlo::compare

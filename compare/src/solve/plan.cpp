@@ -23,9 +23,6 @@ namespace dlo::compare {
 namespace {
 
 constexpr double unbounded = std::numeric_limits<double>::infinity();
-/// Second-order terms may double the first-order answer, up to this share of the length.
-constexpr double bound_factor = 2;
-constexpr double largest_response = 0.03;
 constexpr double largest_joint_angle = 0.5;  // [rad]
 
 std::vector<PlannedSpan> spans_of(const Scene& scene) {
@@ -90,14 +87,9 @@ bool touches(const energy_model::Equilibrium& rod) {
                      [](const Eigen::Vector3d& force) { return force.norm() > 0; });
 }
 
-double bounded(double response, double length) {
-  return response <= largest_response * length ? bound_factor * response : unbounded;
-}
-
-double polygon_bound(const Scene& scene, const energy_model::Equilibrium& rod, int points) {
+double bound_at(const Scene& scene, const energy_model::Equilibrium& rod, int points) {
   const std::optional<Discretisation> polygon = hooke_polygon(scene, points);
-  if (!polygon) return unbounded;
-  return bounded(PolygonResponse(scene, *polygon, rod).discretisation(), scene.length);
+  return polygon ? polygon_bound(scene, *polygon, rod) : unbounded;
 }
 
 /// From the error at one N to the next, by the order of convergence, until it is met or time is up.
@@ -111,7 +103,7 @@ int points_for_target(const Scene& scene, const energy_model::Equilibrium& rod, 
   }
   const double order = scene.force_model.bookkeeping == Bookkeeping::consistent ? 2 : 1;
   while (points <= most_planned_points && time.left() > 0) {
-    const double bound = polygon_bound(scene, rod, points);
+    const double bound = bound_at(scene, rod, points);
     if (bound <= target * scene.length) return points;
     const double growth =
         std::isfinite(bound) ? std::pow(bound / (target * scene.length), 1 / order) : 1.5;
@@ -229,11 +221,11 @@ void bound_by_response(const Scene& scene, const energy_model::Equilibrium& rod,
                        const Discretisation& fine, ShapeBounds& bounds) {
   const PolygonResponse response(scene, fine, rod);
   const double EA = scene.axial_stiffness();
-  bounds.stretch.bound_m = bounded(response.stretch(EA).moved_m, scene.length);
+  bounds.stretch.bound_m = bound_of_response(response.stretch(EA).moved_m, scene.length);
   bounds.stretch.why = "tension over EA, as the shape answers it";
-  bounds.shear.bound_m = bounded(response.shear(0.3 * EA), scene.length);
+  bounds.shear.bound_m = bound_of_response(response.shear(0.3 * EA), scene.length);
   bounds.shear.why = "force across over kGA, kG >= 0.3 E";
-  bounds.polygon.bound_m = polygon_bound(scene, rod, scene.force_model.points);
+  bounds.polygon.bound_m = bound_at(scene, rod, scene.force_model.points);
   bounds.polygon.why =
       fmt::format("segments instead of curves, hooke law, bookkeeping {}, N = {}",
                   to_string(scene.force_model.bookkeeping), scene.force_model.points);

@@ -1,12 +1,22 @@
 // Chains of hinges, which are right in their own way, and what is said of those that are not.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <random>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "../../says.hpp"
+#include "dlo/compare/check.hpp"
 #include "dlo/compare/explanation.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "dlo/compare/solve.hpp"
 #include "explain/own_polygon.hpp"
 #include "hinged_chain.hpp"
 #include "judged_shape.hpp"
@@ -122,6 +132,171 @@ TEST(Explanation, AChainIsHeldAgainstTheMeasureThatWasAsked) {
   points.rightCols<1>() += Vector3d(0.003, 0.0045, 0);
   EXPECT_TRUE(judged(clamped(), made(points)).judgement.passes());
   EXPECT_FALSE(judged(clamped(), made(points), 0.01, true).judgement.passes());
+}
+
+/// Returns the result of check() without E*, within 1 % of the length.
+CheckResult checked(const Scene& scene, const Matrix3Xd& points,
+                    Explaining explaining = Explaining::yes) {
+  return check(scene, made(points),
+               {.tolerance = ShapeTolerance{.allowed_m = 0.01 * scene.length},
+                .explaining = explaining,
+                .shape = {.modulus = ModulusSearch::no}});
+}
+
+// A chain at rest can be found from any points, since its segments are as long as the rod's share.
+TEST(ChainVerdict, NeedsPointsThatAreAsLongAsTheRod) {
+  const Scene scene = clamped();
+  const std::vector<double> segments(32, 1.0 / 32);
+  const Matrix3Xd chain = hinged_chain(segments, segments[0], 1, false);
+  ASSERT_TRUE(checked(scene, chain).passes());
+  for (const double factor : {1e-6, 1e-3, 0.01, 0.1, 0.5, 0.9, 1.1, 100.0}) {
+    const CheckResult result = checked(scene, factor * chain, Explaining::no);
+    EXPECT_EQ(result.judgement.verdict, ShapeVerdict::fail)
+        << factor << ": " << result.judgement.reason;
+  }
+}
+
+// Points to and fro across a chain are near it, on a polyline that is too long for the rod.
+TEST(ChainVerdict, NeedsAsMuchOfTheRodAsIsAsked) {
+  const Scene scene = clamped();
+  const ShapeTolerance tolerance{.allowed_m = 0.005};
+  Matrix3Xd chain = hinged_chain(std::vector<double>(60, 1.0 / 60), 1.0 / 60, 1, false);
+  const auto compared = [&] {
+    return check_shape(scene, made(chain), {.modulus = ModulusSearch::no});
+  };
+  ShapeCheck right = compared();
+  ASSERT_FALSE(judge(right, tolerance).passes());
+  EXPECT_TRUE(judge_with_chains(scene, right, tolerance).passes());
+  right.seen_share = 0.4;
+  EXPECT_FALSE(judge_with_chains(scene, right, tolerance).passes());
+  for (Eigen::Index i = 1; i < chain.cols(); ++i) chain(2, i) = i % 2 == 0 ? 1e-3 : -1e-3;
+  ShapeCheck wavy = compared();
+  EXPECT_GT(wavy.polyline_length_m, 1 + tolerance.allowed_m);
+  EXPECT_FALSE(judge_with_chains(scene, wavy, tolerance).passes());
+  wavy.polyline_length_m = 1;
+  EXPECT_TRUE(judge_with_chains(scene, wavy, tolerance).passes());
+}
+
+// From points that are crushed a search may end in a polygon with crushed segments, which is no
+// chain.
+TEST(ChainVerdict, AChainAtRestHasSegmentsOfItsOwnLength) {
+  Shape shape;
+  for (const double factor : {1e-6, 1e-3, 0.1, 1.0}) {
+    shape.points = factor * hinged_chain(std::vector<double>(32, 1.0 / 32), 1.0 / 32, 1, false);
+    for (const OwnPolygon& chain : own_polygons(clamped(), shape, Springs::as_the_rod)) {
+      const Matrix3Xd segments = chain.rest.points.rightCols(32) - chain.rest.points.leftCols(32);
+      EXPECT_LT((32 * segments.colwise().norm().array() - 1).abs().maxCoeff(), 2e-3) << factor;
+    }
+  }
+}
+
+// Points of the rod's length that are no equilibrium move to one.
+TEST(ChainVerdict, SmoothCurvesAreNoChains) {
+  std::mt19937 random(11);
+  std::normal_distribution<double> curvature(0, 2);
+  for (int i = 0; i < 10; ++i) {
+    Matrix3Xd points = Matrix3Xd::Zero(3, 25);
+    const double k[] = {curvature(random), curvature(random), curvature(random)};
+    double angle = 0.35;
+    for (Eigen::Index j = 1; j < points.cols(); ++j) {
+      const double s = static_cast<double>(j) / 24;
+      angle += (k[0] + k[1] * std::sin(3 * s) + k[2] * std::cos(7 * s)) / 24;
+      points.col(j) = points.col(j - 1) + Vector3d(std::cos(angle), std::sin(angle), 0) / 24;
+    }
+    const CheckResult result = checked(clamped(), points, Explaining::no);
+    EXPECT_EQ(result.judgement.verdict, ShapeVerdict::fail) << result.judgement.reason;
+  }
+}
+
+Scene spatial_rod() {
+  return parse_scene(
+      "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 2\n[[gripper]]\nat = 0\n"
+      "position = [0, 0, 0]\ndirection = \"30 deg\"\n[[gripper]]\nat = 1\n"
+      "position = [0.6, 0.15, 0.1]\ndirection = [1, -0.5, 0.3]\n",
+      "between.toml");
+}
+
+// A rod that leaves its plane rests on either side of it. A chain on one side is at no distance
+// from the rod on the other side that shorter segments would reduce.
+TEST(ChainVerdict, AChainThatDoesNotConvergeToTheRodIsNone) {
+  const Scene scene = parse_scene(
+      "[rod]\nlength = 1\nmass_per_length = 0.5\nbending_stiffness = 0.05\n[[gripper]]\nat = 0\n"
+      "position = [0, 0, 0]\ndirection = \"90 deg\"\n[[gripper]]\nat = 1\nposition = [0.5, 0, 0]\n"
+      "direction = \"-90 deg\"\n",
+      "arch.toml");
+  const energy_model::Equilibrium rod = solve_reference(scene, Model::energy);
+  OwnPolygon like;
+  like.clamp = ChainClamp::welded;
+  Shape start = {equal_arc_lengths(1, 31), {}};
+  start.points = rod.sample(start.arc_length).points;
+  ASSERT_GT(start.points.row(2).cwiseAbs().maxCoeff(), 0.1);
+  const std::optional<Shape> chain = chain_at_rest(scene, start, like);
+  ASSERT_TRUE(chain);
+  const ShapeTolerance tolerance{.allowed_m = 0.005};
+  ShapeCheck compared = check_shape(scene, made(chain->points), {.modulus = ModulusSearch::no});
+  ASSERT_FALSE(judge(compared, tolerance).passes());
+  EXPECT_TRUE(judge_with_chains(scene, compared, tolerance).passes());
+  const energy_model::Equilibrium right = compared.rod;
+  compared.rod.sample = [right](std::span<const double> s) {
+    energy_model::Samples samples = right.sample(s);
+    samples.points.row(2) *= -1;
+    return samples;
+  };
+  EXPECT_EQ(judge_with_chains(scene, compared, tolerance).verdict, ShapeVerdict::fail);
+  compared.rod = right;
+  compared.rod.status = energy_model::SolveStatus::not_verified;
+  EXPECT_EQ(judge_with_chains(scene, compared, tolerance).verdict, ShapeVerdict::fail);
+}
+
+Scene of_chain(Scene scene, int points, energy_model::JointLaw law) {
+  scene.force_model.points = points;
+  scene.force_model.joint_law = law;
+  return scene;
+}
+
+// Each law of model chain that has the rod's stiffness for small angles, from coarse to fine,
+// within half of what the chain is away from the rod. Springs of 0.7 times EI/h are the cause where
+// they move the chain by more than is allowed.
+TEST(ChainVerdict, HookeanChainsPassOrAreTooCoarseAndSoftOnesFail) {
+  Scene rope = clamped();
+  rope.scale_modulus(0.1);
+  int passed = 0;
+  int tried = 0;
+  for (const Scene& scene : {clamped(), rope, spatial_rod()}) {
+    for (const int points : {9, 25, 61}) {
+      for (const energy_model::JointLaw law :
+           {energy_model::JointLaw::hooke, energy_model::JointLaw::linear,
+            energy_model::JointLaw::binormal}) {
+        SCOPED_TRACE(scene.file + " " + std::to_string(points) + " " + to_string(law));
+        const auto judged = [&](const Scene& solved, double allowed) {
+          return check(scene, made(solve(of_chain(solved, points, law), Model::chain).shape.points),
+                       {.tolerance = ShapeTolerance{.allowed_m = allowed},
+                        .shape = {.modulus = ModulusSearch::no}});
+        };
+        const double away = judged(scene, 1).judgement.judged_m;
+        const CheckResult right = judged(scene, away / 2);
+        EXPECT_NE(right.judgement.verdict, ShapeVerdict::fail) << right.judgement.reason;
+        passed += right.passes() ? 1 : 0;
+        ++tried;
+        if (law != energy_model::JointLaw::linear) continue;
+        Scene soft = scene;
+        soft.scale_modulus(0.7);
+        const CheckResult other = judged(soft, std::max(away / 2, 2e-3));
+        if (other.judgement.judged_m < 4 * std::max(away, 2e-3)) continue;
+        EXPECT_EQ(other.judgement.verdict, ShapeVerdict::fail);
+        ASSERT_FALSE(other.explanations.empty());
+        const std::string& cause = other.explanations.front().cause;
+        // The rod with 0.7 times the stiffness is next to a fine chain, but for discretisation.
+        const std::size_t factor = cause.find("0.");
+        ASSERT_NE(factor, std::string::npos) << cause;
+        EXPECT_NEAR(std::stod(cause.substr(factor)), 0.7, 0.02) << cause;
+        EXPECT_TRUE(cause.find("springs of 0.") != std::string::npos ||
+                    cause.find("bending stiffness is 0.") != std::string::npos)
+            << cause;
+      }
+    }
+  }
+  EXPECT_GE(passed, tried * 3 / 4);
 }
 
 }  // namespace

@@ -62,10 +62,24 @@ struct Explanation {
 /// measure that the tolerance is of.
 inline constexpr double right_chain = 0.25;
 
-/// As judge(); and a shape that is right for a chain of its own points passes: all that it is away
-/// from the rod is discretisation.
+/// Judges as judge(), and passes a file that is a chain of hinges at rest. That needs all of this:
+/// the file's polyline is as long as the rod within the tolerance; `least_seen_share` of the rod is
+/// observed; the file is within `right_chain` of the tolerance of a chain of its own points at
+/// rest; check.rod is a stable, certified equilibrium; and the chain's distance from it is an error
+/// of discretisation, which decreases with shorter segments as the chain's clamps make it decrease.
+/// A chain whose distance decreases otherwise is too coarse to judge, and `undetermined`.
 [[nodiscard]] ShapeJudgement judge_with_chains(const Scene& scene, const ShapeCheck& check,
                                                const ShapeTolerance& tolerance);
+
+/// A judgement, and the chain that the file was judged as; empty: it was judged as the rod.
+struct ChainJudgement {
+  ShapeJudgement judgement;
+  std::optional<Explanation> chain;
+};
+
+/// Judges as judge_with_chains().
+[[nodiscard]] ChainJudgement judge_as_chain(const Scene& scene, const ShapeCheck& check,
+                                            const ShapeTolerance& tolerance);
 
 /// With the best explanation named where the shape fails; whether it does is no matter of these.
 /// What is wrong with the file comes first if nothing else is wrong and the shape is more than ten

@@ -1,0 +1,126 @@
+#include "explain/chain_convergence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "dlo/compare/deviation.hpp"
+#include "polygon/polygon_response.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Largest relative difference between d(N) / d(2N) and 2^p of a discretisation error.
+constexpr double ratio_tolerance = 0.3;
+/// A chain whose distance is not halved after this number of bisections of its segments does not
+/// converge to the rod; a discretisation error of first order is an eighth then.
+constexpr int most_bisections = 3;
+
+/// Returns the arc lengths of the points of a chain with twice as many segments between any two
+/// grippers. A segment that a clamp holds in its middle, half of which is the rod's, is bisected as
+/// a whole: the new segments are as long as if 2N - 1/2 of them made up the N - 1/2 old ones.
+std::vector<double> refined_arc_lengths(const Scene& scene, const OwnPolygon& chain) {
+  const std::vector<double>& s = chain.rest.arc_length;
+  const std::size_t n = s.size() - 1;
+  const auto is_half = [&](std::size_t i) {
+    return chain.clamp == ChainClamp::middle &&
+           std::ranges::any_of(scene.grippers, [&](const Gripper& gripper) {
+             return gripper.direction && std::abs(gripper.at - s[i]) < 1e-6 * scene.length;
+           });
+  };
+  const auto is_held = [&](std::size_t i) {
+    return i == n || std::ranges::any_of(scene.grippers, [&](const Gripper& gripper) {
+             return std::abs(gripper.at - s[i]) < 1e-6 * scene.length;
+           });
+  };
+  std::vector<double> result = {0};
+  for (std::size_t begin = 0, end = 1; begin < n; begin = end++) {
+    while (!is_held(end)) ++end;
+    const double first = is_half(begin) ? 0.5 : 0;
+    const double last = is_half(end) ? 0.5 : 0;
+    // Segments are counted from the begin of the first whole one.
+    std::vector<double> count;
+    for (std::size_t i = begin; i <= end; ++i) count.push_back(static_cast<double>(i - begin));
+    count.front() += first;
+    count.back() -= last;
+    const std::vector<double> at(s.begin() + static_cast<long>(begin),
+                                 s.begin() + static_cast<long>(end) + 1);
+    const double segments = 2 * static_cast<double>(end - begin);
+    const double step = (count.back() - count.front()) / (segments - first - last);
+    std::vector<double> fine;
+    for (double i = 1; i < segments; ++i) fine.push_back(count.front() + step * (i - first));
+    const std::vector<double> inner = interpolated(at, count, fine);
+    result.insert(result.end(), inner.begin(), inner.end());
+    result.push_back(s[end]);
+  }
+  return result;
+}
+
+double distance_from(const Shape& chain, const energy_model::Equilibrium& rod, bool largest) {
+  const Eigen::Matrix3Xd gaps = chain.points - rod.sample(chain.arc_length).points;
+  return largest ? std::sqrt(gaps.colwise().squaredNorm().maxCoeff()) : rms(chain.arc_length, gaps);
+}
+
+int order_of(const Scene& scene, ChainClamp clamp) {
+  const bool is_clamped = std::ranges::any_of(
+      scene.grippers, [](const Gripper& gripper) { return gripper.direction.has_value(); });
+  return is_clamped && clamp != ChainClamp::middle ? 1 : 2;
+}
+
+/// Whether the distance [m] is within the bound of make_plan() for a polygon with the chain's
+/// points, the middle of whose first or last segment a clamp holds.
+bool is_within_bound(const Scene& scene, const OwnPolygon& chain,
+                     const energy_model::Equilibrium& rod, double distance_m) {
+  const bool touches = std::ranges::any_of(
+      rod.obstacles, [](const Eigen::Vector3d& force) { return force.norm() > 0; });
+  if (touches || chain.clamp != ChainClamp::middle) return false;
+  Scene held_in_middle = scene;
+  held_in_middle.force_model = {};
+  const std::vector<double>& s = chain.rest.arc_length;
+  const std::optional<Discretisation> polygon =
+      hooke_polygon(held_in_middle, static_cast<int>(s.size()));
+  if (!polygon) return false;
+  constexpr double same = 0.01;  // of a segment
+  const double tolerance = same * scene.length / static_cast<double>(s.size());
+  for (std::size_t i = 1; i + 1 < s.size(); ++i) {
+    if (std::abs(polygon->arc_length[i] - s[i]) > tolerance) return false;
+  }
+  const double bound = polygon_bound(scene, *polygon, rod);
+  return std::isfinite(bound) && distance_m <= bound;
+}
+
+}  // namespace
+
+ChainConvergence chain_convergence(const Scene& scene, const OwnPolygon& chain,
+                                   const energy_model::Equilibrium& rod, bool largest) {
+  ChainConvergence result;
+  result.order = order_of(scene, chain.clamp);
+  result.coarse_m = distance_from(chain.rest, rod, largest);
+  result.fine_m = std::numeric_limits<double>::quiet_NaN();
+  double finest_m = result.fine_m;
+  OwnPolygon fine = chain;
+  for (int bisections = 1; bisections <= most_bisections; ++bisections) {
+    const Shape start = resample(fine.rest, refined_arc_lengths(scene, fine));
+    std::optional<Shape> rest = chain_at_rest(scene, start, fine);
+    if (!rest) break;
+    fine.rest = std::move(*rest);
+    finest_m = distance_from(fine.rest, rod, largest);
+    if (bisections > 1) continue;
+    result.fine_m = finest_m;
+    const double ratio = result.coarse_m / result.fine_m;
+    if (std::abs(ratio / std::exp2(result.order) - 1) > ratio_tolerance) continue;
+    result.error = ChainError::discretisation;
+    return result;
+  }
+  if (is_within_bound(scene, chain, rod, result.coarse_m)) {
+    result.error = ChainError::discretisation;
+  } else if (finest_m <= result.coarse_m / 2 && result.fine_m > 0) {
+    result.error = ChainError::too_coarse;
+  }
+  return result;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+
+#include "dlo/compare/scene.hpp"
+#include "dlo/energy_model/equilibrium.hpp"
+#include "explain/own_polygon.hpp"
+
+namespace dlo::compare {
+
+/// Classification of the distance between a chain and a rod.
+enum class ChainError {
+  discretisation,  ///< it has the order of the chain's clamps, or is within the plan's bound
+  too_coarse,      ///< it decreases with shorter segments, but not yet with that order
+  another_shape,   ///< eight times as many segments do not halve it: another shape than the rod
+};
+
+/// Distances of a chain and of the chain with twice as many segments from a rod, both at rest.
+struct ChainConvergence {
+  ChainError error = ChainError::another_shape;
+  double coarse_m = 0;  ///< d(N): of the chain [m]
+  double fine_m = 0;    ///< d(2N): of the chain with twice as many segments [m]; NaN: not at rest
+  int order = 0;        ///< p: both 2^p and d(N) / d(2N) are the same for short segments
+};
+
+/// Compares a chain with an equilibrium of the continuous rod, at equal arc lengths.
+/// A chain whose clamp holds the middle of a segment, or that has pins only, has p = 2. A hinge at
+/// a clamp makes half a segment too soft there, a welded segment makes half a one too stiff: p = 1.
+/// The error is one of discretisation if d(N) / d(2N) is 2^p within 30 %, or if d(N) is within the
+/// bound of make_plan for such a polygon.
+/// @param largest  whether distances are the largest of a point, not the RMS along the rod
+[[nodiscard]] ChainConvergence chain_convergence(const Scene& scene, const OwnPolygon& chain,
+                                                 const energy_model::Equilibrium& rod,
+                                                 bool largest);
+
+}  // namespace dlo::compare
