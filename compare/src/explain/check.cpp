@@ -103,7 +103,7 @@ std::string other_stiffness_within(const CheckResult& result) {
 }
 
 CheckResult check(const Scene& scene, const MeasuredShape& shape, const CheckRequest& request) {
-  const MeasuredShape whole = whole_of_segment_starts(scene, shape);
+  const MeasuredShape whole = whole_of_segment_starts(scene, shape, request.shape.pose);
   CheckResult result{.scene = scene,
                      .check = check_shape(scene, whole, request.shape),
                      .tolerance = request.tolerance.value_or(default_tolerance(scene.length)),
@@ -118,13 +118,20 @@ CheckResult check(const Scene& scene, const MeasuredShape& shape, const CheckReq
     result.deflection_m = required_deflection(scene, trivial);
     result.tolerance.allowed_m = result.tolerance.deflection_share * result.deflection_m;
   }
-  result.judgement = judge_with_chains(scene, result.check, result.tolerance);
+  const ChainJudgement judged = judge_as_chain(scene, result.check, result.tolerance);
+  result.judgement = judged.judgement;
   if (result.passes() && is_loaded(scene)) {
     find_trivial();
     judge_significance(request.shape, trivial, result);
   }
-  const bool is_near = judge(result.check, result.tolerance).verdict != ShapeVerdict::fail;
-  if (is_near || request.explaining == Explaining::no) return result;
+  if (result.passes()) result.check.hint.clear();
+  if (request.explaining == Explaining::no) return result;
+  if (result.judgement.verdict != ShapeVerdict::fail) {
+    if (judged.chain) {
+      result.supersedes_modulus = better_than_stiffness(result.check, {*judged.chain});
+    }
+    return result;
+  }
   result.explanations = explain_shape(scene, whole, result.check, request.shape);
   result.judgement = with_explanation(result.judgement, result.explanations, result.tolerance);
   result.supersedes_modulus = better_than_stiffness(result.check, result.explanations);

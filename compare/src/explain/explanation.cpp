@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -11,6 +12,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
 #include "explain/cause_fit.hpp"
+#include "explain/chain_convergence.hpp"
 #include "explain/file_causes.hpp"
 #include "explain/joint_causes.hpp"
 #include "explain/own_polygon.hpp"
@@ -21,6 +23,8 @@
 
 namespace dlo::compare {
 namespace {
+
+using energy_model::JointLaw;
 
 /// What an explanation may leave of the deviation.
 constexpr double most_left = 0.5;
@@ -65,6 +69,7 @@ class Search {
     align_.pose = options.pose;
     align_.arc_lengths = options.arc_lengths;
     align_.up = up_of(scene, options.pose);
+    if (check.measured_points == 1) most_numbers_ = 1;
   }
 
   [[nodiscard]] std::vector<Explanation> run() {
@@ -75,7 +80,9 @@ class Search {
     if (options_.pose == PoseFreedom::known) {
       for (const FileCause& cause : file_causes(scene_, shape_, check_)) look_at(cause);
     }
-    if (const auto noise = noise_of_points(check_.alignment.shape, check_.rod)) add(*noise);
+    // Without its noise a shape has to be nearer to the rod at its own points.
+    const auto noise = noise_of_points(check_.alignment.shape, check_.rod);
+    if (noise && noise->rms_m <= most_left * check_.deviation.rms_m) add(*noise);
     look_at_unstable();
     if (!is_found(0)) look_at_chains(Springs::as_the_rod);
     if (!is_found(1) && options_.pose == PoseFreedom::known) {
@@ -84,9 +91,11 @@ class Search {
     }
     for (const SceneCause& cause :
          scene_causes(scene_, check_.alignment.shape, length_of_shape(), lies_in_plane())) {
-      if (!is_found(static_cast<int>(cause.start.size())) && !is_over()) fit(cause, rod);
+      const auto numbers = static_cast<int>(cause.start.size());
+      if (numbers <= most_numbers_ && !is_found(numbers) && !is_over()) fit(cause, rod);
     }
     if (!is_found(1)) look_at_chains(Springs::fitted);
+    if (!is_found(1)) look_at_paper_chains();
     std::stable_sort(found_.begin(), found_.end(), [this](const auto& a, const auto& b) {
       return price(a.first) < price(b.first);
     });
@@ -120,9 +129,10 @@ class Search {
   }
 
   /// The chains whose points a shape may have, its last end missing or not.
-  [[nodiscard]] std::vector<OwnPolygon> chains_of(const Shape& shape, Springs springs) const {
-    if (!lacks_last_end(shape)) return own_polygons(scene_, shape, springs);
-    return own_polygons(scene_, extended_straight(shape, scene_.length), springs, std::nullopt,
+  [[nodiscard]] std::vector<OwnPolygon> chains_of(
+      const Shape& shape, Springs springs, std::optional<JointLaw> law = std::nullopt) const {
+    if (!lacks_last_end(shape)) return own_polygons(scene_, shape, springs, law);
+    return own_polygons(scene_, extended_straight(shape, scene_.length), springs, law,
                         LastPoint::missing);
   }
 
@@ -142,6 +152,12 @@ class Search {
     for (const OwnPolygon& chain : chains_of(shape, springs)) {
       const std::string words = words_of(chain, shape);
       if (springs == Springs::as_the_rod) {
+        // Discretisation is the cause only if the chain converges to the rod.
+        if (!(chain.rms_m <= most_left * before_) ||
+            chain_convergence(scene_, chain, check_.rod, false).error ==
+                ChainError::another_shape) {
+          continue;
+        }
         add({words + and_springs(chain), chain.rms_m, 0, ExplanationKind::discretisation,
              chain.max_m},
             words);
@@ -156,6 +172,19 @@ class Search {
              chain.rms_m, 1, ExplanationKind::scene},
             words);
       }
+    }
+  }
+
+  /// Adds the chain with the paper's joint law, whose shape depends on its number of segments.
+  void look_at_paper_chains() {
+    constexpr double stretch = 1e-6;  // of a chain's segments, which no fit knows better
+    const Shape& shape = check_.alignment.shape;
+    for (const OwnPolygon& chain : chains_of(shape, Springs::fitted, JointLaw::paper)) {
+      add({fmt::format("it is {}, with the paper's joint law, c_b = {:.3g} N, which does not "
+                       "converge to the rod",
+                       words_of(chain, shape), chain.paper_stiffness),
+           std::max(chain.rms_m, stretch * scene_.length), 1, ExplanationKind::scene},
+          "the paper's joint law");
     }
   }
 
@@ -183,6 +212,7 @@ class Search {
   /// @param same_as  what of several only the best is told; empty: its own words
   void add(Explanation explanation, std::string same_as = {}) {
     if (!(explanation.rms_m <= most_left * before_)) return;
+    if (explanation.numbers > most_numbers_) return;
     if (!best_ || price(explanation) < price(*best_)) best_ = explanation;
     if (same_as.empty()) same_as = explanation.cause;
     const auto told = std::find_if(found_.begin(), found_.end(), [&](const auto& other) {
@@ -300,6 +330,7 @@ class Search {
   Curve curve_;  // of the rod that was compared with
   AlignOptions align_;
   double before_ = 0;
+  int most_numbers_ = std::numeric_limits<int>::max();      // unknowns that an explanation may have
   std::vector<std::pair<Explanation, std::string>> found_;  // and what of several it is the best
   std::optional<Explanation> best_;
   /// A shape that a file says wrongly.

@@ -26,12 +26,13 @@ MeasuredShape without(const MeasuredShape& shape, Eigen::Index first, Eigen::Ind
   return rest;
 }
 
-void add_units(const MeasuredShape& shape, std::vector<FileCause>& causes) {
-  for (const FileUnit& unit : file_units) {
-    causes.push_back(
-        {fmt::format("the file is in {}, not in metres", unit.name), scaled(shape, unit.metres)});
-  }
-}
+struct NamedUnit {
+  const char* name;
+  double metres;
+};
+constexpr NamedUnit named_units[] = {{"metres", 1}, {"mm", 1e-3},       {"cm", 1e-2},
+                                     {"um", 1e-6},  {"inches", 0.0254}, {"feet", 0.3048},
+                                     {"km", 1e3}};
 
 /// A picture: of any scale, and it counts from a corner, often downwards.
 void add_pixels(const Scene& scene, const MeasuredShape& shape, std::vector<FileCause>& causes) {
@@ -104,7 +105,10 @@ void add_order(const MeasuredShape& shape, const ShapeCheck& check,
 void add_lengths(const MeasuredShape& shape, const ShapeCheck& check,
                  std::vector<FileCause>& causes) {
   const std::vector<double>& s = check.reference.arc_length;
-  if (is_short(s.back() - s.front(), check.length_m) &&
+  // A shorter part is next to the rod whatever the file is.
+  constexpr double least_part = 0.05;
+  const double part = s.back() - s.front();
+  if (is_short(part, check.length_m) && part > least_part * check.length_m &&
       is_short(check.polyline_length_m, check.length_m)) {
     causes.push_back({"", shape, PoseFreedom::known, 0, true});
   }
@@ -137,6 +141,21 @@ MeasuredShape scaled(MeasuredShape shape, double factor) {
   shape.points *= factor;
   for (double& s : shape.arc_length) s *= factor;
   return shape;
+}
+
+std::vector<FileUnit> other_units(const MeasuredShape& shape) {
+  constexpr double same = 1e-9;
+  std::string as_read = fmt::format("units of {:g} m", shape.unit);
+  for (const NamedUnit& unit : named_units) {
+    if (std::abs(unit.metres / shape.unit - 1) < same) as_read = unit.name;
+  }
+  std::vector<FileUnit> units;
+  for (const NamedUnit& unit : named_units) {
+    if (as_read == unit.name) continue;
+    units.push_back({fmt::format("the file is in {}, not in {}", unit.name, as_read),
+                     unit.metres / shape.unit});
+  }
+  return units;
 }
 
 MeasuredShape turned(MeasuredShape shape, const Eigen::Matrix3d& axes) {
@@ -180,7 +199,9 @@ std::vector<FileCause> file_causes(const Scene& scene, const MeasuredShape& shap
     causes.push_back({"the file's arc lengths count from the other end", against});
   }
   causes.push_back({"", shape, PoseFreedom::translation, 1});
-  add_units(shape, causes);
+  for (const FileUnit& unit : other_units(shape)) {
+    causes.push_back({unit.words, scaled(shape, unit.factor)});
+  }
   add_pixels(scene, shape, causes);
   add_order(shape, check, causes);
   add_lengths(shape, check, causes);

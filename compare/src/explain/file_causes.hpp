@@ -25,13 +25,14 @@ struct FileCause {
   std::string same_as = {};
 };
 
-/// A unit in which files are that are said to be in metres.
+/// A unit that a file may be in, other than the one in which it was read.
 struct FileUnit {
-  const char* name;
-  double metres;
+  std::string words;  ///< a clause: "the file is in mm, not in metres"
+  double factor = 1;  ///< of the shape, so that it is in metres
 };
-inline constexpr FileUnit file_units[] = {
-    {"mm", 1e-3}, {"cm", 1e-2}, {"inches", 0.0254}, {"feet", 0.3048}, {"km", 1e3}};
+
+/// Returns the units that the shape may be in, other than the one in which it was read.
+[[nodiscard]] std::vector<FileUnit> other_units(const MeasuredShape& shape);
 
 /// The shape with its points and arc lengths times a factor.
 [[nodiscard]] MeasuredShape scaled(MeasuredShape shape, double factor);

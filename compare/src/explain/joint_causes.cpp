@@ -1,7 +1,5 @@
 #include "explain/joint_causes.hpp"
 
-#include <fmt/format.h>
-
 #include <utility>
 #include <vector>
 
@@ -23,9 +21,7 @@ std::vector<std::pair<std::string, double>> units_for(const MeasuredShape& shape
     if (share * metres > shortest && share * metres < longest) units.emplace_back(words, metres);
   };
   add("", 1);
-  for (const FileUnit& unit : file_units) {
-    add(fmt::format("the file is in {}, not in metres", unit.name), unit.metres);
-  }
+  for (const FileUnit& unit : other_units(shape)) add(unit.words, unit.factor);
   return units;
 }
 

@@ -34,6 +34,19 @@ SceneCause stiffness(const Scene& scene) {
           }};
 }
 
+SceneCause torsional_stiffness(const Scene& scene) {
+  return {zeros(1), Eigen::VectorXd::Constant(1, 0.05), 1.5,
+          [scene](const Eigen::VectorXd& p) {
+            Scene changed = scene;
+            changed.scale_torsion(std::exp(p[0]));
+            return changed;
+          },
+          [](const Eigen::VectorXd& p) {
+            return fmt::format("the torsional stiffness is {:.3g} times the scene's",
+                               std::exp(p[0]));
+          }};
+}
+
 /// @param down  where it may point
 SceneCause gravity(const Scene& scene, const Eigen::Vector3d& down) {
   const double size = scene.gravity.norm();
@@ -241,6 +254,11 @@ bool is_pulled_by_weight_alone(const Scene& scene) {
 std::vector<SceneCause> scene_causes(const Scene& scene, const Shape& shape, double length_of_shape,
                                      bool flat) {
   std::vector<SceneCause> causes = {stiffness(scene)};
+  // GJ bends a rod that twists, and no other.
+  const bool twists = scene.holds_twist() || scene.has_material_directors();
+  if (!flat && twists && scene.twisting_stiffness() > 0) {
+    causes.push_back(torsional_stiffness(scene));
+  }
   std::size_t last = 0;
   std::size_t clamps = 0;
   for (std::size_t i = 0; i < scene.grippers.size(); ++i) {

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
+
+#include "shape/arc_lengths.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -42,34 +45,70 @@ Vector3d free_end(const Eigen::Matrix3Xd& points, double segment) {
   return points.col(n - 1) + turn * (segment * last.normalized());
 }
 
+/// Returns the number of grippers that hold an end of the rod, and of those that hold it at a
+/// point.
+std::pair<int, int> held_ends(const Scene& scene, const Vector3d& point, double segment) {
+  std::pair<int, int> count;
+  for (const Gripper& gripper : scene.grippers) {
+    if (std::min(gripper.at, scene.length - gripper.at) > 1e-6 * scene.length) continue;
+    ++count.first;
+    if ((gripper.position - point).norm() <= like_the_model * segment) ++count.second;
+  }
+  return count;
+}
+
+/// Returns the shape with the end of its last segment.
+MeasuredShape with_end(const Scene& scene, MeasuredShape shape, double segment) {
+  const Index n = shape.points.cols();
+  const Vector3d last = shape.points.col(n - 1);
+  const std::optional<Vector3d> held = held_end(scene, last, segment);
+  const Vector3d end = held ? *held : free_end(shape.points, segment);
+  shape.points.conservativeResize(Eigen::NoChange, n + 1);
+  shape.points.col(n) = end;
+  shape.d1.resize(3, 0);
+  shape.notes.push_back(fmt::format(
+      "its {} points are where the segments begin; the end of the last one is appended, {}", n,
+      held ? "where a gripper holds it" : "extrapolated"));
+  return shape;
+}
+
+/// Returns the bodies of the cable, if the shape has those of the whole model; else the shape.
+MeasuredShape cable_of_model(const ModelChain& model, const MeasuredShape& shape, double segment) {
+  if (shape.points.cols() != model.bodies || model.bodies <= model.segments) return shape;
+  const Eigen::Matrix3Xd chain = shape.points.middleCols(model.first_body, model.segments);
+  // A chain with its end may have as many points as the model bodies.
+  if (are_starts(shape.points, segment) || !are_starts(chain, segment)) return shape;
+  MeasuredShape cable = shape;
+  cable.points = chain;
+  cable.notes.push_back(fmt::format("of all {} bodies those of the cable are taken, {} to {}",
+                                    model.bodies, model.first_body,
+                                    model.first_body + model.segments - 1));
+  return cable;
+}
+
 }  // namespace
 
-MeasuredShape whole_of_segment_starts(const Scene& scene, const MeasuredShape& shape) {
-  if (!scene.model || scene.model->segments < 3 || !shape.arc_length.empty()) return shape;
-  const ModelChain& model = *scene.model;
-  const Index n = model.segments;
-  const double segment = scene.length / static_cast<double>(n);
-  MeasuredShape whole = shape;
-  if (shape.points.cols() == model.bodies && model.bodies > n) {
-    const Eigen::Matrix3Xd chain = shape.points.middleCols(model.first_body, n);
-    // A chain with its end may have as many points as the model bodies.
-    if (are_starts(shape.points, segment) || !are_starts(chain, segment)) return shape;
-    whole.points = chain;
-    whole.notes.push_back(fmt::format("of all {} bodies those of the cable are taken, {} to {}",
-                                      model.bodies, model.first_body, model.first_body + n - 1));
+MeasuredShape whole_of_segment_starts(const Scene& scene, const MeasuredShape& shape,
+                                      PoseFreedom pose) {
+  if (!shape.arc_length.empty()) return shape;
+  if (scene.model) {
+    const double segment = scene.length / static_cast<double>(scene.model->segments);
+    const MeasuredShape cable = cable_of_model(*scene.model, shape, segment);
+    const bool has_all = cable.points.cols() == scene.model->segments;
+    if (has_all && cable.points.cols() > 2 && are_starts(cable.points, segment)) {
+      return with_end(scene, cable, segment);
+    }
+    return shape;
   }
-  if (whole.points.cols() != n || !are_starts(whole.points, segment)) return shape;
-  const Vector3d last = whole.points.col(n - 1);
-  const std::optional<Vector3d> held = held_end(scene, last, segment);
-  const Vector3d end = held ? *held : free_end(whole.points, segment);
-  whole.points.conservativeResize(Eigen::NoChange, n + 1);
-  whole.points.col(n) = end;
-  whole.d1.resize(3, 0);
-  whole.notes.push_back(fmt::format(
-      "its {} points are where the segments begin; the end of the last one is appended, "
-      "{}",
-      n, held ? "where a gripper holds it" : "extrapolated"));
-  return whole;
+  const Index n = shape.points.cols();
+  const double segment = scene.length / static_cast<double>(n);
+  // The points of a whole rod are nearly as far apart if they are many.
+  const bool lacks_end = n > 3 && lacks_one_segment(shape.points, scene.length);
+  if (pose != PoseFreedom::known || !lacks_end || !are_starts(shape.points, segment)) return shape;
+  const Vector3d last = shape.points.rightCols<1>();
+  const auto [ends, begins] = held_ends(scene, shape.points.leftCols<1>(), segment);
+  if (begins == 0 || held_ends(scene, last, segment).second > 0) return shape;
+  return ends == 1 || held_end(scene, last, segment) ? with_end(scene, shape, segment) : shape;
 }
 
 }  // namespace dlo::compare

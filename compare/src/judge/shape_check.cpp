@@ -50,6 +50,19 @@ double distance_from_line(const Eigen::Matrix3Xd& points) {
   return std::sqrt(std::max(0.0, eigen.eigenvalues()[0] + eigen.eigenvalues()[1]));
 }
 
+/// Returns the number of points that are not where a gripper holds the rod.
+long measured_points(const Scene& scene, const Eigen::Matrix3Xd& points) {
+  constexpr double same = 1e-3;  // of the length
+  long count = 0;
+  for (const Eigen::Vector3d& point : points.colwise()) {
+    const bool is_held = std::ranges::any_of(scene.grippers, [&](const Gripper& gripper) {
+      return (gripper.position - point).norm() <= same * scene.length;
+    });
+    count += is_held ? 0 : 1;
+  }
+  return count;
+}
+
 std::optional<Eigen::Index> free_tip(const Scene& scene, const std::vector<double>& s) {
   const auto is_free = [&](double at) {
     return std::none_of(scene.grippers.begin(), scene.grippers.end(),
@@ -196,6 +209,7 @@ ShapeCheck compared(const Scene& scene, const MeasuredShape& shape, Alignment la
 
   add_worst_point(shape, measured, result);
   add_seen_part(shape, s, scene.length, result);
+  result.measured_points = measured_points(scene, alignment.shape.points);
   result.hint = hint_of(result, measured);
   result.direction_is_clear = alignment.other_rms_m > 1.05 * alignment.rms_m;
   return result;

@@ -36,7 +36,9 @@ ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance) {
   ShapeJudgement result;
   const double rms = tolerance.part ? check.deviation.rms_m : check.whole_rms_m;
   const double largest = tolerance.part ? check.deviation.max_m : check.whole_max_m;
-  result.judged_m = tolerance.largest ? largest : rms;
+  // One point has no mean over the rod.
+  const bool is_single = check.measured_points == 1;
+  result.judged_m = is_single ? check.deviation.max_m : tolerance.largest ? largest : rms;
   const bool near = result.judged_m <= tolerance.allowed_m;
   double seen = check.seen_share;
   std::vector<std::string> untold;
@@ -65,13 +67,15 @@ ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance) {
   const bool of_deflection = tolerance.deflection_share > 0;
   const double share =
       of_deflection ? tolerance.deflection_share : tolerance.allowed_m / check.length_m;
-  std::string deviation =
-      fmt::format("{} {:.4g} mm, allowed {:.4g} mm = {:.4g} % of {}",
-                  tolerance.largest ? "largest" : "RMS", result.judged_m * 1e3,
-                  tolerance.allowed_m * 1e3, share * 100, of_deflection ? "the deflection" : "l");
+  const char* const measure = is_single           ? "distance of the measured point"
+                              : tolerance.largest ? "largest"
+                                                  : "RMS";
+  std::string deviation = fmt::format("{} {:.4g} mm, allowed {:.4g} mm = {:.4g} % of {}", measure,
+                                      result.judged_m * 1e3, tolerance.allowed_m * 1e3, share * 100,
+                                      of_deflection ? "the deflection" : "l");
   if (tolerance.by_default) deviation += ", the default";
   if (!missing.empty()) {
-    deviation += tolerance.part ? "; not judged: " : ", with ";
+    deviation += tolerance.part || is_single ? "; not judged: " : ", with ";
     deviation += missing + ", which the file does not have";
   }
   reasons.push_back(std::move(deviation));

@@ -158,6 +158,7 @@ MeasuredShape checked(const RawShape& raw, const std::string& file, double unit)
   require_directors(raw, file);
   MeasuredShape shape;
   shape.file = file;
+  shape.unit = metres;
   shape.points.resize(3, static_cast<Eigen::Index>(raw.points.size()));
   for (std::size_t i = 0; i < raw.points.size(); ++i) {
     shape.points.col(static_cast<Eigen::Index>(i)) = metres * vector_of(raw.points[i]);

@@ -190,6 +190,24 @@ TEST(ChainVerdict, AChainAtRestHasSegmentsOfItsOwnLength) {
   }
 }
 
+// The unit is named, whichever one the file was read in.
+TEST(ChainVerdict, AFileReadInAnotherUnitFailsWithTheUnitAsCause) {
+  const Scene scene = clamped();
+  const Matrix3Xd chain = hinged_chain(std::vector<double>(32, 1.0 / 32), 1.0 / 32, 1, false);
+  std::string text = "x,y,z\n";
+  for (const auto& point : chain.colwise()) {
+    text += fmt::format("{:.9g},{:.9g},{:.9g}\n", point.x(), point.y(), point.z());
+  }
+  for (const double unit : {1e-6, 1e-3, 0.01}) {
+    const CheckResult result = check(
+        scene, parse_shape(text, "m.csv", unit),
+        {.tolerance = ShapeTolerance{.allowed_m = 0.02}, .shape = {.modulus = ModulusSearch::no}});
+    EXPECT_EQ(result.judgement.verdict, ShapeVerdict::fail);
+    ASSERT_FALSE(result.explanations.empty());
+    EXPECT_TRUE(says(result.explanations.front().cause, {"the file is in metres, not in "}));
+  }
+}
+
 // Points of the rod's length that are no equilibrium move to one.
 TEST(ChainVerdict, SmoothCurvesAreNoChains) {
   std::mt19937 random(11);
@@ -297,6 +315,78 @@ TEST(ChainVerdict, HookeanChainsPassOrAreTooCoarseAndSoftOnesFail) {
     }
   }
   EXPECT_GE(passed, tried * 3 / 4);
+}
+
+// A rope with a Gamma of 1000 is bent within less than a coarse chain's first segment.
+TEST(ChainVerdict, AChainOfAnotherOrderIsTooCoarse) {
+  Scene rope = clamped();
+  rope.scale_modulus(0.5 * 9.81 / 1000);
+  for (const int segments : {6, 8}) {
+    Shape start = {equal_arc_lengths(1, segments + 1), {}};
+    start.points = solve_reference(rope, Model::energy).sample(start.arc_length).points;
+    const std::optional<Shape> chain = chain_at_rest(rope, start, {});
+    ASSERT_TRUE(chain);
+    const CheckResult result = checked(rope, chain->points, Explaining::no);
+    EXPECT_EQ(result.judgement.verdict, ShapeVerdict::undetermined);
+    EXPECT_TRUE(says(result.judgement.reason, {"too coarse to judge", "mm = ", "segments"}));
+  }
+}
+
+// The paper's joints have another stiffness with every number of segments.
+TEST(ChainVerdict, AChainWithThePapersLawFailsWithItAsCause) {
+  for (const Bookkeeping bookkeeping : {Bookkeeping::paper, Bookkeeping::consistent}) {
+    Scene scene = clamped();
+    scene.force_model.points = 25;
+    scene.force_model.law = BendingLaw::paper;
+    scene.force_model.bookkeeping = bookkeeping;
+    const CheckResult result = checked(scene, solve(scene, Model::chain).shape.points);
+    EXPECT_EQ(result.judgement.verdict, ShapeVerdict::fail);
+    ASSERT_FALSE(result.explanations.empty());
+    EXPECT_TRUE(says(result.explanations.front().cause, {"the paper's joint law"}));
+  }
+}
+
+// Bodies begin at their joints: the last one's end is no body's begin, in any scene.
+TEST(ChainVerdict, AMissingLastEndIsAppended) {
+  const Matrix3Xd chain = hinged_chain(std::vector<double>(20, 0.05), 0.05, 1, false);
+  const CheckResult result = checked(clamped(), chain.leftCols(20));
+  EXPECT_TRUE(result.passes()) << result.judgement.reason;
+  ASSERT_EQ(result.notes.size(), 1U);
+  EXPECT_TRUE(says(result.notes[0], {"20 points", "end of the last one is appended"}));
+  EXPECT_LT((result.check.alignment.shape.points.col(20) - chain.col(20)).norm(), 1e-4);
+  // The first point is at the clamp, and many points are no shorter than the rod.
+  EXPECT_TRUE(checked(clamped(), chain.rightCols(20)).notes.empty());
+  const Matrix3Xd rod =
+      solve_reference(clamped(), Model::energy).sample(equal_arc_lengths(1, 101)).points;
+  EXPECT_TRUE(checked(clamped(), rod).notes.empty());
+  EXPECT_EQ(checked(clamped(), rod.leftCols(100)).notes.size(), 1U);
+}
+
+// Three coordinates of a point say as much of three numbers as of one.
+TEST(ChainVerdict, OneMeasuredPointIsJudgedByItsDistance) {
+  const Vector3d tip =
+      solve_reference(clamped(), Model::energy).sample(std::vector<double>{1}).points.col(0);
+  Matrix3Xd points = Matrix3Xd::Zero(3, 2);
+  points.col(1) = tip + Vector3d(0, 0.03, 0.04);
+  const CheckResult result = checked(clamped(), points);
+  EXPECT_EQ(result.judgement.verdict, ShapeVerdict::fail);
+  EXPECT_NEAR(result.judgement.judged_m, 0.05, 2e-3);
+  for (const Explanation& cause : result.explanations) EXPECT_LE(cause.numbers, 1) << cause.cause;
+  points.col(1) = tip + Vector3d(0, 0.003, 0.004);
+  EXPECT_LT(checked(clamped(), points).judgement.judged_m, 0.005 + 1e-9);
+}
+
+TEST(ChainVerdict, AFileThatPassesHasNoCauseAndNoHint) {
+  const Matrix3Xd chain = hinged_chain(std::vector<double>(10, 0.1), 0.1, 1, false);
+  const CheckResult result =
+      check(clamped(), made(chain), {.tolerance = ShapeTolerance{.allowed_m = 0.01}});
+  EXPECT_TRUE(result.passes());
+  EXPECT_TRUE(result.explanations.empty());
+  EXPECT_TRUE(result.check.hint.empty()) << result.check.hint;
+  // E* would be that of the discretisation.
+  ASSERT_TRUE(is_identified(result.check.effective_modulus.optimum));
+  ASSERT_TRUE(result.supersedes_modulus);
+  EXPECT_TRUE(says(result.supersedes_modulus->cause, {"a chain of 10 segments"}));
 }
 
 }  // namespace

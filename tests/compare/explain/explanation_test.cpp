@@ -159,6 +159,26 @@ TEST(Explanation, NamesWhatIsAnotherScene) {
                {"gripper 2 turns the rod", "90 deg (twist)"});
 }
 
+// The torque of a twisted rod is GJ times its twist: the stiffness or the angle is another one.
+TEST(Explanation, NamesAnotherTorsionalStiffness) {
+  const auto twisted = [](double stiffness) {
+    return between_clamps("torsional_stiffness = " + std::to_string(stiffness) + "\n",
+                          "roll = \"200 deg\"\n");
+  };
+  const JudgedShape outcome = judged(twisted(0.8), shape_of(twisted(0.4)), 1e-3);
+  EXPECT_FALSE(outcome.judgement.passes());
+  ASSERT_FALSE(outcome.explanations.empty());
+  const std::size_t first = std::min<std::size_t>(2, outcome.explanations.size());
+  const auto named = std::find_if(
+      outcome.explanations.begin(), outcome.explanations.begin() + static_cast<long>(first),
+      [](const Explanation& one) {
+        return one.cause.find("torsional stiffness is 0.5 times") != std::string::npos;
+      });
+  ASSERT_NE(named, outcome.explanations.begin() + static_cast<long>(first))
+      << outcome.judgement.reason;
+  EXPECT_LT(named->rms_m, 1e-4);
+}
+
 /// A rod between two grippers 0.7 l apart, held as said: "hold = \"pin\"" or a direction.
 Scene held(const std::string& first, const std::string& last) {
   return parse_scene(

@@ -53,6 +53,7 @@ struct ShapeCheck {
   double seen_share = 0;         ///< arc length from the first point to the last, over l [-]
   double largest_gap_m = 0;      ///< largest arc length between neighbours
   double largest_gap_at_m = 0;   ///< where it begins
+  long measured_points = 0;  ///< of the file's, those that are not where a gripper holds the rod
   bool direction_is_clear = false;  ///< the other direction fits at least 5 % worse
   /// The points lie so nearly on a line that nothing tells how the shape is turned about it.
   bool turn_is_clear = true;

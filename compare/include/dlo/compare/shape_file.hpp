@@ -14,6 +14,7 @@ struct MeasuredShape {
   std::vector<double> arc_length;  ///< the file's own, growing or falling [m], M; empty without
   Eigen::Matrix3Xd d1 = {};        ///< of the rod's frames there, of norm 1, 3 x M; empty without
   std::vector<std::string> notes = {};  ///< what was taken for what, for people
+  double unit = 1;                      ///< in which the file's numbers were read [m]
 };
 
 /// Most points that a shape file may have.

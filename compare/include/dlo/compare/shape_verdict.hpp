@@ -62,7 +62,8 @@ struct ShapeJudgement {
 /// part; a part between neighbouring points is seen if a smooth curve through points there tells it
 /// within the tolerance, and the whole rod has to be. Points that cover next to nothing of the rod
 /// lie near it whatever its shape is, so less than `least_seen_share` is never a pass. A shape
-/// within the tolerance that does not show enough of the rod is `undetermined`. The reason names
+/// within the tolerance that does not show enough of the rod is `undetermined`. Of a file with one
+/// measured point (ShapeCheck::measured_points) that point's distance is judged. The reason names
 /// what the file lacks.
 [[nodiscard]] ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance);
 
