@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <span>
 
 #include "certify/contact_ends.hpp"
 #include "certify/rigid_body_modes.hpp"
@@ -37,15 +38,16 @@ constexpr double largest_change = 0.01;
 /// or less, those of positions three times counted, over the scale of forces.
 constexpr double largest_third_derivative = 4;
 
-/// Norm of Newton's step from here; it has no part along near-null modes.
+/// Newton's step of the coefficients from here; it has no part along near-null modes.
 /// @param gradient  of E - mu . c
-double newton_step(NewtonSystem& system, const SpanPoint& point, const Eigen::VectorXd& gradient) {
+Eigen::VectorXd newton_step(NewtonSystem& system, const SpanPoint& point,
+                            const Eigen::VectorXd& gradient) {
   Eigen::VectorXd right(gradient.size() + point.residual.size());
   right << -gradient, -point.residual;
   Eigen::VectorXd step;
   system.solve(right, step);
   if (!system.is_met(right, step, largest_next_step)) step = system.minimum_norm_step(right);
-  return step.head(gradient.size()).norm();
+  return step.head(gradient.size());
 }
 
 /// Rounding of forces, whose scale is this.
@@ -77,6 +79,57 @@ double error_estimate(const SpanSolution& solution, double moved) {
   }
   const double angle = model.truncation(solution.x) / (2.0 * solution.terms);
   return std::min(moved / std::sqrt(least_stiffness) + angle, largest_error);
+}
+
+/// Largest distance by which points move as the coefficients change, of the length.
+double points_moved(const SpanSolution& solution, const Eigen::VectorXd& change) {
+  const SpanEnergy& model = *solution.model;
+  const std::span<const double> nodes(model.nodes().data(),
+                                      static_cast<std::size_t>(model.nodes().size()));
+  const Eigen::Matrix3Xd here = model.shape(solution.x).sample(nodes).points;
+  const Eigen::Matrix3Xd there = model.shape(solution.x + change).sample(nodes).points;
+  return (there - here).colwise().norm().maxCoeff();
+}
+
+/// Change of the coefficients, to first order, to the equilibrium with two coefficients fewer in
+/// every piece and field: these become zero, and the others follow so that their gradient and the
+/// constraints stay zero.
+Eigen::VectorXd change_with_fewer_terms(const SpanSolution& solution, const SpanPoint& point) {
+  const SpanUnknowns& unknowns = solution.model->unknowns();
+  const Eigen::Index dropped = std::min<Eigen::Index>(unknowns.terms, 2);
+  Eigen::VectorXd last = Eigen::VectorXd::Zero(solution.x.size());
+  const auto for_each = [&](const auto& visit) {
+    for (Eigen::Index field = 0; field < unknowns.fields; ++field) {
+      for (Eigen::Index e = 0; e < unknowns.pieces; ++e) {
+        visit(unknowns.first(field, e) + unknowns.terms - dropped);
+      }
+    }
+  };
+  for_each([&](Eigen::Index at) { last.segment(at, dropped) = solution.x.segment(at, dropped); });
+  NewtonSystem& system = solution.factor->system;
+  Eigen::VectorXd right(last.size() + point.residual.size());
+  right << system.hessian() * last, point.jacobian * last;
+  for_each([&](Eigen::Index at) { right.segment(at, dropped).setZero(); });
+  Eigen::VectorXd step;
+  system.solve(right, step);
+  return step.head(last.size()) - last;
+}
+
+/// Error of the points as it is measured by what Newton's method and two terms fewer would move
+/// them by. error_estimate() bounds what forces could do along the direction of least resistance,
+/// which is far more where the rod is pulled taut or hangs as a line: forces are large there, and
+/// resist as much.
+double measured_error(const SpanSolution& solution, const SpanPoint& point,
+                      const Eigen::VectorXd& next_step, double load) {
+  // Of rounding as another step has it, and of terms whose size falls by a tenth for two more.
+  constexpr double safety = 10;
+  const double scale = scale_of_forces(solution, load);
+  const double smallest = std::min(solution.eigenvalue_nearest_zero, 1.0);
+  const double soft =
+      (rounding_of(scale) * (1 - smallest) + misplaced_contact(solution)) / smallest;
+  return safety * (points_moved(solution, next_step) +
+                   points_moved(solution, change_with_fewer_terms(solution, point))) +
+         soft;
 }
 
 /// Eigenvalues of the second variation in some directions, as far as they were looked at.
@@ -226,7 +279,8 @@ class Certification {
       near = near && change < largest_h;
       if (!near) factors_.factor_at(solution_, *point_, load_);
       NewtonSystem& system = solution_.factor->system;
-      solution_.next_step = newton_step(system, *point_, gradient_);
+      next_step_ = newton_step(system, *point_, gradient_);
+      solution_.next_step = next_step_.norm();
       small_step_ = solution_.next_step <= largest_next_step;
       // Below it what is left of the residual makes a step that is not small.
       bound_ = std::max(neutral, small_step_ ? 0 : solution_.residual / largest_next_step);
@@ -258,6 +312,10 @@ class Certification {
       if (at_fold) solution_.neutral_directions = std::max(1, solution_.neutral_directions);
     }
     solution_.error = error_estimate(solution_, moved);
+    if (!at_fold) {
+      const double measured = measured_error(solution_, *point_, next_step_, load_);
+      solution_.error = std::min(solution_.error, moved / eta_ * measured);
+    }
     return at_fold;
   }
 
@@ -279,6 +337,7 @@ class Certification {
   const bool obstacles_;
   std::shared_ptr<SpanPoint> point_;
   Eigen::VectorXd gradient_;  // of E - mu . c
+  Eigen::VectorXd next_step_;
   RigidBodyModes rigid_;
   double bound_ = neutral;  // size up to which an eigenvalue counts as neutral
   double eta_ = 0;          // by which the coefficients may be off, without a fold
