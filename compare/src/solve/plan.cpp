@@ -216,15 +216,27 @@ Plan plan_of(const Scene& scene, double target) {
   return plan;
 }
 
+/// Whether EA follows from what the scene gives: axial_stiffness, or a section.
+bool has_axial_stiffness(const Scene& scene) {
+  return scene.given_axial_stiffness.has_value() || scene.cross_section() > 0;
+}
+
 /// Of a rod that touches nothing, by the response of a fine polygon.
 void bound_by_response(const Scene& scene, const energy_model::Equilibrium& rod,
                        const Discretisation& fine, ShapeBounds& bounds) {
   const PolygonResponse response(scene, fine, rod);
-  const double EA = scene.axial_stiffness();
-  bounds.stretch.bound_m = bound_of_response(response.stretch(EA).moved_m, scene.length);
-  bounds.stretch.why = "tension over EA, as the shape answers it";
-  bounds.shear.bound_m = bound_of_response(response.shear(0.3 * EA), scene.length);
-  bounds.shear.why = "force across over kGA, kG >= 0.3 E";
+  if (has_axial_stiffness(scene)) {
+    const double EA = scene.axial_stiffness();
+    bounds.stretch.bound_m = bound_of_response(response.stretch(EA).moved_m, scene.length);
+    bounds.stretch.why = "tension over EA, as the shape answers it";
+    bounds.shear.bound_m = bound_of_response(response.shear(0.3 * EA), scene.length);
+    bounds.shear.why = "force across over kGA, kG >= 0.3 E";
+  } else {
+    for (Neglected* item : {&bounds.stretch, &bounds.shear}) {
+      item->bound_m = unbounded;
+      item->why = "neither the section nor axial_stiffness is given";
+    }
+  }
   bounds.polygon.bound_m = bound_at(scene, rod, scene.force_model.points);
   bounds.polygon.why =
       fmt::format("segments instead of curves, hooke law, bookkeeping {}, N = {}",

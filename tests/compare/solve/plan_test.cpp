@@ -311,5 +311,26 @@ TEST(Plan, NoBoundIsGivenWhereTheRodTouches) {
   EXPECT_EQ(plan.bound("stretch"), std::numeric_limits<double>::infinity());
 }
 
+// Of EI and mass alone nothing says how thick the rod is.
+TEST(Plan, BoundsStretchAndShearOnlyIfTheSectionOrEAIsGiven) {
+  Scene scene;
+  scene.length = 0.3;
+  scene.given_bending_stiffness = 0.2;
+  scene.given_mass_per_length = 1.1;
+  scene.grippers = {{.at = 0, .position = {0, 0, 0}, .direction = Vector3d::UnitX()}};
+  const Plan unknown = make_plan(scene);
+  for (const char* what : {"stretch", "shear"})
+    EXPECT_TRUE(std::isinf(unknown.bound(what))) << what;
+  EXPECT_TRUE(std::isfinite(unknown.bound("polygon")));
+  Scene thick = scene;
+  thick.diameter = 0.04;
+  Scene stiff = scene;
+  stiff.given_axial_stiffness = 16 * 0.2 / (0.04 * 0.04);
+  for (const char* what : {"stretch", "shear"}) {
+    EXPECT_GT(make_plan(thick).bound(what), 0) << what;
+    EXPECT_NEAR(make_plan(stiff).bound(what), make_plan(thick).bound(what), 1e-12) << what;
+  }
+}
+
 }  // namespace
 }  // namespace dlo::compare
