@@ -15,6 +15,13 @@ namespace {
 
 constexpr std::size_t most_forces_per_length = 100;
 
+/// Area of a section that the rod displaces [m^2]: of a tube, which is closed at its ends, with its
+/// bore; 0 if the section is not given.
+double displaced_area(const Scene& scene) {
+  if (scene.width > 0) return scene.width * scene.thickness;
+  return std::numbers::pi * scene.diameter * scene.diameter / 4;
+}
+
 /// What drags the rod, by Morison's law on its diameter.
 std::optional<energy_model::Drag> read_drag(StrictTable& table, double density, double diameter) {
   if (!table.has("velocity")) {
@@ -23,6 +30,11 @@ std::optional<energy_model::Drag> read_drag(StrictTable& table, double density, 
       table.fail(key, fmt::format("of a medium at rest (allowed: velocity too, or no {})", key));
     }
     return std::nullopt;
+  }
+  if (!(diameter > 0)) {
+    table.fail("velocity",
+               "of a flat rod, whose drag no model has (allowed: [rod] with diameter, or no "
+               "velocity)");
   }
   energy_model::Drag drag;
   drag.velocity = table.vector("velocity", Dimension::velocity);
@@ -89,9 +101,12 @@ DistributedLoad read_distributed_load(StrictTable& table, const Scene& scene) {
 void read_medium(StrictTable& table, Scene& scene) {
   table.only(scene_keys("medium"));
   const double density = table.number("density", Dimension::density, Range::positive());
-  if (!(scene.diameter > 0)) {
-    table.fail("density",
-               "of a rod whose volume is not known (allowed: [rod] with diameter, or no [medium])");
+  const double section = displaced_area(scene);
+  if (!(section > 0)) {
+    table.fail(
+        "density",
+        "of a rod whose volume is not known (allowed: [rod] with diameter, or with width and "
+        "thickness, or no [medium])");
   }
   scene.drag = read_drag(table, density, scene.diameter);
   if (scene.drag && !scene.obstacles.empty()) {
@@ -100,7 +115,6 @@ void read_medium(StrictTable& table, Scene& scene) {
         "beside obstacles, with which no model takes drag (allowed: neither, or no velocity)");
   }
   table.finish();
-  const double section = std::numbers::pi * scene.diameter * scene.diameter / 4;
   scene.distributed_loads.push_back({0, scene.length, {-density * section * scene.gravity}});
 }
 

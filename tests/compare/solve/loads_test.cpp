@@ -153,6 +153,27 @@ TEST(Loads, AMediumBearsWhatTheRodDisplaces) {
   expect_load_refused("[medium]\ndensity = 1000\n", {"medium.density", "diameter"});
 }
 
+TEST(Loads, AMediumBearsWhatAFlatRodDisplacesAndDragsNone) {
+  const auto flat = [](double density, const std::string& medium) {
+    return parse_scene(
+        "[rod]\nlength = 1\nwidth = 0.012\nthickness = 0.003\n"
+        "material = { youngs_modulus = 1e8, density = " +
+            std::to_string(density) +
+            " }\n[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"0 deg\"\n" + medium,
+        "my.toml");
+  };
+  const std::string oil = "[medium]\ndensity = 800\n";
+  const Scene immersed = flat(1300, oil);
+  ASSERT_EQ(immersed.distributed_loads.size(), 1U);
+  const double borne = 800 * 0.012 * 0.003 * 9.81;  // [N/m]
+  EXPECT_NEAR(immersed.distributed_loads[0].force_per_length[0].y(), borne, 1e-12 * borne);
+  EXPECT_LT(apart(solve(immersed, Model::energy), solve(flat(500, ""), Model::energy)), 1e-9);
+  EXPECT_TRUE(says(error_of<InputError>([&] {
+                     return flat(1300, oil + "velocity = [1, 0, 0]\nnormal_drag = 1.2\n");
+                   }),
+                   {"medium.velocity", "flat", "diameter"}));
+}
+
 const std::string thick_rod_held = R"([rod]
 length = 1
 diameter = 0.01
