@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
@@ -252,9 +253,16 @@ PolygonResponse::Answer PolygonResponse::answer_to(const Eigen::Matrix3Xd& f,
     gaps.col(k) = -steps.middleCols(begin, end - begin).rowwise().sum();
   }
   const Turns turned = turns(f, gaps);
-  if (!turned.possible) return {std::numeric_limits<double>::infinity(), {}};
+  if (!turned.possible) return {std::numeric_limits<double>::infinity(), {}, {}};
   steps += turned.dt * L.asDiagonal();
-  return {moved_rms(points_along(Eigen::Vector3d::Zero(), steps)), turned.dn};
+  // Beyond the grips loads alone act, which do not change.
+  Eigen::Matrix3Xd dn = Eigen::Matrix3Xd::Zero(3, n_);
+  for (Eigen::Index k = 0; k < gaps.cols(); ++k) {
+    const Eigen::Index begin = grips[along_[static_cast<std::size_t>(k)]].first_point;
+    const Eigen::Index end = grips[along_[static_cast<std::size_t>(k) + 1]].first_point;
+    dn.middleCols(begin, end - begin).colwise() = Eigen::Vector3d(turned.dn.col(k));
+  }
+  return {moved_rms(points_along(Eigen::Vector3d::Zero(), steps)), turned.dt, std::move(dn)};
 }
 
 StretchResponse PolygonResponse::stretch(double stiffness) const {
@@ -269,14 +277,13 @@ StretchResponse PolygonResponse::stretch(double stiffness) const {
   StretchResponse result{answer.moved_m, std::numeric_limits<double>::quiet_NaN()};
   if (!std::isfinite(answer.moved_m)) return result;
   double largest = 0;
-  for (std::size_t k = 0; k + 1 < along_.size(); ++k) {
-    const Eigen::Index end = polygon_.rod.grips[along_[k + 1]].first_point;
-    for (Eigen::Index i = polygon_.rod.grips[along_[k]].first_point; i < end; ++i) {
-      const double tension = forces_.col(i).dot(tangents_.col(i));
-      if (!(std::abs(tension) > std::abs(largest))) continue;
-      largest = tension;
-      result.tension = answer.dn.col(static_cast<Eigen::Index>(k)).dot(tangents_.col(i)) / tension;
-    }
+  for (Eigen::Index i = 0; i < n_; ++i) {
+    const double tension = forces_.col(i).dot(tangents_.col(i));
+    if (!(std::abs(tension) > std::abs(largest))) continue;
+    largest = tension;
+    const double change =
+        answer.dn.col(i).dot(tangents_.col(i)) + forces_.col(i).dot(answer.dt.col(i));
+    result.tension = change / tension;
   }
   return result;
 }

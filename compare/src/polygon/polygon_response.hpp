@@ -77,7 +77,8 @@ class PolygonResponse {
   [[nodiscard]] bool is_positive(const Eigen::SparseMatrix<double>& matrix) const;
   struct Answer {
     double moved_m;       // infinite: none
-    Eigen::Matrix3Xd dn;  // as Turns::dn
+    Eigen::Matrix3Xd dt;  // change of each segment's tangent
+    Eigen::Matrix3Xd dn;  // change of the force in each segment [N]
   };
   [[nodiscard]] Answer answer_to(const Eigen::Matrix3Xd& f, const Eigen::Matrix3Xd& eta) const;
   [[nodiscard]] Eigen::Matrix3Xd points_along(const Eigen::Vector3d& start,
