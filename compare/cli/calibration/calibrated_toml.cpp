@@ -12,7 +12,7 @@ using compare::FittedValue;
 
 /// As a scene file has it.
 std::string vector_text(const Eigen::Vector3d& v) {
-  return fmt::format("[{:.6e}, {:.6e}, {:.6e}]", v.x(), v.y(), v.z());
+  return compare::formatted("[{:.6e}, {:.6e}, {:.6e}]", v.x(), v.y(), v.z());
 }
 
 /// As a scene file has it [1/m].

@@ -24,9 +24,8 @@ void add_budget(std::string& out, const compare::Comparison& comparison) {
   append(out, "  error budget    RMS, and share of the total {:.4g} mm with sign\n",
          comparison.budget.total_m * 1e3);
   for (const auto& [name, part] : compare::shown_parts(comparison)) {
-    const double rounded = std::round(part->share * 1e4) / 100 + 0.0;  // not -0.00
     append(out, "                  {:<17}{:>9.4g} mm {:>9.2f} %\n", name,
-           compare::shown(part->rms_m, comparison.length) * 1e3, rounded);
+           compare::shown(part->rms_m, comparison.length) * 1e3, part->share * 100);
   }
 }
 
@@ -60,10 +59,10 @@ void add_state(std::string& out, const compare::ComparedState& state, double len
   std::vector<std::pair<std::string, int>> lines;
   for (const compare::OtherState& other : state.others) {
     if (!other.stable && other.rms_from_shape_m >= state.rms_from_shape_m) continue;
-    std::string line = fmt::format("{}, {:+.4g} J, RMS {:.4g} % of l away, {:.4g} % from {}\n",
-                                   other.stable ? "stable" : "unstable", other.energy_difference_J,
-                                   other.rms_from_compared_m / length * 100,
-                                   other.rms_from_shape_m / length * 100, shape);
+    std::string line = compare::formatted(
+        "{}, {:+.4g} J, RMS {:.4g} % of l away, {:.4g} % from {}\n",
+        other.stable ? "stable" : "unstable", other.energy_difference_J,
+        other.rms_from_compared_m / length * 100, other.rms_from_shape_m / length * 100, shape);
     if (lines.empty() || lines.back().first != line) lines.emplace_back(std::move(line), 0);
     ++lines.back().second;
   }

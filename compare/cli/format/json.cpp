@@ -1,9 +1,21 @@
 #include "format/json.hpp"
 
 namespace dlo::cli {
+namespace {
+
+/// Removes the sign of every -0.
+void remove_signs_of_zero(Json& value) {
+  if (value.is_number_float()) value = value.get<double>() + 0.0;
+  if (!value.is_structured()) return;
+  for (Json& part : value) remove_signs_of_zero(part);
+}
+
+}  // namespace
 
 std::string json_text(const Json& document) {
-  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  Json whole = document;
+  remove_signs_of_zero(whole);
+  return whole.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Json modulus_json(const compare::EffectiveModulus& modulus) {

@@ -13,15 +13,9 @@
 #include "format/plan_output.hpp"
 #include "polygon/self_crossing.hpp"
 #include "record/solution_fields.hpp"
-#include "solve/linking.hpp"
 
 namespace dlo::cli {
 namespace {
-
-/// Eight decimals; what rounds to zero has no sign.
-std::string coordinate(double value) {
-  return fmt::format("{:.8f}", std::abs(value) < 0.5e-8 ? 0.0 : value);
-}
 
 Json twist_json(const std::vector<energy_model::TwistedPart>& twists) {
   double total = 0;
@@ -46,8 +40,15 @@ Json turns_json(const std::vector<compare::Linking>& parts) {
   });
 }
 
+/// Whether a proof or an eigenvalue decides between stable and unstable.
+bool is_judged(const compare::Solution& solution) {
+  return compare::is_stable(solution) || solution.status == energy_model::SolveStatus::saddle ||
+         !std::isnan(solution.smallest_eigenvalue);
+}
+
 const char* stability_of(const compare::Solution& solution) {
   if (compare::is_stable(solution)) return "stable";
+  if (!is_judged(solution)) return "not judged";
   return solution.status == energy_model::SolveStatus::near_singular ? "singular" : "unstable";
 }
 
@@ -118,7 +119,7 @@ std::string stretch_decision_text(const compare::Solution& solution) {
   if (std::isnan(effect.moved_m)) {
     return fmt::format("auto: counted, as without it N/EA is up to {:.2g} %", effect.strain * 100);
   }
-  return fmt::format(
+  return compare::formatted(
       "auto: counted, as to first order it moves the points by {:.2g} m (RMS), the largest tension "
       "by {:+.2g} %",
       effect.moved_m, effect.tension * 100);
@@ -184,8 +185,7 @@ void add_twists(std::string& out, const compare::Solution& solution,
   for (const compare::Linking& part : solution.linking) {
     const double turns = part.twist + part.writhe;
     append(out, "turns      {:.3f} = twist {:.3f} + writhe {:.3f} from s = {:.4g} to {:.4g} m",
-           compare::unsigned_zero(turns), compare::unsigned_zero(part.twist),
-           compare::unsigned_zero(part.writhe), part.begin, part.end);
+           turns, part.twist, part.writhe, part.begin, part.end);
     constexpr double tolerance = 0.02;  // of the writhe
     if (std::abs(turns - part.held) > tolerance) {
       append(out, ", by the grips alone {:.3f}", part.held);
@@ -222,8 +222,8 @@ void add_points(std::string& out, const compare::Shape& shape) {
   append(out, "\n{:>12} {:>13} {:>13} {:>13}\n", "s [m]", "x [m]", "y [m]", "z [m]");
   for (std::size_t i = 0; i < shape.arc_length.size(); ++i) {
     const auto point = shape.points.col(static_cast<Eigen::Index>(i));
-    append(out, "{:12.6f} {:>13} {:>13} {:>13}\n", shape.arc_length[i], coordinate(point.x()),
-           coordinate(point.y()), coordinate(point.z()));
+    append(out, "{:12.6f} {:13.8f} {:13.8f} {:13.8f}\n", shape.arc_length[i], point.x(), point.y(),
+           point.z());
   }
 }
 
@@ -323,9 +323,11 @@ std::string equilibria_text(const compare::AllSolutions& all, const compare::Sce
          "z(l) [m]");
   for (const compare::Solution& solution : solutions) {
     const Eigen::Vector3d tip = shown(solution.shape.points.rightCols<1>(), large.length);
-    append(out, "{:16.9g} {:>10} {:20.6g} {:13.6f} {:13.6f} {:13.6f}\n",
+    const double eigenvalue = compare::shown(solution.smallest_eigenvalue, 1);
+    append(out, "{:16.9g} {:>10} {:>20} {:13.6f} {:13.6f} {:13.6f}\n",
            compare::shown(solution.energy.total(), large.energy), stability_of(solution),
-           compare::shown(solution.smallest_eigenvalue, 1), tip.x(), tip.y(), tip.z());
+           std::isnan(eigenvalue) ? "-" : compare::formatted("{:.6g}", eigenvalue), tip.x(),
+           tip.y(), tip.z());
   }
   append(out, "\nlooked from (a search: there may be others)\n{:>8} {:>12}\n", "starts",
          "found first");
@@ -343,7 +345,7 @@ Json equilibria_json(const compare::AllSolutions& all, const compare::Scene& sce
   const std::vector<compare::Solution>& solutions = all.solutions;
   Json document = solution_json(solutions.front(), scene, plan);
   document["equilibria"] = json_list(solutions, [&](const compare::Solution& solution) -> Json {
-    return {{"stable", compare::is_stable(solution)},
+    return {{"stable", is_judged(solution) ? Json(compare::is_stable(solution)) : Json()},
             {"status", compare::status_name(solution.status)},
             {"smallest_eigenvalue", solution.smallest_eigenvalue},
             {"energy_J", solution.energy.total()},

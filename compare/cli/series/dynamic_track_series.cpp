@@ -80,12 +80,13 @@ std::string dynamic_text(const DynamicTrack& dynamic) {
     append(out, "            with {} terms it stopped before {:.6g} s\n",
            dynamic.too_few_terms->terms, dynamic.too_few_terms->time);
   }
-  append(
-      out,
-      "            energy balance: residual {:.2g} of the largest energy, {:.4g} J\n"
-      "            steps change the shape by {:.2g} l (estimate), {} terms instead by {:.2g} l\n",
-      dynamic.energy_error, dynamic.largest_energy, dynamic.step_error, dynamic.fewer_terms,
-      dynamic.term_difference);
+  append(out,
+         "            energy balance: residual {:.2g} of the largest energy, {:.4g} J\n"
+         "            steps change the shape by {:.2g} l (estimate), {} terms instead {}\n",
+         dynamic.energy_error, dynamic.largest_energy, dynamic.step_error, dynamic.fewer_terms,
+         std::isfinite(dynamic.term_difference)
+             ? fmt::format("by {:.2g} l", dynamic.term_difference)
+             : "do not reach the last frame");
   if (dynamic.deepest_contact) {
     append(out,
            "contact     within a rigid obstacle by {:.2g} l at most; {:.4g} J were lost on them\n",

@@ -26,7 +26,7 @@ using energy_model::ContactPart;
 
 std::string vector_text(const Eigen::Vector3d& vector, double magnitude) {
   const Eigen::Vector3d v = shown(vector, magnitude);
-  return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", v.x(), v.y(), v.z());
+  return compare::formatted("[{:.4g}, {:.4g}, {:.4g}]", v.x(), v.y(), v.z());
 }
 
 std::string part_text(const ContactPart& part) {

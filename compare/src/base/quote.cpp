@@ -83,7 +83,7 @@ std::string csv_field(const std::string& text) {
 }
 
 std::string csv_number(double value, int digits) {
-  return std::isfinite(value) ? fmt::format("{:.{}g}", value + 0.0, digits) : std::string();
+  return std::isfinite(value) ? formatted("{:.{}g}", value, digits) : std::string();
 }
 
 std::string toml_string(const std::string& text) {

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 namespace dlo::compare {
@@ -37,10 +38,49 @@ namespace dlo::compare {
 /// The same in quotes.
 [[nodiscard]] std::string quoted_piece(std::string_view piece);
 
-/// Formats onto the end of a text.
+/// A number as append() and formatted() print it: without a minus sign where all its printed digits
+/// are zero.
+template <typename Number>
+struct UnsignedZero {
+  Number value;
+};
+
+template <typename Argument>
+using Printed = std::conditional_t<std::is_floating_point_v<std::remove_cvref_t<Argument>>,
+                                   UnsignedZero<std::remove_cvref_t<Argument>>, Argument>;
+
+/// Formats onto the end of a text; every number of a text goes through here, so that none is -0.
 template <typename... Arguments>
-void append(std::string& text, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
-  fmt::format_to(std::back_inserter(text), format, std::forward<Arguments>(arguments)...);
+void append(std::string& text, fmt::format_string<Printed<Arguments>...> format,
+            Arguments&&... arguments) {
+  const auto print = [&](auto&&... printed) {
+    fmt::vformat_to(std::back_inserter(text), fmt::string_view(format),
+                    fmt::make_format_args(printed...));
+  };
+  print(Printed<Arguments>{std::forward<Arguments>(arguments)}...);
+}
+
+/// Formats a text of its own like append().
+template <typename... Arguments>
+[[nodiscard]] std::string formatted(fmt::format_string<Printed<Arguments>...> format,
+                                    Arguments&&... arguments) {
+  std::string text;
+  append(text, format, std::forward<Arguments>(arguments)...);
+  return text;
 }
 
 }  // namespace dlo::compare
+
+template <typename Number>
+struct fmt::formatter<dlo::compare::UnsignedZero<Number>> : fmt::formatter<Number> {
+  auto format(const dlo::compare::UnsignedZero<Number>& number,
+              fmt::format_context& context) const {
+    fmt::memory_buffer digits;
+    fmt::format_context own(fmt::appender(digits), context.args(), context.locale());
+    fmt::formatter<Number>::format(number.value, own);
+    const std::string_view text(digits.data(), digits.size());
+    const bool is_zero = text.substr(0, text.find('e')).find_first_of("123456789") == text.npos &&
+                         text.find('0') != text.npos;
+    return fmt::formatter<Number>::format(is_zero ? Number{0} : number.value, context);
+  }
+};

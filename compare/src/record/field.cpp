@@ -44,7 +44,7 @@ std::string text_row(std::string_view name, std::string_view unit, const Json& v
   if (value.is_number_float()) {
     const auto number = value.get<double>();
     if (!std::isfinite(number)) return "";
-    text = fmt::format("{:.6g}", shown(number, large.of(unit)));
+    text = formatted("{:.6g}", shown(number, large.of(unit)));
   }
   return fmt::format("{:<10} {}{}{}\n", label, text, unit.empty() ? "" : " ", unit);
 }

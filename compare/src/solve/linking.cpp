@@ -1,12 +1,11 @@
 #include "solve/linking.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
+#include "base/quote.hpp"
 #include "dlo/energy_model/turns.hpp"
 #include "polygon/energy_problems.hpp"
 
@@ -45,17 +44,14 @@ std::vector<Linking> linking_of(const Scene& scene, const energy_model::Equilibr
   return parts;
 }
 
-double unsigned_zero(double turns) { return std::abs(turns) < 0.5e-3 ? 0.0 : turns; }
-
 std::string lost_turns(const std::vector<Linking>& parts) {
   for (const Linking& part : parts) {
     if (turns_lost(part) == 0) continue;
-    return fmt::format(
+    return formatted(
         "not verified: the grips hold {:.3f} turns from s = {:g} to {:g} m and the shape has "
         "{:.3f} "
         "(twist {:.3f}, writhe {:.3f}): it has passed through itself",
-        part.held, part.begin, part.end, unsigned_zero(part.twist + part.writhe),
-        unsigned_zero(part.twist), unsigned_zero(part.writhe));
+        part.held, part.begin, part.end, part.twist + part.writhe, part.twist, part.writhe);
   }
   return {};
 }

@@ -15,9 +15,6 @@ namespace dlo::compare {
 [[nodiscard]] std::vector<Linking> linking_of(const Scene& scene,
                                               const energy_model::Equilibrium& equilibrium);
 
-/// Turns to be shown with three decimals: what rounds to zero has no sign.
-[[nodiscard]] double unsigned_zero(double turns);
-
 /// What is wrong with the turns of a shape, for a message; empty: nothing, or it cannot be told.
 [[nodiscard]] std::string lost_turns(const std::vector<Linking>& parts);
 

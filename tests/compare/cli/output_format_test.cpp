@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <regex>
@@ -12,10 +14,15 @@
 #include "base/number.hpp"
 #include "base/quote.hpp"
 #include "dlo/compare/error.hpp"
+#include "dlo/compare/material.hpp"
+#include "dlo/compare/plan.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "dlo/compare/solve.hpp"
 #include "format/json.hpp"
 #include "format/solution_output.hpp"
 #include "output_fixture.hpp"
 #include "scene_text.hpp"
+#include "series/dynamic_track_series.hpp"
 
 namespace {
 
@@ -34,6 +41,64 @@ at = "50 cm"
 position = [0.45, 0, 0]
 direction = "0 deg"
 )";
+
+/// The first word of an output that is NaN, infinite or -0, or that only a programmer of dlo knows;
+/// empty: none.
+std::string wrong_word(const std::string& text) {
+  for (const char* internal : {"Problem:", "solve_energy", "solve_exact", "solve_polygon"}) {
+    if (text.find(internal) != std::string::npos) return internal;
+  }
+  const auto is_of_word = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '.';
+  };
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t sign = text[begin] == '-' || text[begin] == '+' ? 1 : 0;
+    std::size_t end = begin + sign;
+    while (end < text.size() && is_of_word(text[end])) ++end;
+    std::string word = text.substr(begin + sign, end - begin - sign);
+    std::transform(word.begin(), word.end(), word.begin(),
+                   [](unsigned char c) { return std::tolower(c); });
+    const bool is_zero = !word.empty() && word.find_first_not_of("0.") == std::string::npos &&
+                         word.find('0') != std::string::npos;
+    const bool joined = begin > 0 && is_of_word(text[begin - 1]);  // as in 1e-05 or at-0
+    if (word == "nan" || word == "inf" || word == "infinity" ||
+        (is_zero && text[begin] == '-' && !joined)) {
+      return text.substr(begin, end - begin);
+    }
+    begin = std::max(end, begin + 1);
+  }
+  return "";
+}
+
+/// What a user may run on the scene that `dlo init` wrote; of some scenes everything, of others in
+/// one format, since soft rods take long.
+std::vector<std::string> commands_for_new_scene(const std::string& folder, std::size_t index) {
+  const std::string s = folder + "s.toml";
+  const std::string shape = " --shape " + folder + "f.csv";
+  std::vector<std::string> all;
+  constexpr const char* formats[] = {"text", "json", "csv"};
+  for (const std::string format : formats) all.push_back("solve " + s + " --format " + format);
+  const std::string format = std::string(" --format ") + formats[(index + index / 3) % 3];
+  for (const std::string& command :
+       {"solve " + s + " --model chain --points 8", "compare " + s + " --points 8 --law hooke",
+        "check " + s + shape + " --tolerance 1%", "modes " + s + " --points 8",
+        "solve " + s + " --model force --points 8 --law hooke --max-steps 2000", "scene " + s,
+        "regress " + s + " --points 8 --baseline " + folder + "b.toml"}) {
+    all.push_back(command + format);
+  }
+  all.push_back("solve " + s + " --explain");
+  all.push_back("sweep " + s + " --vary gamma=0,1");
+  if (index % 3 == 0) {
+    all.push_back("check " + s + shape + " --format markdown");
+    all.push_back("solve " + s + " --all");
+    all.push_back("calibrate " + s + " --points 8 --law hooke" + format);
+    all.push_back("calibrate " + s + shape + format);
+    all.push_back("track " + s + " --no-force");
+    all.push_back("stability " + s + " --map cF-cc --columns 2 --rows 2 --map-steps 20");
+  }
+  if (index == 0) all.push_back("bench " + s + " --seconds 0.1");
+  return all;
+}
 
 TEST_F(Output, NoNumberIsNanOrInfinity) {
   write("both.toml", held_at_both_ends);
@@ -68,12 +133,51 @@ TEST_F(Output, NoNumberIsNanOrInfinity) {
         if (field.empty()) ++empty;
       }
     }
-    // JSON has one writer; those with most numbers that are none have to do.
+    // JSON and text have one writer each; those with most numbers that are none have to do.
     if (command != "compare both.toml" && command != "stability --case pulled") continue;
     const Outcome json = bash("$dlo " + command + " --format json");
     EXPECT_FALSE(nlohmann::json::parse(json.out, nullptr, false).is_discarded()) << command;
+    EXPECT_EQ(wrong_word(json.out), "") << command << "\n" << json.out;
+    const Outcome text = bash("$dlo " + command);
+    EXPECT_EQ(wrong_word(text.out + text.err), "") << command << "\n" << text.out;
   }
   EXPECT_GT(empty, 10);  // or nothing of this was tried
+  // What a new user does first, with any material: thin rods are soft, thick ones stiff.
+  std::size_t index = 0;
+  for (const dlo::compare::Material& material : dlo::compare::materials()) {
+    for (const std::string diameter : {"25mm", "6mm", "3mm"}) {
+      const std::string made = " --force --material " + material.name + " --diameter " + diameter;
+      succeeds("init " + path("s.toml") + made);
+      succeeds("solve " + path("s.toml") + " --samples 9 -o " + path("f.csv"));
+      for (const std::string& command : commands_for_new_scene(path(""), index++)) {
+        const Outcome result = run(command);
+        EXPECT_EQ(wrong_word(result.out + result.err), "") << command << made << "\n"
+                                                           << result.out << result.err;
+      }
+    }
+  }
+}
+
+TEST(WrongWord, IsANumberThatIsNoneOrHasASignForNothing) {
+  for (const char* wrong : {"+nan %", "1/inf", "x, -nan", "[-0, 1]", "-0.000 m", "-0.00%", "INF",
+                            "PolygonProblem: smallest rest length = 1"}) {
+    EXPECT_NE(wrong_word(wrong), "") << wrong;
+  }
+  for (const char* right : {"information", "1e-00", "-0.01", "0", "+0", "--no-force", "nano-0.5",
+                            "1e-05", "-", "a-b", "-1", "1-0"}) {
+    EXPECT_EQ(wrong_word(right), "") << right;
+  }
+}
+
+// Numbers of texts and tables go through formatted() and append().
+TEST(Formatted, PrintsNoMinusZero) {
+  using dlo::compare::formatted;
+  EXPECT_EQ(formatted("{:.3f}|{:8.2f}|{:+.2g}|{}|{:.1e}", -4e-4, -1e-9, -0.0, -0.0, -0.0),
+            "0.000|    0.00|+0|0|0.0e+00");
+  EXPECT_EQ(formatted("{:.3f} {:g} {:{}.{}f} {}", -6e-4, -1e-30, -0.04, 5, 1, "-0"),
+            "-0.001 -1e-30   0.0 -0");
+  EXPECT_EQ(dlo::compare::csv_number(-0.0), "0");
+  EXPECT_EQ(dlo::cli::json_text({{"x", -0.0}}), "{\n  \"x\": 0.0\n}\n");
 }
 
 TEST(Shown, IsZeroBelowTheErrorOfTheData) {
@@ -89,6 +193,36 @@ TEST(Shown, IsZeroBelowTheErrorOfTheData) {
   EXPECT_EQ(shown(INFINITY, 1), INFINITY);
   // A taut rod's forces are large beside its weight.
   EXPECT_EQ(dlo::cli::shown(Eigen::Vector3d(1e4, -1e-6, 1), 1), Eigen::Vector3d(1e4, 0, 1));
+}
+
+// A search that has no time left lists what it has not judged.
+TEST(EquilibriaText, OfAShapeThatIsNotJudgedHasNoEigenvalue) {
+  dlo::compare::AllSolutions all;
+  all.solutions.resize(2);
+  const double nan = std::nan("");
+  for (dlo::compare::Solution& solution : all.solutions) {
+    solution.status = dlo::energy_model::SolveStatus::not_verified;
+    solution.shape = {{0, 1}, Eigen::Matrix3Xd::Zero(3, 2)};
+  }
+  all.solutions[0].smallest_eigenvalue = nan;
+  all.solutions[1].smallest_eigenvalue = -2.5;
+  const dlo::compare::Scene scene =
+      dlo::compare::load_scene(std::string(DLO_DATA) + "/scenes/spring_steel_175.toml");
+  const std::string text = dlo::cli::equilibria_text(all, scene);
+  EXPECT_TRUE(says(text, {"not judged                    - ", "unstable                 -2.5"}));
+  EXPECT_EQ(wrong_word(text), "");
+  const dlo::cli::Json document = dlo::cli::equilibria_json(all, scene, {});
+  EXPECT_TRUE(document.at("equilibria")[0].at("stable").is_null());
+  EXPECT_EQ(document.at("equilibria")[1].at("stable"), false);
+}
+
+TEST(DynamicText, SaysThatFewerTermsDoNotReachTheEnd) {
+  dlo::compare::DynamicTrack dynamic;
+  dynamic.fewer_terms = 8;
+  dynamic.term_difference = INFINITY;
+  const std::string text = dlo::cli::dynamic_text(dynamic);
+  EXPECT_TRUE(says(text, {"8 terms instead do not reach the last frame"}));
+  EXPECT_EQ(wrong_word(text), "");
 }
 
 // Forces, torques and energies of these scenes have parts that symmetry or balance makes zero.

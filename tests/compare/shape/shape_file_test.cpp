@@ -123,6 +123,7 @@ TEST(ShapeFile, RefusesMalformedCsvWithFileAndLine) {
       {"0,0\n0.5,1 mm\n", {"mine:2: y = \"1 mm\" is not a number"}},
       {"0,0\n0.5,\n", {"mine:2: y = \"\" is not a number"}},
       {"0,0\n1,1\n1,1\n2,2\n", {"mine:3: point 3: the same as the point before"}},
+      {"0,0\n1e-200,0\n2e-200,0\n", {"mine:2: point 2: the same as the point before"}},
       {"x,y,s\n0,0,0\n1,0,1\n2,0,0.5\n", {"mine:4: point 3: s = 0.5 after 1", "allowed"}},
       {"x,y,s\n0,0,1\n1,0,1\n", {"mine:3: point 2: s = 1 after 1"}},
       {std::string("\x01\x02\x00\xFF", 4), {"mine:1"}},
