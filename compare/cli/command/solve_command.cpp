@@ -5,6 +5,7 @@
 
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
+#include "dlo/compare/reference.hpp"
 #include "dlo/compare/solve.hpp"
 #include "format/json.hpp"
 #include "format/plan_output.hpp"
@@ -21,7 +22,7 @@ namespace {
 
 struct SolveOptions {
   std::string scene;
-  std::string model = "energy";
+  std::string model;  // empty: reference_model()
   int samples = 0;
   bool all = false;
   SceneOptions overrides;
@@ -35,7 +36,8 @@ void warn_of_neglected(const SolveOptions& options, const compare::Solution& sol
                        const compare::Scene& scene) {
   if (options.output.is(Format::text) || options.output.is(Format::json)) return;
   for (const std::string& what : solution.neglected) {
-    say("{}: model {} neglects the {} that the scene has", scene.file, options.model, what);
+    say("{}: model {} neglects the {} that the scene has", scene.file,
+        compare::to_string(solution.model), what);
   }
 }
 
@@ -53,10 +55,20 @@ void require_format_for(const SolveOptions& options) {
   }
 }
 
-void warn_of_force_model_options(const SolveOptions& options) {
+void warn_of_force_model_options(const SolveOptions& options, compare::Model model) {
   const std::string names = options.overrides.force_model_options();
   if (names.empty()) return;
-  say("{}: no effect on the shape of model {} (only on force and chain)", names, options.model);
+  say("{}: no effect on the shape of model {} (only on force and chain)", names,
+      compare::to_string(model));
+}
+
+void require_model_of_all(compare::Model model, const compare::Scene& scene) {
+  if (model == compare::Model::energy) return;
+  throw compare::InputError(
+      scene.stretch == compare::Stretch::counted
+          ? "--all: only model energy searches for all equilibria, and it has no stretch (allowed: "
+            "rod.stretch = false, or no --all)"
+          : "--all: only model energy searches for all equilibria");
 }
 
 /// A shape that is not verified, at a singular point or, as the first of all that are found,
@@ -97,17 +109,17 @@ void run(const SolveOptions& options) {
   options.plot.require_drawable();
   const compare::Scene scene = options.overrides.load(options.scene);
   say_assumptions(scene);
-  const auto model = compare::from_name<compare::Model>(options.model);
+  const compare::Model model = options.model.empty()
+                                   ? compare::reference_model(scene)
+                                   : compare::from_name<compare::Model>(options.model);
   constexpr int text_samples = 11;
   int samples = options.samples;
   const bool continuous = model == compare::Model::energy || model == compare::Model::exact;
-  if (continuous) warn_of_force_model_options(options);
+  if (continuous) warn_of_force_model_options(options, model);
   if (samples == 0 && continuous && options.output.is(Format::text)) samples = text_samples;
   const std::vector<double> arc_lengths =
       samples > 0 ? compare::equal_arc_lengths(scene.length, samples) : std::vector<double>{};
-  if (options.all && model != compare::Model::energy) {
-    throw compare::InputError("--all: only model energy searches for all equilibria");
-  }
+  if (options.all) require_model_of_all(model, scene);
   compare::SolveOptions solve = options.overrides.solve();
   solve.accept_unverified = true;
   solve.target = options.plan.plan().target;
@@ -158,7 +170,7 @@ void add_solve(CLI::App& app) {
   command->add_option("SCENE", options->scene, "scene file (TOML)")->required();
   command->add_option("--model", options->model, compare::meanings<compare::Model>())
       ->check(CLI::IsMember(compare::names<compare::Model>()))
-      ->capture_default_str();
+      ->default_str("energy, or exact if stretch = true");
   command->add_option("--samples", options->samples, "M points at equal arc lengths from 0 to l")
       ->check(CLI::Range(2, 1000000));
   command->add_flag("--all", options->all, "every equilibrium that is found, with its stability");

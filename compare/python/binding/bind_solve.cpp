@@ -8,6 +8,7 @@
 #include "bind_scene.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/plan.hpp"
+#include "dlo/compare/reference.hpp"
 #include "dlo/compare/solve.hpp"
 #include "errors.hpp"
 #include "fields.hpp"
@@ -72,9 +73,11 @@ std::string states_document(const SolvedStates& solved) {
   });
 }
 
+/// @param model_name  empty: the scene's reference_model()
 py::object solve(const SharedScene& scene, const std::string& model_name, int samples,
                  const py::dict& limits) {
-  const auto model = compare::from_name<compare::Model>(model_name);
+  const compare::Model model = model_name.empty() ? compare::reference_model(scene->scene)
+                                                  : compare::from_name<compare::Model>(model_name);
   const compare::SolveOptions options = solve_options(limits);
   auto solved = std::make_shared<SolvedScene>();
   solved->scene = scene;
@@ -88,8 +91,8 @@ py::object solve(const SharedScene& scene, const std::string& model_name, int sa
   py::object result = py::cast(solved);
   if (!energy_model::succeeded(solved->solution.status) &&
       !compare::is_balance_alone(scene->scene, solved->solution)) {
-    raise_convergence(fmt::format("{}: the {} model: {}", scene->scene.file, model_name,
-                                  solved->solution.message),
+    raise_convergence(fmt::format("{}: the {} model: {}", scene->scene.file,
+                                  compare::to_string(model), solved->solution.message),
                       result);
   }
   return result;

@@ -62,7 +62,7 @@ def _si(value: Quantity, dimension: str) -> float:
 @checked(model=TEXT, samples=INTEGER, time=NUMBER)
 def solve(
     scene: SceneLike,
-    model: str = "energy",
+    model: Optional[str] = None,
     samples: Optional[int] = None,
     *,
     time: Optional[float] = None,
@@ -73,16 +73,17 @@ def solve(
     """The shape of a scene's rod: `dlo solve`.
 
     model: "energy" (the lowest energy), "exact" (the rod's balance, shot), "chain" (the force model's
-    polygon) or "force" (the force model, stepped to rest). samples: M points at equal arc lengths
-    from 0 to l; None: 101 of energy and exact, the polygon's own points else. time: of a scene that
-    moves, as it is then [s]; None: at the first pose. materials: a file in which the name of a
-    material is looked up instead. calibrated: a MaterialFit of calibrate(), or a file that
-    `dlo calibrate -o` wrote: its rod, and how clamps and camera are held, in the place of the scene's.
+    polygon) or "force" (the force model, stepped to rest); None: "exact" of a scene with
+    stretch = True, else "energy". samples: M points at equal arc lengths from 0 to l; None: 101 of
+    energy and exact, the polygon's own points else. time: of a scene that moves, as it is then [s];
+    None: at the first pose. materials: a file in which the name of a material is looked up instead.
+    calibrated: a MaterialFit of calibrate(), or a file that `dlo calibrate -o` wrote: its rod, and how
+    clamps and camera are held, in the place of the scene's.
     limits: time_limit [s], terms, max_evaluations, max_steps, rest_tolerance.
 
     Raises InputError, or ConvergenceError, whose result is the shape so far or None.
     """
-    return _dlo.solve(data_of(scene, materials, time, calibrated), model, samples or 0, limits)
+    return _dlo.solve(data_of(scene, materials, time, calibrated), model or "", samples or 0, limits)
 
 
 @checked(samples=INTEGER, time=NUMBER)

@@ -319,7 +319,7 @@ BaselineCase case_of(const Scene& scene, Model model) {
 
 BaselineCase measure_case(const Scene& scene, Model model, const SolveOptions& options) {
   const Solution solution = solve(scene, model, options);
-  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy, options);
+  const energy_model::Equilibrium energy = solve_reference(scene, options);
   BaselineCase result = case_of(scene, model);
   result.errors = errors_of(scene, shape_deviation(scene, solution.shape, energy.sample));
   return result;
@@ -333,7 +333,7 @@ MeasuredCase measure_program(const Scene& scene, const ForeignProgram& program,
   const ForeignRun run = run_foreign(program, scene, entry.points, options.time_limit);
   result.problem = run.problem;
   if (!run.shape) return result;
-  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy, options);
+  const energy_model::Equilibrium energy = solve_reference(scene, options);
   try {
     entry.errors = errors_of(scene, foreign_deviation(scene, *run.shape, energy.sample));
   } catch (const InputError& error) {

@@ -204,7 +204,7 @@ std::vector<SweepCell> Sweep::solved(const Scene& scene) const {
 
 void Sweep::compare_to_energy(const Scene& scene, const Solution& solution,
                               std::vector<SweepCell>& cells) const {
-  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy, options_);
+  const energy_model::Equilibrium energy = solve_reference(scene, options_);
   const Deviation d = shape_deviation(scene, solution.shape, energy.sample);
   const EffectiveModulus modulus =
       fit_effective_modulus(scene, distance_from(solution.shape), energy, options_);

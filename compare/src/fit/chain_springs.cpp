@@ -106,7 +106,7 @@ Eigen::VectorXd shares_of(const Scene& scene, const std::vector<double>& lengths
 
 std::vector<ChainSprings> chain_springs(const Scene& scene, int segments,
                                         const SolveOptions& options) {
-  const energy_model::Equilibrium rod = solve_reference(scene, Model::energy, options);
+  const energy_model::Equilibrium rod = solve_reference(scene, options);
   const Eigen::VectorXd whole = Eigen::VectorXd::Ones(segments);
   Eigen::VectorXd halved = whole;
   if (has_clamp_at(scene, 0)) halved[0] = 0.5;
@@ -126,7 +126,7 @@ std::vector<ChainSprings> chain_springs(const Scene& scene, int segments,
 std::vector<ChainSprings> chain_springs(const Scene& scene, const std::vector<double>& lengths,
                                         const SolveOptions& options) {
   const Eigen::VectorXd shares = shares_of(scene, lengths);
-  const energy_model::Equilibrium rod = solve_reference(scene, Model::energy, options);
+  const energy_model::Equilibrium rod = solve_reference(scene, options);
   const double mean = scene.length / static_cast<double>(lengths.size());
   std::vector<ChainSprings> found = springs_of(scene, rod, shares, mean);
   for (ChainSprings& chain : found) {

@@ -74,7 +74,7 @@ class ForceModelFitter {
         counter_(options.progress, static_cast<std::int64_t>(scenes.size() + holdouts.size()) + 1) {
     for (const std::vector<Scene>* list : {&scenes, &holdouts}) {
       for (const Scene& scene : *list) {
-        cases_.push_back({scene, solve_reference(scene, Model::energy, options.solve)});
+        cases_.push_back({scene, solve_reference(scene, options.solve)});
         result_.scenes.push_back(scene.name);
         result_.gammas.push_back(scene.gamma());
       }

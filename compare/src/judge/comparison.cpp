@@ -54,7 +54,7 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
   result.force = solve_force(scene, scene.force_model, options);
   const Shape& force = result.force.shape;
   // What a user would call, for its cost; the other states are looked for besides.
-  const energy_model::Equilibrium lowest = solve_reference(scene, Model::energy, options);
+  const energy_model::Equilibrium lowest = solve_reference(scene, options);
   result.energy_seconds = lowest.seconds;
   result.energy_evaluations = lowest.evaluations;
   const std::vector<energy_model::Equilibrium> states = all_states(scene, lowest, options);

@@ -108,7 +108,7 @@ class FollowedState {
     scene.scale_modulus(std::exp(log_ratio));
     ++solves_;
     try {
-      energy_model::Equilibrium state = solve_reference(scene, Model::energy, options);
+      energy_model::Equilibrium state = solve_reference(scene, options);
       const double way = rms(s_, state.sample(s_).points - start.points);
       if (!(way <= largest_way * scene_.length)) return nullptr;
       return &remember(log_ratio, std::move(state));
@@ -244,8 +244,8 @@ ShapeDistance distance_from(const Shape& shape) {
 
 EffectiveModulus fit_effective_modulus(const Scene& scene, const Shape& shape,
                                        const SolveOptions& options) {
-  return fit_effective_modulus(scene, distance_from(shape),
-                               solve_reference(scene, Model::energy, options), options);
+  return fit_effective_modulus(scene, distance_from(shape), solve_reference(scene, options),
+                               options);
 }
 
 EffectiveModulus fit_effective_modulus(const Scene& scene, const ShapeDistance& distance,

@@ -70,7 +70,7 @@ struct RodsWithout {
 RodsWithout rods_without(const Scene& scene, const Scene& taken, const std::vector<double>& s,
                          const Fields& fields, const SolveOptions& options) {
   const auto rod = [&](const Scene& other) {
-    const energy_model::Equilibrium lowest = solve_reference(other, Model::energy, options);
+    const energy_model::Equilibrium lowest = solve_reference(other, options);
     return fields.of({s, lowest.sample(s).points});
   };
   RodsWithout result;
@@ -89,7 +89,9 @@ Budget error_budget(const Scene& scene, const Solution& force, const Reference& 
                     const SolveOptions& options) {
   const Fields fields(reference, scene.length);
   const ForceModelSettings& own = scene.force_model;
-  const double rigid = 100 * scene.axial_stiffness();
+  // The reference's own stretch is no error of the polygons.
+  const double stiffer = reference_model(scene) == Model::exact ? 1 : 100;
+  const double rigid = stiffer * scene.axial_stiffness();
   // The chains are of the scene that the force model has taken.
   const Scene taken = as_polygons_take_it(scene, own);
   const auto chain_in = [&](const Scene& other, BendingLaw law, Bookkeeping bookkeeping,

@@ -220,7 +220,7 @@ ShapeCheck compared(const Scene& scene, const MeasuredShape& shape, Alignment la
 ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
                        const ShapeCheckOptions& options) {
   const Aligner aligner(shape, scene.length, align_options(scene, options));
-  const energy_model::Equilibrium lowest = solve_reference(scene, Model::energy, options.solve);
+  const energy_model::Equilibrium lowest = solve_reference(scene, options.solve);
   const std::vector<energy_model::Equilibrium> states = all_states(scene, lowest, options.solve);
   std::vector<Alignment> alignments;
   std::vector<double> from_shape;

@@ -10,6 +10,7 @@
 
 #include "base/timer.hpp"
 #include "dlo/compare/error.hpp"
+#include "dlo/compare/reference.hpp"
 #include "polygon/energy_problems.hpp"
 #include "shape/shape_measure.hpp"
 
@@ -138,6 +139,7 @@ int MeasuredShapes::frame_numbers() const {
 
 energy_model::Equilibrium MeasuredShapes::solve(std::size_t shape, const Scene& scene,
                                                 const energy_model::Equilibrium* start) {
+  if (reference_model(scene) == Model::exact) return solve_stretched(scene, start);
   scene.require_potential("the energy model does");
   energy_model::Problem problem = energy_problem(scene);
   problem.confined_to_plane = is_confined(shape, scene);
@@ -164,9 +166,7 @@ double MeasuredShapes::way_out_of_plane(std::size_t shape, const Scene& scene,
   return way > in_plane * scene.length ? way : 0;
 }
 
-energy_model::Equilibrium MeasuredShapes::solve(const energy_model::Problem& problem,
-                                                const std::string& file,
-                                                const energy_model::Equilibrium* start) {
+double MeasuredShapes::time_left() const {
   const double limit = options_.solve.time_limit;
   const double left = limit * static_cast<double>(size()) - timer_.seconds();
   if (!(left > 0)) {
@@ -174,12 +174,34 @@ energy_model::Equilibrium MeasuredShapes::solve(const energy_model::Problem& pro
         fmt::format("calibrate: not done within {:g} s{}, after {} equilibria (--time-limit)",
                     limit, size() > 1 ? " per scene" : "", solves_));
   }
+  return std::min(limit, left);
+}
+
+energy_model::Equilibrium MeasuredShapes::solve_stretched(const Scene& scene,
+                                                          const energy_model::Equilibrium* start) {
+  SolveOptions options = options_.solve;
+  options.time_limit = time_left();
+  options.start = start;
+  ++solves_;
+  try {
+    energy_model::Equilibrium rod = solve_reference(scene, options);
+    evaluations_ += rod.evaluations;
+    return rod;
+  } catch (const ConvergenceError&) {
+    return {};  // not_run
+  }
+}
+
+energy_model::Equilibrium MeasuredShapes::solve(const energy_model::Problem& problem,
+                                                const std::string& file,
+                                                const energy_model::Equilibrium* start) {
+  const double limit = time_left();
   ++solves_;
   try {
     energy_model::Equilibrium rod =
         energy_model::solve_energy(problem, {.terms = options_.solve.terms,
                                              .max_evaluations = options_.solve.max_evaluations,
-                                             .time_limit = std::min(limit, left),
+                                             .time_limit = limit,
                                              .start = start});
     evaluations_ += rod.evaluations;
     return rod;

@@ -59,7 +59,7 @@ class MeasuredShapes {
   /// Columns of a design before those of the fitted numbers: each shape's frame.
   [[nodiscard]] Eigen::Index frame_columns() const { return frame_columns_; }
 
-  /// The energy model's solution of a shape's scene as it was changed.
+  /// The solution of a shape's scene as it was changed, by the scene's reference_model().
   /// @param start  an equilibrium to follow; null: search
   /// @throws ConvergenceError if the time limit is over
   /// @throws InputError if the scene is none that the model has
@@ -97,6 +97,10 @@ class MeasuredShapes {
 
  private:
   [[nodiscard]] bool is_confined(std::size_t shape, const Scene& scene) const;
+  /// Time that the next equilibrium may take [s]. @throws ConvergenceError if there is none left
+  [[nodiscard]] double time_left() const;
+  [[nodiscard]] energy_model::Equilibrium solve_stretched(const Scene& scene,
+                                                          const energy_model::Equilibrium* start);
   energy_model::Equilibrium solve(const energy_model::Problem& problem, const std::string& file,
                                   const energy_model::Equilibrium* start);
 

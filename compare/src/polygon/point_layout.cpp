@@ -137,10 +137,11 @@ std::vector<std::size_t> order_along(const Scene& scene) {
           where(scene, b), b.at));
     }
     if (apart > rod * (1 + 1e-12)) {
-      throw InputError(fmt::format(
-          "{}: gripper.position: {} m from the gripper at = {} m (allowed: no more than the {} m "
-          "of rod between them)",
-          where(scene, b), apart, a.at, rod));
+      throw InputError(
+          fmt::format("{}: gripper.position: {} m from the gripper at = {} m (allowed: rod.stretch "
+                      "= true, which "
+                      "model exact takes; or no more than the {} m of rod between them)",
+                      where(scene, b), apart, a.at, rod));
     }
   }
   return along;
@@ -155,9 +156,10 @@ void require_slack(const Scene& scene) {
     const double apart = (b.position - a.position).norm();
     if (apart < b.at - a.at) continue;
     throw InputError(fmt::format(
-        "{}: gripper.position: {} m from the gripper at = {} m (allowed: less than the {} m of rod "
-        "between them, or all of a round straight rod taut on a line, clamps and forces along it; "
-        "models chain and force take a taut rod)",
+        "{}: gripper.position: {} m from the gripper at = {} m (allowed: rod.stretch = true, "
+        "which model exact takes; less than the {} m of rod between them; or all of a round "
+        "straight rod taut on a line, clamps and forces along it; models chain and force take a "
+        "taut rod)",
         where(scene, b), apart, a.at, b.at - a.at));
   }
 }

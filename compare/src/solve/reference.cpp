@@ -99,6 +99,10 @@ energy_model::Equilibrium exact_shape(const Scene& scene, const energy_model::Pr
   const TimeLimit limit(options.time_limit);
   const auto left = [&] { return std::max(limit.left(), std::numeric_limits<double>::min()); };
   energy_model::ExactOptions exact{.time_limit = options.time_limit};
+  if (problem.axial_stiffness && options.start != nullptr) {
+    exact.start = options.start;
+    return energy_model::solve_exact(problem, exact);
+  }
   if (std::optional<energy_model::Equilibrium> stretched = stretched_shape(scene, problem, exact)) {
     return *std::move(stretched);
   }
@@ -122,6 +126,34 @@ energy_model::Equilibrium exact_shape(const Scene& scene, const energy_model::Pr
   return confirmed;
 }
 
+/// Whether a shape enters an obstacle of the scene.
+bool enters_obstacle(const Scene& scene, const energy_model::Equilibrium& shape) {
+  constexpr int samples = 401;
+  const Eigen::Matrix3Xd points = shape.sample(equal_arc_lengths(scene.length, samples)).points;
+  return std::ranges::any_of(scene.obstacles, [&](const Obstacle& obstacle) {
+    return std::ranges::any_of(points.colwise(), [&](const Eigen::Vector3d& point) {
+      return obstacle.body.clearance(point) < 0;
+    });
+  });
+}
+
+/// @param stretched  a shape of the rod, which may reach obstacles by its stretch; null: none yet
+/// @throws InputError if the rod stretches and an obstacle is in reach: no continuous model has
+/// both
+void refuse_stretch_beside_obstacles(const Scene& scene,
+                                     const energy_model::Equilibrium* stretched) {
+  if (scene.stretch != Stretch::counted || scene.obstacles.empty()) return;
+  const bool reaches = stretched == nullptr
+                           ? !obstacles_in_reach(scene).empty()
+                           : stretched->sample && enters_obstacle(scene, *stretched);
+  if (!reaches) return;
+  throw InputError(fmt::format(
+      "{}: rod.stretch = true: an obstacle is in reach, and model exact has no contact of a rod "
+      "that stretches (allowed: stretch = false, no obstacle in reach, or --model chain or force, "
+      "whose segments stretch)",
+      scene.file));
+}
+
 /// @throws InputError if the rod stretches, which is said of the scene's key
 void refuse_stretch(const Scene& scene) {
   if (scene.stretch != Stretch::counted) return;
@@ -133,6 +165,14 @@ void refuse_stretch(const Scene& scene) {
 
 }  // namespace
 
+Model reference_model(const Scene& scene) {
+  return scene.stretch == Stretch::counted ? Model::exact : Model::energy;
+}
+
+energy_model::Equilibrium solve_reference(const Scene& scene, const SolveOptions& options) {
+  return solve_reference(scene, reference_model(scene), options);
+}
+
 energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
                                           const SolveOptions& options) {
   if (model == Model::exact && scene.stretch == Stretch::automatic) {
@@ -140,6 +180,7 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
   }
   if (model == Model::energy) scene.require_potential("the energy model does");
   if (model == Model::energy) refuse_stretch(scene);
+  if (model == Model::exact) refuse_stretch_beside_obstacles(scene, nullptr);
   const energy_model::Problem problem = energy_problem(scene);
   energy_model::Equilibrium result;
   try {
@@ -152,6 +193,7 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
   } catch (const std::invalid_argument& error) {
     refuse_rod(scene, model, error);
   }
+  if (model == Model::exact) refuse_stretch_beside_obstacles(scene, &result);
   refuse_lost_turns(scene, result);
   if (!acceptable(result.status, options) && !is_balance_alone(problem, result)) {
     throw ConvergenceError(fmt::format(
@@ -194,6 +236,7 @@ energy_model::EnergySearch search_states(const Scene& scene, const SolveOptions&
 
 std::vector<energy_model::Equilibrium> reference_states(const Scene& scene,
                                                         const SolveOptions& options) {
+  if (reference_model(scene) == Model::exact) return {solve_reference(scene, options)};
   return search_states(scene, options).equilibria;
 }
 

@@ -88,7 +88,8 @@ Equilibrium mirrored(const Scene& scene, const Equilibrium& state, const Eigen::
 
 std::vector<Equilibrium> all_states(const Scene& scene, const Equilibrium& lowest,
                                     const SolveOptions& options) {
-  std::vector<Equilibrium> states = reference_states(scene, options);
+  std::vector<Equilibrium> states;
+  if (reference_model(scene) == Model::energy) states = reference_states(scene, options);
   const auto find = [&](const Equilibrium& state) {
     return std::find_if(states.begin(), states.end(), [&](const Equilibrium& other) {
       return shapes_apart(scene, state, other) < same_shape * scene.length;

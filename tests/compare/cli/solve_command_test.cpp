@@ -257,4 +257,26 @@ TEST_F(Command, SolveSaysWhichGripperHoldsAndPrintsNoMinusZero) {
   EXPECT_TRUE(says_none(text, {"-0 J", "-0.00000000"}));
 }
 
+// A strip of rubber that hangs is longer by w l^2 / (2 EA), its weight over E A.
+TEST_F(Command, ModelExactIsTheDefaultAndTheReferenceOfARodThatStretches) {
+  const std::string stretches = scene(
+      "gravity = [0, -10, 0]\n[rod]\nlength = 2\ndiameter = 0.01\nstretch = true\n"
+      "material = { youngs_modulus = \"2 MPa\", density = 1000 }\n" +
+      dlo::test::gripper_text("direction = \"-90 deg\""));
+  const json document = json_of("solve " + stretches + " --samples 3");
+  EXPECT_EQ(document.at("model"), "exact");
+  EXPECT_NEAR(document.at("points_m")[2][1], -2.01, 1e-9);
+  EXPECT_EQ(json_of("solve " + stretches + " --model chain").at("model"), "chain");
+  expect_error("solve " + stretches + " --model energy", 2, {"stretch = true"});
+  expect_error("solve " + stretches + " --all", 2, {"--all", "stretch"});
+  const std::string file = path("solved.csv");
+  succeeds("solve " + stretches + " --samples 41 -o " + file);
+  succeeds("check " + stretches + " --shape " + file + " --tolerance 1e-6");
+  succeeds("compare " + stretches);
+  succeeds("regress " + stretches + " --baseline " + path("base.toml") + " --update");
+  succeeds("regress " + stretches + " --baseline " + path("base.toml"));
+  const json fit = json_of("calibrate " + stretches + " --shape " + file);
+  EXPECT_NEAR(fit.at("youngs_modulus_Pa").get<double>() / 2e6, 1, 1e-3) << fit;
+}
+
 }  // namespace

@@ -2,13 +2,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "../../says.hpp"
+#include "dlo/compare/check.hpp"
+#include "dlo/compare/comparison.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/plan.hpp"
+#include "dlo/compare/reference.hpp"
 #include "dlo/compare/scene_file.hpp"
+#include "dlo/compare/shape_check.hpp"
 #include "dlo/compare/solve.hpp"
 #include "record/solution_fields.hpp"
 
@@ -55,6 +60,50 @@ TEST(StretchEffect, IsTheElasticCatenarysToFirstOrder) {
     EXPECT_NEAR(solution.stretch.tension, change, 5 * change * change + 1e-3 * std::abs(change))
         << EA;
     EXPECT_TRUE(neglects(solution, "stretch"));
+  }
+}
+
+/// A rubber rod of 1 m in one clamp.
+Scene held_rubber(const Vector3d& direction) {
+  Scene scene;
+  scene.gravity = {0, 0, -9.81};
+  scene.length = 1;
+  scene.diameter = 0.005;
+  scene.material = {.youngs_modulus = 3e6, .density = 1150};
+  scene.grippers = {{.at = 0, .position = {0, 0, 0}, .direction = direction}};
+  return scene;
+}
+
+// It hangs straight under its weight: u(s) = w (l s - s^2 / 2) / EA, tension w (l - s) as before.
+TEST(StretchEffect, OfARodThatHangsIsThatOfHookesLaw) {
+  const Scene scene = held_rubber(-Vector3d::UnitZ());
+  const double strain = scene.weight_per_length().norm() * scene.length / scene.axial_stiffness();
+  const Solution solution = solve(scene, Model::energy, {.target = 1e-4});
+  EXPECT_TRUE(neglects(solution, "stretch"));
+  EXPECT_NEAR(solution.stretch.strain, strain, 1e-9 * strain);
+  const double moved = strain * scene.length * std::sqrt(2.0 / 15);
+  // The clamp's segment of the polygon that answers, one of 96, does not stretch.
+  EXPECT_NEAR(solution.stretch.moved_m, moved, 2.0 / 96 * moved);
+  EXPECT_NEAR(solution.stretch.tension, 0, 1e-9);
+}
+
+// Between grips or beyond the last one: what stretch changes of the largest tension is what model
+// exact finds with it.
+TEST(StretchEffect, OfOneClampIsThatOfTheRodThatStretches) {
+  for (const Vector3d& direction : {Vector3d(1, 0, 0), Vector3d(1, 0, 1), Vector3d(1, 0, -2)}) {
+    Scene scene = held_rubber(direction.normalized());
+    scene.material.youngs_modulus = 1e7;  // first order
+    scene.grippers[0].at = 0.2;
+    const std::vector<double> s = equal_arc_lengths(scene.length, 801);
+    const Solution rigid = solve(scene, Model::energy, {.target = 1e-5}, s);
+    scene.stretch = Stretch::counted;
+    const Solution stretched = solve(scene, Model::exact, {}, s);
+    const auto largest = [](const std::vector<double>& tension) {
+      return *std::max_element(tension.begin(), tension.end(),
+                               [](double a, double b) { return std::abs(a) < std::abs(b); });
+    };
+    const double change = largest(stretched.tension) / largest(rigid.tension) - 1;
+    EXPECT_NEAR(rigid.stretch.tension, change, 0.05 * std::abs(change) + 1e-6) << direction;
   }
 }
 
@@ -228,6 +277,104 @@ TEST(StretchEffect, NeedsAStiffnessThatIsKnown) {
   EXPECT_EQ(scene.axial_stiffness(), 2000);
   const std::string open = text.substr(0, text.size() - 5) + "\"auto\"\n";
   EXPECT_THROW((void)parse_scene(open + gripper, "text", materials()), InputError);
+}
+
+/// A line as long as its pins are apart, which hangs by its stretch alone.
+Scene taut_line() {
+  Scene scene = line(300, 1);
+  scene.length = 1;
+  scene.given_bending_stiffness = 5e-3;
+  scene.given_mass_per_length = 10;
+  scene.grippers[1].at = 1;
+  scene.stretch = Stretch::counted;
+  return scene;
+}
+
+/// Its points without EI: with V = w (s - l/2) and T = (H^2 + V^2)^(1/2),
+///     dx/ds = H / T + H / EA,  dz/ds = V / T + V / EA.
+MeasuredShape elastic_catenary(const Scene& scene, int count) {
+  const double EA = scene.axial_stiffness();
+  const double w = scene.weight_per_length().norm();
+  const double half = w * scene.length / 2;
+  const double top = tension_of(EA, w, scene.length, scene.grippers[1].position.x());
+  const double H = std::sqrt(top * top - half * half);
+  const auto x = [&](double V) { return H / w * std::asinh(V / H) + H * V / (w * EA); };
+  const auto z = [&](double V) { return std::hypot(H, V) / w + V * V / (2 * w * EA); };
+  MeasuredShape shape{"catenary", Eigen::Matrix3Xd::Zero(3, count),
+                      equal_arc_lengths(scene.length, count)};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const double V = w * shape.arc_length[static_cast<std::size_t>(i)] - half;
+    shape.points.col(i) = Vector3d(x(V) - x(-half), 0, z(V) - z(-half));
+  }
+  return shape;
+}
+
+TEST(StretchReference, IsTheElasticCatenary) {
+  const Scene scene = taut_line();
+  EXPECT_EQ(reference_model(scene), Model::exact);
+  const MeasuredShape catenary = elastic_catenary(scene, 41);
+  ASSERT_LT((catenary.points.rightCols<1>() - Vector3d::UnitX()).norm(), 1e-9);
+  EXPECT_LT(catenary.points.row(2).minCoeff(), -0.1);
+  const ShapeCheck check = check_shape(scene, catenary, {.modulus = ModulusSearch::no});
+  // The moment that bends it is of the order of EI / T = 1e-4 m^2.
+  EXPECT_LT(check.deviation.max_m, 1e-3);
+}
+
+TEST(StretchReference, OfARodThatHangsIsLongerByHookesLaw) {
+  Scene scene = held_rubber(-Vector3d::UnitZ());
+  const double w = scene.weight_per_length().norm();
+  const std::vector<double> s = equal_arc_lengths(1, 21);
+  MeasuredShape hangs{"hangs", Eigen::Matrix3Xd::Zero(3, 21), s};
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    hangs.points(2, static_cast<Eigen::Index>(i)) =
+        -s[i] - w * (s[i] - s[i] * s[i] / 2) / scene.axial_stiffness();
+  }
+  EXPECT_GT(check_shape(scene, hangs).deviation.rms_m, 5e-4);
+  scene.stretch = Stretch::counted;
+  const ShapeCheck check = check_shape(scene, hangs);
+  EXPECT_LT(check.deviation.max_m, 1e-9);
+  EXPECT_NEAR(check.effective_modulus.ratio, 1, 1e-5);
+  EXPECT_TRUE(shape_near({s, hangs.points}, scene, 1e-6).near);
+}
+
+// A polygon whose segments are as stiff as the rod has no error by their stretch.
+TEST(StretchReference, OfCompareStretchesAsTheForceModelDoes) {
+  Scene scene = held_rubber(Vector3d(1, 0, -1).normalized());
+  scene.force_model.law = BendingLaw::hooke;
+  scene.force_model.bookkeeping = Bookkeeping::consistent;
+  scene.force_model.points = 60;
+  scene.stretch = Stretch::counted;
+  const Comparison stretched = compare(scene);
+  EXPECT_LT(stretched.budget.stretch.rms_m, 1e-6);
+  scene.stretch = Stretch::none;
+  const Comparison rigid = compare(scene);
+  EXPECT_GT(rigid.budget.stretch.rms_m, 5e-4);
+  EXPECT_NEAR(stretched.budget.discretisation.rms_m, rigid.budget.discretisation.rms_m,
+              0.1 * rigid.budget.discretisation.rms_m);
+}
+
+// By its stretch it may reach one that it would not reach without.
+TEST(StretchReference, IsRefusedWhereAnObstacleIsInReach) {
+  Scene scene = held_rubber(-Vector3d::UnitZ());
+  scene.stretch = Stretch::counted;
+  const auto with_floor = [&](double z) {
+    scene.obstacles = {{.body = obstacle::Body::half_space({0, 0, z}, Vector3d::UnitZ())}};
+    return scene;
+  };
+  EXPECT_GT(solve_reference(with_floor(-1.1)).energy.stretch, 0);
+  for (const double z : {-0.9, -1.001}) {
+    EXPECT_TRUE(
+        says(error_of<InputError>([&] { return solve_reference(with_floor(z)); }),
+             {"rod.stretch = true", "in reach", "allowed: stretch = false", "chain or force"}))
+        << z;
+  }
+}
+
+TEST(StretchReference, IsNamedFirstWhereARodIsTaut) {
+  Scene scene = taut_line();
+  scene.stretch = Stretch::none;
+  EXPECT_TRUE(says(error_of<InputError>([&] { return solve_reference(scene); }),
+                   {"gripper.position", "(allowed: rod.stretch = true"}));
 }
 
 }  // namespace

@@ -8,10 +8,19 @@
 
 namespace dlo::compare {
 
-/// The continuous reference of a scene: `energy` or `exact`.
+/// Returns the model whose equilibrium is a scene's reference: `exact`, which has stretch, where
+/// Scene::stretch is Stretch::counted, else `energy`. It is also the default model of `dlo solve`.
+[[nodiscard]] Model reference_model(const Scene& scene);
+
+/// Solves a scene by one of the two continuous models.
+/// @param model  `energy` or `exact`
 /// @throws InputError, ConvergenceError; that too where a shape is not verified or next to
 /// a fold, unless `accept_unverified` is set
 [[nodiscard]] energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
+                                                        const SolveOptions& options = {});
+/// Solves a scene by its reference_model().
+/// @throws InputError, ConvergenceError as above
+[[nodiscard]] energy_model::Equilibrium solve_reference(const Scene& scene,
                                                         const SolveOptions& options = {});
 
 /// Every equilibrium that the energy model finds, as it is, and where it has looked; those that
@@ -20,8 +29,9 @@ namespace dlo::compare {
 [[nodiscard]] energy_model::EnergySearch search_states(const Scene& scene,
                                                        const SolveOptions& options = {});
 
-/// Every equilibrium that the energy model finds, as it is: stable ones first, by energy; never
-/// empty. @throws InputError, ConvergenceError
+/// Every equilibrium that the scene's reference_model() finds, as it is: stable ones first, by
+/// energy; never empty. Of a rod that stretches it is the lowest one alone. @throws InputError,
+/// ConvergenceError
 [[nodiscard]] std::vector<energy_model::Equilibrium> reference_states(
     const Scene& scene, const SolveOptions& options = {});
 

@@ -40,7 +40,8 @@ struct SolveOptions {
   /// Take a shape whose status is `not_verified` or `near_singular`, to show it with that status;
   /// nothing may be concluded from it.
   bool accept_unverified = false;
-  /// Of the energy model: an equilibrium of a similar scene to follow, instead of the lowest.
+  /// Of the energy model, and of exact for a rod that stretches: an equilibrium of a similar scene
+  /// to follow, instead of the lowest.
   const energy_model::Equilibrium* start = nullptr;
   /// What is neglected is told from here on, of the length and of the largest tension [-], > 0.
   double target = 1e-3;
