@@ -19,7 +19,7 @@ MeasuredCase measured_case(const Scene& scene, const RegressRequest& request,
                               ? measure_program(scene, *program, request.solve)
                               : MeasuredCase{measure_case(scene, request.model, request.solve), ""};
     if (request.tolerance.of_deflection) {
-      const energy_model::Equilibrium loaded = solve_reference(scene, Model::energy, request.solve);
+      const energy_model::Equilibrium loaded = solve_reference(scene, request.solve);
       result.deflection_share =
           required_deflection(scene, trivial_shape(scene, loaded, request.solve)) / scene.length;
     }

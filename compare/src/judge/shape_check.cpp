@@ -262,7 +262,7 @@ std::optional<TrivialShape> trivial_shape(const Scene& scene,
   from_loaded.start = &loaded;
   TrivialShape result;
   try {
-    result.rod = solve_reference(unloaded, Model::energy, from_loaded);
+    result.rod = solve_reference(unloaded, from_loaded);
   } catch (const ResultError&) {
     return std::nullopt;
   }
