@@ -164,22 +164,20 @@ def test_finished_runs_are_not_run_again(tmp_path):
     assert len(calls) == 11
 
 
-def test_an_earlier_card_is_a_gate_as_the_commands(tmp_path):
-    options = {"scenes": ["weight"], "points": 8, "name": "mine"}
-    before = dlo.suite(polygon, **options)
-    assert before.passed is None and before.reason is None
-    same = dlo.suite(polygon, baseline=before, **options)
-    assert same.passed and same.reason == "same in every class"
-    assert str(same).endswith("\n\nsame in every class\n")
-    (tmp_path / "card.json").write_text(before.to_json())
-    better = dlo.suite(rod, baseline=tmp_path / "card.json", **options)
-    assert better.passed and better.reason.split()[:2] == ["better", "mine,"]
-    worse = dlo.suite(chain("welded"), baseline=tmp_path / "card.json", **options)
-    assert worse.passed is False and "first element welded" in worse.reason
-    assert repr(worse).startswith("<dlo.ScoreCard fail: worse")
+def test_a_baseline_is_that_of_the_command(tmp_path):
+    options = {"scenes": ["weight_1"], "points": 8, "name": "mine"}
+    assert dlo.suite(polygon, **options).passed is None
+    baseline = tmp_path / "errors.toml"
+    written = dlo.suite(polygon, baseline=baseline, update=True, **options)
+    assert written.passed and written.reason == f"{baseline} written"
+    same = dlo.suite(polygon, baseline=baseline, **options)
+    assert same.passed and same.reason == "3 same"
+    better = dlo.suite(rod, baseline=baseline, **options)
+    assert better.passed and better.reason.split()[:2] == ["better", "weight_1"]
+    worse = dlo.suite(chain("welded"), baseline=baseline, **options)
+    assert worse.passed is False and worse.reason.endswith("3 worse")
     # Errors are shares of the length, below 1.
-    lenient = dlo.suite(rod, baseline=before, absolute=1, **options)
-    assert lenient.reason == "same in every class"
+    assert dlo.suite(rod, baseline=baseline, absolute=1, **options).reason == "3 same"
 
 
 def test_a_run_ends_at_the_time_limit():
@@ -225,11 +223,10 @@ def test_bad_arguments_are_told_by_name(tmp_path):
     with pytest.raises(dlo.InputError, match="name = .../rod.: no folder of state"):
         dlo.suite(rod, name="../rod", state=tmp_path)
     with pytest.raises(dlo.InputError, match="relative and absolute >= 0"):
-        dlo.suite(rod, baseline=dlo.suite(rod, scenes=["weight_1"]), relative=float("nan"))
-    (tmp_path / "card.json").write_text("{}")
-    with pytest.raises(dlo.InputError, match="card.json: no cards"):
-        dlo.suite(rod, baseline=tmp_path / "card.json")
-    with pytest.raises(dlo.InputError, match="baseline: a int .allowed: a dlo.ScoreCard, or the name"):
+        dlo.suite(rod, baseline=tmp_path / "none.toml", update=True, relative=float("nan"))
+    with pytest.raises(dlo.InputError, match="none.toml: cannot be read .*--update writes a first baseline"):
+        dlo.suite(rod, baseline=tmp_path / "none.toml")
+    with pytest.raises(dlo.InputError, match="baseline: a int .allowed: the name of a file"):
         dlo.suite(rod, baseline=3)
     with pytest.raises(dlo.InputError, match="state: a int .allowed: the name of a folder"):
         dlo.suite(rod, state=3)

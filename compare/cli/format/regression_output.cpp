@@ -24,9 +24,29 @@ long count(const std::vector<RegressionResult>& results, RegressionVerdict verdi
 
 Json errors_json(const std::optional<compare::ShapeErrors>& errors) {
   if (!errors) return nullptr;
-  Json result = {{"rms_over_length", errors->rms}, {"max_over_length", errors->max}};
+  Json result = {{"rms_over_length", errors->rms}, {"max_over_length", json_or_null(errors->max)}};
   result["tip_over_length"] = json_or_null(errors->tip);
   return result;
+}
+
+std::string result_text(const RegressionResult& result, const std::string& file) {
+  const std::string verdict = fmt::format("{:<20}", compare::to_string(result.verdict));
+  return fmt::format("{} {}\n{:<20} {}\n",
+                     verdict_word(verdict, !compare::failed(result.verdict), file),
+                     compare::display(result.name), "", compare::display(result.message));
+}
+
+std::string counts_text(const std::vector<RegressionResult>& results) {
+  std::string out;
+  for (const RegressionVerdict verdict :
+       {RegressionVerdict::worse, RegressionVerdict::changed, RegressionVerdict::not_in_baseline,
+        RegressionVerdict::not_measured, RegressionVerdict::not_solved, RegressionVerdict::better,
+        RegressionVerdict::same}) {
+    const long number = count(results, verdict);
+    if (number == 0) continue;
+    append(out, "{}{} {}", out.empty() ? "" : ", ", number, compare::to_string(verdict));
+  }
+  return out + "\n";
 }
 
 }  // namespace
@@ -52,22 +72,17 @@ std::string baseline_update_text(const std::vector<RegressionResult>& results) {
 
 std::string regression_text(const std::vector<RegressionResult>& results, const std::string& file) {
   std::string out;
+  for (const RegressionResult& result : results) out += result_text(result, file);
+  return out + counts_text(results);
+}
+
+std::string regression_changes_text(const std::vector<RegressionResult>& results,
+                                    const std::string& file) {
+  std::string out;
   for (const RegressionResult& result : results) {
-    const std::string verdict = fmt::format("{:<20}", compare::to_string(result.verdict));
-    append(out, "{} {}\n{:<20} {}\n", verdict_word(verdict, !compare::failed(result.verdict), file),
-           compare::display(result.name), "", compare::display(result.message));
+    if (result.verdict != RegressionVerdict::same) out += result_text(result, file);
   }
-  const char* separator = "";
-  for (const RegressionVerdict verdict :
-       {RegressionVerdict::worse, RegressionVerdict::changed, RegressionVerdict::not_in_baseline,
-        RegressionVerdict::not_measured, RegressionVerdict::not_solved, RegressionVerdict::better,
-        RegressionVerdict::same}) {
-    const long number = count(results, verdict);
-    if (number == 0) continue;
-    append(out, "{}{} {}", separator, number, compare::to_string(verdict));
-    separator = ", ";
-  }
-  return out + "\n";
+  return out + counts_text(results);
 }
 
 Json regression_json(const std::vector<RegressionResult>& results, bool good) {

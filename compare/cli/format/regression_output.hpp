@@ -16,6 +16,10 @@ namespace dlo::cli {
 [[nodiscard]] std::string regression_text(const std::vector<compare::RegressionResult>& results,
                                           const std::string& file);
 
+/// The same without the cases whose errors are the same.
+[[nodiscard]] std::string regression_changes_text(
+    const std::vector<compare::RegressionResult>& results, const std::string& file);
+
 /// @param good  no case fails
 [[nodiscard]] Json regression_json(const std::vector<compare::RegressionResult>& results,
                                    bool good);

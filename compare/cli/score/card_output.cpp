@@ -8,6 +8,7 @@
 
 #include "base/display.hpp"
 #include "base/quote.hpp"
+#include "batch/junit.hpp"
 #include "option/output.hpp"
 
 namespace dlo::cli {
@@ -160,39 +161,26 @@ std::string cards_markdown(const std::vector<Card>& cards) {
 }
 
 std::string cards_junit(const std::vector<Card>& cards) {
-  std::string suites;
-  CardGroup all;
+  std::vector<compare::JunitSuite> suites;
   for (const Card& card : cards) {
-    std::string cases;
+    suites.push_back({card.simulator, {}});
     for (const CardScene& scene : card.scenes) {
-      double seconds = 0;
-      for (const compare::CardRun& run : scene.runs) seconds += run.seconds;
-      append(cases, "    <testcase classname=\"dlo.suite.{}\" name=\"{}\" time=\"{:.3f}\">",
-             compare::escape_markup(scene.group), compare::escape_markup(scene.id), seconds);
-      const std::string message = compare::escape_markup(what_is_wrong(scene));
+      compare::JunitCase one{
+          .group = "dlo.suite." + scene.group, .name = scene.id, .message = what_is_wrong(scene)};
+      for (const compare::CardRun& run : scene.runs) one.seconds += run.seconds;
       if (scene.status() == RunStatus::not_supported) {
-        append(cases, "<skipped message=\"{}\"/>", message);
+        one.outcome = "skipped";
       } else if (scene.status() == RunStatus::failed) {
-        append(cases, "<error type=\"failed\" message=\"{}\"/>", message);
+        one.outcome = "error";
+        one.type = "failed";
       } else if (!scene.right()) {
-        append(cases, "<failure type=\"wrong\" message=\"{}\"/>", message);
+        one.outcome = "failure";
+        one.type = "wrong";
       }
-      cases += "</testcase>\n";
+      suites.back().cases.push_back(std::move(one));
     }
-    const CardGroup total = card.total();
-    append(suites,
-           "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\">\n{}"
-           "  </testsuite>\n",
-           compare::escape_markup(card.simulator), total.scenes, total.solved - total.right,
-           total.failed, total.not_supported, cases);
-    all.scenes += total.scenes;
-    all.solved += total.solved - total.right;
-    all.failed += total.failed;
   }
-  return fmt::format(
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites tests=\"{}\" failures=\"{}\" "
-      "errors=\"{}\">\n{}</testsuites>\n",
-      all.scenes, all.solved, all.failed, suites);
+  return compare::junit_xml(suites);
 }
 
 compare::Figure card_figure(const Card& card) {
@@ -232,16 +220,6 @@ compare::PageResult card_page(const Card& card) {
     append(page.details, "{}: {}\n", scenes, wrong);
   }
   return page;
-}
-
-std::string changes_text(const std::vector<compare::GroupChange>& changes) {
-  std::string out;
-  for (const compare::GroupChange& change : changes) {
-    if (change.verdict == compare::RegressionVerdict::same) continue;
-    append(out, "{:<20} {}, {}{}{}\n", compare::to_string(change.verdict), change.simulator,
-           change.group, change.message.empty() ? "" : ": ", change.message);
-  }
-  return out.empty() ? "same in every class\n" : out;
 }
 
 }  // namespace dlo::cli

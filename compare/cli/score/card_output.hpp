@@ -6,7 +6,6 @@
 #include "figure/layout.hpp"
 #include "report/page.hpp"
 #include "suite/card.hpp"
-#include "suite/gate.hpp"
 
 namespace dlo::cli {
 
@@ -25,8 +24,5 @@ namespace dlo::cli {
 /// Returns a card for a page, without pictures: the causes of its wrong scenes, its numbers by
 /// class, and the wrong scenes as details.
 [[nodiscard]] compare::PageResult card_page(const compare::Card& card);
-
-/// A line for each class that has changed.
-[[nodiscard]] std::string changes_text(const std::vector<compare::GroupChange>& changes);
 
 }  // namespace dlo::cli

@@ -6,6 +6,7 @@
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
 #include "format/json.hpp"
+#include "format/regression_output.hpp"
 #include "option/exit_status.hpp"
 #include "option/option_values.hpp"
 #include "option/output.hpp"
@@ -15,7 +16,6 @@
 #include "option/terminal.hpp"
 #include "score/card_output.hpp"
 #include "suite/card_document.hpp"
-#include "suite/gate.hpp"
 #include "suite/pack.hpp"
 
 namespace dlo::cli {
@@ -31,6 +31,7 @@ struct SuiteOptions {
   std::string junit;
   std::string report;
   std::string baseline;
+  bool update = false;
   compare::RegressionTolerance tolerance;
   OutputOptions output;
 };
@@ -57,9 +58,11 @@ void write_cards(const SuiteOptions& options, const std::string& version,
                  const std::vector<compare::BatteryScene>& scenes) {
   const std::vector<compare::Simulator> simulators = compare::parse_simulators(options.simulators);
   // An unreadable baseline is told before minutes of runs.
-  const std::vector<compare::Card> before = options.baseline.empty()
-                                                ? std::vector<compare::Card>{}
-                                                : compare::load_cards(options.baseline);
+  std::vector<compare::BaselineCase> baseline;
+  if (!options.baseline.empty()) {
+    baseline = options.update ? compare::present_baseline(options.baseline)
+                              : compare::load_baseline(options.baseline);
+  }
   const std::vector<compare::Card> cards = with_progress("suite", [&](const auto& progress) {
     compare::CardOptions card = options.card;
     card.progress = progress;
@@ -71,14 +74,20 @@ void write_cards(const SuiteOptions& options, const std::string& version,
   if (!options.junit.empty()) write_output({.file = options.junit}, cards_junit(cards));
   write_page(options.report, cards);
   if (options.baseline.empty()) return;
-  const std::vector<compare::GroupChange> changes =
-      compare::compare_cards(before, cards, options.tolerance);
-  if (options.output.is(Format::text) && options.output.file.empty()) {
-    write_standard_output("\n" + changes_text(changes));
-  } else {
-    write_standard_error(changes_text(changes));
+  const compare::Regression found = compare::judge_cards(baseline, cards, options.tolerance);
+  if (options.update) {
+    if (found.solved()) compare::replace_baseline(options.baseline, baseline, found.cases);
+    say("{} {}", options.baseline, found.solved() ? "written" : "left as it was");
+    if (!found.solved()) end_with(ExitStatus::not_converged);
+    return;
   }
-  if (!compare::passes(changes)) end_with(ExitStatus::outside_tolerance);
+  const std::string changes = regression_changes_text(found.results, options.output.file);
+  if (options.output.is(Format::text) && options.output.file.empty()) {
+    write_standard_output("\n" + changes);
+  } else {
+    write_standard_error(changes);
+  }
+  if (!found.passes()) end_with(ExitStatus::outside_tolerance);
 }
 
 void run(const SuiteOptions& options) {
@@ -127,8 +136,10 @@ void add_suite(CLI::App& app) {
       ->type_name("DIR");
   command
       ->add_option("--baseline", options->baseline,
-                   "cards of an earlier time (JSON); exit status 1 if a class has got worse")
+                   "a baseline as that of regress (TOML); exit status 1 if an error is worse")
       ->type_name("FILE");
+  command->add_flag("--update", options->update,
+                    "write the errors of these scenes and simulators into the baseline");
   add_growth_options(*command, options->tolerance);
   command->add_option("--markdown", options->markdown, "write the cards as Markdown too")
       ->type_name("FILE");

@@ -10,16 +10,17 @@
 #include "array.hpp"
 #include "base/quote.hpp"
 #include "base/timer.hpp"
+#include "batch/baseline.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
 #include "foreign/foreign_program.hpp"
 #include "format/json.hpp"
+#include "format/regression_output.hpp"
 #include "long_call.hpp"
 #include "module.hpp"
 #include "score/card_output.hpp"
 #include "suite/card.hpp"
 #include "suite/card_document.hpp"
-#include "suite/gate.hpp"
 
 namespace dlo::python {
 namespace {
@@ -95,25 +96,30 @@ compare::CardOptions card_options(const py::dict& what, const std::string& name)
   return options;
 }
 
-/// An earlier card, and how much an error may grow.
+/// A baseline, and how much an error may grow.
 struct Gate {
-  std::vector<compare::Card> before;
+  std::string file;
+  bool update;
+  std::vector<compare::BaselineCase> baseline;
   compare::RegressionTolerance tolerance;
 };
 
-/// @throws compare::InputError naming what is out of range, or the file of the card
+/// @throws compare::InputError naming what is out of range, or the baseline's file
 std::optional<Gate> gate_of(const py::dict& what) {
-  const auto baseline = what["baseline"].cast<std::optional<std::pair<std::string, std::string>>>();
-  if (!baseline) return std::nullopt;
+  const auto file = what["baseline"].cast<std::string>();
+  if (file.empty()) return std::nullopt;
   const compare::RegressionTolerance tolerance{.relative = what["relative"].cast<double>(),
                                                .absolute = what["absolute"].cast<double>()};
   if (!(tolerance.relative >= 0) || !(tolerance.absolute >= 0)) {
     throw compare::InputError("suite: out of range (allowed: relative and absolute >= 0)");
   }
-  return Gate{compare::parse_cards(baseline->first, baseline->second), tolerance};
+  const bool update = what["update"].cast<bool>();
+  return Gate{file, update, update ? compare::present_baseline(file) : compare::load_baseline(file),
+              tolerance};
 }
 
-/// @param what  scenes, points, threads, time_limit, state, baseline, relative, absolute
+/// @param what  scenes, points, threads, time_limit, state, baseline, update, relative,
+/// absolute
 /// @param make_result  of text, JSON, Markdown, JUnit XML, HTML, what has changed, whether it
 /// passes
 py::object suite(const py::object& function, const std::string& name, const py::dict& what,
@@ -139,9 +145,12 @@ py::object suite(const py::object& function, const std::string& name, const py::
   std::optional<std::string> changed;
   std::optional<bool> passes;
   if (gate) {
-    const auto changes = compare::compare_cards(gate->before, cards, gate->tolerance);
-    changed = cli::changes_text(changes);
-    passes = compare::passes(changes);
+    const compare::Regression found = compare::judge_cards(gate->baseline, cards, gate->tolerance);
+    passes = gate->update ? found.solved() : found.passes();
+    const bool written = gate->update && *passes;
+    if (written) compare::replace_baseline(gate->file, gate->baseline, found.cases);
+    changed =
+        written ? gate->file + " written\n" : cli::regression_changes_text(found.results, "text");
     text += "\n" + *changed;
   }
   return make_result(text, cli::json_text(compare::cards_json(cards)), cli::cards_markdown(cards),

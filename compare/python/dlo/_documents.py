@@ -238,12 +238,12 @@ class ScoreCard(Document):
 
     @property
     def passed(self) -> Optional[bool]:
-        """Whether no class has got worse than the baseline's; None without one."""
+        """Whether no error is worse than the baseline's; of an update, whether all was solved; None without one."""
         return self._passed
 
     @property
     def reason(self) -> Optional[str]:
-        """A line for each class that has changed; None without a baseline."""
+        """The cases that have changed, and how many have become what; None without a baseline."""
         return None if self._changes is None else self._changes.rstrip("\n")
 
     @property

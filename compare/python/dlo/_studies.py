@@ -25,7 +25,7 @@ from ._arguments import (
 )
 from ._documents import Benchmark, Modes, Regression, ScoreCard, Stability, Track
 from ._errors import InputError
-from ._files import FileName, file_name, file_text
+from ._files import FileName, file_name
 from ._functions import many, shape_pair
 from ._scene import Calibrated, Quantity, Scene, SceneLike, as_scene, data_of
 from ._time_limit import within
@@ -186,21 +186,13 @@ def regress(
     return found
 
 
-def _card_text(baseline: Optional[Union[ScoreCard, FileName]]) -> Optional[tuple[str, str]]:
-    """Text and name of an earlier card."""
-    if isinstance(baseline, ScoreCard):
-        return baseline.to_json(), "baseline"
-    if baseline is None:
-        return None
-    return file_text(file_name(baseline, "baseline", "a dlo.ScoreCard, or the name of its file"))
-
-
 @checked(
     name=TEXT,
     scenes=TEXTS,
     points=INTEGER,
     threads=INTEGER,
     time_limit=NUMBER,
+    update=TRUTH,
     relative=NUMBER,
     absolute=NUMBER,
 )
@@ -213,7 +205,8 @@ def suite(
     threads: int = 0,
     time_limit: float = 60.0,
     state: Optional[FileName] = None,
-    baseline: Optional[Union[ScoreCard, FileName]] = None,
+    baseline: Optional[FileName] = None,
+    update: bool = False,
     relative: float = 0.01,
     absolute: float = 1e-6,
 ) -> ScoreCard:
@@ -229,8 +222,9 @@ def suite(
     all else; 0: all cores. time_limit: of each run, and of each reference [s]. A run is ended between two
     instructions of Python, so that a longer call of C ends first; it is then a failure.
     state: a folder that keeps finished runs by name, scene and N; they are not run again. Name another one
-    if the function has changed. baseline: an earlier card, or the file of its JSON; the ScoreCard then
-    passes or fails. An error may grow by relative of it and absolute of the rod's length.
+    if the function has changed. baseline: a file as regress() has; the ScoreCard then passes or fails.
+    update: write the errors of these scenes into it. An error may change by relative of it and absolute of
+    the rod's length.
     """
     if not callable(run):
         raise InputError(f"run: a {type(run).__name__} (allowed: a function of a scene and a number of points)")
@@ -249,7 +243,8 @@ def suite(
         "threads": threads,
         "time_limit": float(time_limit),
         "state": b"" if state is None else file_name(state, "state", "the name of a folder"),
-        "baseline": _card_text(baseline),
+        "baseline": b"" if baseline is None else file_name(baseline, "baseline"),
+        "update": bool(update),
         "relative": float(relative),
         "absolute": float(absolute),
     }

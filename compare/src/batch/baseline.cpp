@@ -37,7 +37,7 @@ BaselineCase read_case(StrictTable& table) {
     return table.number(key, Dimension::number, Range::not_negative());
   };
   result.errors.rms = error("rms_over_length");
-  result.errors.max = error("max_over_length");
+  if (table.has("max_over_length")) result.errors.max = error("max_over_length");
   if (table.has("tip_over_length")) result.errors.tip = error("tip_over_length");
   if (const auto digits = table.optional_text("fingerprint")) {
     const bool whole =
@@ -123,8 +123,11 @@ std::string baseline_text(std::vector<BaselineCase> cases) {
                               to_string(entry.model), to_string(entry.law),
                               to_string(entry.bookkeeping))
                 : fmt::format("program = {}\n", toml_string(entry.program));
-    text += fmt::format("points = {}\nrms_over_length = {}\nmax_over_length = {}\n", entry.points,
-                        toml_number(entry.errors.rms), toml_number(entry.errors.max));
+    text += fmt::format("points = {}\nrms_over_length = {}\n", entry.points,
+                        toml_number(entry.errors.rms));
+    if (entry.errors.max) {
+      text += fmt::format("max_over_length = {}\n", toml_number(*entry.errors.max));
+    }
     if (entry.errors.tip) {
       text += fmt::format("tip_over_length = {}\n", toml_number(*entry.errors.tip));
     }

@@ -13,7 +13,7 @@ namespace dlo::compare {
 /// How far a shape is from the energy model's, each as a share of the rod's length [-].
 struct ShapeErrors {
   double rms = 0;             ///< along the rod
-  double max = 0;             ///< of any point
+  std::optional<double> max;  ///< of any point; nothing from dlo suite, which measures rms alone
   std::optional<double> tip;  ///< nothing if both ends are held
 };
 

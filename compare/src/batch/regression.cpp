@@ -11,7 +11,7 @@
 #include <tuple>
 #include <utility>
 
-#include "base/quote.hpp"
+#include "batch/junit.hpp"
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
@@ -379,29 +379,18 @@ std::vector<RegressionResult> judge_regression(const std::vector<BaselineCase>& 
 }
 
 std::string junit_xml(const std::vector<RegressionResult>& results) {
-  int failures = 0;
-  int errors = 0;
-  std::string cases;
+  JunitSuite suite{"dlo regress", {}};
   for (const RegressionResult& result : results) {
-    cases += fmt::format("    <testcase classname=\"dlo.regress\" name=\"{}\"",
-                         escape_markup(result.name));
-    if (!failed(result.verdict)) {
-      cases += fmt::format(">\n      <system-out>{}: {}</system-out>\n    </testcase>\n",
-                           to_string(result.verdict), escape_markup(result.message));
-      continue;
+    JunitCase one{.group = "dlo.regress", .name = result.name, .message = result.message};
+    if (failed(result.verdict)) {
+      one.outcome = result.verdict == RegressionVerdict::not_solved ? "error" : "failure";
+      one.type = to_string(result.verdict);
+    } else {
+      one.message = fmt::format("{}: {}", to_string(result.verdict), result.message);
     }
-    const bool error = result.verdict == RegressionVerdict::not_solved;
-    ++(error ? errors : failures);
-    cases += fmt::format(">\n      <{0} type=\"{1}\" message=\"{2}\"/>\n    </testcase>\n",
-                         error ? "error" : "failure", to_string(result.verdict),
-                         escape_markup(result.message));
+    suite.cases.push_back(std::move(one));
   }
-  const std::string counts =
-      fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\"", results.size(), failures, errors);
-  return fmt::format(
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {0}>\n"
-      "  <testsuite name=\"dlo regress\" {0}>\n{1}  </testsuite>\n</testsuites>\n",
-      counts, cases);
+  return junit_xml(std::vector{std::move(suite)});
 }
 
 }  // namespace dlo::compare

@@ -1,11 +1,9 @@
 #include "suite/card_document.hpp"
 
-#include <fmt/format.h>
+#include <set>
+#include <string>
+#include <utility>
 
-#include <limits>
-
-#include "base/input_file.hpp"
-#include "dlo/compare/error.hpp"
 #include "record/field.hpp"
 
 namespace dlo::compare {
@@ -53,47 +51,6 @@ Json group_json(const CardGroup& group) {
           {"causes", std::move(causes)}};
 }
 
-/// null is NaN.
-double number_of(const Json& value) {
-  return value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
-}
-
-CardScene parse_scene_card(const Json& document) {
-  CardScene scene;
-  scene.id = document.at("id");
-  scene.group = document.at("class");
-  scene.order = number_of(document.at("order"));
-  for (const Json& cause : document.at("causes")) {
-    scene.causes.push_back({.name = cause.at("name"),
-                            .factor = number_of(cause.at("factor")),
-                            .words = cause.at("words"),
-                            .defect = cause.at("defect")});
-  }
-  for (const Json& run : document.at("runs")) {
-    scene.runs.push_back({.points = run.at("points"),
-                          .status = from_name<RunStatus>(run.at("status").get<std::string>()),
-                          .problem = run.at("problem"),
-                          .error = number_of(run.at("rms_over_length")),
-                          .seconds = number_of(run.at("wall_s"))});
-  }
-  return scene;
-}
-
-Card parse_card(const Json& document) {
-  Card card;
-  card.simulator = document.at("simulator");
-  card.battery_version = document.at("version");
-  card.points = document.at("points").get<std::vector<int>>();
-  for (const Json& scene : document.at("scenes")) {
-    CardScene one = parse_scene_card(scene);
-    const bool whole = one.runs.size() == card.points.size() ||
-                       (!one.runs.empty() && one.status() != RunStatus::solved);
-    if (!whole) throw InputError(fmt::format("scene {}: {} runs", one.id, one.runs.size()));
-    card.scenes.push_back(std::move(one));
-  }
-  return card;
-}
-
 }  // namespace
 
 nlohmann::ordered_json cards_json(const std::vector<Card>& cards) {
@@ -107,24 +64,29 @@ nlohmann::ordered_json cards_json(const std::vector<Card>& cards) {
                                     })}};
 }
 
-std::vector<Card> parse_cards(const std::string& text, const std::string& file) {
-  try {
-    const Json document = Json::parse(text);
-    if (document.at("schema") != card_schema) {
-      throw InputError(fmt::format("schema is not {}", card_schema));
+Regression judge_cards(const std::vector<BaselineCase>& baseline, const std::vector<Card>& cards,
+                       const RegressionTolerance& tolerance) {
+  std::vector<MeasuredCase> measured;
+  std::set<std::pair<std::string, std::string>> compared;  // scene, simulator
+  for (const Card& card : cards) {
+    for (const CardScene& scene : card.scenes) {
+      compared.emplace(scene.id, card.simulator);
+      if (scene.status() == RunStatus::not_supported) continue;
+      for (const CardRun& run : scene.runs) {
+        BaselineCase entry{.scene = scene.id, .program = card.simulator, .points = run.points};
+        entry.errors.rms = run.error;
+        measured.push_back({std::move(entry), run.problem});
+      }
     }
-    std::vector<Card> cards;
-    for (const Json& card : document.at("cards")) cards.push_back(parse_card(card));
-    return cards;
-  } catch (const nlohmann::json::exception&) {
-    throw InputError(
-        fmt::format("{}: no cards (allowed: what dlo suite --format json has written)", file));
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {} (allowed: what dlo suite --format json has written)", file,
-                                 error.what()));
   }
+  std::vector<BaselineCase> known;
+  Regression result;
+  for (const BaselineCase& entry : baseline) {
+    (compared.contains({entry.scene, entry.program}) ? known : result.cases).push_back(entry);
+  }
+  result.results = judge_regression(known, measured, tolerance);
+  for (MeasuredCase& one : measured) result.cases.push_back(std::move(one.entry));
+  return result;
 }
-
-std::vector<Card> load_cards(const std::string& path) { return parse_cards(read_file(path), path); }
 
 }  // namespace dlo::compare

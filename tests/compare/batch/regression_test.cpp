@@ -275,7 +275,7 @@ TEST(Regression, MeasuresWhatCompareMeasures) {
   const dlo::compare::Comparison expected = dlo::compare::compare(scene);
   const BaselineCase measured = dlo::compare::measure_case(scene, dlo::compare::Model::force);
   EXPECT_DOUBLE_EQ(measured.errors.rms, expected.deviation.rms_m / 2);
-  EXPECT_DOUBLE_EQ(measured.errors.max, expected.deviation.max_m / 2);
+  EXPECT_DOUBLE_EQ(measured.errors.max.value(), expected.deviation.max_m / 2);
   ASSERT_TRUE(measured.errors.tip.has_value());
   EXPECT_DOUBLE_EQ(*measured.errors.tip, expected.deviation.tip_m / 2);
   EXPECT_EQ(measured.name(), "heavy (force, law paper, bookkeeping consistent, N = 16)");

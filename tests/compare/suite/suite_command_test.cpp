@@ -10,7 +10,10 @@
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
+#include <vector>
 
+#include "base/output_file.hpp"
+#include "batch/baseline.hpp"
 #include "command_fixture.hpp"
 
 namespace {
@@ -161,26 +164,30 @@ TEST_F(SuiteCommand, AFailureIsNoMissingSupport) {
   EXPECT_EQ(quiet.at("total").at("not_supported"), 1);
 }
 
-TEST_F(SuiteCommand, AnEarlierCardIsAGate) {
-  const std::string scenes = " --scenes weight_1,weight_10,bending ";
-  succeeds("suite --with chain --format json -o " + path("card.json") + scenes);
-  const std::string gate = " --baseline " + path("card.json");
+TEST_F(SuiteCommand, HoldsErrorsAgainstABaselineOfRegress) {
+  const std::string scenes = " --scenes weight_1,strip_flat ";
+  const std::string file = path("errors.toml");
+  const std::string gate = " --baseline " + file;
+  succeeds("suite --with chain --with force" + scenes + gate + " --update");
   const Outcome same = run("suite --with chain" + scenes + gate);
   EXPECT_EQ(same.status, 0) << same.out;
-  EXPECT_THAT(same.out, HasSubstr("same in every class"));
-  std::string text = read(path("card.json"));
-  // As if the errors had been a tenth.
-  json before = json::parse(text);
-  for (json& scene : before["cards"][0]["scenes"]) {
-    for (json& one : scene["runs"])
-      one["rms_over_length"] = one["rms_over_length"].get<double>() / 10;
+  EXPECT_THAT(same.out, HasSubstr("\n3 same\n"));  // a strip is not supported
+  // As if the errors of one simulator had been a tenth.
+  std::vector<dlo::compare::BaselineCase> cases = dlo::compare::load_baseline(file);
+  ASSERT_EQ(cases.size(), 6U);
+  for (dlo::compare::BaselineCase& one : cases) {
+    if (one.program == "chain") one.errors.rms /= 10;
   }
-  std::ofstream(path("card.json")) << before.dump();
+  dlo::compare::write_file(file, dlo::compare::baseline_text(cases));
   const Outcome worse = run("suite --with chain" + scenes + gate);
   EXPECT_EQ(worse.status, 1);
-  EXPECT_THAT(worse.out, HasSubstr("worse                chain, weight: error"));
-  succeeds("suite --with force --scenes weight_1" + gate);  // it is new
-  std::ofstream(path("card.json")) << "{}";
+  EXPECT_THAT(worse.out, HasSubstr("worse                weight_1 (chain, N = 16)"));
+  // An update keeps the cases of other simulators.
+  succeeds("suite --with chain" + scenes + gate + " --update");
+  EXPECT_EQ(dlo::compare::load_baseline(file).size(), 6U);
+  EXPECT_EQ(run("suite --with force" + scenes + gate).status, 0);
+  EXPECT_EQ(run("suite --with chain --scenes bending" + gate).status, 1);  // not in the baseline
+  std::ofstream(file) << "{}";
   EXPECT_EQ(run("suite --with chain" + scenes + gate).status, 2);
 }
 
