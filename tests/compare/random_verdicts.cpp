@@ -313,8 +313,12 @@ class Verdicts {
       return MeasuredShape{"chain", shape.points, has_s ? shape.arc_length : std::vector<double>{}};
     };
     const MeasuredShape right = file_of(chain);
-    const std::string what =
-        std::to_string(right.points.cols() - 1) + " segments, " + to_string(law);
+    std::string what = std::to_string(right.points.cols() - 1) + " segments, " + to_string(law);
+    for (const Gripper& gripper : scene.grippers) {
+      what += std::string(gripper.direction ? ", clamp" : ", pin") + " at " +
+              std::to_string(gripper.at);
+    }
+    for (const PointLoad& load : scene.loads) what += ", load at " + std::to_string(load.at);
     judge(scene, states, {'d', what, right});
     chain.scale_modulus(0.7);
     const MeasuredShape soft = file_of(chain);
