@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
@@ -48,6 +50,9 @@ Problem taut_between_clamps() {
                    {2, {3, 2, 3}, Eigen::Vector3d(5, 0, 0), {}}};
   return problem;
 }
+
+Equilibrium solve_energy_alone(const Problem& problem) { return solve_energy(problem); }
+Equilibrium solve_exact_alone(const Problem& problem) { return solve_exact(problem); }
 
 TEST(TautLine, IsStraightAndTwistsAsTwoSpringsInBothModels) {
   Problem problem = taut_between_clamps();
@@ -109,6 +114,58 @@ TEST(TautLine, CarriesWhatActsAlongItAsAnUnstressedBar) {
   EXPECT_LT((solved.grips[1].force - Eigen::Vector3d(3 * 0.25 - 1, -1, -1)).norm(), 1e-12);
   EXPECT_NEAR(solved.energy.gravity, 3 * 2 * 1.0, 1e-12);
   EXPECT_NEAR(solved.energy.load, -8 * 0.5 - 2, 1e-12);
+}
+
+// A load per length that grows from -1 to 3 N/m over 2 m puts 2 (-1) / 3 + 2 (3) / 6 = 1/3 N on the
+// first grip of a bar and 2 (-1) / 6 + 2 (3) / 3 = 5/3 N on the second; its work is
+// int (2 s - 1) s ds = 2^4 / 3 - 2.
+TEST(TautLine, CarriesALineLoadThatGrows) {
+  Problem problem = taut_between_clamps();
+  problem.line_loads = {{0, 2, {-1, 0, 0}, {3, 0, 0}}};
+  for (const Equilibrium& solved : {solve_energy(problem), solve_exact(problem)}) {
+    ASSERT_EQ(solved.status, SolveStatus::converged) << solved.message;
+    EXPECT_NEAR(solved.grips[0].force.x(), -1.0 / 3, 1e-14);
+    EXPECT_NEAR(solved.grips[1].force.x(), -5.0 / 3, 1e-14);
+    EXPECT_NEAR(solved.energy.load, -(16.0 / 3 - 2), 1e-13);
+    EXPECT_NEAR(solved.energy.gravity, 0, 1e-14);
+  }
+  problem.line_loads[0].at_end = {3, 0.1, 0};
+  EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
+}
+
+TEST(TautLine, LeavesACoupleOnAClampToThatClamp) {
+  Problem problem = taut_between_clamps();
+  problem.loads = {{2, {0, 1, 0}, {0, 0.3, 2}}, {0, {0, 0, 0}, {0, 0, -1}}};
+  const Equilibrium solved = solve_energy(problem);
+  ASSERT_EQ(solved.status, SolveStatus::converged) << solved.message;
+  EXPECT_EQ(solved.grips[1].torque, Eigen::Vector3d(0, -0.3, -2));
+  EXPECT_EQ(solved.grips[0].torque, Eigen::Vector3d(0, 0, 1));
+  EXPECT_EQ(solved.grips[1].force, Eigen::Vector3d(0, -1, 0));
+  problem.loads.pop_back();
+  problem.loads[0].torque.y() = 0;
+  const Equilibrium shot = solve_exact(problem);
+  ASSERT_EQ(shot.status, SolveStatus::converged) << shot.message;
+  EXPECT_EQ(shot.grips[1].torque, Eigen::Vector3d(0, 0, -2));
+}
+
+// How the grips share it depends on the tension, which nothing determines.
+TEST(TautLine, RefusesACoupleThatNoClampTakes) {
+  Problem inside = taut_between_clamps();
+  inside.loads = {{1, {0, 0, 0}, {0, 0, 1e-3}}};
+  Problem on_pin = taut_between_clamps();
+  on_pin.grips[1].direction.reset();
+  on_pin.loads = {{2, {0, 0, 0}, {0, 0, 1e-3}}};
+  for (const Problem& problem : {inside, on_pin}) {
+    for (const auto& solver : {&solve_energy_alone, &solve_exact_alone}) {
+      try {
+        (void)solver(problem);
+        ADD_FAILURE() << "taken";
+      } catch (const std::invalid_argument& error) {
+        EXPECT_NE(std::string(error.what()).find("couple on a taut rod"), std::string::npos)
+            << error.what();
+      }
+    }
+  }
 }
 
 TEST(TautLine, IsRefusedWhereNoTensionWouldDo) {

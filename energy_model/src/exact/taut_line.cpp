@@ -9,6 +9,8 @@
 #include "base/require.hpp"
 #include "base/sized_samples.hpp"
 #include "dlo/energy_model/turns.hpp"
+#include "problem/ordered_grips.hpp"
+#include "problem/reduction.hpp"
 #include "problem/rod_law.hpp"
 
 namespace dlo::energy_model {
@@ -53,7 +55,7 @@ class TautLine {
   }
 
   Equilibrium solve() {
-    for (const Section& part : rod_parts(problem_)) add_weight(part);
+    for (const RodPart& part : rod_parts(problem_)) add_weight(part);
     for (const Load& load : problem_.loads) add_load(load);
     add_twist();
     result_.status = SolveStatus::converged;
@@ -63,6 +65,7 @@ class TautLine {
     result_.residual = 0;
     result_.error_estimate = 0;
     result_.sample = sampler();
+    separate_line_loads(problem_, result_);
     return std::move(result_);
   }
 
@@ -87,21 +90,32 @@ class TautLine {
         "forces along the line)");
   }
 
-  void add_weight(const Section& part) {
+  /// With the line loads on it, which are linear: the rule of two points is exact for what the
+  /// grips carry of them and for their energy.
+  void add_weight(const RodPart& part) {
     for (std::size_t i = 0; i + 1 < along_.size(); ++i) {
       const double begin = std::max(part.begin, grip(i).at);
       const double end = std::min(part.end, grip(i + 1).at);
       if (!(end > begin)) continue;
-      const Eigen::Vector3d weight = (end - begin) * part.weight_per_length;
-      const double middle = (begin + end) / 2;
-      require_along(weight, middle);
-      carry(weight, middle, i);
-      result_.energy.gravity -= weight.dot(point(middle) - problem_.grips.front().position);
+      for (const double side : {-1.0, 1.0}) {
+        const double s = (begin + end) / 2 + side * (end - begin) / std::sqrt(12);
+        const Eigen::Vector3d force =
+            (end - begin) / 2 * (part.weight_per_length + (s - part.begin) * part.weight_slope);
+        require_along(force, s);
+        carry(force, s, i);
+        result_.energy.gravity -= force.dot(point(s) - problem_.grips.front().position);
+      }
     }
   }
 
   void add_load(const Load& load) {
     result_.energy.load -= load.force.dot(point(load.at) - problem_.grips.front().position);
+    const std::optional<std::size_t> clamp = clamp_under(problem_, load);
+    require(clamp || load.torque.isZero(0), "Problem",
+            "arc length where a couple on a taut rod acts", load.at,
+            "that of a clamp: how the grips share a couple depends on the tension, which nothing "
+            "determines in a rod that does not stretch");
+    if (clamp) result_.grips[*clamp].torque -= load.torque;
     for (std::size_t i = 0; i < along_.size(); ++i) {
       if (std::abs(load.at - grip(i).at) > line_rounding * problem_.length) continue;
       result_.grips[along_[i]].force -= load.force;
