@@ -1,21 +1,69 @@
-// A rod with one clamp and a rigid body in its way: the side that costs less is found.
+// Rods with bodies in their way, which they may pass on either side.
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <random>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "dlo/energy_model/energy.hpp"
+#include "dlo/energy_model/exact.hpp"
 #include "problems.hpp"
+#include "random_contact.hpp"
 #include "solved.hpp"
+#include "start_along.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
+using obstacle::Body;
 using test::heavy_cantilever;
+
+using Corners = std::vector<Eigen::Vector3d>;
+
+/// energy_near() from points on a line from corner to corner.
+Equilibrium near_line(const Problem& problem, const Corners& corners) {
+  const std::vector<double> s = equal_arc_lengths(problem.length, 21);
+  return energy_near(problem, s, test::start_along(corners).sample(s).points);
+}
+
+/// What `exact` makes of an equilibrium and its contacts.
+Equilibrium confirmed(const Problem& problem, const Equilibrium& rod) {
+  return test::converged(solve_exact(problem, {.start = &rod}));
+}
+
+/// The stable equilibrium of a list that is the same as another one; null: there is none.
+const Equilibrium* find_stable(const std::vector<Equilibrium>& list, const Equilibrium& wanted) {
+  const auto found = std::find_if(list.begin(), list.end(), [&](const Equilibrium& other) {
+    return succeeded(other.status) && test::gap_between(other, wanted) < 1e-6;
+  });
+  return found == list.end() ? nullptr : &*found;
+}
+
+/// A rope from a pin to the left of a peg, with a load at its end.
+Problem rope_beside_peg() {
+  Problem problem = heavy_cantilever(4e3, 0);
+  problem.grips = {{0, {-0.4, 0.07, 0}}};
+  problem.loads = {{1, {0, -6e4, 0}}};
+  problem.obstacles = {{Body::cylinder({0, 0, 0}, {0, 0, 1}, 0.06)}};
+  return problem;
+}
+
+/// A strip-like rod above two circles that yield, the weight presses it on both of them.
+Problem rod_above_yielding_circles() {
+  Problem problem = heavy_cantilever(200, 10);
+  problem.obstacles = {{Body::cylinder({0.3, -0.08, 0}, {0, 0, 1}, 0.06), 2e5},
+                       {Body::cylinder({0.75, -0.2, 0}, {0, 0, 1}, 0.08), 2e5}};
+  return problem;
+}
 
 /// A block across the way of a rod that rises from its clamp.
 Problem with_block_in_the_way(int seed) {
@@ -57,6 +105,109 @@ TEST(SidesOfBodies, WhatIsFoundCostsNoMoreThanWhatALoadLeadsTo) {
     }
   }
   EXPECT_GE(led, 3 * scenes);
+}
+
+// EI kappa^2 / 2 + n.t + w.r is the same all along, whatever frictionless body the rod lies on; at
+// a pin and at a free end kappa is zero.
+TEST(SidesOfBodies, ARopeNearPointsOverAPegLiesOnIt) {
+  const Problem problem = rope_beside_peg();
+  const Equilibrium rod = test::converged(
+      near_line(problem, {{-0.4, 0.07, 0}, {0.02, 0.08, 0}, {0.08, 0, 0}, {0.08, -0.45, 0}}));
+  ASSERT_EQ(rod.contacts.size(), 1);
+  EXPECT_EQ(rod.contacts[0].kind, ContactKind::lying);
+  const Samples ends = rod.sample(std::array{0.0, 1.0});
+  const Eigen::Vector3d fall = ends.points.col(1) - ends.points.col(0);
+  const double held = -rod.grips[0].force.dot(ends.tangents.col(0));
+  const double pulled = problem.loads[0].force.dot(ends.tangents.col(1));
+  EXPECT_NEAR(held, pulled + problem.weight_per_length.dot(fall), 1e-7 * held);
+  EXPECT_LT(test::gap_between(rod, confirmed(problem, rod)), 1e-7);
+  // Beside the peg it hangs lower, and that is what a search for the lowest finds.
+  const Equilibrium lowest = test::converged(solve_energy(problem));
+  EXPECT_TRUE(lowest.contacts.empty());
+  EXPECT_LT(lowest.energy.total(), rod.energy.total());
+  const EnergySearch search = search_energy(problem);
+  EXPECT_NE(find_stable(search.equilibria, rod), nullptr);
+  EXPECT_NE(find_stable(search.equilibria, lowest), nullptr);
+  const auto past = std::find_if(
+      search.looked_from.begin(), search.looked_from.end(), [](const SearchStrategy& strategy) {
+        return strategy.name.find("pass one or two obstacles") != std::string::npos;
+      });
+  ASSERT_NE(past, search.looked_from.end());
+  EXPECT_EQ(past->tried, 2);
+  EXPECT_EQ(past->found_first, 1);
+}
+
+TEST(SidesOfBodies, ACantileverStaysOnTheSideOfItsPoints) {
+  Problem problem = heavy_cantilever(4, 0);
+  const Eigen::Vector3d middle = test::point_at(solve_energy(problem), 0.6);
+  problem.obstacles = {{Body::cylinder(middle, {0, 0, 1}, 0.05)}};
+  double lowest = std::numeric_limits<double>::infinity();
+  const std::vector<Equilibrium> all = all_energy(problem);
+  for (const double side : {1.0, -1.0}) {
+    SCOPED_TRACE(side);
+    const Eigen::Vector3d beside(0, side * 0.06, 0);
+    const Eigen::Vector3d tip(0.95, middle.y() - 0.15, 0);
+    const Equilibrium rod = test::converged(
+        near_line(problem, {{0, 0, 0}, {0.2, 0, 0}, middle + beside, tip + beside}));
+    ASSERT_EQ(rod.contacts.size(), 1);
+    EXPECT_GT(side * rod.contacts[0].force.y(), 0);
+    EXPECT_LT(test::gap_between(rod, confirmed(problem, rod)), 1e-7);
+    EXPECT_NE(find_stable(all, rod), nullptr);
+    lowest = std::min(lowest, rod.energy.total());
+  }
+  EXPECT_NEAR(solve_energy(problem).energy.total(), lowest, 1e-9);
+}
+
+TEST(SidesOfBodies, ARodThatLiesOnYieldingCirclesIsListed) {
+  const Problem problem = rod_above_yielding_circles();
+  const Equilibrium rod = test::converged(
+      near_line(problem, {{0, 0, 0}, {0.3, -0.01, 0}, {0.75, -0.1, 0}, {0.98, -0.3, 0}}));
+  for (const Eigen::Vector3d& force : rod.obstacles) EXPECT_GT(force.y(), 1);
+  const Eigen::Vector3d sum = rod.obstacles[0] + rod.obstacles[1] + rod.grips[0].force;
+  EXPECT_LT((sum + problem.weight_per_length).norm(), 1e-8 * problem.weight_per_length.norm());
+  EXPECT_NE(find_stable(all_energy(problem), rod), nullptr);
+}
+
+/// Every stable equilibrium that is known is found from its own points.
+void expect_found_near_own_points(const Problem& problem, const std::string& name) {
+  const std::vector<double> s = equal_arc_lengths(problem.length, 41);
+  for (const Equilibrium& known : all_energy(problem)) {
+    if (known.status != SolveStatus::converged) continue;
+    const Equilibrium near = energy_near(problem, s, known.sample(s).points);
+    EXPECT_EQ(near.status, SolveStatus::converged) << name << ": " << near.message;
+    if (near.status != SolveStatus::converged) continue;
+    EXPECT_LT(test::gap_between(near, known), 1e-6) << name << ", " << known.energy.total();
+  }
+}
+
+TEST(SidesOfBodies, AStableEquilibriumIsFoundNearItsOwnPoints) {
+  expect_found_near_own_points(test::two_clamps(10, 0.6), "two clamps");
+  Problem pins = heavy_cantilever(20, 0);
+  pins.grips = {{0.1, {0, 0, 0}}, {0.8, {0.4, 0.1, 0}}};
+  expect_found_near_own_points(pins, "two pins");
+  Problem twisted = test::two_clamps(5, 0.7);
+  twisted.torsional_stiffness = 0.8;
+  twisted.grips[0].frame = FrameHold{};
+  twisted.grips[1].frame = FrameHold{.roll = 7};
+  expect_found_near_own_points(twisted, "twisted");
+  for (const bool space : {false, true}) {
+    for (unsigned seed = 0; seed < 6; ++seed) {
+      const std::optional<Problem> scene = test::random_problem_with_body(seed, space);
+      if (scene) expect_found_near_own_points(*scene, "seed " + std::to_string(seed));
+    }
+  }
+}
+
+TEST(SidesOfBodies, RefusesPointsThatAreNoShape) {
+  const Problem problem = heavy_cantilever(1, 0);
+  const Eigen::Matrix3Xd points = Eigen::Matrix3d::Identity();
+  EXPECT_NO_THROW((void)energy_near(problem, {0, 0.5, 1}, points));
+  EXPECT_THROW((void)energy_near(problem, {0, 1}, points), std::invalid_argument);
+  EXPECT_THROW((void)energy_near(problem, {0, 0.5, 0.5}, points), std::invalid_argument);
+  EXPECT_THROW((void)energy_near(problem, {0, 0.5, 1.1}, points), std::invalid_argument);
+  EXPECT_THROW((void)energy_near(problem, {0.5}, points.leftCols(1)), std::invalid_argument);
+  EXPECT_THROW((void)energy_near(problem, {0, 0.5, 1}, NAN * points), std::invalid_argument);
+  EXPECT_THROW((void)energy_near(problem, {0, 0.5, 1}, 0 * points), std::invalid_argument);
 }
 
 }  // namespace

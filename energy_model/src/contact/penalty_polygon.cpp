@@ -27,8 +27,10 @@ constexpr double on_surface = 1e-9;
 /// Newton step of a polygon at rest, in lengths: what solve_polygon() asks for as a proof.
 constexpr double tolerance = 1e-7;
 
-/// A polygon that crumples on its obstacle takes many more, and lies higher than others.
+/// Largest number of evaluations of a polygon that goes downhill in large steps: one that crumples
+/// on its obstacle takes many more, and lies higher than others. In small steps the way is longer.
 constexpr int most_evaluations = 300;
+constexpr int most_evaluations_near = 3000;
 
 /// Points of a polygon along a span, by growing s. A clamp at an end holds one more, beyond it.
 struct Mesh {
@@ -95,7 +97,8 @@ obstacle::Body founded(const obstacle::Body& body, const Span& span) {
 
 class Resting {
  public:
-  Resting(const Span& span, Segments segments) : span_(span), mesh_(mesh_of(span, segments)) {
+  Resting(const Span& span, Segments segments, Descent descent)
+      : span_(span), descent_(descent), mesh_(mesh_of(span, segments)) {
     const std::size_t count = mesh_.s.size();
     const double stiff = (bending_forces + span.total_load()) / yields;
     problem_.rest_lengths.resize(static_cast<Eigen::Index>(count) - 1);
@@ -148,9 +151,10 @@ class Resting {
                                     const Deadline& deadline) {
     PolygonOptions options;
     options.tolerance = tolerance;
-    options.max_evaluations = most_evaluations;
-    options.in_stages = stages == Stages::yes;
-    options.project_hessian = true;
+    const bool is_near = descent_ == Descent::near;
+    options.max_evaluations = is_near ? most_evaluations_near : most_evaluations;
+    options.in_stages = stages == Stages::yes && !is_near;
+    options.project_hessian = !is_near;
     options.time_limit = std::max(1e-3, deadline.remaining());
     const PolygonResult found = solve_polygon(problem_, start, options);
     PenaltyPolygon result;
@@ -345,6 +349,7 @@ class Resting {
   }
 
   const Span& span_;
+  Descent descent_;
   Mesh mesh_;
   PolygonProblem problem_;
 };
@@ -363,8 +368,8 @@ TangentField PenaltyPolygon::field() const {
 }
 
 PenaltyPolygon rest_on_obstacles(const Span& span, const TangentField& start, Segments segments,
-                                 const Deadline& deadline) {
-  Resting resting(span, segments);
+                                 const Deadline& deadline, Descent descent) {
+  Resting resting(span, segments, descent);
   if (!resting.goes_through(start)) return resting.from(start, deadline);
   TangentField from = start;
   int evaluations = 0;
@@ -373,7 +378,7 @@ PenaltyPolygon rest_on_obstacles(const Span& span, const TangentField& start, Se
     for (Span::Obstacle& obstacle : rounder.rigid_obstacles) {
       obstacle.body = obstacle.body.rounded(round);
     }
-    const PenaltyPolygon before = Resting(rounder, segments).from(from, deadline);
+    const PenaltyPolygon before = Resting(rounder, segments, descent).from(from, deadline);
     evaluations += before.evaluations;
     from = before.field();
   }
@@ -383,8 +388,8 @@ PenaltyPolygon rest_on_obstacles(const Span& span, const TangentField& start, Se
 }
 
 PenaltyPolygon rest_refined(const Span& span, const PenaltyPolygon& coarse,
-                            const Deadline& deadline) {
-  return Resting(span, Segments::all).from(coarse, deadline);
+                            const Deadline& deadline, Descent descent) {
+  return Resting(span, Segments::all, descent).from(coarse, deadline);
 }
 
 }  // namespace dlo::energy_model

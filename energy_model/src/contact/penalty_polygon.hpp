@@ -31,14 +31,21 @@ enum class Segments {
   all,
 };
 
+/// How a polygon goes downhill.
+enum class Descent {
+  far,   ///< in large steps, with soft segments at first: quick, and to any minimum
+  near,  ///< in small steps with stiff segments: to the minimum next to the start
+};
+
 /// Descends from a shape with points that the obstacles push back by stiff springs, and stretch
 /// that is small: right to about the square of a segment. Where the shape goes through the inside
 /// of a block, which would push it out of several faces at once, the block grows out of a ball.
 [[nodiscard]] PenaltyPolygon rest_on_obstacles(const Span& span, const TangentField& start,
-                                               Segments segments, const Deadline& deadline);
+                                               Segments segments, const Deadline& deadline,
+                                               Descent descent = Descent::far);
 
 /// The same with all segments, from where one of few rests.
 [[nodiscard]] PenaltyPolygon rest_refined(const Span& span, const PenaltyPolygon& coarse,
-                                          const Deadline& deadline);
+                                          const Deadline& deadline, Descent descent = Descent::far);
 
 }  // namespace dlo::energy_model

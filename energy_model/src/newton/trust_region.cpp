@@ -31,7 +31,7 @@ class TrustRegionDescent {
       solution_.multipliers = multipliers_;
       return solution_.fail("the grips' positions could not be met from this start");
     }
-    double radius = first_radius;
+    double radius = options_.radius;
     for (int i = 0; i < options_.max_iterations; ++i) {
       if (options_.deadline != nullptr && options_.deadline->passed()) {
         keep(here);

@@ -17,6 +17,7 @@ struct TrustRegionOptions {
   /// Newton's step up to which a minimum is near enough for Newton's method, where the projected
   /// Hessian is positive definite.
   double nearest = 0;
+  double radius = first_radius;        ///< of the first step, in the unknowns; > 0
   int max_iterations = 100;            ///< steps, accepted or not
   const Deadline* deadline = nullptr;  ///< asked once a step; null: none
   double stiffness = 0;                ///< of the rod between its grips, force per length

@@ -20,6 +20,9 @@ namespace {
 constexpr int most_contact_updates = 16;
 /// Unknowns from which on half of the terms that a load takes are tried first.
 constexpr int many_unknowns = 300;
+/// First radius of a descent from beside obstacles that yield: a longer step, in rad about, would
+/// take the rod to their other side.
+constexpr double careful_radius = 0.05;
 /// A part that lies and is shorter, in lengths, may be a point instead: it is asked again whether
 /// that is behind the obstacle.
 constexpr double shortest_told = 1e-3;
@@ -117,9 +120,11 @@ SpanSolution ActiveSet::newton_from(const Span& span, const TangentField& near) 
   if (!has_left) newton_solve(solution, newton, workspace_.newton());
   if (!solution.is_equilibrium()) {
     solution.x = start;
-    descend_in_trust_region(
-        solution,
-        {.load = load_, .gradient_tolerance = handover_gradient, .deadline = &options_.deadline});
+    const bool may_step_over = has_left && !span.soft_obstacles.empty();
+    descend_in_trust_region(solution, {.load = load_,
+                                       .gradient_tolerance = handover_gradient,
+                                       .radius = may_step_over ? careful_radius : first_radius,
+                                       .deadline = &options_.deadline});
     if (succeeded(solution.status)) newton_solve(solution, newton, workspace_.newton());
   }
   spent_ += std::exchange(solution.evaluations, 0);

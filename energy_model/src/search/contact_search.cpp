@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "contact/clearance.hpp"
+#include "contact/held_past.hpp"
 #include "contact/penalty_polygon.hpp"
 #include "contact/update_contacts.hpp"
 #include "search/active_set.hpp"
@@ -41,6 +42,17 @@ constexpr double same_energy_of_polygons = 1e-6;
 constexpr const char* clear_of_obstacles = "shapes without obstacles that stay clear of them";
 constexpr const char* polygons_at_rest = "polygons at rest on the obstacles";
 
+constexpr const char* past_obstacles = "shapes that pass one or two obstacles on either side";
+
+/// Largest distance between points of two coarse polygons that are the same equilibrium, divided by
+/// the span's length. Polygons at rest are determined to 1e-7; different ones are further apart.
+constexpr double same_coarse_polygon = 1e-3;
+
+bool is_same_coarse_polygon(const PenaltyPolygon& a, const PenaltyPolygon& b, double length) {
+  return a.points.cols() == b.points.cols() &&
+         (a.points - b.points).colwise().norm().maxCoeff() < same_coarse_polygon * length;
+}
+
 /// @param found what this and other searches of the span have come to
 class ContactSearch {
  public:
@@ -59,7 +71,8 @@ class ContactSearch {
     if (options_.only_follows()) return;
     if (found_.empty()) {
       if (starts) look_from({start.field});
-      if (found_.empty() || !succeeded(found_.best().status)) search();
+      const bool suffices = !found_.empty() && succeeded(found_.best().status);
+      if (!suffices && !options_.only_descends()) search();
     }
     for (int i = 0; i < most_departures && found_.best().status == SolveStatus::saddle; ++i) {
       const double energy = found_.best().energy;
@@ -68,7 +81,55 @@ class ContactSearch {
     }
   }
 
+  /// Searches from shapes that pass obstacles. Each comes to rest as a coarse polygon and is
+  /// dropped if a known equilibrium leads to the same polygon or, unless all equilibria are wanted,
+  /// if the energy of the polygon is higher than that of the lowest known one's.
+  void look_past() {
+    const std::vector<Span> starts = held_past_obstacles(span_);
+    if (starts.empty()) return;
+    std::vector<PenaltyPolygon> known;
+    for (const SpanSolution& solution : found_.in_order()) {
+      if (!succeeded(solution.status)) continue;
+      known.push_back(coarse_polygon(solution.model->field(solution.x)));
+    }
+    const std::size_t before = known.size();
+    for (const Span& start : starts) {
+      if (options_.deadline.passed()) {
+        note_not_tried(options_.log, "starts after the time limit");
+        break;
+      }
+      note_tried(options_.log, past_obstacles);
+      PenaltyPolygon polygon = coarse_polygon(arch_field(start));
+      const bool is_new = std::none_of(known.begin(), known.end(), [&](const auto& other) {
+        return is_same_coarse_polygon(polygon, other, span_.length);
+      });
+      if (polygon.at_rest && is_new) known.push_back(std::move(polygon));
+    }
+    const auto wanted = [&](double energy, const PenaltyPolygon& lowest, double margin) {
+      return options_.wants_all() ||
+             energy - lowest.energy <= margin * (1 + std::abs(lowest.energy));
+    };
+    std::optional<PenaltyPolygon> lowest;
+    for (std::size_t i = before; i < known.size() && !options_.deadline.passed(); ++i) {
+      if (before > 0 && !wanted(known[i].energy, known.front(), near_lowest)) continue;
+      const PenaltyPolygon fine = rest_refined(span_, known[i], options_.deadline, Descent::near);
+      found_.spend(fine.evaluations);
+      if (before > 0 && !options_.wants_all()) {
+        if (!lowest) lowest = rest_refined(span_, known.front(), options_.deadline, Descent::near);
+        if (!wanted(fine.energy, *lowest, near_tie_of_polygons)) continue;
+      }
+      if (found_.add(from_polygon(fine))) note_found(options_.log, past_obstacles);
+    }
+  }
+
  private:
+  [[nodiscard]] PenaltyPolygon coarse_polygon(const TangentField& start) {
+    PenaltyPolygon polygon =
+        rest_on_obstacles(span_, start, Segments::few, options_.deadline, Descent::near);
+    found_.spend(polygon.evaluations);
+    return polygon;
+  }
+
   /// From the rod without obstacles, which may stay clear of them, and from the starts of all
   /// searches.
   void search() {
@@ -113,7 +174,8 @@ class ContactSearch {
       const std::size_t count =
           options_.wants_all() ? starts.size() : std::min(most, starts.size());
       return polygons_from(count, [&, segments](std::size_t i) {
-        return rest_on_obstacles(span_, starts[i], segments, options_.deadline);
+        const Descent descent = options_.only_descends() ? Descent::near : Descent::far;
+        return rest_on_obstacles(span_, starts[i], segments, options_.deadline, descent);
       });
     };
     if (starts.size() > 1) {
@@ -202,7 +264,10 @@ class ContactSearch {
     Span span = span_;
     span.contacts = polygon.contacts;
     if (polygon.tangents.row(2).cwiseAbs().maxCoeff() > flat) span.planar = false;
-    return ActiveSet(span_, options_, workspace_).solve(std::move(span), polygon.field());
+    SpanOptions options = options_;
+    // Newton's method steps over obstacles that yield, which no constraint holds the rod on.
+    if (!span_.soft_obstacles.empty()) options.start.approach = Approach::descend;
+    return ActiveSet(span_, options, workspace_).solve(std::move(span), polygon.field());
   }
 
   const Span& span_;
@@ -218,6 +283,11 @@ std::vector<SpanSolution> solve_touching_span(const Span& span, const SpanOption
   Found found(options);
   ContactSearch(span, options, workspace, found).run();
   return std::move(found).take();
+}
+
+void look_past_obstacles(const Span& span, const SpanOptions& options, SpanWorkspace& workspace,
+                         Found& found) {
+  ContactSearch(span, options, workspace, found).look_past();
 }
 
 }  // namespace dlo::energy_model

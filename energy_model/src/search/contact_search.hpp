@@ -1,5 +1,6 @@
 #pragma once
 
+#include "span/found.hpp"
 #include "span/span_solver.hpp"
 
 namespace dlo::energy_model {
@@ -13,5 +14,11 @@ namespace dlo::energy_model {
 [[nodiscard]] std::vector<SpanSolution> solve_touching_span(const Span& span,
                                                             const SpanOptions& options,
                                                             SpanWorkspace& workspace);
+
+/// Adds the equilibria that shapes lead to which pass the span's obstacles on either side
+/// (held_past_obstacles()): all of them if all are wanted, else those that may be lower than the
+/// lowest one found. Of obstacles that yield too.
+void look_past_obstacles(const Span& span, const SpanOptions& options, SpanWorkspace& workspace,
+                         Found& found);
 
 }  // namespace dlo::energy_model

@@ -15,6 +15,7 @@
 #include "problem/rod_law.hpp"
 #include "problem/split.hpp"
 #include "search/assemble.hpp"
+#include "search/known_shape.hpp"
 #include "search/twisted_span.hpp"
 #include "search/untwisted_span.hpp"
 #include "span/found.hpp"
@@ -79,7 +80,7 @@ class EnergySolver::State {
 
   enum class Wanted { lowest, all };
   /// What is made of the shape of the last call.
-  enum class From { nothing, last_shape, last_shape_only };
+  enum class From { nothing, last_shape, last_shape_only, points };
 
   /// @return none where the last shape only does not lead on
   std::vector<Equilibrium> solve(const Problem& problem, Wanted wanted, From from) {
@@ -119,6 +120,7 @@ class EnergySolver::State {
       options.max_evaluations = options_.max_evaluations;
       options.deadline = deadline;
       if (only) options.start.approach = Approach::follow_only;
+      if (from == From::points) options.start.approach = Approach::descend_only;
       if (wanted == Wanted::all) options.log = &log_;
       solutions.push_back(solve_span_at(i, placed[i], problem, options, warm));
       followed_ = followed_ && solutions.back().front().followed;
@@ -136,6 +138,15 @@ class EnergySolver::State {
   void undo() {
     remembered_ = former_;
     twists_ = former_twists_;
+  }
+
+  /// Downhill from a shape, and nowhere else.
+  Equilibrium near(const Problem& problem, const Equilibrium& shape) {
+    const Equilibrium* const given = std::exchange(options_.start, &shape);
+    remembered_ = {};
+    Equilibrium result = std::move(solve(problem, Wanted::lowest, From::points).front());
+    options_.start = given;
+    return result;
   }
 
   /// Of the last solve().
@@ -205,6 +216,11 @@ void EnergySolver::undo() { state_->undo(); }
 
 bool EnergySolver::followed() const { return state_->followed(); }
 
+Equilibrium EnergySolver::near(const Problem& problem, const std::vector<double>& arc_lengths,
+                               const Eigen::Ref<const Eigen::Matrix3Xd>& points) {
+  return state_->near(problem, shape_through(arc_lengths, points, problem.length));
+}
+
 EnergySearch EnergySolver::search(const Problem& problem) {
   EnergySearch result;
   result.equilibria = state_->solve(problem, State::Wanted::all, State::From::nothing);
@@ -219,6 +235,12 @@ std::vector<Equilibrium> EnergySolver::solve_all(const Problem& problem) {
 
 Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options) {
   return EnergySolver(options).solve(problem);
+}
+
+Equilibrium energy_near(const Problem& problem, const std::vector<double>& arc_lengths,
+                        const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+                        const EnergyOptions& options) {
+  return EnergySolver(options).near(problem, arc_lengths, points);
 }
 
 EnergySearch search_energy(const Problem& problem, const EnergyOptions& options) {

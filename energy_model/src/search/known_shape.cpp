@@ -3,12 +3,57 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
+#include <string>
 #include <utility>
 
+#include "base/require.hpp"
+#include "base/sized_samples.hpp"
+#include "contact/tangent_between.hpp"
 #include "search/twist_path.hpp"
 #include "span/span_traits.hpp"
 
 namespace dlo::energy_model {
+
+Equilibrium shape_through(const std::vector<double>& arc_lengths,
+                          const Eigen::Ref<const Eigen::Matrix3Xd>& points, double length) {
+  constexpr const char* function = "energy_near";
+  constexpr double shortest_chord = 1.0 / 64;
+  const auto count = static_cast<Eigen::Index>(arc_lengths.size());
+  require(count >= 2 && points.cols() == count, function, "points",
+          static_cast<double>(points.cols()), "one for each arc length, two or more");
+  require(points.allFinite(), function, "points", NAN, "finite");
+  std::vector<double> middles;
+  std::vector<Eigen::Vector3d> chords;
+  Eigen::Index last = 0;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const double before = i > 0 ? arc_lengths[at - 1] : -1;
+    require(arc_lengths[at] >= 0 && arc_lengths[at] <= length && arc_lengths[at] > before, function,
+            "arc length", arc_lengths[at], "growing, in [0, " + std::to_string(length) + "]");
+    const double first = arc_lengths[static_cast<std::size_t>(last)];
+    const Eigen::Vector3d chord = points.col(i) - points.col(last);
+    const bool is_long = arc_lengths[at] - first >= shortest_chord * length;
+    if (i == 0 || !((is_long || i + 1 == count) && chord.norm() > 0)) continue;
+    middles.push_back((first + arc_lengths[at]) / 2);
+    chords.emplace_back(chord.normalized());
+    last = i;
+  }
+  require(!chords.empty(), function, "points", points(0, 0), "not all the same");
+  Equilibrium shape;
+  shape.sample = [s = Eigen::VectorXd(Eigen::Map<Eigen::VectorXd>(
+                      middles.data(), static_cast<Eigen::Index>(middles.size()))),
+                  t = Eigen::Matrix3Xd(Eigen::Map<Eigen::Matrix3Xd>(
+                      chords.front().data(), 3, static_cast<Eigen::Index>(chords.size()))),
+                  length](std::span<const double> at) {
+    Samples samples = sized_samples(at, length);
+    for (std::size_t q = 0; q < at.size(); ++q) {
+      samples.tangents.col(static_cast<Eigen::Index>(q)) = tangent_between(s, t, at[q]);
+    }
+    return samples;
+  };
+  return shape;
+}
 
 TangentField field_of(const Equilibrium& start, const PlacedSpan& placed, double length) {
   return [&start, &placed, length](const Eigen::VectorXd& s) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "dlo/energy_model/equilibrium.hpp"
@@ -13,6 +14,17 @@ struct PlacedSolution {
   PlacedSpan placed;
   SpanSolution solution;
 };
+
+/// A shape along points, to start from: its tangents are those of chords between points that are no
+/// closer than a sixty-fourth of the rod, so that scatter across the rod tilts them little; beyond
+/// the first and the last point it is straight.
+/// @param arc_lengths  of the points [m], growing, two or more;  @param points  [m], 3 x M
+/// @param length  of the rod [m]
+/// @throws std::invalid_argument if these are out of range, or if two points that follow each other
+/// coincide
+[[nodiscard]] Equilibrium shape_through(const std::vector<double>& arc_lengths,
+                                        const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+                                        double length);
 
 /// Tangents of an equilibrium as a span sees them; both have to outlive it.
 [[nodiscard]] TangentField field_of(const Equilibrium& start, const PlacedSpan& placed,

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "contact/penalty_polygon.hpp"
 #include "dlo/energy_model/turns.hpp"
 #include "search/active_set.hpp"
 #include "search/known_shape.hpp"
@@ -16,6 +17,9 @@ namespace {
 
 /// Turn of a clamp at once that may be followed on the same branch [rad].
 constexpr double largest_followed_turn = 1;
+
+/// Terms by which the writhe of a shape is told that is only a guess.
+constexpr int terms_of_guess = 24;
 
 constexpr const char* turned_little_by_little =
     "stable shapes without twist, turned little by little";
@@ -47,6 +51,31 @@ class TwistedSpan {
         next_to(field_of(start, placed_, l), {held_end_d1(held_, placed_.span), part->angle},
                 known_contacts(start, placed_, l));
     if (!is_known(solution)) return std::nullopt;
+    return solution;
+  }
+
+  /// Where a polygon with the turns that are held comes to rest from a shape without a known twist,
+  /// and Newton's method from there.
+  [[nodiscard]] SpanSolution downhill_of(const Equilibrium& shape) const {
+    const TangentField field = field_of(shape, placed_, problem_.length);
+    Span span = placed_.span;
+    span.planar = false;
+    SpanSolution guess = workspace_.empty_solution(span, terms_of_guess);
+    guess.x = guess.model->fit(field(guess.model->nodes()));
+    EndFrame frame = frame_for(guess);
+    if (span.has_material_directors()) return next_to(field, frame, {});
+    span.twist = Span::Twist{held_.stiffness, frame.d1};
+    const PenaltyPolygon polygon = rest_on_obstacles(
+        span,
+        [&](const Eigen::VectorXd& s) {
+          StartShape start = field(s);
+          start.twist = frame.twist;
+          return start;
+        },
+        Segments::all, options_.deadline, Descent::near);
+    frame.twist = polygon.twist;
+    SpanSolution solution = next_to(polygon.field(), frame, polygon.contacts);
+    solution.evaluations += polygon.evaluations;
     return solution;
   }
 
@@ -113,6 +142,7 @@ std::vector<SpanSolution> solve_twisted(const PlacedSpan& placed, const Problem&
                                         const SpanOptions& options, const Equilibrium* start,
                                         RememberedTwist& memory, SpanWorkspace& workspace) {
   const TwistedSpan span(placed, problem, options, workspace);
+  if (options.only_descends()) return list_of(span.downhill_of(*start));
   const bool follows = memory.twisted.is_known() && !options.wants_all();
   if (start != nullptr && !options.wants_all() && !follows) {
     if (std::optional<SpanSolution> known = span.from_known(*start)) {

@@ -1,5 +1,6 @@
 #include "search/untwisted_span.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "search/contact_search.hpp"
@@ -15,15 +16,33 @@ constexpr const char* from_polygons = "lowest minima of coarse polygons, by Newt
 
 std::vector<SpanSolution> search_untwisted(const Span& span, const SpanOptions& options,
                                            SpanWorkspace& workspace) {
-  const auto solver = span.rigid_obstacles.empty() ? solve_span : solve_touching_span;
+  // A polygon stays on the side of an obstacle on which a given shape is; a descent may step over
+  // it.
+  const bool by_polygon = options.only_descends() && !span.soft_obstacles.empty();
+  const auto solver =
+      span.rigid_obstacles.empty() && !by_polygon ? solve_span : solve_touching_span;
   return solver(span, options, workspace);
 }
 
+/// Largest part of a tangent across the plane [-] of an equilibrium that lies in a plane, and of
+/// points of a rod in a plane, which scatter: the certificate finds out whether the equilibrium
+/// near them is unstable out of the plane, and then it is left in space.
+constexpr double tilt_of_equilibrium = 1e-6;
+constexpr double tilt_of_points = 0.1;
+
 /// Whether a shape leaves a plane that its span could lie in.
-bool is_out_of_plane(const Span& span, const TangentField& shape) {
-  constexpr double flat = 1e-6;
+bool is_out_of_plane(const Span& span, const TangentField& shape, double largest_tilt) {
   const Eigen::VectorXd s = Eigen::VectorXd::LinSpaced(17, 0, span.length);
-  return !(shape(s).tangents.row(2).cwiseAbs().maxCoeff() < flat);
+  return !(shape(s).tangents.row(2).cwiseAbs().maxCoeff() < largest_tilt);
+}
+
+/// Whether there is an obstacle that the rod may pass on another side.
+bool has_bodies(const Span& span) {
+  const auto is_body = [](const Span::Obstacle& obstacle) {
+    return !obstacle.body.is_half_space();
+  };
+  return std::any_of(span.rigid_obstacles.begin(), span.rigid_obstacles.end(), is_body) ||
+         std::any_of(span.soft_obstacles.begin(), span.soft_obstacles.end(), is_body);
 }
 
 /// The one equilibrium next to SpanOptions::start.
@@ -49,7 +68,8 @@ void add_polygon_minima(const PlacedSpan& placed, const Problem& problem, SpanOp
     // away.
     options.start = {fields.field(i)};
     Span span = placed.span;
-    const bool is_out = span.planar && is_out_of_plane(span, options.start.field);
+    const bool is_out =
+        span.planar && is_out_of_plane(span, options.start.field, tilt_of_equilibrium);
     if (is_out && span.stays_in_plane()) continue;
     span.planar = span.planar && !is_out;
     (void)found.add(from_start(span, options, workspace), from_polygons);
@@ -69,8 +89,9 @@ std::vector<SpanSolution> solve_untwisted(const PlacedSpan& placed, const Proble
     (void)found.add({});
     return std::move(found).take();
   }
-  const bool leaves = placed.span.confined && shape != nullptr &&
-                      is_out_of_plane(placed.span, field_of(*shape, placed, problem.length));
+  const double tilt = options.only_descends() ? tilt_of_points : tilt_of_equilibrium;
+  const bool leaves = placed.span.confined && shape != nullptr && !options.only_descends() &&
+                      is_out_of_plane(placed.span, field_of(*shape, placed, problem.length), tilt);
   if (!options.wants_all() && (shape != nullptr || is_known) && !leaves) {
     Span span = placed.span;
     if (is_known) {
@@ -80,13 +101,13 @@ std::vector<SpanSolution> solve_untwisted(const PlacedSpan& placed, const Proble
     } else {
       options.start.field = field_of(*shape, placed, problem.length);
     }
-    const bool may_leave = shape != nullptr || !last->planar();
-    span.planar = span.planar && !(may_leave && is_out_of_plane(span, options.start.field));
+    const bool may_leave = (shape != nullptr || !last->planar()) && !span.stays_in_plane();
+    span.planar = span.planar && !(may_leave && is_out_of_plane(span, options.start.field, tilt));
     SpanSolution followed = from_start(span, options, workspace);
     const bool ends = !followed.is_equilibrium() && !followed.is_singular_point();
     // Else the branch has ended, or the step was too large for it.
     found.spend(ends ? std::exchange(followed.evaluations, 0) : 0);
-    if (!ends || options.only_follows()) {
+    if (!ends || options.only_follows() || options.only_descends()) {
       (void)found.add(std::move(followed));
       return std::move(found).take();
     }
@@ -95,6 +116,7 @@ std::vector<SpanSolution> solve_untwisted(const PlacedSpan& placed, const Proble
   for (SpanSolution& solution : search_untwisted(placed.span, options, workspace)) {
     (void)found.add(std::move(solution));
   }
+  if (has_bodies(placed.span)) look_past_obstacles(placed.span, options, workspace, found);
   const SolveStatus status = found.best().status;
   const bool at_limit =
       status == SolveStatus::evaluation_limit || status == SolveStatus::time_limit;

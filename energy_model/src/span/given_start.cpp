@@ -58,7 +58,7 @@ std::optional<SpanSolution> start_on_adapted_mesh(const LocalSolver& on) {
 /// there.
 SpanSolution from_given_start(LocalSolver& on) {
   const SpanStart& start = on.options().start;
-  const bool descends = start.approach == Approach::descend;
+  const bool descends = on.options().descends();
   SpanSolution solution =
       descends ? on.from_start(Start{start.field}) : on.newton_from(start.field);
   solution.followed = is_followed(solution, start);
@@ -89,8 +89,9 @@ SpanSolution solve_from_given_start(const Span& span, const SpanOptions& options
   solution.followed =
       came_by_newton &&
       !(may_fall && (looked_at(solution) - near).cwiseAbs().maxCoeff() > followed_tangents);
-  const bool leaves = options.start.known.model && !options.only_follows() &&
-                      solution.status == SolveStatus::saddle;
+  const bool leaves =
+      (options.only_descends() || (options.start.known.model && !options.only_follows())) &&
+      solution.status == SolveStatus::saddle;
   if (!leaves) return solution;
   std::optional<SpanSolution> lower = leave_saddle(solution, options, workspace);
   if (!lower) return solution;

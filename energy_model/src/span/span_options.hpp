@@ -16,10 +16,11 @@ inline constexpr int most_unknowns = 480;
 
 /// How a given start is left.
 enum class Approach {
-  follow,       ///< by Newton's method, to the equilibrium next to it, stable or not
-  follow_only,  ///< the same from a known shape; where that does not lead on, no
-                ///< other way is tried
-  descend,      ///< downhill, to a minimum
+  follow,        ///< by Newton's method, to the equilibrium next to it, stable or not
+  follow_only,   ///< the same from a known shape; where that does not lead on, no
+                 ///< other way is tried
+  descend,       ///< downhill, to a minimum
+  descend_only,  ///< the same; where that leads to no equilibrium, no search follows
 };
 
 /// Unknowns of a shape that is known, of the same span with its grips elsewhere.
@@ -57,6 +58,12 @@ struct SpanOptions {
 
   [[nodiscard]] bool wants_all() const { return log != nullptr; }
   [[nodiscard]] bool only_follows() const { return start.approach == Approach::follow_only; }
+  /// Whether the search ends where a descent from the start does.
+  [[nodiscard]] bool only_descends() const { return start.approach == Approach::descend_only; }
+  /// Whether a start is left downhill before Newton's method is tried.
+  [[nodiscard]] bool descends() const {
+    return start.approach == Approach::descend || only_descends();
+  }
 };
 
 }  // namespace dlo::energy_model

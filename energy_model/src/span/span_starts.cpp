@@ -284,6 +284,8 @@ TangentField soft_field(const Span& span) {
   });
 }
 
+TangentField arch_field(const Span& span) { return field(GrippedField(span, {})); }
+
 std::vector<TangentField> start_fields(const Span& span) {
   std::vector<TangentField> fields;
   if (span.holds.empty() && span.start_direction) {

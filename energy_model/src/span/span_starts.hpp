@@ -17,6 +17,11 @@ namespace dlo::energy_model {
 /// weight and loads by the shorter way: the limit shape of a soft rod.
 [[nodiscard]] TangentField soft_field(const Span& span);
 
+/// A shape through a span's grips, one or more beside the anchor: arches of the right slack that
+/// hang as the load pulls, and beyond the outermost grips the pendulum's profile.
+/// @param span  has to outlive it
+[[nodiscard]] TangentField arch_field(const Span& span);
+
 /// Of a rod with material directors: the stress-free shape, and in the plane bent evenly to the
 /// directions of its end's clamp next to where it points; and the shapes of start_fields(), in
 /// space each with the rod's frame turned on evenly from the start to several angles.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -46,6 +47,21 @@ struct EnergyOptions {
 /// grips are as far apart as the rod between them is long; if loads, grips and sections cut the rod
 /// into more pieces than can be afforded
 Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options = {});
+
+/// Finds the equilibrium that a local search from the points of a shape leads to: a polygon through
+/// them comes to rest where obstacles are, each of them on the side on which the points lie, and
+/// says what touches; the rod descends from there, Newton's method follows, and the certificate. A
+/// saddle is left downhill. No other start is tried, so that the result need not be the lowest
+/// equilibrium; its status says whether it is one, and whether it is stable. Only the directions of
+/// the points from each other count: the grips place the rod.
+/// Each span between clamps starts from its own points; a rod that is taut, or soft as a line, has
+/// one equilibrium, which is returned wherever the points are.
+/// @param arc_lengths  of the points [m], strictly growing, in [0, length], two or more
+/// @param points       [m], 3 x M
+/// @throws std::invalid_argument as solve_energy(), or if the points are out of range
+Equilibrium energy_near(const Problem& problem, const std::vector<double>& arc_lengths,
+                        const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+                        const EnergyOptions& options = {});
 
 /// A kind of start that a search for all equilibria has looked from.
 struct SearchStrategy {
@@ -106,6 +122,9 @@ class EnergySolver {
   /// Whether the last follow() has stayed on its branch, as far as Newton's method tells: the shape
   /// is next to the one before. Work and energy tell too (a snap-through releases energy).
   [[nodiscard]] bool followed() const;
+  /// energy_near(); EnergyOptions::start is not used.
+  Equilibrium near(const Problem& problem, const std::vector<double>& arc_lengths,
+                   const Eigen::Ref<const Eigen::Matrix3Xd>& points);
   /// search_energy().
   [[nodiscard]] EnergySearch search(const Problem& problem);
   /// all_energy().

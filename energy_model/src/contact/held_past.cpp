@@ -1,0 +1,208 @@
+#include "contact/held_past.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace dlo::energy_model {
+namespace {
+
+/// Largest number of spans. Each costs the relaxation of a coarse polygon; more of them would make
+/// the search among many bodies slower than everything else.
+constexpr std::size_t most_spans = 10;
+
+/// Distance from a body's middle at which a shape passes it, over half of the body's size there.
+constexpr double beside_body = 1.1;
+
+/// Length of rod on the way past a body to a free end, over that of the way; > 1, because without
+/// slack the start would be that of a taut rod.
+constexpr double slack_of_way = 1.01;
+
+/// Lengths below this share of the span's length are rounding.
+constexpr double shortest_way = 1e-9;
+
+/// The part of a span between two neighbouring grips, or from the outermost grip to a free end.
+struct Reach {
+  double from_s = 0;       ///< arc length of the grip that a way past a body begins at
+  double length = 0;       ///< of this part of the rod
+  double sense = 1;        ///< 1 where arc lengths grow along the way, else -1
+  Eigen::Vector3d from;    ///< position of that grip
+  bool is_closed = false;  ///< whether another grip holds the other end
+  Eigen::Vector3d to;      ///< position of the other grip, if there is one
+};
+
+/// Points that the rod passes, by their order from Reach::from.
+using Way = std::vector<Eigen::Vector3d>;
+
+std::vector<Reach> reaches_of(const Span& span) {
+  std::vector<Span::Hold> grips = {{span.anchor, Eigen::Vector3d::Zero()}};
+  grips.insert(grips.end(), span.holds.begin(), span.holds.end());
+  std::stable_sort(grips.begin(), grips.end(),
+                   [](const auto& a, const auto& b) { return a.at < b.at; });
+  const double shortest = shortest_way * span.length;
+  std::vector<Reach> reaches;
+  for (std::size_t i = 0; i + 1 < grips.size(); ++i) {
+    reaches.push_back({grips[i].at, grips[i + 1].at - grips[i].at, 1, grips[i].offset, true,
+                       grips[i + 1].offset});
+  }
+  const Span::Hold& first = grips.front();
+  const Span::Hold& last = grips.back();
+  if (span.length - last.at > shortest) {
+    reaches.push_back({last.at, span.length - last.at, 1, last.offset, false, last.offset});
+  }
+  if (first.at > shortest) {
+    reaches.push_back({first.at, first.at, -1, first.offset, false, first.offset});
+  }
+  return reaches;
+}
+
+/// Returns the middle of a body; along an axis on which the body is endless that of a nearby point.
+Eigen::Vector3d middle_of(const obstacle::Body& body, const Eigen::Vector3d& near) {
+  Eigen::Vector3d local = body.axes().transpose() * (near - body.centre());
+  const Eigen::Vector3d middle = (body.lower() + body.upper()) / 2;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    if (std::isfinite(body.lower()[axis])) local[axis] = middle[axis];
+  }
+  return body.centre() + body.axes() * local;
+}
+
+/// Returns half of the size of a body along a unit direction, without an axis on which it is
+/// endless.
+double half_size(const obstacle::Body& body, const Eigen::Vector3d& direction) {
+  double size = body.radius();
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(body.lower()[axis])) continue;
+    const double half = (body.upper()[axis] - body.lower()[axis]) / 2;
+    size += half * std::abs(body.axes().col(axis).dot(direction));
+  }
+  return size;
+}
+
+/// Returns a unit direction across the way; the body may be passed in that direction and in the
+/// opposite one. It lies in the plane of a planar span, is across the axis of a body that is
+/// endless, and else lies in the plane of the loads. None if the body is endless along the way or
+/// on two axes.
+std::optional<Eigen::Vector3d> side_of_way(const Span& span, const obstacle::Body& body,
+                                           const Eigen::Vector3d& along) {
+  std::vector<Eigen::Vector3d> endless;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(body.lower()[axis])) endless.emplace_back(body.axes().col(axis));
+  }
+  if (endless.size() > 1) return std::nullopt;
+  Eigen::Vector3d side = Eigen::Vector3d::UnitZ().cross(along);
+  if (!span.planar) {
+    Eigen::Vector3d pull = span.weight_between(0, span.length);
+    for (const Span::Load& load : span.loads) pull += load.force;
+    side = pull - pull.dot(along) * along;
+    if (!(side.norm() > shortest_way * (1 + pull.norm()))) side = along.unitOrthogonal();
+  }
+  if (!endless.empty()) side = endless.front().cross(along);
+  if (!(side.norm() > shortest_way)) return std::nullopt;
+  return side.normalized();
+}
+
+/// Returns the points of a way past a body: one beside its middle and, to a free end, one at its
+/// far corner, from where the rod hangs clear of the body.
+/// @param from  where the way has come to;  @param sense  1 or -1: to which side
+std::optional<Way> past(const Span& span, const obstacle::Body& body, const Reach& reach,
+                        const Eigen::Vector3d& from, double sense) {
+  const Eigen::Vector3d near = reach.is_closed ? (reach.from + reach.to) / 2 : reach.from;
+  const Eigen::Vector3d middle = middle_of(body, near);
+  Eigen::Vector3d along = reach.is_closed ? reach.to - reach.from : middle - from;
+  if (!(along.norm() > shortest_way * span.length)) along = middle - from;
+  if (!(along.norm() > shortest_way * span.length)) return std::nullopt;
+  along.normalize();
+  const std::optional<Eigen::Vector3d> side = side_of_way(span, body, along);
+  if (!side) return std::nullopt;
+  const Eigen::Vector3d beside = middle + sense * beside_body * half_size(body, *side) * *side;
+  if (reach.is_closed) return Way{beside};
+  return Way{beside, beside + half_size(body, along) * along};
+}
+
+/// Returns the span with pins at the points of a way; none if the rod is too short for the way.
+std::optional<Span> held_on_way(const Span& span, const Reach& reach, const Way& way) {
+  std::vector<double> at;
+  Eigen::Vector3d last = reach.from;
+  double sum = 0;
+  for (const Eigen::Vector3d& point : way) {
+    sum += (point - last).norm();
+    at.push_back(sum);
+    last = point;
+  }
+  const double whole = reach.is_closed ? sum + (reach.to - last).norm() : sum * slack_of_way;
+  if (!(whole < reach.length)) return std::nullopt;
+  const double per_way = reach.is_closed ? reach.length / whole : slack_of_way;
+  Span held = span;
+  for (std::size_t i = 0; i < way.size(); ++i) {
+    held.holds.push_back({.at = reach.from_s + reach.sense * per_way * at[i], .offset = way[i]});
+  }
+  std::stable_sort(held.holds.begin(), held.holds.end(),
+                   [](const auto& a, const auto& b) { return a.at < b.at; });
+  return held;
+}
+
+/// Collects the spans held past single bodies, then past pairs, up to most_spans.
+class SpansHeldPast {
+ public:
+  explicit SpansHeldPast(const Span& span) : span_(span) {
+    for (const Span::SoftObstacle& obstacle : span.soft_obstacles) add_body(obstacle.body);
+    for (const Span::Obstacle& obstacle : span.rigid_obstacles) add_body(obstacle.body);
+    std::stable_sort(bodies_.begin(), bodies_.end(), [](const auto& a, const auto& b) {
+      return a.clearance(Eigen::Vector3d::Zero()) < b.clearance(Eigen::Vector3d::Zero());
+    });
+  }
+
+  [[nodiscard]] std::vector<Span> all() && {
+    const std::vector<Reach> reaches = reaches_of(span_);
+    for (const obstacle::Body& body : bodies_) {
+      for (const Reach& reach : reaches) add_past({&body}, reach);
+    }
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      for (std::size_t j = i + 1; j < bodies_.size(); ++j) {
+        for (const Reach& reach : reaches) add_past({&bodies_[i], &bodies_[j]}, reach);
+      }
+    }
+    return std::move(spans_);
+  }
+
+ private:
+  void add_body(const obstacle::Body& body) {
+    if (!body.is_half_space()) bodies_.push_back(body);
+  }
+
+  /// Adds a span for each choice of sides.
+  void add_past(std::vector<const obstacle::Body*> row, const Reach& reach) {
+    const auto distance = [&](const obstacle::Body* body) {
+      return (middle_of(*body, reach.from) - reach.from).norm();
+    };
+    std::sort(row.begin(), row.end(),
+              [&](const auto* a, const auto* b) { return distance(a) < distance(b); });
+    for (unsigned sides = 0; sides < 1U << row.size(); ++sides) {
+      if (spans_.size() == most_spans) return;
+      Way way;
+      for (std::size_t k = 0; k < row.size(); ++k) {
+        const Eigen::Vector3d& from = way.empty() ? reach.from : way.back();
+        const double sense = (sides >> k & 1U) == 0 ? 1 : -1;
+        const std::optional<Way> next = past(span_, *row[k], reach, from, sense);
+        if (!next) return;
+        way.insert(way.end(), next->begin(), next->end());
+      }
+      std::optional<Span> held = held_on_way(span_, reach, way);
+      if (!held) continue;
+      spans_.push_back(*std::move(held));
+    }
+  }
+
+  const Span& span_;
+  std::vector<obstacle::Body> bodies_;
+  std::vector<Span> spans_;
+};
+
+}  // namespace
+
+std::vector<Span> held_past_obstacles(const Span& span) { return SpansHeldPast(span).all(); }
+
+}  // namespace dlo::energy_model
