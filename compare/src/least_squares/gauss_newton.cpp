@@ -81,7 +81,7 @@ bool GaussNewton::descend() {
     if (i == most_steps) return true;
     Eigen::VectorXd step = next_step();
     const Eigen::VectorXd deviations = posterior_.diagonal().cwiseSqrt();
-    if ((step.array().abs() <= options_.last_step * deviations.array()).all()) return true;
+    if ((step.array().abs() <= last_step(deviations[0]) * deviations.array()).all()) return true;
     const double here = deviance();
     const double promised = (linear_.residual - linear_.design * step).squaredNorm() / weight() +
                             penalty(values_ + step);
@@ -97,6 +97,15 @@ bool GaussNewton::descend() {
     if (halvings == most_halvings) return true;
     values_ += step;
   }
+}
+
+/// Returns the step with which the iteration ends. A first number that is not known to within its
+/// longest step is not identified: its deviance is a flat valley in which small shares of its large
+/// deviation lead far away, so there the iteration ends earlier.
+double GaussNewton::last_step(double first_deviation) const {
+  constexpr double last_in_valley = 0.01;
+  const bool in_valley = first_deviation > rods_.unknowns().front().longest_step;
+  return in_valley ? std::max(last_in_valley, options_.last_step) : options_.last_step;
 }
 
 /// To the least deviance of the linear problem with the first number near: where that is hardly

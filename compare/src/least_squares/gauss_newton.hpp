@@ -73,6 +73,7 @@ class GaussNewton {
   [[nodiscard]] double deviance_at(const Eigen::VectorXd& values);
   void measure_variance();
   [[nodiscard]] Eigen::VectorXd next_step() const;
+  [[nodiscard]] double last_step(double first_deviation) const;
 
   FittedRods& rods_;
   GaussNewtonOptions options_;

@@ -115,7 +115,6 @@ TEST(WireFit, StiffnessBesideCurvatureAndClampAnglesIsWithinFivePercentAndItsInt
   EXPECT_LE(held, 99);
 }
 
-// Without noise the numbers come back as they were.
 // The direction that all shapes share moves the points as all of their own directions together do,
 // so only the span of these columns is known: rounding must not decide how many of them count. The
 // numbers are printed with four digits.
@@ -145,6 +144,7 @@ TEST(WireFit, RoundingOfThePointsChangesNoPrintedDigit) {
   }
 }
 
+// Without noise the numbers come back as they were.
 TEST(WireFit, PerfectPicturesGiveBackEveryNumber) {
   std::mt19937 random(5);
   std::vector<Picture> pictures;
