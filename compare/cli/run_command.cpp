@@ -15,6 +15,7 @@
 #include "base/output_file.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
+#include "option/effect.hpp"
 #include "option/help.hpp"
 #include "option/option_values.hpp"
 #include "option/output.hpp"
@@ -41,7 +42,10 @@ void build(CLI::App& app) {
       "not converge, 4 out of memory or threads, or an internal error, 5 an output\n"
       "could not be written. More, with examples: dlo COMMAND --help");
   app.parse_complete_callback([&app] {
-    for (const CLI::App* command : app.get_subcommands()) check_outputs(*command);
+    for (const CLI::App* command : app.get_subcommands()) {
+      check_effects(*command);
+      check_outputs(*command);
+    }
   });
 }
 

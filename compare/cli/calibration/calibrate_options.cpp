@@ -138,6 +138,7 @@ void CalibrateOptions::add_output(CLI::App& command) {
                   "gets what --parameters (with "
                   "--shape: --materials) reads, and the text still goes to standard output")
       ->type_name("FILE");
+  take_format_of_file(command, output, formats);
 }
 
 void CalibrateOptions::add_to(CLI::App& command) {

@@ -33,12 +33,8 @@ std::vector<compare::Scene> load_all(const std::vector<std::string>& paths,
 }
 
 /// Without --format a .toml file gets what can be read again, and the text is shown as well.
-void write_calibration(OutputOptions output, bool format_is_given, const Formats& formats) {
-  const bool to_toml_file = !format_is_given && output.file.ends_with(".toml");
-  if (!format_is_given) {
-    const std::string format = format_of_file(output.file, {"json", "csv", "toml"});
-    if (!format.empty()) output.format = format;
-  }
+void write_calibration(const OutputOptions& output, bool format_is_given, const Formats& formats) {
+  const bool to_toml_file = !format_is_given && output.format == "toml";
   // What was found is said even if it is nothing to write.
   if (to_toml_file) write_output({}, formats.text());
   write_output(output, formats);
@@ -83,10 +79,6 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
 
 /// Springs for chains of the scenes' own rods, nothing measured.
 void run_chains(const CalibrateOptions& options, bool format_is_given) {
-  const auto refuse = [](const char* format) -> std::string {
-    throw compare::InputError(fmt::format(
-        "--segments without --shape: has no format {} (allowed: text, json, or a shape)", format));
-  };
   const ChainLayout layout = options.chain_layout();
   const compare::SolveOptions solve = options.overrides.solve();
   std::vector<compare::ChainSprings> chains;
@@ -108,9 +100,7 @@ void run_chains(const CalibrateOptions& options, bool format_is_given) {
                      .json =
                          [&] {
                            return json_text(Json{{"chains", chains_json(chains)}});
-                         },
-                     .csv = [&] { return refuse("csv"); },
-                     .toml = [&] { return refuse("toml"); }});
+                         }});
 }
 
 void run_motion(const CalibrateOptions& options, bool format_is_given) {
@@ -123,15 +113,9 @@ void run_motion(const CalibrateOptions& options, bool format_is_given) {
   const compare::MotionFit found = with_progress("calibrate", [&](const auto& /*unknown*/) {
     return compare::fit_motion(scene, recorded, {.solve = options.overrides.solve()});
   });
-  const auto refuse = [](const char* format) -> std::string {
-    throw compare::InputError(
-        fmt::format("--motion: has no format {} (allowed: text, json)", format));
-  };
   write_calibration(options.output, format_is_given,
                     {.text = [&] { return motion_fit_text(found, scene); },
-                     .json = [&] { return json_text(motion_fit_json(found, scene)); },
-                     .csv = [&] { return refuse("csv"); },
-                     .toml = [&] { return refuse("toml"); }});
+                     .json = [&] { return json_text(motion_fit_json(found, scene)); }});
 }
 
 void run_force_model(const CalibrateOptions& options, bool points_are_given, bool format_is_given) {

@@ -106,14 +106,9 @@ void run_motion(const CheckOptions& options) {
   });
   const std::string verdict =
       verdict_word(result.passes ? "pass" : "fail", result.passes, options.output.file);
-  write_output(
-      options.output,
-      {.text = [&] { return motion_check_text(result, verdict); },
-       .json = [&] { return json_text(motion_check_json(result)); },
-       .csv = [&] { return motion_check_csv(result); },
-       .markdown = []() -> std::string {
-         throw compare::InputError("--motion: has no format markdown (allowed: text, json, csv)");
-       }});
+  write_output(options.output, {.text = [&] { return motion_check_text(result, verdict); },
+                                .json = [&] { return json_text(motion_check_json(result)); },
+                                .csv = [&] { return motion_check_csv(result); }});
   const auto picture = [&] { return compare::motion_check_picture(result); };
   options.plot.draw(picture);
   write_page(options, result, picture, motion_check_text(result));
@@ -189,7 +184,7 @@ void add_check(CLI::App& app) {
   command->add_flag("--no-explanation", options->no_explanation,
                     "do not look for causes where a shape fails");
   options->shapes.add_to(*command, ChordLengths::offered);
-  options->overrides.add_solvers_to(*command);
+  options->overrides.add_solvers_to(*command, Steps::none);
   std::vector<std::string> formats = compare::names<Format>();
   formats.emplace_back("markdown");
   add_output_options(*command, options->output, formats);

@@ -71,7 +71,7 @@ void add_modes(CLI::App& app) {
   command->add_option("--samples", options->samples, "points of each mode's shape in JSON")
       ->check(CLI::Range(2, 100000))
       ->capture_default_str();
-  options->overrides.add_to(*command);
+  options->overrides.add_to(*command, Steps::none);
   add_output_options(*command, options->output);
   command->footer(
       "Examples:\n"

@@ -41,27 +41,6 @@ void warn_of_neglected(const SolveOptions& options, const compare::Solution& sol
   }
 }
 
-/// The same of options.
-void require_format_for(const SolveOptions& options) {
-  const std::string& format = options.output.format;
-  if (format != "csv" && format != "vtk") return;
-  if (options.all) {
-    throw compare::InputError(
-        fmt::format("--all: format {} holds one shape (allowed: text or json)", format));
-  }
-  if (options.plan.explain()) {
-    throw compare::InputError(
-        fmt::format("--explain: format {} holds no plan (allowed: text or json)", format));
-  }
-}
-
-void warn_of_force_model_options(const SolveOptions& options, compare::Model model) {
-  const std::string names = options.overrides.force_model_options();
-  if (names.empty()) return;
-  say("{}: no effect on the shape of model {} (only on force and chain)", names,
-      compare::to_string(model));
-}
-
 void require_model_of_all(compare::Model model, const compare::Scene& scene) {
   if (model == compare::Model::energy) return;
   throw compare::InputError(
@@ -105,7 +84,6 @@ void plot(const SolveOptions& options, const compare::SolveOptions& solve,
 }
 
 void run(const SolveOptions& options) {
-  require_format_for(options);
   options.plot.require_drawable();
   const compare::Scene scene = options.overrides.load(options.scene);
   say_assumptions(scene);
@@ -115,7 +93,6 @@ void run(const SolveOptions& options) {
   constexpr int text_samples = 11;
   int samples = options.samples;
   const bool continuous = model == compare::Model::energy || model == compare::Model::exact;
-  if (continuous) warn_of_force_model_options(options, model);
   if (samples == 0 && continuous && options.output.is(Format::text)) samples = text_samples;
   const std::vector<double> arc_lengths =
       samples > 0 ? compare::equal_arc_lengths(scene.length, samples) : std::vector<double>{};

@@ -138,15 +138,7 @@ void add_stability(CLI::App& app) {
       "Exit status 1: stepper auto or implicit does not pass a case.\n"
       "Examples:\n  dlo stability --case folded\n  dlo stability --map cF-cc --columns 8 --plot "
       "map.svg");
-  command->callback([options] {
-    if (!options->map.empty()) return run_map(*options);
-    if (!options->scene.empty()) {
-      throw compare::InputError(fmt::format(
-          "stability: SCENE = {}: only a map takes a scene (allowed with --map cF-cc or cF-ch)",
-          options->scene));
-    }
-    run_cases(*options);
-  });
+  command->callback([options] { options->map.empty() ? run_cases(*options) : run_map(*options); });
 }
 
 }  // namespace dlo::cli

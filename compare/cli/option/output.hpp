@@ -44,7 +44,8 @@ struct OutputOptions {
 
 /// A result in each of its formats, made when it is asked for.
 struct Formats {
-  std::function<std::string()> text, json, csv;
+  std::function<std::string()> text, json;
+  std::function<std::string()> csv = {};       ///< of a command that has it
   std::function<std::string()> toml = {};      ///< of a command that has it
   std::function<std::string()> markdown = {};  ///< of a command that has it
 };

@@ -12,6 +12,7 @@
 #include "dlo/compare/calibrated_rod.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene_file.hpp"
+#include "option/effect.hpp"
 #include "option/option_values.hpp"
 #include "option/share.hpp"
 #include "polygon/natural_plane.hpp"
@@ -94,10 +95,17 @@ void add_output_options(CLI::App& command, OutputOptions& options,
                   "write to FILE instead of standard output; its extension is the format unless "
                   "--format is given")
       ->type_name("FILE");
+  take_format_of_file(command, options, formats);
+}
+
+void take_format_of_file(CLI::App& command, OutputOptions& options,
+                         const std::vector<std::string>& formats) {
   command.parse_complete_callback([&command, &options, formats] {
     if (command.count("--format") > 0) return;
     const std::string format = format_of_file(options.file, formats);
-    if (!format.empty()) options.format = format;
+    if (format.empty()) return;
+    options.format = format;
+    command.get_option("--format")->default_str(format);
   });
 }
 
@@ -112,14 +120,15 @@ void PlanOptions::add_to(CLI::App& command) {
       ->capture_default_str();
 }
 
-void SceneOptions::add_to(CLI::App& command) {
+void SceneOptions::add_to(CLI::App& command, Steps steps) {
   add_time_to(command);
-  add_moving_to(command);
+  add_force_model_to(command);
+  add_solvers_to(command, steps);
 }
 
 void SceneOptions::add_moving_to(CLI::App& command) {
   add_force_model_to(command);
-  add_solvers_to(command);
+  add_solvers_to(command, Steps::made);
 }
 
 void SceneOptions::add_time_to(CLI::App& command) {
@@ -179,7 +188,7 @@ void SceneOptions::add_force_model_to(CLI::App& command) {
   quantity("--l-s", &Settings::l_s, Dimension::length, "largest movement per step [m]");
 }
 
-void SceneOptions::add_solvers_to(CLI::App& command) {
+void SceneOptions::add_solvers_to(CLI::App& command, Steps steps) {
   const OptionGroup group(command, solvers_group);
   command.add_option("--terms", solve_.terms, "curvature terms of the energy model, 0: as needed")
       ->check(CLI::Range(0, 128));
@@ -189,6 +198,8 @@ void SceneOptions::add_solvers_to(CLI::App& command) {
   command.add_option("--time-limit", solve_.time_limit, "of each solve [s]")
       ->check(number_between(1e-3, 1e9))
       ->capture_default_str();
+  add_materials_to(command);
+  if (steps == Steps::none) return;
   command.add_option("--max-steps", solve_.max_steps, "of the force model")
       ->check(CLI::Range(1L, 1000000000000L))
       ->capture_default_str();
@@ -197,7 +208,6 @@ void SceneOptions::add_solvers_to(CLI::App& command) {
                   "distance from rest at which the force model stops, share of the length")
       ->check(number_between(1e-12, 1e-1))
       ->capture_default_str();
-  add_materials_to(command);
 }
 
 void SceneOptions::add_materials_to(CLI::App& command) {
@@ -217,18 +227,7 @@ void SceneOptions::apply(compare::Scene& scene) const {
   if (points_ > 0) settings.points = points_;
   for (const auto& change : changes_) change(settings);
   compare::check(settings, scene.file + ", with the command line's options");
-}
-
-std::string SceneOptions::force_model_options() const {
-  std::string names;
-  const std::vector<const CLI::Option*> given =
-      command_->get_options([](const CLI::Option* option) {
-        return option->get_group() == force_model_group && option->count() > 0;
-      });
-  for (const CLI::Option* option : given) {
-    names += (names.empty() ? "" : ", ") + option->get_name();
-  }
-  return names;
+  if (command_ != nullptr) check_effects(*command_, &settings);
 }
 
 std::vector<compare::Material> SceneOptions::materials() const {

@@ -14,23 +14,24 @@
 
 namespace dlo::cli {
 
+/// Whether a command steps the force model, and so has the options that limit its steps.
+enum class Steps { made, none };
+
 /// Options that override a scene's [force_model] and steer the solvers.
 class SceneOptions {
  public:
-  void add_to(CLI::App& command);
+  void add_to(CLI::App& command, Steps steps = Steps::made);
   /// The same for a scene that is looked at while it moves: no --time.
   void add_moving_to(CLI::App& command);
   /// Only those that override [force_model], --materials and --calibrated.
   void add_settings_to(CLI::App& command);
   /// Only those that steer the solvers, --materials and --calibrated.
-  void add_solvers_to(CLI::App& command);
+  void add_solvers_to(CLI::App& command, Steps steps = Steps::made);
 
   /// Loads a scene and applies the options. @throws compare::InputError
   [[nodiscard]] compare::Scene load(const std::string& path) const;
   [[nodiscard]] const compare::SolveOptions& solve() const { return solve_; }
   [[nodiscard]] std::vector<compare::Material> materials() const;
-  /// Names of the force model's options that were given, such as "--points, --law"; after add_to.
-  [[nodiscard]] std::string force_model_options() const;
 
  private:
   void add_time_to(CLI::App& command);
@@ -76,5 +77,9 @@ void warn_of_no_twist(const compare::Scene& scene, const std::string& study);
 /// @param formats  those that the command writes
 void add_output_options(CLI::App& command, OutputOptions& options,
                         const std::vector<std::string>& formats = compare::names<Format>());
+
+/// Makes the extension of the output file the format of the command unless --format is given.
+void take_format_of_file(CLI::App& command, OutputOptions& options,
+                         const std::vector<std::string>& formats);
 
 }  // namespace dlo::cli

@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "command_fixture.hpp"
+#include "option/effect.hpp"
 #include "scene_text.hpp"
 
 namespace {
@@ -214,6 +217,92 @@ TEST_F(Command, TheExtensionIsTheFormatUnlessOneIsGiven) {
   EXPECT_EQ(first_line(solve + " --format json", "b.csv"), "{");
   EXPECT_EQ(first_line("compare " + steel(), "c.csv").substr(0, 6), "scene,");
   EXPECT_EQ(first_line("calibrate " + steel(), "c.json"), "{");
+}
+
+/// A word that gives an option, with a value that the option takes.
+std::string given(const std::string& option) {
+  static const std::map<std::string, std::string> values = {{"--arc-lengths", "file"},
+                                                            {"--unit", "mm"},
+                                                            {"--segments", "8"},
+                                                            {"--shape", "a.csv"},
+                                                            {"--motion", "a.csv"},
+                                                            {"--parameters", "a.toml"},
+                                                            {"--points", "12"},
+                                                            {"--law", "hooke"},
+                                                            {"--bookkeeping", "paper"},
+                                                            {"--stepper", "dynamic"},
+                                                            {"--bending-rule", "moment_matched"},
+                                                            {"--design-curvature", "5"},
+                                                            {"--c-b", "1"},
+                                                            {"--c-c", "1"},
+                                                            {"--c-F", "1"},
+                                                            {"--c-h", "0.5"},
+                                                            {"--l-s", "1"},
+                                                            {"--max-steps", "9"},
+                                                            {"--rest-tolerance", "1e-5"},
+                                                            {"--target-error", "1%"},
+                                                            {"--terms", "9"},
+                                                            {"--step-rate", "1000"},
+                                                            {"--every", "2"},
+                                                            {"--samples", "9"},
+                                                            {"--case", "folded"},
+                                                            {"--max-steps-auto", "9"},
+                                                            {"--steps-at-rest", "9"},
+                                                            {"--map", "cF-cc"},
+                                                            {"--columns", "2"},
+                                                            {"--rows", "4"},
+                                                            {"--map-steps", "9"},
+                                                            {"--time-limit", "1"},
+                                                            {"--state", "d"},
+                                                            {"--baseline", "a.json"},
+                                                            {"--markdown", "a.md"},
+                                                            {"--junit", "a.xml"},
+                                                            {"--html", "a.html"},
+                                                            {"--output", "a.json"},
+                                                            {"--relative", "1%"},
+                                                            {"--absolute", "1%"}};
+  const auto value = values.find(option);
+  if (option == "SCENE") return "scene.toml";
+  return value == values.end() ? option : option + " " + value->second;
+}
+
+/// Words of a command with which all conditions of a row hold.
+std::string with_conditions(const dlo::cli::IneffectiveOptions& row, const std::string& scene) {
+  const std::map<std::string, std::string> arguments = {
+      {"regress", scene + " --baseline b.toml"}, {"suite", "--write d"}, {"stability", ""}};
+  const auto own = arguments.find(row.command);
+  std::string line = row.command + " " + (own == arguments.end() ? scene : own->second);
+  for (const dlo::cli::OptionCondition& condition : row.conditions) {
+    if (condition.values.empty()) continue;
+    const std::string& value = condition.values.front();
+    const bool has_example = value == dlo::cli::any_value || value == dlo::cli::whole_number;
+    line += " " + (has_example ? given(condition.option) : condition.option + " " + value);
+  }
+  return line;
+}
+
+TEST_F(Command, EveryOptionWithoutEffectIsRefusedOrReported) {
+  int refused = 0;
+  for (const dlo::cli::IneffectiveOptions& row : dlo::cli::ineffective_options()) {
+    if (row.command.empty()) continue;
+    const std::string line = with_conditions(row, steel());
+    for (const std::string& option : row.options) {
+      const std::string all = option == "--format" ? line : line + " " + given(option);
+      const std::vector<std::string> words = {
+          option, option == "--format" ? "not available" : "no effect", "(allowed: " + row.allowed};
+      if (row.response == dlo::cli::NoEffect::refused) {
+        expect_error(all, 2, words);
+        ++refused;
+      } else {
+        EXPECT_TRUE(says(run(all).err, words)) << all;
+      }
+    }
+  }
+  EXPECT_GT(refused, 80);
+  const std::string curvature = " --model force --design-curvature 5";
+  expect_error("solve " + steel() + curvature + " --law hooke", 2,
+               {"--design-curvature: no effect with law hooke (allowed: --law paper)"});
+  EXPECT_EQ(run("solve " + steel() + curvature + " --law paper").err, "");
 }
 
 TEST_F(Command, NoOptionIsLeftOutInSilence) {

@@ -153,7 +153,8 @@ TEST_F(MotionCommand, CalibrateFindsTheStiffnessThatMovedTheMarkers) {
   EXPECT_EQ(document.at("schema"), "dlo/motion_fit/1");
   EXPECT_NEAR(document.at("stiffness").at("value"), 0.02, 1e-4);
   EXPECT_NEAR(document.at("damping_s").at("value"), 0.01, 1e-3);
-  expect_error(calibrate + "--format csv", 2, {"--motion: has no format csv"});
+  expect_error(calibrate + "--format csv", 2, {"--format csv: not available with --motion"});
+  expect_error(calibrate + "-o found.toml", 2, {"--format toml: not available with --motion"});
 }
 
 // After the scene's motion, and within less than any time that counts.

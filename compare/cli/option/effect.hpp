@@ -1,0 +1,44 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/force_model_settings.hpp"
+
+namespace dlo::cli {
+
+/// A condition on the value of an option.
+struct OptionCondition {
+  std::string option;  ///< its long name; "law": the law of the scene's force model
+  /// Values with which the condition holds; none: the option is not given. `any_value`: it is
+  /// given.
+  std::vector<std::string> values;
+};
+inline constexpr const char* any_value = "*";
+/// Stands for every value that is a whole number.
+inline constexpr const char* whole_number = "N";
+
+enum class NoEffect { refused, stated };
+
+/// Options of a command that have no effect if all conditions hold.
+struct IneffectiveOptions {
+  std::string command;  ///< empty: of every command
+  /// Long names. "--format" stands for its value, which the command then cannot write.
+  std::vector<std::string> options;
+  std::vector<OptionCondition> conditions;
+  std::string allowed;
+  NoEffect response = NoEffect::refused;
+};
+
+/// All options that have no effect under some condition.
+[[nodiscard]] std::span<const IneffectiveOptions> ineffective_options();
+
+/// Refuses or reports the options of a command that have no effect, before anything is computed.
+/// @param settings  force model of the loaded scene: rows with a condition on "law" are checked;
+///                  null: all other rows are
+/// @throws compare::InputError with the options, the conditions and what is allowed
+void check_effects(const CLI::App& command, const compare::ForceModelSettings* settings = nullptr);
+
+}  // namespace dlo::cli
