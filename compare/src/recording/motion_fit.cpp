@@ -58,9 +58,8 @@ class MotionMisfit {
       throw InputError(fmt::format("{}: a marker at s = {:g} m (allowed: 0 to the rod's {:g} m)",
                                    recorded.file, at.arc_length, scene.length));
     }
-    if (frames_.size() < 2) {
+    if (frames_.size() < 2)
       throw InputError(recorded.file + ": one time only (allowed: two or more)");
-    }
     const double time =
         std::sqrt(scene.mass() * std::pow(scene.length, 3) / scene.softer_bending_stiffness());
     const double drag = scene.mass() / scene.length / time;
@@ -286,10 +285,8 @@ NearestMotion least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start, 
   }
   if (problem.failed) std::rethrow_exception(problem.failed);
   // Without progress the last position is the least to rounding.
-  if (status != GSL_SUCCESS && status != GSL_ENOPROG) {
-    throw ConvergenceError(
-        fmt::format("the least-squares fit to the recording stopped: {}", gsl_strerror(status)));
-  }
+  if (status != GSL_SUCCESS && status != GSL_ENOPROG)
+    throw ConvergenceError(fmt::format("the fit to the recording: {}", gsl_strerror(status)));
   return result;
 }
 
@@ -401,9 +398,8 @@ MotionFit fit_motion(const Scene& scene, const MarkerMotion& recorded,
   result.from = frames.front().time;
   result.to = frames.back().time;
   result.coordinates = misfit.coordinates();
-  if (result.coordinates <= misfit.sought().size()) {
+  if (result.coordinates <= misfit.sought().size())
     throw InputError(recorded.file + ": too few rows");
-  }
   const Eigen::VectorXd given = misfit.given();
   misfit.require_movement();
   result.given_rms = rms_of(given.reshaped(3, given.size() / 3));
@@ -414,9 +410,8 @@ MotionFit fit_motion(const Scene& scene, const MarkerMotion& recorded,
   misfit.look_at(1);
   const NearestMotion nearest = least_squares(misfit, start, most_fit_steps);
   (void)misfit.residuals(nearest.logs);
-  if (!misfit.stopped().empty()) {
+  if (!misfit.stopped().empty())
     throw ConvergenceError("the moving rod stopped: " + misfit.stopped());
-  }
   add_numbers(scene, misfit, nearest, correlated_share(recorded, nearest.residuals), result);
   result.damping = misfit.damping(nearest.logs);
   add_errors(recorded, nearest.residuals, scene.length, result);
