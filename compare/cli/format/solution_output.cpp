@@ -89,6 +89,7 @@ Json contacts_json(const std::vector<energy_model::ContactPart>& contacts) {
                   {"to_m", contact.end},
                   {"force_N", to_json(contact.force)}};
     if (contact.kind == energy_model::ContactKind::lying) {
+      entry["moment_Nm"] = to_json(contact.moment);
       entry["from_force_N"] = contact.begin_force;
       entry["to_force_N"] = contact.end_force;
       entry["largest_pressure_N_per_m"] = contact.largest_pressure;

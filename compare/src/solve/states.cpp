@@ -72,6 +72,7 @@ Equilibrium mirrored(const Scene& scene, const Equilibrium& state, const Eigen::
   for (Eigen::Vector3d& force : result.obstacles) force = (mirror * force).eval();
   for (energy_model::ContactPart& contact : result.contacts) {
     contact.force = (mirror * contact.force).eval();
+    contact.moment = (-(mirror * contact.moment)).eval();  // an axial vector
   }
   for (energy_model::Reaction& grip : result.grips) {
     grip.force = (mirror * grip.force).eval();

@@ -11,8 +11,8 @@
 #include "base/deadline.hpp"
 #include "base/lowest_combinations.hpp"
 #include "base/require.hpp"
+#include "dlo/energy_model/balance.hpp"
 #include "dlo/energy_model/soft_line.hpp"
-#include "dlo/energy_model/taut_line.hpp"
 #include "exact/planar_shooting.hpp"
 #include "exact/without_potential.hpp"
 #include "kirchhoff/rod_span.hpp"
@@ -157,8 +157,7 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
           problem.axial_stiffness.value_or(0),
           "none of a rod in a stream, with loads that follow it, or couples out of its plane");
   if (judged && !problem.axial_stiffness) {
-    if (std::optional<Equilibrium> taut = taut_line(problem)) return {*std::move(taut)};
-    if (std::optional<Equilibrium> line = soft_line_for_models(problem)) return {*std::move(line)};
+    if (std::optional<Equilibrium> line = line_without_search(problem)) return {*std::move(line)};
   }
   Found found = !judged                     ? search_without_potential(problem, options, deadline)
                 : problem.obstacles.empty() ? search(problem, options, deadline)
@@ -168,6 +167,7 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
   for (Equilibrium& equilibrium : found.equilibria) {
     equilibrium.seconds = seconds;
     separate_line_loads(problem, equilibrium);
+    judge_balance(problem, equilibrium);
     if (!found.not_searched.empty()) equilibrium.message += "; " + found.not_searched;
     if (!found.out_of_time) continue;
     const bool holds = static_cast<bool>(equilibrium.sample);

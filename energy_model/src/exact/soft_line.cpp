@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "base/sized_samples.hpp"
+#include "dlo/energy_model/balance.hpp"
+#include "dlo/energy_model/taut_line.hpp"
 #include "exact/catenary.hpp"
 #include "problem/rod_law.hpp"
 #include "shooting/lobatto_element.hpp"
@@ -359,10 +361,13 @@ std::optional<Equilibrium> soft_line(const Problem& problem) {
   return SoftLine(problem).solve();
 }
 
-std::optional<Equilibrium> soft_line_for_models(const Problem& problem) {
-  if (!is_soft_line(problem)) return std::nullopt;
-  std::optional<Equilibrium> line = soft_line(problem);
-  if (!line || !(line->error_estimate <= most_error)) return std::nullopt;
+std::optional<Equilibrium> line_without_search(const Problem& problem) {
+  std::optional<Equilibrium> line = taut_line(problem);
+  if (!line && is_soft_line(problem)) {
+    line = soft_line(problem);
+    if (line && !(line->error_estimate <= most_error)) line.reset();
+  }
+  if (line) judge_balance(problem, *line, std::max(allowed_imbalance, line->error_estimate));
   return line;
 }
 

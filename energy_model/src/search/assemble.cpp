@@ -1,5 +1,6 @@
 #include "search/assemble.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,14 +17,42 @@
 namespace dlo::energy_model {
 namespace {
 
-/// With arc lengths in m, forces in the span's unit.
+/// What the multipliers of a contact exert on the grip that holds its begin or its end.
+struct HeldEnd {
+  std::size_t contact = 0;
+  double s = 0;
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  // about the anchor
+};
+
+std::vector<HeldEnd> held_ends_of(const SpanSolution& solution,
+                                  const std::vector<ContactForce>& forces) {
+  std::vector<HeldEnd> held;
+  const SpanShape shape = solution.model->shape(solution.x);
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    const Span::Contact& contact = solution.model->span().contacts[i];
+    const auto add = [&](double s, double size) {
+      if (size == 0) return;
+      const std::vector<double> at = {s};
+      const Eigen::Vector3d r = shape.sample(at).points.col(0);
+      const Eigen::Vector3d force = size * contact.obstacle.body.gap(r).gradient;
+      held.push_back({i, s, force, r.cross(force)});
+    };
+    add(contact.begin, forces[i].held_begin);
+    add(contact.end, forces[i].held_end);
+  }
+  return held;
+}
+
+/// With arc lengths in m, forces and moments in the span's units.
 std::vector<ContactPart> contacts_of(const PlacedSpan& place, const SpanSolution& solution,
-                                     double length) {
+                                     const std::vector<ContactForce>& forces, double length) {
   std::vector<ContactPart> parts;
   const Span& span = solution.model->span();
   if (span.contacts.empty()) return parts;
-  const std::vector<ContactForce> forces =
-      solution.model->contact_forces(*solution.at_x(), solution.multipliers);
+  const std::shared_ptr<SpanPoint> at = solution.at_x();
+  const SpanShape shape = solution.model->shape(solution.x);
+  const std::vector<HeldEnd> held = held_ends_of(solution, forces);
   for (std::size_t i = 0; i < forces.size(); ++i) {
     const Span::Contact& contact = span.contacts[i];
     const double sense = place.reversed ? -length : length;
@@ -33,12 +62,23 @@ std::vector<ContactPart> contacts_of(const PlacedSpan& place, const SpanSolution
     part.kind = contact.lies()                 ? ContactKind::lying
                 : at_tip || contact.begin == 0 ? ContactKind::tip
                                                : ContactKind::touching;
-    part.begin = place.start + sense * contact.begin;
-    part.end = place.start + sense * contact.end;
+    // A point that slides is where the rod is nearest.
+    const std::optional<double> touch = solution.model->touches_at(*at, i);
+    part.begin = place.start + sense * touch.value_or(contact.begin);
+    part.end = place.start + sense * touch.value_or(contact.end);
     part.force = place.frame.transpose() * forces[i].force;
     part.begin_force = contact.lies() ? forces[i].begin : 0;
     part.end_force = forces[i].end;
     part.largest_pressure = forces[i].largest_pressure;
+    if (contact.lies()) {
+      const std::vector<double> first = {place.reversed ? contact.end : contact.begin};
+      const Eigen::Vector3d arm = shape.sample(first).points.col(0);
+      Eigen::Vector3d moment = forces[i].moment - arm.cross(forces[i].force);
+      for (const HeldEnd& end : held) {
+        if (end.contact == i) moment -= end.moment;
+      }
+      part.moment = place.frame.transpose() * moment;
+    }
     if (place.reversed) {
       std::swap(part.begin, part.end);
       std::swap(part.begin_force, part.end_force);
@@ -50,6 +90,7 @@ std::vector<ContactPart> contacts_of(const PlacedSpan& place, const SpanSolution
 
 ContactPart in_newtons(ContactPart part, double force_unit, double length) {
   part.force *= force_unit;
+  part.moment *= force_unit * length;
   part.begin_force *= force_unit;
   part.end_force *= force_unit;
   part.largest_pressure *= force_unit / length;
@@ -165,7 +206,8 @@ class Assembly {
       carried += obstacles[w];
       result_.obstacles[place.span.soft_obstacles[w].index] += to_newtons(place, obstacles[w]);
     }
-    for (const ContactPart& contact : contacts_of(place, solution, l_)) {
+    const std::vector<ContactForce> pushes = model.contact_forces(*at, solution.multipliers);
+    for (const ContactPart& contact : contacts_of(place, solution, pushes, l_)) {
       carried += place.frame * contact.force;
       result_.obstacles[contact.obstacle] += force_unit_ * contact.force;
       result_.contacts.push_back(in_newtons(contact, force_unit_, l_));
@@ -185,7 +227,21 @@ class Assembly {
       own.force += to_newtons(place, force);
       own.torque += to_space(model.hold_torque(*at, hold, solution.multipliers));
     }
+    for (const HeldEnd& end : held_ends_of(solution, pushes)) {
+      carried += give_to_hold(place, end.s, end.force);
+    }
     anchor.force -= to_newtons(place, carried);
+  }
+
+  /// Adds a force to the hold at s. @return the force; zero if no hold is there but the anchor
+  [[nodiscard]] Eigen::Vector3d give_to_hold(const PlacedSpan& place, double s,
+                                             const Eigen::Vector3d& force) {
+    for (std::size_t j = 0; j < place.hold_grips.size(); ++j) {
+      if (std::abs(place.span.holds[j].at - s) > closest_cuts) continue;
+      result_.grips[place.hold_grips[j]].force += to_newtons(place, force);
+      return force;
+    }
+    return Eigen::Vector3d::Zero();
   }
 
   /// They are the gripper's alone.

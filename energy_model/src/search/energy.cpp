@@ -9,8 +9,8 @@
 #include "base/lowest_combinations.hpp"
 #include "base/require.hpp"
 #include "contact/penetration.hpp"
+#include "dlo/energy_model/balance.hpp"
 #include "dlo/energy_model/soft_line.hpp"
-#include "dlo/energy_model/taut_line.hpp"
 #include "problem/redundant_obstacles.hpp"
 #include "problem/rod_law.hpp"
 #include "problem/split.hpp"
@@ -56,6 +56,7 @@ std::vector<Equilibrium> combine(const Problem& problem, const std::vector<Place
     for (std::size_t i = 0; i < solutions.size(); ++i) chosen.push_back(&solutions[i][choice[i]]);
     result.push_back(assemble(problem, placed, chosen));
     judge_penetration(problem, result.back());
+    judge_balance(problem, result.back());
   }
   std::stable_sort(result.begin(), result.end(), [](const Equilibrium& a, const Equilibrium& b) {
     if (succeeded(a.status) != succeeded(b.status)) return succeeded(a.status);
@@ -89,9 +90,7 @@ class EnergySolver::State {
     log_ = {};
     require_dead_loads(problem, "solve_energy");
     require_inextensible(problem, "solve_energy");
-    std::optional<Equilibrium> known = taut_line(problem);
-    if (!known) known = soft_line_for_models(problem);
-    if (known) {
+    if (std::optional<Equilibrium> known = line_without_search(problem)) {
       followed_ = false;
       if (from == From::last_shape_only) return {};
       former_ = std::exchange(remembered_, {});

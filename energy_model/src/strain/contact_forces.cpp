@@ -1,7 +1,6 @@
 #include "strain/contact_forces.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "base/legendre.hpp"
 
@@ -42,6 +41,7 @@ ContactForce force_of_series(const ContactSeries& rows, const Eigen::VectorXd& m
     // What is concentrated there is the grip's.
     const ContactSeries::Slope& slope = rows.slopes.front();
     before = series(multipliers.segment(slope.first, slope.count) / slope.length, 0);
+    force.held_begin = -before;
   }
   force.total = force.begin = before;
   for (std::size_t i = 0; i < rows.slopes.size(); ++i) {
@@ -58,8 +58,23 @@ ContactForce force_of_series(const ContactSeries& rows, const Eigen::VectorXd& m
     force.end = before = series(carried, 1);
     add_pressure(carried.head(is_short ? 2 : (slope.count + 1) / 2), slope.length, i == 0, force);
   }
-  if (rows.held_at_end) force.total -= std::exchange(force.end, 0);
+  if (rows.held_at_end && !rows.slopes.empty()) {
+    const ContactSeries::Slope& slope = rows.slopes.back();
+    force.held_end = series(multipliers.segment(slope.first, slope.count) / slope.length, 1);
+    force.total -= force.held_end;
+    force.end = 0;
+  }
   return force;
+}
+
+Eigen::Vector3d moment_of(const ContactSeries& rows, const ContactPlace& place,
+                          const Eigen::MatrixX3d& tangents, const Eigen::VectorXd& multipliers) {
+  Eigen::VectorXd own = Eigen::VectorXd::Zero(multipliers.size());
+  if (rows.clearance >= 0) own[rows.clearance] = multipliers[rows.clearance];
+  for (const ContactSeries::Slope& slope : rows.slopes) {
+    own.segment(slope.first, slope.count) = multipliers.segment(slope.first, slope.count);
+  }
+  return place.moment(own, tangents);
 }
 
 }  // namespace dlo::energy_model

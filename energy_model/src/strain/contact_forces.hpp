@@ -3,19 +3,25 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "strain/contact_place.hpp"
+
 namespace dlo::energy_model {
 
 /// Forces with which a rigid obstacle holds a contact, away from it: at the begin and the end of
 /// the part in contact, which are the same where it touches at one point, and between.
 struct ContactForce {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< of all of it
-  double total = 0;                                 ///< sum of the magnitudes
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< of all of it
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< of all rows, about the span's anchor
+  double total = 0;                                  ///< sum of the magnitudes
   double begin = 0, end = 0;  ///< concentrated ones; `end` is 0 where it touches at one point
   double least_pressure = 0;  ///< per length, of what lies; 0 where it touches at one point
   double largest_pressure = 0;
   /// Least concentrated one inside, at loads and sections; what the series of two pieces differ by
   /// elsewhere is their error.
   double least_inner = 0;
+  /// What the multipliers exert besides, away from the obstacle, on a grip that holds the begin or
+  /// the end of the part: it is in `moment`, and the grip's force, not the obstacle's.
+  double held_begin = 0, held_end = 0;
 };
 
 /// Which multipliers of ContactRows are a contact's: of its begin's, or the least, clearance (-1: a
@@ -39,5 +45,11 @@ inline constexpr double short_part = 5e-3;
 /// its force. @param multipliers  of all contacts' rows
 [[nodiscard]] ContactForce force_of_series(const ContactSeries& rows,
                                            const Eigen::VectorXd& multipliers);
+
+/// Moment about the span's anchor of what one contact's multipliers exert.
+/// @param tangents  nodes x 3
+[[nodiscard]] Eigen::Vector3d moment_of(const ContactSeries& rows, const ContactPlace& place,
+                                        const Eigen::MatrixX3d& tangents,
+                                        const Eigen::VectorXd& multipliers);
 
 }  // namespace dlo::energy_model

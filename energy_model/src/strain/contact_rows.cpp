@@ -350,12 +350,14 @@ Eigen::VectorXd ContactRows::prolong(const ContactRows& other,
 }
 
 std::vector<ContactForce> ContactRows::forces(const ContactPlace& place,
+                                              const Eigen::MatrixX3d& tangents,
                                               const Eigen::VectorXd& multipliers) const {
   std::vector<ContactForce> result;
   result.reserve(contacts_.size());
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     result.push_back(force_of_series(contacts_[i], multipliers));
     result.back().force = result.back().total * normals_[i];
+    result.back().moment = moment_of(contacts_[i], place, tangents, multipliers);
   }
   for (std::size_t i = 0; i < touches_.size(); ++i) {
     result[touches_[i].contact].force =

@@ -56,8 +56,9 @@ class ContactRows {
   /// Multipliers of these rows from those of the same contacts with another number of terms.
   [[nodiscard]] Eigen::VectorXd prolong(const ContactRows& other,
                                         const Eigen::VectorXd& multipliers) const;
-  /// Of each of Span::contacts. @param multipliers  of all rows
+  /// Of each of Span::contacts. @param tangents  nodes x 3. @param multipliers  of all rows
   [[nodiscard]] std::vector<ContactForce> forces(const ContactPlace& place,
+                                                 const Eigen::MatrixX3d& tangents,
                                                  const Eigen::VectorXd& multipliers) const;
 
  private:

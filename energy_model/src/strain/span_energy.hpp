@@ -136,7 +136,7 @@ class SpanEnergy {
   /// What holds the rod on rigid obstacles by these multipliers.
   [[nodiscard]] std::vector<ContactForce> contact_forces(const SpanPoint& at,
                                                          const Eigen::VectorXd& multipliers) const {
-    return contacts_.forces(at.contacts, of_contacts(multipliers));
+    return contacts_.forces(at.contacts, at.t, of_contacts(multipliers));
   }
 
   /// Where one of Span::contacts that slides is; nothing of others.

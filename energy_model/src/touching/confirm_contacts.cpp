@@ -1,6 +1,8 @@
 #include "touching/confirm_contacts.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -41,7 +43,11 @@ class ClosedRod {
         part.force += force_at(placed.end_force);
         part.begin_force = force_unit_ * push_at(placed.begin_force);
         part.end_force = force_unit_ * push_at(placed.end_force);
-        for (Eigen::Index i = placed.begin; i < placed.end; ++i) add_pressure(i, part);
+        part.moment = problem_.length *
+                      (r_at(placed.end) - r_at(placed.begin)).cross(force_at(placed.end_force));
+        for (Eigen::Index i = placed.begin; i < placed.end; ++i) {
+          add_pressure(i, r_at(placed.begin), part);
+        }
       }
       result.obstacles[part.obstacle] += part.force;
       result.contacts.push_back(part);
@@ -105,15 +111,26 @@ class ClosedRod {
     return force_unit_ * node.force * node.gap(r).gradient;
   }
 
-  /// Of an interval that lies: what of n its weight does not take.
-  void add_pressure(Eigen::Index i, ContactPart& part) const {
+  [[nodiscard]] const Eigen::Vector3d& r_at(Eigen::Index node) const {
+    return closed_.nodes[static_cast<std::size_t>(node)].r;
+  }
+
+  /// Of an interval that lies: what of n its weight does not take; the moment about a point by
+  /// Boole's rule.
+  void add_pressure(Eigen::Index i, const Eigen::Vector3d& about, ContactPart& part) const {
+    constexpr std::array<double, samples + 1> boole = {7, 32, 12, 32, 14, 32, 12, 32, 7};
     const std::vector<RodState> states = along(i);
     part.force +=
         force_unit_ * (states.front().n - states.back().n -
                        section_of(i).weight_from(closed_.s[i], closed_.s[i + 1] - closed_.s[i]));
-    for (const RodState& state : states) {
-      const double p = pressure(*closed_.contacts.surface_of(i), section_of(i), state);
+    const Surface& surface = *closed_.contacts.surface_of(i);
+    const double share = (closed_.s[i + 1] - closed_.s[i]) / samples * 2 / 45;
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      const RodState& state = states[k];
+      const double p = pressure(surface, section_of(i), state);
       part.largest_pressure = std::max(part.largest_pressure, force_unit_ / problem_.length * p);
+      part.moment += problem_.length * force_unit_ * share * boole[k] * p *
+                     (state.r - about).cross(surface.gap(state.r).gradient);
     }
   }
 

@@ -39,6 +39,8 @@ struct ContactPart {
   double end = 0;                         ///< where it ends; `begin` but for `lying` [m]
   Eigen::Vector3d force =
       Eigen::Vector3d::Zero();  ///< of the obstacle on the rod, of all of it [N]
+  /// Moment of all of it about the point at `begin` [N m]; zero but for `lying`.
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   double begin_force = 0;       ///< what of it is concentrated at the begin of what lies [N]
   double end_force = 0;         ///< and at its end [N]
   double largest_pressure = 0;  ///< per length of what lies, between its ends [N/m]

@@ -32,7 +32,10 @@ inline constexpr double line_stiffness = 1e-10;
 /// layers and what is touched are not apart
 [[nodiscard]] std::optional<Equilibrium> soft_line(const Problem& problem);
 
-/// The same of what is_soft_line(), if its error_estimate stays below 1e-7 of the length.
-[[nodiscard]] std::optional<Equilibrium> soft_line_for_models(const Problem& problem);
+/// The shape that solve_energy() and solve_exact() return without a search: taut_line(), or the
+/// soft_line() of what is_soft_line() if its error_estimate stays below 1e-7 of the length; none of
+/// another problem. Its balance is judged (balance.hpp), that of a soft line to its error_estimate.
+/// @throws std::invalid_argument as taut_line()
+[[nodiscard]] std::optional<Equilibrium> line_without_search(const Problem& problem);
 
 }  // namespace dlo::energy_model

@@ -1,0 +1,286 @@
+#include "dlo/energy_model/balance.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iomanip>
+#include <sstream>
+#include <utility>
+
+#include "base/legendre.hpp"
+#include "problem/rod_law.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// Share of EI/l^2 and EI/l below which forces and moments are the solver's rounding: 1e-8 of it is
+/// a thousand times that of a rod bent by forces of EI/l^2.
+constexpr double negligible_share = 1e-4;
+
+/// Arc lengths at which what acts on the rod changes abruptly, growing, each once.
+std::vector<double> abrupt_changes(const Problem& problem, const Equilibrium& shape) {
+  std::vector<double> at = {0, problem.length};
+  for (const Grip& grip : problem.grips) at.push_back(grip.at);
+  for (const Load& load : problem.loads) at.push_back(load.at);
+  for (const Section& part : problem.sections) at.insert(at.end(), {part.begin, part.end});
+  for (const LineLoad& load : problem.line_loads) at.insert(at.end(), {load.begin, load.end});
+  for (const ContactPart& part : shape.contacts) at.insert(at.end(), {part.begin, part.end});
+  for (double& s : at) s = std::clamp(s, 0.0, problem.length);  // but for rounding
+  std::sort(at.begin(), at.end());
+  at.erase(std::unique(at.begin(), at.end()), at.end());
+  return at;
+}
+
+/// Forces and moments of what is spread over the rod: weight, line loads and drag in the first
+/// column, obstacles that yield in one column each; moments about the first grip.
+class SpreadActions {
+ public:
+  SpreadActions(const Problem& problem, const Equilibrium& shape)
+      : problem_(problem),
+        shape_(shape),
+        origin_(problem.grips.front().position),
+        parts_(rod_parts(problem)) {
+    for (std::size_t i = 0; i < problem.obstacles.size(); ++i) {
+      if (std::isfinite(problem.obstacles[i].stiffness)) yielding_.push_back(i);
+    }
+  }
+
+  /// Of the problem's obstacles.
+  [[nodiscard]] const std::vector<std::size_t>& yielding() const { return yielding_; }
+
+  /// The first column, then those of yielding().
+  [[nodiscard]] std::vector<Action> integrate() const {
+    constexpr int most_halvings = 24;
+    constexpr std::size_t most_panels = 512;  // if a shape is noise, more would not resolve it
+    std::vector<Panel> panels;
+    const std::vector<double> cuts = abrupt_changes(problem_, shape_);
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+      panels.push_back({cuts[i], cuts[i + 1] - cuts[i], {}, false});
+    }
+    sum(panels);
+    double scale = 0;  // of forces
+    for (const Panel& panel : panels) scale += panel.sums.topRows(3).norm();
+    Sums total = Sums::Zero(6, columns());
+    for (int level = 0; !panels.empty(); ++level) {
+      const bool last = level == most_halvings || (level > 0 && panels.size() > most_panels);
+      std::vector<Panel> halves;
+      for (const Panel& panel : panels) {
+        halves.push_back({panel.begin, panel.width / 2, {}, false});
+        halves.push_back({panel.begin + panel.width / 2, panel.width / 2, {}, false});
+      }
+      sum(halves);
+      std::vector<Panel> open;
+      for (std::size_t i = 0; i < panels.size(); ++i) {
+        Panel& left = halves[2 * i];
+        Panel& right = halves[2 * i + 1];
+        const Sums both = left.sums + right.sums;
+        const bool hides = left.may_hide_contact || right.may_hide_contact;
+        if (!last && (hides || differ(panels[i].sums, both, scale))) {
+          open.push_back(std::move(left));
+          open.push_back(std::move(right));
+        } else {
+          total += both;
+        }
+      }
+      panels = std::move(open);
+    }
+    return actions_of(total);
+  }
+
+ private:
+  using Sums = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+  struct Panel {
+    double begin, width;
+    Sums sums;
+    /// Nodes are outside of a body that yields, and so near to it that the rod between them may be
+    /// within it.
+    bool may_hide_contact = false;
+  };
+
+  [[nodiscard]] Eigen::Index columns() const { return 1 + std::ssize(yielding_); }
+
+  /// By more than what a panel may add to an imbalance; NaN does not.
+  [[nodiscard]] bool differ(const Sums& one, const Sums& other, double scale) const {
+    constexpr double share = 1e-11;
+    const double force = (one - other).topRows(3).norm();
+    const double moment = (one - other).bottomRows(3).norm();
+    return force > share * scale || moment > share * scale * problem_.length;
+  }
+
+  void sum(std::vector<Panel>& panels) const {
+    const LegendreTable& rule = legendre_table(2);
+    const std::size_t Q = static_cast<std::size_t>(rule.nodes.size());
+    std::vector<double> s;
+    s.reserve(panels.size() * Q);
+    for (const Panel& panel : panels) {
+      for (const double node : rule.nodes) {
+        s.push_back(std::clamp(panel.begin + node * panel.width, 0.0, problem_.length));
+      }
+    }
+    const Samples samples = shape_.sample(s);
+    for (std::size_t p = 0; p < panels.size(); ++p) {
+      Panel& panel = panels[p];
+      panel.sums.setZero(6, columns());
+      panel.may_hide_contact = may_hide_contact(samples, p * Q, Q, panel.width);
+      const RodPart& part = part_at(panel.begin + panel.width / 2);
+      for (std::size_t q = 0; q < Q; ++q) {
+        const auto i = static_cast<Eigen::Index>(p * Q + q);
+        const double ds = panel.width * rule.weights[static_cast<Eigen::Index>(q)];
+        add(samples.points.col(i), samples.tangents.col(i), part, s[p * Q + q], ds, panel.sums);
+      }
+    }
+  }
+
+  [[nodiscard]] bool may_hide_contact(const Samples& samples, std::size_t first, std::size_t Q,
+                                      double width) const {
+    constexpr double half_gap = 0.1;         // between two nodes of a panel, of its width
+    constexpr double shortest = 1.0 / 2048;  // contact is longer than that
+    if (width < shortest * problem_.length) return false;
+    const auto points =
+        samples.points.middleCols(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(Q));
+    return std::any_of(yielding_.begin(), yielding_.end(), [&](std::size_t i) {
+      const double least = problem_.obstacles[i].body.clearances(points).minCoeff();
+      return least >= 0 && least < half_gap * width;
+    });
+  }
+
+  [[nodiscard]] const RodPart& part_at(double s) const {
+    const auto part =
+        std::find_if(parts_.begin(), parts_.end(), [&](const RodPart& own) { return s < own.end; });
+    return part == parts_.end() ? parts_.back() : *part;
+  }
+
+  void add(const Eigen::Vector3d& point, const Eigen::Vector3d& tangent, const RodPart& part,
+           double s, double ds, Sums& sums) const {
+    const Eigen::Vector3d arm = point - origin_;
+    Eigen::Vector3d force = part.weight_per_length + (s - part.begin) * part.weight_slope;
+    if (problem_.drag) force += problem_.drag->force(tangent);
+    for (Eigen::Index column = 0;; ++column) {
+      sums.col(column).head<3>() += ds * force;
+      sums.col(column).tail<3>() += ds * arm.cross(force);
+      if (column == std::ssize(yielding_)) return;
+      const Obstacle& obstacle = problem_.obstacles[yielding_[static_cast<std::size_t>(column)]];
+      force.setZero();
+      if (obstacle.body.clearance(point) >= 0) continue;
+      const obstacle::Gap gap = obstacle.body.gap(point);
+      force = -obstacle.stiffness * gap.value * gap.gradient;
+    }
+  }
+
+  /// At the middle of the rod, so that their lever is counted.
+  [[nodiscard]] std::vector<Action> actions_of(const Sums& sums) const {
+    const std::vector<double> middle = {problem_.length / 2};
+    const Eigen::Vector3d point = shape_.sample(middle).points.col(0);
+    std::vector<Action> actions;
+    for (Eigen::Index column = 0; column < columns(); ++column) {
+      const Eigen::Vector3d force = sums.col(column).head<3>();
+      const Eigen::Vector3d moment = sums.col(column).tail<3>();
+      actions.push_back({point, force, moment - (point - origin_).cross(force)});
+    }
+    return actions;
+  }
+
+  const Problem& problem_;
+  const Equilibrium& shape_;
+  const Eigen::Vector3d origin_;
+  const std::vector<RodPart> parts_;
+  std::vector<std::size_t> yielding_;
+};
+
+Action load_on(const Samples& samples, Eigen::Index column, const Load& load) {
+  const Eigen::Vector3d point = samples.points.col(column);
+  if (!load.follows) return {point, load.force, load.torque};
+  const Eigen::Vector3d t = samples.tangents.col(column);
+  // Without d1 the load is along the tangent.
+  const Eigen::Vector3d d1 =
+      samples.d1.cols() > 0 ? Eigen::Vector3d(samples.d1.col(column)) : t.unitOrthogonal();
+  Eigen::Matrix3d frame;
+  frame << d1, t.cross(d1), t;
+  return {point, frame * load.force, frame * load.torque};
+}
+
+}  // namespace
+
+double Imbalance::share() const {
+  const double of_force = force / largest_force;
+  const double of_moment = moment / largest_moment;
+  // The moment of a force that is NaN is NaN.
+  return of_force > of_moment ? of_force : of_moment;
+}
+
+std::string Imbalance::text() const {
+  std::ostringstream text;
+  text << std::setprecision(2) << "the forces leave " << force << " N (" << force / largest_force
+       << " of the largest) and the moments " << moment << " N m (" << moment / largest_moment
+       << " of the largest)";
+  return text.str();
+}
+
+Imbalance imbalance_of(const std::vector<Action>& actions, const Action& least) {
+  Imbalance result;
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  double couple = least.couple.norm();
+  double distance = 0;
+  result.largest_force = least.force.norm();
+  for (const Action& action : actions) {
+    const Eigen::Vector3d arm = action.point - actions.front().point;
+    force += action.force;
+    moment += action.couple + arm.cross(action.force);
+    result.largest_force = std::max(result.largest_force, action.force.norm());
+    couple = std::max(couple, action.couple.norm());
+    distance = std::max(distance, arm.norm());
+  }
+  result.force = force.norm();
+  result.moment = moment.norm();
+  result.largest_moment = std::max(couple, result.largest_force * distance);
+  return result;
+}
+
+Imbalance imbalance_of(const Problem& problem, const Equilibrium& shape) {
+  std::vector<Action> actions;
+  for (std::size_t i = 0; i < problem.grips.size(); ++i) {
+    actions.push_back({problem.grips[i].position, shape.grips[i].force, shape.grips[i].torque});
+  }
+  std::vector<double> at;
+  for (const Load& load : problem.loads) at.push_back(load.at);
+  for (const ContactPart& part : shape.contacts) {
+    at.push_back(std::clamp(part.begin, 0.0, problem.length));
+  }
+  const Samples samples = shape.sample(at);
+  Eigen::Index column = 0;
+  for (const Load& load : problem.loads) actions.push_back(load_on(samples, column++, load));
+  std::vector<Eigen::Vector3d> differences = shape.obstacles;
+  differences.resize(problem.obstacles.size(), Eigen::Vector3d::Zero());
+  for (const ContactPart& part : shape.contacts) {
+    actions.push_back({samples.points.col(column++), part.force, part.moment});
+    differences[part.obstacle] -= part.force;
+  }
+  const SpreadActions spread(problem, shape);
+  const std::vector<Action> sums = spread.integrate();
+  actions.insert(actions.end(), sums.begin(), sums.end());
+  for (std::size_t i = 0; i < spread.yielding().size(); ++i) {
+    differences[spread.yielding()[i]] -= sums[i + 1].force;
+  }
+  const double unit = negligible_share * bending_unit(problem) / problem.length;
+  Imbalance result =
+      imbalance_of(actions, {.force = {unit / problem.length, 0, 0}, .couple = {unit, 0, 0}});
+  for (const Eigen::Vector3d& left : differences) {
+    result.force = left.norm() <= result.force ? result.force : left.norm();  // NaN raises it too
+  }
+  return result;
+}
+
+void judge_balance(const Problem& problem, Equilibrium& equilibrium, double allowed) {
+  const bool unjudged = equilibrium.status == SolveStatus::not_verified && !has_potential(problem);
+  const bool claimed =
+      succeeded(equilibrium.status) || equilibrium.status == SolveStatus::saddle || unjudged;
+  if (!claimed || !equilibrium.sample) return;
+  const Imbalance found = imbalance_of(problem, equilibrium);
+  if (found.share() <= allowed) return;
+  equilibrium.status = SolveStatus::not_verified;
+  equilibrium.message = std::string(to_string(equilibrium.status)) + ": " + found.text();
+}
+
+}  // namespace dlo::energy_model
