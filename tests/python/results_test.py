@@ -42,6 +42,29 @@ def test_solve_is_the_commands(root, command):
     assert "energy, converged" in str(solution)
 
 
+def test_solve_near_points_is_the_equilibrium_beside_them(root, command, tmp_path):
+    scene = dlo.Scene(
+        length="1 m",
+        diameter="6 mm",
+        bending_stiffness="5e-3 N m^2",
+        mass_per_length="0.06 kg/m",
+        gravity=(0, -9.81, 0),
+        grippers=[dlo.pin(at=0, position=(-0.35, 0.06, 0))],
+        loads=[dlo.load(at="1 m", mass="1.5 kg")],
+        obstacles=[dlo.obstacle(shape="cylinder", point=(0, 0, 0), axis=(0, 0, 1), radius="4 cm")],
+    )
+    over = [[-0.35, 0.06], [-0.01, 0.043], [0.03, 0.03], [0.043, 0], [0.043, -0.3], [0.043, -0.59]]
+    near = dlo.solve(scene, near=over)
+    assert near.stable and near.points[-1, 0] > 0
+    assert dlo.solve(scene).points[-1, 0] < -0.3
+    file = tmp_path / "over.csv"
+    file.write_text("".join(f"{x},{y},0\n" for x, y in over))
+    assert numpy.allclose(dlo.solve(scene, near=file).points, near.points)
+    with pytest.raises(dlo.InputError, match="only model energy"):
+        dlo.solve(scene, "exact", near=over)
+    assert dlo.check(scene, near.points).energy_above_lowest > 0.1
+
+
 def test_a_frame_is_found_by_the_commands_word(cable):
     points = numpy.array(dlo.solve(cable, samples=15).points) @ numpy.diag((-1, 1, -1)) + (1, 2, 3)
     assert dlo.check(cable, points, tolerance="1%").passed is False

@@ -6,6 +6,7 @@
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
+#include "dlo/compare/shape_file.hpp"
 #include "dlo/compare/solve.hpp"
 #include "format/json.hpp"
 #include "format/plan_output.hpp"
@@ -25,6 +26,7 @@ struct SolveOptions {
   std::string model;  // empty: reference_model()
   int samples = 0;
   bool all = false;
+  std::string near;
   SceneOptions overrides;
   PlanOptions plan;
   OutputOptions output;
@@ -60,6 +62,14 @@ void require_verified(const compare::Solution& solution, const compare::Scene& s
       "{}: the {} model: {}", scene.file, compare::to_string(solution.model), solution.message));
 }
 
+/// The shape of one model, of the energy model from the points of a file if there is one.
+compare::Solution solved_once(const SolveOptions& options, const compare::SolveOptions& solve,
+                              const compare::Scene& scene, compare::Model model,
+                              const std::vector<double>& arc_lengths) {
+  if (options.near.empty()) return compare::solve(scene, model, solve, arc_lengths);
+  return compare::solve_near(scene, compare::load_shape(options.near), solve, arc_lengths);
+}
+
 /// What is drawn: what was solved, of a rod at enough points for a smooth line.
 std::vector<compare::Solution> drawn_solutions(const SolveOptions& options,
                                                const compare::SolveOptions& solve,
@@ -73,7 +83,7 @@ std::vector<compare::Solution> drawn_solutions(const SolveOptions& options,
   constexpr int samples = 201;
   const std::vector<double> s = compare::equal_arc_lengths(scene.length, samples);
   if (options.all) return compare::solve_all(scene, solve, s).solutions;
-  return {compare::solve(scene, first.model, solve, s)};
+  return {solved_once(options, solve, scene, first.model, s)};
 }
 
 void plot(const SolveOptions& options, const compare::SolveOptions& solve,
@@ -97,6 +107,9 @@ void run(const SolveOptions& options) {
   const std::vector<double> arc_lengths =
       samples > 0 ? compare::equal_arc_lengths(scene.length, samples) : std::vector<double>{};
   if (options.all) require_model_of_all(model, scene);
+  if (!options.near.empty() && model != compare::Model::energy) {
+    throw compare::InputError("--near: only model energy starts from the points of a file");
+  }
   compare::SolveOptions solve = options.overrides.solve();
   solve.accept_unverified = true;
   solve.target = options.plan.plan().target;
@@ -104,7 +117,7 @@ void run(const SolveOptions& options) {
   if (options.all) {
     all = compare::solve_all(scene, solve, arc_lengths);
   } else {
-    all.solutions.push_back(compare::solve(scene, model, solve, arc_lengths));
+    all.solutions.push_back(solved_once(options, solve, scene, model, arc_lengths));
   }
   const compare::Solution& solution = all.solutions.front();
   warn_of_neglected(options, solution, scene);
@@ -150,7 +163,14 @@ void add_solve(CLI::App& app) {
       ->default_str("energy, or exact if stretch = true");
   command->add_option("--samples", options->samples, "M points at equal arc lengths from 0 to l")
       ->check(CLI::Range(2, 1000000));
-  command->add_flag("--all", options->all, "every equilibrium that is found, with its stability");
+  CLI::Option* all = command->add_flag("--all", options->all,
+                                       "every equilibrium that is found, with its stability");
+  command
+      ->add_option("--near", options->near,
+                   "the equilibrium that a local search from the points of FILE leads to, in place "
+                   "of the lowest: a shape in metres, as check --shape reads it")
+      ->type_name("FILE")
+      ->excludes(all);
   options->overrides.add_to(*command);
   options->plan.add_to(*command);
   std::vector<std::string> formats = compare::names<Format>();

@@ -36,11 +36,10 @@ Json to_json(const compare::ComparedState& state) {
             {"rms_from_compared_m", other.rms_from_compared_m},
             {"rms_from_shape_m", other.rms_from_shape_m}};
   });
-  return {{"energy_J", state.energy_J},
-          {"rank_of_stable", state.rank},
-          {"stable_found", state.stable},
-          {"unstable_found", state.unstable},
-          {"others", std::move(others)}};
+  return {
+      {"energy_J", state.energy_J},       {"energy_above_lowest_J", state.energy_above_lowest_J()},
+      {"rank_of_stable", state.rank},     {"stable_found", state.stable},
+      {"unstable_found", state.unstable}, {"others", std::move(others)}};
 }
 
 Json loads_json(const std::vector<compare::GripperLoad>& loads) {

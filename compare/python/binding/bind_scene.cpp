@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "array.hpp"
+#include "base/display.hpp"
 #include "base/input_file.hpp"
 #include "base/words.hpp"
 #include "dlo/compare/calibrated_rod.hpp"
@@ -141,6 +142,22 @@ py::list material_list(const MaterialsFile& file) {
 }
 
 }  // namespace
+
+compare::MeasuredShape measured_shape(const py::object& points, const py::object& arc_length,
+                                      const std::string& name) {
+  if (py::isinstance<py::bytes>(points)) {
+    if (!arc_length.is_none()) {
+      throw compare::InputError(
+          "arc_length: given besides the name of a file (allowed: the file's own column s)");
+    }
+    const auto path = points.cast<std::string>();
+    return compare::parse_shape(compare::read_file(compare::file_of_shape(path)),
+                                compare::valid_utf8(path));
+  }
+  return compare::shape_of(
+      points_from(points, name),
+      arc_length.is_none() ? std::vector<double>{} : values_from(arc_length, "arc_length"), name);
+}
 
 std::vector<compare::Material> materials_of(const MaterialsFile& file) {
   return file ? compare::read_materials(file->first, file->second) : compare::materials();

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <pybind11/pybind11.h>
+
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,6 +10,7 @@
 
 #include "dlo/compare/material.hpp"
 #include "dlo/compare/scene.hpp"
+#include "dlo/compare/shape_file.hpp"
 
 namespace dlo::python {
 
@@ -29,5 +32,11 @@ using MaterialsFile = std::optional<std::pair<std::string, std::string>>;
 [[nodiscard]] std::vector<compare::Material> materials_of(const MaterialsFile& file);
 /// Copies.
 [[nodiscard]] std::vector<compare::Scene> scenes_of(const std::vector<SharedScene>& shared);
+/// A shape from an array of points or, as bytes, the name of a file.
+/// @param arc_length  of the points, or none;  @param name  what messages call the points
+/// @throws compare::InputError
+[[nodiscard]] compare::MeasuredShape measured_shape(const pybind11::object& points,
+                                                    const pybind11::object& arc_length,
+                                                    const std::string& name);
 
 }  // namespace dlo::python

@@ -74,11 +74,20 @@ std::string states_document(const SolvedStates& solved) {
 }
 
 /// @param model_name  empty: the scene's reference_model()
+/// @param near  none, or points, a pair of points and arc lengths, or as bytes the name of a file
 py::object solve(const SharedScene& scene, const std::string& model_name, int samples,
-                 const py::dict& limits) {
+                 const py::object& near, const py::dict& limits) {
   const compare::Model model = model_name.empty() ? compare::reference_model(scene->scene)
                                                   : compare::from_name<compare::Model>(model_name);
   const compare::SolveOptions options = solve_options(limits);
+  std::optional<compare::MeasuredShape> from;
+  if (!near.is_none()) {
+    const auto [points, arc_length] = near.cast<std::pair<py::object, py::object>>();
+    from = measured_shape(points, arc_length, "near");
+    if (model != compare::Model::energy) {
+      throw compare::InputError("near: only model energy starts from points");
+    }
+  }
   auto solved = std::make_shared<SolvedScene>();
   solved->scene = scene;
   solved->time_limit = options.time_limit;
@@ -86,6 +95,7 @@ py::object solve(const SharedScene& scene, const std::string& model_name, int sa
     const std::vector<double> s = samples > 0
                                       ? compare::equal_arc_lengths(scene->scene.length, samples)
                                       : std::vector<double>{};
+    if (from) return compare::solve_near(scene->scene, *from, options, s);
     return compare::solve(scene->scene, model, options, s);
   });
   py::object result = py::cast(solved);
@@ -253,7 +263,7 @@ void bind_solve(py::module_& module) {
       });
   bind_equilibria(module);
   module.def("solve", &solve, py::arg("scene"), py::arg("model"), py::arg("samples"),
-             py::arg("limits"));
+             py::arg("near"), py::arg("limits"));
   module.def("solve_all", &solve_all, py::arg("scene"), py::arg("samples"), py::arg("limits"));
   module.def(
       "plan",

@@ -42,27 +42,10 @@ struct Comparison : compare::Comparison {
   SharedScene of;
 };
 
-/// @param points  or, as bytes, the name of a file
-compare::MeasuredShape measured(const py::object& points, const py::object& arc_length,
-                                const std::string& name) {
-  if (py::isinstance<py::bytes>(points)) {
-    if (!arc_length.is_none()) {
-      throw compare::InputError(
-          "arc_length: given besides the name of a file (allowed: the file's own column s)");
-    }
-    const auto path = points.cast<std::string>();
-    return compare::parse_shape(compare::read_file(compare::file_of_shape(path)),
-                                compare::valid_utf8(path));
-  }
-  return compare::shape_of(
-      points_from(points, name),
-      arc_length.is_none() ? std::vector<double>{} : values_from(arc_length, "arc_length"), name);
-}
-
 std::shared_ptr<CheckResult> check(const SharedScene& scene, const py::object& points,
                                    const py::object& arc_length, const py::dict& what,
                                    const py::dict& limits) {
-  const compare::MeasuredShape shape = measured(points, arc_length, "points");
+  const compare::MeasuredShape shape = measured_shape(points, arc_length, "points");
   compare::CheckRequest request{
       .explaining =
           what["explain"].cast<bool>() ? compare::Explaining::yes : compare::Explaining::no,
@@ -107,9 +90,9 @@ std::vector<compare::MeasuredShape> shapes_of(const py::list& pairs, const char*
   for (const py::handle& entry : pairs) {
     const auto pair = entry.cast<py::tuple>();
     const bool file = py::isinstance<py::bytes>(pair[0]);
-    shapes.push_back(measured(pair[0], pair[1],
-                              file ? compare::valid_utf8(pair[0].cast<std::string>())
-                                   : fmt::format("{}[{}]", name, shapes.size())));
+    shapes.push_back(measured_shape(pair[0], pair[1],
+                                    file ? compare::valid_utf8(pair[0].cast<std::string>())
+                                         : fmt::format("{}[{}]", name, shapes.size())));
   }
   return shapes;
 }
@@ -220,6 +203,10 @@ void bind_check(py::module_& module) {
                              "RMS distance of the points from the rod [m].")
       .def_property_readonly("largest", of([](const Report& r) { return r.check.deviation.max_m; }),
                              "Largest distance of a point [m].")
+      .def_property_readonly(
+          "energy_above_lowest",
+          of([](const Report& r) { return r.check.state.energy_above_lowest_J(); }),
+          "Energy of the equilibrium compared minus that of the lowest stable one known [J].")
       .def_property_readonly("worst_point", of([](const Report& r) { return r.check.worst_point; }),
                              "Number of that point, from 1.")
       .def_property_readonly(

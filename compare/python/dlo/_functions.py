@@ -65,6 +65,7 @@ def solve(
     model: Optional[str] = None,
     samples: Optional[int] = None,
     *,
+    near: Optional[Shape] = None,
     time: Optional[float] = None,
     materials: Optional[FileName] = None,
     calibrated: Optional[Calibrated] = None,
@@ -75,15 +76,18 @@ def solve(
     model: "energy" (the lowest energy), "exact" (the rod's balance, shot), "chain" (the force model's
     polygon) or "force" (the force model, stepped to rest); None: "exact" of a scene with
     stretch = True, else "energy". samples: M points at equal arc lengths from 0 to l; None: 101 of
-    energy and exact, the polygon's own points else. time: of a scene that moves, as it is then [s];
-    None: at the first pose. materials: a file in which the name of a material is looked up instead.
-    calibrated: a MaterialFit of calibrate(), or a file that `dlo calibrate -o` wrote: its rod, and how
-    clamps and camera are held, in the place of the scene's.
+    energy and exact, the polygon's own points else. near: points, a pair of points and arc lengths, or
+    the name of a file of these: the equilibrium of model energy that a local search from them leads to,
+    in place of the lowest. time: of a scene that moves, as it is then [s]; None: at the first pose.
+    materials: a file in which the name of a material is looked up instead. calibrated: a MaterialFit of
+    calibrate(), or a file that `dlo calibrate -o` wrote: its rod, and how clamps and camera are held, in
+    the place of the scene's.
     limits: time_limit [s], terms, max_evaluations, max_steps, rest_tolerance.
 
     Raises InputError, or ConvergenceError, whose result is the shape so far or None.
     """
-    return _dlo.solve(data_of(scene, materials, time, calibrated), model or "", samples or 0, limits)
+    data = data_of(scene, materials, time, calibrated)
+    return _dlo.solve(data, model or "", samples or 0, None if near is None else _pair(near), limits)
 
 
 @checked(samples=INTEGER, time=NUMBER)

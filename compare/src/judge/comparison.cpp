@@ -40,6 +40,15 @@ std::size_t state_of(const Scene& scene, const Shape& force,
   return nearest;
 }
 
+/// What a search from the force model's points finds, unless a known state is as near as any.
+void add_state_of_force_model(const Scene& scene, const Shape& force, const SolveOptions& options,
+                              std::vector<energy_model::Equilibrium>& states) {
+  const bool is_near = std::any_of(states.begin(), states.end(), [&](const auto& state) {
+    return succeeded(state.status) && distance(force, state.sample) < surely_nearest * scene.length;
+  });
+  if (!is_near) (void)add_state_near(scene, force, options, states);
+}
+
 }  // namespace
 
 Comparison compare(const Scene& scene, const SolveOptions& options,
@@ -57,7 +66,8 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
   const energy_model::Equilibrium lowest = solve_reference(scene, options);
   result.energy_seconds = lowest.seconds;
   result.energy_evaluations = lowest.evaluations;
-  const std::vector<energy_model::Equilibrium> states = all_states(scene, lowest, options);
+  std::vector<energy_model::Equilibrium> states = all_states(scene, lowest, options);
+  add_state_of_force_model(scene, force, options, states);
   const std::size_t compared = state_of(scene, force, states, options);
   const energy_model::Equilibrium& energy = states[compared];
   std::vector<double> from_force;

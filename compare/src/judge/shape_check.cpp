@@ -5,6 +5,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/error.hpp"
@@ -215,26 +219,62 @@ ShapeCheck compared(const Scene& scene, const MeasuredShape& shape, Alignment la
   return result;
 }
 
+/// A shape as it lies on each equilibrium.
+struct LaidStates {
+  LaidStates(const Aligner& on, double length, std::vector<energy_model::Equilibrium> of)
+      : aligner(on), states(std::move(of)) {
+    for (const energy_model::Equilibrium& state : states) {
+      alignments.push_back(aligner.align(Curve(state.sample, length)));
+      from_shape.push_back(alignments.back().rms_m);
+    }
+  }
+
+  /// The index of the stable one that the shape is nearest to; the first one, which is the lowest,
+  /// where none is proven stable.
+  [[nodiscard]] std::size_t nearest() const {
+    std::size_t result = 0;
+    for (std::size_t i = 1; i < states.size(); ++i) {
+      const bool nearer = from_shape[i] < from_shape[result];
+      if (energy_model::succeeded(states[i].status) && nearer) result = i;
+    }
+    return result;
+  }
+
+  /// Adds what a search from the shape's points finds.
+  void add_near(const Shape& shape, const Scene& scene, const SolveOptions& options) {
+    const std::optional<std::size_t> added = add_state_near(scene, shape, options, states);
+    if (!added) return;
+    const auto at = static_cast<std::ptrdiff_t>(*added);
+    Alignment alignment = aligner.align(Curve(states[*added].sample, scene.length));
+    from_shape.insert(from_shape.begin() + at, alignment.rms_m);
+    alignments.insert(alignments.begin() + at, std::move(alignment));
+  }
+
+  const Aligner& aligner;
+  std::vector<energy_model::Equilibrium> states;
+  std::vector<Alignment> alignments;
+  std::vector<double> from_shape;  // RMS [m]
+};
+
 }  // namespace
 
 ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
                        const ShapeCheckOptions& options) {
   const Aligner aligner(shape, scene.length, align_options(scene, options));
   const energy_model::Equilibrium lowest = solve_reference(scene, options.solve);
-  const std::vector<energy_model::Equilibrium> states = all_states(scene, lowest, options.solve);
-  std::vector<Alignment> alignments;
-  std::vector<double> from_shape;
-  std::size_t nearest = 0;
-  for (const energy_model::Equilibrium& state : states) {
-    alignments.push_back(aligner.align(Curve(state.sample, scene.length)));
-    from_shape.push_back(alignments.back().rms_m);
-    // The lowest of all is stable and comes first.
-    const bool nearer = from_shape.back() < from_shape[nearest];
-    if (energy_model::succeeded(state.status) && nearer) nearest = alignments.size() - 1;
+  LaidStates laid(aligner, scene.length, all_states(scene, lowest, options.solve));
+  const bool searches = reference_model(scene) == Model::energy;
+  if (searches && laid.from_shape[laid.nearest()] > surely_nearest * scene.length) {
+    MeasuredShape placed = shape;
+    placed.points = laid.alignments[laid.nearest()].pose.applied(shape.points);
+    laid.add_near(laid_by_grippers(placed, scene, aligner.arc_lengths()), scene, options.solve);
   }
+  const std::size_t nearest = laid.nearest();
+  std::vector<Alignment>& alignments = laid.alignments;
+  const std::vector<energy_model::Equilibrium>& states = laid.states;
   const energy_model::Equilibrium& energy = states[nearest];
   ShapeCheck result = compared(scene, shape, std::move(alignments[nearest]), energy);
-  result.state = describe_state(scene, states, nearest, from_shape);
+  result.state = describe_state(scene, states, nearest, laid.from_shape);
   const double offset = distance_from_line(result.alignment.shape.points);
   result.turn_is_clear = options.pose != PoseFreedom::rigid ||
                          offset > std::max(3 * result.alignment.rms_m, 1e-6 * scene.length);

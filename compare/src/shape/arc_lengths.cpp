@@ -5,9 +5,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "dlo/compare/error.hpp"
-#include "dlo/compare/scene.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -16,7 +17,82 @@ double turning_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
+/// How far a shape's points are from the grippers, root of a sum of squares [m]. A gripper beyond
+/// the points counts with what the rod between could not span.
+double distance_from_grippers(const Shape& shape, const Scene& scene) {
+  double sum = 0;
+  const std::vector<double>& s = shape.arc_length;
+  for (const Gripper& gripper : scene.grippers) {
+    const double at = std::clamp(gripper.at, s.front(), s.back());
+    const Eigen::Vector3d there = resample(shape, {at}).points.col(0);
+    const double beyond = std::abs(gripper.at - at);
+    const double away = std::max(0.0, (there - gripper.position).norm() - beyond);
+    sum += away * away;
+  }
+  return std::sqrt(sum);
+}
+
+/// l - s by growing arc length, of a shape that runs from l to 0.
+Shape reversed(const Shape& shape, double length) {
+  Shape result;
+  result.points = shape.points.rowwise().reverse();
+  result.arc_length.assign(shape.arc_length.rbegin(), shape.arc_length.rend());
+  for (double& s : result.arc_length) s = std::max(0.0, length - s);
+  return result;
+}
+
+/// Arc lengths that grow strictly, each with its first point.
+Shape without_repeated_lengths(const Shape& shape) {
+  Shape result;
+  std::vector<Eigen::Index> kept;
+  for (std::size_t i = 0; i < shape.arc_length.size(); ++i) {
+    if (!kept.empty() && !(shape.arc_length[i] > result.arc_length.back())) continue;
+    kept.push_back(static_cast<Eigen::Index>(i));
+    result.arc_length.push_back(shape.arc_length[i]);
+  }
+  result.points = shape.points(Eigen::all, kept);
+  return result;
+}
+
 }  // namespace
+
+Shape laid_by_grippers(const MeasuredShape& shape, const Scene& scene, ArcLengths rule) {
+  constexpr double whole_slack = 0.03;
+  constexpr int places_along = 21;
+  const double length = scene.length;
+  Shape along;
+  along.points = shape.points;
+  if (rule == ArcLengths::file) {
+    along.arc_length = file_arc_lengths(shape, length);
+    const bool falls = along.arc_length.front() > along.arc_length.back();
+    if (falls) {
+      along.points = shape.points.rowwise().reverse();
+      std::reverse(along.arc_length.begin(), along.arc_length.end());
+    }
+  } else {
+    along.arc_length = lengths_along(shape.points);
+    const double total = along.arc_length.back();
+    const bool whole = rule == ArcLengths::chord || total > (1 - whole_slack) * length;
+    for (double& s : along.arc_length) s = std::min(whole ? s / total * length : s, length);
+  }
+  const bool moves = rule != ArcLengths::file && along.arc_length.back() < length;
+  const double slack = moves ? length - along.arc_length.back() : 0;
+  const int places = slack > 0 ? places_along : 1;
+  Shape best;
+  double least = std::numeric_limits<double>::infinity();
+  for (int place = 0; place < places; ++place) {
+    Shape moved = along;
+    const double offset = places > 1 ? slack * place / (places - 1) : 0;
+    for (double& s : moved.arc_length) s = std::min(s + offset, length);
+    for (const Shape& laid : {moved, reversed(moved, length)}) {
+      const double away = distance_from_grippers(laid, scene);
+      if (!(away < least)) continue;
+      least = away;
+      best = laid;
+    }
+  }
+  return without_repeated_lengths(best);
+}
 
 ArcLengths arc_length_rule(const MeasuredShape& shape, ArcLengths asked) {
   if (asked != ArcLengths::automatic) return asked;

@@ -4,6 +4,8 @@
 #include <vector>
 
 #include "dlo/compare/alignment.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/shape.hpp"
 #include "dlo/compare/shape_file.hpp"
 
 namespace dlo::compare {
@@ -20,6 +22,17 @@ namespace dlo::compare {
 /// Lengths along a curve through the points [m]: each chord d with the mean curvature k at its ends
 /// is an arc of d (1 + (k d)^2 / 24).
 [[nodiscard]] std::vector<double> lengths_along(const Eigen::Matrix3Xd& points);
+
+/// Lays a shape in the scene's frame along the rod by what the grippers say, as a guess of the
+/// rod's shape that needs no equilibrium: at the file's arc lengths, or at lengths along the
+/// polyline, which are scaled to the rod where they are as long to 3 %. Of a shorter polyline where
+/// it begins, and of every file from which end, is chosen so that the points come nearest to the
+/// grippers.
+/// @param rule  as of arc_length_rule()
+/// @return its points by growing arc length, those too many left out that share one
+/// @throws InputError as file_arc_lengths()
+[[nodiscard]] Shape laid_by_grippers(const MeasuredShape& shape, const Scene& scene,
+                                     ArcLengths rule);
 
 /// Whether points at equal distances are shorter than a rod by one of their segments, to a tenth of
 /// it: where each body of a chain begins, without the end of the last.

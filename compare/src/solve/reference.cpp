@@ -234,6 +234,23 @@ energy_model::EnergySearch search_states(const Scene& scene, const SolveOptions&
   return search;
 }
 
+energy_model::Equilibrium reference_near(const Scene& scene, const Shape& shape,
+                                         const SolveOptions& options) {
+  scene.require_potential("the energy model does");
+  refuse_stretch(scene);
+  try {
+    energy_model::Equilibrium near =
+        energy_model::energy_near(energy_problem(scene), shape.arc_length, shape.points,
+                                  {.terms = options.terms,
+                                   .max_evaluations = options.max_evaluations,
+                                   .time_limit = options.time_limit});
+    refuse_lost_turns(scene, near);
+    return near;
+  } catch (const std::invalid_argument& error) {
+    refuse_rod(scene, Model::energy, error);
+  }
+}
+
 std::vector<energy_model::Equilibrium> reference_states(const Scene& scene,
                                                         const SolveOptions& options) {
   if (reference_model(scene) == Model::exact) return {solve_reference(scene, options)};

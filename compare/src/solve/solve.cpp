@@ -16,6 +16,7 @@
 #include "dlo/energy_model/exact.hpp"
 #include "polygon/shape_loads.hpp"
 #include "scene/reach.hpp"
+#include "shape/arc_lengths.hpp"
 #include "solve/linking.hpp"
 #include "solve/stretch_effect.hpp"
 
@@ -142,6 +143,24 @@ Solution solve(const Scene& scene, Model model, const SolveOptions& options,
     solution.shape = resample(solution.shape, s);
   }
   return solution;
+}
+
+Solution solve_near(const Scene& scene, const MeasuredShape& shape, const SolveOptions& options,
+                    const std::vector<double>& arc_lengths) {
+  const ArcLengths rule = arc_length_rule(shape, ArcLengths::automatic);
+  const energy_model::Equilibrium near =
+      reference_near(scene, laid_by_grippers(shape, scene, rule), options);
+  using energy_model::SolveStatus;
+  const bool shown = near.status == SolveStatus::saddle ||
+                     near.status == SolveStatus::near_singular ||
+                     near.status == SolveStatus::not_verified;
+  if (!succeeded(near.status) && !(shown && options.accept_unverified)) {
+    throw ConvergenceError(
+        fmt::format("{}: the energy model found no equilibrium near {}: {} ({} evaluations)",
+                    scene.file, shape.file, near.message, near.evaluations));
+  }
+  return told_solution(told_of_stretch(scene, Model::energy, near, options), Model::energy,
+                       arc_lengths, obstacles_in_reach(scene));
 }
 
 AllSolutions solve_all(const Scene& scene, const SolveOptions& options,

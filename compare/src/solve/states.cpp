@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "dlo/compare/deviation.hpp"
@@ -18,9 +19,6 @@ bool is_stable(const Equilibrium& state) {
   return succeeded(state.status) || state.status == energy_model::SolveStatus::not_verified ||
          state.status == energy_model::SolveStatus::near_singular;
 }
-
-/// Shapes that are nearer than this share of the length are the same.
-constexpr double same_shape = 1e-4;
 
 double shapes_apart(const Scene& scene, const Equilibrium& a, const Equilibrium& b) {
   const std::vector<double> s = equal_arc_lengths(scene.length, 41);
@@ -85,6 +83,14 @@ Equilibrium mirrored(const Scene& scene, const Equilibrium& state, const Eigen::
   return result;
 }
 
+/// The order of states: stable ones first, by energy.
+bool comes_before(const Equilibrium& a, const Equilibrium& b) {
+  const bool a_stable = is_stable(a);
+  const bool b_stable = is_stable(b);
+  if (a_stable != b_stable) return a_stable;
+  return a.energy.total() < b.energy.total();
+}
+
 }  // namespace
 
 std::vector<Equilibrium> all_states(const Scene& scene, const Equilibrium& lowest,
@@ -110,13 +116,24 @@ std::vector<Equilibrium> all_states(const Scene& scene, const Equilibrium& lowes
       if (find(image) == states.end()) states.push_back(std::move(image));
     }
   }
-  std::stable_sort(states.begin(), states.end(), [](const Equilibrium& a, const Equilibrium& b) {
-    const bool a_stable = is_stable(a);
-    const bool b_stable = is_stable(b);
-    if (a_stable != b_stable) return a_stable;
-    return a.energy.total() < b.energy.total();
-  });
+  std::stable_sort(states.begin(), states.end(), comes_before);
   return states;
+}
+
+std::optional<std::size_t> add_state_near(const Scene& scene, const Shape& shape,
+                                          const SolveOptions& options,
+                                          std::vector<Equilibrium>& states) {
+  if (shape.arc_length.size() < 2) return std::nullopt;
+  Equilibrium near = reference_near(scene, shape, options);
+  if (!succeeded(near.status)) return std::nullopt;
+  const bool known = std::any_of(states.begin(), states.end(), [&](const Equilibrium& other) {
+    return shapes_apart(scene, near, other) < same_shape * scene.length;
+  });
+  if (known) return std::nullopt;
+  const auto at = std::upper_bound(states.begin(), states.end(), near, comes_before);
+  const auto index = static_cast<std::size_t>(at - states.begin());
+  states.insert(at, std::move(near));
+  return index;
 }
 
 ComparedState describe_state(const Scene& scene, const std::vector<Equilibrium>& states,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "dlo/compare/compared_state.hpp"
@@ -12,6 +14,23 @@ namespace dlo::compare {
 /// scene's shapes out of its plane also the mirror images.
 [[nodiscard]] std::vector<energy_model::Equilibrium> all_states(
     const Scene& scene, const energy_model::Equilibrium& lowest, const SolveOptions& options);
+
+/// Shapes that are nearer than this share of the length, RMS, are the same.
+inline constexpr double same_shape = 1e-4;
+
+/// Distance of a known equilibrium from a shape, as a share of the length, below which a search
+/// from the shape's points is left out. Other equilibria are at least `same_shape` from the known
+/// one, and so at least as far from the shape as the known one is (triangle inequality).
+inline constexpr double surely_nearest = same_shape / 2;
+
+/// Searches from the points of a shape (reference_near), and adds what it finds to the states in
+/// their order, if it is proven stable and none of them.
+/// @param shape   in the scene's frame
+/// @param[in,out] states  of all_states()
+/// @return the index of the one added; none: it is known, or the search found no stable one
+[[nodiscard]] std::optional<std::size_t> add_state_near(
+    const Scene& scene, const Shape& shape, const SolveOptions& options,
+    std::vector<energy_model::Equilibrium>& states);
 
 /// What there is to say of the state compared.
 /// @param states  of all_states();  @param compared  its index

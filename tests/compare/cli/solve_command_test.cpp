@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -277,6 +278,50 @@ TEST_F(Command, ModelExactIsTheDefaultAndTheReferenceOfARodThatStretches) {
   succeeds("regress " + stretches + " --baseline " + path("base.toml"));
   const json fit = json_of("calibrate " + stretches + " --shape " + file);
   EXPECT_NEAR(fit.at("youngs_modulus_Pa").get<double>() / 2e6, 1, 1e-3) << fit;
+}
+
+/// A rope that may hang beside a peg or lie over it.
+const std::string rope_beside_peg = R"(
+gravity = [0, -9.81, 0]
+[rod]
+length = "1 m"
+diameter = "6 mm"
+bending_stiffness = "5e-3 N m^2"
+mass_per_length = "0.06 kg/m"
+[[gripper]]
+at = 0
+position = [-0.35, 0.06, 0]
+hold = "pin"
+[[load]]
+at = "1 m"
+mass = "1.5 kg"
+[[obstacle]]
+shape = "cylinder"
+point = [0, 0, 0]
+axis = [0, 0, 1]
+radius = "4 cm"
+)";
+
+TEST_F(Command, SolveNearAFileIsTheEquilibriumBesideThatFile) {
+  const std::string path = scene(rope_beside_peg);
+  const std::string over = write("over.csv",
+                                 "x,y,z\n-0.35,0.06,0\n-0.01,0.043,0\n0.03,0.03,0\n0.043,0,0\n"
+                                 "0.043,-0.3,0\n0.043,-0.59,0\n");
+  const json near = json_of("solve " + path + " --near " + over);
+  EXPECT_EQ(near.at("converged"), true);
+  ASSERT_EQ(near.at("contacts").size(), 1);
+  const double tip = near.at("points_m").back()[1];
+  const double held = std::abs(near.at("grippers")[0].at("force_N")[0].get<double>());
+  EXPECT_NEAR(held, 9.81 * (1.5 + 0.06 * (0.06 - tip)), 0.05);
+  EXPECT_TRUE(json_of("solve " + path).at("contacts").empty());
+  // Of the two in the list it is the second.
+  const json all = json_of("solve " + path + " --all").at("equilibria");
+  ASSERT_GE(all.size(), 2);
+  EXPECT_NEAR(all[1].at("energy_J").get<double>(), near.at("energy_J").at("total").get<double>(),
+              1e-9);
+  EXPECT_TRUE(says(run("solve " + path + " --model exact --near " + over).err,
+                   {"--near: only model energy"}));
+  EXPECT_NE(run("solve " + path + " --all --near " + over).status, 0);
 }
 
 }  // namespace

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "../../sanitized.hpp"
 #include "../../says.hpp"
@@ -13,10 +16,13 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/reference.hpp"
+#include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solution.hpp"
 #include "dlo/compare/solve.hpp"
 #include "measured_shapes.hpp"
 #include "scenes.hpp"
+#include "shape/arc_lengths.hpp"
+#include "solve/states.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -281,6 +287,72 @@ TEST(ShapeCheck, UprightNeedsGravity) {
   const MeasuredShape shape = exact_shape(scene, equal_arc_lengths(1, 11));
   scene.gravity.setZero();
   EXPECT_THROW((void)check_shape(scene, shape, {.pose = PoseFreedom::upright}), InputError);
+}
+
+/// A rope from a pin to the left of a peg, with a load at its end.
+Scene rope_beside_peg() {
+  return parse_scene(R"(
+gravity = [0, -9.81, 0]
+[rod]
+length = "1 m"
+diameter = "6 mm"
+bending_stiffness = "5e-3 N m^2"
+mass_per_length = "0.06 kg/m"
+[[gripper]]
+at = 0
+position = [-0.35, 0.06, 0]
+hold = "pin"
+[[load]]
+at = "1 m"
+mass = "1.5 kg"
+[[obstacle]]
+shape = "cylinder"
+point = [0, 0, 0]
+axis = [0, 0, 1]
+radius = "4 cm"
+)",
+                     "rope.toml");
+}
+
+/// Points on a line from corner to corner, as many as are asked for.
+Eigen::Matrix3Xd along_corners(const Eigen::Matrix3Xd& corners, int count) {
+  Shape line{{0}, corners};
+  for (Eigen::Index i = 1; i < corners.cols(); ++i) {
+    line.arc_length.push_back(line.arc_length.back() +
+                              (corners.col(i) - corners.col(i - 1)).norm());
+  }
+  return resample(line, equal_arc_lengths(line.arc_length.back(), count)).points;
+}
+
+// The pin is pulled by the load and by the weight of the rope between the heights of its ends; a
+// chain of straight lines over the peg is a few millimetres from that rope, whichever end it begins
+// with, and far from the one that hangs beside the peg.
+TEST(ShapeCheck, TheReferenceIsTheStableEquilibriumNearThePoints) {
+  const Scene scene = rope_beside_peg();
+  Eigen::Matrix3Xd corners(3, 5);
+  corners << -0.35, -0.01, 0.03, 0.043, 0.043, 0.06, 0.043, 0.03, 0, -0.59, 0, 0, 0, 0, 0;
+  const Eigen::Matrix3Xd points = along_corners(corners, 41);
+  const SolveOptions options;
+  std::vector<energy_model::Equilibrium> states =
+      all_states(scene, solve_reference(scene, Model::energy), options);
+  for (const bool backwards : {false, true}) {
+    const MeasuredShape shape{
+        "rope", backwards ? Eigen::Matrix3Xd(points.rowwise().reverse()) : points, {}};
+    const ShapeCheck check = check_shape(scene, shape, {.modulus = ModulusSearch::no});
+    EXPECT_LT(check.deviation.rms_m, 5e-3);
+    EXPECT_GT(check.state.energy_above_lowest_J(), 0.1);
+    EXPECT_EQ(check.state.rank, 2);
+    const double fall = 0.06 - check.rod.sample(std::array{1.0}).points(1, 0);
+    EXPECT_NEAR(check.rod.grips[0].force.norm(), 9.81 * (1.5 + 0.06 * fall), 1e-5);
+    EXPECT_EQ(check.rod.contacts.size(), 1);
+  }
+  // What a search of the scene does not find, one from the points does.
+  std::erase_if(states, [](const auto& state) { return !state.contacts.empty(); });
+  ASSERT_EQ(states.size(), 1);
+  const Shape laid = laid_by_grippers({"rope", points, {}}, scene, ArcLengths::nearest);
+  EXPECT_EQ(add_state_near(scene, laid, options, states), 1U);
+  EXPECT_EQ(add_state_near(scene, laid, options, states), std::nullopt);
+  EXPECT_EQ(states.size(), 2);
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace dlo::compare {
@@ -21,6 +23,16 @@ struct ComparedState {
   int unstable = 0;                ///< how many unstable ones were found
   std::vector<OtherState> others;  ///< stable ones first, by energy
 
+  /// Energy of the one compared minus that of the lowest stable one that is known; 0 of the lowest,
+  /// and of a mirror image whose energy differs by rounding.
+  [[nodiscard]] double energy_above_lowest_J() const {
+    constexpr double rounding = 1e-9;
+    double above = 0;
+    for (const OtherState& other : others) {
+      if (other.stable) above = std::max(above, -other.energy_difference_J);
+    }
+    return above > rounding * std::abs(energy_J) ? above : 0;
+  }
   /// No other stable one is as low, as a mirror image is.
   [[nodiscard]] bool only_lowest() const { return rank == 1 && stable == 1; }
 };

@@ -35,6 +35,13 @@ namespace dlo::compare {
 [[nodiscard]] std::vector<energy_model::Equilibrium> reference_states(
     const Scene& scene, const SolveOptions& options = {});
 
+/// Finds the equilibrium of the energy model that a local search from a shape's points leads to
+/// (energy_model::energy_near), whatever its status.
+/// @param shape  in the scene's frame, two points or more
+/// @throws InputError
+[[nodiscard]] energy_model::Equilibrium reference_near(const Scene& scene, const Shape& shape,
+                                                       const SolveOptions& options = {});
+
 /// What touches rigid obstacles in such an equilibrium; its `obstacle` is that of the scene's
 /// obstacles.
 [[nodiscard]] std::vector<energy_model::ContactPart> contacts_of(

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "dlo/compare/scene.hpp"
+#include "dlo/compare/shape_file.hpp"
 #include "dlo/compare/solution.hpp"
 #include "dlo/energy_model/energy.hpp"
 
@@ -15,6 +16,15 @@ namespace dlo::compare {
 /// @throws InputError if the model does not know such a scene, ConvergenceError
 [[nodiscard]] Solution solve(const Scene& scene, Model model, const SolveOptions& options = {},
                              const std::vector<double>& arc_lengths = {});
+
+/// Finds the equilibrium of the energy model that a local search from a shape leads to, with forces
+/// and contacts as solve() gives them; it need not be the lowest.
+/// @param shape  in the scene's frame; its arc lengths may be missing, and the grippers then say
+///               where along the rod its points are
+/// @throws InputError, ConvergenceError
+[[nodiscard]] Solution solve_near(const Scene& scene, const MeasuredShape& shape,
+                                  const SolveOptions& options = {},
+                                  const std::vector<double>& arc_lengths = {});
 
 /// An equilibrium of `energy` or `exact` as solve() gives it.
 /// @param obstacles  of the scene, those that the model was given
