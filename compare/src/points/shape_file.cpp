@@ -23,7 +23,7 @@ namespace {
 
 constexpr double largest_coordinate = 1e6;
 /// Neighbours that are nearer are the same point [m]: lengths between them would underflow.
-constexpr double same_point = 1e-15;
+constexpr double least_distance = 1e-15;
 
 double distance_between(const std::array<double, 3>& a, const std::array<double, 3>& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
@@ -51,7 +51,7 @@ void require_points(const RawShape& raw, const std::string& file, double unit) {
     for (std::size_t k = 0; k < 3; ++k) {
       require_number(raw, file, i, names[k], raw.points[i][k], unit);
     }
-    if (i > 0 && !(unit * distance_between(raw.points[i], raw.points[i - 1]) > same_point)) {
+    if (i > 0 && !(unit * distance_between(raw.points[i], raw.points[i - 1]) > least_distance)) {
       throw InputError(
           fmt::format("{}: the same as the point before (allowed: distinct neighbours)",
                       where_point(raw, file, i)));

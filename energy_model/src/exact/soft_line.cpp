@@ -329,6 +329,8 @@ class SoftLine {
     part.begin = rises_at_begin ? line_.low + edge_layer() : 0.0;
     part.end = rises_at_end ? end - edge_layer() : problem_.length;
     part.force = result.obstacles.front();
+    part.moment = (line_.point(line_.low + line_.lying / 2) - line_.point(part.begin))
+                      .cross(part.force);  // the middle of what lies
     part.begin_force = rises_at_begin ? pressed : 0.0;
     part.end_force = rises_at_end ? pressed : 0.0;
     part.largest_pressure = weight_;
