@@ -3,6 +3,9 @@
 //   dlo_random_scenes [--plane N] [--space N] [--twisted N] [--curved N] [--mixed N] [--strip N]
 //   [--first K] [--time-limit SECONDS] [--exact search|energy] [--write FOLDER]
 // With `--exact energy` multiple shooting confirms the minimiser's shapes without a search.
+//   dlo_random_scenes --balance N [--first K] [--time-limit SECONDS]
+// Instead solves N scenes of all kinds (random_balance.hpp) with every model and prints the largest
+// imbalance of each: 0 if no solver has refused a shape because of its balance; 1 if one has.
 // Ends with 0 if no two converged shapes contradict each other, no equilibrium is out of balance
 // and no solve overran the limit; 1 if not; 2 for bad usage.
 
@@ -18,6 +21,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "random_balance.hpp"
+
 namespace {
 
 using dlo::energy_model::Equilibrium;
@@ -32,6 +37,7 @@ struct Options {
   std::uint64_t curved = 100;
   std::uint64_t mixed = 100;
   std::uint64_t strip = 100;
+  std::uint64_t balance = 0;
   std::uint64_t first = 0;
   double time_limit = 20;
   dlo::test::ExactFrom exact = dlo::test::ExactFrom::search;
@@ -57,6 +63,8 @@ Options read_options(int argc, char** argv) {
       options.mixed = std::stoul(value, &used);
     } else if (name == "--strip") {
       options.strip = std::stoul(value, &used);
+    } else if (name == "--balance") {
+      options.balance = std::stoul(value, &used);
     } else if (name == "--exact") {
       if (value != "search" && value != "energy") {
         throw std::invalid_argument("--exact " + value + " (allowed: search, energy)");
@@ -190,6 +198,10 @@ int main(int argc, char** argv) {
   } catch (const std::exception& error) {
     std::cerr << "dlo_random_scenes: " << error.what() << "\n";
     return 2;
+  }
+  if (options.balance > 0) {
+    return dlo::test::print_imbalances(options.first, options.balance, options.time_limit) == 0 ? 0
+                                                                                                : 1;
   }
   const int bad = run(options, RandomSpace::plane, options.plane) +
                   run(options, RandomSpace::space, options.space) +

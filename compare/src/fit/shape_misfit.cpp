@@ -48,6 +48,7 @@ ShapeMisfit::ShapeMisfit(const std::vector<Scene>& scenes, MeasuredShapes& measu
     };
     const auto first = std::find_if(scenes.begin(), scenes.end(), like_this);
     first_like_.push_back(static_cast<std::size_t>(first - scenes.begin()));
+    follows_.push_back(scene.grippers.size() > 1);
   }
 }
 
@@ -81,7 +82,7 @@ const ShapeMisfit::Solved* ShapeMisfit::nearest(std::size_t i,
 
 std::shared_ptr<const ShapeMisfit::Solved> ShapeMisfit::solved(std::size_t i,
                                                                const MaterialPoint& material) {
-  const bool follows = scenes_[i].grippers.size() > 1;
+  const bool follows = follows_[i];
   if (!follows) {
     // The next shape of the same scene needs the same equilibria.
     const auto shared = std::find_if(shared_.begin(), shared_.end(), [&](const auto& entry) {
@@ -139,23 +140,43 @@ double ShapeMisfit::operator()(const MaterialPoint& material) {
   return sum;
 }
 
+std::shared_ptr<const ShapeMisfit::Solved> ShapeMisfit::nearer(
+    std::size_t i, const MaterialPoint& material, const std::shared_ptr<const Solved>& now) {
+  std::vector<std::shared_ptr<Solved>> others;
+  if (scenes_[i].grippers.size() > 1 && searches_[i]++ < most_searches) {
+    others.push_back(solve(i, material, nullptr));
+  }
+  if (now) {
+    others.push_back(std::make_shared<Solved>(*now));
+    Solved& near = *others.back();
+    near.scene = i;
+    near.equilibrium = measured_.solve_near(i, of_material(scenes_[i], material), now->equilibrium);
+  }
+  double least =
+      now ? measured_.squares(i, now->equilibrium) : std::numeric_limits<double>::infinity();
+  std::shared_ptr<const Solved> result;
+  for (const std::shared_ptr<Solved>& other : others) {
+    if (!energy_model::succeeded(other->equilibrium.status)) continue;
+    const double squares = measured_.squares(i, other->equilibrium);
+    if (!(squares < 0.99 * least - std::pow(1e-6 * scenes_[i].length, 2))) continue;
+    least = squares;
+    result = other;
+  }
+  return result;
+}
+
 bool ShapeMisfit::search_at(const MaterialPoint& material) {
   bool better = false;
   std::vector<std::shared_ptr<const Solved>> next;
   for (std::size_t i = 0; i < scenes_.size(); ++i) {
-    if (scenes_[i].grippers.size() < 2) continue;
     const std::shared_ptr<const Solved> now = solved(i, material);
-    if (now) next.push_back(now);
-    if (searches_[i]++ >= most_searches) continue;
-    const std::shared_ptr<Solved> other = solve(i, material, nullptr);
-    if (!energy_model::succeeded(other->equilibrium.status)) continue;
-    const double before =
-        now ? measured_.squares(i, now->equilibrium) : std::numeric_limits<double>::infinity();
-    const double least = std::pow(1e-6 * scenes_[i].length, 2);
-    if (!(measured_.squares(i, other->equilibrium) < 0.99 * before - least)) continue;
-    if (now) next.pop_back();
-    next.push_back(other);
-    better = true;
+    const std::shared_ptr<const Solved> other = nearer(i, material, now);
+    if (other) {
+      better = follows_[i] = true;
+      next.push_back(other);
+    } else if (now && follows_[i]) {
+      next.push_back(now);
+    }
   }
   if (!better) return false;
   kept_.assign(next.begin(), next.end());

@@ -30,8 +30,10 @@ class ShapeMisfit {
   /// @throws ConvergenceError if the time limit is over
   double operator()(const MaterialPoint& material);
 
-  /// Searches for equilibria at a material instead of following. True if a shape is another one
-  /// and lies nearer to its points; all that was known of other materials is then forgotten.
+  /// Searches for equilibria at a material instead of following: between grippers as at the first
+  /// material, and everywhere from a shape's own points (energy_model::energy_near). True if a
+  /// shape is another one and lies nearer to its points; all that was known of other materials is
+  /// then forgotten, and a rod that is held once is followed from that shape from then on.
   bool search_at(const MaterialPoint& material);
 
   /// The equilibria at a material where there is a shape.
@@ -58,11 +60,16 @@ class ShapeMisfit {
   [[nodiscard]] std::shared_ptr<const Solved> solved(std::size_t i, const MaterialPoint& material);
   [[nodiscard]] std::shared_ptr<Solved> solve(std::size_t i, const MaterialPoint& material,
                                               const energy_model::Equilibrium* start);
+  /// Of the lowest equilibrium and the one near the points, what lies nearer to these than `now`
+  /// by more than rounding; null: neither.
+  [[nodiscard]] std::shared_ptr<const Solved> nearer(std::size_t i, const MaterialPoint& material,
+                                                     const std::shared_ptr<const Solved>& now);
   [[nodiscard]] const Solved* nearest(std::size_t i, const MaterialPoint& material) const;
 
   const std::vector<Scene>& scenes_;
   MeasuredShapes& measured_;
   std::vector<int> searches_;
+  std::vector<bool> follows_;  // each scene: from the shape at the nearest material
   std::map<MaterialPoint, double> values_;
   std::deque<std::shared_ptr<const Solved>> kept_;
   std::vector<std::size_t> first_like_;               // of each scene: the first that equals it

@@ -12,6 +12,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
 #include "polygon/energy_problems.hpp"
+#include "shape/arc_lengths.hpp"
 #include "shape/shape_measure.hpp"
 
 namespace dlo::compare {
@@ -114,7 +115,7 @@ MeasuredShapes::MeasuredShapes(const std::vector<Scene>& scenes,
                      .up = up});
     const Eigen::Index columns = aligner.free_coordinates();
     const bool flat = options_.flat != FlatShapes::measured && lies_in_a_plane(shapes[i].points);
-    shapes_.push_back({std::move(aligner), scenes[i].length, flat, up, frame_columns_});
+    shapes_.push_back({shapes[i], std::move(aligner), scenes[i].length, flat, up, frame_columns_});
     frame_columns_ += columns;
   }
 }
@@ -169,12 +170,33 @@ double MeasuredShapes::way_out_of_plane(std::size_t shape, const Scene& scene,
 double MeasuredShapes::time_left() const {
   const double limit = options_.solve.time_limit;
   const double left = limit * static_cast<double>(size()) - timer_.seconds();
-  if (!(left > 0)) {
-    throw ConvergenceError(
-        fmt::format("calibrate: not done within {:g} s{}, after {} equilibria (--time-limit)",
-                    limit, size() > 1 ? " per scene" : "", solves_));
+  if (left > 0) return std::min(limit, left);
+  throw ConvergenceError(
+      fmt::format("calibrate: not done within {:g} s{}, after {} equilibria (--time-limit)", limit,
+                  size() > 1 ? " per scene" : "", solves_));
+}
+
+energy_model::Equilibrium MeasuredShapes::solve_near(std::size_t shape, const Scene& scene,
+                                                     const energy_model::Equilibrium& like) {
+  MeasuredShape placed = shapes_[shape].file;
+  placed.points = alignment(shape, like).pose.applied(placed.points);
+  const Shape laid = laid_by_grippers(placed, scene, shapes_[shape].aligner.arc_lengths());
+  if (laid.arc_length.size() < 2) return {};
+  energy_model::Problem problem = energy_problem(scene);
+  problem.confined_to_plane = is_confined(shape, scene);
+  const double left = time_left();
+  ++solves_;
+  try {
+    energy_model::Equilibrium rod =
+        energy_model::energy_near(problem, laid.arc_length, laid.points,
+                                  {.terms = options_.solve.terms,
+                                   .max_evaluations = options_.solve.max_evaluations,
+                                   .time_limit = left});
+    evaluations_ += rod.evaluations;
+    return rod;
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: {}", scene.file, error.what()));
   }
-  return std::min(limit, left);
 }
 
 energy_model::Equilibrium MeasuredShapes::solve_stretched(const Scene& scene,
@@ -195,13 +217,13 @@ energy_model::Equilibrium MeasuredShapes::solve_stretched(const Scene& scene,
 energy_model::Equilibrium MeasuredShapes::solve(const energy_model::Problem& problem,
                                                 const std::string& file,
                                                 const energy_model::Equilibrium* start) {
-  const double limit = time_left();
+  const double left = time_left();
   ++solves_;
   try {
     energy_model::Equilibrium rod =
         energy_model::solve_energy(problem, {.terms = options_.solve.terms,
                                              .max_evaluations = options_.solve.max_evaluations,
-                                             .time_limit = limit,
+                                             .time_limit = left,
                                              .start = start});
     evaluations_ += rod.evaluations;
     return rod;

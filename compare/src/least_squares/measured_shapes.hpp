@@ -65,6 +65,12 @@ class MeasuredShapes {
   /// @throws InputError if the scene is none that the model has
   [[nodiscard]] energy_model::Equilibrium solve(std::size_t shape, const Scene& scene,
                                                 const energy_model::Equilibrium* start);
+  /// The equilibrium that a local search from the shape's own points leads to
+  /// (energy_model::energy_near), whatever its status.
+  /// @param like  an equilibrium on which the shape is laid where its frame is not known
+  /// @throws as solve()
+  [[nodiscard]] energy_model::Equilibrium solve_near(std::size_t shape, const Scene& scene,
+                                                     const energy_model::Equilibrium& like);
   /// How far a rod that was confined leaves its plane where nothing confines it [m].
   [[nodiscard]] double way_out_of_plane(std::size_t shape, const Scene& scene,
                                         const energy_model::Equilibrium& rod);
@@ -109,6 +115,7 @@ class MeasuredShapes {
                                              const Eigen::Matrix3Xd& points) const;
 
   struct OneShape {
+    MeasuredShape file;
     Aligner aligner;
     double length;         // of its rod [m]
     bool flat;             // only two coordinates are measured

@@ -17,18 +17,16 @@
 namespace dlo::compare {
 namespace {
 
-/// What the gripper of a polygon without stretch exerts: its tension is a constraint, so it follows
-/// from the balance of the whole polygon.
-GripperLoad balancing_load(const Discretisation& discretisation, const Eigen::Matrix3Xd& points) {
-  const Eigen::Vector3d reference = discretisation.rod.grips.front().reference;
-  GripperLoad result;
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector3d load = discretisation.rod.loads.col(i);
-    const Eigen::Vector3d arm = points.col(i) - reference;
-    result.force -= load;
-    result.torque -= arm.cross(load);
-  }
-  return result;
+/// What the gripper of a polygon without stretch exerts: the force balances all loads, the torque
+/// is that of the first segment.
+GripperLoad holding_load(const Discretisation& discretisation, const ChainScene& chain,
+                         const energy_model::ChainResult& result) {
+  GripperLoad load;
+  load.force = -discretisation.rod.loads.rowwise().sum();
+  const Eigen::Vector3d start = chain.to_space(result.points.leftCols<1>());
+  const Eigen::Vector3d arm = start - discretisation.rod.grips.front().reference;
+  load.torque = result.held_torque * chain.x.cross(chain.y) + arm.cross(load.force);
+  return load;
 }
 
 template <typename Result>
@@ -55,7 +53,9 @@ Solution solve_rigid_chain(const Scene& scene, const ForceModelSettings& setting
   solution.status = result.status;
   solution.message = result.message;
   if (settings.joint_law) solution.energy.bending = result.bending_energy;
-  solution.grippers = {balancing_load(discretisation, points)};
+  solution.grippers = {holding_load(discretisation, chain, result)};
+  require_balanced(scene, polygon_imbalance(discretisation.rod, points, solution.grippers),
+                   energy_model::allowed_imbalance, "chain");
   solution.evaluations = result.evaluations;
   solution.seconds = result.seconds;
   return solution;
@@ -88,6 +88,8 @@ Solution solve_elastic_chain(const Scene& scene, const ForceModelSettings& setti
     solution.grippers.push_back(load);
   }
   add_twisting_torques(lowest.rod, points, solution.grippers);
+  require_balanced(scene, polygon_imbalance(lowest.rod, points, solution.grippers),
+                   energy_model::allowed_imbalance, "chain");
   solution.evaluations = lowest.evaluations;
   solution.seconds = lowest.seconds;
   return solution;

@@ -266,6 +266,9 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
   Solution solution =
       polygon_solution(dead_scene, settings, discretisation, rod, rest.simulation.points());
   add_rest(rest, solution);
+  require_balanced(
+      scene, polygon_imbalance(rest.simulation.rod(), rest.simulation.points(), solution.grippers),
+      allowed_rest_imbalance(solution.error_estimate / scene.length), "force");
   if (scene.drag) solution.status = energy_model::SolveStatus::not_verified;
   if (!scene.drag && strayed()) solution.message += ", in another state than the chain";
   solution.seconds = timer.seconds();

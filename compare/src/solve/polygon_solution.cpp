@@ -32,6 +32,15 @@ Strain largest_of(const force_model::Rod& rod, const Eigen::Matrix3Xd& points) {
   return result;
 }
 
+/// Which points grippers hold.
+std::vector<bool> held_points(const force_model::Rod& rod, Eigen::Index count) {
+  std::vector<bool> held(static_cast<std::size_t>(count), false);
+  for (const force_model::Grip& grip : rod.grips) {
+    std::fill_n(held.begin() + grip.first_point, grip.targets.cols(), true);
+  }
+  return held;
+}
+
 }  // namespace
 
 Solution polygon_solution(const Scene& scene, const ForceModelSettings& settings,
@@ -50,10 +59,7 @@ Solution polygon_solution(const Scene& scene, const ForceModelSettings& settings
   energy.stretch = inner.stretch;
   energy.gravity = -discretisation.weights.cwiseProduct(offset).sum();
   energy.load = -(rod.loads - discretisation.weights).cwiseProduct(offset).sum();
-  std::vector<bool> held(static_cast<std::size_t>(points.cols()), false);
-  for (const force_model::Grip& grip : rod.grips) {
-    std::fill_n(held.begin() + grip.first_point, grip.targets.cols(), true);
-  }
+  const std::vector<bool> held = held_points(rod, points.cols());
   solution.obstacles.assign(scene.obstacles.size(), Eigen::Vector3d::Zero());
   std::size_t index = 0;
   for (const force_model::Wall& wall : rod.walls) {
@@ -90,6 +96,42 @@ std::vector<GripperLoad> gripper_loads(force_model::Rod rod, const Eigen::Matrix
     loads.push_back({reaction.force, reaction.torque});
   }
   return loads;
+}
+
+energy_model::Imbalance polygon_imbalance(const force_model::Rod& rod,
+                                          const Eigen::Matrix3Xd& points,
+                                          const std::vector<GripperLoad>& grippers) {
+  std::vector<energy_model::Action> actions;
+  for (std::size_t i = 0; i < grippers.size(); ++i) {
+    actions.push_back({rod.grips[i].reference, grippers[i].force, grippers[i].torque});
+  }
+  const std::vector<bool> held = held_points(rod, points.cols());
+  Eigen::Matrix3Xd pushes = Eigen::Matrix3Xd::Zero(3, points.cols());
+  for (const force_model::Wall& wall : rod.walls) {
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      pushes.col(i) += force_model::wall_force(wall, points.col(i));
+    }
+  }
+  for (const force_model::Solid& solid : rod.solids) {
+    force_model::add_solid_forces(solid, points, pushes);
+  }
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    actions.push_back({points.col(i), rod.loads.col(i), Eigen::Vector3d::Zero()});
+    if (held[static_cast<std::size_t>(i)]) continue;
+    actions.push_back({points.col(i), pushes.col(i), Eigen::Vector3d::Zero()});
+  }
+  // Positions are rounded to a share of the segments, whose forces are c_c times theirs.
+  constexpr double rounding = 1e-6;
+  const double least = rounding * rod.c_c;
+  return energy_model::imbalance_of(
+      actions, {.force = {least, 0, 0}, .couple = {least * rod.length(), 0, 0}});
+}
+
+void require_balanced(const Scene& scene, const energy_model::Imbalance& imbalance, double allowed,
+                      const char* model) {
+  if (imbalance.share() <= allowed) return;
+  throw ConvergenceError(fmt::format("{}: the {} model did not converge to an equilibrium: {}",
+                                     scene.file, model, imbalance.text()));
 }
 
 void require_unstrained(const Scene& scene, const ForceModelSettings& settings,

@@ -7,6 +7,7 @@
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/solution.hpp"
+#include "dlo/energy_model/balance.hpp"
 #include "dlo/energy_model/polygon.hpp"
 
 namespace dlo::compare {
@@ -23,6 +24,23 @@ namespace dlo::compare {
 /// point inside a gripper is not felt outside.
 [[nodiscard]] std::vector<GripperLoad> gripper_loads(force_model::Rod rod,
                                                      const Eigen::Matrix3Xd& points);
+
+/// What acts on a polygon leaves: what the grippers exert, the loads, and obstacles on points that
+/// no gripper holds.
+[[nodiscard]] energy_model::Imbalance polygon_imbalance(const force_model::Rod& rod,
+                                                        const Eigen::Matrix3Xd& points,
+                                                        const std::vector<GripperLoad>& grippers);
+
+/// Largest Imbalance::share() of a polygon that is this share of its length away from rest.
+[[nodiscard]] inline double allowed_rest_imbalance(double distance) {
+  return energy_model::allowed_imbalance + distance;
+}
+
+/// A polygon whose forces and moments do not balance is no equilibrium.
+/// @param allowed  largest Imbalance::share()
+/// @throws ConvergenceError then, with what is left
+void require_balanced(const Scene& scene, const energy_model::Imbalance& imbalance, double allowed,
+                      const char* model);
 
 /// A polygon that had to stretch or to shrink is no shape of the rod, however well it balances.
 /// @throws ConvergenceError then, with the number of points that may do

@@ -334,6 +334,9 @@ ChainResult solve_chain(const ChainProblem& problem, const ChainOptions& options
     result.bending_energy += joint_at(problem, i, result.angles[i] - result.angles[i - 1]).energy;
   }
   result.load_energy = total - result.bending_energy;
+  const Eigen::Vector2d across(-std::sin(result.angles[0]), std::cos(result.angles[0]));
+  result.held_torque = -joint_at(problem, 1, result.angles[1] - result.angles[0]).moment -
+                       problem.segment_lengths[0] * across.dot(segment_forces(problem).col(0));
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
 }

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "../../sanitized.hpp"
 #include "../../says.hpp"
@@ -60,6 +62,24 @@ TEST(MaterialFit, TwoClampsAreFollowedFromOneModulusToTheNext) {
     EXPECT_LT(fit.equilibria, 80) << guess;
     EXPECT_LT(fit.evaluations, 100 * fit.equilibria) << guess;
   }
+}
+
+// A rod that is clamped upright falls to either side: the shape that its points are near to is the
+// other one, of another modulus than would lay the lowest near them.
+TEST(MaterialFit, AHeldRodIsFollowedFromItsOwnPoints) {
+  Scene truth = heavy_scene(30, 80);
+  truth.obstacles = {{obstacle::Body::cylinder({0.1, 0.25, 0}, Eigen::Vector3d::UnitZ(), 0.05)}};
+  const std::vector<energy_model::Equilibrium> states = reference_states(truth);
+  const auto other = std::find_if(states.begin() + 1, states.end(),
+                                  [](const auto& state) { return succeeded(state.status); });
+  ASSERT_NE(other, states.end());
+  const MeasuredShape shape{"seen", other->sample(equal_arc_lengths(1, 21)).points, {}};
+  Scene scene = truth;
+  scene.material.youngs_modulus *= 1.3;
+  const MaterialFit fit = fit_material({scene}, {shape});
+  ASSERT_TRUE(fit.youngs_modulus.value) << fit.not_identified;
+  EXPECT_NEAR(*fit.youngs_modulus.value / truth.material.youngs_modulus, 1, 1e-3);
+  EXPECT_LT(fit.rms_m, 1e-6);
 }
 
 TEST(MaterialFit, TheTimeLimitEndsItWithItsName) {

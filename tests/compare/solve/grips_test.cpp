@@ -21,6 +21,7 @@
 #include "dlo/compare/solve.hpp"
 #include "polygon/energy_problems.hpp"
 #include "scenes.hpp"
+#include "solve/polygon_solution.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -548,6 +549,40 @@ TEST(Comparison, OfTwoClampsHasNoTipAndNoStraightRod) {
   EXPECT_NEAR(comparison.budget.discretisation.share + comparison.budget.stretch.share, 1, 0.05);
   // Between two clamps the sag hardly knows the stiffness.
   EXPECT_NE(comparison.effective_modulus.optimum, Optimum::clear);
+}
+
+// Of chains without and with stretch, and of the force model at rest; each reaction and load
+// counts.
+TEST(PolygonBalance, HoldsAndIsLostWithEveryForce) {
+  for (const Scene& scene : {heavy_scene(8, 20), spatial_clamps(), clamp_and_pin()}) {
+    for (const Model model : {Model::chain, Model::force}) {
+      SCOPED_TRACE(to_string(model));
+      const Solution solution = solve(scene, model, {});
+      const force_model::Rod rod = discretise(scene, scene.force_model).rod;
+      const Eigen::Matrix3Xd& points = solution.shape.points;
+      const double allowed = model == Model::chain
+                                 ? energy_model::allowed_imbalance
+                                 : allowed_rest_imbalance(solution.error_estimate / scene.length);
+      const energy_model::Imbalance good = polygon_imbalance(rod, points, solution.grippers);
+      EXPECT_LE(good.share(), allowed);
+      EXPECT_NO_THROW(require_balanced(scene, good, allowed, "chain"));
+      std::vector<GripperLoad> pulled = solution.grippers;
+      pulled.back().force.y() += 3 * allowed * good.largest_force;
+      const energy_model::Imbalance bad = polygon_imbalance(rod, points, pulled);
+      EXPECT_GT(bad.share(), allowed);
+      const std::string error = error_of<ConvergenceError>([&] {
+        require_balanced(scene, bad, allowed, "chain");
+        return 0;
+      });
+      EXPECT_TRUE(says(error, "the forces leave")) << error;
+      std::vector<GripperLoad> turned = solution.grippers;
+      turned.back().torque.z() += 3 * allowed * good.largest_moment;
+      EXPECT_GT(polygon_imbalance(rod, points, turned).share(), allowed);
+      force_model::Rod loaded = rod;
+      loaded.loads.col(points.cols() / 2).y() += 3 * allowed * good.largest_force;
+      EXPECT_GT(polygon_imbalance(loaded, points, solution.grippers).share(), allowed);
+    }
+  }
 }
 
 }  // namespace

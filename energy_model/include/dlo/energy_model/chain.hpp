@@ -54,6 +54,9 @@ struct [[nodiscard]] ChainResult {
   double seconds = 0;                         ///< wall time [s]
   /// Norm of the gradient by the segment angles [N m]; -1: Newton's method did not begin.
   double residual = -1;
+  /// Torque about `start` of what holds the first segment, from the moment of the first joint and
+  /// the force beyond it [N m].
+  double held_torque = 0;
   Eigen::VectorXd angles;     ///< of the segments, from +x [rad], n
   Eigen::Matrix2Xd points;    ///< [m], 2 x (n+1)
   double bending_energy = 0;  ///< [J]; zero where every joint is at rest
