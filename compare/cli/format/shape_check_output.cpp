@@ -260,8 +260,8 @@ std::string shape_check_csv(const compare::CheckResult& report) {
       "max_at_m=deviation/max_at_m,worst_point=deviation/worst_point,tip_m=deviation/tip_m,"
       "movement_m,effective_modulus_ratio,rms_at_effective_modulus_m,optimum,"
       "tolerance_m=tolerance/allowed_m,verdict,seen_share=seen/share,reason,"
-       "whole_rms_m=deviation/whole_rms_m,whole_max_m=deviation/whole_max_m,"
-       "significant,deflection_m");
+      "whole_rms_m=deviation/whole_rms_m,whole_max_m=deviation/whole_max_m,"
+      "significant,deflection_m");
   return table.header() + table.row(shape_check_json(report));
 }
 

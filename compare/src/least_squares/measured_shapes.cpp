@@ -178,6 +178,7 @@ double MeasuredShapes::time_left() const {
 
 energy_model::Equilibrium MeasuredShapes::solve_near(std::size_t shape, const Scene& scene,
                                                      const energy_model::Equilibrium& like) {
+  if (reference_model(scene) == Model::exact) return {};
   MeasuredShape placed = shapes_[shape].file;
   placed.points = alignment(shape, like).pose.applied(placed.points);
   const Shape laid = laid_by_grippers(placed, scene, shapes_[shape].aligner.arc_lengths());

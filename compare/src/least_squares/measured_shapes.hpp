@@ -66,7 +66,7 @@ class MeasuredShapes {
   [[nodiscard]] energy_model::Equilibrium solve(std::size_t shape, const Scene& scene,
                                                 const energy_model::Equilibrium* start);
   /// The equilibrium that a local search from the shape's own points leads to
-  /// (energy_model::energy_near), whatever its status.
+  /// (energy_model::energy_near), whatever its status; not_run if the rod stretches.
   /// @param like  an equilibrium on which the shape is laid where its frame is not known
   /// @throws as solve()
   [[nodiscard]] energy_model::Equilibrium solve_near(std::size_t shape, const Scene& scene,

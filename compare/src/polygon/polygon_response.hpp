@@ -96,8 +96,8 @@ class PolygonResponse {
   std::vector<Eigen::Matrix<double, 3, 2>> across_;
 };
 
-/// Returns a bound of a movement whose first-order answer is `response` [m]: twice the answer, which
-/// covers terms of second order, or infinity if the answer exceeds 3 % of the length.
+/// Returns a bound of a movement whose first-order answer is `response` [m]: twice the answer,
+/// which covers terms of second order, or infinity if the answer exceeds 3 % of the length.
 [[nodiscard]] double bound_of_response(double response, double length);
 
 /// Returns the bound of the distance between the rod and this hooke polygon at rest, RMS along the

@@ -60,7 +60,8 @@ PageResult page_result(const CheckResult& result) {
   if (!both.empty()) page.summary += " " + both + ".";
   if (!result.judgement.significant.value_or(true)) {
     page.summary +=
-        " Not significant for stiffness or weight: the rod without weight and loads would pass too.";
+        " Not significant for stiffness or weight: the rod without weight and loads would pass "
+        "too.";
   }
   page.numbers.push_back({"E*/E", identified ? page_number(modulus.ratio) : "\u2013",
                           identified ? millimetres(modulus.rms_m) + " away with it" : why_not});
