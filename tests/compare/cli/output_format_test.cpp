@@ -158,7 +158,7 @@ TEST_F(Output, NoNumberIsNanOrInfinity) {
   }
 }
 
-TEST(WrongWord, IsANumberThatIsNoneOrHasASignForNothing) {
+TEST(WrongWord, IsAnUndefinedNumberOrASignedZero) {
   for (const char* wrong : {"+nan %", "1/inf", "x, -nan", "[-0, 1]", "-0.000 m", "-0.00%", "INF",
                             "PolygonProblem: smallest rest length = 1"}) {
     EXPECT_NE(wrong_word(wrong), "") << wrong;
