@@ -155,12 +155,16 @@ void require_slack(const Scene& scene) {
     const Gripper& b = scene.grippers[along[i + 1]];
     const double apart = (b.position - a.position).norm();
     if (apart < b.at - a.at) continue;
+    const char* const couple =
+        scene.has_couples() ? ", and load.torque: a couple that is not on a clamp of a taut rod "
+                              "depends on its tension, which is undetermined"
+                            : "";
     throw InputError(fmt::format(
-        "{}: gripper.position: {} m from the gripper at = {} m (allowed: rod.stretch = true, "
+        "{}: gripper.position: {} m from the gripper at = {} m{} (allowed: rod.stretch = true, "
         "which model exact takes; less than the {} m of rod between them; or all of a round "
-        "straight rod taut on a line, clamps and forces along it; models chain and force take a "
-        "taut rod)",
-        where(scene, b), apart, a.at, b.at - a.at));
+        "straight rod taut on a line, clamps and forces along it and couples on clamps; models "
+        "chain and force take a taut rod)",
+        where(scene, b), apart, a.at, couple, b.at - a.at));
   }
 }
 

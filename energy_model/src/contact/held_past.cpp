@@ -190,10 +190,21 @@ class SpansHeldPast {
         if (!next) return;
         way.insert(way.end(), next->begin(), next->end());
       }
+      if (!is_clear(way)) continue;
       std::optional<Span> held = held_on_way(span_, reach, way);
       if (!held) continue;
       spans_.push_back(*std::move(held));
     }
+  }
+
+  /// Whether all points of a way are outside the rigid obstacles.
+  [[nodiscard]] bool is_clear(const Way& way) const {
+    const auto is_inside = [&](const Span::Obstacle& obstacle) {
+      return std::any_of(way.begin(), way.end(), [&](const Eigen::Vector3d& point) {
+        return obstacle.body.clearance(point) < 0;
+      });
+    };
+    return std::none_of(span_.rigid_obstacles.begin(), span_.rigid_obstacles.end(), is_inside);
   }
 
   const Span& span_;

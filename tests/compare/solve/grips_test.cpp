@@ -574,7 +574,7 @@ TEST(PolygonBalance, HoldsAndIsLostWithEveryForce) {
         require_balanced(scene, bad, allowed, "chain");
         return 0;
       });
-      EXPECT_TRUE(says(error, "the forces leave")) << error;
+      EXPECT_TRUE(says(error, {"the forces leave"})) << error;
       std::vector<GripperLoad> turned = solution.grippers;
       turned.back().torque.z() += 3 * allowed * good.largest_moment;
       EXPECT_GT(polygon_imbalance(rod, points, turned).share(), allowed);
