@@ -194,7 +194,9 @@ std::span<const IneffectiveOptions> ineffective_options() { return ineffective; 
 void check_effects(const CLI::App& command, const compare::ForceModelSettings* settings) {
   for (const IneffectiveOptions& row : ineffective) {
     if (!row.command.empty() && row.command != command.get_name()) continue;
-    if (is_of_scene(row) != (settings != nullptr)) continue;
+    // A statement waits until the scene is read, so that an error stays the only line.
+    const bool at_scene = is_of_scene(row) || row.response == NoEffect::stated;
+    if (at_scene != (settings != nullptr)) continue;
     Names named;
     for (const std::string& option : row.options) {
       if (is_given(command, option)) named.push_back(option);

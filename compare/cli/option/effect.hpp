@@ -36,8 +36,8 @@ struct IneffectiveOptions {
 [[nodiscard]] std::span<const IneffectiveOptions> ineffective_options();
 
 /// Refuses or reports the options of a command that have no effect, before anything is computed.
-/// @param settings  force model of the loaded scene: rows with a condition on "law" are checked;
-///                  null: all other rows are
+/// @param settings  force model of the loaded scene: rows with a condition on "law" and rows that
+///                  are stated are checked; null: all other rows are
 /// @throws compare::InputError with the options, the conditions and what is allowed
 void check_effects(const CLI::App& command, const compare::ForceModelSettings* settings = nullptr);
 

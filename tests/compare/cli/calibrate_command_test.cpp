@@ -179,7 +179,7 @@ TEST_F(CalibrateCommand, SaysThatErrorsAreCorrelatedInEveryFormat) {
   EXPECT_FALSE(not_said.at("errors_are_correlated").get<bool>());
   EXPECT_TRUE(not_said.at("correlation").is_null());
   EXPECT_TRUE(says(text(wave, "csv"), {",true,"}));
-  EXPECT_TRUE(says(text(noise, "csv"), {",false,,,,,,,,\n"}));
+  EXPECT_TRUE(says(text(noise, "csv"), {",false,,,,,,,\n"}));
 }
 
 TEST_F(CalibrateCommand, AColumnSInMetresBesideMillimetresIsRead) {
@@ -227,7 +227,7 @@ TEST_F(CalibrateCommand, TellsHowStiffAWireIsAgainstTwist) {
   EXPECT_EQ(document.at("torsional_stiffness_interval_95_Nm2").size(), 2U);
   EXPECT_NEAR(document.at("torsional_over_bending_stiffness"), 0.00793 / 0.0103084, 1e-4);
   const std::string text = run(fit).out;
-  EXPECT_TRUE(says(text, {"GJ          not identified, 95 %: ", "GJ / EI     0.76928, 95 %: "}));
+  EXPECT_TRUE(says(text, {"GJ          not identified, 95 %: ", "GJ / EI     0.769"}));
   const std::string straight = scene_of("a.toml", "5 GPa", 0);
   expect_error(words({"calibrate", straight, "--torsional-stiffness --shape", shape}), 2,
                {"torsional stiffness", "two clamps"});

@@ -20,9 +20,9 @@ class ModesCommand : public Command {
 };
 
 TEST_F(ModesCommand, TellsFrequenciesInEveryFormat) {
-  const std::string modes = words({"modes", cable(), "--count 3 --samples 11"});
+  const std::string modes = words({"modes", cable(), "--count 3"});
   EXPECT_TRUE(says(said(modes), {"mode 1      0.608202 Hz, out; polygon 0.60", "stable from"}));
-  const json document = json_of(modes);
+  const json document = json_of(modes + " --samples 11");
   EXPECT_EQ(document.at("schema"), "dlo/modes/1");
   ASSERT_EQ(document.at("modes").size(), 3U);
   const json& first = document.at("modes")[0];

@@ -93,8 +93,8 @@ TEST_F(SameVerdict, OfFiftyShapesFromCommandLibraryAndMatchers) {
 
 /// But for what the tolerance is about.
 nlohmann::json facts(nlohmann::json document) {
-  for (const char* key :
-       {"tolerance", "judged_m", "verdict", "reason", "explanations", "superseded_by"}) {
+  for (const char* key : {"tolerance", "judged_m", "verdict", "reason", "explanations",
+                          "superseded_by", "significant", "deflection_m"}) {
     document.erase(key);
   }
   return document;
