@@ -79,8 +79,9 @@ struct fmt::formatter<dlo::compare::UnsignedZero<Number>> : fmt::formatter<Numbe
     fmt::format_context own(fmt::appender(digits), context.args(), context.locale());
     fmt::formatter<Number>::format(number.value, own);
     const std::string_view text(digits.data(), digits.size());
-    const bool is_zero = text.substr(0, text.find('e')).find_first_of("123456789") == text.npos &&
-                         text.find('0') != text.npos;
+    const auto nowhere = std::string_view::npos;
+    const bool is_zero = text.substr(0, text.find('e')).find_first_of("123456789") == nowhere &&
+                         text.find('0') != nowhere;
     return fmt::formatter<Number>::format(is_zero ? Number{0} : number.value, context);
   }
 };

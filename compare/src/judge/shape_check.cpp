@@ -58,7 +58,7 @@ double distance_from_line(const Eigen::Matrix3Xd& points) {
 long measured_points(const Scene& scene, const Eigen::Matrix3Xd& points) {
   constexpr double same = 1e-3;  // of the length
   long count = 0;
-  for (const Eigen::Vector3d& point : points.colwise()) {
+  for (const auto& point : points.colwise()) {
     const bool is_held = std::ranges::any_of(scene.grippers, [&](const Gripper& gripper) {
       return (gripper.position - point).norm() <= same * scene.length;
     });

@@ -46,15 +46,15 @@ double soft_stretch_stiffness(const Scene& scene) {
   return std::max(scene.axial_stiffness() / 1000, 1000 * load);
 }
 
-enum class Stretch {
+enum class CaseStretch {
   soft,      // as hard_cases says
   physical,  // c_c = AE
 };
 
-ForceModelSettings settings_for(const Scene& scene, int points, Stretch stretch) {
+ForceModelSettings settings_for(const Scene& scene, int points, CaseStretch stretch) {
   ForceModelSettings settings;
   settings.points = points;
-  if (stretch == Stretch::soft) settings.c_c = soft_stretch_stiffness(scene);
+  if (stretch == CaseStretch::soft) settings.c_c = soft_stretch_stiffness(scene);
   return settings;
 }
 
@@ -72,7 +72,7 @@ HardCase make(std::string name, std::string what, const Scene& scene,
 }
 
 HardCase make(std::string name, std::string what, const Scene& scene, int points = 16,
-              Stretch stretch = Stretch::soft) {
+              CaseStretch stretch = CaseStretch::soft) {
   return make(std::move(name), std::move(what), scene, settings_for(scene, points, stretch));
 }
 
@@ -161,7 +161,7 @@ HardCase papers_rod() {
   constexpr double orientation = -175 * pi / 180;
   Scene scene = steel_rod(1, {std::cos(orientation), std::sin(orientation), 0});
   scene.gravity = {0, -9.81, 0};
-  ForceModelSettings settings = settings_for(scene, 16, Stretch::soft);
+  ForceModelSettings settings = settings_for(scene, 16, CaseStretch::soft);
   settings.law = BendingLaw::paper;
   settings.bookkeeping = Bookkeeping::paper;
   return make("the paper's rod", "Table 5 at -175 deg, law and bookkeeping paper", scene, settings);
@@ -170,7 +170,7 @@ HardCase papers_rod() {
 std::vector<HardCase> hard_rods() {
   std::vector<HardCase> cases;
   cases.push_back(make("c_c = AE", "physical stretch stiffness: the stiffest segments for the rod",
-                       horizontal(2), 16, Stretch::physical));
+                       horizontal(2), 16, CaseStretch::physical));
   cases.push_back(
       make("Gamma = 1e-6", "next to no load; starts bent to half a circle", horizontal(1e-6)));
   cases.back().start = arc(cases.back(), pi);
@@ -246,7 +246,7 @@ std::vector<HardCase> torn_rods() {
   refused.what = "two grippers 20 % further apart than the rod is long: no such rod";
   scene.grippers.back().position.x() = apart;
   try {
-    (void)discretise(scene, settings_for(scene, 16, Stretch::soft));
+    (void)discretise(scene, settings_for(scene, 16, CaseStretch::soft));
   } catch (const InputError& error) {
     refused.refusal = error.what();
   }
