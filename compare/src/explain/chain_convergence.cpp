@@ -19,11 +19,27 @@ constexpr double ratio_tolerance = 0.3;
 /// converge to the rod; a discretisation error of first order is an eighth then.
 constexpr int most_bisections = 3;
 
+/// Returns the arc lengths of the clamps that are between the points of a chain.
+std::vector<double> inner_middles(const Scene& scene, const std::vector<double>& points) {
+  std::vector<double> result;
+  for (const Gripper& gripper : scene.grippers) {
+    const bool is_at_point = std::ranges::any_of(
+        points, [&](double s) { return std::abs(gripper.at - s) < 1e-6 * scene.length; });
+    if (gripper.direction && !is_at_point) result.push_back(gripper.at);
+  }
+  return result;
+}
+
 /// Returns the arc lengths of the points of a chain with twice as many segments between any two
-/// grippers. A segment that a clamp holds in its middle, half of which is the rod's, is bisected as
-/// a whole: the new segments are as long as if 2N - 1/2 of them made up the N - 1/2 old ones.
+/// grippers. A segment that a clamp holds in its middle is bisected as a whole, of which a half
+/// belongs to the span on either side: the new segments of that span are as long as if 2N - 1/2 of
+/// them made up the N - 1/2 old ones.
 std::vector<double> refined_arc_lengths(const Scene& scene, const OwnPolygon& chain) {
-  const std::vector<double>& s = chain.rest.arc_length;
+  const std::vector<double>& points = chain.rest.arc_length;
+  std::vector<double> s = points;
+  for (const double at : inner_middles(scene, points)) {
+    s.insert(std::ranges::upper_bound(s, at), at);
+  }
   const std::size_t n = s.size() - 1;
   const auto is_half = [&](std::size_t i) {
     return chain.clamp == ChainClamp::middle &&
@@ -56,6 +72,7 @@ std::vector<double> refined_arc_lengths(const Scene& scene, const OwnPolygon& ch
     result.insert(result.end(), inner.begin(), inner.end());
     result.push_back(s[end]);
   }
+  for (const double at : inner_middles(scene, points)) std::erase(result, at);
   return result;
 }
 

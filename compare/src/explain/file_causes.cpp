@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -101,7 +104,7 @@ void add_order(const MeasuredShape& shape, const ShapeCheck& check,
        std::move(sorted)});
 }
 
-/// Points at an end that lead away from the rod, and a rod that is stretched as a whole.
+/// Points at an end that lead away from the rod, and a file that is a part of the rod.
 void add_lengths(const MeasuredShape& shape, const ShapeCheck& check,
                  std::vector<FileCause>& causes) {
   const std::vector<double>& s = check.reference.arc_length;
@@ -121,17 +124,71 @@ void add_lengths(const MeasuredShape& shape, const ShapeCheck& check,
     causes.push_back({fmt::format("the file's first {} away from the rod: a hook", points),
                       without(shape, k, count - k), PoseFreedom::known, 0, true, "first points"});
   }
+}
+
+/// Adds the scale that makes the file as long as the rod, about the file's origin and about the
+/// rod's first point, which an extension of the rod leaves where it is.
+void add_scale(const MeasuredShape& shape, const ShapeCheck& check,
+               std::vector<FileCause>& causes) {
+  constexpr double same = 1e-3;
   const double stretch = check.polyline_length_m / check.length_m;
-  if (stretch > 0.5 && stretch < 2 && std::abs(stretch - 1) > 1e-3) {
+  if (!(stretch > 0) || std::abs(stretch - 1) <= same) return;
+  const bool may_be_strain = stretch > 0.5 && stretch < 2;
+  const std::string words =
+      may_be_strain
+          ? fmt::format("the file's rod is {} by {:.3g} %",
+                        stretch > 1 ? "stretched" : "compressed", std::abs(stretch - 1) * 100)
+          : fmt::format("the file is in units of {:.4g} m", shape.unit / stretch);
+  const Eigen::Vector3d first = check.alignment.reversed
+                                    ? Eigen::Vector3d(shape.points.rightCols<1>())
+                                    : Eigen::Vector3d(shape.points.leftCols<1>());
+  for (const bool about_first : {true, false}) {
+    const Eigen::Vector3d fixed = about_first ? first : Eigen::Vector3d(Eigen::Vector3d::Zero());
     MeasuredShape right = shape;
-    const Eigen::Vector3d fixed = check.alignment.reversed
-                                      ? Eigen::Vector3d(shape.points.rightCols<1>())
-                                      : Eigen::Vector3d(shape.points.leftCols<1>());
     right.points = ((shape.points.colwise() - fixed) / stretch).colwise() + fixed;
-    causes.push_back(
-        {fmt::format("the file's rod is {} by {:.3g} %", stretch > 1 ? "stretched" : "compressed",
-                     std::abs(stretch - 1) * 100),
-         right});
+    // A strain is found from the file's length; another scale competes with the units by name.
+    const int numbers = may_be_strain && about_first ? 0 : 1;
+    causes.push_back({words, std::move(right), PoseFreedom::known, numbers, false, "scale"});
+  }
+}
+
+/// Returns the rotation R for which the points R from[i] are nearest to the points to[i]; where the
+/// points do not determine it, the one with the smallest angle.
+Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to) {
+  constexpr double towards_none = 1e-9;
+  Eigen::Matrix3d moments = to * from.transpose();
+  moments += towards_none * from.norm() * to.norm() * Eigen::Matrix3d::Identity();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const double sign = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0 ? -1 : 1;
+  return svd.matrixU() * Eigen::Vector3d(1, 1, sign).asDiagonal() * svd.matrixV().transpose();
+}
+
+/// Adds the rotation of the file about each gripper that brings it nearest to the rod.
+void add_rotations(const Scene& scene, const MeasuredShape& shape, const ShapeCheck& check,
+                   std::vector<FileCause>& causes) {
+  const Eigen::Matrix3Xd& points = check.alignment.shape.points;
+  std::vector<double> s = check.alignment.shape.arc_length;
+  // Nearest points on the rod are biased if the file is rotated; lengths along the file are not.
+  if (shape.arc_length.empty() && !is_short(check.polyline_length_m, check.length_m)) {
+    s = lengths_along(points);
+    const double scale = check.length_m / s.back();
+    for (double& at : s) at = std::min(at * scale, check.length_m);
+  }
+  const Eigen::Matrix3Xd rod = check.rod.sample(s).points;
+  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+    const Eigen::Vector3d& centre = scene.grippers[i].position;
+    const Eigen::Matrix3d rotation =
+        nearest_rotation(points.colwise() - centre, rod.colwise() - centre);
+    // Back from the file: the axis and the angle are those of the error.
+    const Eigen::AngleAxisd error(rotation.transpose());
+    FileCause cause;
+    cause.words = fmt::format("the file is rotated by {:.3g} deg about gripper {}",
+                              error.angle() * 180 / std::numbers::pi, i + 1);
+    cause.shape = shape;
+    cause.shape.points = ((rotation * (shape.points.colwise() - centre)).colwise() + centre).eval();
+    cause.numbers = 3;  // the rotation vector, in any plane
+    cause.same_as = "rotated file";
+    causes.push_back(std::move(cause));
   }
 }
 
@@ -205,6 +262,8 @@ std::vector<FileCause> file_causes(const Scene& scene, const MeasuredShape& shap
   add_pixels(scene, shape, causes);
   add_order(shape, check, causes);
   add_lengths(shape, check, causes);
+  add_scale(shape, check, causes);
+  add_rotations(scene, shape, check, causes);
   return causes;
 }
 

@@ -41,11 +41,60 @@ constexpr double least_showing = 1e-5;
 /// or torn one belongs to a polygon that is not the chain.
 constexpr double largest_chain_strain = 1e-3;
 
-/// Returns the lengths of the segments, scaled so that their sum is the rod's length.
-Eigen::VectorXd rest_lengths(const Eigen::Matrix3Xd& points, double length) {
+/// Largest distance of a file's point from the arc length of the gripper that holds it, over the
+/// rod's length: the segments' strain moves it along the rod.
+constexpr double same_arc_length = largest_chain_strain;
+
+/// Largest distance of a clamp from the middle of the segment that it holds, in half segments.
+constexpr double same_middle = 0.1;
+
+/// Where a gripper holds a chain.
+struct HeldAt {
+  Eigen::Index point = 0;  ///< the point that it holds, or the first of the segment
+  bool segment = false;    ///< a clamp holds the segment from that point in its middle
+};
+
+/// Returns where a gripper holds the chain; nothing if it does so neither at a point nor, if it is
+/// a clamp, in the middle of a segment.
+/// @param s  arc lengths of the chain's points [m]
+std::optional<HeldAt> held_at(const Gripper& gripper, const std::vector<double>& s) {
+  const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, gripper.at);
+  const Eigen::Index right = above - s.begin();
+  const double before = gripper.at - s[static_cast<std::size_t>(right - 1)];
+  const double behind = *above - gripper.at;
+  if (std::min(before, behind) < same_arc_length * s.back()) {
+    return HeldAt{before < behind ? right - 1 : right};
+  }
+  const bool is_middle = std::abs(before - behind) < same_middle * (before + behind);
+  if (!gripper.direction || !is_middle) return std::nullopt;
+  return HeldAt{right - 1, true};
+}
+
+/// Returns the lengths of the segments: the distances of the points, scaled so that between
+/// grippers and ends their sum is the rod's length there.
+Eigen::VectorXd rest_lengths(const Scene& scene, const Eigen::Matrix3Xd& points) {
   const Eigen::Index n = points.cols() - 1;
   const Eigen::VectorXd chords = (points.rightCols(n) - points.leftCols(n)).colwise().norm();
-  return chords * (length / chords.sum());
+  std::vector<double> s = {0};
+  for (const double h : chords) s.push_back(s.back() + h * scene.length / chords.sum());
+  s.back() = scene.length;  // but for rounding it is
+  std::vector<std::pair<double, double>> known = {{0, 0}, {scene.length, scene.length}};
+  for (const Gripper& gripper : scene.grippers) {
+    const std::optional<HeldAt> held = held_at(gripper, s);
+    if (!held || gripper.at <= 0 || gripper.at >= scene.length) continue;
+    const auto i = static_cast<std::size_t>(held->point);
+    known.emplace_back(held->segment ? (s[i] + s[i + 1]) / 2 : s[i], gripper.at);
+  }
+  std::ranges::sort(known);
+  std::vector<double> from;
+  std::vector<double> to;
+  for (const auto& [measured, at] : known) {
+    from.push_back(measured);
+    to.push_back(at);
+  }
+  s = interpolated(to, from, s);
+  const Eigen::Map<const Eigen::VectorXd> at(s.data(), n + 1);
+  return at.tail(n) - at.head(n);
 }
 
 /// Returns c_b of the paper's law [N], as models force and chain have it in this scene; if they
@@ -140,36 +189,49 @@ class Chain {
     return !((lengths - h).cwiseAbs().cwiseQuotient(h).maxCoeff() <= largest_chain_strain);
   }
 
-  [[nodiscard]] std::optional<Eigen::Index> point_at(double at) const {
-    for (std::size_t i = 0; i < s_.size(); ++i) {
-      if (std::abs(s_[i] - at) < 1e-6 * scene_.length) return static_cast<Eigen::Index>(i);
-    }
-    return std::nullopt;
-  }
-
   void hold_point(Eigen::Index point, const Eigen::Vector3d& position) {
     problem_.held.push_back({point, position});
   }
 
-  /// @return whether the grippers are at the file's points, clamps at its ends
+  /// Holds the segment that a clamp inside the rod holds: that whose middle is at the clamp, or,
+  /// welded to a point, the one that begins there.
+  /// @return whether the chain's kind of clamp can be there; a hinge cannot
+  [[nodiscard]] bool hold_inside(const Gripper& clamp, const HeldAt& at) {
+    if (clamp_ != (at.segment ? ChainClamp::middle : ChainClamp::welded)) return false;
+    has_inner_clamp_ = true;
+    for (const Eigen::Index i : {at.point, at.point + 1}) {
+      const double way = s_[static_cast<std::size_t>(i)] - clamp.at;
+      hold_point(i + before_, clamp.position + way * *clamp.direction);
+    }
+    return true;
+  }
+
+  /// @return whether the grippers hold the chain in this way at the file's points
   [[nodiscard]] bool hold() {
     const Eigen::Index n = inner_.size();
     const Gripper* first = nullptr;
     const Gripper* last = nullptr;
+    const bool hinged = clamp_ == ChainClamp::hinge;
+    const auto is_at = [&](const Gripper& gripper, Eigen::Index point) {
+      const std::optional<HeldAt> held = held_at(gripper, s_);
+      return held && !held->segment && held->point == point;
+    };
     for (const Gripper& gripper : scene_.grippers) {
-      const std::optional<Eigen::Index> point = point_at(gripper.at);
-      if (!point) return false;
-      if (!gripper.direction) continue;
-      if (*point != 0 && *point != n) return false;
-      (*point == 0 ? first : last) = &gripper;
+      if (gripper.direction && is_at(gripper, 0)) first = &gripper;
+      if (gripper.direction && is_at(gripper, n)) last = &gripper;
     }
     is_clamped_at_start_ = first != nullptr;
     is_clamped_at_end_ = last != nullptr;
-    const bool hinged = clamp_ == ChainClamp::hinge;
     before_ = first != nullptr && hinged ? 1 : 0;
     after_ = last != nullptr && hinged ? 1 : 0;
     for (const Gripper& gripper : scene_.grippers) {
-      hold_point(*point_at(gripper.at) + before_, gripper.position);
+      const std::optional<HeldAt> at = held_at(gripper, s_);
+      if (!at) return false;
+      if (gripper.direction && &gripper != first && &gripper != last) {
+        if (!hold_inside(gripper, *at)) return false;
+      } else {
+        hold_point(at->point + before_, gripper.position);
+      }
     }
     if (first != nullptr) {
       const double way = hinged ? -inner_[0] : inner_[0];
@@ -179,13 +241,22 @@ class Chain {
       const double way = hinged ? inner_[n - 1] : -inner_[n - 1];
       hold_point(hinged ? n + before_ + 1 : n - 1, last->position + way * *last->direction);
     }
-    if (first == nullptr && last == nullptr) return hinged;  // pins hold all chains alike
+    if (holds_twice()) return false;
+    if (first == nullptr && last == nullptr) return hinged || has_inner_clamp_;  // pins: all alike
     if (clamp_ != ChainClamp::middle) return true;
     const auto is_half = [](double end, double beside) {
       return std::abs(end / beside - 0.5) < 0.1;
     };
     return (first == nullptr || is_half(inner_[0], inner_[1])) &&
            (last == nullptr || is_half(inner_[n - 1], inner_[n - 2]));
+  }
+
+  /// Whether two grippers hold the same point.
+  [[nodiscard]] bool holds_twice() const {
+    std::vector<Eigen::Index> points;
+    for (const energy_model::HeldPoint& held : problem_.held) points.push_back(held.point);
+    std::ranges::sort(points);
+    return std::ranges::adjacent_find(points) != points.end();
   }
 
   void lay_out() {
@@ -254,7 +325,7 @@ class Chain {
   energy_model::PolygonProblem problem_;
   Eigen::Matrix3Xd weights_;             // the part of node_forces that is gravity [N]
   Eigen::Index before_ = 0, after_ = 0;  // points beyond the rod's ends
-  bool is_clamped_at_start_ = false, is_clamped_at_end_ = false;
+  bool is_clamped_at_start_ = false, is_clamped_at_end_ = false, has_inner_clamp_ = false;
 };
 
 double largest(const Eigen::Matrix3Xd& gaps) {
@@ -361,7 +432,7 @@ std::vector<OwnPolygon> own_polygons(const Scene& scene, const Shape& shape, Spr
   if (!plain || segments < 4 || segments > most_segments) return {};
   std::vector<OwnPolygon> found;
   for (const ChainClamp clamp : {ChainClamp::hinge, ChainClamp::welded, ChainClamp::middle}) {
-    Chain chain(scene, shape.points, rest_lengths(shape.points, scene.length), clamp, last);
+    Chain chain(scene, shape.points, rest_lengths(scene, shape.points), clamp, last);
     if (!chain.exists()) continue;
     if (law == JointLaw::paper) chain.set_paper_law();
     const std::optional<OwnPolygon> one = law ? with_law(chain, clamp, springs, *law)

@@ -53,9 +53,10 @@ struct OwnPolygon {
 
 /// The chains that have as many hinges as a file has points, each at rest in the scene with a
 /// spring in each hinge: with a hinge at the clamp, with its first segment welded to it, and with
-/// the clamp in the middle of a segment, where the file's first segment is half a one. None where
-/// grippers are between the file's points or the scene has what a plain chain has not. Obstacles
-/// push it as they push the rod.
+/// the clamp in the middle of a segment, where the file's first segment is half a one. A clamp
+/// inside the rod holds a whole segment: the one whose middle it is at, or, welded, the one that
+/// begins at its point; a hinge there is not computed. None where grippers are between the file's
+/// points or the scene has what a plain chain has not. Obstacles push it as they push the rod.
 /// @param shape  in the scene's frame, along the whole rod
 /// @param law  of the springs; none: of those that are Hookean for small angles that with which a
 ///             chain comes nearest, springs linear in the angle if the law does not show

@@ -317,6 +317,65 @@ TEST(ChainVerdict, HookeanChainsPassOrAreTooCoarseAndSoftOnesFail) {
   EXPECT_GE(passed, tried * 3 / 4);
 }
 
+Scene clamped_inside(const std::string& others) {
+  return parse_scene(
+      "[rod]\nlength = 1\nbending_stiffness = 0.1\nmass_per_length = 0.5\n[[gripper]]\nat = "
+      "0.637\nposition = [0.5, 0, 0]\ndirection = \"50 deg\"\n" +
+          others,
+      "inside.toml");
+}
+
+// A clamp inside the rod holds the segment whose middle it is at, or the one behind its point. The
+// segments of one span are not as long as those of another, neither in the file nor when they are
+// bisected.
+TEST(ChainVerdict, ChainsWithAClampInsideTheRodPassAndSoftOnesFail) {
+  const std::string first = "[[gripper]]\nat = 0\nposition = [0, 0.1, 0]\n";
+  for (const std::string others : {"", "hold = \"pin\"\n", "direction = \"20 deg\"\n"}) {
+    Scene scene = clamped_inside(others.empty() ? "" : first + others);
+    // Without weight, which the paper's points share equally.
+    scene.gravity.setZero();
+    for (const double at : {0.2, 1.0}) scene.loads.push_back({.at = at, .force = {0, -0.5, 0.2}});
+    for (const Bookkeeping bookkeeping : {Bookkeeping::consistent, Bookkeeping::paper}) {
+      SCOPED_TRACE(others + to_string(bookkeeping));
+      const auto judged_at = [&](const Scene& solved, double allowed) {
+        Scene chain = of_chain(solved, 27, energy_model::JointLaw::linear);
+        chain.force_model.bookkeeping = bookkeeping;
+        return check(scene, made(solve(chain, Model::chain).shape.points),
+                     {.tolerance = ShapeTolerance{.allowed_m = allowed},
+                      .explaining = Explaining::no,
+                      .shape = {.modulus = ModulusSearch::no}})
+            .judgement;
+      };
+      const double away = judged_at(scene, 1).judged_m;
+      const ShapeJudgement right = judged_at(scene, away / 2);
+      EXPECT_TRUE(right.passes()) << right.reason;
+      Scene soft = scene;
+      soft.scale_modulus(0.5);
+      const ShapeJudgement other = judged_at(soft, std::max(away / 2, 2e-3));
+      EXPECT_EQ(other.verdict, ShapeVerdict::fail) << other.reason;
+    }
+  }
+}
+
+// The segments of model chain are strained by its finite c_c, so that the pin is not at the arc
+// length that equal shares of the file's polyline have.
+TEST(ChainVerdict, AChainMayBeStrainedBetweenItsGrippers) {
+  const Scene scene = parse_scene(
+      "[rod]\nlength = 1\nbending_stiffness = 0.1\nmass_per_length = 0.5\n[[gripper]]\nat = 0\n"
+      "position = [0, 0, 0]\ndirection = \"20 deg\"\n[[gripper]]\nat = 0.7\n"
+      "position = [0.5, 0, 0]\nhold = \"pin\"\n",
+      "pin.toml");
+  Matrix3Xd points =
+      solve(of_chain(scene, 13, energy_model::JointLaw::hooke), Model::chain).shape.points;
+  const double away = checked(scene, points, Explaining::no).judgement.judged_m;
+  points.rightCols<1>() += 1e-4 * (points.col(points.cols() - 1) - points.col(points.cols() - 2));
+  const CheckResult result = check(scene, made(points),
+                                   {.tolerance = ShapeTolerance{.allowed_m = away / 2},
+                                    .explaining = Explaining::no,
+                                    .shape = {.modulus = ModulusSearch::no}});
+  EXPECT_NE(result.judgement.verdict, ShapeVerdict::fail) << result.judgement.reason;
+}
+
 // A rope with a Gamma of 1000 is bent within less than a coarse chain's first segment.
 TEST(ChainVerdict, AChainOfAnotherOrderIsTooCoarse) {
   Scene rope = clamped();

@@ -61,6 +61,8 @@ TEST(Explanation, NamesWhatIsWrongWithAFile) {
   expect_named("stretched", scene, made(1.02 * right), {"stretched by 2 %"});
   expect_named("much stretched", scene, made(1.1 * right), {"stretched by 10 %"});
   expect_named("compressed", scene, made(right / 1.1), {"compressed"});
+  expect_named("shrunk", scene, made(right / 1e3), {"the file is in km"});
+  expect_named("an unnamed unit", scene, made(0.004 * right), {"the file is in units of 250"});
   expect_named("cut off", scene, made(right.leftCols(33)), {"cut off", "s = 0 to 0.8 m"});
   const auto axes = [&right](const Vector3d& x, const Vector3d& y, const Vector3d& z) {
     Matrix3d to;
@@ -105,6 +107,30 @@ TEST(Explanation, NamesWhatIsWrongWithAFile) {
   MeasuredShape against = made(right);
   against.arc_length = equal_arc_lengths(1, 41);
   EXPECT_TRUE(judged(scene, against).judgement.passes());
+}
+
+// The origin is not at a gripper: a scale moves the grippers, and a rotation leaves one where it
+// is.
+TEST(Explanation, NamesTheScaleAndTheRotationOfAFile) {
+  Scene scene = between_clamps();
+  for (Gripper& gripper : scene.grippers) gripper.position += Vector3d(0.2, -0.3, 0.1);
+  const Matrix3Xd right = shape_of(scene).points;
+  expect_named("compressed", scene, made(0.7 * right), {"compressed by 30 %"});
+  expect_named("shrunk", scene, made(0.2 * right), {"the file is in units of 5.00"});
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (const Vector3d& axis : {Vector3d(0, 0, 1), Vector3d(1, 2, -1)}) {
+      const Matrix3d rotation =
+          Eigen::AngleAxisd(12 * degree, axis.normalized()).toRotationMatrix();
+      const Vector3d centre = scene.grippers[i].position;
+      const Matrix3Xd wrong = (rotation * (right.colwise() - centre)).colwise() + centre;
+      const std::vector<Explanation> found = judged(scene, made(wrong)).explanations;
+      ASSERT_FALSE(found.empty());
+      EXPECT_TRUE(
+          says(found[0].cause, {"rotated by 12 deg about gripper " + std::to_string(i + 1)}));
+      EXPECT_EQ(found[0].numbers, 3);
+      EXPECT_LT(found[0].rms_m, 1e-3);
+    }
+  }
 }
 
 // How far a file is that was read in a wrong way says nothing: what is wrong with it comes first.
