@@ -33,10 +33,11 @@ constexpr int most_escapes = 10;
 /// saddle.
 constexpr double first_beside_saddle = 1e-3;
 constexpr int most_slow = 3;
-/// Force on a free point that may be left, over the forces that act [-]; above what rounding of the
-/// positions makes of the stiffest segment (proof()). A polygon whose Newton step is rounding is
-/// far below it, one that is pressed between two constraints far above.
-constexpr double force_left = 1e-6;
+/// Largest force that may be left on a free point, divided by the forces that act [-]. The forces
+/// on a hundred points then balance within allowed_imbalance. What rounding of the positions makes
+/// of the stiffest segment may be left as well (prove()). A polygon that is pressed between two
+/// constraints does not come below it.
+constexpr double force_left = 1e-10;
 
 /// Descends on one problem; holds what all steps need.
 class PolygonDescent {
