@@ -93,8 +93,8 @@ class SpreadActions {
   struct Panel {
     double begin, width;
     Sums sums;
-    /// Nodes are outside of a body that yields, and so near to it that the rod between them may be
-    /// within it.
+    /// Contact with a body that yields may begin or end where no node is: between an end of the
+    /// panel and the node next to it, or between two nodes that are outside of the body and near.
     bool may_hide_contact = false;
   };
 
@@ -111,37 +111,49 @@ class SpreadActions {
   void sum(std::vector<Panel>& panels) const {
     const LegendreTable& rule = legendre_table(2);
     const std::size_t Q = static_cast<std::size_t>(rule.nodes.size());
+    const std::size_t samples_per_panel = Q + 2;  // begin, nodes, end
     std::vector<double> s;
-    s.reserve(panels.size() * Q);
+    s.reserve(panels.size() * samples_per_panel);
     for (const Panel& panel : panels) {
-      for (const double node : rule.nodes) {
+      const auto add_sample = [&](double node) {
         s.push_back(std::clamp(panel.begin + node * panel.width, 0.0, problem_.length));
-      }
+      };
+      add_sample(0);
+      for (const double node : rule.nodes) add_sample(node);
+      add_sample(1);
     }
     const Samples samples = shape_.sample(s);
     for (std::size_t p = 0; p < panels.size(); ++p) {
       Panel& panel = panels[p];
       panel.sums.setZero(6, columns());
-      panel.may_hide_contact = may_hide_contact(samples, p * Q, Q, panel.width);
+      const std::size_t first = p * samples_per_panel;
+      panel.may_hide_contact =
+          may_hide_contact(samples.points.middleCols(static_cast<Eigen::Index>(first),
+                                                     static_cast<Eigen::Index>(samples_per_panel)),
+                           panel.width);
       const RodPart& part = part_at(panel.begin + panel.width / 2);
       for (std::size_t q = 0; q < Q; ++q) {
-        const auto i = static_cast<Eigen::Index>(p * Q + q);
+        const std::size_t at = first + 1 + q;
+        const auto i = static_cast<Eigen::Index>(at);
         const double ds = panel.width * rule.weights[static_cast<Eigen::Index>(q)];
-        add(samples.points.col(i), samples.tangents.col(i), part, s[p * Q + q], ds, panel.sums);
+        add(samples.points.col(i), samples.tangents.col(i), part, s[at], ds, panel.sums);
       }
     }
   }
 
-  [[nodiscard]] bool may_hide_contact(const Samples& samples, std::size_t first, std::size_t Q,
-                                      double width) const {
+  /// @param points  of the rod at the begin, the nodes and the end of a panel
+  [[nodiscard]] bool may_hide_contact(const Eigen::Matrix3Xd& points, double width) const {
     constexpr double half_gap = 0.1;         // between two nodes of a panel, of its width
     constexpr double shortest = 1.0 / 2048;  // contact is longer than that
-    if (width < shortest * problem_.length) return false;
-    const auto points =
-        samples.points.middleCols(static_cast<Eigen::Index>(first), static_cast<Eigen::Index>(Q));
+    const Eigen::Index last = points.cols() - 1;
     return std::any_of(yielding_.begin(), yielding_.end(), [&](std::size_t i) {
-      const double least = problem_.obstacles[i].body.clearances(points).minCoeff();
-      return least >= 0 && least < half_gap * width;
+      const Eigen::VectorXd clearance = problem_.obstacles[i].body.clearances(points);
+      const auto changes = [&](Eigen::Index one, Eigen::Index other) {
+        return (clearance[one] < 0) != (clearance[other] < 0);
+      };
+      if (changes(0, 1) || changes(last - 1, last)) return true;
+      const double least = clearance.minCoeff();
+      return width >= shortest * problem_.length && least >= 0 && least < half_gap * width;
     });
   }
 
@@ -202,6 +214,10 @@ Action load_on(const Samples& samples, Eigen::Index column, const Load& load) {
 
 }  // namespace
 
+Eigen::Vector3d Action::moment_about(const Eigen::Vector3d& origin) const {
+  return couple + (point - origin).cross(force);
+}
+
 double Imbalance::share() const {
   const double of_force = force / largest_force;
   const double of_moment = moment / largest_moment;
@@ -227,7 +243,7 @@ Imbalance imbalance_of(const std::vector<Action>& actions, const Action& least) 
   for (const Action& action : actions) {
     const Eigen::Vector3d arm = action.point - actions.front().point;
     force += action.force;
-    moment += action.couple + arm.cross(action.force);
+    moment += action.moment_about(actions.front().point);
     result.largest_force = std::max(result.largest_force, action.force.norm());
     couple = std::max(couple, action.couple.norm());
     distance = std::max(distance, arm.norm());

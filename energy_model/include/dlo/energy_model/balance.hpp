@@ -17,6 +17,9 @@ struct Action {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< at which the force acts [m]
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N]
   Eigen::Vector3d couple = Eigen::Vector3d::Zero();  ///< besides the moment of the force [N m]
+
+  /// Returns the couple and the moment of the force about a point [N m].
+  [[nodiscard]] Eigen::Vector3d moment_about(const Eigen::Vector3d& origin) const;
 };
 
 /// What all actions on a rod leave, which is zero at rest.
