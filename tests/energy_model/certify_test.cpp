@@ -60,8 +60,9 @@ Span spatial_arch(double lean) {
   return span;
 }
 
-// A factor of a point nearby tells what one of the shape's own does; one from farther away is not
-// taken.
+// The factor of a point nearby gives the smallest eigenvalue within a hundredth, as the shape's own
+// factor does. The factor of a point farther away is replaced, even where it gives a small next
+// step.
 TEST(Certify, AsksTheFactorOnlyNextToThePointThatItIsOf) {
   SpanWorkspace workspace;
   NewtonFactors& factors = workspace.factors();
@@ -75,7 +76,7 @@ TEST(Certify, AsksTheFactorOnlyNextToThePointThatItIsOf) {
     EXPECT_EQ(copy.factor->distance(copy, 1), 0);
     return copy;
   }();
-  for (const double away : {1e-8, 3e-4, 1e-2}) {
+  for (const double away : {1e-8, 3e-5, 3e-4, 1e-2}) {
     SpanSolution beside = solution;
     beside.x[1] += away;
     factors.factor_at(beside, *beside.at_x(), span.total_load());
@@ -85,7 +86,7 @@ TEST(Certify, AsksTheFactorOnlyNextToThePointThatItIsOf) {
     EXPECT_EQ(certified.status, SolveStatus::converged) << certified.message;
     EXPECT_NEAR(certified.smallest_eigenvalue, alone.smallest_eigenvalue,
                 0.02 * alone.smallest_eigenvalue);
-    EXPECT_NEAR(certified.factor->distance(certified, 1), away < 1e-4 ? away : 0, 1e-15);
+    EXPECT_NEAR(certified.factor->distance(certified, 1), away < 1e-6 ? away : 0, 1e-15);
   }
 }
 
