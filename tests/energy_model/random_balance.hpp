@@ -112,10 +112,15 @@ inline void add_polygons(const std::string& name, const energy_model::Problem& p
     try {
       const compare::Solution solution = compare::solve(scene, model, {.time_limit = time_limit});
       const compare::Discretisation polygon = compare::discretise(scene, scene.force_model);
+      // The shape ends at the clamps' references; loads act on the polygon's own points.
+      Eigen::Matrix3Xd points = solution.shape.points;
+      for (const force_model::Grip& grip : polygon.rod.grips) {
+        points.middleCols(grip.first_point, grip.targets.cols()) = grip.targets;
+      }
       const energy_model::Imbalance left =
-          compare::polygon_imbalance(polygon.rod, solution.shape.points, solution.grippers);
+          compare::polygon_imbalance(polygon.rod, points, solution.grippers);
       largest.add(name, left.share(), false);
-      if (model == compare::Model::force) {
+      if (model == compare::Model::force && left.share() > energy_model::allowed_imbalance) {
         std::printf("  %s, force: imbalance %.1e, %.1e l from rest\n", name.c_str(), left.share(),
                     solution.error_estimate / scene.length);
       }
@@ -152,8 +157,11 @@ inline int print_imbalances(std::uint64_t first, std::uint64_t scenes, double ti
       energy.add(name, *problem, shape);
       const bool polygon = problem->obstacles.empty() && problem->line_loads.empty() &&
                            !has_couples(*problem) && !has_material_directors(*problem);
-      if (polygon && number % 4 == 0) add_polygons(name, *problem, time_limit, polygons);
-      if (!shape.sample) continue;
+      if (polygon) add_polygons(name, *problem, time_limit, polygons);
+      const bool yields =
+          std::any_of(problem->obstacles.begin(), problem->obstacles.end(),
+                      [](const energy_model::Obstacle& o) { return std::isfinite(o.stiffness); });
+      if (!shape.sample || yields) continue;
       exact.add(name, *problem, solve_exact(*problem, {.time_limit = time_limit, .start = &shape}));
     } catch (const std::invalid_argument& error) {
       std::printf("  %s: %s\n", name.c_str(), error.what());

@@ -266,9 +266,10 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
   Solution solution =
       polygon_solution(dead_scene, settings, discretisation, rod, rest.simulation.points());
   add_rest(rest, solution);
-  require_balanced(
-      scene, polygon_imbalance(rest.simulation.rod(), rest.simulation.points(), solution.grippers),
-      allowed_rest_imbalance(solution.error_estimate / scene.length), "force");
+  const force_model::Rod& resting = rest.simulation.rod();
+  const Eigen::Matrix3Xd& points = rest.simulation.points();
+  require_balanced(scene, polygon_imbalance(resting, points, solution.grippers),
+                   allowed_rest_imbalance(resting, points, solution.to_rest), "force");
   if (scene.drag) solution.status = energy_model::SolveStatus::not_verified;
   if (!scene.drag && strayed()) solution.message += ", in another state than the chain";
   solution.seconds = timer.seconds();

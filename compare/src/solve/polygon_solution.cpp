@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "base/timer.hpp"
@@ -39,6 +40,33 @@ std::vector<bool> held_points(const force_model::Rod& rod, Eigen::Index count) {
     std::fill_n(held.begin() + grip.first_point, grip.targets.cols(), true);
   }
   return held;
+}
+
+/// What the grippers exert, the loads, and obstacles on points that no gripper holds; as many
+/// actions for every shape of a rod.
+std::vector<energy_model::Action> actions_on(const force_model::Rod& rod,
+                                             const Eigen::Matrix3Xd& points,
+                                             const std::vector<GripperLoad>& grippers) {
+  std::vector<energy_model::Action> actions;
+  for (std::size_t i = 0; i < grippers.size(); ++i) {
+    actions.push_back({rod.grips[i].reference, grippers[i].force, grippers[i].torque});
+  }
+  const std::vector<bool> held = held_points(rod, points.cols());
+  Eigen::Matrix3Xd pushes = Eigen::Matrix3Xd::Zero(3, points.cols());
+  for (const force_model::Wall& wall : rod.walls) {
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      pushes.col(i) += force_model::wall_force(wall, points.col(i));
+    }
+  }
+  for (const force_model::Solid& solid : rod.solids) {
+    force_model::add_solid_forces(solid, points, pushes);
+  }
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    actions.push_back({points.col(i), rod.loads.col(i), Eigen::Vector3d::Zero()});
+    if (held[static_cast<std::size_t>(i)]) continue;
+    actions.push_back({points.col(i), pushes.col(i), Eigen::Vector3d::Zero()});
+  }
+  return actions;
 }
 
 }  // namespace
@@ -101,30 +129,33 @@ std::vector<GripperLoad> gripper_loads(force_model::Rod rod, const Eigen::Matrix
 energy_model::Imbalance polygon_imbalance(const force_model::Rod& rod,
                                           const Eigen::Matrix3Xd& points,
                                           const std::vector<GripperLoad>& grippers) {
-  std::vector<energy_model::Action> actions;
-  for (std::size_t i = 0; i < grippers.size(); ++i) {
-    actions.push_back({rod.grips[i].reference, grippers[i].force, grippers[i].torque});
-  }
-  const std::vector<bool> held = held_points(rod, points.cols());
-  Eigen::Matrix3Xd pushes = Eigen::Matrix3Xd::Zero(3, points.cols());
-  for (const force_model::Wall& wall : rod.walls) {
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-      pushes.col(i) += force_model::wall_force(wall, points.col(i));
-    }
-  }
-  for (const force_model::Solid& solid : rod.solids) {
-    force_model::add_solid_forces(solid, points, pushes);
-  }
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    actions.push_back({points.col(i), rod.loads.col(i), Eigen::Vector3d::Zero()});
-    if (held[static_cast<std::size_t>(i)]) continue;
-    actions.push_back({points.col(i), pushes.col(i), Eigen::Vector3d::Zero()});
-  }
-  // Positions are rounded to a share of the segments, whose forces are c_c times theirs.
-  constexpr double rounding = 1e-6;
-  const double least = rounding * rod.c_c;
+  // The positions of a segment's ends are rounded to eps |P|, which changes its force by
+  // c_c / L times that. Grips and obstacles were seen to be off by three times as much.
+  constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
+  const double per_length = rod.c_c / rod.rest_lengths.minCoeff();
+  const double least =
+      rounding * per_length * points.cwiseAbs().maxCoeff() / energy_model::allowed_imbalance;
   return energy_model::imbalance_of(
-      actions, {.force = {least, 0, 0}, .couple = {least * rod.length(), 0, 0}});
+      actions_on(rod, points, grippers),
+      {.force = {least, 0, 0}, .couple = {least * rod.length(), 0, 0}});
+}
+
+double allowed_rest_imbalance(const force_model::Rod& rod, const Eigen::Matrix3Xd& points,
+                              const Eigen::Matrix3Xd& to_rest) {
+  const Eigen::Matrix3Xd rest = points + to_rest;
+  const std::vector<GripperLoad> grippers = gripper_loads(rod, points);
+  const std::vector<energy_model::Action> here = actions_on(rod, points, grippers);
+  const std::vector<energy_model::Action> there = actions_on(rod, rest, gripper_loads(rod, rest));
+  const Eigen::Vector3d& origin = here.front().point;
+  double force = 0;
+  double moment = 0;
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    force += (there[i].force - here[i].force).norm();
+    moment += (there[i].moment_about(origin) - here[i].moment_about(origin)).norm();
+  }
+  const energy_model::Imbalance scale = polygon_imbalance(rod, points, grippers);
+  return energy_model::allowed_imbalance +
+         std::max(force / scale.largest_force, moment / scale.largest_moment);
 }
 
 void require_balanced(const Scene& scene, const energy_model::Imbalance& imbalance, double allowed,

@@ -31,10 +31,13 @@ namespace dlo::compare {
                                                         const Eigen::Matrix3Xd& points,
                                                         const std::vector<GripperLoad>& grippers);
 
-/// Largest Imbalance::share() of a polygon that is this share of its length away from rest.
-[[nodiscard]] inline double allowed_rest_imbalance(double distance) {
-  return energy_model::allowed_imbalance + distance;
-}
+/// Returns the largest Imbalance::share() of a polygon that has not come to rest: the sum of what
+/// the step to rest changes of each force and moment on the polygon, besides allowed_imbalance. The
+/// forces balance after the step, so their sum before it cannot be larger.
+/// @param to_rest  Newton's step from each point [m]
+[[nodiscard]] double allowed_rest_imbalance(const force_model::Rod& rod,
+                                            const Eigen::Matrix3Xd& points,
+                                            const Eigen::Matrix3Xd& to_rest);
 
 /// A polygon whose forces and moments do not balance is no equilibrium.
 /// @param allowed  largest Imbalance::share()

@@ -562,7 +562,7 @@ TEST(PolygonBalance, HoldsAndIsLostWithEveryForce) {
       const Eigen::Matrix3Xd& points = solution.shape.points;
       const double allowed = model == Model::chain
                                  ? energy_model::allowed_imbalance
-                                 : allowed_rest_imbalance(solution.error_estimate / scene.length);
+                                 : allowed_rest_imbalance(rod, points, solution.to_rest);
       const energy_model::Imbalance good = polygon_imbalance(rod, points, solution.grippers);
       EXPECT_LE(good.share(), allowed);
       EXPECT_NO_THROW(require_balanced(scene, good, allowed, "chain"));
