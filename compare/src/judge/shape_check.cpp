@@ -263,8 +263,7 @@ ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
   const Aligner aligner(shape, scene.length, align_options(scene, options));
   const energy_model::Equilibrium lowest = solve_reference(scene, options.solve);
   LaidStates laid(aligner, scene.length, all_states(scene, lowest, options.solve));
-  const bool searches = reference_model(scene) == Model::energy;
-  if (searches && laid.from_shape[laid.nearest()] > surely_nearest * scene.length) {
+  if (laid.from_shape[laid.nearest()] > surely_nearest * scene.length) {
     MeasuredShape placed = shape;
     placed.points = laid.alignments[laid.nearest()].pose.applied(shape.points);
     laid.add_near(laid_by_grippers(placed, scene, aligner.arc_lengths()), scene, options.solve);

@@ -123,7 +123,7 @@ std::vector<Equilibrium> all_states(const Scene& scene, const Equilibrium& lowes
 std::optional<std::size_t> add_state_near(const Scene& scene, const Shape& shape,
                                           const SolveOptions& options,
                                           std::vector<Equilibrium>& states) {
-  if (shape.arc_length.size() < 2) return std::nullopt;
+  if (shape.arc_length.size() < 2 || reference_model(scene) != Model::energy) return std::nullopt;
   Equilibrium near = reference_near(scene, shape, options);
   if (!succeeded(near.status)) return std::nullopt;
   const bool known = std::any_of(states.begin(), states.end(), [&](const Equilibrium& other) {

@@ -27,7 +27,8 @@ inline constexpr double surely_nearest = same_shape / 2;
 /// their order, if it is proven stable and none of them.
 /// @param shape   in the scene's frame
 /// @param[in,out] states  of all_states()
-/// @return the index of the one added; none: it is known, or the search found no stable one
+/// @return the index of the one added; none: it is known, the search found no stable one, or the
+///   scene's reference_model() is not energy, which alone searches
 [[nodiscard]] std::optional<std::size_t> add_state_near(
     const Scene& scene, const Shape& shape, const SolveOptions& options,
     std::vector<energy_model::Equilibrium>& states);

@@ -68,7 +68,7 @@ TEST_F(ProgramCommand, BenchSaysFailuresInTextAndTables) {
   const Outcome table = run(arguments + "--format csv");
   EXPECT_EQ(table.status, 3);
   EXPECT_THAT(table.out,
-              HasSubstr("\ncable,static,slow,8,,,,,,,,,killed after the time limit of 0.05 s,\n"));
+              HasSubstr("\ncable,static,slow,8,,,,,,,,,killed after the time limit of 0.05 s\n"));
   expect_error("bench " + cable() + " --with sim", 2, {"--with", "NAME"});
 }
 

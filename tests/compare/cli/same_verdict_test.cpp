@@ -94,7 +94,7 @@ TEST_F(SameVerdict, OfFiftyShapesFromCommandLibraryAndMatchers) {
 /// But for what the tolerance is about.
 nlohmann::json facts(nlohmann::json document) {
   for (const char* key : {"tolerance", "judged_m", "verdict", "reason", "explanations",
-                          "superseded_by", "significant", "deflection_m"}) {
+                          "superseded_by", "significant", "deflection_m", "hint"}) {
     document.erase(key);
   }
   return document;
