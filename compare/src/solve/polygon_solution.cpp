@@ -130,7 +130,7 @@ energy_model::Imbalance polygon_imbalance(const force_model::Rod& rod,
                                           const Eigen::Matrix3Xd& points,
                                           const std::vector<GripperLoad>& grippers) {
   // The positions of a segment's ends are rounded to eps |P|, which changes its force by
-  // c_c / L times that. Grips and obstacles were seen to be off by three times as much.
+  // c_c / L times that. The factor 8 allows for the sum of several such forces; it is not measured.
   constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
   const double per_length = rod.c_c / rod.rest_lengths.minCoeff();
   const double least =
@@ -154,8 +154,10 @@ double allowed_rest_imbalance(const force_model::Rod& rod, const Eigen::Matrix3X
     moment += (there[i].moment_about(origin) - here[i].moment_about(origin)).norm();
   }
   const energy_model::Imbalance scale = polygon_imbalance(rod, points, grippers);
+  // Newton's step to the root of the paper's cubic law is a third of the distance to it.
+  constexpr double shortest_step = 3;
   return energy_model::allowed_imbalance +
-         std::max(force / scale.largest_force, moment / scale.largest_moment);
+         shortest_step * std::max(force / scale.largest_force, moment / scale.largest_moment);
 }
 
 void require_balanced(const Scene& scene, const energy_model::Imbalance& imbalance, double allowed,
