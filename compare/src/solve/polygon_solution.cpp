@@ -154,10 +154,8 @@ double allowed_rest_imbalance(const force_model::Rod& rod, const Eigen::Matrix3X
     moment += (there[i].moment_about(origin) - here[i].moment_about(origin)).norm();
   }
   const energy_model::Imbalance scale = polygon_imbalance(rod, points, grippers);
-  // Newton's step to the root of the paper's cubic law is a third of the distance to it.
-  constexpr double shortest_step = 3;
   return energy_model::allowed_imbalance +
-         shortest_step * std::max(force / scale.largest_force, moment / scale.largest_moment);
+         std::max(force / scale.largest_force, moment / scale.largest_moment);
 }
 
 void require_balanced(const Scene& scene, const energy_model::Imbalance& imbalance, double allowed,

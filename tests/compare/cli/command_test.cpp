@@ -257,7 +257,7 @@ std::string given(const std::string& option) {
                                                             {"--baseline", "a.json"},
                                                             {"--markdown", "a.md"},
                                                             {"--junit", "a.xml"},
-                                                            {"--html", "a.html"},
+                                                            {"--report", "a.html"},
                                                             {"--output", "a.json"},
                                                             {"--relative", "1%"},
                                                             {"--absolute", "1%"}};
