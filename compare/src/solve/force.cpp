@@ -268,8 +268,12 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
   add_rest(rest, solution);
   const force_model::Rod& resting = rest.simulation.rod();
   const Eigen::Matrix3Xd& points = rest.simulation.points();
-  // The paper's law has no stiffness at a straight joint, where Newton's step to rest is no bound.
-  if (settings.law == BendingLaw::hooke) {
+  // Newton's step to rest bounds the imbalance only near rest, and not with the paper's law, which
+  // has no stiffness at a straight joint.
+  constexpr double near_rest = 1e-6;  // of the length
+  const bool is_bounded =
+      settings.law == BendingLaw::hooke && solution.error_estimate <= near_rest * scene.length;
+  if (is_bounded) {
     require_balanced(scene, polygon_imbalance(resting, points, solution.grippers),
                      allowed_rest_imbalance(resting, points, solution.to_rest), "force");
   }
