@@ -490,8 +490,9 @@ def test_a_line_that_stretches():
     stretched = dlo.solve(line, model="exact")
     assert stretched.neglected == [] and stretched.energy["stretch"] > 0
     assert dlo.Scene.from_text(line.to_toml()).stretch is True
+    assert (dlo.solve(line).points == stretched.points).all()  # the default model is exact
     with pytest.raises(dlo.InputError, match="stretch"):
-        dlo.solve(line)
+        dlo.solve(line, model="energy")
     with pytest.raises(dlo.InputError, match='allowed: true, false or "auto"'):
         line.stretch = "yes"
     line.stretch = "auto"

@@ -75,8 +75,9 @@ std::optional<HeldAt> held_at(const Gripper& gripper, const std::vector<double>&
 Eigen::VectorXd rest_lengths(const Scene& scene, const Eigen::Matrix3Xd& points) {
   const Eigen::Index n = points.cols() - 1;
   const Eigen::VectorXd chords = (points.rightCols(n) - points.leftCols(n)).colwise().norm();
-  std::vector<double> s = {0};
-  for (const double h : chords) s.push_back(s.back() + h * scene.length / chords.sum());
+  double along = 0;
+  std::vector<double> s = {along};
+  for (const double h : chords) s.push_back(along += h * scene.length / chords.sum());
   s.back() = scene.length;  // but for rounding it is
   std::vector<std::pair<double, double>> known = {{0, 0}, {scene.length, scene.length}};
   for (const Gripper& gripper : scene.grippers) {
