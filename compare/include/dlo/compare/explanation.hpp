@@ -71,10 +71,10 @@ inline constexpr double right_chain = 0.25;
 [[nodiscard]] ShapeJudgement judge_with_chains(const Scene& scene, const ShapeCheck& check,
                                                const ShapeTolerance& tolerance);
 
-/// A judgement, and the chain that the file was judged as; empty: it was judged as the rod.
+/// A judgement of a file that may be a chain of hinges.
 struct ChainJudgement {
-  ShapeJudgement judgement;
-  std::optional<Explanation> chain;
+  ShapeJudgement judgement;          ///< its verdict, as judge_with_chains() returns it
+  std::optional<Explanation> chain;  ///< which the file was judged as; empty: as the rod
 };
 
 /// Judges as judge_with_chains().
