@@ -25,6 +25,28 @@ std::vector<std::pair<std::string, double>> units_for(const MeasuredShape& shape
   return units;
 }
 
+/// Calls `look` for a file in this unit and these axes: with or without the missing ends, in its
+/// place or moved. At least two of these have to differ from the file as it is.
+void look_at_poses(const std::string& unit, const FileAxes& axes, const MeasuredShape& in_metres,
+                   bool lacks_ends, const std::function<void(const FileCause&)>& look) {
+  const int changed = (unit.empty() ? 0 : 1) + (axes.words.empty() ? 0 : 1);
+  const char* const both = changed == 2 ? ", and " : "";
+  for (const bool part : {false, true}) {
+    if (part && !lacks_ends) continue;
+    for (const PoseFreedom pose : {PoseFreedom::known, PoseFreedom::translation}) {
+      const int moved = pose == PoseFreedom::translation ? 1 : 0;
+      const int faults = changed + (part ? 1 : 0) + moved;
+      if (faults < 2) continue;
+      look({.words = unit + both + axes.words,
+            .shape = turned(in_metres, axes.axes),
+            .pose = pose,
+            .numbers = faults - 1 + moved,
+            .part = part,
+            .same_as = joint_cause});
+    }
+  }
+}
+
 }  // namespace
 
 void look_at_joint_causes(const Scene& scene, const MeasuredShape& shape,
@@ -34,24 +56,7 @@ void look_at_joint_causes(const Scene& scene, const MeasuredShape& shape,
   for (const auto& [unit, metres] : units_for(shape, scene.length)) {
     const MeasuredShape in_metres = scaled(shape, metres);
     const bool lacks_ends = is_short(lengths_along(in_metres.points).back(), scene.length);
-    for (const FileAxes& axes : all_axes) {
-      for (const bool part : {false, true}) {
-        if (part && !lacks_ends) continue;
-        for (const PoseFreedom pose : {PoseFreedom::known, PoseFreedom::translation}) {
-          const bool moved = pose == PoseFreedom::translation;
-          const int faults = (unit.empty() ? 0 : 1) + (axes.words.empty() ? 0 : 1) +
-                             (part ? 1 : 0) + (moved ? 1 : 0);
-          if (faults < 2) continue;
-          const char* const both = unit.empty() || axes.words.empty() ? "" : ", and ";
-          look({.words = unit + both + axes.words,
-                .shape = turned(in_metres, axes.axes),
-                .pose = pose,
-                .numbers = faults - 1 + (moved ? 1 : 0),
-                .part = part,
-                .same_as = joint_cause});
-        }
-      }
-    }
+    for (const FileAxes& axes : all_axes) look_at_poses(unit, axes, in_metres, lacks_ends, look);
   }
 }
 

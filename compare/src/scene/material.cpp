@@ -33,63 +33,75 @@ std::vector<Material> read_materials(const std::string& text, const std::string&
   return result;
 }
 
+namespace {
+
+double shear_modulus(const Layer& layer) {
+  return layer.youngs_modulus / (2 * (1 + assumed_poisson_ratio));
+}
+
+/// Adds a solid or hollow layer around `sum`.
+/// @return the area of its section in m^2
+double add_tube(const Layer& layer, LayeredSection& sum) {
+  const double inner = sum.outer_diameter;
+  const double outer = layer.outer_diameter;
+  if (!(outer > inner)) {
+    throw InputError(
+        fmt::format("outer_diameter = {:g} m, what is within it is {:g} m thick (allowed: more)",
+                    outer, inner));
+  }
+  const double I = std::numbers::pi / 64 * (std::pow(outer, 4) - std::pow(inner, 4));
+  sum.bonded_bending_stiffness += layer.youngs_modulus * I;
+  sum.free_bending_stiffness += layer.youngs_modulus * I;
+  sum.bonded_torsional_stiffness += 2 * shear_modulus(layer) * I;
+  sum.free_torsional_stiffness += 2 * shear_modulus(layer) * I;
+  sum.outer_diameter = outer;
+  return std::numbers::pi / 4 * (outer * outer - inner * inner);
+}
+
+/// Adds a ring of strands around `sum`, or one strand as the core.
+/// @return the area of their sections in m^2
+double add_strands(const Layer& layer, LayeredSection& sum) {
+  const double inner = sum.outer_diameter;
+  const double d = layer.strand_diameter;
+  const bool core = layer.strands == 1;
+  if (layer.strands == 2 || (core && inner > 0)) {
+    throw InputError(
+        fmt::format("{} strand{} do{} not bend alike about all axes (allowed: 3 or more, or 1 as "
+                    "the first layer)",
+                    layer.strands, core ? "" : "s", core ? "es" : ""));
+  }
+  const double share = core ? 0 : std::sin(std::numbers::pi / layer.strands);
+  const double ring = core ? 0 : inner > 0 ? (inner + d) / 2 : d / (2 * share);
+  constexpr double rounding = 1e-9;
+  if (!core && d > 2 * ring * share * (1 + rounding)) {
+    throw InputError(fmt::format(
+        "{} strands of {:g} m do not fit side by side on {:g} m (allowed: fewer, or thinner ones)",
+        layer.strands, d, inner));
+  }
+  const double area = layer.strands * std::numbers::pi / 4 * d * d;
+  const double own = area * d * d / 16;
+  const double apart = area * ring * ring / 2;
+  sum.bonded_bending_stiffness += layer.youngs_modulus * (own + apart);
+  sum.free_bending_stiffness += layer.youngs_modulus * own;
+  sum.bonded_torsional_stiffness += 2 * shear_modulus(layer) * (own + apart);
+  sum.free_torsional_stiffness += 2 * shear_modulus(layer) * own;
+  sum.outer_diameter = 2 * ring + d;
+  return area;
+}
+
+}  // namespace
+
 LayeredSection layered_section(const std::vector<Layer>& layers) {
   LayeredSection sum;
-  int number = 0;
-  const auto refuse = [&number](const std::string& problem) {
-    throw InputError(fmt::format("layer {}: {}", number, problem));
-  };
-  for (const Layer& layer : layers) {
-    ++number;
-    const double E = layer.youngs_modulus;
-    const double G = E / (2 * (1 + assumed_poisson_ratio));
-    const double within = sum.outer_diameter;
-    const double d = layer.strand_diameter;
-    double area = 0;
-    if (layer.strands == 0) {
-      const double outer = layer.outer_diameter;
-      if (!(outer > within)) {
-        refuse(
-            fmt::format("outer_diameter = {:g} m, what is within it is {:g} m thick (allowed: "
-                        "more)",
-                        outer, within));
-      }
-      area = std::numbers::pi / 4 * (outer * outer - within * within);
-      const double I = std::numbers::pi / 64 * (std::pow(outer, 4) - std::pow(within, 4));
-      sum.bonded_bending_stiffness += E * I;
-      sum.free_bending_stiffness += E * I;
-      sum.bonded_torsional_stiffness += 2 * G * I;
-      sum.free_torsional_stiffness += 2 * G * I;
-      sum.outer_diameter = outer;
-    } else {
-      const bool core = layer.strands == 1;
-      if (layer.strands == 2 || (core && within > 0)) {
-        refuse(
-            fmt::format("{} strand{} do{} not bend alike about all axes (allowed: 3 or more, or "
-                        "1 as the first layer)",
-                        layer.strands, core ? "" : "s", core ? "es" : ""));
-      }
-      const double share = core ? 0 : std::sin(std::numbers::pi / layer.strands);
-      const double ring = core ? 0 : within > 0 ? (within + d) / 2 : d / (2 * share);
-      constexpr double rounding = 1e-9;
-      if (!core && d > 2 * ring * share * (1 + rounding)) {
-        refuse(
-            fmt::format("{} strands of {:g} m do not fit side by side on {:g} m (allowed: fewer, "
-                        "or thinner ones)",
-                        layer.strands, d, within));
-      }
-      const double one = std::numbers::pi / 4 * d * d;
-      area = layer.strands * one;
-      const double own = area * d * d / 16;
-      const double apart = area * ring * ring / 2;
-      sum.bonded_bending_stiffness += E * (own + apart);
-      sum.free_bending_stiffness += E * own;
-      sum.bonded_torsional_stiffness += 2 * G * (own + apart);
-      sum.free_torsional_stiffness += 2 * G * own;
-      sum.outer_diameter = 2 * ring + d;
+  for (std::size_t i = 0; i < layers.size(); ++i) {
+    const Layer& layer = layers[i];
+    try {
+      const double area = layer.strands == 0 ? add_tube(layer, sum) : add_strands(layer, sum);
+      sum.axial_stiffness += layer.youngs_modulus * area;
+      sum.mass_per_length += layer.density * area;
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("layer {}: {}", i + 1, error.what()));
     }
-    sum.axial_stiffness += E * area;
-    sum.mass_per_length += layer.density * area;
   }
   return sum;
 }
