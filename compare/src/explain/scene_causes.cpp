@@ -244,6 +244,19 @@ SceneCause twist(const Scene& scene, std::size_t last) {
           }};
 }
 
+/// Adds gravity of another size, and in the other directions of its axes.
+void add_other_gravity(std::vector<SceneCause>& causes, const Scene& scene) {
+  const Eigen::Vector3d down = scene.gravity.normalized();
+  const Eigen::Vector3d across = down.unitOrthogonal();
+  const std::size_t first = causes.size();
+  causes.push_back(gravity(scene, down));
+  for (const Eigen::Vector3d& other : {across, Eigen::Vector3d(down.cross(across))}) {
+    causes.push_back(gravity(scene, other));
+    causes.push_back(gravity(scene, -other));
+  }
+  for (std::size_t i = first; i < causes.size(); ++i) causes[i].same_as = "gravity";
+}
+
 }  // namespace
 
 bool is_pulled_by_weight_alone(const Scene& scene) {
@@ -285,17 +298,7 @@ std::vector<SceneCause> scene_causes(const Scene& scene, const Shape& shape, dou
     }
   }
   add_other_holds(causes, scene, shape, normal);
-  if (scene.gravity.norm() > 0) {
-    const Eigen::Vector3d down = scene.gravity.normalized();
-    const std::size_t first = causes.size();
-    causes.push_back(gravity(scene, down));
-    const Eigen::Vector3d across = down.unitOrthogonal();
-    for (const Eigen::Vector3d& other : {across, Eigen::Vector3d(down.cross(across))}) {
-      causes.push_back(gravity(scene, other));
-      causes.push_back(gravity(scene, -other));
-    }
-    for (std::size_t i = first; i < causes.size(); ++i) causes[i].same_as = "gravity";
-  }
+  if (scene.gravity.norm() > 0) add_other_gravity(causes, scene);
   const bool round = !scene.has_material_directors();
   if (!flat && clamps == scene.grippers.size() && clamps > 1 && round) {
     causes.push_back(twist(scene, last));

@@ -83,14 +83,7 @@ SpanSolution ActiveSet::run(Span span, TangentField near, SpanSolution solution,
         updated_contacts(solution, load_, Resolution::coarse);
     if (!next && resolution == Resolution::coarse) return solution;
     if (!next) {
-      const TangentField here = solution.model->field(solution.x);
-      span = solution.model->span();
-      solution = with_all_terms(std::move(solution));
-      // Where two points are about to become a part that lies neither slides with a least gap.
-      if (!solution.is_equilibrium() && hold_points(span)) {
-        solution = newton_from(span, here);
-        if (solution.is_equilibrium()) solution = with_all_terms(std::move(solution));
-      }
+      solution = resolved(std::move(solution), span);
       if (!solution.is_equilibrium()) break;
       next = updated_contacts(solution, load_, Resolution::resolved);
       if (!next && !meets_free_boundaries(solution)) break;
@@ -140,6 +133,18 @@ int ActiveSet::terms_of_load(const Span& span) const {
   // Many pieces are short, and what they do not take need not be borne while contacts change.
   const int unknowns = count * static_cast<int>(pieces.size()) * (span.planar ? 1 : 2);
   return unknowns > many_unknowns ? std::max(fewest, count / 2) : count;
+}
+
+/// Resolves an equilibrium with all terms. Where two contact points are about to become a part that
+/// lies, neither slides with a least gap: they are held where they are.
+/// @param span  that of the result
+SpanSolution ActiveSet::resolved(SpanSolution solution, Span& span) {
+  const TangentField here = solution.model->field(solution.x);
+  span = solution.model->span();
+  solution = with_all_terms(std::move(solution));
+  if (solution.is_equilibrium() || !hold_points(span)) return solution;
+  solution = newton_from(span, here);
+  return solution.is_equilibrium() ? with_all_terms(std::move(solution)) : solution;
 }
 
 /// As many terms as the shape takes, and as what lies takes to be on its obstacle; certified.

@@ -40,6 +40,7 @@ class ActiveSet {
  private:
   [[nodiscard]] SpanSolution run(Span span, TangentField near, SpanSolution solution,
                                  Resolution resolution);
+  [[nodiscard]] SpanSolution resolved(SpanSolution solution, Span& span);
   [[nodiscard]] SpanSolution with_all_terms(SpanSolution solution);
   [[nodiscard]] SpanSolution finished(SpanSolution solution);
   [[nodiscard]] bool hardly_behind(const SpanSolution& solution) const;
