@@ -12,6 +12,7 @@
 
 #include "base/sized_samples.hpp"
 #include "base/zero_modes_note.hpp"
+#include "dlo/energy_model/couple_zero.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/reduction.hpp"
 #include "problem/rod_law.hpp"
@@ -73,27 +74,30 @@ void add_twists(const Problem& problem, const RodSpan& span, const SpanEquilibri
   }
 }
 
-/// Minus each couple times the angle by which the rod turns to it from its first clamp, in a plane.
-double energy_of_couples(const RodSpan& span, const SpanEquilibrium& equilibrium,
-                         double tolerance) {
+/// Returns the potential of the couples of a span in a plane [EI/l], from couple_zero() on.
+double energy_of_couples(const Problem& problem, const RodSpan& span,
+                         const SpanEquilibrium& equilibrium, double tolerance) {
   if (!span.plane) return 0;
   constexpr Eigen::Index points = 513;  // that no two have half a turn between them
   const Eigen::Vector3d normal = span.plane->x.cross(span.plane->y);
-  const double from = span.clamps.empty() ? 0 : span.clamps.front().at;
   double energy = 0;
   for (const RodSpan::Load& load : span.loads) {
     if (load.couple.isZero(0) || load.follows) continue;
-    const Eigen::VectorXd s =
-        Eigen::VectorXd::LinSpaced(points, std::min(from, load.at), std::max(from, load.at));
-    const Eigen::Matrix3Xd t =
-        tangents_of(states_at(equilibrium, span, {s.begin(), s.end()}, tolerance));
-    double angle = 0;
-    for (Eigen::Index i = 1; i < points; ++i) {
-      const Eigen::Vector3d before = t.col(i - 1);
-      angle +=
-          std::atan2(normal.dot(before.cross(Eigen::Vector3d(t.col(i)))), before.dot(t.col(i)));
+    const double at = (span.begin + load.at) * problem.length;
+    const CoupleZero zero = couple_zero(problem, {.at = at, .torque = load.couple});
+    const double from = std::clamp(zero.at / problem.length - span.begin, 0.0, span.length);
+    const Eigen::VectorXd s = Eigen::VectorXd::LinSpaced(points, from, load.at);
+    std::vector<double> sorted(s.begin(), s.end());
+    if (load.at < from) std::reverse(sorted.begin(), sorted.end());
+    Eigen::Matrix3Xd t = tangents_of(states_at(equilibrium, span, sorted, tolerance));
+    if (load.at < from) t = t.rowwise().reverse().eval();
+    Eigen::Vector3d before = zero.direction;
+    for (Eigen::Index i = 0; i < points; ++i) {
+      const Eigen::Vector3d here = t.col(i);
+      energy -=
+          load.couple.dot(normal) * std::atan2(normal.dot(before.cross(here)), before.dot(here));
+      before = here;
     }
-    energy -= (load.at < from ? -angle : angle) * load.couple.dot(normal);
   }
   return energy;
 }
@@ -188,7 +192,8 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
     energy.twisting += equilibrium.energy.twisting;
     energy.gravity += equilibrium.energy.gravity;
     energy.stretch += equilibrium.energy.stretch;
-    energy.load += equilibrium.energy.load + energy_of_couples(span, equilibrium, tolerance);
+    energy.load +=
+        equilibrium.energy.load + energy_of_couples(problem, span, equilibrium, tolerance);
     unjudged = unjudged || couples_leave_plane(span, equilibrium);
     const std::vector<RodState> before = before_nodes(span, equilibrium, tolerance);
     add_reactions(problem, span, equilibrium, before, result.grips);

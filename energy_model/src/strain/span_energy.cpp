@@ -22,6 +22,22 @@ Eigen::Vector3d first_tangent(const Span& span) {
   return before.norm() > 0 ? Eigen::Vector3d(-before.normalized()) : Eigen::Vector3d::UnitX();
 }
 
+/// Rotation of a planar span's tangent at `s` from the zero of a couple there (couple_zero())
+/// [rad].
+double couple_angle(const Span& span, const std::vector<Piece>& pieces, const PlanarFrames& frames,
+                    const Eigen::VectorXd& x, double s) {
+  const auto angle = [&](double at) {
+    return frames.by_unknown_after(pieces_before(pieces, at) - 1).dot(x) +
+           (span.natural.empty() ? 0 : span.natural.integral(at).x());
+  };
+  // A clamp at the start has the angle 0 here; a free start counts within half a turn of the chord.
+  double zero = span.start_direction ? 0 : nearest_turn(0, x[0]);
+  for (const Span::Hold& hold : span.holds) {
+    if (hold.direction && hold.at <= s) zero = angle(hold.at);
+  }
+  return angle(s) - zero;
+}
+
 }  // namespace
 
 void SpanEnergy::reset(const Span& span, int terms) {
@@ -355,10 +371,9 @@ Energies SpanEnergy::energies(const SpanPoint& at) const {
     energies.load = energy_of_forces(span_.loads, PositionOperator(span_, pieces_, *table_), at.t);
   }
   energies.gravity = loads_.force_energy(at.t) - energies.load;
-  if (loads_.couples().size() > 0) energies.load -= loads_.couples().dot(at.x);
   for (const Span::Load& load : span_.loads) {
-    if (!span_.planar || !span_.has_material_directors()) break;
-    energies.load -= load.couple * span_.natural.integral(load.at).x();
+    if (load.couple != 0)
+      energies.load -= load.couple * couple_angle(span_, pieces_, plane_, at.x, load.at);
   }
   if (has_soft_obstacles()) energies.contact = soft_contact_.energy(at.pressed);
   return energies;
