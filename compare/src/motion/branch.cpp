@@ -10,7 +10,10 @@
 
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/error.hpp"
+#include "dlo/energy_model/couple_zero.hpp"
+#include "dlo/energy_model/turns.hpp"
 #include "motion/sweep.hpp"
+#include "polygon/energy_problems.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -51,6 +54,28 @@ Eigen::Vector3d turn_between(const Eigen::Vector3d& from, const Eigen::Vector3d&
   return std::atan2(sine, from.dot(to)) / sine * across;
 }
 
+/// Returns what the potential of the couples loses between two shapes because its zero moves with a
+/// clamp or a chord [J]. Whole turns that couple_zero() does not count are counted here: the
+/// tangent there rotates by less than half a turn in a step.
+double couples_of_moved_zero(const Moment& before, const Moment& after) {
+  if (!after.scene.has_couples()) return 0;
+  const energy_model::Problem from = energy_problem(before.scene);
+  const energy_model::Problem to = energy_problem(after.scene);
+  double energy = 0;
+  for (std::size_t i = 0; i < to.loads.size(); ++i) {
+    const energy_model::Load& load = to.loads[i];
+    if (load.torque.isZero(0)) continue;
+    const energy_model::CoupleZero was = couple_zero(from, from.loads[i]);
+    const energy_model::CoupleZero is = couple_zero(to, load);
+    const Eigen::Vector3d tangent_was = before.rod.sample({{was.at}}).tangents.col(0);
+    const Eigen::Vector3d tangent_is = after.rod.sample({{is.at}}).tangents.col(0);
+    energy += load.torque.dot(turn_between(is.direction, tangent_is) -
+                              turn_between(was.direction, tangent_was) -
+                              turn_between(tangent_was, tangent_is));
+  }
+  return energy;
+}
+
 /// What is done on the rod between two frames: with the mean of the forces, and what other forces
 /// could make of it that are between those of both, or beyond by as much as they have changed in
 /// the frame before (where a force has its largest value they are the same on either side of it).
@@ -79,17 +104,49 @@ class Work {
   std::size_t next_ = 0;
 };
 
+/// Returns by how much each clamp that holds the frame rotates it about the clamp's direction,
+/// besides the shortest rotation between its two directions [rad]. The frame of the first of them
+/// is free to choose on a round straight rod. It follows that rotation.
+std::vector<double> rolls_between(const Scene& before, const Scene& after) {
+  std::vector<double> rolls(after.grippers.size(), 0.0);
+  for (std::size_t i = 0; i < rolls.size(); ++i) {
+    const Gripper& to = after.grippers[i];
+    if (to.frame) rolls[i] = to.frame->roll - before.grippers[i].frame->roll;
+  }
+  if (!after.holds_twist() || after.has_material_directors()) return rolls;
+  const energy_model::Problem from = energy_problem(before);
+  energy_model::Problem to = energy_problem(after);
+  const auto carried = [&](std::size_t i) -> Eigen::Vector3d {
+    return Eigen::Quaterniond::FromTwoVectors(*from.grips[i].direction, *to.grips[i].direction) *
+           held_d1(from, from.grips[i]);
+  };
+  std::optional<std::size_t> first;
+  for (std::size_t i = 0; i < to.grips.size(); ++i) {
+    if (to.grips[i].frame && !(first && to.grips[*first].at < to.grips[i].at)) first = i;
+  }
+  if (!to.grips[*first].frame->d1) to.grips[*first].frame->d1 = carried(*first);
+  for (std::size_t i = 0; i < to.grips.size(); ++i) {
+    if (!to.grips[i].frame) continue;
+    const Eigen::Vector3d was = carried(i);
+    const Eigen::Vector3d is = held_d1(to, to.grips[i]);
+    rolls[i] += std::atan2(to.grips[i].direction->normalized().dot(was.cross(is)), was.dot(is));
+  }
+  return rolls;
+}
+
 Work work_between(const Moment& before, const Moment& after, double step,
                   const std::vector<std::size_t>& obstacles,
                   std::vector<Eigen::Vector3d>& changes) {
   Work work(step, changes);
+  const std::vector<double> rolls = rolls_between(before.scene, after.scene);
   for (std::size_t i = 0; i < after.scene.grippers.size(); ++i) {
     const Gripper& from = before.scene.grippers[i];
     const Gripper& to = after.scene.grippers[i];
     work.add(before.rod.grips[i].force, after.rod.grips[i].force, to.position - from.position);
     if (!to.direction) continue;
     Eigen::Vector3d turn = turn_between(*from.direction, *to.direction);
-    if (to.frame) turn += (to.frame->roll - from.frame->roll) * *to.direction;
+    // About the direction half-way, so that the sum of both is exact to second order.
+    if (to.frame) turn += rolls[i] * (*from.direction + *to.direction).normalized();
     work.add(before.rod.grips[i].torque, after.rod.grips[i].torque, turn);
   }
   for (std::size_t k = 0; k < obstacles.size(); ++k) {
@@ -143,6 +200,7 @@ SceneEnergies energies_of(const Moment& moment) {
   energy.gravity -= now.weight_between(0, now.length).dot(zero);
   for (const PointLoad& load : now.loads) energy.load -= load.force.dot(zero);
   energy.load -= now.distributed_between(0, now.length).dot(zero);
+  energy.load += moment.couples;
   return energy;
 }
 
@@ -171,9 +229,10 @@ Branch::Branch(const Scene& scene, const FrameClock& clock,
   for (const std::size_t i : obstacles_) {
     yields = yields || std::isfinite(scene.obstacles[i].stiffness);
   }
-  // What a clamp turns the rod about itself by, and what a yielding obstacle stores, is not known.
-  balances_ = !yields && !scene.holds_twist() &&
-              !(scene.has_material_directors() && !clock_.scene(scene, 0).planar());
+  // By what a clamp rotates the directors of a material about their tangent, and what a yielding
+  // obstacle stores, is not known.
+  balances_ = !yields && !(scene.has_material_directors() &&
+                           (scene.holds_twist() || !clock_.scene(scene, 0).planar()));
   const double loads = scene.weight_between(0, scene.length).norm() + scene.total_of_loads();
   noise_ = energy_noise * (scene.bending_stiffness() / scene.length + loads * scene.length);
 }
@@ -251,6 +310,7 @@ double Branch::leave(double at, double rejected, Passage& passage) {
     after.rod = solver_.follow(frame_problem(after.scene, obstacles_));
   }
   if (energy_model::succeeded(after.rod.status)) {
+    after.couples = now_.couples + couples_of_moved_zero(now_, after);
     const Work work = work_between(now_, after, step, obstacles_, changes_);
     const double grown = energies_of(after).total() - energies_of(now_).total();
     passage.work += work.done;
@@ -284,6 +344,7 @@ bool Branch::try_follow(Scene scene, double from, double step, Passage& passage)
   std::optional<Equilibrium> rod = solver_.try_follow(frame_problem(scene, obstacles_));
   if (!rod) return false;
   Moment after{std::move(scene), std::move(*rod)};
+  after.couples = now_.couples + couples_of_moved_zero(now_, after);
   std::vector<Eigen::Vector3d> changes = changes_;
   const Work work = work_between(now_, after, step, obstacles_, changes);
   const double released = work.done - (energies_of(after).total() - energies_of(now_).total());

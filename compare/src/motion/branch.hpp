@@ -17,9 +17,11 @@ namespace dlo::compare {
 struct Moment {
   Scene scene;
   energy_model::Equilibrium rod;
+  double couples = 0;  ///< by which the zero of their potential has moved since the first frame [J]
 };
 
-/// Gravity and loads are zero at the origin.
+/// Returns energies whose zeros stay where they are while grippers move: gravity and forces are
+/// zero at the origin, couples where energy_model::couple_zero() is in the first frame.
 [[nodiscard]] SceneEnergies energies_of(const Moment& moment);
 
 /// How the rod has come to a frame from the one before.
@@ -73,8 +75,8 @@ class Branch {
 
   /// Those that are in reach at any of the frames, by their number in the scene.
   [[nodiscard]] const std::vector<std::size_t>& obstacles() const { return obstacles_; }
-  /// Whether work and energy are known: not where clamps turn the rod about itself or obstacles
-  /// yield.
+  /// Whether work and energy are known: not where obstacles yield, nor out of a plane or with held
+  /// frames where the rod has material directors.
   [[nodiscard]] bool balances() const { return balances_; }
 
   /// The lowest shape that is found in the first frame.
