@@ -127,7 +127,7 @@ void add_track(CLI::App& app) {
   add_output_options(*command, options->output);
   command->footer(
       "Exit status 3: the motion asks for what cannot be, such as grippers farther apart than\n"
-      "the rod; what was before it is written.\n"
+      "the rod, or the rod passes through itself; what was before it is written.\n"
       "Examples:\n"
       "  dlo track data/scenes/corner_routing.toml --frame-rate 100 --no-force\n"
       "  dlo track data/scenes/buckling_wire.toml --frame-rate 50 --format csv\n"

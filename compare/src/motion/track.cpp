@@ -15,6 +15,7 @@
 #include "motion/branch.hpp"
 #include "motion/frame_clock.hpp"
 #include "scene/reach.hpp"
+#include "solve/linking.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -79,6 +80,7 @@ class Tracker {
     }
     TrackFrame frame{
         solution_of(now.scene, Model::energy, now.rod, result_.arc_length, branch_.obstacles())};
+    if (!keeps_turns(now.scene, frame)) return false;
     frame.energy = energies_of(now);
     frame.time = time;
     frame.followed = passage.kept;
@@ -91,6 +93,21 @@ class Tracker {
     result_.repeated += passage.kept && passage.smaller ? 1 : 0;
     result_.frames.push_back(std::move(frame));
     return true;
+  }
+
+  /// @return whether the shape has the turns that the clamps hold
+  bool keeps_turns(const Scene& now, const TrackFrame& frame) {
+    const double time = clock_.time(result_.frames.size());
+    if (result_.frames.empty()) {
+      const std::string lost = lost_turns(frame.linking);
+      if (!lost.empty()) {
+        throw ConvergenceError(fmt::format("{}: at {:g} s {}", scene_.file, time, lost));
+      }
+      return true;
+    }
+    const Scene before = clock_.scene(scene_, result_.frames.size() - 1);
+    std::string lost = lost_turns(before, result_.frames.back().linking, now, frame.linking);
+    return lost.empty() || stop(time, std::move(lost));
   }
 
   bool stop(double time, std::string why) {

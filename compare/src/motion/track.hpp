@@ -31,7 +31,7 @@ struct TrackFrame : Solution {
   bool followed = false;  ///< on the branch of the frame before
   double work = 0;        ///< of grippers and obstacles on the rod, since the first frame [J]
   /// That work since the frame before less what the energy has grown by, and what it may be with
-  /// forces between those of the two frames [J]. NaN where clamps turn the rod about itself.
+  /// forces between those of the two frames [J]. NaN where Branch::balances() is false.
   double released = 0, released_bound = 0;
   std::optional<ForceFrame> force;
 };
@@ -91,9 +91,9 @@ struct Track {
 ///
 /// What is impossible, such as grippers farther apart than the rod between them, ends it (stopped),
 /// and so does a solver that does not converge, or that comes out on a shape which is higher than
-/// the work allows.
+/// the work allows, or a rod that passes through itself (Linking).
 /// @throws InputError if nothing moves, the time is no part of the motion, or the first frame is
-/// impossible; ConvergenceError if the first frame has no shape
+/// impossible; ConvergenceError if the first frame has no shape or one that has lost turns
 [[nodiscard]] Track track(const Scene& scene, const TrackOptions& options,
                           const Progress& progress = {});
 

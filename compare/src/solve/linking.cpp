@@ -1,6 +1,8 @@
 #include "solve/linking.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -15,6 +17,29 @@ namespace {
 /// By how many turns a shape differs from those that are held, a whole number. Each passage through
 /// itself takes or gives two.
 double turns_lost(const Linking& part) { return std::round(part.held - part.twist - part.writhe); }
+
+std::string why_lost(const Linking& part) {
+  return formatted(
+      "not verified: the grips hold {:.3f} turns from s = {:g} to {:g} m and the shape has "
+      "{:.3f} "
+      "(twist {:.3f}, writhe {:.3f}): it has passed through itself",
+      part.held, part.begin, part.end, part.twist + part.writhe, part.twist, part.writhe);
+}
+
+/// Axis of the shortest rotation between the directions of the clamps at the ends of a part.
+Eigen::Vector3d shortest_axis(const Scene& scene, const Linking& part) {
+  std::array<Eigen::Vector3d, 2> ends = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  for (const Gripper& gripper : scene.grippers) {
+    if (gripper.at == part.begin) ends[0] = gripper.direction.value_or(ends[0]);
+    if (gripper.at == part.end) ends[1] = gripper.direction.value_or(ends[1]);
+  }
+  return ends[0].cross(ends[1]);
+}
+
+/// Whether the directions of its clamps are opposite between two times: the axis reverses.
+bool passes_opposite(const Scene& before, const Scene& after, const Linking& part) {
+  return shortest_axis(before, part).dot(shortest_axis(after, part)) < 0;
+}
 
 }  // namespace
 
@@ -46,12 +71,19 @@ std::vector<Linking> linking_of(const Scene& scene, const energy_model::Equilibr
 
 std::string lost_turns(const std::vector<Linking>& parts) {
   for (const Linking& part : parts) {
-    if (turns_lost(part) == 0) continue;
-    return formatted(
-        "not verified: the grips hold {:.3f} turns from s = {:g} to {:g} m and the shape has "
-        "{:.3f} "
-        "(twist {:.3f}, writhe {:.3f}): it has passed through itself",
-        part.held, part.begin, part.end, part.twist + part.writhe, part.twist, part.writhe);
+    if (turns_lost(part) != 0) return why_lost(part);
+  }
+  return {};
+}
+
+std::string lost_turns(const Scene& before, const std::vector<Linking>& parts_before,
+                       const Scene& after, const std::vector<Linking>& parts_after) {
+  for (const Linking& part : parts_after) {
+    const auto was = std::ranges::find(parts_before, part.begin, &Linking::begin);
+    if (was == parts_before.end()) continue;
+    const double lost = turns_lost(part) - turns_lost(*was);
+    const bool reverses = passes_opposite(before, after, part);
+    if (lost != 0 && !(reverses && std::abs(lost) == 1)) return why_lost(part);
   }
   return {};
 }

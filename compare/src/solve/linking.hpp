@@ -18,4 +18,10 @@ namespace dlo::compare {
 /// What is wrong with the turns of a shape, for a message; empty: nothing, or it cannot be told.
 [[nodiscard]] std::string lost_turns(const std::vector<Linking>& parts);
 
+/// The same of turns that are lost between two shapes of a motion. Where a clamp's direction passes
+/// the opposite of another's, held turns, which refer to the shortest rotation between the two, and
+/// the writhe change by one turn against each other. That is none that is lost.
+[[nodiscard]] std::string lost_turns(const Scene& before, const std::vector<Linking>& parts_before,
+                                     const Scene& after, const std::vector<Linking>& parts_after);
+
 }  // namespace dlo::compare
