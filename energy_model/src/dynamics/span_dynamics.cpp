@@ -58,13 +58,24 @@ SpanDynamics::SpanDynamics(Span span, int terms, const Eigen::Vector3d& first, S
   if (span_.twist) ++constraints_;
   masses_ = points_.weighed(inertia_.per_length);
   for (const PointMass& mass : inertia_.points) masses_[point_at(mass.at)] += mass.mass;
-  gravity_.resize(points_.points(), 3);
+  gravity_.setZero(points_.points(), 3);
+  Eigen::Index node = 0;
   for (std::size_t e = 0; e < pieces.size(); ++e) {
+    const Piece& piece = pieces[e];
+    const double middle = piece.begin + piece.length / 2;
+    const Eigen::Vector3d mean = span_.weight_between(piece.begin, piece.end()) / piece.length;
+    // Line loads begin and end where pieces do, so that they are linear along a piece.
+    Eigen::Vector3d slope = Eigen::Vector3d::Zero();
+    for (const LineLoad& load : span_.line_loads) {
+      if (load.begin < middle && middle < load.end) slope += load.slope();
+    }
     const Eigen::Index begin = points_.begin(static_cast<Eigen::Index>(e));
-    const Eigen::Index count = points_.piece_points();
-    const Eigen::Vector3d weight = span_.weight_between(pieces[e].begin, pieces[e].end());
-    gravity_.middleRows(begin, count) =
-        points_.weights().segment(begin, count) * weight.transpose() / pieces[e].length;
+    for (Eigen::Index point = begin; point < begin + points_.piece_points(); ++point) {
+      const double weight = points_.weights()[point];
+      // Points at which pieces begin and end are no nodes.
+      if (!(weight > 0)) continue;
+      gravity_.row(point) = weight * (mean + (nodes()[node++] - middle) * slope).transpose();
+    }
   }
   loads_.setZero(points_.points(), 3);
   for (const Span::Load& load : span_.loads) {
