@@ -35,7 +35,7 @@ energy_model::MovingRod moving_rod(const Scene& scene, const std::vector<std::si
   rod.inertia = scene_inertia(now);
   rod.material_damping = damping.material;
   rod.air_drag = damping.air;
-  rod.quadratic_drag = damping.quadratic;
+  rod.quadratic_drag = damping.quadratic + (scene.drag ? scene.drag->normal : 0);
   const auto follow = [&](const Trajectory& way,
                           const std::optional<Eigen::Vector3d>& rolls_about = std::nullopt) {
     for (const double time : trajectory_breaks(way, begin)) rod.breaks.push_back(time);
@@ -96,6 +96,9 @@ void require_dynamic(const Scene& scene) {
   scene.require_potential("the moving rod does");
   if (scene.has_couples()) {
     refuse(scene.file, "a load's torque, which has no potential (allowed: forces)");
+  }
+  if (scene.drag && scene.drag->tangential > 0) {
+    refuse(scene.file, "medium.tangential_drag, which the moving rod does not take (allowed: 0)");
   }
   if (!(scene.mass() > 0)) refuse(scene.file, "the rod has no mass (allowed: > 0 kg)");
 }

@@ -44,7 +44,6 @@ std::optional<energy_model::Drag> read_drag(StrictTable& table, double density, 
       std::numbers::pi * unit *
       table.optional_number("tangential_drag", Dimension::number, Range::not_negative())
           .value_or(0);
-  if (drag.velocity.isZero(0)) return std::nullopt;
   return drag;
 }
 
@@ -109,7 +108,7 @@ void read_medium(StrictTable& table, Scene& scene) {
         "thickness, or no [medium])");
   }
   scene.drag = read_drag(table, density, scene.diameter);
-  if (scene.drag && !scene.obstacles.empty()) {
+  if (scene.drag && scene.drag->largest() > 0 && !scene.obstacles.empty()) {
     table.fail(
         "velocity",
         "beside obstacles, with which no model takes drag (allowed: neither, or no velocity)");

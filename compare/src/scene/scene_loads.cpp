@@ -43,7 +43,7 @@ bool Scene::has_couples() const {
 }
 
 void Scene::require_potential(const char* who) const {
-  if (drag) {
+  if (drag && drag->largest() > 0) {
     throw InputError(fmt::format(
         "{}: medium.velocity: drag, which has no potential and which {} not take (allowed: dlo "
         "solve --model exact or force)",

@@ -62,7 +62,7 @@ energy_model::Problem scene_problem(const Scene& scene) {
       problem.line_loads.push_back(piece);
     }
   }
-  problem.drag = scene.drag;
+  if (scene.drag && scene.drag->largest() > 0) problem.drag = scene.drag;
   for (const std::size_t i : obstacles_in_reach(scene)) {
     const Obstacle& obstacle = scene.obstacles[i];
     problem.obstacles.push_back({obstacle.body, obstacle.stiffness});

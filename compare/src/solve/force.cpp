@@ -218,6 +218,7 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
   if (const std::optional<PlaneTurn> turn = turn_into_plane(scene, settings)) {
     return turned_back(solve_force(turn->laid(scene), settings, options), *turn);
   }
+  const bool is_dragged = scene.drag && scene.drag->largest() > 0;
   Scene dead_scene = scene;
   dead_scene.drag.reset();
   Discretisation discretisation = discretise(dead_scene, settings);
@@ -255,7 +256,7 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
     throw ConvergenceError(why_not_at_rest(dead_scene, settings, discretisation, rest));
   }
   const Eigen::Matrix3Xd dead_loads = rest.simulation.rod().loads;
-  if (scene.drag) {
+  if (is_dragged) {
     const long steps = rest.result.steps;
     rest = raise_drag(scene, discretisation.arc_length, rest.simulation, limits, simulate);
     rest.result.steps += steps;
@@ -277,8 +278,8 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
     require_balanced(scene, polygon_imbalance(resting, points, solution.grippers),
                      allowed_rest_imbalance(resting, points, solution.to_rest), "force");
   }
-  if (scene.drag) solution.status = energy_model::SolveStatus::not_verified;
-  if (!scene.drag && strayed()) solution.message += ", in another state than the chain";
+  if (is_dragged) solution.status = energy_model::SolveStatus::not_verified;
+  if (!is_dragged && strayed()) solution.message += ", in another state than the chain";
   solution.seconds = timer.seconds();
   return solution;
 }
