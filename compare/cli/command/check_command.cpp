@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <functional>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -129,7 +128,7 @@ void add_motion_to(CLI::App& command, CheckOptions& options) {
                 "with --motion: hold it against the rod with its inertia, not at rest")
       ->needs(motion);
   add_damping_options(command, options.moving.damping, motion);
-  const double most = std::numeric_limits<double>::max();
+  constexpr double most = 1e12;  // s, as times in files
   command
       .add_option("--from", options.moving.from,
                   "with --motion: when the rod's motion begins [s], default the recording's first "

@@ -56,7 +56,7 @@ void add_modes(CLI::App& app) {
       ->add_option("--rate", options->modes.rate,
                    "steps of the force model a second, of which a step makes its mass "
                    "dt^2 / c_F")
-      ->check(CLI::PositiveNumber)
+      ->check(number_between(1e-6, 1e9))
       ->capture_default_str();
   command
       ->add_option("--damping", options->modes.damping,
@@ -67,7 +67,7 @@ void add_modes(CLI::App& app) {
       ->add_option("--tension", options->modes.tension,
                    "of a rod that clamps hold straight [N], not identifiable from its shape; "
                    "default 0")
-      ->check(CLI::Number);
+      ->check(number_between(-1e12, 1e12));
   command->add_option("--samples", options->samples, "points of each mode's shape in JSON")
       ->check(CLI::Range(2, 100000))
       ->capture_default_str();

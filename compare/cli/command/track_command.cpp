@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -89,7 +88,7 @@ void add_track(CLI::App& app) {
                         const std::string& what) {
     command->add_option(name, value, what)->check(number_between(1e-6, 1e9))->type_name("HZ");
   };
-  const double most = std::numeric_limits<double>::max();
+  constexpr double most = 1e12;  // s, as times in files
   command
       ->add_option("--from", options->request.options.from,
                    "first time [s], default the first pose's")

@@ -132,7 +132,7 @@ void SceneOptions::add_moving_to(CLI::App& command) {
 }
 
 void SceneOptions::add_time_to(CLI::App& command) {
-  const double most = std::numeric_limits<double>::max();
+  constexpr double most = 1e12;  // s, as times in files
   command
       .add_option("--time", time_,
                   "of a scene that moves: as it is at this time [s], default the first pose's")
@@ -195,7 +195,10 @@ void SceneOptions::add_solvers_to(CLI::App& command, Steps steps) {
   command.add_option("--max-evaluations", solve_.max_evaluations, "of the minimisers")
       ->check(CLI::Range(1, 1000000000))
       ->capture_default_str();
-  command.add_option("--time-limit", solve_.time_limit, "of each solve [s]")
+  command
+      .add_option(
+          "--time-limit", solve_.time_limit,
+          "of each solve [s]; if given, of the whole command too (not of sweep and regress)")
       ->check(number_between(1e-3, 1e9))
       ->capture_default_str();
   add_materials_to(command);

@@ -1,14 +1,33 @@
 #include "dlo/compare/error.hpp"
 
+#include <fmt/format.h>
+
+#include <cstddef>
+
 #include "base/display.hpp"
 
 namespace dlo::compare {
+namespace {
 
-InputError::InputError(const std::string& message) : ResultError(display(message)) {}
+/// Returns the message as one line. The middle of a message that quotes a longer value than anybody
+/// reads is replaced by its length; the file and the key at the begin and what is allowed at the
+/// end remain.
+std::string shortened(const std::string& message) {
+  constexpr std::size_t longest = 4096;
+  constexpr std::size_t begin = 512;
+  constexpr std::size_t end = 512;
+  if (message.size() <= longest) return display(message);
+  return display(fmt::format("{} ... ({} bytes) ... {}", message.substr(0, begin),
+                             message.size() - begin - end, message.substr(message.size() - end)));
+}
+
+}  // namespace
+
+InputError::InputError(const std::string& message) : ResultError(shortened(message)) {}
 
 InputError::InputError(const std::string& where, const std::string& key, const std::string& problem)
-    : ResultError(display(where + ": " + key + problem)),
-      key_(display(key)),
-      problem_(display(problem)) {}
+    : ResultError(shortened(where + ": " + key + problem)),
+      key_(shortened(key)),
+      problem_(shortened(problem)) {}
 
 }  // namespace dlo::compare

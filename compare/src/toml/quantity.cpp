@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <utility>
@@ -126,6 +127,33 @@ std::vector<std::string> unit_names(Dimension dimension) {
 
 std::string known_units(Dimension dimension) {
   return fmt::format("{}", fmt::join(unit_names(dimension), ", "));
+}
+
+namespace {
+
+double largest_magnitude(Dimension dimension) {
+  switch (dimension) {
+    case Dimension::length:
+      return 1e6;  // m, as coordinates of shape files
+    case Dimension::curvature:
+    case Dimension::twist:
+      return 1e9;  // 1/m, of the smallest radius of a helix
+    case Dimension::time:
+      return 1e12;  // s; clocks count 1.8e9 s since 1970
+    case Dimension::pressure:
+    case Dimension::section_stiffness:
+      return std::numeric_limits<double>::max();
+    default:
+      return 1e30;
+  }
+}
+
+}  // namespace
+
+std::string magnitude_problem(double value, Dimension dimension) {
+  const double largest = largest_magnitude(dimension);
+  if (std::abs(value) <= largest) return {};
+  return fmt::format("out of range (allowed: magnitudes up to {:g} in SI units)", largest);
 }
 
 double parse_quantity(std::string_view text, Dimension dimension) {

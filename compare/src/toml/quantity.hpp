@@ -39,4 +39,9 @@ enum class Dimension {
 /// @throws InputError without a file's name: what is wrong and what is allowed
 [[nodiscard]] double parse_quantity(std::string_view text, Dimension dimension);
 
+/// Returns what is wrong with a number of a file [SI] that is larger than its dimension allows, or
+/// an empty text. Larger numbers have no physical meaning and overflow in sums of squares. Pressure
+/// and section_stiffness have no limit here: the reader checks E I and E A of the rod.
+[[nodiscard]] std::string magnitude_problem(double value, Dimension dimension);
+
 }  // namespace dlo::compare

@@ -99,6 +99,9 @@ double StrictTable::read_number(std::string_view key, const toml::node& node,
                                           units));
   }
   if (!std::isfinite(value)) fail(key, "must be finite");
+  if (const std::string problem = magnitude_problem(value, dimension); !problem.empty()) {
+    fail(key, problem);
+  }
   return value;
 }
 

@@ -12,6 +12,7 @@
 #include "decode/csv_rows.hpp"
 #include "decode/xml.hpp"
 #include "dlo/compare/error.hpp"
+#include "toml/quantity.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -54,6 +55,12 @@ MarkerMotion parse_markers(std::string_view text, const std::string& file) {
       if (!value || !std::isfinite(*value)) {
         throw InputError(fmt::format("{}: {} is no number (allowed: five finite ones a row)",
                                      row.where, marker_columns[k]));
+      }
+      const std::string problem =
+          magnitude_problem(*value, k == 0 ? Dimension::time : Dimension::length);
+      if (!problem.empty()) {
+        throw InputError(
+            fmt::format("{}: {} = {:g}: {}", row.where, marker_columns[k], *value, problem));
       }
       values[k] = *value;
     }

@@ -75,6 +75,11 @@ PoseColumns pose_columns_of(const std::vector<std::string_view>& fields, const s
   return columns;
 }
 
+Dimension pose_dimension(std::size_t column) {
+  if (column == 0) return Dimension::time;
+  return column < 4 ? Dimension::length : Dimension::number;
+}
+
 Pose pose_of(const std::vector<std::string_view>& fields, const PoseColumns& columns,
              const std::string& where) {
   if (fields.size() != columns.count) {
@@ -90,6 +95,10 @@ Pose pose_of(const std::vector<std::string_view>& fields, const PoseColumns& col
       throw InputError(
           fmt::format("{}: {} = {} is not a number (allowed: finite numbers in s, m, rad)", where,
                       pose_columns[k], quoted_piece(field)));
+    }
+    const std::string problem = magnitude_problem(*value, pose_dimension(k));
+    if (!problem.empty()) {
+      throw InputError(fmt::format("{}: {} = {:g}: {}", where, pose_columns[k], *value, problem));
     }
     values[k] = *value;
   }

@@ -41,6 +41,10 @@ TEST_F(ModesCommand, BadInputIsOneLineAndItsStatus) {
   expect_error(words({"modes", cable(), "--count 0"}), 2, {"--count"});
   expect_error(words({"modes", cable(), "--rate 0"}), 2, {"--rate"});
   expect_error(words({"modes", cable(), "--damping 2"}), 2, {"--damping"});
+  for (const std::string value : {"nan", "inf", "-inf"}) {
+    expect_error(words({"modes", cable(), "--rate", value}), 2, {"--rate", "1e-06 to 1e+09"});
+    expect_error(words({"modes", cable(), "--tension=" + value}), 2, {"--tension", "1e+12"});
+  }
 }
 
 }  // namespace

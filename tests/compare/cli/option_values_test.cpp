@@ -126,6 +126,25 @@ TEST_F(Command, RodsBeyondTheLimitsNameFileLineAndKey) {
                2, {"scene.toml:5: rod.material", "E I = inf", "finite"});
 }
 
+TEST_F(Command, NumbersThatOverflowInSquaresNameFileLineAndKey) {
+  expect_error("solve " + scene(rod_of + "[[load]]\nat = 0.5\nmass = 1e200\n"), 2,
+               {"scene.toml:12: load.mass = 1e+200: out of range", "up to 1e+30"});
+  std::string curved = rod_of;
+  curved.replace(curved.find("[rod]\n"), 6, "[rod]\nnatural_curvature = -1e10\n");
+  expect_error(
+      "solve " + scene(curved), 2,
+      {"scene.toml:3: rod.natural_curvature = -10000000000.0: out of range", "up to 1e+09"});
+}
+
+TEST_F(Command, MessagesShortenValuesOfAMegabyte) {
+  const std::string text(1'000'000, 'x');
+  const Outcome outcome = run("solve " + scene("[rod]\nlength = \"" + text + "\"\n"));
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_LT(outcome.err.size(), 2000U);
+  EXPECT_TRUE(
+      says(outcome.err, {"scene.toml:2: rod.length", "bytes)", "(allowed: m, cm, mm, um)"}));
+}
+
 TEST_F(Command, AModelThatDoesNotTakeASceneSaysWhichDoes) {
   const std::string ball = scene(std::string(rod_of) +
                                  "[[obstacle]]\nshape = \"sphere\"\npoint = [0, -0.2, "

@@ -30,6 +30,8 @@ TEST(ReadMarkers, SaysWhatIsWrongAndWhere) {
   expect_refused("time,s,x,y,z\n", "m.csv: no rows");
   expect_refused("time,s,x,y,z\n0,1,2,3\n", "m.csv:2: ");
   expect_refused("time,s,x,y,z\n0,1,2,3,nan\n", "m.csv:2: z is no number");
+  expect_refused("time,s,x,y,z\n0,1,2,3,4\n0,2,1e200,3,4\n", "m.csv:3: x = 1e+200: out of range");
+  expect_refused("time,s,x,y,z\n-1e13,1,2,3,4\n", "m.csv:2: time = -1e+13: out of range");
   expect_refused("time,s,x,y,z\n0,1,2,3,4\n0,1,2,3,5\n", "twice at time = 0 s");
 }
 
