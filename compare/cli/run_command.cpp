@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/input_file.hpp"
 #include "base/output_file.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
@@ -52,6 +53,7 @@ void build(CLI::App& app) {
 }  // namespace
 
 int run_command(std::vector<std::string> words) {
+  const compare::InputsKept kept;
   CLI::App app(
       "Is the shape of a simulated rod, wire or cable the shape that its material would take? "
       "dlo computes it from bending energy and gravity, and says how far others are from it.",

@@ -14,6 +14,7 @@
 #include <filesystem>
 
 #include "base/display.hpp"
+#include "base/input_file.hpp"
 #include "base/output_file.hpp"
 #include "dlo/compare/error.hpp"
 #include "option/help.hpp"
@@ -250,11 +251,13 @@ void check_outputs(const CLI::App& command) {
         refuse_two_outputs(name, file, outputs);
       }
       outputs.push_back(file);
+      if (is_written_file(*option)) compare::declare_output(file, name + " " + file);
       if (has_long_name(*option, {"paraview"})) series.push_back(file);
     }
   }
   for (const std::string& file : series) refuse_among_frames(file, inputs, outputs);
   if (RedirectedOutput::current() != nullptr) return;
+  compare::declare_output("/dev/fd/1", standard_output);
   // A shell that appends to an input with ">>" would let the command write behind what it reads.
   for (const std::string& input : inputs) {
     struct stat open {};

@@ -8,9 +8,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
+#include <mutex>
 #include <system_error>
 #include <utility>
+#include <vector>
 
+#include "base/output_file.hpp"
 #include "dlo/compare/error.hpp"
 
 namespace dlo::compare {
@@ -40,9 +43,67 @@ std::string nearby(const std::string& path, int error) {
   return there ? fmt::format(", but {}.toml is there", path) : "";
 }
 
+[[noreturn]] void refuse_input(const std::string& output, const std::string& name,
+                               const std::string& input) {
+  throw InputError(fmt::format("{}: is read too{} (allowed: another file)", name,
+                               output == input ? "" : fmt::format(", as {}", input)));
+}
+
+/// Files of one command. Paths are compared when they are used: numbers of files that were removed
+/// are given to new files.
+struct KnownFiles {
+  std::mutex guard;
+  int commands = 0;  // that InputsKept protects
+  std::vector<std::string> inputs;
+  std::vector<std::pair<std::string, std::string>> outputs;  // and how a message names each
+};
+
+KnownFiles& known_files() {
+  static KnownFiles files;
+  return files;
+}
+
+/// Records a regular file that is about to be read.
+void record_input(const std::string& path) {
+  KnownFiles& known = known_files();
+  const std::lock_guard lock(known.guard);
+  std::error_code unknown;
+  if (known.commands == 0 || !std::filesystem::is_regular_file(path, unknown)) return;
+  for (const auto& [output, name] : known.outputs) {
+    if (same_file(output, path)) refuse_input(output, name, path);
+  }
+  if (std::ranges::find(known.inputs, path) == known.inputs.end()) known.inputs.push_back(path);
+}
+
 }  // namespace
 
+InputsKept::InputsKept() {
+  const std::lock_guard lock(known_files().guard);
+  ++known_files().commands;
+}
+
+InputsKept::~InputsKept() {
+  const std::lock_guard lock(known_files().guard);
+  if (--known_files().commands > 0) return;
+  known_files().inputs.clear();
+  known_files().outputs.clear();
+}
+
+void declare_output(const std::string& file, const std::string& name) {
+  const std::lock_guard lock(known_files().guard);
+  if (known_files().commands > 0) known_files().outputs.emplace_back(file, name);
+}
+
+void require_not_read(const std::string& file, const std::string& name) {
+  KnownFiles& known = known_files();
+  const std::lock_guard lock(known.guard);
+  for (const std::string& input : known.inputs) {
+    if (same_file(file, input)) refuse_input(file, name, input);
+  }
+}
+
 InputFile::InputFile(std::string path) : name_(std::move(path)) {
+  record_input(name_);
   do {
     descriptor_ = ::open(name_.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY);
   } while (descriptor_ < 0 && errno == EINTR);

@@ -35,6 +35,25 @@ class InputFile {
   std::size_t bytes_ = 0;  // read so far
 };
 
+/// While one exists, no file that was read during its lifetime is replaced: output files that are
+/// declared are not read, and files that were read are not written (OutputFile). Only regular files
+/// count. Meant for a command, whose inputs a library cannot know.
+class InputsKept {
+ public:
+  InputsKept();
+  ~InputsKept();
+  InputsKept(const InputsKept&) = delete;
+  InputsKept& operator=(const InputsKept&) = delete;
+};
+
+/// Declares a file that will be written, so that reading it is an error before anything is
+/// computed.
+/// @param name  begin of the message, such as "--output shape.csv"
+void declare_output(const std::string& file, const std::string& name);
+
+/// @throws InputError that begins with `name` if InputsKept exists and the file was read
+void require_not_read(const std::string& file, const std::string& name);
+
 /// A whole file. @throws InputError as InputFile
 [[nodiscard]] std::string read_file(const std::string& path);
 

@@ -13,6 +13,7 @@
 #include <optional>
 #include <system_error>
 
+#include "base/input_file.hpp"
 #include "base/number.hpp"
 #include "base/temporary_path.hpp"
 #include "dlo/compare/error.hpp"
@@ -192,7 +193,10 @@ struct OutputFile::State {
   }
 };
 
-OutputFile::OutputFile(const std::string& file) : state_(std::make_unique<State>(file)) {}
+OutputFile::OutputFile(const std::string& file, Replaces replaces) {
+  if (replaces == Replaces::no_input) require_not_read(file, file);
+  state_ = std::make_unique<State>(file);
+}
 OutputFile::~OutputFile() = default;
 
 void OutputFile::append(std::string_view text) {
@@ -201,8 +205,8 @@ void OutputFile::append(std::string_view text) {
 
 void OutputFile::finish() { state_->finish(); }
 
-void write_file(const std::string& file, std::string_view text) {
-  OutputFile output(file);
+void write_file(const std::string& file, std::string_view text, Replaces replaces) {
+  OutputFile output(file, replaces);
   output.append(text);
   output.finish();
 }

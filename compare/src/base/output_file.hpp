@@ -40,14 +40,21 @@ struct OutputTarget {
 /// there are no file.
 [[nodiscard]] bool same_file(const std::string& a, const std::string& b);
 
+/// Whether an output may replace a file that the command has read.
+enum class Replaces {
+  no_input,    ///< it may not
+  own_format,  ///< it may, because dlo has read its own earlier output to write it anew
+};
+
 /// An output that is being written. A regular file is written under a new name beside it, on the
 /// disk when finish() returns, and gets its own name then: no reader ever sees half a file, and
 /// without finish() nothing has happened. Links stay links. A file that is replaced keeps its
 /// permissions.
 class OutputFile {
  public:
-  /// @throws InputError as output_target();  @throws OutputError if it cannot be opened
-  explicit OutputFile(const std::string& file);
+  /// @throws InputError as output_target(), or if the command has read the file (InputsKept);
+  /// @throws OutputError if it cannot be opened
+  explicit OutputFile(const std::string& file, Replaces replaces = Replaces::no_input);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -63,7 +70,8 @@ class OutputFile {
 };
 
 /// Writes a whole OutputFile. @throws as that does
-void write_file(const std::string& file, std::string_view text);
+void write_file(const std::string& file, std::string_view text,
+                Replaces replaces = Replaces::no_input);
 
 /// Writes all of a text to a descriptor, however many calls that takes.
 /// @param name  of the output, for messages

@@ -106,7 +106,7 @@ void replace_baseline(const std::string& path, const std::vector<BaselineCase>& 
                       ": left as it is: another process has changed it since it was read "
                       "(allowed: one update at a time)");
   }
-  write_file(path, baseline_text(cases));
+  write_file(path, baseline_text(cases), Replaces::own_format);
 }
 
 std::string baseline_text(std::vector<BaselineCase> cases) {

@@ -184,6 +184,24 @@ TEST_F(Output, AnInputIsNeverWrittenOver) {
   EXPECT_EQ(appended.status, 2);
   EXPECT_TRUE(says(appended.err, {"standard output"}));
   EXPECT_EQ(read(scene), text);
+  // Files that a battery and its scenes name.
+  write("shape.csv",
+        "x,y,z\n0,0,0\n0.06,0.001,0\n0.12,0.004,0\n0.18,0.009,0\n0.24,0.016,0\n0.3,0.025,0\n");
+  write("rest.toml",
+        "[rod]\nlength = 0.3\nbending_stiffness = 1\nmass_per_length = 0\nrest_shape = "
+        "\"shape.csv\"\n[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"0 deg\"\n");
+  write("battery.toml",
+        "schema = \"dlo/suite/1\"\nversion = \"1\"\n[[scene]]\nfile = \"rest.toml\"\nclass = "
+        "\"a\"\nisolates = \"b\"\n");
+  for (const char* name : {"shape.csv", "rest.toml", "battery.toml"}) {
+    const std::string before = read(path(name));
+    for (const char* option : {"-o", "--markdown", "--junit", "--report"}) {
+      expect_error(
+          words({"suite --with chain --battery", path("battery.toml"), option, path(name)}), 2,
+          {path(name), "is read too"});
+      EXPECT_EQ(read(path(name)), before) << option;
+    }
+  }
   // A baseline that is written anew is its own input.
   succeeds("regress " + scene + " --update --baseline " + path("base.toml"));
 }
