@@ -53,7 +53,7 @@ void keep_freed_memory() {
   } else {
     dlo::cli::write_standard_error("dlo: internal error\n");
   }
-  dlo::compare::end_group();
+  dlo::compare::end_groups();
   ::_exit(static_cast<int>(status));
 }
 
@@ -62,7 +62,7 @@ void keep_freed_memory() {
 int main(int argc, char** argv) {
   keep_freed_memory();
   dlo::cli::reserve_standard_descriptors();
-  dlo::compare::end_group_at_signals();
+  dlo::compare::end_groups_at_signals();
   // A limit of a file's size is an error of its write.
   (void)std::signal(SIGXFSZ, SIG_IGN);
   std::set_terminate(end_uncaught);

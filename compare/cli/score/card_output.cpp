@@ -45,6 +45,7 @@ std::string summary(const Card& card) {
   add(total.solved - total.right, "wrong");
   add(total.not_supported, "not supported");
   add(total.failed, "failed");
+  add(total.not_judged, "not judged");
   return text;
 }
 
@@ -105,10 +106,6 @@ std::vector<std::string> head_of(const Card& card) {
   return head;
 }
 
-std::string markdown_row(const std::vector<std::string>& cells) {
-  return fmt::format("| {} |\n", fmt::join(cells, " | "));
-}
-
 /// As a cell of Markdown has it.
 std::string markdown_text(const std::string& text) {
   std::string result;
@@ -117,6 +114,11 @@ std::string markdown_text(const std::string& text) {
     result += c;
   }
   return result;
+}
+
+std::string markdown_row(std::vector<std::string> cells) {
+  for (std::string& cell : cells) cell = markdown_text(cell);
+  return fmt::format("| {} |\n", fmt::join(cells, " | "));
 }
 
 }  // namespace
@@ -170,9 +172,9 @@ std::string cards_junit(const std::vector<Card>& cards) {
       for (const compare::CardRun& run : scene.runs) one.seconds += run.seconds;
       if (scene.status() == RunStatus::not_supported) {
         one.outcome = "skipped";
-      } else if (scene.status() == RunStatus::failed) {
+      } else if (scene.status() != RunStatus::solved) {
         one.outcome = "error";
-        one.type = "failed";
+        one.type = compare::to_string(scene.status());
       } else if (!scene.right()) {
         one.outcome = "failure";
         one.type = "wrong";
@@ -199,7 +201,7 @@ compare::Figure card_figure(const Card& card) {
 
 compare::PageResult card_page(const Card& card) {
   const CardGroup total = card.total();
-  const bool passes = total.right == total.solved && total.failed == 0;
+  const bool passes = total.right == total.solved && total.failed == 0 && total.not_judged == 0;
   compare::PageResult page{
       .title = card.simulator,
       .passes = passes,

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -66,6 +67,7 @@ void write_cards(const SuiteOptions& options, const std::string& version,
   const std::vector<compare::Card> cards = with_progress("suite", [&](const auto& progress) {
     compare::CardOptions card = options.card;
     card.progress = progress;
+    card.version = DLO_VERSION;
     return compare::make_cards(version, scenes, simulators, card);
   });
   write_output(options.output, {.text = [&] { return cards_text(cards); },
@@ -73,7 +75,13 @@ void write_cards(const SuiteOptions& options, const std::string& version,
   if (!options.markdown.empty()) write_output({.file = options.markdown}, cards_markdown(cards));
   if (!options.junit.empty()) write_output({.file = options.junit}, cards_junit(cards));
   write_page(options.report, cards);
-  if (options.baseline.empty()) return;
+  const bool complete = std::ranges::all_of(cards, [](const compare::Card& card) {
+    return card.total().failed == 0 && card.total().not_judged == 0;
+  });
+  if (options.baseline.empty()) {
+    if (!complete) end_with(ExitStatus::not_converged);
+    return;
+  }
   const compare::Regression found = compare::judge_cards(baseline, cards, options.tolerance);
   if (options.update) {
     if (found.solved()) compare::replace_baseline(options.baseline, baseline, found.cases);
@@ -87,6 +95,7 @@ void write_cards(const SuiteOptions& options, const std::string& version,
   } else {
     write_standard_error(changes);
   }
+  if (!complete) end_with(ExitStatus::not_converged);
   if (!found.passes()) end_with(ExitStatus::outside_tolerance);
 }
 
@@ -98,6 +107,7 @@ void run(const SuiteOptions& options) {
     throw compare::InputError(
         "dlo suite: nothing to do (allowed: --write FOLDER, --with NAME=COMMAND, or both)");
   }
+  if (!options.pack.empty()) compare::require_own_pack(options.pack, scenes);
   if (!options.pack.empty()) write_pack(options, battery.version, scenes);
   if (!options.simulators.empty()) write_cards(options, battery.version, scenes);
 }
@@ -127,7 +137,7 @@ void add_suite(CLI::App& app) {
   command->add_option("--jobs", options->card.threads, "runs at a time; 0: as many as cores")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
-  command->add_option("--time-limit", options->card.time_limit, "of each run [s]")
+  command->add_option("--time-limit", options->card.time_limit, "of each run of a simulator [s]")
       ->check(number_between(1e-3, 1e9))
       ->capture_default_str();
   command

@@ -81,7 +81,8 @@ compare::CardOptions card_options(const py::dict& what, const std::string& name)
   compare::CardOptions options{.points = what["points"].cast<int>(),
                                .threads = what["threads"].cast<int>(),
                                .time_limit = what["time_limit"].cast<double>(),
-                               .state = what["state"].cast<std::string>()};
+                               .state = what["state"].cast<std::string>(),
+                               .version = DLO_VERSION};
   if (options.points < 4 || options.points > 10000 || options.threads < 0 ||
       options.threads > 1024 || !(options.time_limit > 0)) {
     throw compare::InputError(

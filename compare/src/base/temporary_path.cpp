@@ -12,6 +12,8 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <ctime>
+#include <stdexcept>
 #include <system_error>
 
 #include "base/output_file.hpp"
@@ -19,7 +21,17 @@
 namespace dlo::compare {
 namespace {
 
-std::atomic<int> temporary_group = 0;  // 0: none
+/// Groups at a time, more than suite --jobs allows.
+constexpr std::size_t most_groups = 2048;
+std::array<std::atomic<int>, most_groups> temporary_groups{};  // 0: none
+std::atomic<int> starts = 0;                                   // GroupStart that exist
+std::atomic<bool> ending = false;
+
+/// Sleeps for a millisecond. A signal handler may call it.
+void wait_shortly() {
+  constexpr timespec pause{.tv_sec = 0, .tv_nsec = 1'000'000};
+  (void)::nanosleep(&pause, nullptr);
+}
 
 /// Whether a signal that is not handled ends a process, as all do but these (signal(7)).
 bool ends_process(int number) {
@@ -28,8 +40,8 @@ bool ends_process(int number) {
   return std::find(others.begin(), others.end(), number) == others.end();
 }
 
-extern "C" void end_group_and_process(int number) {
-  end_group();
+extern "C" void end_groups_and_process(int number) {
+  end_groups();
   // SA_RESETHAND has restored the default, which ends the process when this handler returns.
   (void)std::raise(number);
 }
@@ -50,17 +62,44 @@ std::string made_in(const std::filesystem::path& folder, const Make& make) {
 
 }  // namespace
 
-TemporaryGroup::TemporaryGroup(int group) { temporary_group = group; }
-
-TemporaryGroup::~TemporaryGroup() { temporary_group = 0; }
-
-void end_group() {
-  if (const int group = temporary_group; group > 1) ::kill(-group, SIGKILL);
+GroupStart::GroupStart() {
+  sigset_t all;
+  ::sigfillset(&all);
+  ::pthread_sigmask(SIG_BLOCK, &all, &before_);
+  ++starts;
+  if (!ending) return;
+  --starts;
+  for (;;) wait_shortly();  // until the process ends
 }
 
-void end_group_at_signals() {
+GroupStart::~GroupStart() {
+  --starts;
+  ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+}
+
+TemporaryGroup::TemporaryGroup(int group) {
+  for (slot_ = 0; slot_ < most_groups; ++slot_) {
+    int none = 0;
+    if (temporary_groups[slot_].compare_exchange_strong(none, group)) return;
+  }
+  ::kill(-group, SIGKILL);
+  throw std::runtime_error(fmt::format("more than {} programs at a time", most_groups));
+}
+
+TemporaryGroup::~TemporaryGroup() { temporary_groups[slot_] = 0; }
+
+void end_groups() {
+  ending = true;
+  constexpr int longest_start = 1000;  // ms; a program on a lost network folder may never start
+  for (int i = 0; i < longest_start && starts > 0; ++i) wait_shortly();
+  for (const std::atomic<int>& one : temporary_groups) {
+    if (const int group = one; group > 1) ::kill(-group, SIGKILL);
+  }
+}
+
+void end_groups_at_signals() {
   struct sigaction action = {};
-  action.sa_handler = end_group_and_process;
+  action.sa_handler = end_groups_and_process;
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   // A signal that arrives during the handler waits.
   ::sigfillset(&action.sa_mask);
@@ -74,14 +113,6 @@ void end_group_at_signals() {
     }
   }
 }
-
-SignalsHeld::SignalsHeld() {
-  sigset_t all;
-  ::sigfillset(&all);
-  ::pthread_sigmask(SIG_BLOCK, &all, &before_);
-}
-
-SignalsHeld::~SignalsHeld() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
 
 TemporaryFile::TemporaryFile(const std::filesystem::path& folder) {
   path_ = made_in(folder, [this](const char* path) {

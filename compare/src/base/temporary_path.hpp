@@ -1,40 +1,46 @@
 #pragma once
 
 #include <csignal>
+#include <cstddef>
 #include <filesystem>
 #include <string>
 
 namespace dlo::compare {
 
-/// A process group that is killed if a signal ends this process and end_group_at_signals() was
-/// called before. At most one at a time.
-class TemporaryGroup {
+/// Encloses the start of a child and the construction of its TemporaryGroup, so that end_groups()
+/// misses no child: it waits for these starts, and none begins after it. Holds all signals.
+class GroupStart {
  public:
-  /// @param group  number of the group, > 1
-  explicit TemporaryGroup(int group);
-  ~TemporaryGroup();
-  TemporaryGroup(const TemporaryGroup&) = delete;
-  TemporaryGroup& operator=(const TemporaryGroup&) = delete;
-};
-
-/// Kills the TemporaryGroup, if there is one. A signal handler may call it.
-void end_group();
-
-/// Installs a handler that calls end_group() for each signal that ends the process by default,
-/// unless the signal is ignored or has a handler. Meant for programs: a library installs none.
-void end_group_at_signals();
-
-/// Blocks all signals during its lifetime.
-class SignalsHeld {
- public:
-  SignalsHeld();
-  ~SignalsHeld();
-  SignalsHeld(const SignalsHeld&) = delete;
-  SignalsHeld& operator=(const SignalsHeld&) = delete;
+  GroupStart();
+  ~GroupStart();
+  GroupStart(const GroupStart&) = delete;
+  GroupStart& operator=(const GroupStart&) = delete;
 
  private:
   sigset_t before_{};
 };
+
+/// A process group that is killed if a signal ends this process and end_groups_at_signals() was
+/// called before. Any thread may have one.
+class TemporaryGroup {
+ public:
+  /// @param group  number of the group, > 1
+  /// @throws std::runtime_error if there are too many at a time
+  explicit TemporaryGroup(int group);
+  ~TemporaryGroup();
+  TemporaryGroup(const TemporaryGroup&) = delete;
+  TemporaryGroup& operator=(const TemporaryGroup&) = delete;
+
+ private:
+  std::size_t slot_ = 0;
+};
+
+/// Kills every TemporaryGroup and lets no other begin. A signal handler may call it.
+void end_groups();
+
+/// Installs a handler that calls end_groups() for each signal that ends the process by default,
+/// unless the signal is ignored or has a handler. Meant for programs: a library installs none.
+void end_groups_at_signals();
 
 /// Returns the folder for temporary files: TMPDIR, or /tmp if that names no folder.
 [[nodiscard]] std::filesystem::path temporary_directory();

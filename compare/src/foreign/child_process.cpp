@@ -98,8 +98,7 @@ ChildOutcome run_child(const std::vector<std::string>& words, const ChildFiles& 
   pid_t process = 0;
   std::optional<TemporaryGroup> group;
   {
-    // A signal that ends this process in between would leave the child alone.
-    const SignalsHeld held;
+    const GroupStart start;
     const int error = SpawnSettings(files).spawn(words, process);
     if (error != 0) {
       result.problem = fmt::format("could not be started: {}", std::strerror(error));

@@ -86,7 +86,8 @@ CardScene run_scene(const BatteryScene& scene, const Simulator& simulator,
   CardScene result{.id = scene.id, .group = scene.group, .order = none};
   for (const int factor : {1, 2, 4}) {
     const int points = factor * options.points;
-    const SimulatorRun run = kept_run(options.state, simulator, scene, points, options.time_limit);
+    const SimulatorRun run =
+        kept_run(options.state, options.version, simulator, scene, points, options.time_limit);
     CardRun& entry =
         result.runs.emplace_back(CardRun{points, run.status, run.problem, none, run.seconds});
     measure(run, entry);
@@ -104,7 +105,7 @@ CardScene card_scene(const BatteryScene& scene, const energy_model::Equilibrium&
       });
   result.order = convergence_order(shapes);
   if (!shapes.empty()) {
-    result.causes = causes_of(scene.scene, reference, shapes, {.time_limit = options.time_limit});
+    result.causes = causes_of(scene.scene, reference, shapes);
   }
   return result;
 }
@@ -141,6 +142,7 @@ void add_scene(CardGroup& group, const CardScene& scene) {
   const RunStatus status = scene.status();
   ++(status == RunStatus::solved          ? group.solved
      : status == RunStatus::not_supported ? group.not_supported
+     : status == RunStatus::not_judged    ? group.not_judged
                                           : group.failed);
   if (scene.right()) ++group.right;
   for (const CardRun& run : scene.runs) group.seconds += run.seconds;
@@ -235,18 +237,27 @@ void join_causes(Card& card) {
   }
 }
 
-/// Solves a scene's reference. @return what makes the card of a simulator
+/// Solves the reference of a scene. @return a function that makes the entry of a simulator
 std::function<CardScene(const Simulator&)> scene_judge(const BatteryScene& scene,
                                                        const CardOptions& options) {
-  const SolveOptions solve{.time_limit = options.time_limit};
-  if (scene.motion) {
-    return [&, reference = motion_reference(scene, solve)](const Simulator& simulator) {
-      return card_motion(scene, reference, simulator, options);
+  try {
+    if (scene.motion) {
+      return [&, reference = motion_reference(scene, {})](const Simulator& simulator) {
+        return card_motion(scene, reference, simulator, options);
+      };
+    }
+    return [&, reference = solve_reference(scene.scene, answer_model(scene.scene), {})](
+               const Simulator& simulator) {
+      return card_scene(scene, reference, simulator, options);
+    };
+  } catch (const ConvergenceError& error) {
+    return [&, problem = std::string(error.what())](const Simulator&) -> CardScene {
+      return {.id = scene.id,
+              .group = scene.group,
+              .runs = {{options.points, RunStatus::not_judged, problem, none, 0}},
+              .order = none};
     };
   }
-  return
-      [&, reference = solve_reference(scene.scene, answer_model(scene.scene), solve)](
-          const Simulator& simulator) { return card_scene(scene, reference, simulator, options); };
 }
 
 }  // namespace

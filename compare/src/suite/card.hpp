@@ -46,6 +46,7 @@ struct CardGroup {
   int right = 0;                ///< of these, CardScene::right()
   int not_supported = 0;        ///< of these
   int failed = 0;               ///< of these
+  int not_judged = 0;           ///< of these, their reference did not converge
   std::vector<double> largest;  ///< error at each N, of the scenes that are solved; NaN: of none
   double order = 0;             ///< the smallest of these scenes; NaN: not known
   double seconds = 0;           ///< wall time of all runs [s]
@@ -69,13 +70,15 @@ struct Card {
 struct CardOptions {
   int points = 16;         ///< N of the first run; the others have 2N and 4N
   int threads = 0;         ///< 0: all cores
-  double time_limit = 60;  ///< of each run, and of each solve [s], > 0
+  double time_limit = 60;  ///< of each run of a simulator, not of references [s], > 0
   std::string state;       ///< folder that keeps finished runs; empty: none
+  std::string version;     ///< of dlo; runs that another version has kept are run again
   Progress progress;       ///< of scenes, all simulators
 };
 
-/// Runs simulators on scenes. The card does not depend on the number of threads but for times.
-/// @throws ConvergenceError if a scene's reference cannot be solved;  @throws OutputError
+/// Runs simulators on scenes. Except for times, the card does not depend on the number of threads.
+/// A scene whose reference does not converge is RunStatus::not_judged.
+/// @throws OutputError
 [[nodiscard]] std::vector<Card> make_cards(const std::string& battery_version,
                                            const std::vector<BatteryScene>& scenes,
                                            const std::vector<Simulator>& simulators,

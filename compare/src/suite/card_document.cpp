@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "dlo/compare/error.hpp"
 #include "record/field.hpp"
 
 namespace dlo::compare {
@@ -45,6 +46,7 @@ Json group_json(const CardGroup& group) {
           {"right", group.right},
           {"not_supported", group.not_supported},
           {"failed", group.failed},
+          {"not_judged", group.not_judged},
           {"largest_rms_over_length", group.largest},
           {"smallest_order", group.order},
           {"wall_s", group.seconds},
@@ -85,6 +87,11 @@ Regression judge_cards(const std::vector<BaselineCase>& baseline, const std::vec
     (compared.contains({entry.scene, entry.program}) ? known : result.cases).push_back(entry);
   }
   result.results = judge_regression(known, measured, tolerance);
+  if (result.results.empty()) {
+    throw InputError(
+        "nothing to compare with the baseline: no simulator supports one of the scenes (allowed: "
+        "scenes that a simulator supports)");
+  }
   for (MeasuredCase& one : measured) result.cases.push_back(std::move(one.entry));
   return result;
 }

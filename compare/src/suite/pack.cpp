@@ -6,8 +6,10 @@
 #include <filesystem>
 #include <system_error>
 
+#include "base/input_file.hpp"
 #include "base/number.hpp"
 #include "base/output_file.hpp"
+#include "dlo/compare/error.hpp"
 #include "dlo/compare/solution.hpp"
 #include "record/field.hpp"
 #include "record/solution_fields.hpp"
@@ -134,6 +136,18 @@ void write_document(const std::filesystem::path& file, const Json& document) {
   write_file(file, text + "\n}\n");
 }
 
+/// Whether a JSON file has the name of a schema, as "schema" or at the begin of "title".
+bool has_schema(const std::filesystem::path& file, std::string_view schema) {
+  try {
+    const Json document = Json::parse(read_regular_file(file, file));
+    return document.value("schema", document.value("title", "")).starts_with(schema);
+  } catch (const nlohmann::json::exception&) {
+    return false;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
 }  // namespace
 
 nlohmann::ordered_json answer_json(const Answer& answer) {
@@ -238,6 +252,27 @@ Pack certified_pack(const std::string& version, const std::vector<BatteryScene>&
   for (const BatteryScene& scene : scenes) (scene.motion ? moving : at_rest).push_back(scene);
   return {version, certified_answers(at_rest, threads, options),
           certified_motions(moving, threads, options)};
+}
+
+void require_own_pack(const std::string& folder, const std::vector<BatteryScene>& scenes) {
+  const std::filesystem::path path(folder);
+  const auto require = [&](const std::string& name, bool is_ours) {
+    std::error_code unknown;
+    const auto type = std::filesystem::symlink_status(path / name, unknown).type();
+    if (is_ours || type == std::filesystem::file_type::not_found) return;
+    throw InputError(fmt::format(
+        "{}: not written by an earlier dlo suite --write, left as it is (allowed: another folder)",
+        (path / name).string()));
+  };
+  for (const BatteryScene& scene : scenes) {
+    const std::string answer = scene.id + ".json";
+    const bool is_ours =
+        has_schema(path / answer, scene.motion ? motion_schema_name : answer_schema_name);
+    for (const char* extension : {".json", ".csv", ".vtu"}) require(scene.id + extension, is_ours);
+  }
+  require("suite.json", has_schema(path / "suite.json", pack_schema_name));
+  require("schema.json", has_schema(path / "schema.json", answer_schema_name));
+  require("motion_schema.json", has_schema(path / "motion_schema.json", motion_schema_name));
 }
 
 void write_pack(const std::string& folder, const Pack& pack) {

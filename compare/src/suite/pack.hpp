@@ -37,6 +37,10 @@ struct Pack {
                                   const std::vector<BatteryScene>& scenes, int threads,
                                   const SolveOptions& options = {});
 
+/// Requires that a folder has no file that write_pack() would replace, other than those that it
+/// wrote itself. @throws InputError that names the file
+void require_own_pack(const std::string& folder, const std::vector<BatteryScene>& scenes);
+
 /// Writes a pack that needs no dlo to be used: ID.json and ID.csv of each answer and ID.vtu of one
 /// at rest, the schemas, and in the end suite.json, the index. Each file is made under another name
 /// and renamed. Nothing in it depends on the time or on the machine, so that a pack is the same

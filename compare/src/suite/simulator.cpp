@@ -121,9 +121,16 @@ SimulatorRun run_program(const ForeignProgram& program, const BatteryScene& scen
   return result;
 }
 
-/// What a run depends on; its own version tells files of another form.
-std::string run_fingerprint(const Simulator& simulator, const BatteryScene& scene, int points) {
-  return fingerprint("dlo/run/1\n" + simulator.identity() + "\n" + battery_document(scene, points));
+/// Returns size and time of change of the files that a command names, such as its script.
+std::string files_of_command(const std::vector<std::string>& words) {
+  std::string text;
+  std::error_code none;
+  for (const std::string& word : words) {
+    if (!std::filesystem::is_regular_file(word, none)) continue;
+    text += fmt::format("{} {} {}\n", word, std::filesystem::file_size(word, none),
+                        std::filesystem::last_write_time(word, none).time_since_epoch().count());
+  }
+  return text;
 }
 
 /// Rows of time, arc length and position.
@@ -179,7 +186,8 @@ void write_run(const std::filesystem::path& file, const std::string& known,
     document["shape"] = {{"points_m", points_json(run.shape->points)}};
     if (!run.shape->arc_length.empty()) document["shape"]["arc_length_m"] = run.shape->arc_length;
   }
-  write_file(file, document.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_file(file, document.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n",
+             Replaces::own_format);
 }
 
 }  // namespace
@@ -246,14 +254,18 @@ SimulatorRun run_simulator(const Simulator& simulator, const BatteryScene& scene
   return run;
 }
 
-SimulatorRun kept_run(const std::string& folder, const Simulator& simulator,
-                      const BatteryScene& scene, int points, double time_limit) {
+SimulatorRun kept_run(const std::string& folder, const std::string& version,
+                      const Simulator& simulator, const BatteryScene& scene, int points,
+                      double time_limit) {
   if (folder.empty()) return run_simulator(simulator, scene, points, time_limit);
   const std::filesystem::path mine = std::filesystem::path(folder) / simulator.name;
   const std::filesystem::path file = mine / fmt::format("{}_{}.json", scene.id, points);
-  const std::string known = run_fingerprint(simulator, scene, points);
+  const std::string known = fingerprint(fmt::format(
+      "dlo/run/2\n{}\n{}\n{}{}\n{}", version, simulator.identity(),
+      files_of_command(simulator.program.words), time_limit, battery_document(scene, points)));
   if (std::optional<SimulatorRun> run = read_run(file, known)) return std::move(*run);
   SimulatorRun run = run_simulator(simulator, scene, points, time_limit);
+  if (run.status == RunStatus::failed) return run;
   std::error_code error;
   std::filesystem::create_directories(mine, error);
   if (error) throw OutputError(fmt::format("{}: {}", mine.string(), error.message()));

@@ -19,6 +19,7 @@ enum class RunStatus {
   solved,         ///< there is a shape
   not_supported,  ///< the simulator says that it has no such scene
   failed,         ///< anything else
+  not_judged,     ///< the reference of the scene did not converge; the simulator was not run
 };
 
 /// In words, for files.
@@ -27,7 +28,8 @@ struct Choices<RunStatus> {
   /// In the enumeration's order.
   static constexpr Choice<RunStatus> all[] = {{RunStatus::solved, "solved", ""},
                                               {RunStatus::not_supported, "not supported", ""},
-                                              {RunStatus::failed, "failed", ""}};
+                                              {RunStatus::failed, "failed", ""},
+                                              {RunStatus::not_judged, "not judged", ""}};
 };
 
 /// A shape or a motion of a scene with so many points, or why there is none.
@@ -63,11 +65,15 @@ struct Simulator {
 [[nodiscard]] SimulatorRun run_simulator(const Simulator& simulator, const BatteryScene& scene,
                                          int points, double time_limit);
 
-/// The same, but for a run whose result `folder` has from an earlier time: it is kept there in a
-/// file of its own, whole or not at all.
-/// @param folder  made if it is not there; empty: nothing is kept
-[[nodiscard]] SimulatorRun kept_run(const std::string& folder, const Simulator& simulator,
-                                    const BatteryScene& scene, int points, double time_limit);
+/// Returns the result that a folder keeps of an earlier run with the same version of dlo, program,
+/// time limit and scene; otherwise runs the simulator. Results that are solved or not supported are
+/// kept, each in a file of its own. A failed run is not kept, because its cause may be gone: dlo
+/// may have ended it.
+/// @param folder   is made if it does not exist; empty: nothing is kept
+/// @param version  of dlo
+[[nodiscard]] SimulatorRun kept_run(const std::string& folder, const std::string& version,
+                                    const Simulator& simulator, const BatteryScene& scene,
+                                    int points, double time_limit);
 
 /// What a program reads of a scene: scene_document(), and of one that moves also `motion`, with
 /// the times of frames that are asked for, the shape that it begins with at equal arc lengths, and

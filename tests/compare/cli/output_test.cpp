@@ -235,7 +235,7 @@ TEST_F(Output, ASignalLeavesTheTargetAsItWas) {
   write("a.csv", "old");
   const pid_t child = ::fork();
   if (child == 0) {
-    dlo::compare::end_group_at_signals();
+    dlo::compare::end_groups_at_signals();
     OutputFile file(path("a.csv"));
     file.append("half");
     (void)std::raise(SIGTERM);

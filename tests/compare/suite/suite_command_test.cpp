@@ -15,6 +15,7 @@
 #include "base/output_file.hpp"
 #include "batch/baseline.hpp"
 #include "command_fixture.hpp"
+#include "scene_text.hpp"
 
 namespace {
 
@@ -157,11 +158,95 @@ TEST_F(SuiteCommand, DoesNotRunFinishedRunsAgain) {
 }
 
 TEST_F(SuiteCommand, AFailureIsNoMissingSupport) {
-  const json card = card_of(" --scenes weight_1 --with mine='sh -c \"exit 2\" {shape}'");
-  EXPECT_EQ(card.at("total").at("failed"), 1);
+  // A simulator that ends with an error, crashes, hangs or cannot be started.
+  const std::string suite = "suite --scenes weight_1 --format json --time-limit 0.2 --with mine=";
+  for (const char* program : {"'sh -c \"exit 2\" {shape}'", "'sh -c \"kill -SEGV \\$\\$\" {shape}'",
+                              "'sleep 9 {shape}'", "'/no/such/program {shape}'"}) {
+    const Outcome outcome = run(suite + program);
+    EXPECT_EQ(outcome.status, 3) << program << outcome.err;
+    EXPECT_EQ(json::parse(outcome.out).at("cards").at(0).at("total").at("failed"), 1) << program;
+  }
   const json quiet =
       card_of(" --scenes weight_1 --with mine='sh -c \"echo not supported: weight >&2\" {shape}'");
   EXPECT_EQ(quiet.at("total").at("not_supported"), 1);
+}
+
+TEST_F(SuiteCommand, RunsAgainWhatFailedAndWhatHasChanged) {
+  const std::string count = "echo run >> " + path("runs") + "\n";
+  const auto runs = [&] {
+    const std::string text = read(path("runs"));
+    return std::count(text.begin(), text.end(), '\n');
+  };
+  const std::string suite = "suite --scenes weight_1 --state " + path("state") +
+                            " --with mine='sh " + path("mine.sh") + " {shape}'";
+  std::ofstream(path("mine.sh")) << count << "exit 1\n";
+  EXPECT_EQ(run(suite).status, 3);
+  EXPECT_EQ(run(suite).status, 3);
+  EXPECT_EQ(runs(), 6);  // three numbers of points
+  std::ofstream(path("mine.sh")) << count << "echo not supported: this >&2\n";
+  EXPECT_EQ(run(suite).status, 0);
+  EXPECT_EQ(run(suite).status, 0);
+  EXPECT_EQ(runs(), 7);
+  EXPECT_EQ(run(suite + " --time-limit 7").status, 0);
+  EXPECT_EQ(runs(), 8);
+  std::ofstream(path("mine.sh"), std::ios::app) << "\n";
+  EXPECT_EQ(run(suite).status, 0);
+  EXPECT_EQ(runs(), 9);
+}
+
+TEST_F(SuiteCommand, ASignalEndsAllSimulators) {
+  // Each simulator leaves a file when it runs, and then waits for longer than the test.
+  const std::string program = "sh -c \"touch " + path("started_$$") + "; exec sleep 987\" {shape}";
+  const std::string two_run =
+      "for i in $(seq 200); do [ $(ls " + path("") + " | grep -c started_) -ge 2 ] && break; ";
+  const Outcome outcome =
+      run_line(std::string(DLO_COMMAND) + " suite --jobs 2 --scenes weight --with mine='" +
+               program + "' & " + two_run +
+               "sleep 0.02; done; kill -TERM $!; wait $!; echo $?; pgrep -c -x -f 'sleep 987'");
+  EXPECT_EQ(outcome.out, "143\n0\n");
+}
+
+TEST_F(SuiteCommand, AReferenceThatDoesNotConvergeIsAnEntry) {
+  std::ofstream(path("good.toml")) << dlo::test::steel_rod + dlo::test::level_clamp;
+  // A payload that bends the rod within less than the terms of the reference resolve.
+  std::ofstream(path("bad.toml")) << dlo::test::steel_rod + dlo::test::level_clamp +
+                                         "[[load]]\nat = 0.5\nmass = 1e28\n";
+  std::ofstream(path("battery.toml"))
+      << "schema = \"dlo/suite/1\"\nversion = \"1\"\n"
+         "[[scene]]\nfile = \"good.toml\"\nclass = \"a|b\"\nisolates = \"x\"\n"
+         "[[scene]]\nfile = \"bad.toml\"\nclass = \"a|b\"\nisolates = \"x\"\n";
+  const Outcome outcome = run("suite --with chain --battery " + path("battery.toml") +
+                              " --format json --markdown " + path("card.md"));
+  EXPECT_EQ(outcome.status, 3) << outcome.err;
+  const json card = json::parse(outcome.out).at("cards").at(0);
+  EXPECT_EQ(card.at("total").at("right"), 1);
+  EXPECT_EQ(card.at("total").at("not_judged"), 1);
+  EXPECT_EQ(card.at("scenes").at(1).at("status"), "not judged");
+  EXPECT_THAT(read(path("card.md")), HasSubstr("| a\\|b | 1 of 2 |"));
+}
+
+TEST_F(SuiteCommand, ReplacesNoFileOfAnother) {
+  const std::string write = "suite --scenes bending_large --write " + path("pack");
+  succeeds(write);
+  succeeds(write);
+  for (const char* name : {"bending_large.csv", "suite.json"}) {
+    std::filesystem::remove_all(path("pack"));
+    std::filesystem::create_directory(path("pack"));
+    std::ofstream(path("pack") + "/" + name) << "mine";
+    const Outcome outcome = run(write);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.err,
+                HasSubstr(std::string(name) + ": not written by an earlier dlo suite"));
+    EXPECT_EQ(read(path("pack") + "/" + name), "mine");
+  }
+}
+
+TEST_F(SuiteCommand, ABaselineWithNothingToCompareIsAnError) {
+  const std::string gate = " --baseline " + path("errors.toml");
+  succeeds("suite --with chain --scenes weight_1" + gate + " --update");
+  const Outcome outcome = run("suite --with force --scenes motion" + gate);  // not supported
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("nothing to compare with the baseline"));
 }
 
 TEST_F(SuiteCommand, HoldsErrorsAgainstABaselineOfRegress) {
