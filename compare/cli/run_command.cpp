@@ -1,12 +1,21 @@
 #include "run_command.hpp"
 
 #include <fmt/format.h>
+#include <sys/time.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <csignal>
 #include <exception>
 #include <filesystem>
+#include <iterator>
+#include <limits>
 #include <new>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
@@ -14,8 +23,10 @@
 
 #include "base/input_file.hpp"
 #include "base/output_file.hpp"
+#include "base/temporary_path.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
+#include "dlo/energy_model/interrupt.hpp"
 #include "option/effect.hpp"
 #include "option/help.hpp"
 #include "option/option_values.hpp"
@@ -24,7 +35,74 @@
 namespace dlo::cli {
 namespace {
 
-void build(CLI::App& app) {
+/// Seconds of the steady clock at which the command has to end; infinite: never.
+std::atomic<double> command_end = std::numeric_limits<double>::infinity();
+std::string over_message;  // of the signal handler, written before the timer starts
+
+double steady_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+bool is_command_over() { return steady_seconds() > command_end; }
+
+extern "C" void end_command_over_time(int /*number*/) {
+  compare::end_groups();
+  // If standard error is gone, the exit status still tells it.
+  [[maybe_unused]] const ssize_t written =
+      ::write(STDERR_FILENO, over_message.data(), over_message.size());
+  ::_exit(static_cast<int>(ExitStatus::not_converged));
+}
+
+/// Holds --time-limit for a whole command: solvers of this thread stop when it is over. A process
+/// whose computation does not stop soon after that ends with a message.
+class CommandTimeLimit {
+ public:
+  CommandTimeLimit(const std::string& command, double seconds) : interruption_(is_command_over) {
+    command_end = steady_seconds() + seconds;
+    if (RedirectedOutput::current() != nullptr) return;  // a library call does not end its process
+    over_message = fmt::format(
+        "dlo: {}: not finished within --time-limit {:g} s (allowed: a longer time limit, or a "
+        "smaller scene)\n",
+        command, seconds);
+    struct sigaction action = {};
+    action.sa_handler = end_command_over_time;
+    ::sigfillset(&action.sa_mask);
+    ::sigaction(SIGALRM, &action, nullptr);
+    constexpr double grace = 1.05;
+    constexpr double grace_seconds = 0.5;
+    start_timer(grace * seconds + grace_seconds);
+  }
+  ~CommandTimeLimit() {
+    start_timer(0);
+    command_end = std::numeric_limits<double>::infinity();
+  }
+  CommandTimeLimit(const CommandTimeLimit&) = delete;
+  CommandTimeLimit& operator=(const CommandTimeLimit&) = delete;
+
+ private:
+  /// @param seconds  0: stops the timer
+  static void start_timer(double seconds) {
+    if (RedirectedOutput::current() != nullptr) return;
+    itimerval timer{};
+    timer.it_value.tv_sec = static_cast<time_t>(seconds);
+    timer.it_value.tv_usec = static_cast<suseconds_t>((seconds - std::floor(seconds)) * 1e6);
+    (void)::setitimer(ITIMER_REAL, &timer, nullptr);
+  }
+
+  energy_model::Interruption interruption_;
+};
+
+/// Returns the limit that --time-limit sets for the whole command; empty if it is not given, or if
+/// it limits each of many runs.
+std::optional<double> whole_time_limit(const CLI::App& command) {
+  constexpr std::string_view of_each_run[] = {"bench", "regress", "suite", "sweep"};
+  if (std::ranges::find(of_each_run, command.get_name()) != std::end(of_each_run)) return {};
+  const CLI::Option* option = command.get_option_no_throw("--time-limit");
+  if (option == nullptr || option->count() == 0) return {};
+  return option->as<double>();
+}
+
+void build(CLI::App& app, std::optional<CommandTimeLimit>& limit) {
   app.require_subcommand(1);
   app.formatter(help_formatter());
   app.set_help_flag("-h,--help", "this help; with a command, its options");
@@ -42,8 +120,11 @@ void build(CLI::App& app) {
       "Exit status: 0 good, 1 outside a tolerance, 2 bad usage or input, 3 a solver did\n"
       "not converge, 4 out of memory or threads, or an internal error, 5 an output\n"
       "could not be written. More, with examples: dlo COMMAND --help");
-  app.parse_complete_callback([&app] {
+  app.parse_complete_callback([&app, &limit] {
     for (const CLI::App* command : app.get_subcommands()) {
+      if (const std::optional<double> seconds = whole_time_limit(*command)) {
+        limit.emplace(command->get_name(), *seconds);
+      }
       check_effects(*command);
       check_outputs(*command);
     }
@@ -58,7 +139,8 @@ int run_command(std::vector<std::string> words) {
       "Is the shape of a simulated rod, wire or cable the shape that its material would take? "
       "dlo computes it from bending energy and gravity, and says how far others are from it.",
       "dlo");
-  build(app);
+  std::optional<CommandTimeLimit> limit;
+  build(app, limit);
   refuse_empty_values(app);
   if (words.empty()) {
     write_standard_output(app.help());

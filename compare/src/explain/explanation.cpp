@@ -11,6 +11,7 @@
 #include "base/timer.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
+#include "dlo/energy_model/interrupt.hpp"
 #include "explain/cause_fit.hpp"
 #include "explain/chain_convergence.hpp"
 #include "explain/file_causes.hpp"
@@ -114,7 +115,9 @@ class Search {
   }
 
  private:
-  [[nodiscard]] bool is_over() const { return timer_.seconds() > options_.solve.time_limit; }
+  [[nodiscard]] bool is_over() const {
+    return timer_.seconds() > options_.solve.time_limit || energy_model::interrupted();
+  }
 
   /// Whether nothing with so many numbers could be better than what has been found.
   [[nodiscard]] bool is_found(int numbers) const {

@@ -12,6 +12,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"
+#include "dlo/energy_model/interrupt.hpp"
 #include "polygon/scalar_search.hpp"
 
 namespace dlo::compare {
@@ -103,7 +104,7 @@ class FollowedState {
     SolveOptions options = options_;
     options.start = &start.state;
     options.time_limit -= timer_.seconds();
-    if (!(options.time_limit > 0)) throw OutOfTime();
+    if (!(options.time_limit > 0) || energy_model::interrupted()) throw OutOfTime();
     Scene scene = scene_;
     scene.scale_modulus(std::exp(log_ratio));
     ++solves_;

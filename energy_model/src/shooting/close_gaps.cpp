@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 
 #include "dlo/energy_model/status.hpp"
 
@@ -16,6 +17,10 @@ constexpr double least_newton_part = 1e-3;  // of a Newton step
 constexpr double last_newton_step = 1e-9;   // Newton's next one is of the size of rounding
 constexpr double nearly_closed = 0.1;   // gaps of a twisted rod, from which on it must not drift
 constexpr double least_weight = 1e-12;  // of Levenberg's: its root is far above rounding
+
+/// Largest number of unknowns of Levenberg's steps. Each of its rows for the weight stays in all
+/// later columns of the factors, which take 6 bytes times the square of this number, and a second.
+constexpr Eigen::Index most_weighted = 4000;
 
 using Solver = Eigen::SparseQR<Eigen::SparseMatrix<double>, Eigen::NaturalOrdering<int>>;
 
@@ -60,6 +65,7 @@ std::optional<double> newton_step(const ShootingSystem& system, const Triplets& 
 /// The step for which |derivatives step + equations|^2 + weight |step|^2 is least.
 std::optional<Eigen::VectorXd> regular_step(Triplets derivatives, Eigen::Index unknowns,
                                             const Eigen::VectorXd& equations, double weight) {
+  if (unknowns > most_weighted) return std::nullopt;
   const Eigen::Index rows = equations.size();
   for (Eigen::Index i = 0; i < unknowns; ++i) {
     derivatives.emplace_back(static_cast<int>(rows + i), static_cast<int>(i), std::sqrt(weight));
@@ -144,6 +150,12 @@ ClosedGaps close_gaps(const ShootingSystem& system, ShootingPoint& point, int ma
     if (!step) step = levenberg_step(system, derivatives, equations, point, result.shots);
     if (!step) {
       result.message = "Newton's method found no shorter step";
+      if (system.unknowns() > most_weighted) {
+        result.message +=
+            "; " + std::to_string(system.unknowns()) +
+            " unknowns are too many for Levenberg's (allowed: " + std::to_string(most_weighted) +
+            ")";
+      }
       break;
     }
     result.converged = *step < last_newton_step;

@@ -2,6 +2,7 @@
 
 #include "run_command.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -15,6 +16,7 @@
 #include "command_fixture.hpp"
 #include "dlo/compare/error.hpp"
 #include "option/output.hpp"
+#include "scene_text.hpp"
 #include "shell_words.hpp"
 
 namespace {
@@ -53,6 +55,26 @@ TEST_F(RunCommand, IsTheProcess) {
       EXPECT_EQ(here.err, process.err) << one.arguments << ", " << call;
     }
   }
+}
+
+TEST_F(RunCommand, TheTimeLimitHoldsForTheWholeCommand) {
+  // ulimit -t ends a process that has used so many seconds of processor time; -v is in KiB.
+  const std::string limits = "ulimit -t 3; ulimit -v 1000000; " + std::string(DLO_COMMAND) + " ";
+  const std::string helix = scene(
+      "[rod]\nlength = 30\ndiameter = 0.001\nmaterial = \"copper\"\n"
+      "helix = { radius = \"2 cm\", pitch = \"2 cm\" }\n" +
+      dlo::test::level_clamp);
+  const Outcome turns = run_line(limits + "solve " + helix + " --model exact --time-limit 1");
+  EXPECT_EQ(turns.status, 3) << turns.err;
+  EXPECT_TRUE(dlo::test::says(turns.err, {"did not converge"}));
+  std::string text = dlo::test::steel_rod + dlo::test::level_clamp;
+  for (int i = 0; i < 90; ++i) {
+    text += fmt::format("[[section]]\nfrom = {}\nto = {}\nbending_stiffness = {}\n", i / 200.0,
+                        (i + 1) / 200.0, 0.1 + 0.05 * (i % 7));
+  }
+  const Outcome sections = run_line(limits + "solve " + scene(text) + " --all --time-limit 0.5");
+  EXPECT_EQ(sections.status, 3) << sections.err;
+  EXPECT_TRUE(dlo::test::says(sections.err, {"time"}));
 }
 
 TEST_F(RunCommand, WithoutTextsThrowsWhatItIsRefusedWith) {
