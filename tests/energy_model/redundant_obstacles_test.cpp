@@ -115,6 +115,28 @@ TEST(RedundantObstacles, ABodyThatSticksOutCounts) {
   }
 }
 
+// On floors that differ by a small tilt the rod rests as on the one that is highest where it lies.
+TEST(RedundantObstacles, FloorsThatAreTiltedALittleAreAsTheHighestOne) {
+  const auto floor = [](double slope) {
+    return Obstacle{Body::half_space({0, -0.2, 0}, {-slope, 1, 0})};
+  };
+  for (const double tilt : {1e-9, 1e-7, 1e-6, 3e-5, 1e-4}) {
+    for (const std::vector<double>& slopes :
+         {std::vector{0.0, -tilt, -2 * tilt}, std::vector{0.0, tilt, -tilt},
+          std::vector{-tilt, 2 * tilt, tilt}}) {
+      Problem problem = test::heavy_cantilever(80, 0);
+      problem.obstacles = {floor(*std::ranges::max_element(slopes))};
+      const Equilibrium highest = test::usable(solve_energy(problem));
+      problem.obstacles.clear();
+      for (const double slope : slopes) problem.obstacles.push_back(floor(slope));
+      const Equilibrium found = solve_energy(problem);
+      ASSERT_EQ(found.status, SolveStatus::converged) << tilt << found.message;
+      EXPECT_LT(test::gap_between(found, highest), 1e-8) << tilt;
+      EXPECT_LE(found.penetration, allowed_penetration) << tilt;
+    }
+  }
+}
+
 // Below the rod, out of the floor by less than a face is taken to be flush: it goes on downwards
 // only.
 TEST(RedundantObstacles, ABlockSunkToItsTopIsNoWall) {

@@ -79,34 +79,38 @@ std::vector<double> near_obstacles(const Problem& problem, const Equilibrium& sh
   return near;
 }
 
-/// Largest depth behind a rigid obstacle [m].
-double penetration(const Problem& problem, const Equilibrium& shape) {
+/// Largest depth behind a rigid obstacle [m], and that obstacle.
+Penetration penetration(const Problem& problem, const Equilibrium& shape) {
   const double h = problem.length / (penetration_grid - 1);
   const std::vector<double> s = near_obstacles(problem, shape);
   const Samples grid = shape.sample(s);
-  double deepest = 0;
-  for (const Obstacle& obstacle : problem.obstacles) {
+  Penetration deepest;
+  for (std::size_t i = 0; i < problem.obstacles.size(); ++i) {
+    const Obstacle& obstacle = problem.obstacles[i];
     if (!is_rigid(obstacle)) continue;
-    deepest = std::max(deepest, depth_within(obstacle.body, shape, s, h, grid,
-                                             allowed_penetration * problem.length));
+    const double depth =
+        depth_within(obstacle.body, shape, s, h, grid, allowed_penetration * problem.length);
+    if (depth > deepest.depth) deepest = {depth, i};
   }
   return deepest;
 }
 
 }  // namespace
 
-void judge_penetration(const Problem& problem, Equilibrium& equilibrium) {
-  if (std::none_of(problem.obstacles.begin(), problem.obstacles.end(), is_rigid)) return;
+Penetration judge_penetration(const Problem& problem, Equilibrium& equilibrium) {
+  if (std::none_of(problem.obstacles.begin(), problem.obstacles.end(), is_rigid)) return {};
   const double l = problem.length;
-  equilibrium.penetration = penetration(problem, equilibrium);
-  if (!succeeded(equilibrium.status)) return;
-  if (equilibrium.penetration <= allowed_penetration * l) return;
+  const Penetration deepest = penetration(problem, equilibrium);
+  equilibrium.penetration = deepest.depth;
+  if (!succeeded(equilibrium.status)) return deepest;
+  if (equilibrium.penetration <= allowed_penetration * l) return deepest;
   std::ostringstream why;
   why.precision(2);
   why << "the shape is " << equilibrium.penetration << " m = " << equilibrium.penetration / l
       << " l within a rigid obstacle (allowed: " << allowed_penetration << " l)";
   equilibrium.status = SolveStatus::not_verified;
   equilibrium.message = std::string(to_string(equilibrium.status)) + ": " + why.str();
+  return deepest;
 }
 
 }  // namespace dlo::energy_model

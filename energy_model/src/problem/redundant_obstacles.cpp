@@ -35,9 +35,11 @@ Eigen::Matrix<double, 3, 8> corners_in_reach(const obstacle::Body& body, double 
 }
 
 /// A body is convex: it holds another one if it holds the balls around the corners of its core.
-bool holds(const obstacle::Body& outer, const Eigen::Matrix<double, 3, 8>& corners, double radius) {
+/// @param beyond  distance by which the other one may stick out, in lengths
+bool holds(const obstacle::Body& outer, const Eigen::Matrix<double, 3, 8>& corners, double radius,
+           double beyond = rounding) {
   for (Eigen::Index i = 0; i < corners.cols(); ++i) {
-    if (!(outer.clearance(corners.col(i)) <= rounding - radius)) return false;
+    if (!(outer.clearance(corners.col(i)) <= beyond - radius)) return false;
   }
   return true;
 }
@@ -60,6 +62,26 @@ void remove_redundant_obstacles(Span& span) {
     kept.push_back(next);
   }
   span.rigid_obstacles = std::move(kept);
+}
+
+bool omit_similar_obstacles(Span& span, std::size_t preferred) {
+  constexpr double similar = 1e-3;  // in lengths; floors tilted by as many radians
+  std::vector<Span::Obstacle>& all = span.rigid_obstacles;
+  std::stable_partition(all.begin(), all.end(), [&](const Span::Obstacle& obstacle) {
+    return obstacle.index == preferred;
+  });
+  std::vector<Span::Obstacle> kept;
+  for (const Span::Obstacle& next : all) {
+    const auto corners = corners_in_reach(next.body, beyond_reach * span.length);
+    if (std::ranges::none_of(kept, [&](const Span::Obstacle& obstacle) {
+          return holds(obstacle.body, corners, next.body.radius(), similar);
+        })) {
+      kept.push_back(next);
+    }
+  }
+  const bool omitted = kept.size() < all.size();
+  all = std::move(kept);
+  return omitted;
 }
 
 }  // namespace dlo::energy_model

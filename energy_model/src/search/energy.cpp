@@ -102,35 +102,14 @@ class EnergySolver::State {
       remove_redundant_obstacles(span.span);
       require_affordable(span.span, options_.terms, "solve_energy");
     }
-    const bool warm = from != From::nothing && remembered_.size() == placed.size();
-    const bool only = from == From::last_shape_only;
-    followed_ = warm;
-    if (only && !warm) return {};
     former_ = remembered_;
     former_twists_ = twists_;
-    remembered_.resize(placed.size());
-    twists_.resize(placed.size());
-    std::vector<std::vector<SpanSolution>> solutions;
-    solutions.reserve(placed.size());
-    for (std::size_t i = 0; i < placed.size(); ++i) {
-      SpanOptions options;
-      options.terms = options_.terms;
-      options.tolerance = options_.tolerance;
-      options.max_evaluations = options_.max_evaluations;
-      options.deadline = deadline;
-      if (only) options.start.approach = Approach::follow_only;
-      if (from == From::points) options.start.approach = Approach::descend_only;
-      if (wanted == Wanted::all) options.log = &log_;
-      solutions.push_back(solve_span_at(i, placed[i], problem, options, warm));
-      followed_ = followed_ && solutions.back().front().followed;
-      if (only && !followed_) return undone();
-    }
-    std::vector<Equilibrium> result = combine(problem, placed, solutions, log_);
+    std::vector<Equilibrium> result =
+        solve_without_similar_obstacles(problem, placed, wanted, from, deadline);
+    if (result.empty()) result = solve_placed(problem, placed, wanted, from, deadline);
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     for (Equilibrium& equilibrium : result) equilibrium.seconds = seconds;
-    followed_ = followed_ && (!only || succeeded(result.front().status));
-    if (only && !followed_) return undone();
     return result;
   }
 
@@ -154,6 +133,70 @@ class EnergySolver::State {
   [[nodiscard]] bool followed() const { return followed_; }
 
  private:
+  /// Solves with one of each set of similar obstacles. If the rod enters one that was omitted, that
+  /// one takes the place of those that are similar to it.
+  /// @return empty if no obstacle was omitted, or if the result is not certified with all obstacles
+  std::vector<Equilibrium> solve_without_similar_obstacles(const Problem& problem,
+                                                           const std::vector<PlacedSpan>& placed,
+                                                           Wanted wanted, From from,
+                                                           const Deadline& deadline) {
+    constexpr int most_exchanges = 4;
+    std::size_t preferred = 0;
+    for (int exchange = 0; exchange < most_exchanges; ++exchange) {
+      std::vector<PlacedSpan> few = placed;
+      bool omitted = false;
+      for (PlacedSpan& one : few) {
+        omitted = omit_similar_obstacles(one.span, preferred) || omitted;
+      }
+      if (!omitted) return {};
+      std::vector<Equilibrium> result = solve_placed(problem, few, wanted, from, deadline);
+      const double allowed = allowed_penetration * problem.length;
+      const bool outside = std::ranges::all_of(result, [&](const Equilibrium& equilibrium) {
+        return equilibrium.penetration <= allowed;
+      });
+      if (result.empty()) break;
+      if (deadline.passed() || (outside && succeeded(result.front().status))) return result;
+      if (outside) break;
+      const std::size_t entered = judge_penetration(problem, result.front()).obstacle;
+      if (entered == preferred && exchange > 0) break;
+      preferred = entered;
+    }
+    remembered_ = former_;
+    twists_ = former_twists_;
+    return {};
+  }
+
+  /// @return none where the last shape only does not lead on
+  std::vector<Equilibrium> solve_placed(const Problem& problem, std::vector<PlacedSpan>& placed,
+                                        Wanted wanted, From from, const Deadline& deadline) {
+    const bool warm = from != From::nothing && remembered_.size() == placed.size();
+    const bool only = from == From::last_shape_only;
+    followed_ = warm;
+    if (only && !warm) return {};
+    log_ = {};
+    remembered_.resize(placed.size());
+    twists_.resize(placed.size());
+    std::vector<std::vector<SpanSolution>> solutions;
+    solutions.reserve(placed.size());
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+      SpanOptions options;
+      options.terms = options_.terms;
+      options.tolerance = options_.tolerance;
+      options.max_evaluations = options_.max_evaluations;
+      options.deadline = deadline;
+      if (only) options.start.approach = Approach::follow_only;
+      if (from == From::points) options.start.approach = Approach::descend_only;
+      if (wanted == Wanted::all) options.log = &log_;
+      solutions.push_back(solve_span_at(i, placed[i], problem, options, warm));
+      followed_ = followed_ && solutions.back().front().followed;
+      if (only && !followed_) return undone();
+    }
+    std::vector<Equilibrium> result = combine(problem, placed, solutions, log_);
+    followed_ = followed_ && (!only || succeeded(result.front().status));
+    if (only && !followed_) return undone();
+    return result;
+  }
+
   [[nodiscard]] std::vector<Equilibrium> undone() {
     undo();
     return {};
