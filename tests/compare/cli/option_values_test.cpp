@@ -131,9 +131,8 @@ TEST_F(Command, NumbersThatOverflowInSquaresNameFileLineAndKey) {
                {"scene.toml:12: load.mass = 1e+200: out of range", "up to 1e+30"});
   std::string curved = rod_of;
   curved.replace(curved.find("[rod]\n"), 6, "[rod]\nnatural_curvature = -1e10\n");
-  expect_error(
-      "solve " + scene(curved), 2,
-      {"scene.toml:3: rod.natural_curvature = -10000000000.0: out of range", "up to 1e+09"});
+  expect_error("solve " + scene(curved), 2,
+               {"scene.toml:3: rod.natural_curvature = -10000000000: out of range", "up to 1e+09"});
 }
 
 TEST_F(Command, MessagesShortenValuesOfAMegabyte) {
