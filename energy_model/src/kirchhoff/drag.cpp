@@ -11,8 +11,8 @@ Eigen::Vector3d Drag::force(const Eigen::Vector3d& tangent) const {
 }
 
 Eigen::Matrix3d Drag::by_tangent(const Eigen::Vector3d& tangent) const {
-  // dv_n = -(v.dt) t - (v.t) dt, of which v_n sees -(v.t) v_n.dt; |v_n| v_n / |v_n| has the limit
-  // 0.
+  // dv_n = -(v.dt) t - (v.t) dt, so that d|v_n| = v_n.dv_n / |v_n| = -(v.t) v_n.dt / |v_n|, and
+  // d(|v_n| v_n) = |v_n| dv_n - (v.t) / |v_n| v_n v_n^T dt; v_n v_n^T / |v_n| has the limit 0.
   const double along = velocity.dot(tangent);
   const Eigen::Vector3d across = velocity - along * tangent;
   const double speed = across.norm();
