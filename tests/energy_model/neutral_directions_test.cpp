@@ -138,6 +138,31 @@ TEST(NeutralDirections, RigidBodyModesAreNotCounted) {
   expect_determined(solve_energy(heavy_cantilever(3, -90)));
 }
 
+// Of a rod without an end cos(theta) = M / (2 (B T)^(1/2)) gives the homoclinic helix a slack
+// D = 4 sin(theta) (B / T)^(1/2) and ends that are rotated by M L / C + 4 theta (Coyne 1990). Here
+// it ends where the curvature is exp(-12) of that in the middle.
+TEST(NeutralDirections, AHelixThatMaySlideAlongTheRodHasAZeroMode) {
+  constexpr double theta = 0.4;
+  constexpr double slack = 0.025;
+  constexpr double torsion = 0.8;
+  const double tension = std::pow(4 * std::sin(theta) / slack, 2);
+  const double torque = 2 * std::cos(theta) * std::sqrt(tension);
+  Problem problem = two_clamps(0, 1 - slack);
+  problem.torsional_stiffness = torsion;
+  problem.grips[0].direction = Eigen::Vector3d::UnitX();
+  problem.grips[0].frame = FrameHold{};
+  problem.grips[1].frame = FrameHold{.roll = torque / torsion + 4 * theta};
+  const Equilibrium found = solve_energy(problem);
+  ASSERT_EQ(found.status, SolveStatus::converged) << found.message;
+  // It may rotate about the line of the clamps too.
+  EXPECT_EQ(found.message, "converged, 2 zero modes");
+  EXPECT_EQ(found.neutral_directions, 0);
+  EXPECT_NEAR(found.smallest_eigenvalue, 0, 1e-7);
+  EXPECT_NEAR(found.twists.at(0).torque, torque, 1e-6 * torque);
+  EXPECT_NEAR(found.grips[1].force.x(), tension, 1e-6 * tension);
+  EXPECT_NEAR(found.twists.at(0).angle, torque / torsion, 1e-6 * torque);
+}
+
 TEST(NeutralDirections, MessagesOfBothSolversCountZeroModes) {
   Problem arch = heavy_cantilever(0, 0);
   arch.grips = {{0, {0, 0, 0}, std::nullopt}, {1, {0.8, 0, 0}, std::nullopt}};

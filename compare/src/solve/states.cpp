@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dlo/compare/deviation.hpp"
+#include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
 #include "scene/reach.hpp"
 
@@ -96,7 +97,11 @@ bool comes_before(const Equilibrium& a, const Equilibrium& b) {
 std::vector<Equilibrium> all_states(const Scene& scene, const Equilibrium& lowest,
                                     const SolveOptions& options) {
   std::vector<Equilibrium> states;
-  if (reference_model(scene) == Model::energy) states = reference_states(scene, options);
+  try {
+    if (reference_model(scene) == Model::energy) states = reference_states(scene, options);
+  } catch (const ConvergenceError&) {
+    // The lowest one is known.
+  }
   const auto find = [&](const Equilibrium& state) {
     return std::find_if(states.begin(), states.end(), [&](const Equilibrium& other) {
       return shapes_apart(scene, state, other) < same_shape * scene.length;

@@ -231,8 +231,8 @@ class Certification {
     const bool undetermined = solution_.status == SolveStatus::near_singular;
     if (!evaluate()) return;
     rigid_ = rigid_body_modes(model_.span(), point_->tangents());
-    solution_.rigid_body_modes = static_cast<int>(rigid_.all());
     ask_factor();
+    solution_.rigid_body_modes = static_cast<int>(rigid_.all());
     const bool at_fold = estimate_error();
     if (model_.span().planar && !model_.span().stays_in_plane()) look_out_of_plane();
     if (undetermined || !small_step_ || at_fold) {
@@ -285,6 +285,11 @@ class Certification {
       // Below it what is left of the residual makes a step that is not small.
       bound_ = std::max(neutral, small_step_ ? 0 : solution_.residual / largest_next_step);
       found_ = eigenvalues_of(system.reduced_hessian(), rigid_.in_plane);
+      if (found_.neutral_directions > 0 &&
+          slides_along_rod(model_, solution_.x, system.reduced_hessian(),
+                           found_.zero + found_.neutral_directions)) {
+        found_ = eigenvalues_of(system.reduced_hessian(), ++rigid_.in_plane);
+      }
       solution_.smallest_eigenvalue = found_.smallest;
       solution_.eigenvalue_nearest_zero = found_.nearest_zero;
       eta_ = linear_error(solution_, load_);

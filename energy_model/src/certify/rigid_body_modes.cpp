@@ -3,7 +3,11 @@
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <cmath>
 #include <vector>
+
+#include "base/legendre.hpp"
+#include "linear/free_directions.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -57,7 +61,72 @@ Eigen::Index moving(const Eigen::MatrixXd& axes, const std::vector<Eigen::Vector
   return axes.cols() - axes_that_keep(shape, axes).cols();
 }
 
+/// Whether only grips at its ends act on a span, which is uniform and intrinsically straight.
+bool is_held_at_ends_alone(const Span& span) {
+  return span.total_load() == 0 && !span.has_couples() && span.contacts.empty() &&
+         span.soft_obstacles.empty() && span.parts.empty() && !span.has_material_directors() &&
+         span.anchor == 0 && span.holds.size() == 1 && span.holds.front().at == span.length;
+}
+
+/// Largest curvature at the ends of a shape that may be shifted along the rod, over its largest
+/// curvature: the shift changes its energy by about the square of this.
+constexpr double straight_end = 1e-2;
+
+bool is_straight_at_ends(const SpanEnergy& model, const Eigen::VectorXd& x) {
+  const double length = model.span().length;
+  const Eigen::VectorXd& nodes = model.nodes();
+  std::vector<double> s(nodes.data(), nodes.data() + nodes.size());
+  s.insert(s.end(), {0, length});
+  const Eigen::VectorXd size = model.shape(x).sample(s).curvature.colwise().norm();
+  return size.tail<2>().maxCoeff() < straight_end * size.maxCoeff();
+}
+
+/// Derivatives of the curvature by the arc length, as coefficients.
+Eigen::VectorXd derivative_along_rod(const SpanEnergy& model, const Eigen::VectorXd& x) {
+  const SpanUnknowns& unknowns = model.unknowns();
+  const LegendreTable& table = model.table();
+  const Eigen::Index K = unknowns.terms;
+  Eigen::MatrixXd slopes(K, table.nodes.size());
+  Eigen::VectorXd at(K);
+  for (Eigen::Index q = 0; q < table.nodes.size(); ++q) {
+    legendre_slopes(table.nodes[q], at);
+    slopes.col(q) = at;
+  }
+  const Eigen::MatrixXd derivative =
+      table.values.leftCols(K).transpose() * table.weights.asDiagonal() * slopes.transpose();
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(x.size());
+  for (Eigen::Index field = 0; field < unknowns.fields; ++field) {
+    for (Eigen::Index e = 0; e < unknowns.pieces; ++e) {
+      const Eigen::Index first = unknowns.first(field, e);
+      result.segment(first, K) = derivative * x.segment(first, K) / model.piece(e).length;
+    }
+  }
+  return result;
+}
+
 }  // namespace
+
+bool slides_along_rod(const SpanEnergy& model, const Eigen::VectorXd& x, ReducedHessian& hessian,
+                      Eigen::Index zero) {
+  if (!is_held_at_ends_alone(model.span()) || !is_straight_at_ends(model, x)) return false;
+  Eigen::VectorXd shift = derivative_along_rod(model, x);
+  const SpanUnknowns& unknowns = model.unknowns();
+  if (unknowns.fields == 2) {
+    // A helix that is shifted also rotates about its axis, which is another mode.
+    const Eigen::Index n = unknowns.columns();
+    Eigen::VectorXd rotation = Eigen::VectorXd::Zero(x.size());
+    rotation.head(n) = -x.segment(n, n);
+    rotation.segment(n, n) = x.head(n);
+    shift -= shift.dot(rotation) / rotation.squaredNorm() * rotation;
+  }
+  // The share of its square that is in the zero modes; that of another mode is about zero.
+  constexpr double least_share = 0.99;
+  double share = 0;
+  for (Eigen::Index i = 0; i < zero; ++i) {
+    share += std::pow(shift.dot(direction_by_size(hessian, i)), 2) / shift.squaredNorm();
+  }
+  return share > least_share;
+}
 
 RigidBodyModes rigid_body_modes(const Span& span, const Eigen::Matrix3Xd& tangents) {
   // A clamp holds material directors against every turn. A round rod that is twisted spins about

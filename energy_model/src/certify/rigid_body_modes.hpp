@@ -2,7 +2,9 @@
 
 #include <Eigen/Core>
 
+#include "linear/reduced_hessian.hpp"
 #include "problem/span.hpp"
+#include "strain/span_energy.hpp"
 
 namespace dlo::energy_model {
 
@@ -21,6 +23,14 @@ struct RigidBodyModes {
 /// @param tangents  along the shape, 3 x M; a round rod that lies on the axis is not moved by a
 /// rotation
 [[nodiscard]] RigidBodyModes rigid_body_modes(const Span& span, const Eigen::Matrix3Xd& tangents);
+
+/// Whether one of the zero modes of a shape shifts the shape along the rod. A uniform straight rod
+/// that only grips at its ends act on has such a mode if it is straight at both ends, as a helix or
+/// a loop in the middle of a long rod: the shape may be anywhere along the rod, with equal energy.
+/// @param hessian  at the shape
+/// @param zero     number of its eigenvalues that are zero, those of rigid_body_modes() included
+[[nodiscard]] bool slides_along_rod(const SpanEnergy& model, const Eigen::VectorXd& x,
+                                    ReducedHessian& hessian, Eigen::Index zero);
 
 /// Whether one shape is another one of such a circle: a proper rotation takes all of its points,
 /// from the anchor, to the other's and keeps what is held and every force.
