@@ -99,6 +99,7 @@ class ContactSearch {
         break;
       }
       note_tried(options_.log, past_obstacles);
+      if (options_.passing_starts != nullptr) ++*options_.passing_starts;
       PenaltyPolygon polygon = coarse_polygon(arch_field(start));
       const bool is_new = std::none_of(known.begin(), known.end(), [&](const auto& other) {
         return is_same_coarse_polygon(polygon, other, span_.length);

@@ -178,6 +178,7 @@ class EnergySolver::State {
     twists_.resize(placed.size());
     std::vector<std::vector<SpanSolution>> solutions;
     solutions.reserve(placed.size());
+    int passing_starts = 0;
     for (std::size_t i = 0; i < placed.size(); ++i) {
       SpanOptions options;
       options.terms = options_.terms;
@@ -187,11 +188,16 @@ class EnergySolver::State {
       if (only) options.start.approach = Approach::follow_only;
       if (from == From::points) options.start.approach = Approach::descend_only;
       if (wanted == Wanted::all) options.log = &log_;
+      options.passing_starts = &passing_starts;
       solutions.push_back(solve_span_at(i, placed[i], problem, options, warm));
       followed_ = followed_ && solutions.back().front().followed;
       if (only && !followed_) return undone();
     }
     std::vector<Equilibrium> result = combine(problem, placed, solutions, log_);
+    if (passing_starts > 0 && wanted == Wanted::lowest) {
+      result.front().message += "; " + std::to_string(passing_starts) +
+                                " starts passed obstacles on another side";
+    }
     followed_ = followed_ && (!only || succeeded(result.front().status));
     if (only && !followed_) return undone();
     return result;

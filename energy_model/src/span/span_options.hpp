@@ -55,6 +55,8 @@ struct SpanOptions {
   SpanStart start;
   /// Of a search for every equilibrium that the starts lead to; null: the lowest one is wanted.
   SearchLog* log = nullptr;
+  /// Counts the starts that pass obstacles on another side; null: nobody asks.
+  int* passing_starts = nullptr;
 
   [[nodiscard]] bool wants_all() const { return log != nullptr; }
   [[nodiscard]] bool only_follows() const { return start.approach == Approach::follow_only; }
