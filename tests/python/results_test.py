@@ -55,6 +55,8 @@ def test_solve_near_points_is_the_equilibrium_beside_them(root, command, tmp_pat
     )
     over = [[-0.35, 0.06], [-0.01, 0.043], [0.03, 0.03], [0.043, 0], [0.043, -0.3], [0.043, -0.59]]
     near = dlo.solve(scene, near=over)
+    second = dlo.solve(scene, equilibrium=2)
+    assert abs(second.energy["total"] - near.energy["total"]) < 1e-9
     assert near.stable and near.points[-1, 0] > 0
     assert dlo.solve(scene).points[-1, 0] < -0.3
     file = tmp_path / "over.csv"

@@ -26,6 +26,7 @@ struct SolveOptions {
   std::string model;  // empty: reference_model()
   int samples = 0;
   bool all = false;
+  int equilibrium = 0;  // by its number in the list of --all; 0: that of the model
   std::string near;
   SceneOptions overrides;
   PlanOptions plan;
@@ -43,13 +44,13 @@ void warn_of_neglected(const SolveOptions& options, const compare::Solution& sol
   }
 }
 
-void require_model_of_all(compare::Model model, const compare::Scene& scene) {
+void require_model_of_all(const char* option, compare::Model model, const compare::Scene& scene) {
   if (model == compare::Model::energy) return;
-  throw compare::InputError(
+  throw compare::InputError(fmt::format(
+      "{0}: only model energy searches for all equilibria{1}", option,
       scene.stretch == compare::Stretch::counted
-          ? "--all: only model energy searches for all equilibria, and it has no stretch (allowed: "
-            "rod.stretch = false, or no --all)"
-          : "--all: only model energy searches for all equilibria");
+          ? fmt::format(", and it has no stretch (allowed: rod.stretch = false, or no {})", option)
+          : ""));
 }
 
 /// A shape that is not verified, at a singular point or, as the first of all that are found,
@@ -62,10 +63,15 @@ void require_verified(const compare::Solution& solution, const compare::Scene& s
       "{}: the {} model: {}", scene.file, compare::to_string(solution.model), solution.message));
 }
 
-/// The shape of one model, of the energy model from the points of a file if there is one.
+/// The shape of one model, of the energy model from the points of a file or by its number in the
+/// list of all equilibria if the options have one.
 compare::Solution solved_once(const SolveOptions& options, const compare::SolveOptions& solve,
                               const compare::Scene& scene, compare::Model model,
                               const std::vector<double>& arc_lengths) {
+  if (options.equilibrium > 0) {
+    return numbered_equilibrium(compare::solve_all(scene, solve, arc_lengths), options.equilibrium,
+                                scene);
+  }
   if (options.near.empty()) return compare::solve(scene, model, solve, arc_lengths);
   return compare::solve_near(scene, compare::load_shape(options.near), solve, arc_lengths);
 }
@@ -106,7 +112,8 @@ void run(const SolveOptions& options) {
   if (samples == 0 && continuous && options.output.is(Format::text)) samples = text_samples;
   const std::vector<double> arc_lengths =
       samples > 0 ? compare::equal_arc_lengths(scene.length, samples) : std::vector<double>{};
-  if (options.all) require_model_of_all(model, scene);
+  if (options.all) require_model_of_all("--all", model, scene);
+  if (options.equilibrium > 0) require_model_of_all("--equilibrium", model, scene);
   if (!options.near.empty() && model != compare::Model::energy) {
     throw compare::InputError("--near: only model energy starts from the points of a file");
   }
@@ -165,12 +172,20 @@ void add_solve(CLI::App& app) {
       ->check(CLI::Range(2, 1000000));
   CLI::Option* all = command->add_flag("--all", options->all,
                                        "every equilibrium that is found, with its stability");
+  CLI::Option* number =
+      command
+          ->add_option("--equilibrium", options->equilibrium,
+                       "the N-th equilibrium that --all lists, with its forces and contacts")
+          ->type_name("N")
+          ->check(CLI::Range(1, 1000))
+          ->excludes(all);
   command
       ->add_option("--near", options->near,
                    "the equilibrium that a local search from the points of FILE leads to, in place "
                    "of the lowest: a shape in metres, as check --shape reads it")
       ->type_name("FILE")
-      ->excludes(all);
+      ->excludes(all)
+      ->excludes(number);
   options->overrides.add_to(*command);
   options->plan.add_to(*command);
   std::vector<std::string> formats = compare::names<Format>();

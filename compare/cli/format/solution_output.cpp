@@ -9,6 +9,7 @@
 #include "base/display.hpp"
 #include "base/number.hpp"
 #include "base/quote.hpp"
+#include "dlo/compare/error.hpp"
 #include "foreign/scene_document.hpp"
 #include "format/plan_output.hpp"
 #include "polygon/self_crossing.hpp"
@@ -176,6 +177,11 @@ void add_energies(std::string& out, const compare::Solution& solution,
   out += e.contact > 0 ? fmt::format(", contact {:.9g} J\n", e.contact) : "\n";
 }
 
+/// Whether the search followed one branch while it put twist into the rod.
+bool follows_twist(const compare::Solution& solution) {
+  return solution.model == compare::Model::energy && !solution.twists.empty();
+}
+
 void add_twists(std::string& out, const compare::Solution& solution,
                 const compare::Magnitudes& large) {
   for (const energy_model::TwistedPart& part : solution.twists) {
@@ -193,15 +199,21 @@ void add_twists(std::string& out, const compare::Solution& solution,
     }
     append(out, "\n");
   }
+  if (follows_twist(solution)) {
+    append(
+        out,
+        "search     one branch, from the lowest shape without twist: others with these turns may "
+        "be lower\n");
+  }
 }
 
 /// On the rod, of obstacles and grippers.
 void add_forces(std::string& out, const compare::Solution& solution, const compare::Scene& scene,
                 const compare::Magnitudes& large) {
-  for (const Eigen::Vector3d& exact : solution.obstacles) {
-    const Eigen::Vector3d force = shown(exact, large.force);
-    append(out, "obstacle   force [{:.6g}, {:.6g}, {:.6g}] N on the rod\n", force.x(), force.y(),
-           force.z());
+  for (std::size_t i = 0; i < solution.obstacles.size(); ++i) {
+    const Eigen::Vector3d force = shown(solution.obstacles[i], large.force);
+    append(out, "obstacle {}: force [{:.6g}, {:.6g}, {:.6g}] N on the rod\n", i + 1, force.x(),
+           force.y(), force.z());
   }
   for (const energy_model::ContactPart& contact : solution.contacts) {
     append(out, "contact    {}\n", contact_text(contact));
@@ -277,6 +289,9 @@ Json solution_json(const compare::Solution& solution, const compare::Scene& scen
   }
   if (!solution.twists.empty()) result["twist"] = twist_json(solution.twists);
   if (!solution.linking.empty()) result["turns"] = turns_json(solution.linking);
+  if (follows_twist(solution)) {
+    result["one_branch_followed"] = true;
+  }
   if (!solution.neglected.empty()) result["neglected"] = solution.neglected;
   if (!solution.obstacles.empty()) {
     result["obstacles"] = obstacles_json(solution.obstacles);
@@ -313,6 +328,17 @@ std::string solution_csv(const compare::Solution& solution) {
     text += "\n";
   }
   return text;
+}
+
+compare::Solution numbered_equilibrium(const compare::AllSolutions& all, int number,
+                                       const compare::Scene& scene) {
+  const std::vector<compare::Solution>& solutions = all.solutions;
+  if (number >= 1 && number <= std::ssize(solutions)) {
+    return solutions[static_cast<std::size_t>(number - 1)];
+  }
+  throw compare::InputError(
+      fmt::format("{}: equilibrium {}: the search found {} (allowed: 1 to {})", scene.file, number,
+                  solutions.size(), solutions.size()));
 }
 
 std::string equilibria_text(const compare::AllSolutions& all, const compare::Scene& scene) {

@@ -32,6 +32,12 @@ namespace dlo::cli {
 /// The points, as `dlo check` reads them.
 [[nodiscard]] std::string solution_csv(const compare::Solution& solution);
 
+/// Returns one of several equilibria, with its forces and contacts.
+/// @param number  in the order in which equilibria_text() lists them, from 1
+/// @throws InputError if there are fewer
+[[nodiscard]] compare::Solution numbered_equilibrium(const compare::AllSolutions& all, int number,
+                                                     const compare::Scene& scene);
+
 /// What tells several equilibria apart, and where they were looked for.
 [[nodiscard]] std::string equilibria_text(const compare::AllSolutions& all,
                                           const compare::Scene& scene);

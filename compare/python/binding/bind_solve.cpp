@@ -74,13 +74,17 @@ std::string states_document(const SolvedStates& solved) {
 }
 
 /// @param model_name  empty: the scene's reference_model()
+/// @param number  of an equilibrium in the list of solve_all(), from 1; none: that of the model
 /// @param near  none, or points, a pair of points and arc lengths, or as bytes the name of a file
 py::object solve(const SharedScene& scene, const std::string& model_name, int samples,
-                 const py::object& near, const py::dict& limits) {
+                 const std::optional<int>& number, const py::object& near, const py::dict& limits) {
   const compare::Model model = model_name.empty() ? compare::reference_model(scene->scene)
                                                   : compare::from_name<compare::Model>(model_name);
   const compare::SolveOptions options = solve_options(limits);
   std::optional<compare::MeasuredShape> from;
+  if (number && (model != compare::Model::energy || !near.is_none())) {
+    throw compare::InputError("equilibrium: only model energy without near searches for all");
+  }
   if (!near.is_none()) {
     const auto [points, arc_length] = near.cast<std::pair<py::object, py::object>>();
     from = measured_shape(points, arc_length, "near");
@@ -95,6 +99,10 @@ py::object solve(const SharedScene& scene, const std::string& model_name, int sa
     const std::vector<double> s = samples > 0
                                       ? compare::equal_arc_lengths(scene->scene.length, samples)
                                       : std::vector<double>{};
+    if (number) {
+      return cli::numbered_equilibrium(compare::solve_all(scene->scene, options, s), *number,
+                                       scene->scene);
+    }
     if (from) return compare::solve_near(scene->scene, *from, options, s);
     return compare::solve(scene->scene, model, options, s);
   });
@@ -263,7 +271,7 @@ void bind_solve(py::module_& module) {
       });
   bind_equilibria(module);
   module.def("solve", &solve, py::arg("scene"), py::arg("model"), py::arg("samples"),
-             py::arg("near"), py::arg("limits"));
+             py::arg("number"), py::arg("near"), py::arg("limits"));
   module.def("solve_all", &solve_all, py::arg("scene"), py::arg("samples"), py::arg("limits"));
   module.def(
       "plan",

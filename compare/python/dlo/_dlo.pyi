@@ -258,6 +258,7 @@ def solve(
     scene: SceneData,
     model: str,
     samples: int,
+    number: Optional[int],
     near: Optional[tuple[Union[ArrayLike, bytes], Optional[ArrayLike]]],
     limits: dict[str, Any],
 ) -> Solution: ...

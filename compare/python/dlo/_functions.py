@@ -59,12 +59,13 @@ def _si(value: Quantity, dimension: str) -> float:
     return _dlo.quantity(value, dimension) if isinstance(value, str) else float(value)
 
 
-@checked(model=TEXT, samples=INTEGER, time=NUMBER)
+@checked(model=TEXT, samples=INTEGER, equilibrium=INTEGER, time=NUMBER)
 def solve(
     scene: SceneLike,
     model: Optional[str] = None,
     samples: Optional[int] = None,
     *,
+    equilibrium: Optional[int] = None,
     near: Optional[Shape] = None,
     time: Optional[float] = None,
     materials: Optional[FileName] = None,
@@ -76,7 +77,8 @@ def solve(
     model: "energy" (the lowest energy), "exact" (the rod's balance, shot), "chain" (the force model's
     polygon) or "force" (the force model, stepped to rest); None: "exact" of a scene with
     stretch = True, else "energy". samples: M points at equal arc lengths from 0 to l; None: 101 of
-    energy and exact, the polygon's own points else. near: points, a pair of points and arc lengths, or
+    energy and exact, the polygon's own points else. equilibrium: the number, from 1, of one of the
+    equilibria that solve_all() lists, stable ones first, by energy. near: points, a pair of points and arc lengths, or
     the name of a file of these: the equilibrium of model energy that a local search from them leads to,
     in place of the lowest. time: of a scene that moves, as it is then [s]; None: at the first pose.
     materials: a file in which the name of a material is looked up instead. calibrated: a MaterialFit of
@@ -87,7 +89,8 @@ def solve(
     Raises InputError, or ConvergenceError, whose result is the shape so far or None.
     """
     data = data_of(scene, materials, time, calibrated)
-    return _dlo.solve(data, model or "", samples or 0, None if near is None else _pair(near), limits)
+    from_points = None if near is None else _pair(near)
+    return _dlo.solve(data, model or "", samples or 0, equilibrium, from_points, limits)
 
 
 @checked(samples=INTEGER, time=NUMBER)

@@ -62,7 +62,7 @@ TEST_F(RodCommand, SolveShowsARodThatIsAboutToBuckleAndItsNeutralDirections) {
   EXPECT_EQ(result.at("status"), "near_singular");
   EXPECT_EQ(result.at("converged"), false);
   EXPECT_EQ(result.at("neutral_directions"), 2);
-  EXPECT_GT(result.at("error_estimate_over_length").get<double>(), 0);
+  EXPECT_GT(result.at("error_estimate_m").get<double>(), 0);
   EXPECT_FALSE(json_of("solve " + by_stiffness("0.08")).contains("neutral_directions"));
 }
 

@@ -48,7 +48,7 @@ TEST_F(Command, SolveWritesTheContractsJsonForEveryModel) {
     EXPECT_EQ(document.at("schema"), "dlo/solve/1");
     EXPECT_EQ(document.at("model"), model);
     EXPECT_EQ(document.at("converged"), true);
-    const json& error = document.at("error_estimate_over_length");
+    const json& error = document.at("error_estimate_m");
     EXPECT_EQ(error.is_null(), model == "chain" || model == "exact") << error;
     EXPECT_LT(error.is_null() ? 0 : error.get<double>(), 1.01e-7);
     ASSERT_EQ(document.at("arc_length_m").size(), 11U);
@@ -323,6 +323,33 @@ TEST_F(Command, SolveNearAFileIsTheEquilibriumBesideThatFile) {
   EXPECT_TRUE(says(run("solve " + path + " --model exact --near " + over).err,
                    {"--near: only model energy"}));
   EXPECT_NE(run("solve " + path + " --all --near " + over).status, 0);
+}
+
+TEST_F(Command, SolveReturnsAnEquilibriumByItsNumberInTheListOfAll) {
+  const std::string path = scene(rope_beside_peg);
+  const json all = json_of("solve " + path + " --all").at("equilibria");
+  const json first = json_of("solve " + path + " --equilibrium 1");
+  EXPECT_TRUE(first.at("contacts").empty());
+  const json second = json_of("solve " + path + " --equilibrium 2");
+  EXPECT_EQ(second.at("energy_J").at("total"), all.at(1).at("energy_J"));
+  EXPECT_EQ(second.at("smallest_eigenvalue"), all.at(1).at("smallest_eigenvalue"));
+  // All that acts on the rod is in balance: the load and the weight hang from pin and peg.
+  ASSERT_EQ(second.at("contacts").size(), 1);
+  const double pin = second.at("grippers")[0].at("force_N")[1];
+  const double peg = second.at("contacts")[0].at("force_N")[1];
+  EXPECT_NEAR(pin + peg, 9.81 * (1.5 + 0.06), 1e-6);
+  EXPECT_TRUE(says(run("solve " + path + " --equilibrium 2").out, {"obstacle 1: force"}));
+  const std::string beyond = std::to_string(all.size() + 1);
+  EXPECT_TRUE(says(run("solve " + path + " --equilibrium " + beyond).err,
+                   {"equilibrium " + beyond + ": the search found"}));
+  EXPECT_TRUE(says(run("solve " + path + " --model exact --equilibrium 2").err,
+                   {"--equilibrium: only model energy"}));
+}
+
+TEST_F(Command, SolvePrintsHowManyStartsPassedObstacles) {
+  const std::string path = scene(rope_beside_peg);
+  EXPECT_TRUE(says(run("solve " + path).out, {"2 starts passed obstacles on another side"}));
+  EXPECT_TRUE(says_none(run("solve " + scene(back_bent_rod)).out, {"starts passed"}));
 }
 
 }  // namespace
