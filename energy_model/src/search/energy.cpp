@@ -195,8 +195,8 @@ class EnergySolver::State {
     }
     std::vector<Equilibrium> result = combine(problem, placed, solutions, log_);
     if (passing_starts > 0 && wanted == Wanted::lowest) {
-      result.front().message += "; " + std::to_string(passing_starts) +
-                                " starts passed obstacles on another side";
+      result.front().message +=
+          "; " + std::to_string(passing_starts) + " starts passed obstacles on another side";
     }
     followed_ = followed_ && (!only || succeeded(result.front().status));
     if (only && !followed_) return undone();
