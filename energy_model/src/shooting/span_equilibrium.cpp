@@ -124,11 +124,6 @@ void judge_stability(const RodSpan& span, double tolerance, SpanEquilibrium& equ
   }
 }
 
-RodState state_at(const SpanEquilibrium& equilibrium, const RodSpan& span, double s,
-                  double tolerance) {
-  return states_at(equilibrium, span, {s}, tolerance).front();
-}
-
 std::vector<RodState> states_at(const SpanEquilibrium& equilibrium, const RodSpan& span,
                                 const std::vector<double>& s, double tolerance) {
   const Eigen::VectorXd& nodes = equilibrium.s;

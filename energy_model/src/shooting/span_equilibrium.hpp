@@ -71,10 +71,6 @@ void judge_stability(const RodSpan& span, double tolerance, SpanEquilibrium& equ
                                               const RodSpan& span, const std::vector<double>& s,
                                               double tolerance);
 
-/// The cross-section at s.
-[[nodiscard]] RodState state_at(const SpanEquilibrium& equilibrium, const RodSpan& span, double s,
-                                double tolerance);
-
 /// Frames for states whose tangents, moments and forces are known, one for each node: they follow
 /// that of the first clamp, or any if there is none, from node to node by the rod's equations and
 /// by the shortest rotation to the next tangent.
