@@ -56,6 +56,44 @@ TEST_P(ChainOfEveryLaw, GradientIsTheDifferenceOfTheEnergy) {
   EXPECT_EQ(gradient[0], 0);
 }
 
+/// Moment of a joint of stiffness 1 between segments of length 1 that is bent by alpha.
+double unit_moment(JointLaw law, double alpha) {
+  const double s = std::sin(alpha / 2);
+  const double t = std::tan(alpha / 2);
+  switch (law) {
+    case JointLaw::paper:
+      return 2 * s * s * s;
+    case JointLaw::hooke:
+      return 2 * t;
+    case JointLaw::linear:
+      return alpha;
+    case JointLaw::binormal:
+      break;
+  }
+  return 2 * t * (1 + t * t);
+}
+
+// Two segments, the first one held along x, and a force at the end that is rotated from x by phi.
+// The shape with the joint at alpha is a minimum in the plane. A rotation of the second segment
+// about x by a small angle p changes no joint and the energy by F L sin(alpha) sin(phi) p^2 / 2: it
+// is a minimum in space for phi < pi, and beyond pi it is none.
+TEST_P(ChainOfEveryLaw, IsASaddleWhereItLeavesThePlane) {
+  constexpr double alpha = 1.5;
+  constexpr double pi = std::numbers::pi;
+  for (const double phi : {pi - 0.1, pi - 1e-3, pi + 1e-3, pi + 0.1}) {
+    ChainProblem problem;
+    problem.segment_lengths.setOnes(2);
+    problem.law = GetParam();
+    problem.stiffness = 1;
+    problem.node_forces.setZero(2, 3);
+    problem.node_forces.col(2) = unit_moment(GetParam(), alpha) / std::sin(phi - alpha) *
+                                 Eigen::Vector2d(std::cos(phi), std::sin(phi));
+    const ChainResult result = solve_chain(problem, {.start_angles = Eigen::Vector2d(0, alpha)});
+    EXPECT_NEAR(result.angles[1], alpha, 1e-9);
+    EXPECT_EQ(result.status, phi < pi ? SolveStatus::converged : SolveStatus::saddle) << phi;
+  }
+}
+
 TEST_P(ChainOfEveryLaw, EveryJointCarriesTheMomentOfWhatHangsBeyond) {
   const ChainProblem problem = heavy_chain(GetParam(), 15, 3);
   const ChainResult result = test::usable(solve_chain(problem));

@@ -37,12 +37,14 @@ void require_converged(const Scene& scene, const Result& result) {
   }
 }
 
-Solution solve_rigid_chain(const Scene& scene, const ForceModelSettings& settings,
-                           const Discretisation& discretisation, const ChainScene& chain,
-                           const SolveOptions& options) {
+/// Returns std::nullopt if the chain is unstable out of its plane.
+std::optional<Solution> solve_rigid_chain(const Scene& scene, const ForceModelSettings& settings,
+                                          const Discretisation& discretisation,
+                                          const ChainScene& chain, const SolveOptions& options) {
   const energy_model::ChainResult result = energy_model::solve_chain(
       chain.problem,
       {.max_evaluations = options.max_evaluations, .time_limit = options.time_limit});
+  if (result.status == energy_model::SolveStatus::saddle) return std::nullopt;
   require_converged(scene, result);
   Eigen::Matrix3Xd points = chain.to_space(result.points);
   if (discretisation.rod.grips.front().first_point != 0) {
@@ -106,10 +108,11 @@ Solution solve_chain(const Scene& scene, const ForceModelSettings& settings,
   polygon.joint_law.reset();
   const Discretisation discretisation = discretise(scene, polygon);
   const std::optional<ChainScene> chain = chain_scene(scene, discretisation, settings);
-  Solution solution = chain ? solve_rigid_chain(scene, settings, discretisation, *chain, options)
-                            : solve_elastic_chain(scene, settings, discretisation, options);
-  solution.model = Model::chain;
-  return solution;
+  std::optional<Solution> solution;
+  if (chain) solution = solve_rigid_chain(scene, settings, discretisation, *chain, options);
+  if (!solution) solution = solve_elastic_chain(scene, settings, discretisation, options);
+  solution->model = Model::chain;
+  return *std::move(solution);
 }
 
 Shape chain_from(const Scene& scene, const ForceModelSettings& settings, const Shape& start,

@@ -178,6 +178,33 @@ Tridiagonal second_derivative(const ChainProblem& problem, const Eigen::Matrix2X
   return matrix;
 }
 
+/// Second derivative by the angles of the free segments out of the plane, without natural turns.
+/// With psi the angles and alpha the joint between segments j = i - 1 and i of the planar chain,
+///     cos(alpha') = cos(psi_j) cos(psi_i) cos(alpha) + sin(psi_j) sin(psi_i)
+/// so that with the moment M = P'(alpha) and the force F in the segment of length L
+///     2 E = sum M / sin(alpha) (cos(alpha) (psi_j^2 + psi_i^2) - 2 psi_j psi_i) + sum L F.t
+///     psi_i^2
+Tridiagonal second_derivative_out_of_plane(const ChainProblem& problem,
+                                           const Eigen::Matrix2Xd& forces,
+                                           const Eigen::VectorXd& angles) {
+  const Eigen::Index free = angles.size() - 1;
+  Tridiagonal matrix{Eigen::VectorXd::Zero(free), Eigen::VectorXd::Zero(free - 1)};
+  for (Eigen::Index i = 1; i <= free; ++i) {
+    const double alpha = angles[i] - angles[i - 1];
+    const AngleJoint joint = joint_at(problem, i, alpha);
+    const double sine = std::sin(alpha);
+    const double stiffness = sine == 0 ? joint.stiffness : joint.moment / sine;
+    matrix.diagonal[i - 1] += stiffness * std::cos(alpha) +
+                              problem.segment_lengths[i] * (forces(0, i) * std::cos(angles[i]) +
+                                                            forces(1, i) * std::sin(angles[i]));
+    if (i >= 2) {
+      matrix.diagonal[i - 2] += stiffness * std::cos(alpha);
+      matrix.below[i - 2] -= stiffness;
+    }
+  }
+  return matrix;
+}
+
 Eigen::Matrix2Xd chain_points(const ChainProblem& problem, const Eigen::VectorXd& angles) {
   Eigen::Matrix2Xd points(2, angles.size() + 1);
   points.col(0) = problem.start;
@@ -226,7 +253,10 @@ void newton_in_chain(const ChainProblem& problem, const ChainOptions& options,
     matrix.diagonal.array() += damping * scale;
     const bool positive = matrix.factor();
     if (small && damping == 0) {
-      result.status = positive ? SolveStatus::converged : SolveStatus::saddle;
+      const bool stays_in_plane =
+          problem.natural_turns.size() > 0 ||
+          second_derivative_out_of_plane(problem, forces, result.angles).factor();
+      result.status = positive && stays_in_plane ? SolveStatus::converged : SolveStatus::saddle;
       return;
     }
     if (small) {

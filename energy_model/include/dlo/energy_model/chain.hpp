@@ -48,10 +48,12 @@ struct ChainOptions {
 
 /// A shape of a chain, and how it was found.
 struct [[nodiscard]] ChainResult {
-  SolveStatus status = SolveStatus::not_run;  ///< how it ended; stability is that in the plane
-  std::string message = "never ran";          ///< the same in words
-  int evaluations = 0;                        ///< of energy and gradient, by both methods
-  double seconds = 0;                         ///< wall time [s]
+  /// How it ended. `saddle`: unstable in the plane or out of it. With natural turns only stability
+  /// in the plane is judged.
+  SolveStatus status = SolveStatus::not_run;
+  std::string message = "never ran";  ///< the same in words
+  int evaluations = 0;                ///< of energy and gradient, by both methods
+  double seconds = 0;                 ///< wall time [s]
   /// Norm of the gradient by the segment angles [N m]; -1: Newton's method did not begin.
   double residual = -1;
   /// Torque about `start` of what holds the first segment, from the moment of the first joint and
