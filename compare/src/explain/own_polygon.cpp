@@ -13,6 +13,8 @@
 #include "dlo/energy_model/polygon.hpp"
 #include "dlo/obstacle/body.hpp"
 #include "scene/reach.hpp"
+#include "scene/scene_problem.hpp"
+#include "solve/held_frames.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -131,6 +133,7 @@ class Chain {
   [[nodiscard]] bool exists() {
     if (!hold()) return false;
     lay_out();
+    add_twists();
     return true;
   }
 
@@ -141,6 +144,7 @@ class Chain {
     problem.law = law;
     problem.stiffness *= factor;
     problem.stiffnesses *= factor;
+    for (energy_model::PolygonTwist& twist : problem.twists) twist.compliance /= factor;
     energy_model::PolygonOptions options;
     options.max_evaluations = most_polygon_evaluations;
     options.in_stages = false;
@@ -310,6 +314,35 @@ class Chain {
     }
   }
 
+  /// Adds the twist between clamps that hold frames. The turns are those of the points.
+  void add_twists() {
+    if (!scene_.holds_twist()) return;
+    const energy_model::Problem rod = scene_problem(scene_);
+    const std::vector<std::size_t> framed = framed_grippers(scene_);
+    const Eigen::VectorXd& h = problem_.rest_lengths;
+    for (std::size_t k = 1; k < framed.size(); ++k) {
+      const force_model::TwistedSpan span =
+          held_span(rod, framed[k - 1], framed[k], held_segment(framed[k - 1]),
+                    held_segment(framed[k]), start());
+      // Each joint has the torsional stiffness of half of both its segments, as in discretise().
+      const Eigen::Index joints = span.last_segment - span.first_segment;
+      const double length =
+          (h.segment(span.first_segment, joints) + h.segment(span.first_segment + 1, joints))
+              .sum() /
+          2;
+      problem_.twists.push_back({span.first_segment, span.last_segment, span.first_d1, span.last_d1,
+                                 length / scene_.twisting_stiffness(), span.angle});
+    }
+  }
+
+  /// Returns the first point of the segment that a clamp holds.
+  [[nodiscard]] Eigen::Index held_segment(std::size_t gripper) const {
+    const HeldAt at = *held_at(scene_.grippers[gripper], s_);
+    const Eigen::Index last = problem_.rest_lengths.size() - 1;
+    if (at.segment) return at.point;
+    return at.point == 0 ? 0 : std::min(at.point + before_, last);
+  }
+
   [[nodiscard]] Eigen::Matrix3Xd start() const {
     Eigen::Matrix3Xd start(3, points_.cols() + before_ + after_);
     start.middleCols(before_, points_.cols()) = points_;
@@ -428,9 +461,10 @@ std::string and_springs(const OwnPolygon& chain) {
 std::vector<OwnPolygon> own_polygons(const Scene& scene, const Shape& shape, Springs springs,
                                      std::optional<JointLaw> law, LastPoint last) {
   const Eigen::Index segments = shape.points.cols() - 1;
-  const bool plain = scene.sections.empty() && !scene.has_material_directors() &&
-                     !scene.holds_twist() && !scene.has_couples();
-  if (!plain || segments < 4 || segments > most_segments) return {};
+  const bool plain =
+      scene.sections.empty() && !scene.has_material_directors() && !scene.has_couples();
+  const bool has_law = law != JointLaw::paper || !scene.holds_twist();
+  if (!plain || !has_law || segments < 4 || segments > most_segments) return {};
   std::vector<OwnPolygon> found;
   for (const ChainClamp clamp : {ChainClamp::hinge, ChainClamp::welded, ChainClamp::middle}) {
     Chain chain(scene, shape.points, rest_lengths(scene, shape.points), clamp, last);

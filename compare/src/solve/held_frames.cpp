@@ -14,7 +14,14 @@ Eigen::Vector3d direction_of(const Eigen::Matrix3Xd& points, Eigen::Index segmen
   return (points.col(segment + 1) - points.col(segment)).normalized();
 }
 
-/// A scene's clamps that hold frames, along the rod, by their place in the scene.
+/// First director of the frame that a clamp holds, rotated by its roll about the held segment.
+Eigen::Vector3d rolled_d1(const energy_model::Problem& problem, const energy_model::Grip& clamp,
+                          const Eigen::Vector3d& axis) {
+  return Eigen::AngleAxisd(clamp.frame->roll, axis) * energy_model::held_d1(problem, clamp);
+}
+
+}  // namespace
+
 std::vector<std::size_t> framed_grippers(const Scene& scene) {
   std::vector<std::size_t> framed;
   for (const Gripper* gripper : grippers_along(scene)) {
@@ -24,7 +31,27 @@ std::vector<std::size_t> framed_grippers(const Scene& scene) {
   return framed;
 }
 
-}  // namespace
+force_model::TwistedSpan held_span(const energy_model::Problem& problem, std::size_t first,
+                                   std::size_t last, Eigen::Index first_segment,
+                                   Eigen::Index last_segment, const Eigen::Matrix3Xd& points) {
+  const energy_model::Grip& before = problem.grips[first];
+  const energy_model::Grip& held = problem.grips[last];
+  const Eigen::Vector3d from = direction_of(points, first_segment);
+  const Eigen::Vector3d to = direction_of(points, last_segment);
+  force_model::TwistedSpan span{.first_segment = first_segment,
+                                .last_segment = last_segment,
+                                .first_d1 = energy_model::held_d1(problem, before),
+                                .last_d1 = energy_model::held_d1(problem, held),
+                                .compliance = 1};
+  const double ahead = force_model::twist_angle(span, points);
+  const std::optional<double> writhe = energy_model::writhe(
+      points.middleCols(first_segment, last_segment - first_segment + 1), from, to);
+  span.angle =
+      energy_model::turned_angle(energy_model::turns_between(problem, before, held), ahead, writhe);
+  span.first_d1 = rolled_d1(problem, before, from);
+  span.last_d1 = rolled_d1(problem, held, to);
+  return span;
+}
 
 force_model::Rod with_frames(const Scene& scene, const Discretisation& discretisation,
                              const Eigen::Matrix3Xd& untwisted) {
@@ -33,26 +60,12 @@ force_model::Rod with_frames(const Scene& scene, const Discretisation& discretis
   rod.twist.angles.resize(static_cast<Eigen::Index>(framed.size()) - 1);
   const energy_model::Problem problem = energy_problem(scene);
   for (std::size_t k = 0; k < framed.size(); ++k) {
-    const energy_model::Grip& held = problem.grips[framed[k]];
     force_model::Grip& grip = rod.grips[framed[k]];
-    const Eigen::Vector3d axis = direction_of(grip.targets, 0);
-    const Eigen::Vector3d d1 = energy_model::held_d1(problem, held);
-    grip.d1 = Eigen::AngleAxisd(held.frame->roll, axis) * d1;
+    grip.d1 = rolled_d1(problem, problem.grips[framed[k]], direction_of(grip.targets, 0));
     if (k == 0) continue;
-    const energy_model::Grip& before = problem.grips[framed[k - 1]];
-    const force_model::Grip& first = rod.grips[framed[k - 1]];
-    force_model::TwistedSpan span;
-    span.first_segment = first.first_point;
-    span.last_segment = grip.first_point;
-    span.first_d1 = energy_model::held_d1(problem, before);
-    span.last_d1 = d1;
-    span.compliance = 1;
-    const double ahead = force_model::twist_angle(span, untwisted);
-    const Eigen::Index points = span.last_segment - span.first_segment + 1;
-    const std::optional<double> writhe = energy_model::writhe(
-        untwisted.middleCols(span.first_segment, points), direction_of(first.targets, 0), axis);
-    rod.twist.angles[static_cast<Eigen::Index>(k) - 1] = energy_model::turned_angle(
-        energy_model::turns_between(problem, before, held), ahead, writhe);
+    const Eigen::Index first = rod.grips[framed[k - 1]].first_point;
+    rod.twist.angles[static_cast<Eigen::Index>(k) - 1] =
+        held_span(problem, framed[k - 1], framed[k], first, grip.first_point, untwisted).angle;
   }
   return rod;
 }

@@ -9,6 +9,22 @@
 
 namespace dlo::compare {
 
+/// Returns the part of a polygon between two segments that neighbouring clamps hold by their
+/// frames, with the twist that the frames require, whole turns counted, as energy_model::Problem
+/// counts it. Its compliance is not set.
+/// @param problem  of the scene, whose grips are its grippers
+/// @param first, last  the clamps by their places in the scene
+/// @param points  any shape of the polygon whose held segments are where the clamps hold them [m]
+[[nodiscard]] force_model::TwistedSpan held_span(const energy_model::Problem& problem,
+                                                 std::size_t first, std::size_t last,
+                                                 Eigen::Index first_segment,
+                                                 Eigen::Index last_segment,
+                                                 const Eigen::Matrix3Xd& points);
+
+/// Returns a scene's clamps that hold frames, in the order of their arc lengths, by their places in
+/// the scene.
+[[nodiscard]] std::vector<std::size_t> framed_grippers(const Scene& scene);
+
 /// The rod of a discretisation, held by the frames of the scene's clamps; the twist (Twist::angles)
 /// is what the frames put into that polygon, whole turns counted, as energy_model::Problem counts
 /// it.
