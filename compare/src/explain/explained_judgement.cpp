@@ -72,11 +72,6 @@ ChainJudgement judge_as_chain(const Scene& scene, const ShapeCheck& check,
                               .max_m = chain->max_m}};
 }
 
-ShapeJudgement judge_with_chains(const Scene& scene, const ShapeCheck& check,
-                                 const ShapeTolerance& tolerance) {
-  return judge_as_chain(scene, check, tolerance).judgement;
-}
-
 ShapeJudgement with_explanation(ShapeJudgement judgement,
                                 const std::vector<Explanation>& explanations,
                                 const ShapeTolerance& tolerance) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "command_fixture.hpp"
+#include "rope_beside_peg.hpp"
 #include "scene_text.hpp"
 
 namespace {
@@ -281,30 +282,8 @@ TEST_F(Command, ModelExactIsTheDefaultAndTheReferenceOfARodThatStretches) {
   EXPECT_NEAR(fit.at("youngs_modulus_Pa").get<double>() / 2e6, 1, 1e-3) << fit;
 }
 
-/// A rope that may hang beside a peg or lie over it.
-const std::string rope_beside_peg = R"(
-gravity = [0, -9.81, 0]
-[rod]
-length = "1 m"
-diameter = "6 mm"
-bending_stiffness = "5e-3 N m^2"
-mass_per_length = "0.06 kg/m"
-[[gripper]]
-at = 0
-position = [-0.35, 0.06, 0]
-hold = "pin"
-[[load]]
-at = "1 m"
-mass = "1.5 kg"
-[[obstacle]]
-shape = "cylinder"
-point = [0, 0, 0]
-axis = [0, 0, 1]
-radius = "4 cm"
-)";
-
 TEST_F(Command, SolveNearAFileIsTheEquilibriumBesideThatFile) {
-  const std::string path = scene(rope_beside_peg);
+  const std::string path = scene(dlo::test::rope_beside_peg);
   const std::string over = write("over.csv",
                                  "x,y,z\n-0.35,0.06,0\n-0.01,0.043,0\n0.03,0.03,0\n0.043,0,0\n"
                                  "0.043,-0.3,0\n0.043,-0.59,0\n");

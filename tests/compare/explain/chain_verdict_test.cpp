@@ -66,14 +66,14 @@ TEST(Explanation, TheVerdictKnowsChainsWithoutAnyExplanation) {
   for (const bool largest : {false, true}) {
     const ShapeTolerance tolerance{.allowed_m = 0.01, .largest = largest};
     EXPECT_FALSE(judge(check, tolerance).passes());
-    const ShapeJudgement alone = judge_with_chains(scene, check, tolerance);
+    const ShapeJudgement alone = judge_as_chain(scene, check, tolerance).judgement;
     EXPECT_TRUE(alone.passes()) << alone.reason;
     EXPECT_EQ(with_explanation(alone, explain_shape(scene, right, check, {}), tolerance).reason,
               alone.reason);
   }
   const MeasuredShape soft = made(hinged_chain(std::vector<double>(20, 0.05), 0.05, 0.8, false));
   const ShapeCheck soft_check = check_shape(scene, soft, {.modulus = ModulusSearch::no});
-  const ShapeJudgement alone = judge_with_chains(scene, soft_check, {.allowed_m = 1e-3});
+  const ShapeJudgement alone = judge_as_chain(scene, soft_check, {.allowed_m = 1e-3}).judgement;
   EXPECT_FALSE(alone.passes());
   const ShapeJudgement explained =
       with_explanation(alone, explain_shape(scene, soft, soft_check, {}), {.allowed_m = 1e-3});
@@ -166,15 +166,15 @@ TEST(ChainVerdict, NeedsAsMuchOfTheRodAsIsAsked) {
   };
   ShapeCheck right = compared();
   ASSERT_FALSE(judge(right, tolerance).passes());
-  EXPECT_TRUE(judge_with_chains(scene, right, tolerance).passes());
+  EXPECT_TRUE(judge_as_chain(scene, right, tolerance).judgement.passes());
   right.seen_share = 0.4;
-  EXPECT_FALSE(judge_with_chains(scene, right, tolerance).passes());
+  EXPECT_FALSE(judge_as_chain(scene, right, tolerance).judgement.passes());
   for (Eigen::Index i = 1; i < chain.cols(); ++i) chain(2, i) = i % 2 == 0 ? 1e-3 : -1e-3;
   ShapeCheck wavy = compared();
   EXPECT_GT(wavy.polyline_length_m, 1 + tolerance.allowed_m);
-  EXPECT_FALSE(judge_with_chains(scene, wavy, tolerance).passes());
+  EXPECT_FALSE(judge_as_chain(scene, wavy, tolerance).judgement.passes());
   wavy.polyline_length_m = 1;
-  EXPECT_TRUE(judge_with_chains(scene, wavy, tolerance).passes());
+  EXPECT_TRUE(judge_as_chain(scene, wavy, tolerance).judgement.passes());
 }
 
 // From points that are crushed a search may end in a polygon with crushed segments, which is no
@@ -253,17 +253,17 @@ TEST(ChainVerdict, AChainThatDoesNotConvergeToTheRodIsNone) {
   const ShapeTolerance tolerance{.allowed_m = 0.005};
   ShapeCheck compared = check_shape(scene, made(chain->points), {.modulus = ModulusSearch::no});
   ASSERT_FALSE(judge(compared, tolerance).passes());
-  EXPECT_TRUE(judge_with_chains(scene, compared, tolerance).passes());
+  EXPECT_TRUE(judge_as_chain(scene, compared, tolerance).judgement.passes());
   const energy_model::Equilibrium right = compared.rod;
   compared.rod.sample = [right](std::span<const double> s) {
     energy_model::Samples samples = right.sample(s);
     samples.points.row(2) *= -1;
     return samples;
   };
-  EXPECT_EQ(judge_with_chains(scene, compared, tolerance).verdict, ShapeVerdict::fail);
+  EXPECT_EQ(judge_as_chain(scene, compared, tolerance).judgement.verdict, ShapeVerdict::fail);
   compared.rod = right;
   compared.rod.status = energy_model::SolveStatus::not_verified;
-  EXPECT_EQ(judge_with_chains(scene, compared, tolerance).verdict, ShapeVerdict::fail);
+  EXPECT_EQ(judge_as_chain(scene, compared, tolerance).judgement.verdict, ShapeVerdict::fail);
 }
 
 Scene of_chain(Scene scene, int points, energy_model::JointLaw law) {

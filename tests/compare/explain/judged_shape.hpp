@@ -45,8 +45,8 @@ inline JudgedShape judged(const compare::Scene& scene, const compare::MeasuredSh
   if (!compare::judge(check, tolerance).passes()) {
     outcome.explanations = compare::explain_shape(scene, shape, check, options);
   }
-  outcome.judgement = compare::with_explanation(compare::judge_with_chains(scene, check, tolerance),
-                                                outcome.explanations, tolerance);
+  outcome.judgement = compare::with_explanation(
+      compare::judge_as_chain(scene, check, tolerance).judgement, outcome.explanations, tolerance);
   return outcome;
 }
 

@@ -20,6 +20,7 @@
 #include "dlo/compare/solution.hpp"
 #include "dlo/compare/solve.hpp"
 #include "measured_shapes.hpp"
+#include "rope_beside_peg.hpp"
 #include "scenes.hpp"
 #include "shape/arc_lengths.hpp"
 #include "solve/states.hpp"
@@ -289,31 +290,6 @@ TEST(ShapeCheck, UprightNeedsGravity) {
   EXPECT_THROW((void)check_shape(scene, shape, {.pose = PoseFreedom::upright}), InputError);
 }
 
-/// A rope from a pin to the left of a peg, with a load at its end.
-Scene rope_beside_peg() {
-  return parse_scene(R"(
-gravity = [0, -9.81, 0]
-[rod]
-length = "1 m"
-diameter = "6 mm"
-bending_stiffness = "5e-3 N m^2"
-mass_per_length = "0.06 kg/m"
-[[gripper]]
-at = 0
-position = [-0.35, 0.06, 0]
-hold = "pin"
-[[load]]
-at = "1 m"
-mass = "1.5 kg"
-[[obstacle]]
-shape = "cylinder"
-point = [0, 0, 0]
-axis = [0, 0, 1]
-radius = "4 cm"
-)",
-                     "rope.toml");
-}
-
 /// Points on a line from corner to corner, as many as are asked for.
 Eigen::Matrix3Xd along_corners(const Eigen::Matrix3Xd& corners, int count) {
   Shape line{{0}, corners};
@@ -328,7 +304,7 @@ Eigen::Matrix3Xd along_corners(const Eigen::Matrix3Xd& corners, int count) {
 // chain of straight lines over the peg is a few millimetres from that rope, whichever end it begins
 // with, and far from the one that hangs beside the peg.
 TEST(ShapeCheck, TheReferenceIsTheStableEquilibriumNearThePoints) {
-  const Scene scene = rope_beside_peg();
+  const Scene scene = parse_scene(test::rope_beside_peg, "rope.toml");
   Eigen::Matrix3Xd corners(3, 5);
   corners << -0.35, -0.01, 0.03, 0.043, 0.043, 0.06, 0.043, 0.03, 0, -0.59, 0, 0, 0, 0, 0;
   const Eigen::Matrix3Xd points = along_corners(corners, 41);

@@ -62,22 +62,18 @@ struct Explanation {
 /// measure that the tolerance is of.
 inline constexpr double right_chain = 0.25;
 
+/// A judgement of a file that may be a chain of hinges.
+struct ChainJudgement {
+  ShapeJudgement judgement;          ///< its verdict
+  std::optional<Explanation> chain;  ///< which the file was judged as; empty: as the rod
+};
+
 /// Judges as judge(), and passes a file that is a chain of hinges at rest. That needs all of this:
 /// the file's polyline is as long as the rod within the tolerance; `least_seen_share` of the rod is
 /// observed; the file is within `right_chain` of the tolerance of a chain of its own points at
 /// rest; check.rod is a stable, certified equilibrium; and the chain's distance from it is an error
 /// of discretisation, which decreases with shorter segments as the chain's clamps make it decrease.
 /// A chain whose distance decreases otherwise is too coarse to judge, and `undetermined`.
-[[nodiscard]] ShapeJudgement judge_with_chains(const Scene& scene, const ShapeCheck& check,
-                                               const ShapeTolerance& tolerance);
-
-/// A judgement of a file that may be a chain of hinges.
-struct ChainJudgement {
-  ShapeJudgement judgement;          ///< its verdict, as judge_with_chains() returns it
-  std::optional<Explanation> chain;  ///< which the file was judged as; empty: as the rod
-};
-
-/// Judges as judge_with_chains().
 [[nodiscard]] ChainJudgement judge_as_chain(const Scene& scene, const ShapeCheck& check,
                                             const ShapeTolerance& tolerance);
 
