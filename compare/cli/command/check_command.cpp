@@ -74,10 +74,11 @@ void run(const CheckOptions& options) {
           .solve = options.overrides.solve()}};
   request.tolerance = shape_tolerance("--tolerance", options.tolerance, scene.length);
   const compare::CheckResult result = compare::check(scene, shape, request);
-  const CheckPage page{result,
-                       options.shapes.unit_hint(result.check.polyline_length_m, scene.length),
-                       verdict_word(compare::to_string(result.judgement.verdict), result.passes(),
-                                    options.output.file)};
+  const CheckPage page{
+      result,
+      options.shapes.unit_hint(result.check.polyline_length_m, result.check.stretched_length_m),
+      verdict_word(compare::to_string(result.judgement.verdict), result.passes(),
+                   options.output.file)};
   if (options.output.is(Format::csv)) warn_of_friction(scene);
   write_output(options.output, {.text = [&] { return shape_check_text(page); },
                                 .json = [&] { return json_text(shape_check_json(result)); },

@@ -62,11 +62,11 @@ class Search {
  public:
   Search(const Scene& scene, const MeasuredShape& shape, const ShapeCheck& check,
          const ShapeCheckOptions& options)
-      : scene_(scene),
-        shape_(shape),
-        check_(check),
-        options_(options),
-        curve_(check.rod.sample, scene.length) {
+      : scene_(scene), shape_(shape), check_(check), options_(options) {
+    curves_.emplace_back(check.rod.sample, scene.length);
+    for (const energy_model::Equilibrium& rod : check.other_rods) {
+      curves_.emplace_back(rod.sample, scene.length);
+    }
     align_.pose = options.pose;
     align_.arc_lengths = options.arc_lengths;
     align_.up = up_of(scene, options.pose);
@@ -87,7 +87,8 @@ class Search {
     look_at_unstable();
     if (!is_found(0)) look_at_chains(Springs::as_the_rod);
     if (!is_found(1) && options_.pose == PoseFreedom::known) {
-      look_at_joint_causes(scene_, shape_, [this](const FileCause& cause) { look_at(cause); });
+      look_at_joint_causes(scene_, shape_, check_.stretched_length_m,
+                           [this](const FileCause& cause) { look_at(cause); });
       look_at_chains_said_rightly();
     }
     for (const SceneCause& cause :
@@ -257,14 +258,26 @@ class Search {
         .maxCoeff();
   }
 
+  /// Lays a shape on the stable equilibrium that it is nearest to. If the file was read wrongly,
+  /// that may be another one than check_.rod.
+  [[nodiscard]] std::pair<Alignment, Reference> nearest(const Aligner& aligner) const {
+    std::pair<Alignment, Reference> result(aligner.align(curves_.front()), check_.rod.sample);
+    for (std::size_t i = 1; i < curves_.size(); ++i) {
+      Alignment other = aligner.align(curves_[i]);
+      if (!(other.rms_m < result.first.rms_m)) continue;
+      result = {std::move(other), check_.other_rods[i - 1].sample};
+    }
+    return result;
+  }
+
   void look_at(const FileCause& cause) {
     if (is_over()) return;
     AlignOptions options = align_;
     options.pose = cause.pose;
     try {
       const Aligner aligner(cause.shape, scene_.length, options);
-      const Alignment laid = aligner.align(curve_);
-      const Measured measured = measure(laid, check_.rod.sample, scene_.length);
+      const auto& [laid, sample] = nearest(aligner);
+      const Measured measured = measure(laid, sample, scene_.length);
       Explanation explanation{clauses_of(cause, laid), measured.rms_m, cause.numbers,
                               ExplanationKind::file};
       // What points that are left out are blamed for has to be their own.
@@ -273,7 +286,7 @@ class Search {
         return;
       }
       if (!cause.part) {
-        explanation.rms_m = whole_of(measured, laid, check_.rod.sample, scene_.length).rms_m;
+        explanation.rms_m = whole_of(measured, laid, sample, scene_.length).rms_m;
       }
       const double price_of_this = price(explanation);
       const bool has_all_points = cause.shape.points.cols() == shape_.points.cols();
@@ -330,7 +343,7 @@ class Search {
   const MeasuredShape& shape_;
   const ShapeCheck& check_;
   const ShapeCheckOptions& options_;
-  Curve curve_;  // of the rod that was compared with
+  std::vector<Curve> curves_;  // of the rod that was compared with, then of other_rods
   AlignOptions align_;
   double before_ = 0;
   int most_numbers_ = std::numeric_limits<int>::max();      // unknowns that an explanation may have

@@ -112,7 +112,7 @@ void add_lengths(const MeasuredShape& shape, const ShapeCheck& check,
   constexpr double least_part = 0.05;
   const double part = s.back() - s.front();
   if (is_short(part, check.length_m) && part > least_part * check.length_m &&
-      is_short(check.polyline_length_m, check.length_m)) {
+      is_short(check.polyline_length_m, check.stretched_length_m)) {
     causes.push_back({"", shape, PoseFreedom::known, 0, true});
   }
   const Eigen::Index count = shape.points.cols();
@@ -131,7 +131,7 @@ void add_lengths(const MeasuredShape& shape, const ShapeCheck& check,
 void add_scale(const MeasuredShape& shape, const ShapeCheck& check,
                std::vector<FileCause>& causes) {
   constexpr double same = 1e-3;
-  const double stretch = check.polyline_length_m / check.length_m;
+  const double stretch = check.polyline_length_m / check.stretched_length_m;
   if (!(stretch > 0) || std::abs(stretch - 1) <= same) return;
   const bool may_be_strain = stretch > 0.5 && stretch < 2;
   const std::string words =
@@ -169,7 +169,7 @@ void add_rotations(const Scene& scene, const MeasuredShape& shape, const ShapeCh
   const Eigen::Matrix3Xd& points = check.alignment.shape.points;
   std::vector<double> s = check.alignment.shape.arc_length;
   // Nearest points on the rod are biased if the file is rotated; lengths along the file are not.
-  if (shape.arc_length.empty() && !is_short(check.polyline_length_m, check.length_m)) {
+  if (shape.arc_length.empty() && !is_short(check.polyline_length_m, check.stretched_length_m)) {
     s = lengths_along(points);
     const double scale = check.length_m / s.back();
     for (double& at : s) at = std::min(at * scale, check.length_m);

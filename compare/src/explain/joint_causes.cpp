@@ -49,13 +49,13 @@ void look_at_poses(const std::string& unit, const FileAxes& axes, const Measured
 
 }  // namespace
 
-void look_at_joint_causes(const Scene& scene, const MeasuredShape& shape,
+void look_at_joint_causes(const Scene& scene, const MeasuredShape& shape, double length,
                           const std::function<void(const FileCause&)>& look) {
   std::vector<FileAxes> all_axes = other_axes(scene.gravity, shape.points);
   all_axes.insert(all_axes.begin(), {Eigen::Matrix3d::Identity(), ""});
-  for (const auto& [unit, metres] : units_for(shape, scene.length)) {
+  for (const auto& [unit, metres] : units_for(shape, length)) {
     const MeasuredShape in_metres = scaled(shape, metres);
-    const bool lacks_ends = is_short(lengths_along(in_metres.points).back(), scene.length);
+    const bool lacks_ends = is_short(lengths_along(in_metres.points).back(), length);
     for (const FileAxes& axes : all_axes) look_at_poses(unit, axes, in_metres, lacks_ends, look);
   }
 }

@@ -46,7 +46,10 @@ void add_state_of_force_model(const Scene& scene, const Shape& force, const Solv
   const bool is_near = std::any_of(states.begin(), states.end(), [&](const auto& state) {
     return succeeded(state.status) && distance(force, state.sample) < surely_nearest * scene.length;
   });
-  if (!is_near) (void)add_state_near(scene, force, options, states);
+  if (is_near) return;
+  if (std::optional<energy_model::Equilibrium> near = state_near(scene, force, options)) {
+    (void)add_state(scene, *std::move(near), states);
+  }
 }
 
 }  // namespace

@@ -240,9 +240,9 @@ struct LaidStates {
     return result;
   }
 
-  /// Adds what a search from the shape's points finds.
-  void add_near(const Shape& shape, const Scene& scene, const SolveOptions& options) {
-    const std::optional<std::size_t> added = add_state_near(scene, shape, options, states);
+  /// Adds a stable equilibrium that a search from the shape's points has found.
+  void add(const energy_model::Equilibrium& near, const Scene& scene) {
+    const std::optional<std::size_t> added = add_state(scene, near, states);
     if (!added) return;
     const auto at = static_cast<std::ptrdiff_t>(*added);
     Alignment alignment = aligner.align(Curve(states[*added].sample, scene.length));
@@ -256,6 +256,27 @@ struct LaidStates {
   std::vector<double> from_shape;  // RMS [m]
 };
 
+/// Returns the distance of a shape from an equilibrium without a verdict on its stability;
+/// std::nullopt if it has one or is no equilibrium.
+std::optional<UnverifiedState> unverified_state(const Aligner& aligner,
+                                                const energy_model::Equilibrium& rod,
+                                                double length) {
+  constexpr double at_rest = 1e-8;  // largest residual; Newton's method converges to rounding
+  const bool is_open = rod.status == energy_model::SolveStatus::not_verified ||
+                       rod.status == energy_model::SolveStatus::near_singular;
+  if (!is_open || !(rod.residual >= 0 && rod.residual < at_rest)) return std::nullopt;
+  const Alignment laid = aligner.align(Curve(rod.sample, length));
+  const WholeRod whole = whole_of(measure(laid, rod.sample, length), laid, rod.sample, length);
+  return UnverifiedState{whole.rms_m, whole.max_m, rod.message};
+}
+
+/// Returns the length of the axis of a rod that may be stretched.
+double stretched_length(const Scene& scene, const energy_model::Equilibrium& rod) {
+  if (scene.stretch != Stretch::counted) return scene.length;
+  constexpr int samples = 1001;
+  return lengths_along(rod.sample(equal_arc_lengths(scene.length, samples)).points).back();
+}
+
 }  // namespace
 
 ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
@@ -263,16 +284,26 @@ ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
   const Aligner aligner(shape, scene.length, align_options(scene, options));
   const energy_model::Equilibrium lowest = solve_reference(scene, options.solve);
   LaidStates laid(aligner, scene.length, all_states(scene, lowest, options.solve));
+  std::optional<UnverifiedState> unverified;
   if (laid.from_shape[laid.nearest()] > surely_nearest * scene.length) {
     MeasuredShape placed = shape;
     placed.points = laid.alignments[laid.nearest()].pose.applied(shape.points);
-    laid.add_near(laid_by_grippers(placed, scene, aligner.arc_lengths()), scene, options.solve);
+    const Shape on_rod = laid_by_grippers(placed, scene, aligner.arc_lengths());
+    if (const auto near = state_near(scene, on_rod, options.solve)) {
+      laid.add(*near, scene);
+      unverified = unverified_state(aligner, *near, scene.length);
+    }
   }
   const std::size_t nearest = laid.nearest();
   std::vector<Alignment>& alignments = laid.alignments;
   const std::vector<energy_model::Equilibrium>& states = laid.states;
   const energy_model::Equilibrium& energy = states[nearest];
   ShapeCheck result = compared(scene, shape, std::move(alignments[nearest]), energy);
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (i != nearest && succeeded(states[i].status)) result.other_rods.push_back(states[i]);
+  }
+  result.unverified = std::move(unverified);
+  result.stretched_length_m = stretched_length(scene, energy);
   result.state = describe_state(scene, states, nearest, laid.from_shape);
   const double offset = distance_from_line(result.alignment.shape.points);
   result.turn_is_clear = options.pose != PoseFreedom::rigid ||

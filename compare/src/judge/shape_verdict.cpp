@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "base/number.hpp"
@@ -53,7 +54,15 @@ ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance) {
                    : determined ? ShapeVerdict::pass
                                 : ShapeVerdict::undetermined;
 
+  const double unverified = !check.unverified   ? std::numeric_limits<double>::infinity()
+                            : tolerance.largest ? check.unverified->max_m
+                                                : check.unverified->rms_m;
   std::vector<std::string> reasons;
+  if (!near && unverified <= tolerance.allowed_m) {
+    result.verdict = ShapeVerdict::undetermined;
+    reasons.push_back(fmt::format("{:.4g} mm away from an equilibrium that is not verified: {}",
+                                  unverified * 1e3, check.unverified->message));
+  }
   if (!enough) {
     reasons.push_back(fmt::format("only {:.4g} % of the rod is seen, needed {:.4g} %",
                                   std::max(0.0, seen) * 100, tolerance.least_seen_share * 100));

@@ -125,19 +125,22 @@ std::vector<Equilibrium> all_states(const Scene& scene, const Equilibrium& lowes
   return states;
 }
 
-std::optional<std::size_t> add_state_near(const Scene& scene, const Shape& shape,
-                                          const SolveOptions& options,
-                                          std::vector<Equilibrium>& states) {
+std::optional<Equilibrium> state_near(const Scene& scene, const Shape& shape,
+                                      const SolveOptions& options) {
   if (shape.arc_length.size() < 2 || reference_model(scene) != Model::energy) return std::nullopt;
-  Equilibrium near = reference_near(scene, shape, options);
-  if (!succeeded(near.status)) return std::nullopt;
+  return reference_near(scene, shape, options);
+}
+
+std::optional<std::size_t> add_state(const Scene& scene, Equilibrium state,
+                                     std::vector<Equilibrium>& states) {
+  if (!succeeded(state.status)) return std::nullopt;
   const bool known = std::any_of(states.begin(), states.end(), [&](const Equilibrium& other) {
-    return shapes_apart(scene, near, other) < same_shape * scene.length;
+    return shapes_apart(scene, state, other) < same_shape * scene.length;
   });
   if (known) return std::nullopt;
-  const auto at = std::upper_bound(states.begin(), states.end(), near, comes_before);
+  const auto at = std::upper_bound(states.begin(), states.end(), state, comes_before);
   const auto index = static_cast<std::size_t>(at - states.begin());
-  states.insert(at, std::move(near));
+  states.insert(at, std::move(state));
   return index;
 }
 

@@ -23,15 +23,19 @@ inline constexpr double same_shape = 1e-4;
 /// one, and so at least as far from the shape as the known one is (triangle inequality).
 inline constexpr double surely_nearest = same_shape / 2;
 
-/// Searches from the points of a shape (reference_near), and adds what it finds to the states in
-/// their order, if it is proven stable and none of them.
+/// Returns what a search from the points of a shape finds (reference_near), whatever its status;
+/// std::nullopt if the scene's reference_model() is not energy, which alone searches.
 /// @param shape   in the scene's frame
+[[nodiscard]] std::optional<energy_model::Equilibrium> state_near(const Scene& scene,
+                                                                  const Shape& shape,
+                                                                  const SolveOptions& options);
+
+/// Adds an equilibrium to the states in their order, if it is proven stable and none of them.
 /// @param[in,out] states  of all_states()
-/// @return the index of the one added; none: it is known, the search found no stable one, or the
-///   scene's reference_model() is not energy, which alone searches
-[[nodiscard]] std::optional<std::size_t> add_state_near(
-    const Scene& scene, const Shape& shape, const SolveOptions& options,
-    std::vector<energy_model::Equilibrium>& states);
+/// @return the index of the one added, std::nullopt if none is
+[[nodiscard]] std::optional<std::size_t> add_state(const Scene& scene,
+                                                   energy_model::Equilibrium state,
+                                                   std::vector<energy_model::Equilibrium>& states);
 
 /// What there is to say of the state compared.
 /// @param states  of all_states();  @param compared  its index

@@ -23,16 +23,28 @@ struct ShapeCheckOptions {
   SolveOptions solve;                              ///< limits of the solvers
 };
 
+/// An equilibrium to which a search from a file's points converged, but whose stability or contacts
+/// could not be verified.
+struct UnverifiedState {
+  double rms_m = 0;     ///< RMS deviation of the file from it, as ShapeCheck::whole_rms_m
+  double max_m = 0;     ///< largest deviation, as ShapeCheck::whole_max_m
+  std::string message;  ///< of the solver
+};
+
 /// A measured shape against the energy model of its scene.
 struct ShapeCheck {
   std::string scene;              ///< its name
   std::string file;               ///< the shape's name
   double gamma = 0;               ///< w l^3 / (EI) [-]
   double length_m = 0;            ///< l of the rod
+  double stretched_length_m = 0;  ///< length of the reference: l but for a rod that stretches
   Alignment alignment;            ///< the shape as laid on the reference
   ComparedState state;            ///< the stable one that the shape comes nearest to
   Shape reference;                ///< the energy model at the alignment's arc lengths
   energy_model::Equilibrium rod;  ///< all of it
+  std::vector<energy_model::Equilibrium> other_rods;  ///< the other stable equilibria
+  /// Empty if the search from the file's points found a verified equilibrium or was not needed.
+  std::optional<UnverifiedState> unverified;
   /// Of all points from the reference, each with the longer of the rod's arc length and the
   /// polyline's own between its neighbours; parts of the rod that are missing at the ends do not
   /// count. RMS over length is of the whole rod. For `nearest` distances are from the nearest
