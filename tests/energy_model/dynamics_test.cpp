@@ -461,6 +461,19 @@ TEST(Dynamics, GravityAndLoadsAreZeroWherePointsSitAtTheFirstGrip) {
   EXPECT_NEAR(frame.energy.load, -rod.problem.loads[0].force.dot(loaded - first), 1e-9);
 }
 
+// Loads that grow along the rod, on all of it and on a part: in motion they act as at rest.
+TEST(Dynamics, VaryingLineLoadsLeaveARodAtRestWhereItIs) {
+  MovingRod rod = moving_cantilever(2);
+  rod.problem.line_loads = {{0, 1, {0, 0, 0}, {0, -6, 0}}, {0.3, 0.8, {0, 5, 0}, {0, -1, 0}}};
+  const Equilibrium rest = solve_energy(rod.problem);
+  const Dynamics result = run(rod, rest.sample, {0.3, 0.8});
+  for (const MovingFrame& frame : result.frames) {
+    EXPECT_LT((tip(frame) - test::point_at(rest, 1)).norm(), 1e-7);
+    EXPECT_LT(frame.energy.kinetic, 1e-10);
+    EXPECT_NEAR(frame.energy.gravity, rest.energy.gravity + rest.energy.load, 1e-7);
+  }
+}
+
 /// A clamp that shakes and turns a rod with damping, drag and a point mass over a floor, which is
 /// so long, stiff and heavy.
 MovingRod shaken_rod(double length, double stiffness, double mass) {

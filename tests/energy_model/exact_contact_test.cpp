@@ -265,6 +265,26 @@ TEST(ExactContact, NoRodWithinAnObstacleIsConfirmed) {
   EXPECT_NEAR(found.penetration, 1e-3, 1e-9);
 }
 
+// A ball a third as wide as the distance of the cross-sections at which pressures are sampled. The
+// rod passes through its centre, or beside it.
+TEST(ExactContact, NoRodEntersASmallBall) {
+  constexpr double radius = 1e-3;
+  const Problem alone = heavy_cantilever(8, 0);
+  const Equilibrium free = solve_energy(alone);
+  for (double s = 0.5; s < 0.508; s += 1.3e-3) {
+    const Eigen::Vector3d centre = test::point_at(free, s);
+    Problem problem = alone;
+    problem.obstacles = {{obstacle::Body::sphere(centre, radius)}};
+    const Equilibrium entered = solve_exact(problem, {.start = &free});
+    EXPECT_EQ(entered.status, SolveStatus::not_verified) << s << entered.message;
+    EXPECT_NEAR(entered.penetration, radius, 0.011 * radius) << s;
+    problem.obstacles = {
+        {obstacle::Body::sphere(centre + Eigen::Vector3d(0, 0, 1.001 * radius), radius)}};
+    const Equilibrium passed = test::converged(solve_exact(problem, {.start = &free}));
+    EXPECT_EQ(passed.penetration, 0) << s;
+  }
+}
+
 // From a shape that touches, on what has been moved away: with its contact there is an equilibrium,
 // which no obstacle can hold.
 TEST(ExactContact, NoObstacleIsConfirmedToPull) {

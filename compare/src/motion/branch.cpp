@@ -309,6 +309,10 @@ double Branch::leave(double at, double rejected, Passage& passage) {
     after.scene = scene_at(1);
     after.rod = solver_.follow(frame_problem(after.scene, obstacles_));
   }
+  // Next to a bifurcation the last shape leads to an unstable one.
+  if (!energy_model::succeeded(after.rod.status)) {
+    after.rod = solver_.solve(frame_problem(after.scene, obstacles_));
+  }
   if (energy_model::succeeded(after.rod.status)) {
     after.couples = now_.couples + couples_of_moved_zero(now_, after);
     const Work work = work_between(now_, after, step, obstacles_, changes_);

@@ -16,9 +16,12 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double confirmed_depth = 1e-9;  // in l; a tenth of what a converged shape may have
-constexpr double allowed_pull = 1e-7;     // of forces, over 1 + the largest one
-constexpr int samples = 8;                // at an interval, for depths and pressures
+constexpr double confirmed_depth = 1e-9;     // in l; a tenth of what a converged shape may have
+constexpr double allowed_pull = 1e-7;        // of forces, over 1 + the largest one
+constexpr int samples = 8;                   // at an interval, for pressures
+constexpr double least_halved_width = 1e-9;  // in l: no point within it is deeper by more than this
+constexpr const char* integration_failed =
+    "the rod between its nodes is not known: the integrator failed";
 
 /// A rod in contact that Newton's method has closed, in its own units, and what its contacts do.
 class ClosedRod {
@@ -64,13 +67,19 @@ class ClosedRod {
     double least = 0;
     for (Eigen::Index i = 0; i + 1 < closed_.s.size(); ++i) {
       const Surface* surface = closed_.contacts.surface_of(i);
-      for (const RodState& state : along(i)) {
-        for (const obstacle::Body& body : start_.bodies) {
-          depth = std::max(depth, -body.clearance(state.r));
+      const std::vector<RodState> states = along(i);
+      const double width = (closed_.s[i + 1] - closed_.s[i]) / samples;
+      for (std::size_t k = 0; k < states.size(); ++k) {
+        if (!states[k].r.allFinite()) return integration_failed;
+        if (surface != nullptr) {
+          least = std::min(least, pressure(*surface, section_of(i), states[k]));
         }
-        if (surface != nullptr) least = std::min(least, pressure(*surface, section_of(i), state));
+        if (k == 0) continue;
+        const double s = closed_.s[i] + static_cast<double>(k - 1) * width;
+        depth = std::max(depth, deepest(i, {s, width, states[k - 1], states[k]}, depth));
       }
     }
+    if (!std::isfinite(depth)) return integration_failed;
     for (const RodContact& contact : closed_.contacts.nodes) least = std::min(least, contact.force);
     result.penetration = problem_.length * depth;
     if (depth > confirmed_depth) {
@@ -83,6 +92,64 @@ class ClosedRod {
  private:
   [[nodiscard]] const RodSection& section_of(Eigen::Index i) const {
     return section_at(start_.span, (closed_.s[i] + closed_.s[i + 1]) / 2);
+  }
+
+  /// A part of the rod between two cross-sections.
+  struct Part {
+    double s = 0;
+    double width = 0;
+    RodState begin, end;
+  };
+
+  /// Whether an interval lies on a body.
+  [[nodiscard]] bool lies_on(Eigen::Index i, std::size_t body) const {
+    return std::any_of(start_.contacts.begin(), start_.contacts.end(), [&](const auto& contact) {
+      return contact.part.kind == ContactKind::lying && contact.part.obstacle == body &&
+             contact.begin <= i && i < contact.end;
+    });
+  }
+
+  /// Returns the largest depth of a part in the bodies if it exceeds `known` by more than a
+  /// hundredth and confirmed_depth; otherwise a depth of one of its points. Halves the part until
+  /// least_clearance() shows this. NaN: the integrator failed.
+  [[nodiscard]] double deepest(Eigen::Index i, const Part& part, double known) const {
+    double depth = known;
+    double least = 0;
+    const RodSection& section = section_of(i);
+    const double force = std::max(part.begin.n.norm(), part.end.n.norm());
+    const double moment = std::max(part.begin.m.norm(), part.end.m.norm());
+    const double curvature =
+        (moment + 2 * part.width * force) / section.stiffness().head<2>().minCoeff();
+    for (std::size_t k = 0; k < start_.bodies.size(); ++k) {
+      const obstacle::Body& body = start_.bodies[k];
+      depth = std::max({depth, -body.clearance(part.begin.r), -body.clearance(part.end.r)});
+      if (!lies_on(i, k)) least = std::min(least, least_clearance(body, part, curvature));
+    }
+    if (!(-least > 1.01 * depth + confirmed_depth) || part.width < least_halved_width) return depth;
+    const double half = part.width / 2;
+    RodState middle = part.begin;
+    RodIntegrals integrals;
+    const RodPiece piece{section, start_.span.natural, part.s, half,
+                         closed_.contacts.surface_of(i)};
+    if (!follow_rod(piece, tolerance_, middle, integrals)) return NAN;
+    depth = deepest(i, {part.s, half, part.begin, middle}, depth);
+    return std::isnan(depth) ? depth : deepest(i, {part.s + half, half, middle, part.end}, depth);
+  }
+
+  /// Returns a lower bound of the clearance d of a part. Bodies are convex, so d'' along the rod is
+  /// at least minus its curvature k. Then d - k x (w - x) / 2 is convex in x from 0 to the width w,
+  /// and not below its tangents at the two ends.
+  [[nodiscard]] static double least_clearance(const obstacle::Body& body, const Part& part,
+                                              double curvature) {
+    const obstacle::Gap begin = body.gap(part.begin.r);
+    const obstacle::Gap end = body.gap(part.end.r);
+    const double bend = curvature * part.width / 2;
+    const double begin_slope = begin.gradient.dot(part.begin.t()) - bend;
+    const double end_slope = end.gradient.dot(part.end.t()) + bend;
+    if (begin_slope >= 0) return begin.value;
+    if (end_slope <= 0) return end.value;
+    const double x = (end.value - end_slope * part.width - begin.value) / (begin_slope - end_slope);
+    return begin.value + begin_slope * std::clamp(x, 0.0, part.width);
   }
 
   /// Cross-sections of an interval, those at its ends as they are within it.

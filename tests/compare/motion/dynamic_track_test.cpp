@@ -219,6 +219,33 @@ TEST(DynamicTrack, RefusesWhatARodWithInertiaCannotHave) {
                  "changes its direction");
 }
 
+/// A round rod that its clamp moves in a medium at rest.
+Scene moved_in_water(const std::string& drags) {
+  return parse_scene(
+      "[rod]\nlength = \"40 cm\"\ndiameter = \"4 mm\"\nbending_stiffness = 0.01\n"
+      "mass_per_length = 0.03\n[medium]\ndensity = 1000\n" +
+          drags +
+          "[[gripper]]\nat = 0\ndirection = \"-60 deg\"\n[[gripper.pose]]\ntime = 0\n"
+          "position = [0, 0, 0]\n[[gripper.pose]]\ntime = 0.3\nposition = [0.1, 0, 0]\n",
+      "water.toml");
+}
+
+// By 1/2 rho C d across the rod, as the option of that name.
+TEST(DynamicTrack, AMediumAtRestDragsTheMovingRod) {
+  const RodDamping none{.material = 0.01};
+  const Scene still = moved_in_water("velocity = [0, 0, 0]\nnormal_drag = 1.5\n");
+  const DynamicTrack dragged = moved(still, frames_at(20), none);
+  const DynamicTrack option =
+      moved(moved_in_water(""), frames_at(20), {.material = 0.01, .quadratic = 500 * 1.5 * 4e-3});
+  const DynamicTrack free = moved(moved_in_water(""), frames_at(20), none);
+  EXPECT_EQ(dragged.frames.back().points, option.frames.back().points);
+  EXPECT_GT((dragged.frames.back().points - free.frames.back().points).norm(), 1e-2);
+  const Scene along =
+      moved_in_water("velocity = [0, 0, 0]\nnormal_drag = 1.5\ntangential_drag = 0.1\n");
+  EXPECT_TRUE(says(error_of<InputError>([&] { return require_dynamic(along); }),
+                   {"medium.tangential_drag", "allowed"}));
+}
+
 // Two clamps carry a wire evenly: from where they move already it does not vibrate. Its last row
 // has it stop, of which its first part knows nothing.
 TEST(DynamicTrack, ARodThatIsCarriedEvenlyStaysAsAtRest) {

@@ -67,6 +67,84 @@ TEST(Track, EnergyGrowsByTheWorkOfWhatMoves) {
   EXPECT_NEAR(coarse / fine, 4, 0.4);
 }
 
+/// A couple at the tip and one at the clamp, which rotates by more than a turn.
+const std::string rotating_clamp =
+    light_wire +
+    "[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\ndirection = \"10 deg\"\n"
+    "[[gripper.pose]]\ntime = 1\nposition = [0.2, 0.1, 0]\ndirection = \"150 deg\"\n"
+    "[[gripper.pose]]\ntime = 2\nposition = [0, 0.2, 0]\ndirection = \"280 deg\"\n"
+    "[[gripper.pose]]\ntime = 3\nposition = [0, 0, 0]\ndirection = \"400 deg\"\n"
+    "[[load]]\nat = 1\nforce = [0, 0, 0]\ntorque = [0, 0, 0.8]\n"
+    "[[load]]\nat = 0\nforce = [0, 0, 0]\ntorque = [0, 0, -0.5]\n";
+
+/// Two pins whose chord rotates by more than a turn about a couple between them.
+const std::string rotating_chord =
+    "gravity = [0, 0, 0]\n" + light_wire +
+    "position = [0, 0, 0]\nhold = \"pin\"\n[[gripper]]\nat = 1\nhold = \"pin\"\n"
+    "[[gripper.pose]]\ntime = 0\nposition = [0.7, 0, 0]\n"
+    "[[gripper.pose]]\ntime = 1\nposition = [0, 0.7, 0]\n"
+    "[[gripper.pose]]\ntime = 2\nposition = [-0.7, 0, 0]\n"
+    "[[gripper.pose]]\ntime = 3\nposition = [0, -0.7, 0]\n"
+    "[[gripper.pose]]\ntime = 4\nposition = [0.7, 0, 0]\n"
+    "[[gripper.pose]]\ntime = 5\nposition = [0, 0.7, 0]\n"
+    "[[load]]\nat = 0.4\nforce = [0, 0, 0]\ntorque = [0, 0, -1.5]\n";
+
+// A couple T does the work T dphi while clamp or chord rotate by dphi.
+TEST(Track, EnergyGrowsByTheWorkBesideCouples) {
+  for (const std::string& text : {rotating_clamp, rotating_chord}) {
+    const Scene scene = parse_scene(text, "couple.toml");
+    const double coarse = missed(scene, 20);
+    const double fine = missed(scene, 40);
+    EXPECT_LT(coarse, 0.03);
+    EXPECT_NEAR(coarse / fine, 4, 0.5);
+    const Track result = track(scene, at_rate(40));
+    EXPECT_FALSE(result.stopped) << result.stopped->why;
+    EXPECT_EQ(result.lost, 0);
+  }
+}
+
+/// Two clamps that hold the frame, of which one leaves the plane, rotates and rolls.
+const std::string rolling_clamp =
+    "gravity = [0, 0, 0]\n[rod]\nlength = 1\nbending_stiffness = 1\n"
+    "torsional_stiffness = 0.7\nmass_per_length = 0.1\n[[gripper]]\nat = 0\n"
+    "position = [0, 0, 0]\nframe = [[0, 1.0, 0], [0, 0, 1.0], [1.0, 0, 0]]\n[[gripper]]\nat = 1\n"
+    "[[gripper.pose]]\ntime = 0\nposition = [0.85, 0.1, 0.12]\ndirection = [1, 0.2, -0.3]\n"
+    "roll = \"0 deg\"\n[[gripper.pose]]\ntime = 1\nposition = [0.8, 0.2, 0.1]\n"
+    "direction = [1, -0.3, -0.4]\nroll = \"40 deg\"\n";
+
+// About the tangent the frame rotates by its roll and by how much the shortest rotation from the
+// first clamp's direction, which carries it, differs from that of a step.
+TEST(Track, EnergyGrowsByTheWorkOfAClampThatHoldsTheFrame) {
+  const Scene scene = parse_scene(rolling_clamp, "rolling.toml");
+  const double coarse = missed(scene, 20);
+  const double fine = missed(scene, 40);
+  EXPECT_LT(coarse, 0.01);
+  EXPECT_NEAR(coarse / fine, 4, 0.5);
+  const Track result = track(scene, at_rate(40));
+  EXPECT_GT(std::abs(result.frames.back().work), 0.1);
+}
+
+// Three turns on a rod whose clamps are half its length apart: a loop forms and passes through the
+// rod, which loses two of them.
+TEST(Track, StopsWhereTheRodPassesThroughItself) {
+  const Scene scene = parse_scene(
+      "gravity = [0, 0, 0]\n[rod]\nlength = 1\nbending_stiffness = 1\n"
+      "torsional_stiffness = 0.8\nmass_per_length = 0.1\n[[gripper]]\nat = 0\n"
+      "position = [0, 0, 0]\nframe = [[0, 1.0, 0], [0, 0, 1.0], [1.0, 0, 0]]\n[[gripper]]\n"
+      "at = 1\ndirection = [1, 0, 0]\n[[gripper.pose]]\ntime = 0\nposition = [0.5, 0, 0.12]\n"
+      "roll = \"360 deg\"\n[[gripper.pose]]\ntime = 1\nposition = [0.5, 0, 0.12]\n"
+      "roll = \"1080 deg\"\n",
+      "turns.toml");
+  const Track result = track(scene, at_rate(20));
+  ASSERT_TRUE(result.stopped);
+  EXPECT_TRUE(says(result.stopped->why, {"not verified: the grips hold", "passed through itself"}));
+  EXPECT_GT(result.stopped->time, 0.3);
+  for (const TrackFrame& frame : result.frames) {
+    const Linking& part = frame.linking.at(0);
+    EXPECT_NEAR(part.twist + part.writhe, part.held, 0.1) << frame.time;
+  }
+}
+
 // A floor that rises under a rod: the work is the floor's.
 TEST(Track, CountsTheWorkOfAnObstacleThatMoves) {
   const Scene scene = parse_scene(

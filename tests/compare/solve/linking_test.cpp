@@ -76,5 +76,22 @@ TEST(Linking, AShapeThatLostTurnsIsNotVerified) {
   EXPECT_NE(lost_turns({{.end = 1, .held = -1.25, .twist = 0.25, .writhe = 0.51}}), "");
 }
 
+// The end's direction passes the opposite of the first one's: one turn more that is held, none
+// lost.
+TEST(Linking, OpposingClampsLoseNoTurns) {
+  Scene before = twisted_scene(0.4, 0);
+  before.grippers.back().direction = Eigen::Vector3d(-1, 0.1, 0).normalized();
+  Scene after = before;
+  after.grippers.back().direction = Eigen::Vector3d(-1, -0.1, 0).normalized();
+  const std::vector<Linking> was = {{.end = 0.8, .held = 0.1, .twist = 0.3, .writhe = -0.2}};
+  const std::vector<Linking> one = {{.end = 0.8, .held = 0.1, .twist = 0.3, .writhe = 0.8}};
+  const std::vector<Linking> two = {{.end = 0.8, .held = 0.1, .twist = 0.3, .writhe = 1.8}};
+  EXPECT_EQ(lost_turns(before, was, after, one), "");
+  EXPECT_NE(lost_turns(before, was, before, one), "");
+  EXPECT_NE(lost_turns(before, was, after, two), "");
+  EXPECT_NE(lost_turns(before, was, before, two), "");
+  EXPECT_EQ(lost_turns(before, two, before, two), "");
+}
+
 }  // namespace
 }  // namespace dlo::compare
