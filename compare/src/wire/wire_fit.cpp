@@ -1,5 +1,7 @@
 #include "wire/wire_fit.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <optional>
 
 #include "base/timer.hpp"
@@ -18,10 +20,12 @@ PredictedScene predicted(const WireProblem& problem, const WireOptimum& all, std
   const std::vector<Scene> scenes = all_but(problem.scenes, left);
   const std::vector<MeasuredShape> shapes = all_but(problem.shapes, left);
   MeasuredShapes measured(scenes, shapes, measured_options(problem.options), Timer());
-  const WireProblem others(scenes, shapes, measured, problem.options, problem.density);
+  WireProblem others(scenes, shapes, measured, problem.options, problem.density);
   std::vector<Eigen::Index> common;
   for (std::size_t k = 0; k < problem.numbers.size(); ++k) {
-    if (!problem.is_own(k, left)) common.push_back(static_cast<Eigen::Index>(k));
+    if (problem.is_own(k, left)) continue;
+    others.numbers[common.size()].stride = problem.numbers[k].stride;
+    common.push_back(static_cast<Eigen::Index>(k));
   }
   FittedRods rods = others.rods(problem.options.natural_curvature_terms);
   rods.go_on_from(all_but(all.rods(), left));
@@ -31,6 +35,62 @@ PredictedScene predicted(const WireProblem& problem, const WireOptimum& all, std
   Eigen::VectorXd values = Eigen::VectorXd::Zero(all.values().size());
   values(common) = fit.values();
   return {problem.scene_at(left, values), all.rods()[left]};
+}
+
+/// Returns the term of natural curvature that the shapes determine least, of those that they
+/// determine less than what was known before does; none: they determine all that are not zero.
+std::optional<std::size_t> undetermined_term(const WireProblem& problem, const MaterialFit& fit) {
+  const auto first = static_cast<std::size_t>(problem.first_of_others());
+  std::optional<std::size_t> result;
+  double largest = 0;
+  for (std::size_t k = 0; k < fit.others.size(); ++k) {
+    const FittedNumber& number = fit.others[k];
+    const bool is_term = number.unit == "1/m" && problem.numbers[first + k].stride > 0;
+    if (!is_term || number.is_seen() || number.value == 0) continue;
+    const double share = number.deviation / number.known_before;
+    if (!(share > largest)) continue;
+    largest = share;
+    result = first + k;
+  }
+  return result;
+}
+
+/// The interval with the term and without it: that the shapes do not determine it does not make it
+/// zero.
+void widen(MaterialFit& fit, const MaterialFit& with_term, double identified_within) {
+  FittedValue& E = fit.youngs_modulus;
+  const FittedValue& other = with_term.youngs_modulus;
+  E.low = E.low && other.low ? std::optional(std::min(*E.low, *other.low)) : std::nullopt;
+  E.high = E.high && other.high ? std::optional(std::max(*E.high, *other.high)) : std::nullopt;
+  if (E.low && E.high && *E.high <= identified_within * *E.low) return;
+  E.value.reset();
+  if (fit.not_identified.empty()) fit.not_identified = with_term.not_identified;
+}
+
+/// The fit in which terms of natural curvature that the shapes do not determine are zero, as most
+/// likely before: what the other numbers have to make up for them would make predictions of other
+/// shapes worse.
+MaterialFit determined_fit(const WireProblem& problem, WireOptimum& optimum) {
+  const MaterialFitOptions& options = problem.options;
+  MaterialFit fit = wire_result(problem, optimum);
+  if (const std::optional<std::size_t> term = undetermined_term(problem, fit)) {
+    WireProblem fewer = problem;
+    fewer.numbers[*term].stride = 0;
+    FittedRods rods = fewer.rods(options.natural_curvature_terms);
+    rods.go_on_from(optimum.rods());
+    Eigen::VectorXd values = optimum.values();
+    values[static_cast<Eigen::Index>(*term)] = 0;
+    WireOptimum other(fewer, rods, values);
+    MaterialFit result = determined_fit(fewer, other);
+    widen(result, fit, options.identified_within);
+    return result;
+  }
+  if (options.predict) {
+    fit.prediction =
+        leave_one_out(problem.scenes, problem.shapes, options, fit,
+                      [&](std::size_t left) { return predicted(problem, optimum, left); });
+  }
+  return fit;
 }
 
 }  // namespace
@@ -47,13 +107,7 @@ MaterialFit fit_wire(const std::vector<Scene>& scenes, const std::vector<Measure
   const WireProblem problem(scenes, shapes, measured, options, density);
   FittedRods rods = problem.rods(options.natural_curvature_terms);
   WireOptimum optimum(problem, rods, wire_start(problem, start, rods));
-  MaterialFit fit = wire_result(problem, optimum);
-  if (options.predict) {
-    fit.prediction = leave_one_out(scenes, shapes, options, fit, [&](std::size_t left) {
-      return predicted(problem, optimum, left);
-    });
-  }
-  return fit;
+  return determined_fit(problem, optimum);
 }
 
 }  // namespace dlo::compare
