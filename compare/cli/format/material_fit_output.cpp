@@ -97,13 +97,27 @@ std::string prediction_text(const compare::Prediction& prediction) {
   std::string out = fmt::format(
       "prediction  {:.4g} mm between each shape and the rod fitted to the others (RMS)\n",
       prediction.rms_m * 1e3);
-  if (prediction.repeatability_m) {
+  if (!prediction.repeatability_m) return out;
+  append(out, "            {:.4g} mm between each shape and the mean of the others: ",
+         *prediction.repeatability_m * 1e3);
+  const double ratio = prediction.over_repeatability().value_or(1);
+  if (ratio > compare::worse_than_repeatability) {
     append(out,
-           "            {:.4g} mm between each shape and the mean of the others: a prediction can "
-           "hardly come nearer\n",
-           *prediction.repeatability_m * 1e3);
+           "predictions are {:.3g} times worse\n            than the shapes repeat, so the fit "
+           "lacks something that all shapes have in common\n",
+           ratio);
+  } else {
+    out += "a prediction can hardly come nearer\n";
   }
   return out;
+}
+
+/// "length, scale and vertical are"
+std::string assumed_text(std::vector<std::string> assumed) {
+  if (assumed.size() == 1) return assumed.front() + " is";
+  const std::string last = assumed.back();
+  assumed.pop_back();
+  return fmt::format("{} and {} are", fmt::join(assumed, ", "), last);
 }
 
 /// Noise, correlation along the rod, scatter between shapes.
@@ -225,6 +239,10 @@ std::string material_text(const compare::Calibration& report) {
     append(out, "{:<11} {}   (scene: {:.5g}{}{})\n", said.name, value_text(one.value, said.unit),
            said.value, *said.unit == '\0' ? "" : " ", said.unit);
   }
+  if (!fit.assumed.empty()) {
+    append(out, "            (if {} as given: errors of these may leave no residual)\n",
+           assumed_text(fit.assumed));
+  }
   if (!fit.not_identified.empty()) append(out, "            {}\n", fit.not_identified);
   if (!fit.warning.empty()) append(out, "            {}\n", fit.warning);
   out += numbers_text(fit, std::nullopt);
@@ -265,6 +283,7 @@ Json material_json(const compare::Calibration& report) {
   for (const ShownValue& one : fitted_values(report)) {
     add_value(result, one.key, one.prefix, one.value);
   }
+  result["assumed"] = fit.assumed;
   result["not_identified"] = text_or_null(fit.not_identified);
   result["warning"] = text_or_null(fit.warning);
   result["noise_m"] = fit.noise_m;
@@ -296,6 +315,7 @@ Json material_json(const compare::Calibration& report) {
   result["prediction"] = json_or_null(fit.prediction, [](const auto& found) -> Json {
     return {{"rms_m", found.rms_m},
             {"repeatability_m", json_or_null(found.repeatability_m)},
+            {"over_repeatability", json_or_null(found.over_repeatability())},
             {"shapes_m", found.shapes_m}};
   });
   result["scatter_between_shapes"] = json_or_null(fit.scatter, scatter_json);

@@ -17,14 +17,8 @@
 namespace dlo::compare {
 namespace {
 
-/// Terms that are tried where the options do not ask for more.
-constexpr int usual_curvature_terms = 3;
-/// How well clamps are known where the options do not say: a fixture's hardly, and where each shape
-/// has its own they are like each other.
-constexpr double fixture_tolerance = 20 * std::numbers::pi / 180;
+/// How well clamps are known where the options do not say: each shape's own are like each other.
 constexpr double own_tolerance = 5 * std::numbers::pi / 180;
-/// How level a camera is where the options do not say.
-constexpr double usual_tilt = 2 * std::numbers::pi / 180;
 /// Fewer numbers are chosen where they predict worse by no more than this share.
 constexpr double as_well = 0.01;
 /// In lengths: no shape is measured more exactly, so predictions below it are alike.

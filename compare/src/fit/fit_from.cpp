@@ -32,6 +32,18 @@ void add_chains(const std::vector<Scene>& scenes, const MaterialFitOptions& opti
   }
 }
 
+/// E that is not identified where solves ended at their limit may be identifiable without it.
+void refuse_limited(MaterialProfiles& material, const MaterialFit& fit) {
+  const long limited = material.measured().limited_solves();
+  if (limited == 0 || fit.youngs_modulus.value || !material.is_forced()) return;
+  const Scene& scene = material.scenes().front();
+  throw ConvergenceError(fmt::format(
+      "{}: {} of {} equilibria ended at the evaluation limit and {} is not identified from the "
+      "others (--max-evaluations: more than {})",
+      scene.file, limited, material.measured().solves(), scene.stiffness().name,
+      material.options().solve.max_evaluations));
+}
+
 /// @param least  sum of squares at the start [m^2]
 MaterialFit whole_wire(MaterialProfiles& material, const MaterialPoint& start, double least) {
   MaterialFit fit = fit_wire(material.scenes(), material.shapes(), material.measured(),
@@ -57,6 +69,7 @@ MaterialFit fit_from(const std::vector<Scene>& scenes, const std::vector<Measure
               ? whole_wire(material, found.best, found.over_modulus.minimum().value)
               : fit_material_alone(material, found);
   }
+  refuse_limited(material, fit);
   fit.equilibria = material.measured().solves();
   fit.evaluations = material.measured().evaluations();
   if (options.predict && !fit.prediction) {

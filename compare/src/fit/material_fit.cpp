@@ -2,21 +2,22 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "dlo/compare/error.hpp"
 #include "fit/choose_options.hpp"
 #include "fit/fit_from.hpp"
 #include "fit/fitted_scene.hpp"
+#include "wire/identifiable.hpp"
 #include "wire/leave_one_out.hpp"
 
 namespace dlo::compare {
 namespace {
-
-/// Shapes of which each is predicted from the others.
-constexpr std::size_t fewest_predicted = 3;
 
 void require_pairs(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
                    const MaterialFitOptions& options) {
@@ -51,6 +52,48 @@ void require_pairs(const std::vector<Scene>& scenes, const std::vector<MeasuredS
   }
 }
 
+/// Removes each shape that has the points of an earlier one: the same measurement, whose errors are
+/// no independent ones.
+/// @param[in,out] scenes  of each shape one
+/// @return a sentence that names the removed shapes; empty: none
+std::string remove_repeats(std::vector<Scene>& scenes, std::vector<MeasuredShape>& shapes) {
+  std::string removed;
+  for (std::size_t i = 0; i < shapes.size();) {
+    const auto end = shapes.begin() + static_cast<std::ptrdiff_t>(i);
+    const bool repeats = std::any_of(shapes.begin(), end, [&](const MeasuredShape& one) {
+      return one.points.cols() == end->points.cols() && one.points == end->points;
+    });
+    if (!repeats) {
+      ++i;
+      continue;
+    }
+    removed += (removed.empty() ? "" : ", ") + end->file;
+    shapes = all_but(std::move(shapes), i);
+    scenes = all_but(std::move(scenes), i);
+  }
+  if (removed.empty()) return "";
+  return fmt::format("equal shapes count once: {} left out, with the points of another shape",
+                     removed);
+}
+
+/// See MaterialFit::assumed.
+std::vector<std::string> assumed_by(const Calibration& found, const MaterialFitOptions& options) {
+  const MaterialFit& fit = found.fit;
+  if (!fit.youngs_modulus.low && !fit.youngs_modulus.high) return {};
+  const auto any = [&](auto is) { return std::ranges::any_of(found.scenes, is); };
+  const bool weight = any([](const Scene& one) { return one.weight_per_length().norm() > 0; });
+  const bool tilt_is_fitted =
+      fit.tried.empty() ? options.camera_tilt > 0 : fit.tried.front().camera_tilt > 0;
+  std::vector<std::string> result = {"length"};
+  if (weight && !fit.density) result.emplace_back("weight");
+  if (any(has_forces_beside_weight)) result.emplace_back("loads");
+  result.emplace_back("scale");
+  if (weight && !tilt_is_fitted && options.pose != PoseFreedom::rigid) {
+    result.emplace_back("vertical");
+  }
+  return result;
+}
+
 }  // namespace
 
 MaterialFit fit_material(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
@@ -61,7 +104,7 @@ MaterialFit fit_material(const std::vector<Scene>& scenes, const std::vector<Mea
   return fit_from(scenes, shapes, options, std::nullopt);
 }
 
-Calibration calibrate(std::vector<Scene> scenes, const std::vector<MeasuredShape>& shapes,
+Calibration calibrate(std::vector<Scene> scenes, std::vector<MeasuredShape> shapes,
                       MaterialFitOptions options, const std::vector<MeasuredShape>& held_out) {
   const std::size_t all = shapes.size() + held_out.size();
   if (scenes.size() == 1) scenes.resize(all, Scene(scenes.front()));
@@ -73,6 +116,8 @@ Calibration calibrate(std::vector<Scene> scenes, const std::vector<MeasuredShape
   const auto fitted = static_cast<std::ptrdiff_t>(scenes.size() - held_out.size());
   const std::vector<Scene> judged(scenes.begin() + fitted, scenes.end());
   scenes.resize(static_cast<std::size_t>(fitted));
+  const std::string repeats =
+      scenes.size() == shapes.size() ? remove_repeats(scenes, shapes) : std::string();
   Calibration result{.scenes = std::move(scenes),
                      .frame_was_found = options.pose != PoseFreedom::known};
   for (const MeasuredShape& shape : shapes) result.files.push_back(shape.file);
@@ -84,6 +129,14 @@ Calibration calibrate(std::vector<Scene> scenes, const std::vector<MeasuredShape
     options.choose_options = nothing_given && shapes.size() >= fewest_predicted;
   }
   result.fit = fit_material(result.scenes, shapes, options);
+  result.fit.assumed = assumed_by(result, options);
+  if (!repeats.empty()) {
+    result.fit.warning += (result.fit.warning.empty() ? "" : "; ") + repeats;
+  }
+  // A rod that was confined to its shapes' plane is predicted in it.
+  if (!result.fit.tried.empty()) {
+    options.natural_curvature_terms = result.fit.tried.front().natural_curvature_terms;
+  }
   for (std::size_t i = 0; i < held_out.size(); ++i) {
     const Scene scene = fitted_scene(judged[i], result.fit, result.scenes.front());
     result.held_out.push_back(

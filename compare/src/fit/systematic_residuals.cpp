@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "dlo/compare/error.hpp"
+#include "fit/choose_options.hpp"
 #include "fit/material_errors.hpp"
 #include "wire/between_shapes.hpp"
 #include "wire/identifiable.hpp"
 #include "wire/wire_fit.hpp"
+#include "wire/wire_numbers.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -77,8 +79,49 @@ void try_alternatives(MaterialProfiles& material, const MaterialPoint& best, Mat
       [](const FitAlternative& a, const FitAlternative& b) { return a.rms_m < b.rms_m; });
 }
 
+/// Widens the interval of E to what an intrinsically curved wire in misaligned clamps allows, seen
+/// by a camera that is not level. One shape or two do not show whether that is what their residuals
+/// come from, and E is another one if it is: predictions that choose need more shapes.
+/// @return whether such a wire has a fit
+bool widen_to_any_wire(MaterialProfiles& material, const MaterialPoint& best, MaterialFit& fit) {
+  MaterialFitOptions options = material.options();
+  options.profile_points = 0;
+  options.natural_curvature_terms = usual_curvature_terms;
+  options.direction_tolerance = fixture_tolerance;
+  if (why_no_camera_tilt(material.scenes(), material.shapes()).empty()) {
+    options.camera_tilt = usual_tilt;
+  }
+  try {
+    const FittedValue other = fit_wire(material.scenes(), material.shapes(), material.measured(),
+                                       options, best, material.has_density())
+                                  .youngs_modulus;
+    FittedValue& E = fit.youngs_modulus;
+    E.low = E.low && other.low ? std::optional(std::min(*E.low, *other.low)) : std::nullopt;
+    E.high = E.high && other.high ? std::optional(std::max(*E.high, *other.high)) : std::nullopt;
+    if (E.low && E.high && *E.high <= options.identified_within * *E.low) return true;
+    E.value.reset();
+  } catch (const ResultError&) {
+    // No clamp, no plane, or too few points; no shape, or no time.
+    return false;
+  }
+  if (fit.not_identified.empty()) {
+    fit.not_identified = fmt::format(
+        "{} is not identifiable from so few shapes: with natural curvature and misaligned clamps "
+        "others fit as well (three shapes or more may identify it)",
+        material.scenes().front().stiffness().name);
+  }
+  return true;
+}
+
 /// @param common  shapes surely have much of it in common
-std::string doubt(const MaterialFit& fit, bool common, const char* stiffness) {
+/// @param widened  the interval is that of any wire
+std::string doubt(const MaterialFit& fit, bool common, bool widened, const char* stiffness) {
+  if (widened) {
+    return fmt::format(
+        "the residuals are systematic: the interval of {} includes that of an intrinsically curved "
+        "wire in misaligned clamps",
+        stiffness);
+  }
   if (!fit.alternatives.empty() && fit.alternatives.front().rms_m <= too_much * fit.rms_m) {
     return fmt::format(
         "the residuals are systematic: what is not fitted would leave {:.3g} mm of {:.3g} mm, so "
@@ -116,8 +159,9 @@ void look_for_alternatives(MaterialProfiles& material, const MaterialPoint& best
   try_alternatives(material, best, fit);
   // Without forces E has no interval that could be wrong.
   if (!material.is_forced()) return;
+  const bool widened = scenes.size() < fewest_predicted && widen_to_any_wire(material, best, fit);
   if (fit.warning.empty()) {
-    fit.warning = doubt(fit, common > surely_common, scenes.front().stiffness().name);
+    fit.warning = doubt(fit, common > surely_common, widened, scenes.front().stiffness().name);
   }
   const bool weight_alone = std::none_of(scenes.begin(), scenes.end(), has_forces_beside_weight);
   // Where the density was asked for it is said already.

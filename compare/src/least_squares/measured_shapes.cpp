@@ -227,6 +227,7 @@ energy_model::Equilibrium MeasuredShapes::solve(const energy_model::Problem& pro
                                              .time_limit = left,
                                              .start = start});
     evaluations_ += rod.evaluations;
+    if (rod.status == energy_model::SolveStatus::evaluation_limit) ++limited_solves_;
     return rod;
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", file, error.what()));

@@ -96,6 +96,8 @@ class MeasuredShapes {
                                                       const std::vector<Movement>& movements,
                                                       Eigen::Index numbers) const;
 
+  /// Number of solves that ended at SolveOptions::max_evaluations.
+  [[nodiscard]] long limited_solves() const { return limited_solves_; }
   /// Equilibria solved so far.
   [[nodiscard]] long solves() const { return solves_; }
   /// Of the energy model's objective, for these.
@@ -128,6 +130,7 @@ class MeasuredShapes {
   Eigen::Index frame_columns_ = 0;
   long solves_ = 0;
   long evaluations_ = 0;
+  long limited_solves_ = 0;
   Timer timer_;
 };
 

@@ -96,6 +96,38 @@ TEST_F(CalibrateCommand, NamesWhatSystematicResidualsAskFor) {
   EXPECT_NEAR(chosen.at("youngs_modulus_Pa"), 5e9, 5e6);
 }
 
+TEST_F(CalibrateCommand, EqualShapesCountOnce) {
+  const std::string a = scene_of("a.toml", "5 GPa", 0);
+  const std::string shape = write_table(
+      "noisy.csv", "x,y,z", {{0.101, 0, 0}, {0.35, -0.02, 0}, {0.601, -0.04, 0}, {0.9, -0.11, 0}});
+  const std::string one = words({"calibrate", a, "--shape", shape});
+  const std::string copy = path("copy.csv");
+  std::ofstream(copy) << read(shape);
+  const std::string four = words({"calibrate", a, "--shape", shape, shape, copy, shape});
+  const json once = json_of(one);
+  const json repeated = json_of(four);
+  EXPECT_EQ(repeated.at("interval_95_Pa"), once.at("interval_95_Pa"));
+  EXPECT_EQ(repeated.at("shapes").size(), 1U);
+  EXPECT_TRUE(says(run(four).out, {"equal shapes count once", "copy.csv"}));
+}
+
+// Rods under their own weight, whose searches need more evaluations than one.
+TEST_F(CalibrateCommand, FailedSolvesAreAnError) {
+  const std::string a = scene_of("a.toml", "5 GPa", 0);
+  const std::string shape = seen(scene_of("a.toml", "5 MPa", 0), "a.csv");
+  scene_of("a.toml", "5 GPa", 0);
+  expect_error(words({"calibrate", a, "--shape", shape, "--max-evaluations 1"}), 3,
+               {"a.toml", "equilibria ended at the evaluation limit", "--max-evaluations"});
+}
+
+TEST_F(CalibrateCommand, StatesWhatTheShapesCannotShow) {
+  const std::string a = scene_of("a.toml", "5 GPa", 0);
+  const std::string command = words({"calibrate", a, "--shape", seen(a, "a.csv")});
+  EXPECT_TRUE(says(run(command).out, {"(if length, weight, scale and vertical are as given"}));
+  EXPECT_EQ(json_of(command).at("assumed"), json({"length", "weight", "scale", "vertical"}));
+  EXPECT_EQ(json_of(command + " --register").at("assumed"), json({"length", "weight", "scale"}));
+}
+
 TEST_F(CalibrateCommand, WritesAMaterialThatScenesCanUse) {
   const std::string a = scene_of("a.toml", "5 GPa", 0);
   const std::string shape = seen(a, "a.csv");

@@ -158,7 +158,18 @@ struct Prediction {
   /// Of each shape from the mean of the others, measured as from a rod, as near as any rod could
   /// predict it; none of scenes whose grippers differ by more than 2 % of the length.
   std::optional<double> repeatability_m;
+
+  /// Prediction error divided by the repeatability [-]; empty if the latter is unknown or 0.
+  [[nodiscard]] std::optional<double> over_repeatability() const {
+    if (!repeatability_m || !(*repeatability_m > 0)) return std::nullopt;
+    return rms_m / *repeatability_m;
+  }
 };
+
+/// Ratio of prediction error to repeatability from which the output states that the fit predicts
+/// worse than the shapes repeat. The ratio of two such estimates from five shapes scatters by a
+/// tenth.
+inline constexpr double worse_than_repeatability = 1.2;
 
 /// How one shape was laid on the rod of the fitted modulus.
 struct FittedShape {
@@ -200,6 +211,9 @@ struct MaterialFit {
   std::optional<FittedValue> torsion_over_bending;
   /// What is not identifiable from the shapes, and why; empty if all is identified.
   std::string not_identified;
+  /// Given quantities whose errors may leave no residual, so that the interval of E holds only if
+  /// they are right: "length", "weight", "loads", "scale", "vertical". Empty without an interval.
+  std::vector<std::string> assumed;
   /// Why the fit is not to be believed: residuals far above the given noise (chance 1e-3), or above
   /// a twentieth of the length, or half of which something would remove that is not fitted; else
   /// empty.

@@ -80,11 +80,11 @@ struct Calibration {
   std::vector<HeldOutShape> held_out;  ///< in the order given
 };
 
+/// Shapes with equal points count once; MaterialFit::warning names them.
 /// @param scenes    of each shape one, then of each that is held out, or one of them all; else as
 ///                  fit_material()
 /// @param held_out  shapes that only judge
-[[nodiscard]] Calibration calibrate(std::vector<Scene> scenes,
-                                    const std::vector<MeasuredShape>& shapes,
+[[nodiscard]] Calibration calibrate(std::vector<Scene> scenes, std::vector<MeasuredShape> shapes,
                                     MaterialFitOptions options = {},
                                     const std::vector<MeasuredShape>& held_out = {});
 
