@@ -47,18 +47,23 @@ void add_angle_and_curvature(std::string& out, const compare::Deviation& d) {
 
 void add_state(std::string& out, const compare::ComparedState& state, double length,
                const char* shape) {
-  const std::string unstable =
-      state.unstable == 0 ? "no unstable one" : fmt::format("{} unstable", state.unstable);
-  append(
-      out, "  state           {}, {:.6g} J; {}\n",
-      state.only_lowest()
-          ? "the only stable one found"
-          : fmt::format(
-                "number {} by energy of {} stable ones found{}", state.rank, state.stable,
-                state.energy_above_lowest_J() > 0
-                    ? fmt::format(" ({:.4g} J above the lowest one)", state.energy_above_lowest_J())
-                    : ""),
-      state.energy_J, state.others.empty() ? "no other equilibrium found" : "besides " + unstable);
+  append(out, "  state           ");
+  if (!state.searched) {
+    append(out, "{:.6g} J; other equilibria were not searched\n", state.energy_J);
+  } else {
+    const std::string unstable =
+        state.unstable == 0 ? "no unstable one" : fmt::format("{} unstable", state.unstable);
+    append(out, "{}, {:.6g} J; {}\n",
+           state.only_lowest() ? "the only stable one found"
+                               : fmt::format("number {} by energy of {} stable ones found{}",
+                                             state.rank, state.stable,
+                                             state.energy_above_lowest_J() > 0
+                                                 ? fmt::format(" ({:.4g} J above the lowest one)",
+                                                               state.energy_above_lowest_J())
+                                                 : ""),
+           state.energy_J,
+           state.others.empty() ? "no other equilibrium found" : "besides " + unstable);
+  }
   // Symmetric ones are the same to the digit.
   std::vector<std::pair<std::string, int>> lines;
   for (const compare::OtherState& other : state.others) {

@@ -39,7 +39,8 @@ Json to_json(const compare::ComparedState& state) {
   return {
       {"energy_J", state.energy_J},       {"energy_above_lowest_J", state.energy_above_lowest_J()},
       {"rank_of_stable", state.rank},     {"stable_found", state.stable},
-      {"unstable_found", state.unstable}, {"others", std::move(others)}};
+      {"unstable_found", state.unstable}, {"searched", state.searched},
+      {"others", std::move(others)}};
 }
 
 Json loads_json(const std::vector<compare::GripperLoad>& loads) {

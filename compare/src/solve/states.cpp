@@ -147,6 +147,7 @@ std::optional<std::size_t> add_state(const Scene& scene, Equilibrium state,
 ComparedState describe_state(const Scene& scene, const std::vector<Equilibrium>& states,
                              std::size_t compared, const std::vector<double>& from_shape) {
   ComparedState result;
+  result.searched = reference_model(scene) == Model::energy;
   result.energy_J = states[compared].energy.total();
   result.rms_from_shape_m = from_shape[compared];
   result.stable = 0;

@@ -21,6 +21,7 @@ struct ComparedState {
   int rank = 1;                    ///< among the stable ones by energy, 1: the lowest
   int stable = 1;                  ///< how many stable ones were found
   int unstable = 0;                ///< how many unstable ones were found
+  bool searched = true;            ///< whether a search looked for other equilibria
   std::vector<OtherState> others;  ///< stable ones first, by energy
 
   /// Energy of the one compared minus that of the lowest stable one that is known; 0 of the lowest,
