@@ -93,8 +93,9 @@ class SpreadActions {
   struct Panel {
     double begin, width;
     Sums sums;
-    /// Contact with a body that yields may begin or end where no node is: between an end of the
-    /// panel and the node next to it, or between two nodes that are outside of the body and near.
+    /// Contact with a body that yields may begin, end or pass to another face where no node is:
+    /// between an end of the panel and the node next to it, or between two nodes that are outside
+    /// of the body and near.
     bool may_hide_contact = false;
   };
 
@@ -147,9 +148,13 @@ class SpreadActions {
     constexpr double shortest = 1.0 / 2048;  // contact is longer than that
     const Eigen::Index last = points.cols() - 1;
     return std::any_of(yielding_.begin(), yielding_.end(), [&](std::size_t i) {
-      const Eigen::VectorXd clearance = problem_.obstacles[i].body.clearances(points);
+      const obstacle::Body& body = problem_.obstacles[i].body;
+      const Eigen::VectorXd clearance = body.clearances(points);
       const auto changes = [&](Eigen::Index one, Eigen::Index other) {
-        return (clearance[one] < 0) != (clearance[other] < 0);
+        if (clearance[one] >= 0 || clearance[other] >= 0) {
+          return (clearance[one] < 0) != (clearance[other] < 0);
+        }
+        return body.feature(points.col(one)) != body.feature(points.col(other));
       };
       if (changes(0, 1) || changes(last - 1, last)) return true;
       const double least = clearance.minCoeff();

@@ -2,6 +2,7 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -9,6 +10,7 @@
 
 #include "certify/contact_ends.hpp"
 #include "certify/rigid_body_modes.hpp"
+#include "frames/position_operator.hpp"
 #include "linear/free_directions.hpp"
 #include "linear/newton_system.hpp"
 #include "newton/newton.hpp"
@@ -285,6 +287,7 @@ class Certification {
       // Below it what is left of the residual makes a step that is not small.
       bound_ = std::max(neutral, small_step_ ? 0 : solution_.residual / largest_next_step);
       found_ = eigenvalues_of(system.reduced_hessian(), rigid_.in_plane);
+      subtract_ridges();
       if (found_.neutral_directions > 0 &&
           slides_along_rod(model_, solution_.x, system.reduced_hessian(),
                            found_.zero + found_.neutral_directions)) {
@@ -299,6 +302,29 @@ class Certification {
       if (!near || tells) break;
     }
     solution_.neutral_directions = found_.neutral_directions;
+  }
+
+  /// Takes the second variation at the ridges of boxes that yield into account, which Newton's
+  /// method does not need: it ends a piece there.
+  void subtract_ridges() {
+    const std::vector<RidgeCrossing> ridges = ridge_crossings(solution_);
+    if (ridges.empty()) return;
+    const Span& span = model_.span();
+    const PositionOperator position(span, pieces_of(span), model_.table());
+    const std::array<Eigen::MatrixXd, 3> tangents = model_.tangent_jacobian(*point_);
+    Eigen::MatrixXd hessian = solution_.factor->system.hessian();
+    for (const RidgeCrossing& ridge : ridges) {
+      Eigen::VectorXd by_strain = Eigen::VectorXd::Zero(tangents[0].cols());
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        by_strain += ridge.direction[axis] * tangents[static_cast<std::size_t>(axis)].transpose() *
+                     position.at(ridge.s);
+      }
+      hessian.topLeftCorner(by_strain.size(), by_strain.size()) -=
+          by_strain * by_strain.transpose();
+    }
+    ReducedHessian reduced;
+    reduced.compute(hessian, point_->jacobian);
+    found_ = eigenvalues_of(reduced, rigid_.in_plane);
   }
 
   /// @return whether it is next to a fold, so that there may be no equilibrium

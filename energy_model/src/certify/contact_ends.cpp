@@ -18,6 +18,10 @@ constexpr double closest_contact_ends = 1e-7;
 constexpr int parts = 32;
 constexpr double shortest_bracket = 1e-13;
 
+/// Smallest jump of the unit gradient of the depth that is a ridge: where a face meets a round edge
+/// the gradient is continuous.
+constexpr double least_jump = 1e-3;
+
 /// From the core of a cylinder, in lengths: nearer than that its forces turn too fast for the nodes
 /// of a whole piece.
 constexpr double beside = 0.05;
@@ -129,6 +133,15 @@ std::vector<Bracket> narrowed(const std::vector<Span::SoftObstacle>& obstacles,
   return result;
 }
 
+std::vector<Bracket> shortest_brackets(const Span& span, const SpanShape& shape) {
+  std::vector<Bracket> brackets = brackets_of(span.soft_obstacles, shape, span.length);
+  for (double width = span.length / first_looks;
+       !brackets.empty() && width > shortest_bracket * span.length; width /= parts) {
+    brackets = narrowed(span.soft_obstacles, shape, brackets);
+  }
+  return brackets;
+}
+
 /// Whether a rod comes to the core of a body within a bracket, to rounding.
 bool meets_core(const obstacle::Body& body, const SpanShape& shape, Bracket bracket,
                 double length) {
@@ -151,18 +164,37 @@ std::vector<double> contact_ends(const SpanSolution& solution) {
   const Span& span = solution.model->span();
   std::vector<double> ends;
   if (span.soft_obstacles.empty()) return ends;
-  const SpanShape shape = solution.model->shape(solution.x);
-  std::vector<Bracket> brackets = brackets_of(span.soft_obstacles, shape, span.length);
-  if (brackets.empty()) return ends;
-  for (double width = span.length / first_looks; width > shortest_bracket * span.length;
-       width /= parts) {
-    brackets = narrowed(span.soft_obstacles, shape, brackets);
+  for (const Bracket& bracket : shortest_brackets(span, solution.model->shape(solution.x))) {
+    ends.push_back((bracket.begin + bracket.end) / 2);
   }
-  for (const Bracket& bracket : brackets) ends.push_back((bracket.begin + bracket.end) / 2);
   std::sort(ends.begin(), ends.end());
   const auto close = [](double a, double b) { return b - a < closest_contact_ends; };
   ends.erase(std::unique(ends.begin(), ends.end(), close), ends.end());
   return ends;
+}
+
+std::vector<RidgeCrossing> ridge_crossings(const SpanSolution& solution) {
+  const Span& span = solution.model->span();
+  std::vector<RidgeCrossing> crossings;
+  if (span.soft_obstacles.empty()) return crossings;
+  const SpanShape shape = solution.model->shape(solution.x);
+  for (const Bracket& bracket : shortest_brackets(span, shape)) {
+    const Span::SoftObstacle& obstacle = span.soft_obstacles[bracket.obstacle];
+    const double s = (bracket.begin + bracket.end) / 2;
+    const double beside = closest_contact_ends * span.length;
+    if (!(s > beside && s < span.length - beside) || has_thin_core(obstacle.body)) continue;
+    const std::vector<double> at = {s - beside, s + beside};
+    const SpanSamples samples = shape.sample(at);
+    const obstacle::Gap before = obstacle.body.gap(samples.points.col(0));
+    const obstacle::Gap after = obstacle.body.gap(samples.points.col(1));
+    const Eigen::Vector3d jump = after.gradient - before.gradient;
+    if (!(before.value < 0 && after.value < 0 && jump.norm() > least_jump)) continue;
+    const double crossed = std::abs(jump.dot(samples.tangents.col(0)));
+    crossings.push_back({s, std::sqrt(-obstacle.stiffness * after.value / crossed) * jump});
+  }
+  std::sort(crossings.begin(), crossings.end(),
+            [](const RidgeCrossing& a, const RidgeCrossing& b) { return a.s < b.s; });
+  return crossings;
 }
 
 MiddlePassed middle_passed(const SpanSolution& solution) {
@@ -188,7 +220,7 @@ MiddlePassed middle_passed(const SpanSolution& solution) {
       if (turns && thin && meets_core(body, shape, {0, s[at - 1], s[at]}, span.length)) {
         return MiddlePassed::through_line;
       }
-      if (turns || (thin && clearance[i] + body.radius() < seen)) passed = MiddlePassed::near;
+      if (thin && (turns || clearance[i] + body.radius() < seen)) passed = MiddlePassed::near;
     }
   }
   return passed;

@@ -305,7 +305,7 @@ TEST_F(Command, SolveNearAFileIsTheEquilibriumBesideThatFile) {
 }
 
 TEST_F(Command, SolveReturnsAnEquilibriumByItsNumberInTheListOfAll) {
-  const std::string path = scene(rope_beside_peg);
+  const std::string path = scene(dlo::test::rope_beside_peg);
   const json all = json_of("solve " + path + " --all").at("equilibria");
   const json first = json_of("solve " + path + " --equilibrium 1");
   EXPECT_TRUE(first.at("contacts").empty());
@@ -326,7 +326,7 @@ TEST_F(Command, SolveReturnsAnEquilibriumByItsNumberInTheListOfAll) {
 }
 
 TEST_F(Command, SolvePrintsHowManyStartsPassedObstacles) {
-  const std::string path = scene(rope_beside_peg);
+  const std::string path = scene(dlo::test::rope_beside_peg);
   EXPECT_TRUE(says(run("solve " + path).out, {"2 starts passed obstacles on another side"}));
   EXPECT_TRUE(says_none(run("solve " + scene(back_bent_rod)).out, {"starts passed"}));
 }

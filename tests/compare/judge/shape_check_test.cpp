@@ -326,8 +326,10 @@ TEST(ShapeCheck, TheReferenceIsTheStableEquilibriumNearThePoints) {
   std::erase_if(states, [](const auto& state) { return !state.contacts.empty(); });
   ASSERT_EQ(states.size(), 1);
   const Shape laid = laid_by_grippers({"rope", points, {}}, scene, ArcLengths::nearest);
-  EXPECT_EQ(add_state_near(scene, laid, options, states), 1U);
-  EXPECT_EQ(add_state_near(scene, laid, options, states), std::nullopt);
+  const std::optional<energy_model::Equilibrium> near = state_near(scene, laid, options);
+  ASSERT_TRUE(near);
+  EXPECT_EQ(add_state(scene, *near, states), 1U);
+  EXPECT_EQ(add_state(scene, *near, states), std::nullopt);
   EXPECT_EQ(states.size(), 2);
 }
 
