@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <string>
 #include <utility>
@@ -47,6 +48,16 @@ std::vector<YieldingScene> yielding_scenes() {
   deep.grips.push_back({1, {0.98, 0, 0}, Eigen::Vector3d::UnitX()});
   deep.obstacles = {{Body::cylinder({0.43, -0.03, 0}, {0, 0, 1}, 0.09), 2e4}};
   scenes.push_back({"axis", deep, {0.6, 0.8, 0}});
+  // The rod passes under an edge of the block, from where one face pushes to where another one
+  // does.
+  Problem ridge = heavy_cantilever(2, 0);
+  ridge.grips.push_back({1, {0.98, 0, 0}, Eigen::Vector3d::UnitX()});
+  const Eigen::Matrix3d axes =
+      (Eigen::AngleAxisd(0.1, Eigen::Vector3d::UnitY()) *
+       Eigen::AngleAxisd(0.25 * std::numbers::pi, Eigen::Vector3d::UnitZ()))
+          .toRotationMatrix();
+  ridge.obstacles = {{Body::box({0.45, -0.06, 0}, axes, {0.1, 0.1, 0.6}, 0.001), 2e4}};
+  scenes.push_back({"edge", ridge, {0.6, 0.8, 0}});
   return scenes;
 }
 

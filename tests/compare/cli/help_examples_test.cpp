@@ -18,12 +18,14 @@ using dlo::test::says;
 
 class Reference : public Command {
  protected:
-  /// Runs a bash script in the test's folder, with data/ beside it and dlo in the path.
+  /// Runs a bash script in the test's folder, with data/ and a simulator beside it and dlo in the
+  /// path.
   [[nodiscard]] Outcome bash(const std::string& script) const {
     const std::filesystem::path command(DLO_COMMAND);
     std::ofstream(path("script")) << "set -e\ncd " << path("") << "\n[ -e data ] || ln -s "
-                                  << DLO_DATA << " data\nexport PATH=" << command.parent_path()
-                                  << ":$PATH\n"
+                                  << DLO_DATA << " data\n[ -e mine.py ] || cp " << DLO_DATA
+                                  << "/../compare/example/foreign/hinges.py mine.py\nexport PATH="
+                                  << command.parent_path() << ":$PATH\n"
                                   << script << "\n";
     return run_line("bash " + path("script"));
   }
