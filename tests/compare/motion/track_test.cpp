@@ -73,7 +73,7 @@ const std::string rotating_clamp =
     "[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\ndirection = \"10 deg\"\n"
     "[[gripper.pose]]\ntime = 1\nposition = [0.2, 0.1, 0]\ndirection = \"150 deg\"\n"
     "[[gripper.pose]]\ntime = 2\nposition = [0, 0.2, 0]\ndirection = \"280 deg\"\n"
-    "[[gripper.pose]]\ntime = 3\nposition = [0, 0, 0]\ndirection = \"400 deg\"\n"
+    "[[gripper.pose]]\ntime = 3\nposition = [0, 0, 0]\ndirection = \"40 deg\"\n"
     "[[load]]\nat = 1\nforce = [0, 0, 0]\ntorque = [0, 0, 0.8]\n"
     "[[load]]\nat = 0\nforce = [0, 0, 0]\ntorque = [0, 0, -0.5]\n";
 
