@@ -77,6 +77,47 @@ TEST(Dynamics, KeepsTheEnergyOverAHundredPeriods) {
   EXPECT_TRUE(std::isnan(result.error_estimate));
 }
 
+/// Velocities of the points of a motion, by central differences of its frames.
+StartingVelocities velocities_between(const MovingFrame& before, const MovingFrame& after) {
+  return [before = before.sample, after = after.sample,
+          duration = after.time - before.time](std::span<const double> s) {
+    return ((after(s).points - before(s).points) / duration).eval();
+  };
+}
+
+// Velocities by differences over h are off by h^2 / 6 times a third derivative, some 1e-7, and the
+// rest of the motion by as little.
+TEST(Dynamics, GoesOnFromTheShapeAndTheVelocitiesOfAMotion) {
+  constexpr double middle = 0.7;
+  constexpr double h = 1e-4;
+  for (const bool is_closed : {false, true}) {
+    MovingRod rod = is_closed ? closed_rod(3) : moving_cantilever(3);
+    rod.material_damping = 0.02;
+    const GripMotion first = standing(rod.problem.grips.front().position);
+    rod.motions = {[first](double time) {
+      const Vector3d way(0.05, 0.03, 0.04);
+      GripPose pose = first(time);
+      pose.position += way * (1 - std::cos(3 * time));
+      pose.velocity = way * 3 * std::sin(3 * time);
+      pose.acceleration = way * 9 * std::cos(3 * time);
+      return pose;
+    }};
+    const StartingShape rest = solve_energy(rod.problem).sample;
+    const Dynamics whole = run(rod, rest, {middle - h, middle, middle + h, middle + 1});
+    MovingRod later = rod;
+    later.motions = {[motion = rod.motions.front()](double time) { return motion(middle + time); }};
+    DynamicsOptions options;
+    options.velocities = velocities_between(whole.frames[0], whole.frames[2]);
+    const std::vector<double> s{0.2, 0.5, 0.8, 1};
+    const Eigen::Matrix3Xd end = whole.frames.back().sample(s).points;
+    const Dynamics rest_of_it = run(later, whole.frames[1].sample, {1}, options);
+    EXPECT_LT((rest_of_it.frames.back().sample(s).points - end).norm(), 1e-5) << is_closed;
+    // The velocities count.
+    const Dynamics at_rest = run(later, whole.frames[1].sample, {1});
+    EXPECT_GT((at_rest.frames.back().sample(s).points - end).norm(), 1e-3) << is_closed;
+  }
+}
+
 // With (90, 135, 180) segments the limit of three is met to 1.1e-6 (Gamma 1) and 1.0e-5 (Gamma 10).
 TEST(Dynamics, ReleasedCantileverMovesAsAPolygonAndAsWithMoreTermsAndSmallerSteps) {
   const std::vector<double> times = equal_times(10, 0.1);

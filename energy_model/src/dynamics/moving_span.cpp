@@ -217,6 +217,26 @@ Eigen::VectorXd MovingSpan::equilibrium_rates(SpanDynamics& model, const SpanIns
   return -solver.compute(matrix).solve(change).head(n);
 }
 
+/// Returns velocities at the points of SpanDynamics, own units: those where pieces begin and end
+/// and at the nodes between.
+Eigen::MatrixX3d MovingSpan::point_velocities(const StartingVelocities& velocities,
+                                              const SpanDynamics& model) const {
+  const std::vector<Piece> pieces = pieces_of(placed_.span);
+  const Eigen::Index nodes = model.nodes().size() / std::ssize(pieces);
+  std::vector<double> arc_lengths;
+  const auto add = [&](double s) {
+    const double arc = placed_.start + (placed_.reversed ? -s : s) * length_;
+    arc_lengths.push_back(std::clamp(arc, 0.0, length_));
+  };
+  for (std::size_t e = 0; e < pieces.size(); ++e) {
+    add(pieces[e].begin);
+    const Eigen::Index first = static_cast<Eigen::Index>(e) * nodes;
+    for (Eigen::Index q = 0; q < nodes; ++q) add(model.nodes()[first + q]);
+    add(pieces[e].end());
+  }
+  return (time_ / length_) * (to_axes(begin_) * velocities(arc_lengths)).transpose();
+}
+
 SpanFrame MovingSpan::frame(SpanIntegrator& integrator, SpanDynamics& model,
                             const SpanInstant& at) const {
   SpanFrame result;
@@ -286,7 +306,12 @@ std::string MovingSpan::settle(SpanIntegrator& integrator, SpanDynamics& model,
   at.v = Eigen::VectorXd::Zero(model.size());
   std::string message = integrator.project(at);
   if (message.empty() && model.has_twist()) message = integrator.settle_twist(at);
-  if (!options.in_motion || !message.empty()) return message;
+  if (!message.empty()) return message;
+  if (options.velocities) {
+    integrator.set_velocities(point_velocities(options.velocities, model), at);
+    return message;
+  }
+  if (!options.in_motion) return message;
   at.v = equilibrium_rates(model, at);
   return integrator.project(at);
 }
@@ -305,7 +330,12 @@ SpanRun MovingSpan::run_with(const ContactLaw& contact, const StartingShape& sta
   }
   SpanDynamics model(span, options.terms, first, inertia(masses), contact);
   const StartShape begin = start_at(field, model.nodes());
-  if (placed_.span.planar && begin.tangents.row(2).cwiseAbs().maxCoeff() > motion_plane_rounding) {
+  const bool leaves_at_once =
+      begin.tangents.row(2).cwiseAbs().maxCoeff() > motion_plane_rounding ||
+      (options.velocities &&
+       point_velocities(options.velocities, model).col(2).cwiseAbs().maxCoeff() >
+           motion_plane_rounding);
+  if (placed_.span.planar && leaves_at_once) {
     result.left_plane = true;
     return result;
   }

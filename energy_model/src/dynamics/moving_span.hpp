@@ -65,6 +65,8 @@ class MovingSpan {
   [[nodiscard]] GripPose pose(std::size_t grip, double time) const;
   [[nodiscard]] std::vector<double> own_breaks() const;
   [[nodiscard]] Eigen::VectorXd equilibrium_rates(SpanDynamics& model, const SpanInstant& at) const;
+  [[nodiscard]] Eigen::MatrixX3d point_velocities(const StartingVelocities& velocities,
+                                                  const SpanDynamics& model) const;
   void take(const SpanIntegrator& integrator, SpanRun& run) const;
 
   const MovingRod& rod_;

@@ -369,6 +369,11 @@ void SpanIntegrator::apply_impulse(SpanInstant& at) {
   at.done.work += span_.energies().kinetic - kinetic;
 }
 
+void SpanIntegrator::set_velocities(const Eigen::MatrixX3d& given, SpanInstant& at) {
+  at.v = Eigen::VectorXd::Zero(span_.size());
+  at.v = accelerated(just_after(at.time), at, &given).head(span_.size());
+}
+
 /// Accelerations and multipliers that obey the equations of motion; from velocities before a
 /// strike, what v changes by and the impulses of the grips.
 Eigen::VectorXd SpanIntegrator::accelerated(double time, const SpanInstant& at,

@@ -58,6 +58,10 @@ class SpanIntegrator {
   /// kinetic energy changes by.
   void apply_impulse(SpanInstant& at);
 
+  /// Sets the rates to those whose velocities differ from the given ones of the points
+  /// (SpanDynamics::velocities()) by the least kinetic energy among those that the grips allow.
+  void set_velocities(const Eigen::MatrixX3d& given, SpanInstant& at);
+
   [[nodiscard]] long steps() const { return steps_; }
   [[nodiscard]] double smallest_step() const { return smallest_step_; }
   [[nodiscard]] double error() const { return error_; }

@@ -36,6 +36,9 @@ struct MovingRod {
 /// Equilibrium::sample is one. Grips have to hold it nearly: it is moved to where they do.
 using StartingShape = std::function<Samples(std::span<const double>)>;
 
+/// Velocities of the rod's points at arc lengths [m/s], 3 x their number.
+using StartingVelocities = std::function<Eigen::Matrix3Xd(std::span<const double>)>;
+
 /// A straight rod along a direction, to start from.
 [[nodiscard]] StartingShape straight_rod(const Eigen::Vector3d& direction);
 
@@ -106,17 +109,21 @@ struct DynamicsOptions {
   /// Whether the rod has been in motion before: strains begin with the rates at which shapes in
   /// equilibrium would follow the grips and obstacles. Else they do not change at first.
   bool in_motion = false;
+  /// Velocities with which the motion begins, instead of `in_motion`; null: none are given. The rod
+  /// starts with velocities that its length and its grips allow: those whose difference from the
+  /// given ones has the smallest kinetic energy.
+  StartingVelocities velocities;
   double time_limit = std::numeric_limits<double>::infinity();  ///< wall time [s], > 0
 };
 
 /// Motion of an inextensible rod from a shape at rest, whose strains do not change
-/// at first (but DynamicsOptions::in_motion): its grips carry it along. Strains in Legendre
-/// polynomials, as in solve_energy(); by time collocation at Gauss' four points (order 8), with
-/// damping of the material or rigid obstacles, or with twist, Radau's IIA (order 7). Cross-sections
-/// have no inertia: twist, where clamps hold frames or the rod has material directors, is in
-/// equilibrium at each time. There Samples::d1 of a frame is the material's. Rigid obstacles are
-/// stiff ones, p = k d^2 max(0, 1 + d' / u) per length at a depth d (Hunt and Crossley 1975),
-/// without friction. Method, evidence and limits: energy_model/doc/dynamics.md.
+/// at first (but DynamicsOptions::in_motion and velocities): its grips carry it along. Strains in
+/// Legendre polynomials, as in solve_energy(); by time collocation at Gauss' four points (order 8),
+/// with damping of the material or rigid obstacles, or with twist, Radau's IIA (order 7).
+/// Cross-sections have no inertia: twist, where clamps hold frames or the rod has material
+/// directors, is in equilibrium at each time. There Samples::d1 of a frame is the material's. Rigid
+/// obstacles are stiff ones, p = k d^2 max(0, 1 + d' / u) per length at a depth d (Hunt and
+/// Crossley 1975), without friction. Method, evidence and limits: energy_model/doc/dynamics.md.
 /// @param start  held by the grips, nearly: it is moved to where they do
 /// @param times  to give frames at [s], growing; motion begins at 0, or at the first of them if
 /// that is below zero
