@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "polygon/scalar_search.hpp"
 #include "recording/motion_residuals.hpp"
@@ -10,10 +11,22 @@
 namespace dlo::compare {
 namespace {
 
-/// Lags that are looked at before Brent's method, and points that they are looked at with: of a
-/// recording of 1e6 points all would take a minute.
+/// Lags that are tried before Brent's method, and the largest number of points that they are tried
+/// with: of a recording of 1e6 points all would take a minute.
 constexpr int lag_steps = 200;
-constexpr std::size_t most_looked_at = 20'000;
+constexpr std::size_t most_tried_points = 20'000;
+
+/// Every so many-th time of a recording, with all markers of that time.
+std::vector<MarkerPosition> thinned(const std::vector<MarkerPosition>& positions) {
+  const std::size_t stride = 1 + positions.size() / most_tried_points;
+  std::vector<MarkerPosition> result;
+  std::size_t time = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (i > 0 && positions[i].time > positions[i - 1].time) ++time;
+    if (time % stride == 0) result.push_back(positions[i]);
+  }
+  return result;
+}
 
 MotionShift shift_of(const Eigen::Matrix3Xd& residuals, double lag, Displacement displacement) {
   MotionShift result{.lag = lag};
@@ -33,10 +46,8 @@ std::optional<MotionShift> best_lag(const MarkerMotion& recorded, const ModelMot
   const double last = recorded.positions.back().time;
   const double range = lag_range_share * (last - recorded.positions.front().time);
   MarkerMotion usable{.file = recorded.file, .positions = {}};
-  const std::size_t stride = 1 + recorded.positions.size() / most_looked_at;
-  for (std::size_t i = 0; i < recorded.positions.size(); i += stride) {
-    if (recorded.positions[i].time - range < earliest) continue;
-    usable.positions.push_back(recorded.positions[i]);
+  for (const MarkerPosition& at : thinned(recorded.positions)) {
+    if (at.time - range >= earliest) usable.positions.push_back(at);
   }
   constexpr std::size_t fewest = 8;
   const double low = std::max(-range, last - model.end());

@@ -19,6 +19,7 @@
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solve.hpp"
 #include "motion/moving_scene.hpp"
+#include "recording/lag_search.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -178,6 +179,27 @@ TEST(MotionCheck, FindsTheLagOfARodWithInertia) {
       scene, moved, {.model = MotionModel::with_inertia, .damping = damping, .from = 0});
   EXPECT_NEAR(check.lag, 0.05, 1e-4);
   EXPECT_LT(check.lag_rms_m, 10 * close_to_rod);
+}
+
+// Of so many rows that they are thinned: the marker at the end of the rod, with amplitude 1 against
+// 0.1, is 0.05 s late, the other one is not. The least squares of small lags are at 0.05 / 1.01.
+TEST(LagSearch, ThinsTimesAndNoMarkers) {
+  const auto at = [](double time, double s) { return Eigen::Vector3d(0, s * std::sin(time), 0); };
+  std::vector<Eigen::Matrix3Xd> frames;
+  for (int k = 0; k <= 1000; ++k) {
+    Eigen::Matrix3Xd& frame = frames.emplace_back(3, 4);
+    for (int i = 0; i < 4; ++i) frame.col(i) = at(0.01 * k, i / 3.0);
+  }
+  const ModelMotion model(0, 10, 1, std::move(frames));
+  MarkerMotion recorded{.file = "late.csv", .positions = {}};
+  for (int k = 0; k <= 15'000; ++k) {
+    const double time = 1 + 5e-4 * k;
+    recorded.positions.push_back({time, 0.1, at(time, 0.1)});
+    recorded.positions.push_back({time, 1, at(time - 0.05, 1)});
+  }
+  const auto lag = best_lag(recorded, model, -1, Displacement::none);
+  ASSERT_TRUE(lag);
+  EXPECT_NEAR(lag->lag, 0.05 / 1.01, 1e-4);
 }
 
 TEST(MotionCheck, MeasuresNoiseAndFindsNoCauseInIt) {
