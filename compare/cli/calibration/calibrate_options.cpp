@@ -166,10 +166,11 @@ void CalibrateOptions::add_to(CLI::App& command) {
           ->group(measured);
   add_numbers_of_wire(command, shape);
   command
-      .add_option("--motion", motion,
-                  "recorded motion of the rod, a CSV file of markers, time,s,x,y,z in s and m: "
-                  "stiffness over mass and damping")
-      ->type_name("FILE")
+      .add_option("--motion", motions,
+                  "recorded motions of the rod, CSV files of markers, time,s,x,y,z in s and m: "
+                  "stiffness over mass and damping. Exit status 3 if the stiffness is not "
+                  "identified")
+      ->type_name("FILE ...")
       ->excludes(shape)
       ->excludes(holdout)
       ->excludes(wanted)

@@ -27,7 +27,7 @@ struct CalibrateOptions {
   bool torsional_stiffness = false;
   std::string noise;
   int natural_curvature_terms = 0;
-  std::string motion;
+  std::vector<std::string> motions;
   std::string segments;  // a number, or a file
   std::string clamp_angles;
   std::string clamp_positions;

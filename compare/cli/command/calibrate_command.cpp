@@ -108,14 +108,18 @@ void run_motion(const CalibrateOptions& options, bool format_is_given) {
     throw compare::InputError("--motion: of one scene (allowed: one SCENE)");
   }
   const compare::Scene scene = options.overrides.load(options.scenes.front());
-  const compare::MarkerMotion recorded =
-      compare::parse_markers(compare::read_file(options.motion), options.motion);
-  const compare::MotionFit found = with_progress("calibrate", [&](const auto& /*unknown*/) {
-    return compare::fit_motion(scene, recorded, {.solve = options.overrides.solve()});
-  });
+  std::vector<compare::MarkerMotion> recordings;
+  for (const std::string& file : options.motions) {
+    recordings.push_back(compare::parse_markers(compare::read_file(file), file));
+  }
+  ProgressBar bar("calibrate");
+  const compare::MotionFit found =
+      compare::fit_motion(scene, recordings, {.solve = options.overrides.solve()},
+                          [&bar](const std::string& what) { bar.stage(what); });
   write_calibration(options.output, format_is_given,
                     {.text = [&] { return motion_fit_text(found, scene); },
                      .json = [&] { return json_text(motion_fit_json(found, scene)); }});
+  if (!found.not_identified.empty()) end_with(ExitStatus::not_converged);
 }
 
 void run_force_model(const CalibrateOptions& options, bool points_are_given, bool format_is_given) {
@@ -158,7 +162,7 @@ void add_calibrate(CLI::App& app) {
       "fit.svg");
   command->callback([options, command] {
     const bool format_is_given = command->count("--format") > 0;
-    if (!options->motion.empty()) {
+    if (!options->motions.empty()) {
       run_motion(*options, format_is_given);
     } else if (options->shapes.empty() && !options->segments.empty()) {
       run_chains(*options, format_is_given);

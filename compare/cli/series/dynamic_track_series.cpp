@@ -71,8 +71,7 @@ std::string dynamic_text(const DynamicTrack& dynamic) {
   append(
       out,
       "\ndynamic     from {}; damping {:g} s, drag {:g} N s/m^2{}; {} terms, {} steps, {:.3g} s\n",
-      dynamic.in_motion ? "motion with the grippers" : "rest", dynamic.damping.material,
-      dynamic.damping.air,
+      dynamic.in_motion ? "motion" : "rest", dynamic.damping.material, dynamic.damping.air,
       dynamic.damping.quadratic > 0 ? fmt::format(" and {:g} N s^2/m^3", dynamic.damping.quadratic)
                                     : "",
       dynamic.terms, dynamic.steps, dynamic.seconds);

@@ -4,18 +4,26 @@
 
 #include <optional>
 
+#include "base/display.hpp"
+
 namespace dlo::cli {
 namespace {
 
 using compare::MotionNumber;
 
 std::string number_text(const MotionNumber& number, const char* unit) {
+  if (!number.identified) {
+    return fmt::format("not identified: {:.3g} to {:.3g} {} are as near", number.low, number.high,
+                       unit);
+  }
   return fmt::format("{:.5g} {}, 95 %: {:.4g} to {:.4g} {}", number.value, unit, number.low,
                      number.high, unit);
 }
 
 Json motion_number_json(const MotionNumber& number) {
-  return {{"value", number.value}, {"low", number.low}, {"high", number.high}};
+  return {{"value", number.identified ? Json(number.value) : Json()},
+          {"low", number.low},
+          {"high", number.high}};
 }
 
 }  // namespace
@@ -23,14 +31,20 @@ Json motion_number_json(const MotionNumber& number) {
 std::string motion_fit_text(const compare::MotionFit& fit, const compare::Scene& scene) {
   const compare::NamedValue given = scene.stiffness();
   std::string out;
-  append(out, "{:12}{}   (scene: {:.4g} {}), with the scene's {}\n", given.name,
-         number_text(fit.scene_stiffness, given.unit), given.value, given.unit,
-         scene.heaviness().name);
-  append(out, "            over the mass per length, which motion alone shows: {}\n",
-         number_text(fit.stiffness, "m^4/s^2"));
+  if (fit.not_identified.empty()) {
+    append(out, "{:12}{}   (scene: {:.4g} {}), with the scene's {}\n", given.name,
+           number_text(fit.scene_stiffness, given.unit), given.value, given.unit,
+           scene.heaviness().name);
+    append(out, "            over the mass per length, which motion alone shows: {}\n",
+           number_text(fit.stiffness, "m^4/s^2"));
+  } else {
+    append(out, "{:12}not identified: {}\n", given.name, fit.not_identified);
+  }
   const auto line = [&](const std::optional<MotionNumber>& number, const char* name,
                         const char* unit) {
-    if (number) append(out, "{:12}{}\n", name, number_text(*number, unit));
+    if (number && fit.not_identified.empty()) {
+      append(out, "{:12}{}\n", name, number_text(*number, unit));
+    }
   };
   line(fit.material, "damping", "s");
   line(fit.air, "drag", "N s/m^2");
@@ -43,14 +57,18 @@ std::string motion_fit_text(const compare::MotionFit& fit, const compare::Scene&
          fit.coordinates, fit.effective_coordinates);
   append(out, "residual    {:.4g} mm between markers and rod (RMS), {:.4g} mm as the scene was\n",
          fit.rms * 1e3, fit.given_rms * 1e3);
-  append(out, "            worst at {:.6g} s: {:.4g} mm\n", fit.worst.at, fit.worst.rms * 1e3);
   for (const compare::MarkerError& marker : fit.by_marker) {
     append(out, "            marker at s = {:.4g} m: {:.4g} mm\n", marker.at, marker.rms * 1e3);
   }
-  append(out, "motion      {}: {} markers at {} times, {:.6g} to {:.6g} s\n", fit.file, fit.markers,
-         fit.times, fit.from, fit.to);
-  append(out, "            from {}; {} terms, {} simulations\n",
-         fit.in_motion ? "motion with the grippers" : "rest", fit.terms, fit.simulations);
+  for (const compare::FittedRecording& recording : fit.recordings) {
+    append(out, "motion      {}: {} times, {:.6g} to {:.6g} s, from {}\n",
+           compare::display(recording.file), recording.times, recording.from, recording.to,
+           recording.starts_as_recorded ? "the recorded shape and velocities"
+                                        : "equilibrium (too few markers for a shape)");
+    append(out, "            {:.4g} mm (RMS), worst at {:.6g} s: {:.4g} mm\n", recording.rms * 1e3,
+           recording.worst_time, recording.worst_rms * 1e3);
+  }
+  append(out, "            {} terms, {} simulations\n", fit.terms, fit.simulations);
   return out;
 }
 
@@ -62,13 +80,26 @@ Json motion_fit_json(const compare::MotionFit& fit, const compare::Scene& scene)
   for (const compare::MarkerError& marker : fit.by_marker) {
     markers.push_back({{"s_m", marker.at}, {"rms_m", marker.rms}});
   }
+  Json recordings = Json::array();
+  for (const compare::FittedRecording& recording : fit.recordings) {
+    recordings.push_back(
+        {{"file", recording.file},
+         {"times", recording.times},
+         {"from_s", recording.from},
+         {"to_s", recording.to},
+         {"rms_m", recording.rms},
+         {"worst", {{"time_s", recording.worst_time}, {"rms_m", recording.worst_rms}}},
+         {"starts_as_recorded", recording.starts_as_recorded}});
+  }
   const compare::NamedValue given = scene.stiffness();
   Json stiffness = motion_number_json(fit.scene_stiffness);
   stiffness["name"] = given.name;
   stiffness["unit"] = given.unit;
   stiffness["scene"] = given.value;
   return {{"schema", "dlo/motion_fit/1"},
-          {"file", fit.file},
+          {"recordings", recordings},
+          {"identified", fit.not_identified.empty()},
+          {"not_identified", fit.not_identified},
           {"stiffness", stiffness},
           {"stiffness_over_mass_m4_per_s2", motion_number_json(fit.stiffness)},
           {"damping_s", optional(fit.material)},
@@ -79,12 +110,7 @@ Json motion_fit_json(const compare::MotionFit& fit, const compare::Scene& scene)
           {"effective_coordinates", fit.effective_coordinates},
           {"rms_m", fit.rms},
           {"given_rms_m", fit.given_rms},
-          {"worst", {{"time_s", fit.worst.at}, {"rms_m", fit.worst.rms}}},
           {"markers", markers},
-          {"times", fit.times},
-          {"from_s", fit.from},
-          {"to_s", fit.to},
-          {"in_motion", fit.in_motion},
           {"terms", fit.terms},
           {"simulations", fit.simulations}};
 }

@@ -102,6 +102,7 @@ py::dict rates_of(const SceneData& data) {
   result["frame_rate"] = rates.frames;
   result["obstacle_rate"] = rates.obstacles;
   result["step_rate"] = rates.steps;
+  result["start"] = data.scene.start ? py::object(py::str(data.scene.start->file)) : py::none();
   return result;
 }
 

@@ -87,8 +87,9 @@ std::pair<std::string, std::string> calibrate_motion(const SharedScene& shared,
                                                      const py::dict& limits) {
   const compare::MarkerMotion recorded = recorded_motion(rows, name);
   const compare::SolveOptions solve = verified_options(limits);
-  const compare::MotionFit found = run_long([&](Signals& /*signals*/) {
-    return compare::fit_motion(shared->scene, recorded, {.solve = solve});
+  const compare::MotionFit found = run_long([&](Signals& signals) {
+    return compare::fit_motion(shared->scene, {recorded}, {.solve = solve},
+                               [&](const std::string&) { signals.throw_if_stopped(); });
   });
   return {cli::motion_fit_text(found, shared->scene),
           cli::json_text(cli::motion_fit_json(found, shared->scene))};

@@ -276,6 +276,7 @@ class TrackRates(Settings):
     _name = "track"
     frame_rate = _setting("frame_rate", "Frames a second [Hz].")
     obstacle_rate = _setting("obstacle_rate", "How often obstacles move [Hz]; None: with every frame.")
+    start = _setting("start", "File of a shape or a recording from which a rod with inertia starts; None: its equilibrium.")
     step_rate = _setting("step_rate", "Steps of the force model a second [Hz].")
 
 

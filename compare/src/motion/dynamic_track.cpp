@@ -10,6 +10,7 @@
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
 #include "motion/frame_clock.hpp"
+#include "motion/motion_misfit.hpp"
 #include "scene/reach.hpp"
 
 namespace dlo::compare {
@@ -74,7 +75,10 @@ DynamicFrame frame_of(const energy_model::MovingFrame& moving, const TrackFrame&
 DynamicTrack dynamic_track(const Scene& scene, const Track& track, const TrackOptions& options,
                            const RodDamping& damping) {
   const FrameClock clock = clock_of(scene, options);
-  const MovingScene moving(scene, clock, damping, options.solve);
+  require_dynamic(scene);
+  const MovingScene moving(
+      scene, clock, damping, options.solve,
+      options.start ? options.start : given_start(scene, clock.time(0), damping, options.solve));
   DynamicTrack result;
   result.damping = damping;
   result.in_motion = moving.in_motion();

@@ -11,21 +11,29 @@
 
 namespace dlo::compare {
 
+std::optional<double> recorded_start_time(const Scene& scene) {
+  if (!scene.start) return std::nullopt;
+  const double first = scene.start->positions.front().time;
+  if (!(scene.start->positions.back().time > first)) return std::nullopt;
+  return first;
+}
+
 FrameClock::FrameClock(const Scene& scene, const MotionPart& part, const TrackRates& rates) {
   const std::optional<TimeSpan> motion = motion_of(scene);
-  if (!motion) {
+  if (!motion && !(scene.start && part.to)) {
     throw InputError(fmt::format(
         "{}: nothing moves (allowed: [[gripper.pose]] or [[obstacle.pose]] with time and "
-        "position, or trajectory = \"file.csv\")",
+        "position, or trajectory = \"file.csv\", or [track] start with an end, --to)",
         scene.file));
   }
-  begin_ = part.from.value_or(motion->begin);
-  end_ = part.to.value_or(motion->end);
+  const std::optional<double> recorded = recorded_start_time(scene);
+  begin_ = part.from ? *part.from : recorded ? *recorded : motion ? motion->begin : 0;
+  end_ = part.to ? *part.to : motion->end;
   if (!(end_ > begin_)) {
-    throw InputError(
-        fmt::format("{}: from {:g} s to {:g} s: no time passes (allowed: to > from; poses are "
-                    "from {:g} s to {:g} s)",
-                    scene.file, begin_, end_, motion->begin, motion->end));
+    const std::string poses =
+        motion ? fmt::format("; poses are from {:g} s to {:g} s", motion->begin, motion->end) : "";
+    throw InputError(fmt::format("{}: from {:g} s to {:g} s: no time passes (allowed: to > from{})",
+                                 scene.file, begin_, end_, poses));
   }
   rate_ = rates.frames;
   obstacle_rate_ = rates.obstacles.value_or(rate_);

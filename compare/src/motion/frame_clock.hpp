@@ -15,6 +15,9 @@ struct MotionPart {
   std::optional<double> to;    ///< [s]; none: the last pose's
 };
 
+/// First time of a recording that Scene::start is [s]; none: it is a shape, or there is none.
+[[nodiscard]] std::optional<double> recorded_start_time(const Scene& scene);
+
 /// When the frames of a motion are.
 class FrameClock {
  public:

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "base/timer.hpp"
 #include "dlo/compare/error.hpp"
@@ -104,26 +105,34 @@ void require_dynamic(const Scene& scene) {
 }
 
 MovingScene::MovingScene(const Scene& scene, const FrameClock& clock, const RodDamping& damping,
-                         const SolveOptions& solve)
+                         const SolveOptions& solve, std::optional<MotionStart> start)
     : file_(scene.file), begin_(clock.time(0)), time_limit_(solve.time_limit) {
   require_dynamic(scene);
   obstacles_ = obstacles_ever_in_reach(scene, clock);
+  energy_model::Equilibrium rest;
   try {
     rod_ = moving_rod(scene, obstacles_, clock, damping);
-    rest_ = energy_model::solve_energy(rod_.problem, {.terms = solve.terms,
-                                                      .max_evaluations = solve.max_evaluations,
-                                                      .time_limit = time_limit_});
+    if (start) {
+      start_ = std::move(*start);
+      in_motion_ = start_.velocities != nullptr;
+      return;
+    }
+    rest = energy_model::solve_energy(rod_.problem, {.terms = solve.terms,
+                                                     .max_evaluations = solve.max_evaluations,
+                                                     .time_limit = time_limit_});
   } catch (const std::invalid_argument& error) {
     refuse(scene.file, error.what());
   }
-  if (!energy_model::succeeded(rest_.status)) {
+  if (!energy_model::succeeded(rest.status)) {
     throw ConvergenceError(fmt::format("{}: at {:g} s the energy model did not converge: {}", file_,
-                                       begin_, rest_.message));
+                                       begin_, rest.message));
   }
+  start_.shape = std::move(rest.sample);
   in_motion_ = begins_in_motion(rod_);
 }
 
-SimulatedMotion MovingScene::run(const std::vector<double>& times, int terms) const {
+SimulatedMotion MovingScene::run(const std::vector<double>& times, int terms,
+                                 double tolerance) const {
   std::vector<double> since;
   since.reserve(times.size());
   for (const double time : times) since.push_back(time - begin_);
@@ -134,9 +143,12 @@ SimulatedMotion MovingScene::run(const std::vector<double>& times, int terms) co
     }
     const Timer timer;
     try {
-      result.moved = energy_model::simulate(
-          rod_, rest_.sample, since,
-          {.terms = tried, .in_motion = in_motion_, .time_limit = time_limit_});
+      result.moved = energy_model::simulate(rod_, start_.shape, since,
+                                            {.terms = tried,
+                                             .tolerance = tolerance,
+                                             .in_motion = in_motion_,
+                                             .velocities = start_.velocities,
+                                             .time_limit = time_limit_});
     } catch (const std::invalid_argument& error) {
       refuse(file_, error.what());
     }

@@ -9,6 +9,7 @@
 #include "dlo/energy_model/dynamics.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "motion/frame_clock.hpp"
+#include "motion/motion_start.hpp"
 
 namespace dlo::compare {
 
@@ -39,20 +40,25 @@ struct SimulatedMotion {
 /// its frame and change their direction, couples, drag of a stream, no mass
 void require_dynamic(const Scene& scene);
 
+/// Tolerance of one step of a simulation, as DynamicsOptions::tolerance.
+inline constexpr double usual_step_tolerance = 1e-7;
+
 /// A scene's rod at the first frame of its motion, with its masses and the ways of its grips and
-/// obstacles: at rest, or where these move in motion as its shapes at rest follow them.
+/// obstacles: as a given start has it, or in equilibrium at rest, or where grips and obstacles move
+/// in motion as its equilibria follow them.
 class MovingScene {
  public:
   /// @throws InputError as require_dynamic(), and if the damping is out of range; ConvergenceError
   /// if there is no shape to begin with
   MovingScene(const Scene& scene, const FrameClock& clock, const RodDamping& damping,
-              const SolveOptions& solve);
+              const SolveOptions& solve, std::optional<MotionStart> start = {});
 
   /// The scene's obstacles that are ever in reach.
   [[nodiscard]] const std::vector<std::size_t>& obstacles() const { return obstacles_; }
   [[nodiscard]] bool in_motion() const { return in_motion_; }
   /// @param times  growing, of the scene [s];  @param terms  0: those that it needs
-  [[nodiscard]] SimulatedMotion run(const std::vector<double>& times, int terms) const;
+  [[nodiscard]] SimulatedMotion run(const std::vector<double>& times, int terms,
+                                    double tolerance = usual_step_tolerance) const;
 
  private:
   std::string file_;
@@ -60,7 +66,7 @@ class MovingScene {
   double time_limit_ = 0;
   std::vector<std::size_t> obstacles_;
   energy_model::MovingRod rod_;
-  energy_model::Equilibrium rest_;
+  MotionStart start_;
   bool in_motion_ = false;
 };
 

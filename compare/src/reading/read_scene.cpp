@@ -4,9 +4,12 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
+#include <utility>
 
 #include "base/display.hpp"
 #include "dlo/compare/error.hpp"
+#include "dlo/compare/shape_file.hpp"
 #include "reading/read_gripper.hpp"
 #include "reading/read_loads.hpp"
 #include "reading/read_obstacle.hpp"
@@ -14,6 +17,8 @@
 #include "scene/read_force_model.hpp"
 #include "toml/scene_keys.hpp"
 #include "toml/strict_table.hpp"
+#include "trajectory/read_markers.hpp"
+#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -34,6 +39,32 @@ std::vector<StrictTable> bounded_tables(StrictTable& table, const char* key, std
   return tables;
 }
 
+/// Rows of a recording, or of a shape, whose points then have time 0.
+std::shared_ptr<const MarkerMotion> read_start(StrictTable& rates, const Scene& scene) {
+  const std::optional<std::string> name = rates.optional_text("start");
+  if (!name) return nullptr;
+  constexpr const char* allowed =
+      "(allowed: a file of points in m beside the scene, as CSV with the columns x,y,z and perhaps "
+      "s, or a recording with the columns time,s,x,y,z)";
+  const std::string text = read_beside(rates, "start", file_of_shape(*name), scene.file, allowed);
+  MarkerMotion start{.file = *name, .positions = {}};
+  try {
+    if (has_marker_columns(text, *name)) {
+      start = parse_markers(text, *name);
+    } else {
+      start.positions = rows_of_shape(parse_shape(text, *name), scene.length);
+    }
+  } catch (const InputError& error) {
+    rates.fail("start", fmt::format("{} {}", error.what(), allowed));
+  }
+  for (const MarkerPosition& at : start.positions) {
+    if (on_rod(at.arc_length, scene.length)) continue;
+    rates.fail("start", fmt::format("a point at s = {:g} m (allowed: 0 to the rod's {:g} m)",
+                                    at.arc_length, scene.length));
+  }
+  return std::make_shared<const MarkerMotion>(std::move(start));
+}
+
 void read_track(StrictTable& rates, Scene& scene) {
   rates.only(scene_keys("track"));
   const auto rate = [&rates](const char* key) {
@@ -42,6 +73,7 @@ void read_track(StrictTable& rates, Scene& scene) {
   scene.track.frames = rate("frame_rate").value_or(scene.track.frames);
   scene.track.obstacles = rate("obstacle_rate");
   scene.track.steps = rate("step_rate").value_or(scene.track.steps);
+  scene.start = read_start(rates, scene);
   rates.finish();
 }
 

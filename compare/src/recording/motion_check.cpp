@@ -9,6 +9,7 @@
 #include "base/number.hpp"
 #include "dlo/compare/error.hpp"
 #include "motion/dynamic_track.hpp"
+#include "motion/motion_misfit.hpp"
 #include "motion/track.hpp"
 #include "recording/gripper_causes.hpp"
 #include "recording/lag_search.hpp"
@@ -63,7 +64,7 @@ struct Models {
 
 TrackOptions track_options(const Scene& scene, const RecordedTimes& times,
                            const MotionCheckRequest& request) {
-  const double from = request.from.value_or(times.first);
+  const double from = request.from.value_or(recorded_start_time(scene).value_or(times.first));
   if (!(from <= times.first)) {
     throw InputError(
         fmt::format("--from {:g}: after the recording's first time (allowed: up to {:g} s)", from,
@@ -102,9 +103,16 @@ std::string stop_text(const std::optional<TrackStop>& stop) {
   return stop ? fmt::format("stopped at {:g} s: {}", stop->time, stop->why) : "has too few frames";
 }
 
-void add_inertia(const Scene& scene, const Track& at_rest, const MotionCheckRequest& request,
-                 double last, Models& models) {
+/// The rod with inertia: without a start in the scene, nor a time at which it begins in
+/// equilibrium, from the recording's own start.
+void add_inertia(const Scene& scene, const MarkerMotion& recorded, const Track& at_rest,
+                 const MotionCheckRequest& request, Models& models) {
+  const double last = recorded.positions.back().time;
   try {
+    const bool is_judged = request.model == MotionModel::with_inertia;
+    if (is_judged && !scene.start && !request.from) {
+      models.options.start = recorded_start(scene, recorded, request.damping, request.solve);
+    }
     const DynamicTrack moving = dynamic_track(scene, at_rest, models.options, request.damping);
     models.with_inertia = motion_model(
         moving.frames, [](const DynamicFrame& frame) { return frame.points; }, scene,
@@ -117,15 +125,16 @@ void add_inertia(const Scene& scene, const Track& at_rest, const MotionCheckRequ
   }
 }
 
-Models run_models(const Scene& scene, const RecordedTimes& times, const MotionCheckRequest& request,
-                  const Progress& progress) {
+Models run_models(const Scene& scene, const MarkerMotion& recorded,
+                  const MotionCheckRequest& request, const Progress& progress) {
+  const RecordedTimes times = times_of(scene, recorded);
   Models models{.options = track_options(scene, times, request)};
   if (request.model == MotionModel::with_inertia) require_dynamic(scene);
   const Track at_rest = track(scene, models.options, progress);
   models.at_rest = motion_model(
       at_rest.frames, [](const TrackFrame& frame) { return frame.shape.points; }, scene,
       models.options, times.last);
-  add_inertia(scene, at_rest, request, times.last, models);
+  add_inertia(scene, recorded, at_rest, request, models);
   if (!models.of(request.model)) {
     throw ConvergenceError(fmt::format(
         "{}: the rod {}", scene.file,
@@ -256,8 +265,7 @@ MotionCheck check_motion(const Scene& scene, const MarkerMotion& recorded,
         "a tolerance of deflection: a recorded motion has no single one (allowed: a share of the "
         "length such as 1%, or a length such as \"2 mm\")");
   }
-  const RecordedTimes times = times_of(scene, recorded);
-  const Models models = run_models(scene, times, request, progress);
+  const Models models = run_models(scene, recorded, request, progress);
   MotionCheck check{.scene = scene,
                     .file = recorded.file,
                     .model = request.model,

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "dlo/compare/progress.hpp"
 #include "dlo/compare/scene.hpp"
 #include "motion/moving_scene.hpp"
 #include "trajectory/read_markers.hpp"
@@ -24,21 +25,34 @@ struct MotionNumber {
   double value = 0;
   double low = 0;
   double high = 0;
+  bool identified = true;  ///< whether the interval is narrower than a factor of 100
 };
 
-/// One marker, or one time, of a recorded motion.
+/// One marker of a recorded motion.
 struct MarkerError {
-  double at = 0;   ///< arc length [m], or time [s]
+  double at = 0;   ///< arc length [m]
   double rms = 0;  ///< distance from the moving rod [m]
 };
 
-/// A moving rod beside its recording.
-struct MotionFit {
+/// Recording to which a moving rod was fitted.
+struct FittedRecording {
   std::string file;
-  std::size_t times = 0, markers = 0;
+  std::size_t times = 0;
   double from = 0, to = 0;  ///< [s]
-  bool in_motion = false;   ///< as DynamicTrack's
+  double rms = 0;           ///< distance of markers and rod [m]
+  double worst_time = 0;    ///< time at which it is largest [s]
+  double worst_rms = 0;     ///< distance at that time [m]
+  /// Whether the rod starts with a shape and velocities that are fitted; else it starts in
+  /// equilibrium, because the markers are too few.
+  bool starts_as_recorded = false;
+};
+
+/// Result of a fit of a moving rod to recordings.
+struct MotionFit {
+  std::vector<FittedRecording> recordings;
   int terms = 0;
+  /// Why the stiffness is not identified; empty: it is.
+  std::string not_identified;
   MotionNumber stiffness;        ///< EI / (rho A), outside sections [m^4/s^2]
   MotionNumber scene_stiffness;  ///< Scene::stiffness() that goes with the scene's mass
   std::optional<MotionNumber> material, air, quadratic;  ///< as RodDamping's, of the scene's mass
@@ -50,17 +64,18 @@ struct MotionFit {
   /// So many independent ones know as much: the residuals of a marker are correlated in time.
   double effective_coordinates = 0;
   std::vector<MarkerError> by_marker;  ///< by arc length
-  MarkerError worst;                   ///< of the times
   int simulations = 0;
 };
 
-/// Stiffness over mass and damping of the rod, whose simulation comes nearest to a recording of
-/// markers on it (least squares of their coordinates, by GSL's trust region). The rod begins at the
-/// first time of the recording, in motion as its shapes at rest follow the grips.
-/// @param scene  whose grippers have the trajectories that moved them
-/// @throws InputError if the scene cannot move so, or the recording is not of it; ConvergenceError
+/// Finds stiffness over mass and damping of the rod, whose simulation comes nearest to recordings
+/// of markers on it (least squares of their coordinates over the logarithms of the numbers). The
+/// rod starts at the first time of a recording with a shape and velocities that are fitted as well
+/// (MotionMisfit). A first window is fitted first, then twice as much, up to all.
+/// @param scene   whose grippers have the trajectories that moved them
+/// @param stages  called before each simulation
+/// @throws InputError if the scene cannot move so, or a recording is not of it; ConvergenceError
 /// if no simulation comes to its end
-[[nodiscard]] MotionFit fit_motion(const Scene& scene, const MarkerMotion& recorded,
-                                   const MotionFitOptions& options);
+[[nodiscard]] MotionFit fit_motion(const Scene& scene, const std::vector<MarkerMotion>& recordings,
+                                   const MotionFitOptions& options, const Stages& stages = {});
 
 }  // namespace dlo::compare

@@ -34,7 +34,7 @@ const std::vector<SceneTable>& scene_tables() {
       {"force_model",
        {"bending_rule", "bookkeeping", "c_F", "c_b", "c_c", "c_h", "design_curvature", "joint_law",
         "l_s", "law", "point_weight", "points", "stepper"}},
-      {"track", {"frame_rate", "obstacle_rate", "step_rate"}}};
+      {"track", {"frame_rate", "obstacle_rate", "start", "step_rate"}}};
   return tables;
 }
 

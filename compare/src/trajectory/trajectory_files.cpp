@@ -32,8 +32,10 @@ std::vector<std::string> trajectory_files(const std::string& scene_file) {
   const std::optional<toml::table> document = document_of(scene_file);
   std::vector<std::string> files;
   if (!document) return files;
-  const auto points = (*document)["rod"]["rest_shape"].value_exact<std::string>();
-  if (points) files.push_back(path_beside(*points, scene_file));
+  for (const auto& points : {(*document)["rod"]["rest_shape"].value_exact<std::string>(),
+                             (*document)["track"]["start"].value_exact<std::string>()}) {
+    if (points) files.push_back(path_beside(*points, scene_file));
+  }
   for (const char* moving : {"gripper", "obstacle"}) {
     const toml::array* tables = (*document)[moving].as_array();
     if (tables == nullptr) continue;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "../../says.hpp"
@@ -155,6 +156,46 @@ TEST_F(MotionCommand, CalibrateFindsTheStiffnessThatMovedTheMarkers) {
   EXPECT_NEAR(document.at("damping_s").at("value"), 0.01, 1e-3);
   expect_error(calibrate + "--format csv", 2, {"--format csv: not available with --motion"});
   expect_error(calibrate + "-o found.toml", 2, {"--format toml: not available with --motion"});
+}
+
+// A point that the clamp carries moves alike with every stiffness.
+TEST_F(MotionCommand, CalibrateReportsAStiffnessThatIsNotIdentifiedWithExitStatusThree) {
+  write("clamped.csv",
+        "time,s,x,y,z\n0.02,0,0.0013,0.0003,0\n0.1,0,0.02593,0.00519,0\n0.2,0,0.0741,0.0148,0\n");
+  const std::string calibrate =
+      words({"calibrate", path("swung.toml"), "--motion", path("clamped.csv")});
+  const Outcome outcome = run(calibrate);
+  EXPECT_EQ(outcome.status, 3) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("EI          not identified: "));
+  const json document = json::parse(run(calibrate + " --format json").out);
+  EXPECT_FALSE(document.at("identified").get<bool>());
+  EXPECT_EQ(document.at("damping_s").at("value"), nullptr);
+}
+
+TEST_F(MotionCommand, ARecordingIsAStartForTrackAndForCheck) {
+  write_markers("markers.csv");
+  const std::string released = swung(0.02) + "[track]\nstart = \"start.csv\"\n";
+  // The recording from its fifth row on, from which the motion goes on as it did.
+  std::string later = "time,s,x,y,z\n";
+  std::istringstream rows(read(path("markers.csv")));
+  std::string row;
+  while (std::getline(rows, row)) {
+    if (row[0] != 't' && std::stod(row) >= 0.1) later += row + "\n";
+  }
+  write("start.csv", later);
+  write("released.toml", released);
+  const Outcome judged = run(words({"check", path("released.toml"), "--motion", path("start.csv"),
+                                    "--dynamic --damping 0.01 --tolerance 0.2%"}));
+  EXPECT_EQ(judged.status, 0) << judged.out << judged.err;
+  const json followed = json_of(words(
+      {"track", path("released.toml"), "--no-force --dynamic --damping 0.01 --frame-rate 40"}));
+  EXPECT_EQ(followed.at("dynamic").at("frames").at(0).at("time_s"), 0.1);
+  write("start.csv", "time,s,x,y,z\n0,0.5,0,0,0\n");
+  expect_error(words({"track", path("released.toml"), "--dynamic"}), 2,
+               {"track.start", "s = 0.5 m", "allowed: 0 to the rod's 0.4 m"});
+  write("released.toml", swung(0.02) + "[track]\nstart = \"none.csv\"\n");
+  expect_error(words({"track", path("released.toml"), "--dynamic"}), 2,
+               {"track.start", "no such file beside the scene"});
 }
 
 // After the scene's motion, and within less than any time that counts.

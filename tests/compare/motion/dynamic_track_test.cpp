@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -397,6 +398,60 @@ TEST(DynamicTrack, RigidFloorsThatStandOrMoveCarryTheRodAsAtRest) {
     forces.push_back(last.obstacles.front());
   }
   EXPECT_LT((forces[0] - forces[1]).norm(), 1e-3 * forces[0].norm());
+}
+
+/// A straight cantilever of 1 m, 1 N m^2 and 1 kg/m, which a weight of so much per length bends.
+Scene released_rod(double weight) {
+  Scene scene =
+      parse_scene(fmt::format("gravity = [0, {}, 0]\n[rod]\nlength = 1\nbending_stiffness = 1\n"
+                              "mass_per_length = 1\n[[gripper]]\nat = 0\nposition = [0, 0, 0]\n"
+                              "direction = [1, 0, 0]\n",
+                              -weight),
+                  "released.toml");
+  MarkerMotion straight{.file = "straight.csv", .positions = {}};
+  for (int i = 0; i <= 10; ++i) straight.positions.push_back({0, 0.1 * i, {0.1 * i, 0, 0}});
+  scene.start = std::make_shared<const MarkerMotion>(straight);
+  return scene;
+}
+
+/// Deflection of the tip of the same by bending waves: the sum over the roots b of cosh b cos b =
+/// -1 of +-4 s w / b^5 (1 - cos b^2 t), s = (sinh b - sin b) / (cosh b + cos b).
+double deflection_of_tip(double weight, double time) {
+  double sum = 0;
+  double sign = 1;
+  for (const double b : {1.8751040687119612, 4.6940911329741746, 7.8547574382376126,
+                         10.995540734875467, 14.137168391046471}) {
+    const double s = (std::sinh(b) - std::sin(b)) / (std::cosh(b) + std::cos(b));
+    sum += sign * 4 * s * weight / std::pow(b, 5) * (1 - std::cos(b * b * time));
+    sign = -sign;
+  }
+  return sum;
+}
+
+// Of the deflection the modes left out are 1e-5, and the large rotation its square.
+TEST(DynamicTrack, ReleasesTheRodFromAGivenShape) {
+  constexpr double weight = 0.01;
+  TrackOptions options = frames_at(40);
+  options.to = 3;
+  const DynamicTrack released = moved(released_rod(weight), options, {});
+  ASSERT_EQ(released.frames.size(), 121U);
+  for (const DynamicFrame& frame : released.frames) {
+    EXPECT_NEAR(-frame.points(1, frame.points.cols() - 1), deflection_of_tip(weight, frame.time),
+                1e-4 * weight)
+        << frame.time;
+  }
+}
+
+TEST(DynamicTrack, RefusesAStartWithTooFewPointsOrWithoutAnEnd) {
+  Scene scene = released_rod(1);
+  TrackOptions options = frames_at(40);
+  EXPECT_TRUE(says(error_of<InputError>([&] { (void)track(scene, options); }), {"nothing moves", "--to"}));
+  options.to = 1;
+  MarkerMotion few = *scene.start;
+  few.positions.resize(3);
+  scene.start = std::make_shared<const MarkerMotion>(few);
+  EXPECT_TRUE(says(error_of<InputError>([&] { (void)moved(scene, options, {}); }),
+                   {"track.start = straight.csv", "too few points", "allowed"}));
 }
 
 }  // namespace

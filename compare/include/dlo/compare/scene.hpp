@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -186,7 +187,11 @@ struct Scene {
   std::vector<Obstacle> obstacles;                 ///< may be empty
   ForceModelSettings force_model;                  ///< as the file has it
   TrackRates track;                                ///< as the file has it
-  std::optional<ModelChain> model;                 ///< that the scene was made from
+  /// Points of the rod from which a rod with inertia starts ([track] start): at one time those of a
+  /// shape that is released from rest, at more a recording, whose velocities it has; null: the rod
+  /// starts from its equilibrium.
+  std::shared_ptr<const MarkerMotion> start;
+  std::optional<ModelChain> model;  ///< that the scene was made from
 
   [[nodiscard]] double cross_section() const;  ///< A [m^2]; 0 if its sizes are not known
   /// I / A of it about d1 and d2 [m^2]; 0 likewise.

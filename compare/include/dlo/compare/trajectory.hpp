@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace dlo::compare {
@@ -15,6 +16,19 @@ struct Pose {
 
   /// In every field.
   bool operator==(const Pose&) const = default;
+};
+
+/// Position of one marker on the rod at one time.
+struct MarkerPosition {
+  double time = 0;                                     ///< [s]
+  double arc_length = 0;                               ///< of the marker [m]
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
+};
+
+/// A recorded motion.
+struct MarkerMotion {
+  std::string file;                       ///< for messages
+  std::vector<MarkerPosition> positions;  ///< by time, then by arc length; one or more
 };
 
 /// A smooth way through poses; nothing moves before the first and after the last of them, where it

@@ -1,0 +1,369 @@
+#include "motion/motion_misfit.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "dlo/compare/error.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Differences of logarithms, of angles [rad], and of angular rates times the natural time. With
+/// ten times as much, derivatives of combinations of modes that nearly cancel are too inexact for
+/// the least squares to converge.
+constexpr double parameter_difference = 3e-4;
+/// Tolerance of a step of the simulation: a few hundred steps are then off by less than a tenth of
+/// a millimetre per metre.
+constexpr double fit_tolerance = 1e-6;
+/// Smallest standard deviation of a coordinate, divided by the rod length: error of the simulation.
+constexpr double least_noise = 1e-6;
+/// A number is looked for within this factor of where it begins.
+constexpr double widest_factor = 1e4;
+/// Standard deviation of a logarithm before anything is simulated.
+constexpr double prior_log = 10;
+
+/// Rows of each time. @throws InputError as MotionMisfit's constructor
+void require_recording(const Scene& scene, const MarkerMotion& recorded) {
+  for (const MarkerPosition& at : recorded.positions) {
+    if (on_rod(at.arc_length, scene.length)) continue;
+    throw InputError(fmt::format("{}: a marker at s = {:g} m (allowed: 0 to the rod's {:g} m)",
+                                 recorded.file, at.arc_length, scene.length));
+  }
+  if (!(recorded.positions.back().time > recorded.positions.front().time)) {
+    throw InputError(recorded.file + ": one time only (allowed: two or more)");
+  }
+}
+
+bool holds_first_tangent(const Scene& scene) {
+  return std::ranges::any_of(scene.grippers, [](const Gripper& gripper) {
+    return gripper.at == 0 && gripper.direction.has_value();
+  });
+}
+
+}  // namespace
+
+MotionMisfit::MotionMisfit(const Scene& scene, const std::vector<MarkerMotion>& recordings,
+                           std::vector<MotionParameter> fitted, const RodDamping& known,
+                           const SolveOptions& solve, Stages stages)
+    : scene_(scene),
+      fitted_(std::move(fitted)),
+      known_(known),
+      solve_(solve),
+      stages_(std::move(stages)),
+      natural_time_(
+          std::sqrt(scene.mass() * std::pow(scene.length, 3) / scene.softer_bending_stiffness())) {
+  const double drag = scene.mass() / scene.length / natural_time_;
+  // What vibrates in the natural time then loses some percent in each period.
+  constexpr double light = 0.02;
+  const auto usual = [](double given, double otherwise) { return given > 0 ? given : otherwise; };
+  for (const MotionParameter what : fitted_) {
+    switch (what) {
+      case MotionParameter::stiffness:
+        first_.push_back(1);
+        break;
+      case MotionParameter::material:
+        first_.push_back(usual(known.material, light * natural_time_));
+        break;
+      case MotionParameter::air:
+        first_.push_back(usual(known.air, light * drag));
+        break;
+      case MotionParameter::quadratic:
+        first_.push_back(usual(known.quadratic, light * drag * natural_time_ / scene.length));
+        break;
+    }
+  }
+  Eigen::Index next = physical();
+  for (const MarkerMotion& motion : recordings) {
+    require_recording(scene, motion);
+    Recorded recorded{
+        .motion = &motion, .frames = {}, .used = 0, .deviation = {}, .first_mode = next};
+    for (std::size_t i = 0; i < motion.positions.size(); ++i) {
+      const double time = motion.positions[i].time;
+      if (recorded.frames.empty() || time > recorded.frames.back().time) {
+        recorded.frames.push_back({time, i, i});
+      }
+      recorded.frames.back().end = i + 1;
+    }
+    duration_ = std::max(duration_, recorded.frames.back().time - recorded.frames.front().time);
+    if (const auto start = smooth_start(scene, motion, recorded.frames.front().time)) {
+      recorded.deviation.emplace(*start, scene.length, holds_first_tangent(scene));
+      next += StartDeviation::size();
+    }
+    recorded_.push_back(std::move(recorded));
+  }
+  restrict_to(duration_);
+}
+
+void MotionMisfit::restrict_to(double seconds) {
+  for (Recorded& recorded : recorded_) {
+    const double last = recorded.frames.front().time + seconds * (1 + 1e-12);
+    const auto is_used = [&](const Frame& frame) { return frame.time <= last; };
+    recorded.used = std::max<std::size_t>(
+        2, static_cast<std::size_t>(std::ranges::count_if(recorded.frames, is_used)));
+  }
+}
+
+Eigen::Index MotionMisfit::parameters() const {
+  Eigen::Index count = physical();
+  for (const Recorded& recorded : recorded_) {
+    count += recorded.deviation ? StartDeviation::size() : 0;
+  }
+  return count;
+}
+
+Eigen::Index MotionMisfit::coordinates() const {
+  Eigen::Index count = 0;
+  for (const Recorded& recorded : recorded_) count += recorded.coordinates();
+  return count;
+}
+
+double MotionMisfit::value(std::size_t number, double log) const {
+  const double most = std::log(widest_factor);
+  return first_[number] * std::exp(std::clamp(log, -most, most));
+}
+
+bool MotionMisfit::at_bound(double log) {
+  constexpr double last = 0.99;
+  return std::abs(log) >= last * std::log(widest_factor);
+}
+
+RodDamping MotionMisfit::damping(const Eigen::VectorXd& parameters) const {
+  RodDamping result = known_;
+  for (std::size_t i = 0; i < fitted_.size(); ++i) {
+    const double at = value(i, parameters[static_cast<Eigen::Index>(i)]);
+    if (fitted_[i] == MotionParameter::material) result.material = at;
+    if (fitted_[i] == MotionParameter::air) result.air = at;
+    if (fitted_[i] == MotionParameter::quadratic) result.quadratic = at;
+  }
+  return result;
+}
+
+Scene MotionMisfit::scene_with(const Eigen::VectorXd& parameters) const {
+  Scene scene = scene_;
+  for (std::size_t i = 0; i < fitted_.size(); ++i) {
+    if (fitted_[i] != MotionParameter::stiffness) continue;
+    scene.scale_modulus(value(i, parameters[static_cast<Eigen::Index>(i)]));
+  }
+  return scene;
+}
+
+std::optional<MotionStart> MotionMisfit::start(const Eigen::VectorXd& parameters,
+                                               std::size_t recording) const {
+  const Recorded& recorded = recorded_[recording];
+  if (!recorded.deviation) return std::nullopt;
+  Eigen::VectorXd modes = parameters.segment(recorded.first_mode, StartDeviation::size());
+  // Rates are counted in the natural time.
+  modes.tail(StartDeviation::size() / 2) /= natural_time_;
+  return recorded.deviation->with(modes);
+}
+
+Eigen::VectorXd MotionMisfit::simulated(const Scene& scene, const RodDamping& damping,
+                                        const Eigen::VectorXd& parameters, std::size_t recording) {
+  const Recorded& recorded = recorded_[recording];
+  ++simulations_;
+  std::vector<double> times;
+  for (std::size_t k = 0; k < recorded.used; ++k) times.push_back(recorded.frames[k].time);
+  if (stages_) {
+    stages_(fmt::format("simulation {}, {:.3g} s", simulations_, times.back() - times.front()));
+  }
+  const FrameClock clock(
+      scene, {times.front(), times.back()},
+      {.frames = static_cast<double>(recorded.used - 1) / (times.back() - times.front())});
+  const MovingScene moving(scene, clock, damping, solve_, start(parameters, recording));
+  const SimulatedMotion run =
+      moving.run(times, terms_, recorded.deviation ? fit_tolerance : usual_step_tolerance);
+  Eigen::VectorXd result = Eigen::VectorXd::Constant(recorded.coordinates(), scene.length);
+  if (run.moved.frames.size() < times.size()) {
+    stopped_ = run.why_stopped();
+    return result;
+  }
+  terms_ = run.moved.terms;
+  const std::vector<MarkerPosition>& positions = recorded.motion->positions;
+  for (std::size_t k = 0; k < recorded.used; ++k) {
+    std::vector<double> s;
+    for (std::size_t i = recorded.frames[k].begin; i < recorded.frames[k].end; ++i) {
+      s.push_back(*on_rod(positions[i].arc_length, scene.length));
+    }
+    const Eigen::Matrix3Xd points = run.moved.frames[k].sample(s).points;
+    const Eigen::Matrix3Xd moved = points - run.moved.frames.front().sample(s).points;
+    movement_ = std::max(movement_, moved.colwise().norm().maxCoeff());
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      const std::size_t row = recorded.frames[k].begin + i;
+      result.segment<3>(static_cast<Eigen::Index>(3 * row)) =
+          points.col(static_cast<Eigen::Index>(i)) - positions[row].position;
+    }
+  }
+  return result;
+}
+
+Eigen::VectorXd MotionMisfit::residuals(const Eigen::VectorXd& parameters) {
+  stopped_.clear();
+  movement_ = 0;
+  const Scene scene = scene_with(parameters);
+  const RodDamping damped = damping(parameters);
+  Eigen::VectorXd result(coordinates());
+  Eigen::Index row = 0;
+  for (std::size_t i = 0; i < recorded_.size(); ++i) {
+    const Eigen::VectorXd part = simulated(scene, damped, parameters, i);
+    result.segment(row, part.size()) = part;
+    row += part.size();
+  }
+  return result;
+}
+
+Eigen::MatrixXd MotionMisfit::derivatives(const Eigen::VectorXd& parameters,
+                                          const Eigen::VectorXd& here, Eigen::Index first) {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(here.size(), parameters.size());
+  const auto beside = [&](Eigen::Index i) {
+    Eigen::VectorXd moved = parameters;
+    moved[i] += parameter_difference;
+    return moved;
+  };
+  for (Eigen::Index i = first; i < physical(); ++i) {
+    result.col(i) = (residuals(beside(i)) - here) / parameter_difference;
+  }
+  const Scene scene = scene_with(parameters);
+  const RodDamping damped = damping(parameters);
+  Eigen::Index row = 0;
+  for (std::size_t r = 0; r < recorded_.size(); ++r) {
+    const Eigen::Index rows = recorded_[r].coordinates();
+    const Eigen::Index modes = recorded_[r].deviation ? StartDeviation::size() : 0;
+    for (Eigen::Index k = 0; k < modes; ++k) {
+      const Eigen::Index i = recorded_[r].first_mode + k;
+      result.col(i).segment(row, rows) =
+          (simulated(scene, damped, beside(i), r) - here.segment(row, rows)) / parameter_difference;
+    }
+    row += rows;
+  }
+  return result;
+}
+
+double MotionMisfit::least_variance() const { return std::pow(least_noise * scene_.length, 2); }
+
+Eigen::VectorXd MotionMisfit::prior() const {
+  Eigen::VectorXd result = Eigen::VectorXd::Constant(parameters(), 1 / (prior_log * prior_log));
+  for (const Recorded& recorded : recorded_) {
+    if (!recorded.deviation) continue;
+    Eigen::VectorXd deviations = recorded.deviation->deviations();
+    deviations.tail(deviations.size() / 2) *= natural_time_;
+    result.segment(recorded.first_mode, deviations.size()) = deviations.cwiseAbs2().cwiseInverse();
+  }
+  return result;
+}
+
+namespace {
+
+/// Sum of squares and prior about one point, with the derivatives of that point or an earlier one.
+class NormalEquations {
+ public:
+  NormalEquations(const LeastSquares& at, const Eigen::VectorXd& prior, Eigen::Index free)
+      : normal_(at.derivatives.transpose() * at.derivatives / at.variance),
+        gradient_(at.derivatives.transpose() * at.residuals / at.variance +
+                  prior.cwiseProduct(at.parameters)),
+        prior_(prior) {
+    gradient_.head(free).setZero();
+  }
+  [[nodiscard]] Eigen::VectorXd step(double marquardt) const {
+    Eigen::MatrixXd matrix = normal_;
+    matrix.diagonal() *= 1 + marquardt;
+    matrix.diagonal() += prior_;
+    return -matrix.ldlt().solve(gradient_);
+  }
+  /// Twice the decrease of the sum of squares, in variances, that a full step predicts.
+  [[nodiscard]] double decrease() const { return -gradient_.dot(step(0)); }
+
+ private:
+  Eigen::MatrixXd normal_;
+  Eigen::VectorXd gradient_;
+  const Eigen::VectorXd& prior_;
+};
+
+}  // namespace
+
+LeastSquares least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start, int most_steps,
+                           Eigen::Index free) {
+  LeastSquares at{.parameters = start, .residuals = misfit.residuals(start), .derivatives = {}};
+  if (!misfit.stopped().empty()) {
+    throw ConvergenceError("the moving rod stopped: " + misfit.stopped());
+  }
+  const Eigen::VectorXd prior = misfit.prior();
+  const auto freedom =
+      std::max<double>(1, static_cast<double>(at.residuals.size() - start.size() + free));
+  // A step that changes no parameter by more than a seventh of its standard deviation.
+  constexpr double small = 0.02;
+  // Derivatives are kept as long as the predicted decrease falls by this in a step.
+  constexpr double kept = 0.25;
+  constexpr int most_tries = 8;
+  // Of Marquardt; none at first, because shapes and velocities that no marker tells apart are
+  // damped by the prior alone.
+  double damping = 0;
+  constexpr double first_damping = 1e-4;
+  double before = 0;
+  bool renew = true;
+  for (int step = 0;; ++step) {
+    at.variance = std::max(at.residuals.squaredNorm() / freedom, misfit.least_variance());
+    if (renew) at.derivatives = misfit.derivatives(at.parameters, at.residuals, free);
+    const NormalEquations equations(at, prior, free);
+    const double decrease = equations.decrease();
+    at.converged = decrease < small;
+    if (at.converged || step == most_steps) return at;
+    const bool stale = !renew;
+    renew = stale && !(decrease < kept * before);
+    if (renew) {
+      before = 0;
+      continue;
+    }
+    before = decrease;
+    const auto sum_of = [&](const Eigen::VectorXd& residuals, const Eigen::VectorXd& parameters) {
+      return residuals.squaredNorm() / at.variance + parameters.dot(prior.cwiseProduct(parameters));
+    };
+    const double sum = sum_of(at.residuals, at.parameters);
+    bool improved = false;
+    for (int attempt = 0; attempt < most_tries && !improved; ++attempt) {
+      const Eigen::VectorXd parameters = at.parameters + equations.step(damping);
+      const Eigen::VectorXd residuals = misfit.residuals(parameters);
+      improved = misfit.stopped().empty() && sum_of(residuals, parameters) < sum;
+      if (improved) {
+        at.parameters = parameters;
+        at.residuals = residuals;
+      } else if (stale) {
+        break;
+      }
+      damping = improved ? 0 : std::max(first_damping, 10 * damping);
+    }
+    if (!improved && !stale) return at;
+    renew = !improved;
+  }
+}
+
+std::optional<MotionStart> recorded_start(const Scene& scene, const MarkerMotion& recording,
+                                          const RodDamping& damping, const SolveOptions& solve) {
+  const std::vector<MarkerMotion> recordings{recording};
+  MotionMisfit misfit(scene, recordings, {}, damping, solve);
+  if (misfit.parameters() == 0) return std::nullopt;
+  constexpr double window = 1;  // [s]
+  constexpr int most_steps = 6;
+  misfit.restrict_to(std::max(window, misfit.natural_time()));
+  const LeastSquares found =
+      least_squares(misfit, Eigen::VectorXd::Zero(misfit.parameters()), most_steps);
+  return misfit.start(found.parameters, 0);
+}
+
+std::optional<MotionStart> given_start(const Scene& scene, double begin, const RodDamping& damping,
+                                       const SolveOptions& solve) {
+  if (!scene.start) return std::nullopt;
+  std::optional<MotionStart> start = recorded_start_time(scene)
+                                         ? recorded_start(scene, *scene.start, damping, solve)
+                                         : smooth_start(scene, *scene.start, begin);
+  if (start) return start;
+  throw InputError(fmt::format(
+      "{}: track.start = {}: too few points for a shape (allowed: four or more with those that "
+      "grippers hold, in each half of the rod)",
+      scene.file, scene.start->file));
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,138 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/progress.hpp"
+#include "dlo/compare/scene.hpp"
+#include "motion/motion_start.hpp"
+#include "motion/moving_scene.hpp"
+
+namespace dlo::compare {
+
+/// Physical parameter that a fit to a recorded motion finds.
+enum class MotionParameter { stiffness, material, air, quadratic };
+
+/// Simulations of one scene's rod against recordings of its markers. The parameters of the fit are
+/// logarithms of physical parameters divided by their first guesses, then for each recording the
+/// modes (StartDeviation) by which the rod's start deviates from the smooth start through the first
+/// frames. A recording with too few markers for that (smooth_start()) starts in equilibrium.
+class MotionMisfit {
+ public:
+  /// @param fitted  physical parameters to fit, may be empty
+  /// @param known   damping, of parameters that are fitted the first guess if > 0
+  /// @throws InputError if a marker is not on the rod, or a recording has one time only
+  MotionMisfit(const Scene& scene, const std::vector<MarkerMotion>& recordings,
+               std::vector<MotionParameter> fitted, const RodDamping& known,
+               const SolveOptions& solve, Stages stages = {});
+
+  /// Restricts the recordings to so many seconds from their first time.
+  void restrict_to(double seconds);
+  /// Largest duration of a recording [s].
+  [[nodiscard]] double duration() const { return duration_; }
+  /// sqrt(m l^3 / EI) of the scene as given [s].
+  [[nodiscard]] double natural_time() const { return natural_time_; }
+
+  [[nodiscard]] const std::vector<MotionParameter>& fitted() const { return fitted_; }
+  /// Number of physical parameters, which are the first of all.
+  [[nodiscard]] Eigen::Index physical() const { return std::ssize(fitted_); }
+  [[nodiscard]] Eigen::Index parameters() const;
+  /// Coordinates of the markers within the restriction.
+  [[nodiscard]] Eigen::Index coordinates() const;
+  [[nodiscard]] int simulations() const { return simulations_; }
+  [[nodiscard]] int terms() const { return terms_; }
+  /// Whether a recording has the start that is fitted to it.
+  [[nodiscard]] bool starts_as_recorded(std::size_t recording) const {
+    return recorded_[recording].deviation.has_value();
+  }
+  /// Largest distance of a marker of the last simulations from where it started [m].
+  [[nodiscard]] double movement() const { return movement_; }
+  /// Why one of the last simulations ended early; empty: none did.
+  [[nodiscard]] const std::string& stopped() const { return stopped_; }
+
+  /// Returns a physical parameter [SI]; of the stiffness its ratio to the scene's.
+  [[nodiscard]] double value(std::size_t number, double log) const;
+  /// Whether the logarithm of a physical parameter ends its range.
+  [[nodiscard]] static bool at_bound(double log);
+  [[nodiscard]] RodDamping damping(const Eigen::VectorXd& parameters) const;
+  /// Start of a recording; none: in equilibrium.
+  [[nodiscard]] std::optional<MotionStart> start(const Eigen::VectorXd& parameters,
+                                                 std::size_t recording) const;
+
+  /// Simulated less recorded coordinates [m]; the rod length where a simulation ends early.
+  [[nodiscard]] Eigen::VectorXd residuals(const Eigen::VectorXd& parameters);
+  /// Derivatives of the residuals by differences. @param here  residuals at the parameters
+  /// @param first  column from which derivatives are computed; those before are zero
+  [[nodiscard]] Eigen::MatrixXd derivatives(const Eigen::VectorXd& parameters,
+                                            const Eigen::VectorXd& here, Eigen::Index first = 0);
+  /// Inverse variances of the parameters before anything is simulated: weak of the physical ones,
+  /// of the modes by the errors of the smooth start.
+  [[nodiscard]] Eigen::VectorXd prior() const;
+  /// Variance of a coordinate by errors of the simulation alone [m^2].
+  [[nodiscard]] double least_variance() const;
+
+ private:
+  struct Frame {
+    double time = 0;
+    std::size_t begin = 0, end = 0;  ///< of MarkerMotion::positions
+  };
+  struct Recorded {
+    const MarkerMotion* motion = nullptr;
+    std::vector<Frame> frames;
+    std::size_t used = 0;  ///< frames within the restriction
+    std::optional<StartDeviation> deviation;
+    Eigen::Index first_mode = 0;  ///< among the parameters
+    [[nodiscard]] Eigen::Index coordinates() const {
+      return static_cast<Eigen::Index>(3 * frames[used - 1].end);
+    }
+  };
+
+  [[nodiscard]] Eigen::VectorXd simulated(const Scene& scene, const RodDamping& damping,
+                                          const Eigen::VectorXd& parameters, std::size_t recording);
+  [[nodiscard]] Scene scene_with(const Eigen::VectorXd& parameters) const;
+
+  const Scene& scene_;
+  std::vector<MotionParameter> fitted_;
+  RodDamping known_;
+  SolveOptions solve_;
+  Stages stages_;
+  std::vector<Recorded> recorded_;
+  std::vector<double> first_;
+  double natural_time_ = 0, duration_ = 0;
+  int simulations_ = 0, terms_ = 0;
+  double movement_ = 0;
+  std::string stopped_;
+};
+
+/// Parameters at which a sum of squares is least, with residuals and derivatives there.
+struct LeastSquares {
+  Eigen::VectorXd parameters, residuals;
+  Eigen::MatrixXd derivatives;
+  double variance = 0;     ///< of a residual, estimated
+  bool converged = false;  ///< a further step would change the parameters by less than their errors
+};
+
+/// Levenberg's and Marquardt's method; derivatives are kept while steps with them converge fast.
+/// @param free  parameters from this one on are fitted
+[[nodiscard]] LeastSquares least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start,
+                                         int most_steps, Eigen::Index free = 0);
+
+/// Fits the start of a recording to its first second, or a natural period if that is longer, with
+/// the scene as it is.
+/// @return none if the recording has too few markers
+[[nodiscard]] std::optional<MotionStart> recorded_start(const Scene& scene,
+                                                        const MarkerMotion& recording,
+                                                        const RodDamping& damping,
+                                                        const SolveOptions& solve);
+
+/// Returns Scene::start: a shape at rest, or recorded_start(); none: the scene has none.
+/// @param begin  time at which the rod starts [s]
+/// @throws InputError if its points are too few
+[[nodiscard]] std::optional<MotionStart> given_start(const Scene& scene, double begin,
+                                                     const RodDamping& damping,
+                                                     const SolveOptions& solve);
+
+}  // namespace dlo::compare

@@ -1,0 +1,281 @@
+#include "motion/motion_start.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "dlo/compare/shape.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Points at which a start is tabulated: linear interpolation is then off by 1e-4 of a half wave.
+constexpr Eigen::Index table_points = 129;
+
+/// Values of Legendre's polynomials and their derivatives at x in [-1, 1].
+struct LegendreRow {
+  Eigen::RowVectorXd values, slopes;
+
+  LegendreRow(double x, Eigen::Index degree) : values(degree + 1), slopes(degree + 1) {
+    values[0] = 1;
+    slopes[0] = 0;
+    for (Eigen::Index k = 1; k <= degree; ++k) {
+      const auto n = static_cast<double>(k);
+      const double before = k > 1 ? values[k - 2] : 0;
+      const double slope_before = k > 1 ? slopes[k - 2] : 0;
+      values[k] = ((2 * n - 1) * x * values[k - 1] - (n - 1) * before) / n;
+      slopes[k] = (2 * n - 1) * values[k - 1] + slope_before;
+    }
+  }
+};
+
+/// Sums of products of Legendre's polynomials of arc length and powers of time, by least squares.
+class SmoothMotion {
+ public:
+  SmoothMotion(double length, double begin, double duration, Eigen::Index degree,
+               Eigen::Index powers)
+      : length_(length), begin_(begin), duration_(duration), degree_(degree), powers_(powers) {}
+
+  void add_point(double s, double time, const Eigen::Vector3d& at, double weight) {
+    add(LegendreRow(share(s), degree_).values, time, at, weight);
+  }
+  /// Divided by the rod length, so that a direction weighs as a position does.
+  void add_direction(double s, double time, const Eigen::Vector3d& along, double weight) {
+    add(LegendreRow(share(s), degree_).slopes * (2 / length_), time, along, weight * length_);
+  }
+  void solve() {
+    Eigen::MatrixXd matrix(std::ssize(rows_), rows_.front().size());
+    Eigen::MatrixXd right(std::ssize(rows_), 3);
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+      matrix.row(i) = rows_[static_cast<std::size_t>(i)];
+      right.row(i) = right_[static_cast<std::size_t>(i)];
+    }
+    coefficients_ = matrix.completeOrthogonalDecomposition().solve(right);
+    const auto freedom =
+        std::max<double>(1, static_cast<double>(matrix.rows() - coefficients_.rows()));
+    noise_ = std::sqrt((matrix * coefficients_ - right).squaredNorm() / (3 * freedom));
+  }
+  /// Standard deviation of a coordinate from the fit [m].
+  [[nodiscard]] double noise() const { return noise_; }
+  [[nodiscard]] Eigen::Vector3d tangent(double s) const {
+    const Eigen::RowVectorXd slopes = LegendreRow(share(s), degree_).slopes;
+    return (slopes * coefficients_.topRows(degree_ + 1)).transpose().normalized();
+  }
+  [[nodiscard]] Eigen::Vector3d velocity(double s) const {
+    if (powers_ == 0) return Eigen::Vector3d::Zero();
+    const Eigen::RowVectorXd values = LegendreRow(share(s), degree_).values;
+    return (values * coefficients_.middleRows(degree_ + 1, degree_ + 1)).transpose() / duration_;
+  }
+
+ private:
+  [[nodiscard]] double share(double s) const { return 2 * s / length_ - 1; }
+  void add(const Eigen::RowVectorXd& along, double time, const Eigen::Vector3d& right,
+           double weight) {
+    Eigen::RowVectorXd row((degree_ + 1) * (powers_ + 1));
+    for (Eigen::Index p = 0; p <= powers_; ++p) {
+      row.segment(p * (degree_ + 1), degree_ + 1) =
+          weight * std::pow((time - begin_) / duration_, static_cast<double>(p)) * along;
+    }
+    rows_.push_back(std::move(row));
+    right_.emplace_back(weight * right.transpose());
+  }
+
+  double length_, begin_, duration_;
+  Eigen::Index degree_, powers_;
+  std::vector<Eigen::RowVectorXd> rows_;
+  std::vector<Eigen::RowVector3d> right_;
+  Eigen::MatrixX3d coefficients_;
+  double noise_ = 0;
+};
+
+/// Number of the first rows, of at most start_frames times.
+std::size_t first_rows(const std::vector<MarkerPosition>& rows, std::set<double>& times) {
+  std::size_t count = 0;
+  for (const MarkerPosition& at : rows) {
+    times.insert(at.time);
+    if (std::ssize(times) > start_frames) {
+      times.erase(at.time);
+      break;
+    }
+    ++count;
+  }
+  return count;
+}
+
+/// Whether the arc lengths leave no interval of half of the rod without a point.
+bool are_dense(const std::set<double>& arc_lengths, double length) {
+  constexpr double widest = 0.5;
+  double before = 0;
+  for (const double s : arc_lengths) {
+    if (s - before > widest * length) return false;
+    before = s;
+  }
+  return length - before <= widest * length;
+}
+
+/// At the table's points.
+std::vector<double> table_arc_lengths(double length) {
+  return equal_arc_lengths(length, table_points);
+}
+
+/// Linear interpolation of a table.
+Eigen::Vector3d interpolated(const Eigen::Matrix3Xd& table, double share) {
+  const double x = std::clamp(share, 0.0, 1.0) * static_cast<double>(table.cols() - 1);
+  const auto i = std::min<Eigen::Index>(static_cast<Eigen::Index>(x), table.cols() - 2);
+  const double t = x - static_cast<double>(i);
+  return (1 - t) * table.col(i) + t * table.col(i + 1);
+}
+
+/// @param duration  of the frames [s]; 0: one frame, at rest
+MotionStart start_of(const std::shared_ptr<SmoothMotion>& motion, double duration) {
+  MotionStart result;
+  result.noise = motion->noise();
+  result.shape = [motion](std::span<const double> at) {
+    energy_model::Samples samples;
+    samples.arc_length.assign(at.begin(), at.end());
+    const Eigen::Index points = std::ssize(at);
+    samples.points = samples.curvature = Eigen::Matrix3Xd::Zero(3, points);
+    samples.tangents.resize(3, points);
+    for (Eigen::Index i = 0; i < points; ++i) {
+      samples.tangents.col(i) = motion->tangent(at[static_cast<std::size_t>(i)]);
+    }
+    return samples;
+  };
+  result.duration = duration;
+  if (!(duration > 0)) return result;
+  result.velocities = [motion](std::span<const double> at) {
+    Eigen::Matrix3Xd velocities(3, std::ssize(at));
+    for (Eigen::Index i = 0; i < velocities.cols(); ++i) {
+      velocities.col(i) = motion->velocity(at[static_cast<std::size_t>(i)]);
+    }
+    return velocities;
+  };
+  return result;
+}
+
+}  // namespace
+
+std::optional<MotionStart> smooth_start(const Scene& scene, const MarkerMotion& rows,
+                                        double begin) {
+  std::set<double> times;
+  const std::size_t count = first_rows(rows.positions, times);
+  std::set<double> known;
+  for (std::size_t i = 0; i < count; ++i) known.insert(rows.positions[i].arc_length);
+  Eigen::Index conditions = std::ssize(known);
+  for (const Gripper& gripper : scene.grippers) {
+    if (known.insert(gripper.at).second) ++conditions;
+    if (gripper.direction) ++conditions;
+  }
+  constexpr std::size_t fewest = 4;
+  if (known.size() < fewest || !are_dense(known, scene.length)) return std::nullopt;
+  // Beyond twice the root of their number, polynomials through equidistant points oscillate.
+  const auto degree = std::min<Eigen::Index>(
+      conditions - 1, static_cast<Eigen::Index>(2 * std::sqrt(static_cast<double>(conditions))));
+  // Half as many as there are intervals, so that the residuals show what the powers leave.
+  const Eigen::Index powers = std::clamp<Eigen::Index>((std::ssize(times) - 1) / 2, 1, 3);
+  const double duration = times.size() > 1 ? *times.rbegin() - *times.begin() : 1;
+  auto motion =
+      std::make_shared<SmoothMotion>(scene.length, times.size() > 1 ? begin : *times.begin(),
+                                     duration, degree, times.size() > 1 ? powers : 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const MarkerPosition& at = rows.positions[i];
+    motion->add_point(*on_rod(at.arc_length, scene.length), at.time, at.position, 1);
+  }
+  constexpr double exact = 30;  // of a gripper, which a marker moves by a thousandth
+  for (const double time : times) {
+    const Scene now =
+        times.size() > 1 ? scene_at(scene, time, time) : scene_at(scene, begin, begin);
+    for (const Gripper& gripper : now.grippers) {
+      motion->add_point(gripper.at, time, gripper.position, exact);
+      if (gripper.direction) motion->add_direction(gripper.at, time, *gripper.direction, exact);
+    }
+  }
+  motion->solve();
+  return start_of(motion, times.size() > 1 ? duration : 0);
+}
+
+StartDeviation::StartDeviation(const MotionStart& base, double length, bool clamped)
+    : length_(length), clamped_(clamped), noise_(base.noise), duration_(base.duration) {
+  const std::vector<double> s = table_arc_lengths(length);
+  tangents_ = base.shape(s).tangents;
+  velocities_ = base.velocities ? base.velocities(s) : Eigen::Matrix3Xd::Zero(3, table_points);
+  d1_.resize(3, table_points);
+  d2_.resize(3, table_points);
+  Eigen::Vector3d across = tangents_.col(0).unitOrthogonal();
+  for (Eigen::Index i = 0; i < table_points; ++i) {
+    const Eigen::Vector3d t = tangents_.col(i);
+    across = (across - across.dot(t) * t).normalized();
+    d1_.col(i) = across;
+    d2_.col(i) = t.cross(across);
+  }
+}
+
+Eigen::VectorXd StartDeviation::deviations() const {
+  // The value of a cubic at the end of eleven frames has the error of one of them, its slope 14 to
+  // 45 times as much over the duration; a half wave of the rod turns it into an angle.
+  constexpr double of_value = 2;
+  constexpr double of_slope = 20;
+  constexpr double least_noise = 1e-6;
+  const double error = std::max(noise_, least_noise * length_) / length_;
+  Eigen::VectorXd result(size());
+  for (Eigen::Index i = 0; i < size(); ++i) {
+    const double waves = std::numbers::pi * static_cast<double>(i % start_modes + 1);
+    const bool is_rate = i >= size() / 2;
+    result[i] = error * waves * (is_rate ? of_slope / duration_ : of_value);
+  }
+  return result;
+}
+
+MotionStart StartDeviation::with(const Eigen::VectorXd& modes) const {
+  Eigen::Matrix3Xd tangents = tangents_;
+  Eigen::Matrix3Xd rates(3, table_points);
+  const Eigen::Map<const Eigen::MatrixXd> by_direction(modes.data(), start_modes, 4);
+  for (Eigen::Index i = 0; i < table_points; ++i) {
+    const double x = 2 * static_cast<double>(i) / static_cast<double>(table_points - 1) - 1;
+    Eigen::RowVectorXd values = LegendreRow(x, start_modes).values;
+    // A clamp holds the tangent at s = 0.
+    for (Eigen::Index k = 0; k <= start_modes && clamped_; ++k) values[k] -= k % 2 == 0 ? 1 : -1;
+    const Eigen::RowVectorXd used =
+        clamped_ ? values.tail(start_modes).eval() : values.head(start_modes).eval();
+    const Eigen::RowVector4d along = used * by_direction;
+    tangents.col(i) =
+        (tangents_.col(i) + along[0] * d1_.col(i) + along[1] * d2_.col(i)).normalized();
+    rates.col(i) = along[2] * d1_.col(i) + along[3] * d2_.col(i);
+  }
+  Eigen::Matrix3Xd velocities = velocities_;
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  const double step = length_ / static_cast<double>(table_points - 1);
+  for (Eigen::Index i = 1; i < table_points; ++i) {
+    sum += step / 2 * (rates.col(i - 1) + rates.col(i));
+    velocities.col(i) += sum;
+  }
+  MotionStart result;
+  result.shape = [tangents, length = length_](std::span<const double> at) {
+    energy_model::Samples samples;
+    samples.arc_length.assign(at.begin(), at.end());
+    const Eigen::Index points = std::ssize(at);
+    samples.points = samples.curvature = Eigen::Matrix3Xd::Zero(3, points);
+    samples.tangents.resize(3, points);
+    for (Eigen::Index i = 0; i < points; ++i) {
+      samples.tangents.col(i) =
+          interpolated(tangents, at[static_cast<std::size_t>(i)] / length).normalized();
+    }
+    return samples;
+  };
+  result.velocities = [velocities, length = length_](std::span<const double> at) {
+    Eigen::Matrix3Xd found(3, std::ssize(at));
+    for (Eigen::Index i = 0; i < found.cols(); ++i) {
+      found.col(i) = interpolated(velocities, at[static_cast<std::size_t>(i)] / length);
+    }
+    return found;
+  };
+  return result;
+}
+
+}  // namespace dlo::compare
