@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "dlo/compare/error.hpp"
+#include "motion/normal_equations.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -20,7 +20,7 @@ constexpr double parameter_difference = 3e-4;
 /// a millimetre per metre.
 constexpr double fit_tolerance = 1e-6;
 /// Smallest standard deviation of a coordinate, divided by the rod length: error of the simulation.
-constexpr double least_noise = 1e-6;
+constexpr double least_noise = 1e-5;
 /// A number is looked for within this factor of where it begins.
 constexpr double widest_factor = 1e4;
 /// Standard deviation of a logarithm before anything is simulated.
@@ -122,8 +122,12 @@ Eigen::Index MotionMisfit::coordinates() const {
 }
 
 double MotionMisfit::value(std::size_t number, double log) const {
+  return first_[number] * std::exp(within_bounds(log));
+}
+
+double MotionMisfit::within_bounds(double log) {
   const double most = std::log(widest_factor);
-  return first_[number] * std::exp(std::clamp(log, -most, most));
+  return std::clamp(log, -most, most);
 }
 
 bool MotionMisfit::at_bound(double log) {
@@ -218,13 +222,16 @@ Eigen::VectorXd MotionMisfit::residuals(const Eigen::VectorXd& parameters) {
 Eigen::MatrixXd MotionMisfit::derivatives(const Eigen::VectorXd& parameters,
                                           const Eigen::VectorXd& here, Eigen::Index first) {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(here.size(), parameters.size());
-  const auto beside = [&](Eigen::Index i) {
+  const auto beside = [&](Eigen::Index i, double difference) {
     Eigen::VectorXd moved = parameters;
-    moved[i] += parameter_difference;
+    moved[i] += difference;
     return moved;
   };
   for (Eigen::Index i = first; i < physical(); ++i) {
-    result.col(i) = (residuals(beside(i)) - here) / parameter_difference;
+    // A small damping changes little: the difference is a fraction of the first guess.
+    const double relative =
+        parameter_difference * (is_damping(i) ? std::max(1.0, std::exp(-parameters[i])) : 1);
+    result.col(i) = (residuals(beside(i, std::log1p(relative))) - here) / relative;
   }
   const Scene scene = scene_with(parameters);
   const RodDamping damped = damping(parameters);
@@ -235,7 +242,8 @@ Eigen::MatrixXd MotionMisfit::derivatives(const Eigen::VectorXd& parameters,
     for (Eigen::Index k = 0; k < modes; ++k) {
       const Eigen::Index i = recorded_[r].first_mode + k;
       result.col(i).segment(row, rows) =
-          (simulated(scene, damped, beside(i), r) - here.segment(row, rows)) / parameter_difference;
+          (simulated(scene, damped, beside(i, parameter_difference), r) - here.segment(row, rows)) /
+          parameter_difference;
     }
     row += rows;
   }
@@ -255,42 +263,12 @@ Eigen::VectorXd MotionMisfit::prior() const {
   return result;
 }
 
-namespace {
-
-/// Sum of squares and prior about one point, with the derivatives of that point or an earlier one.
-class NormalEquations {
- public:
-  NormalEquations(const LeastSquares& at, const Eigen::VectorXd& prior, Eigen::Index free)
-      : normal_(at.derivatives.transpose() * at.derivatives / at.variance),
-        gradient_(at.derivatives.transpose() * at.residuals / at.variance +
-                  prior.cwiseProduct(at.parameters)),
-        prior_(prior) {
-    gradient_.head(free).setZero();
-  }
-  [[nodiscard]] Eigen::VectorXd step(double marquardt) const {
-    Eigen::MatrixXd matrix = normal_;
-    matrix.diagonal() *= 1 + marquardt;
-    matrix.diagonal() += prior_;
-    return -matrix.ldlt().solve(gradient_);
-  }
-  /// Twice the decrease of the sum of squares, in variances, that a full step predicts.
-  [[nodiscard]] double decrease() const { return -gradient_.dot(step(0)); }
-
- private:
-  Eigen::MatrixXd normal_;
-  Eigen::VectorXd gradient_;
-  const Eigen::VectorXd& prior_;
-};
-
-}  // namespace
-
 LeastSquares least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start, int most_steps,
                            Eigen::Index free) {
   LeastSquares at{.parameters = start, .residuals = misfit.residuals(start), .derivatives = {}};
   if (!misfit.stopped().empty()) {
     throw ConvergenceError("the moving rod stopped: " + misfit.stopped());
   }
-  const Eigen::VectorXd prior = misfit.prior();
   const auto freedom =
       std::max<double>(1, static_cast<double>(at.residuals.size() - start.size() + free));
   // A step that changes no parameter by more than a seventh of its standard deviation.
@@ -307,7 +285,7 @@ LeastSquares least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start, i
   for (int step = 0;; ++step) {
     at.variance = std::max(at.residuals.squaredNorm() / freedom, misfit.least_variance());
     if (renew) at.derivatives = misfit.derivatives(at.parameters, at.residuals, free);
-    const NormalEquations equations(at, prior, free);
+    const NormalEquations equations(at, misfit, free);
     const double decrease = equations.decrease();
     at.converged = decrease < small;
     if (at.converged || step == most_steps) return at;
@@ -318,16 +296,17 @@ LeastSquares least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start, i
       continue;
     }
     before = decrease;
-    const auto sum_of = [&](const Eigen::VectorXd& residuals, const Eigen::VectorXd& parameters) {
-      return residuals.squaredNorm() / at.variance + parameters.dot(prior.cwiseProduct(parameters));
-    };
-    const double sum = sum_of(at.residuals, at.parameters);
+    const double sum = equations.sum(at.residuals, at.parameters);
     bool improved = false;
     for (int attempt = 0; attempt < most_tries && !improved; ++attempt) {
-      const Eigen::VectorXd parameters = at.parameters + equations.step(damping);
+      const Eigen::VectorXd parameters = equations.after(equations.step(damping), at.parameters);
       const Eigen::VectorXd residuals = misfit.residuals(parameters);
-      improved = misfit.stopped().empty() && sum_of(residuals, parameters) < sum;
+      improved = misfit.stopped().empty() && equations.sum(residuals, parameters) < sum;
       if (improved) {
+        for (Eigen::Index i = free; i < misfit.physical(); ++i) {
+          if (!misfit.is_damping(i)) continue;
+          at.derivatives.col(i) *= std::exp(parameters[i] - at.parameters[i]);
+        }
         at.parameters = parameters;
         at.residuals = residuals;
       } else if (stale) {

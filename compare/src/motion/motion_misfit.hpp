@@ -55,6 +55,12 @@ class MotionMisfit {
 
   /// Returns a physical parameter [SI]; of the stiffness its ratio to the scene's.
   [[nodiscard]] double value(std::size_t number, double log) const;
+  [[nodiscard]] bool is_damping(Eigen::Index parameter) const {
+    return parameter < physical() &&
+           fitted_[static_cast<std::size_t>(parameter)] != MotionParameter::stiffness;
+  }
+  /// Returns the nearest logarithm in the range of a physical parameter.
+  [[nodiscard]] static double within_bounds(double log);
   /// Whether the logarithm of a physical parameter ends its range.
   [[nodiscard]] static bool at_bound(double log);
   [[nodiscard]] RodDamping damping(const Eigen::VectorXd& parameters) const;

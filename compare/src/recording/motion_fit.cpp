@@ -29,7 +29,7 @@ constexpr double shortest_window = 1;
 constexpr double longest_window = 2;
 /// Steps of the least squares with a window and with all of a recording.
 constexpr int most_window_steps = 12;
-constexpr int most_last_steps = 12;
+constexpr int most_last_steps = 24;
 
 /// Ratio of the variance of a mean of residuals to that of independent ones: 1 + 2 (rho_1 + rho_2 +
 /// ..) up to the first correlation in time that is not above zero, of all markers together.
@@ -120,9 +120,18 @@ void add_numbers(const Scene& scene, const MotionMisfit& misfit, const LeastSqua
     const auto k = static_cast<Eigen::Index>(i);
     const double half = quantile * std::sqrt(covariances(k, k));
     const double value = misfit.value(i, nearest.parameters[k]);
+    MotionNumber number{value, value * std::exp(-half), value * std::exp(half), half < widest_half};
+    if (!number.identified && misfit.is_damping(k)) {
+      // From zero to a limit by the curvature in the damping itself: without the logarithm's prior.
+      const double information = 1 / covariances(k, k) - misfit.prior()[k];
+      const double most = misfit.value(i, std::numeric_limits<double>::infinity());
+      number.low = 0;
+      number.high =
+          information > 0 ? std::min(most, value * (1 + quantile / std::sqrt(information))) : most;
+    }
     const auto times = [&](double factor) {
-      return MotionNumber{factor * value, factor * value * std::exp(-half),
-                          factor * value * std::exp(half), half < widest_half};
+      return MotionNumber{factor * number.value, factor * number.low, factor * number.high,
+                          number.identified};
     };
     switch (misfit.fitted()[i]) {
       case MotionParameter::stiffness:
@@ -150,11 +159,8 @@ std::string not_identified(const MotionMisfit& misfit, const LeastSquares& neare
     return fmt::format("the fit ends at a bound of its range, {:.4g} m^4/s^2", fit.stiffness.value);
   }
   if (!(fit.rms <= (1 + rounding) * fit.given_rms)) {
-    return fmt::format(
-        "the fit leaves {:.4g} mm (RMS) and the scene as it was given {:.4g} mm, so that it has "
-        "not "
-        "found the least",
-        fit.rms * 1e3, fit.given_rms * 1e3);
+    return fmt::format("the fit leaves {:.4g} mm (RMS), more than the scene as given, {:.4g} mm",
+                       fit.rms * 1e3, fit.given_rms * 1e3);
   }
   if (!nearest.converged) return "the least squares did not converge";
   if (!fit.stiffness.identified) {

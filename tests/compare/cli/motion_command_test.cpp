@@ -150,10 +150,16 @@ TEST_F(MotionCommand, CalibrateFindsTheStiffnessThatMovedTheMarkers) {
   write("softer.toml", swung(0.015));
   const std::string calibrate =
       words({"calibrate", path("softer.toml"), "--motion", path("markers.csv")});
-  const json document = json::parse(run(calibrate + "--format json").out);
+  const json document = json_of(calibrate);
   EXPECT_EQ(document.at("schema"), "dlo/motion_fit/1");
   EXPECT_NEAR(document.at("stiffness").at("value"), 0.02, 1e-4);
   EXPECT_NEAR(document.at("damping_s").at("value"), 0.01, 1e-3);
+  // The markers moved without these.
+  for (const char* none : {"drag_N_s_per_m2", "quadratic_drag_N_s2_per_m3"}) {
+    EXPECT_EQ(document.at(none).at("value"), nullptr) << none;
+    EXPECT_EQ(document.at(none).at("low"), 0) << none;
+    EXPECT_LT(document.at(none).at("high"), 0.01) << none;
+  }
   expect_error(calibrate + "--format csv", 2, {"--format csv: not available with --motion"});
   expect_error(calibrate + "-o found.toml", 2, {"--format toml: not available with --motion"});
 }

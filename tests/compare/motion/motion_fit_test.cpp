@@ -111,9 +111,12 @@ TEST(MotionFit, FindsStiffnessAndDampingOfARodThatMovesAtFirst) {
     EXPECT_EQ(fit.not_identified, "");
     const FitError error = error_of(made, fit);
     EXPECT_LT(error.stiffness, 0.1) << seed;
+    EXPECT_LT(error.material, 0.3) << seed;
+    EXPECT_LT(error.quadratic, 0.3) << seed;
     EXPECT_LT(error.misfit, 1.1) << seed;
     EXPECT_NEAR(fit.noise, marker_noise, 0.1 * marker_noise) << seed;
-    EXPECT_GT(fit.given_rms, 2 * fit.rms) << seed;
+    // With the stiffness of the scene as given the limit of the misfit is not met.
+    EXPECT_GT(fit.given_rms, 1.1 * std::sqrt(3) * marker_noise) << seed;
   }
 }
 
@@ -127,30 +130,35 @@ TEST(MotionFit, RefusesWhatIsNoRecordingOfTheRod) {
   EXPECT_THROW((void)fit_motion(made.scene, {once}, {}), InputError);
 }
 
-// All of them, for the page: --gtest_also_run_disabled_tests --gtest_filter=*AllRecordings
-TEST(MotionFit, DISABLED_AllRecordings) {
-  for (unsigned seed = 1; seed <= 20; ++seed) {
-    const Recording made = recording(seed, 2, 100);
-    const Timer timer;
-    const MotionFit fit = fit_motion(made.scene, {made.motion}, {.air = false});
-    const double seconds = timer.seconds();
-    const FitError error = error_of(made, fit);
-    const Timer check_timer;
-    const MotionCheck check = check_motion(made.made_with, made.motion,
-                                           {.model = MotionModel::with_inertia,
-                                            .damping = made.damping,
-                                            .explaining = Explaining::no});
-    fmt::print(
-        "{:2} {:.2f} m/s EI/m {:6.2f} % in {} ({:.3g}) tau {:6.1f} % q {:6.1f} % misfit {:.3f} eff "
-        "{:.0f}/{} sims {} {:.1f} s; check {:.3f} {:.1f} s {}\n",
-        seed, made.speed, 100 * error.stiffness, error.in_interval,
-        fit.stiffness.high / fit.stiffness.low, 100 * error.material, 100 * error.quadratic,
-        error.misfit, fit.effective_coordinates, fit.coordinates, fit.simulations, seconds,
-        check.errors.rms_m / (marker_noise * std::sqrt(3)), check_timer.seconds(),
-        fit.not_identified);
-    std::fflush(stdout);
-  }
+class AllRecordings : public testing::TestWithParam<unsigned> {};
+
+// For the page: --gtest_also_run_disabled_tests --gtest_filter=*AllRecordings*
+TEST_P(AllRecordings, DISABLED_AreFitted) {
+  const unsigned seed = GetParam();
+  const Recording made = recording(seed, 2, 100);
+  const Timer timer;
+  const MotionFit fit = fit_motion(made.scene, {made.motion}, {.air = false});
+  const double seconds = timer.seconds();
+  const FitError error = error_of(made, fit);
+  const Timer check_timer;
+  const MotionCheck check = check_motion(
+      made.made_with, made.motion,
+      {.model = MotionModel::with_inertia, .damping = made.damping, .explaining = Explaining::no});
+  fmt::print(
+      "{:2} {:.2f} m/s EI/m {:6.2f} % in {} ({:.3g}) tau {:6.1f} % q {:6.1f} % misfit {:.3f} eff "
+      "{:.0f}/{} sims {} {:.1f} s; check {:.3f} {:.1f} s {}\n",
+      seed, made.speed, 100 * error.stiffness, error.in_interval,
+      fit.stiffness.high / fit.stiffness.low, 100 * error.material, 100 * error.quadratic,
+      error.misfit, fit.effective_coordinates, fit.coordinates, fit.simulations, seconds,
+      check.errors.rms_m / (marker_noise * std::sqrt(3)), check_timer.seconds(),
+      fit.not_identified);
+  std::fflush(stdout);
+  EXPECT_LT(std::max({error.stiffness / 0.1, error.material / 0.3, error.quadratic / 0.3,
+                      error.misfit / 1.1}),
+            1);
 }
+
+INSTANTIATE_TEST_SUITE_P(MotionFit, AllRecordings, testing::Range(1U, 21U));
 
 }  // namespace
 }  // namespace dlo::compare
