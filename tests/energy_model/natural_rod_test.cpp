@@ -7,9 +7,11 @@
 #include <array>
 #include <cmath>
 #include <random>
+#include <stdexcept>
 
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
+#include "dlo/energy_model/natural_frame.hpp"
 #include "kirchhoff_rod.hpp"
 #include "solved.hpp"
 
@@ -424,6 +426,27 @@ TEST(NaturalRod, SaysWhatItNeeds) {
   EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
   problem.sections = {{0.2, 0.6, 0, 1, {}}};
   EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
+}
+
+/// However small a load is, the rod is not bent into its plane.
+TEST(NaturalNormal, IsThatOfTheSceneWithoutLoads) {
+  Problem problem = clamped_rod();
+  problem.natural_strains = {{0, 1, 0}};
+  const Vector3d free = point_at(solved_rod(problem), 1);
+  problem.loads = {{.at = 1, .force = {0, 0, 1e-8}}};
+  EXPECT_LT((point_at(solved_rod(problem), 1) - free).norm(), 1e-7);
+  // Along z the rod would not stay where it is without loads.
+  problem.loads[0].force.z() = 0.1;
+  EXPECT_FALSE(natural_normal(problem));
+  EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
+  problem.loads[0].force = {0, 0.1, 0};
+  EXPECT_EQ(natural_normal(problem), Vector3d::UnitZ());
+  problem.grips[0].direction = Vector3d::UnitZ();
+  EXPECT_FALSE(natural_normal(problem));
+  problem.weight_per_length = {-1, 0, 0};
+  EXPECT_FALSE(natural_normal(problem));  // the load leaves the plane x-z
+  problem.loads[0].force = {0.1, 0, 0};
+  EXPECT_EQ(natural_normal(problem), Vector3d::UnitY());
 }
 
 }  // namespace

@@ -157,8 +157,9 @@ Eigen::Matrix3d Scene::first_frame() const {
   const bool has_d1 = gripper.frame && gripper.frame->d1;
   if (!has_d1 && !energy_model::natural_normal(problem)) {
     throw InputError(fmt::format(
-        "{}: rod.{}: the scene lies in no plane, and the first clamp does not say where d1 is "
-        "(allowed: frame or quaternion there)",
+        "{}: rod.{}: the scene without loads lies in no plane or in more than one, or a load has a "
+        "component out of it, and the first clamp does not say where d1 is (allowed: frame or "
+        "quaternion there)",
         gripper.where.empty() ? file : gripper.where, key));
   }
   return energy_model::first_frame(problem);

@@ -44,10 +44,10 @@ force_model::TwistedSpan held_span(const energy_model::Problem& problem, std::si
                                 .last_d1 = energy_model::held_d1(problem, held),
                                 .compliance = 1};
   const double ahead = force_model::twist_angle(span, points);
-  const std::optional<double> writhe = energy_model::writhe(
+  const std::optional<energy_model::Writhe> writhe = energy_model::writhe(
       points.middleCols(first_segment, last_segment - first_segment + 1), from, to);
-  span.angle =
-      energy_model::turned_angle(energy_model::turns_between(problem, before, held), ahead, writhe);
+  span.angle = energy_model::turned_angle(energy_model::turns_between(problem, before, held), ahead,
+                                          0, writhe);
   span.first_d1 = rolled_d1(problem, before, from);
   span.last_d1 = rolled_d1(problem, held, to);
   return span;

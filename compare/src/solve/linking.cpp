@@ -19,11 +19,12 @@ namespace {
 double turns_lost(const Linking& part) { return std::round(part.held - part.twist - part.writhe); }
 
 std::string why_lost(const Linking& part) {
+  const bool odd = std::fmod(turns_lost(part), 2) != 0;
   return formatted(
       "not verified: the grips hold {:.3f} turns from s = {:g} to {:g} m and the shape has "
-      "{:.3f} "
-      "(twist {:.3f}, writhe {:.3f}): it has passed through itself",
-      part.held, part.begin, part.end, part.twist + part.writhe, part.twist, part.writhe);
+      "{:.3f} (twist {:.3f}, writhe {:.3f}): {}",
+      part.held, part.begin, part.end, part.twist + part.writhe, part.twist, part.writhe,
+      odd ? "its frames are a path of the other homotopy class" : "it has passed through itself");
 }
 
 /// Axis of the shortest rotation between the directions of the clamps at the ends of a part.
@@ -41,6 +42,15 @@ bool passes_opposite(const Scene& before, const Scene& after, const Linking& par
   return shortest_axis(before, part).dot(shortest_axis(after, part)) < 0;
 }
 
+/// Returns the writhe of a part. If the part or a line beyond its ends passes through itself, as a
+/// flat ring does, its writhe is that of either side, and the one nearer to `wanted` is returned.
+double writhe_of(const energy_model::Writhe& writhe, double wanted) {
+  if (writhe.value) return *writhe.value;
+  const double one = writhe.modulo_two;
+  const double other = one - std::copysign(2, one);
+  return std::abs(one - wanted) <= std::abs(other - wanted) ? one : other;
+}
+
 }  // namespace
 
 std::vector<Linking> linking_of(const Scene& scene, const energy_model::Equilibrium& equilibrium) {
@@ -56,15 +66,21 @@ std::vector<Linking> linking_of(const Scene& scene, const energy_model::Equilibr
     const auto last = std::ranges::find_if(
         framed, [&](const energy_model::Grip* grip) { return grip->at >= twist.end; });
     if (last == framed.begin() || last == framed.end()) continue;
-    const std::optional<double> writhe =
+    const std::optional<energy_model::Writhe> writhe =
         energy_model::writhe(equilibrium.sample, twist.begin, twist.end);
-    const std::optional<double> held = energy_model::held_turns(problem, **(last - 1), **last);
+    std::optional<double> held = energy_model::held_turns(problem, **(last - 1), **last);
     if (!writhe || !held) continue;
-    parts.push_back({.begin = twist.begin,
-                     .end = twist.end,
-                     .held = *held,
-                     .twist = twist.angle / (2 * std::numbers::pi),
-                     .writhe = *writhe});
+    Linking part{.begin = twist.begin,
+                 .end = twist.end,
+                 .twist = twist.angle / (2 * std::numbers::pi),
+                 .writhe_error = writhe->error};
+    part.writhe = writhe_of(*writhe, *held - part.twist);
+    // A roll counts from the rod as it lies without it.
+    if (!energy_model::turns_between(problem, **(last - 1), **last).turns) {
+      *held += std::round(part.twist + part.writhe - *held);
+    }
+    part.held = *held;
+    parts.push_back(part);
   }
   return parts;
 }

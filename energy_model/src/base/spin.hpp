@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cmath>
+#include <numbers>
+#include <optional>
 
 namespace dlo::energy_model {
 
@@ -42,6 +44,19 @@ inline Eigen::Matrix3d spin_curvature(const Eigen::Vector3d& p, const Eigen::Vec
   Eigen::Matrix3d a = (g * p.transpose() + p * g.transpose()) / 2;
   a.diagonal().array() -= g.dot(p);
   return a;
+}
+
+/// The shortest rotation of a unit vector into another; if they are opposite, about the normal of
+/// the plane that they share with the chord. Empty: that is along them.
+/// @param chord  between the points where the vectors are tangents, over the length
+inline std::optional<Eigen::Quaterniond> shortest_rotation(const Eigen::Vector3d& first,
+                                                           const Eigen::Vector3d& last,
+                                                           const Eigen::Vector3d& chord) {
+  constexpr double rounding = 1e-9;  // of the cosine, and of the chord
+  if (first.dot(last) > rounding - 1) return Eigen::Quaterniond::FromTwoVectors(first, last);
+  const Eigen::Vector3d normal = first.cross(chord);
+  if (!(normal.norm() > rounding)) return std::nullopt;
+  return Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi, normal.normalized()));
 }
 
 }  // namespace dlo::energy_model

@@ -35,6 +35,26 @@ void add_line_load(const LineLoad& load, std::vector<RodPart>& parts) {
   parts = std::move(cut);
 }
 
+/// Whether a load moves the rod out of a plane by more than about 1e-6 of its length.
+bool loads_leave_plane(const Problem& problem, const Eigen::Vector3d& normal) {
+  constexpr double negligible = 1e-6;
+  const double most = negligible * bending_unit(problem) / (problem.length * problem.length);
+  const auto leaves = [&](const Eigen::Vector3d& force) {
+    return std::abs(force.dot(normal)) > most;
+  };
+  const bool line_leaves = std::ranges::any_of(problem.line_loads, [&](const LineLoad& load) {
+    return leaves(load.at_begin * problem.length) || leaves(load.at_end * problem.length);
+  });
+  constexpr double noise = 1e-9;
+  const bool drag_leaves = problem.drag && std::abs(problem.drag->velocity.dot(normal)) >
+                                               noise * problem.drag->velocity.norm();
+  return line_leaves || drag_leaves || std::ranges::any_of(problem.loads, [&](const Load& load) {
+           if (load.follows) return false;  // that lies in the section's axes
+           const Eigen::Vector3d couple = load.torque / problem.length;
+           return leaves(load.force) || (couple - couple.dot(normal) * normal).norm() > most;
+         });
+}
+
 }  // namespace
 
 std::vector<RodPart> rod_parts(const Problem& problem) {
@@ -124,33 +144,31 @@ std::optional<Eigen::Vector3d> natural_normal(const Problem& problem) {
   }
   add(problem.weight_per_length, 0);
   for (const Section& section : problem.sections) add(section.weight_per_length, 0);
-  for (const LineLoad& load : problem.line_loads) {
-    add(load.at_begin, 0);
-    add(load.at_end, 0);
-  }
-  if (problem.drag) add(problem.drag->velocity, 0);
-  for (const Load& load : problem.loads) {
-    if (load.follows) continue;  // that lies in the section's axes
-    add(load.force, 0);
-    if (load.torque.isZero(0)) continue;
-    for (const Eigen::Vector3d& direction : plane_across(load.torque)) add(direction, 0);
-  }
   for (const Obstacle& obstacle : problem.obstacles) {
     if (obstacle.body.is_half_space()) add(obstacle.body.normal(), 0);
   }
-  // A line alone lies in the plane that holds x, or y.
+  // A line in x-y lies in that plane.
   const Eigen::Vector3d first = directions.empty() ? Eigen::Vector3d::UnitX() : directions.front();
+  const auto is_along_first = [&](const Eigen::Vector3d& v) {
+    constexpr double parallel = 1e-9;
+    return v.cross(first).norm() <= parallel;
+  };
   const std::optional<Plane> plane = find_plane(Eigen::Vector3d::Zero(), first, directions);
   if (!plane) return std::nullopt;
-  const Eigen::Vector3d normal = plane->x.cross(plane->y);
-  for (const Obstacle& obstacle : problem.obstacles) {
-    const Eigen::Vector3d& within = problem.grips.front().position;
-    if (!obstacle.body.is_symmetric(within, normal, problem.length)) return std::nullopt;
-  }
+  Eigen::Vector3d normal = plane->x.cross(plane->y);
   for (const Eigen::Index axis : {2, 1, 0}) {
     constexpr double noise = 1e-9;
-    if (std::abs(normal[axis]) > noise) return normal[axis] > 0 ? normal : Eigen::Vector3d(-normal);
+    if (std::abs(normal[axis]) <= noise) continue;
+    if (normal[axis] < 0) normal = -normal;
+    const bool is_line = std::ranges::all_of(directions, is_along_first);
+    if (is_line && axis != 2) return std::nullopt;
+    break;
   }
+  const Eigen::Vector3d& within = problem.grips.front().position;
+  const bool symmetric = std::ranges::all_of(problem.obstacles, [&](const Obstacle& obstacle) {
+    return obstacle.body.is_symmetric(within, normal, problem.length);
+  });
+  if (!symmetric || loads_leave_plane(problem, normal)) return std::nullopt;
   return normal;
 }
 

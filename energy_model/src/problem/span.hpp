@@ -61,6 +61,9 @@ struct Span {
     /// Mean GJ over EI: what the span resists twist with, times its length.
     double stiffness = 0;
     Eigen::Vector3d end_d1 = Eigen::Vector3d::UnitX();  ///< of a rod whose d1 at the start is d1()
+    /// HeldTurns::turns, of a rod with material directors that is searched from the start; else
+    /// empty.
+    std::optional<double> turns = std::nullopt;
   };
 
   double length = 1;

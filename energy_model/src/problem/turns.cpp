@@ -1,11 +1,14 @@
 #include "dlo/energy_model/turns.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "base/require.hpp"
+#include "base/spin.hpp"
 #include "dlo/energy_model/natural_frame.hpp"
 #include "problem/rod_law.hpp"
 
@@ -25,18 +28,21 @@ Eigen::Vector3d part_across(const Eigen::Vector3d& v, const Eigen::Vector3d& dir
   return (v - v.dot(direction) * direction).normalized();
 }
 
-/// The shortest rotation of a clamp's direction into another's; if they are opposite, about the
-/// normal of the plane in which the clamps lie. None: in no one plane.
-std::optional<Eigen::Quaterniond> shortest_rotation(const Grip& from, const Grip& to,
-                                                    double length) {
-  constexpr double opposite = 1e-9;    // of the cosine
-  constexpr double same_place = 1e-9;  // in l
-  const Eigen::Vector3d first = from.direction->normalized();
-  const Eigen::Vector3d last = to.direction->normalized();
-  if (first.dot(last) > opposite - 1) return Eigen::Quaterniond::FromTwoVectors(first, last);
-  const Eigen::Vector3d normal = first.cross(to.position - from.position);
-  if (!(normal.norm() > same_place * length)) return std::nullopt;
-  return Eigen::Quaterniond(Eigen::AngleAxisd(pi, normal.normalized()));
+/// The shortest rotation of a clamp's direction into another's.
+std::optional<Eigen::Quaterniond> rotation_between(const Grip& from, const Grip& to,
+                                                   double length) {
+  return shortest_rotation(from.direction->normalized(), to.direction->normalized(),
+                           (to.position - from.position) / length);
+}
+
+/// Returns the writhes in [-2, 2] of a curve that meets itself once, on either side of the passage.
+std::pair<double, double> writhes_of_class(double modulo_two) {
+  return {modulo_two, modulo_two - std::copysign(2, modulo_two)};
+}
+
+/// Returns the one of two numbers that is nearer to a third.
+double nearer_to(double wanted, double one, double other) {
+  return std::abs(one - wanted) <= std::abs(other - wanted) ? one : other;
 }
 
 /// The clamp that says where the others without d1 have it.
@@ -67,7 +73,7 @@ Eigen::Vector3d held_d1(const Problem& problem, const Grip& grip) {
   const Grip& first = reference_clamp(problem);
   Eigen::Vector3d d1 = reference_d1(problem, first);
   if (first.at == grip.at) return d1;
-  const auto rotation = shortest_rotation(first, grip, problem.length);
+  const auto rotation = rotation_between(first, grip, problem.length);
   require(rotation.has_value(), "Problem",
           "arc length of a clamp whose frame lacks d1 and whose direction is opposite to that of "
           "the first clamp, in line with it",
@@ -76,7 +82,7 @@ Eigen::Vector3d held_d1(const Problem& problem, const Grip& grip) {
 }
 
 std::optional<double> held_turns(const Problem& problem, const Grip& first, const Grip& last) {
-  const auto rotation = shortest_rotation(first, last, problem.length);
+  const auto rotation = rotation_between(first, last, problem.length);
   if (!rotation) return std::nullopt;
   const Eigen::Vector3d carried = *rotation * held_d1(problem, first);
   const Eigen::Vector3d d1 = held_d1(problem, last);
@@ -87,19 +93,35 @@ std::optional<double> held_turns(const Problem& problem, const Grip& first, cons
 
 HeldTurns turns_between(const Problem& problem, const Grip& first, const Grip& last) {
   HeldTurns held{.roll = last.frame->roll - first.frame->roll, .turns = std::nullopt};
-  if (problem.natural_strains.empty()) held.turns = held_turns(problem, first, last);
+  const bool is_curved = !problem.natural_strains.empty() ||
+                         std::ranges::any_of(problem.sections, [](const Section& section) {
+                           return section.natural_curvature || section.natural_twist;
+                         });
+  if (!is_curved || last.frame->d1) held.turns = held_turns(problem, first, last);
   return held;
 }
 
-double turned_angle(const HeldTurns& held, double ahead, std::optional<double> writhe) {
+double turned_angle(const HeldTurns& held, double ahead, double twist,
+                    const std::optional<Writhe>& writhe) {
   const double angle = within_half_turn(ahead) + held.roll;
   if (!held.turns || !writhe) return angle;
-  return angle + 2 * pi * std::round(*held.turns - *writhe - angle / (2 * pi));
+  const auto to_turns_with = [&](double w) {
+    return angle + 2 * pi * std::round(*held.turns - (twist + angle) / (2 * pi) - w);
+  };
+  if (writhe->value) return to_turns_with(*writhe->value);
+  const auto [one, other] = writhes_of_class(writhe->modulo_two);
+  return nearer_to(0, to_turns_with(one), to_turns_with(other));
 }
 
-bool holds_turns(const HeldTurns& held, double twist, std::optional<double> writhe) {
-  if (!held.turns || !writhe) return true;
-  return std::abs(twist / (2 * pi) + *writhe - *held.turns) < 0.5;
+std::optional<int> turns_lost(const HeldTurns& held, double twist,
+                              const std::optional<Writhe>& writhe) {
+  if (!held.turns || !writhe) return 0;
+  const double missing = *held.turns - twist / (2 * pi);
+  const double in_class = std::remainder(missing - writhe->modulo_two, 2);
+  if (std::abs(in_class) >= 0.5) return std::nullopt;
+  const auto [one, other] = writhes_of_class(writhe->modulo_two);
+  return static_cast<int>(
+      std::round(missing - writhe->value.value_or(nearer_to(missing, one, other))));
 }
 
 }  // namespace dlo::energy_model

@@ -3,8 +3,10 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
+#include "base/spin.hpp"
 #include "dlo/energy_model/turns.hpp"
 
 namespace dlo::energy_model {
@@ -13,25 +15,24 @@ namespace {
 using std::numbers::pi;
 
 /// Gauss's integral over two segments, ab and cd: the solid angle of the directions in which they
-/// are seen to cross [rad].
+/// are seen to cross [rad]. Returns 0 for segments in one plane, where the sign of the triple
+/// product would be rounding.
 double crossing_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                       const Eigen::Vector3d& d) {
   const Eigen::Vector3d ac = c - a;
   const Eigen::Vector3d ad = d - a;
   const Eigen::Vector3d bc = c - b;
   const Eigen::Vector3d bd = d - b;
+  constexpr double coplanar = 1e-9;  // of the triple product
+  const double side = (d - c).cross(b - a).dot(ac);
+  if (!(std::abs(side) > coplanar * (d - c).norm() * (b - a).norm() * ac.norm())) return 0;
   std::array<Eigen::Vector3d, 4> normals = {ac.cross(ad), ad.cross(bd), bd.cross(bc), bc.cross(ac)};
-  for (Eigen::Vector3d& normal : normals) {
-    const double size = normal.norm();
-    if (size == 0) return 0;  // in one plane
-    normal /= size;
-  }
+  for (Eigen::Vector3d& normal : normals) normal.normalize();
   double angle = 0;
   for (std::size_t k = 0; k < 4; ++k) {
     angle += std::asin(std::clamp(normals[k].dot(normals[(k + 1) % 4]), -1.0, 1.0));
   }
-  const double side = (d - c).cross(b - a).dot(ac);
-  return side == 0 ? 0 : std::copysign(angle, side);
+  return std::copysign(angle, side);
 }
 
 /// Whether the half-line from `from` passes the segment ab at less than `distance`.
@@ -55,34 +56,29 @@ double spherical_area(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
 }
 
 /// Fuller's area over 2 pi, between the tangents and the great circle that joins the end ones. It
-/// is the writhe where all are on one side of the sphere, about the middle of these. None: they are
+/// is the writhe if all are on one side of the sphere, about the middle of these. Empty: they are
 /// not.
-std::optional<double> writhe_of_graph(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& first,
-                                      const Eigen::Vector3d& last) {
+std::optional<double> writhe_of_graph(const Eigen::Matrix3Xd& tangents) {
   constexpr double least = 1e-3;  // of a tangent along the middle
-  const Eigen::Vector3d middle = (first + last).normalized();
-  if (!(middle.dot(first) > least)) return std::nullopt;
+  const Eigen::Vector3d middle = (tangents.leftCols<1>() + tangents.rightCols<1>()).normalized();
+  if (!((middle.transpose() * tangents).minCoeff() > least)) return std::nullopt;
   double area = 0;
-  Eigen::Vector3d before = first;
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const bool at_end = i + 1 == points.cols();
-    const Eigen::Vector3d tangent =
-        at_end ? last : Eigen::Vector3d((points.col(i + 1) - points.col(i)).normalized());
-    if (!(middle.dot(tangent) > least)) return std::nullopt;
-    area += spherical_area(middle, before, tangent);
-    before = tangent;
+  for (Eigen::Index i = 0; i + 1 < tangents.cols(); ++i) {
+    area += spherical_area(middle, tangents.col(i), tangents.col(i + 1));
   }
   return area / (2 * pi);
 }
 
-}  // namespace
+double length_of(const Eigen::Matrix3Xd& points) {
+  const Eigen::Index segments = points.cols() - 1;
+  return (points.rightCols(segments) - points.leftCols(segments)).colwise().norm().sum();
+}
 
-std::optional<double> writhe(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& first,
-                             const Eigen::Vector3d& last) {
-  if (const std::optional<double> graph = writhe_of_graph(points, first, last)) return graph;
+/// Gauss's integral of a polygon and the lines beyond its ends. Empty: a line passes through it.
+std::optional<double> gauss_integral(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& first,
+                                     const Eigen::Vector3d& last) {
   const Eigen::Index size = points.cols();
-  const double length =
-      (points.rightCols(size - 1) - points.leftCols(size - 1)).colwise().norm().sum();
+  const double length = length_of(points);
   const double far = 1e4 * length;
   const double near = 1e-6 * length;
   Eigen::Matrix3Xd all(3, size + 2);
@@ -100,26 +96,94 @@ std::optional<double> writhe(const Eigen::Matrix3Xd& points, const Eigen::Vector
   return angle / (2 * pi);
 }
 
-std::optional<double> writhe(
+/// The number of a class modulo two that is nearest to Gauss's integral. Empty: both neighbours are
+/// as near, as where the curve meets itself.
+std::optional<double> nearest_of_class(double modulo_two, std::optional<double> integral) {
+  constexpr double farthest = 0.6;
+  if (!integral) return std::nullopt;
+  const double off = std::remainder(*integral - modulo_two, 2);
+  if (std::abs(off) > farthest) return std::nullopt;
+  return *integral - off;
+}
+
+/// Tangents of the arcs of a polygon and of its ends.
+Eigen::Matrix3Xd tangents_of(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& first,
+                             const Eigen::Vector3d& last) {
+  const Eigen::Index size = points.cols();
+  Eigen::Matrix3Xd tangents(3, size + 1);
+  tangents << first,
+      (points.rightCols(size - 1) - points.leftCols(size - 1)).colwise().normalized(), last;
+  return tangents;
+}
+
+}  // namespace
+
+std::optional<double> writhe_modulo_two(const Eigen::Matrix3Xd& tangents,
+                                        const Eigen::Vector3d& chord) {
+  const Eigen::Vector3d last = tangents.rightCols<1>();
+  const auto closing = shortest_rotation(tangents.col(0), last, chord);
+  if (!closing) return std::nullopt;
+  Eigen::Quaterniond carried = Eigen::Quaterniond::Identity();
+  for (Eigen::Index i = 0; i + 1 < tangents.cols(); ++i) {
+    carried = Eigen::Quaterniond::FromTwoVectors(tangents.col(i), tangents.col(i + 1)) * carried;
+  }
+  const Eigen::Quaterniond ahead = carried * closing->conjugate();
+  return std::atan2(ahead.vec().dot(last), ahead.w()) / pi;
+}
+
+std::optional<Writhe> writhe(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& first,
+                             const Eigen::Vector3d& last) {
+  const Eigen::Matrix3Xd tangents = tangents_of(points, first, last);
+  const auto modulo_two = writhe_modulo_two(
+      tangents, (points.rightCols<1>() - points.leftCols<1>()) / length_of(points));
+  if (!modulo_two) return std::nullopt;
+  const auto graph = writhe_of_graph(tangents);
+  return Writhe{*modulo_two,
+                nearest_of_class(*modulo_two, graph ? graph : gauss_integral(points, first, last))};
+}
+
+std::optional<Writhe> writhe(
     const std::function<Samples(std::span<const double> arc_lengths)>& sample, double begin,
     double end) {
   constexpr int first_points = 64;
-  constexpr int most_points = 1024;
-  constexpr double tolerance = 1e-2;
-  std::optional<double> before;
+  constexpr int most_points = 2048;
+  constexpr int most_crossing_points = 512;
+  constexpr double tolerance = 1e-7;
+  std::optional<double> coarse;  // of half as many points
+  Writhe result{0, std::nullopt, 2};
+  std::optional<double> crossings;
+  bool settled = false;
   for (int points = first_points; points <= most_points; points *= 2) {
-    std::vector<double> arc_lengths(static_cast<std::size_t>(points));
-    for (int i = 0; i < points; ++i) {
-      arc_lengths[static_cast<std::size_t>(i)] =
-          std::min(begin + (end - begin) * i / (points - 1), end);
+    std::vector<double> arc_lengths(static_cast<std::size_t>(points) + 1);
+    for (int i = 0; i <= points; ++i) {
+      arc_lengths[static_cast<std::size_t>(i)] = std::min(begin + (end - begin) * i / points, end);
     }
     const Samples samples = sample(arc_lengths);
-    const std::optional<double> now =
-        writhe(samples.points, samples.tangents.col(0), samples.tangents.col(points - 1));
-    if (!now || (before && std::abs(*now - *before) < tolerance)) return now;
-    before = now;
+    const Eigen::Vector3d first = samples.tangents.leftCols<1>();
+    const Eigen::Vector3d last = samples.tangents.rightCols<1>();
+    const auto now = writhe_modulo_two(
+        samples.tangents,
+        (samples.points.rightCols<1>() - samples.points.leftCols<1>()) / (end - begin));
+    if (!now) return std::nullopt;
+    // The error of great arcs between tangents is of second order.
+    const double change = coarse ? std::remainder(*now - *coarse, 2) : 2;
+    const double better = coarse ? *now + change / 3 : *now;
+    result.error =
+        points > first_points ? std::abs(std::remainder(better - result.modulo_two, 2)) : 2;
+    result.modulo_two = better;
+    coarse = now;
+    if (const auto graph = writhe_of_graph(samples.tangents)) {
+      crossings = graph;
+      settled = true;
+    } else if (!settled && points <= most_crossing_points) {
+      const auto before = std::exchange(crossings, gauss_integral(samples.points, first, last));
+      settled = before && crossings && std::abs(*before - *crossings) < 0.1;
+    }
+    if (result.error < tolerance && settled) break;
   }
-  return std::nullopt;
+  result.modulo_two = std::remainder(result.modulo_two, 2);
+  result.value = nearest_of_class(result.modulo_two, crossings);
+  return result;
 }
 
 }  // namespace dlo::energy_model

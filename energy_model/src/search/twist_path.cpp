@@ -10,14 +10,13 @@
 #include <utility>
 
 #include "base/legendre.hpp"
-#include "base/sized_samples.hpp"
 #include "certify/enough_terms.hpp"
 #include "contact/penalty_polygon.hpp"
-#include "dlo/energy_model/turns.hpp"
 #include "linear/free_directions.hpp"
 #include "newton/augmented_lagrangian.hpp"
 #include "newton/trust_region.hpp"
 #include "search/active_set.hpp"
+#include "span/found.hpp"
 #include "span/refinement.hpp"
 #include "strain/second_derivatives.hpp"
 
@@ -363,16 +362,8 @@ UntwistedShape untwisted_shape(const SpanSolution& solution, SpanWorkspace& work
   Span span = solution.model->span();
   span.planar = false;
   const std::shared_ptr<SpanEnergy> model = workspace.model(span, solution.terms);
-  const SpanPoint point = model->evaluated(model->prolong(*solution.model, solution.x));
-  const SpanShape shape = solution.model->shape(solution.x);
-  const auto sample = [&shape, length = span.length](std::span<const double> at) {
-    const SpanSamples own = shape.sample(at);
-    Samples samples = sized_samples(at, length);
-    samples.points = own.points;
-    samples.tangents = own.tangents;
-    return samples;
-  };
-  return {solution, point.end_d1(), writhe(sample, 0, span.length)};
+  const Eigen::VectorXd x = model->prolong(*solution.model, solution.x);
+  return {solution, model->evaluated(x).end_d1(), model->twist(x), writhe_of(solution)};
 }
 
 EndFrame end_frame(const HeldFrames& held, const UntwistedShape& untwisted) {
@@ -380,7 +371,7 @@ EndFrame end_frame(const HeldFrames& held, const UntwistedShape& untwisted) {
   const Eigen::Vector3d& axis = *span.end_direction;
   const Eigen::Vector3d d1 = held_end_d1(held, span);
   const double ahead = angle_about(axis, untwisted.end_d1, d1) - held.turns.roll;
-  return {d1, turned_angle(held.turns, ahead, untwisted.writhe)};
+  return {d1, turned_angle(held.turns, ahead, untwisted.twist, untwisted.writhe)};
 }
 
 SpanSolution twist_to(const EndFrame& frame, const Span& span, double stiffness,

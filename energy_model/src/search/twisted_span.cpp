@@ -1,6 +1,7 @@
 #include "search/twisted_span.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -43,10 +44,10 @@ class TwistedSpan {
   [[nodiscard]] std::optional<SpanSolution> from_known(const Equilibrium& start) const {
     const double l = problem_.length;
     const TwistedPart* part = known_twist(start, placed_, l);
-    if (part == nullptr ||
-        !holds_turns(held_.turns, part->angle, writhe(start.sample, part->begin, part->end))) {
-      return std::nullopt;
-    }
+    if (part == nullptr) return std::nullopt;
+    const auto lost =
+        turns_lost(held_.turns, part->angle, writhe(start.sample, part->begin, part->end));
+    if (!lost || (*lost != 0 && !placed_.span.has_material_directors())) return std::nullopt;
     SpanSolution solution =
         next_to(field_of(start, placed_, l), {held_end_d1(held_, placed_.span), part->angle},
                 known_contacts(start, placed_, l));
@@ -63,7 +64,10 @@ class TwistedSpan {
     SpanSolution guess = workspace_.empty_solution(span, terms_of_guess);
     guess.x = guess.model->fit(field(guess.model->nodes()));
     EndFrame frame = frame_for(guess);
-    if (span.has_material_directors()) return next_to(field, frame, {});
+    if (span.has_material_directors()) {
+      frame.twist += guess.model->twist(guess.x);
+      return next_to(field, frame, {});
+    }
     span.twist = Span::Twist{held_.stiffness, frame.d1};
     const PenaltyPolygon polygon = rest_on_obstacles(
         span,
@@ -104,23 +108,61 @@ class TwistedSpan {
     return solution;
   }
 
-  /// Each stable shape without twist, turned until it meets the frame.
-  [[nodiscard]] std::vector<SpanSolution> turned(const std::vector<SpanSolution>& untwisted,
-                                                 const EndFrame& frame) const {
-    note_not_tried(options_.log,
-                   "unstable twisted shapes, and those that no stable one is turned to");
+  /// Each stable shape without twist, turned until it meets the frame; of a rod with material
+  /// directors also those that a search with the held frame finds.
+  [[nodiscard]] std::vector<SpanSolution> turned(const std::vector<SpanSolution>& untwisted) const {
     Found found(options_);
+    const HeldFrames held = counted_from(untwisted.front());
     for (const SpanSolution& from : untwisted) {
       if (!succeeded(from.status)) continue;
       found.spend(from.evaluations);
-      (void)found.add(twist_to(frame, placed_.span, held_.stiffness,
-                               untwisted_shape(from, workspace_), options_, workspace_),
-                      turned_little_by_little);
+      const UntwistedShape shape = untwisted_shape(from, workspace_);
+      SpanSolution solution = twist_to(end_frame(held, shape), placed_.span, held.stiffness, shape,
+                                       options_, workspace_);
+      if (!is_of_class(held, solution)) solution.fail(no_equilibrium_of_class);
+      (void)found.add(std::move(solution), turned_little_by_little);
+    }
+    if (placed_.span.has_material_directors() && placed_.span.rigid_obstacles.empty()) {
+      search_with_frame(held, found);
+    } else {
+      note_not_tried(options_.log,
+                     "unstable twisted shapes, and those that no stable one is turned to");
     }
     return std::move(found).take();
   }
 
  private:
+  /// The held frames, whose turns count from the best shape without twist where they say nothing.
+  [[nodiscard]] HeldFrames counted_from(const SpanSolution& best) const {
+    HeldFrames held = held_;
+    if (held.turns.turns) return held;
+    const UntwistedShape shape = untwisted_shape(best, workspace_);
+    if (!shape.writhe) return held;
+    held.turns.turns = (shape.twist + end_frame(held, shape).twist) / (2 * std::numbers::pi) +
+                       shape.writhe->value.value_or(shape.writhe->modulo_two);
+    return held;
+  }
+
+  /// Whether the frames along an equilibrium are a path of the homotopy class that the clamps hold;
+  /// notes how many turns it lacks. A round straight rod is not asked: it has been twisted to them.
+  [[nodiscard]] static bool is_of_class(const HeldFrames& held, SpanSolution& solution) {
+    if (!solution.is_equilibrium() || !solution.model->span().has_material_directors()) return true;
+    const auto lost =
+        turns_lost(held.turns, solution.model->twist(solution.x), writhe_of(solution));
+    solution.turns_lost = lost.value_or(0);
+    return lost.has_value();
+  }
+
+  /// Adds equilibria that are found from starts whose frames meet the held one.
+  void search_with_frame(const HeldFrames& held, Found& found) const {
+    Span span = placed_.span;
+    span.planar = false;
+    span.twist = Span::Twist{held.stiffness, held_end_d1(held, span), held.turns.turns};
+    for (SpanSolution& solution : solve_span(span, options_, workspace_)) {
+      (void)found.add(std::move(solution));
+    }
+  }
+
   /// The equilibrium next to a twisted shape that is known.
   [[nodiscard]] SpanSolution next_to(const TangentField& field, const EndFrame& frame,
                                      std::vector<Span::Contact> contacts) const {
@@ -161,7 +203,7 @@ std::vector<SpanSolution> solve_twisted(const PlacedSpan& placed, const Problem&
     followed.evaluations += best.evaluations;
     if (followed.followed || options.only_follows()) return list_of(std::move(followed));
   }
-  if (!options.only_follows()) return span.turned(untwisted, frame);
+  if (!options.only_follows()) return span.turned(untwisted);
   best.followed = false;
   return untwisted;
 }

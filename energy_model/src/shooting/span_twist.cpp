@@ -9,6 +9,7 @@
 
 #include "base/sized_samples.hpp"
 #include "dlo/energy_model/turns.hpp"
+#include "frames/span_shape.hpp"
 #include "shooting/gradient_flow.hpp"
 
 namespace dlo::energy_model {
@@ -86,11 +87,24 @@ class Continuation {
       // From the frame that the rod without rolls would have there.
       const Eigen::Matrix3d ahead_of = rolled(released_.back(), -span_.first_roll);
       const double ahead = std::atan2(ahead_of.col(1).dot(d1), ahead_of.col(0).dot(d1));
-      std::optional<double> before;
-      if (turns.turns) before = writhe(sample, span_.clamps.front().at, clamp.at);
-      targets_.back() = turned_angle(turns, ahead, before);
+      const double first = span_.clamps.front().at;
+      std::optional<Writhe> before;
+      if (turns.turns) before = writhe(sample, first, clamp.at);
+      targets_.back() = turned_angle(turns, ahead, twist_between(first, clamp.at), before);
       target_ = std::max(target_, std::abs(targets_.back()));
     }
+  }
+
+  /// Rotation of the frames about the tangent of the shape without rolls [rad].
+  [[nodiscard]] double twist_between(double begin, double end) const {
+    constexpr int points = 512;
+    std::vector<double> at;
+    for (int i = 0; i <= points; ++i) at.push_back(begin + (end - begin) * i / points);
+    const auto states = states_at(now_, span_, at, tolerance_);
+    Eigen::Matrix3Xd d1(3, points + 1);
+    for (int i = 0; i <= points; ++i) d1.col(i) = states[static_cast<std::size_t>(i)].R.col(0);
+    const Eigen::VectorXd roll = roll_of(tangents_of(states), d1);
+    return roll[points] - roll[0];
   }
 
   [[nodiscard]] ShootingOptions options() const {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/sized_samples.hpp"
 #include "certify/rigid_body_modes.hpp"
 #include "strain/span_energy.hpp"
 
@@ -15,7 +16,9 @@ bool is_better(const SpanSolution& a, const SpanSolution& b) {
     if (succeeded(solution.status)) return 0;
     return solution.is_equilibrium() ? 1 : 2;
   };
-  return rank(a) != rank(b) ? rank(a) < rank(b) : a.energy < b.energy;
+  if (rank(a) != rank(b)) return rank(a) < rank(b);
+  if ((a.turns_lost == 0) != (b.turns_lost == 0)) return a.turns_lost == 0;
+  return a.energy < b.energy;
 }
 
 }  // namespace
@@ -45,6 +48,19 @@ int SearchLog::starts() const {
   int sum = 0;
   for (const SearchStrategy& strategy : looked_from_) sum += strategy.tried;
   return sum;
+}
+
+std::optional<Writhe> writhe_of(const SpanSolution& solution) {
+  const SpanShape shape = solution.model->shape(solution.x);
+  const double length = solution.model->span().length;
+  const auto sample = [&shape, length](std::span<const double> at) {
+    const SpanSamples own = shape.sample(at);
+    Samples samples = sized_samples(at, length);
+    samples.points = own.points;
+    samples.tangents = own.tangents;
+    return samples;
+  };
+  return writhe(sample, 0, length);
 }
 
 std::vector<SpanSolution> list_of(SpanSolution solution) {

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "dlo/energy_model/energy.hpp"
+#include "dlo/energy_model/turns.hpp"
 #include "span/span_options.hpp"
 #include "strain/span_solution.hpp"
 
@@ -55,6 +57,13 @@ inline constexpr double same_points = 1e-6;
 [[nodiscard]] inline bool counts(const SpanSolution& solution, const SpanOptions& options) {
   return solution.is_equilibrium() || (options.wants_all() && solution.is_singular_point());
 }
+
+/// Message of a search between held frames whose equilibria are all of the other homotopy class.
+inline constexpr const char* no_equilibrium_of_class =
+    "no equilibrium was found with the turns of the clamps";
+
+/// Returns the writhe of a shape from its start to its end; empty as writhe().
+[[nodiscard]] std::optional<Writhe> writhe_of(const SpanSolution& solution);
 
 /// A braced list would copy it.
 [[nodiscard]] std::vector<SpanSolution> list_of(SpanSolution solution);

@@ -80,7 +80,7 @@ class Search {
     const bool may_leave = span_.planar && !span_.stays_in_plane();
     if (may_leave && span_.has_material_directors()) look_in_space();
     if (options_.wants_all()) tell_what_was_not_tried();
-    if (found_.empty()) (void)found_.add(out_of_time());
+    if (found_.empty()) (void)found_.add(none());
     return std::move(found_).take();
   }
 
@@ -222,10 +222,23 @@ class Search {
   }
 
   bool add(SpanSolution solution) {
+    if (!is_of_class(solution)) return false;
     return found_.add(judged(std::move(solution), options_, workspace_));
   }
   bool add(SpanSolution solution, const std::string& strategy) {
+    if (!is_of_class(solution)) return false;
     return found_.add(judged(std::move(solution), options_, workspace_), strategy);
+  }
+
+  /// Whether the frames along an equilibrium are a path of the homotopy class that the clamps hold;
+  /// notes how many turns it lacks.
+  [[nodiscard]] bool is_of_class(SpanSolution& solution) {
+    if (!span_.twist || !span_.twist->turns || !solution.is_equilibrium()) return true;
+    const auto lost = turns_lost({.turns = span_.twist->turns}, solution.model->twist(solution.x),
+                                 writhe_of(solution));
+    if (!lost) found_.spend(std::exchange(solution.evaluations, 0));
+    solution.turns_lost = lost.value_or(0);
+    return lost.has_value();
   }
 
   /// Descends from the unstable equilibria, once more from those that it leads to.
@@ -239,11 +252,13 @@ class Search {
     }
   }
 
-  [[nodiscard]] SpanSolution out_of_time() {
+  /// Nothing was found in time, or of the class that the clamps hold.
+  [[nodiscard]] SpanSolution none() {
     SpanSolution none = on_.empty_solution(on_.terms());
     none.x.setZero(none.model->size());
     none.multipliers.setZero(none.model->constraints());
     none.finish(SolveStatus::time_limit);
+    if (!on_.out_of_time()) none.fail(no_equilibrium_of_class);
     return none;
   }
 

@@ -2,10 +2,13 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
+#include "base/spin.hpp"
+#include "dlo/energy_model/turns.hpp"
 #include "problem/segments.hpp"
 #include "strain/span_energy.hpp"
 
@@ -276,6 +279,83 @@ std::vector<TangentField> passing_fields(const Span& span) {
   return fields;
 }
 
+/// Arc lengths at which a start is compared with the frame that the end holds.
+Eigen::VectorXd compared_at(const Span& span) {
+  constexpr Eigen::Index points = 257;
+  return Eigen::VectorXd::LinSpaced(points, 0, span.length);
+}
+
+/// The angle in a class modulo 4 pi that is nearest to zero, and the next one on the other side.
+std::array<double, 2> angles_of_class(double angle) {
+  const double nearest = std::remainder(angle, 4 * pi);
+  return {nearest, nearest - std::copysign(4 * pi, nearest)};
+}
+
+/// The stress-free shape with its frames rotated on evenly, in their own axes, to the end's frame.
+std::vector<TangentField> bent_to_end(const Span& span, const SpanShape& free) {
+  const auto frames_at = [free](const Eigen::VectorXd& s) {
+    const SpanSamples at = free.sample({s.data(), static_cast<std::size_t>(s.size())});
+    std::vector<Eigen::Quaterniond> frames;
+    for (Eigen::Index q = 0; q < s.size(); ++q) {
+      frames.emplace_back(frame_along(at.tangents.col(q), at.d1.col(q)));
+      // The lift to unit quaternions is continuous.
+      if (q > 0 && frames.back().dot(frames[frames.size() - 2]) < 0) frames.back().coeffs() *= -1;
+    }
+    return frames;
+  };
+  const Eigen::Vector3d& start = *span.start_direction;
+  const Eigen::Vector3d& end = *span.end_direction;
+  const auto closing = shortest_rotation(start, end, span.holds.back().offset / span.length);
+  if (!closing) return {};
+  const double half = pi * *span.twist->turns;
+  Eigen::Quaterniond turned;
+  turned.w() = std::cos(half);
+  turned.vec() = std::sin(half) * end;
+  const std::vector<Eigen::Quaterniond> free_frames = frames_at(compared_at(span));
+  const Eigen::Quaterniond held = turned * *closing * free_frames.front();
+  const Eigen::Quaterniond rest = free_frames.back().conjugate() * held;
+  if (!(rest.vec().norm() > 0)) return {};
+  const Eigen::Vector3d axis = rest.vec().normalized();
+  std::vector<TangentField> fields;
+  for (const double angle : angles_of_class(2 * std::atan2(rest.vec().norm(), rest.w()))) {
+    fields.emplace_back([=, length = span.length](const Eigen::VectorXd& s) {
+      const std::vector<Eigen::Quaterniond> frames = frames_at(s);
+      Eigen::Matrix3Xd tangents(3, s.size());
+      Eigen::Matrix3Xd d1(3, s.size());
+      for (Eigen::Index q = 0; q < s.size(); ++q) {
+        const Eigen::Matrix3d frame = (frames[static_cast<std::size_t>(q)] *
+                                       from_rotation_vector(angle * s[q] / length * axis))
+                                          .toRotationMatrix();
+        tangents.col(q) = frame.col(2);
+        d1.col(q) = frame.col(0);
+      }
+      return StartShape(tangents, roll_of(tangents, d1));
+    });
+  }
+  return fields;
+}
+
+/// natural_fields() where the frame at the end is held.
+std::vector<TangentField> held_fields(const Span& span) {
+  SpanEnergy model(span, natural_shape_terms);
+  const SpanShape free = model.shape(Eigen::VectorXd::Zero(model.size()));
+  std::vector<TangentField> fields = bent_to_end(span, free);
+  const Eigen::VectorXd s = compared_at(span);
+  const Eigen::Vector3d chord = span.holds.back().offset / span.length;
+  for (const TangentField& plain : start_fields(span)) {
+    Eigen::Matrix3Xd tangents(3, s.size() + 2);
+    tangents << *span.start_direction, plain(s).tangents, *span.end_direction;
+    const std::optional<double> writhe = writhe_modulo_two(tangents, chord);
+    if (!writhe) continue;
+    for (const double angle : angles_of_class(2 * pi * (*span.twist->turns - *writhe))) {
+      fields.emplace_back([plain, angle, length = span.length](const Eigen::VectorXd& at) {
+        return StartShape(plain(at).tangents, angle / length * at);
+      });
+    }
+  }
+  return fields;
+}
+
 }  // namespace
 
 TangentField soft_field(const Span& span) {
@@ -323,6 +403,7 @@ std::vector<TangentField> start_fields(const Span& span) {
 }
 
 std::vector<TangentField> natural_fields(const Span& span) {
+  if (span.twist && span.twist->turns) return held_fields(span);
   std::vector<TangentField> fields;
   const SpanEnergy model(span, natural_shape_terms);
   const SpanShape free = model.shape(Eigen::VectorXd::Zero(model.size()));

@@ -24,7 +24,9 @@ namespace dlo::energy_model {
 
 /// Of a rod with material directors: the stress-free shape, and in the plane bent evenly to the
 /// directions of its end's clamp next to where it points; and the shapes of start_fields(), in
-/// space each with the rod's frame turned on evenly from the start to several angles.
+/// space each with the rod's frame turned on evenly from the start to several angles. Where the
+/// frame at the end is held too, these shapes with frames that are rotated on evenly until they
+/// meet it, by the two angles of the class of Span::Twist::turns that are nearest to zero.
 [[nodiscard]] std::vector<TangentField> natural_fields(const Span& span);
 
 }  // namespace dlo::energy_model

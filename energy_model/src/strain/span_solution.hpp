@@ -32,6 +32,8 @@ struct [[nodiscard]] SpanSolution {
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   /// Of them, those that are zero to the tolerance and no rigid-body mode's; near_singular if any.
   int neutral_directions = 0;
+  /// turns_lost() of an intrinsically curved rod whose frames are held at both ends.
+  int turns_lost = 0;
   int rigid_body_modes = 0;  ///< of a shape that certify() has seen: those that are
   std::shared_ptr<SpanEnergy> model;
   Eigen::VectorXd x;

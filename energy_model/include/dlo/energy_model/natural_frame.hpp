@@ -8,9 +8,11 @@
 
 namespace dlo::energy_model {
 
-/// The plane's normal that d2 is where the first clamp of a rod with material directors does not
-/// say otherwise: that of grips, forces and obstacles, on the side of +z (+y, +x). None: they share
-/// no plane.
+/// Returns the normal that d2 is where the first clamp of a rod with material directors does not
+/// say otherwise: that of the plane of grips, weight and obstacles, on the side of +z (+y, +x).
+/// Loads do not choose it. Empty: there is no such plane; more than one, as along a line that is
+/// not in x-y; or a load has a component across it that moves the rod by more than about 1e-6 of
+/// its length.
 [[nodiscard]] std::optional<Eigen::Vector3d> natural_normal(const Problem& problem);
 
 /// Index of the first clamp along the rod in Problem::grips. None: there are but pins.

@@ -26,40 +26,63 @@ namespace dlo::energy_model {
 [[nodiscard]] std::optional<double> held_turns(const Problem& problem, const Grip& first,
                                                const Grip& last);
 
-/// What frames at both ends of a rod ask of its twist.
+/// Writhe of a curve that goes on straight at both ends, to where it closes in the plane of the end
+/// tangents.
+struct Writhe {
+  /// In [-1, 1], by the tangents alone: Fuller's area on the sphere of tangents over 2 pi. It tells
+  /// the homotopy class of the frames along the curve, even where the curve meets itself.
+  double modulo_two = 0;
+  /// Empty where the curve or a line beyond its ends passes through it: a passage changes the
+  /// writhe by two.
+  std::optional<double> value;
+  double error = 0;  ///< estimate of the error of both [-]
+};
+
+/// Turns that frames at both ends of a rod hold.
 struct HeldTurns {
   double roll = 0;  ///< of the end less the start's, whole turns counted [rad]
-  /// held_turns() of a rod that is intrinsically straight. None: of the turns that the frames leave
-  /// open, those nearest to the rod without them; so what is intrinsically coiled stays coiled.
+  /// held_turns(). Empty for an intrinsically curved rod whose later clamp has no d1: its roll
+  /// counts from the rod as it lies without this frame, so that a rod that is coiled stays coiled.
   std::optional<double> turns;
 };
 
-/// @throws std::invalid_argument as held_d1()
+/// Returns the turns that two neighbouring clamps hold. @throws std::invalid_argument as held_d1()
 [[nodiscard]] HeldTurns turns_between(const Problem& problem, const Grip& first, const Grip& last);
 
-/// The angle by which the frame at the end turns the rod from a shape without twist [rad].
-/// @param ahead   of the end's d1, not rolled, from where that shape has it, up to whole turns
-/// [rad]
-/// @param writhe  of that shape; none: not known, `ahead` is taken in (-pi, pi]
-[[nodiscard]] double turned_angle(const HeldTurns& held, double ahead,
-                                  std::optional<double> writhe);
+/// Returns the angle by which the frame at the end has to be rotated from a shape that has not met
+/// it [rad], so that the shape has the turns that are held; if only its writhe modulo two is known,
+/// the smallest angle that leads into their homotopy class.
+/// @param ahead   angle of the held d1, not rolled, from the shape's, up to whole turns [rad]
+/// @param twist   of the shape [rad]
+/// @param writhe  of the shape; empty: not known, `ahead` is taken in (-pi, pi]
+[[nodiscard]] double turned_angle(const HeldTurns& held, double ahead, double twist,
+                                  const std::optional<Writhe>& writhe);
 
-/// Whether a shape has the turns that are held, as far as that can be told.
+/// Returns how many turns a shape lacks whose ends meet the frames: an even number, by two for each
+/// passage through itself. Empty: an odd number, so that the frames along the shape are a path of
+/// the other homotopy class. Returns 0 if the turns or the writhe are not known.
 /// @param twist  of the shape [rad]
-[[nodiscard]] bool holds_turns(const HeldTurns& held, double twist, std::optional<double> writhe);
+[[nodiscard]] std::optional<int> turns_lost(const HeldTurns& held, double twist,
+                                            const std::optional<Writhe>& writhe);
 
-/// Writhe [-] of a polygon that goes on straight at both ends, to where it closes in the plane of
-/// the end tangents. Exact: Fuller's area on the sphere of tangents where these keep to one side of
-/// it, Gauss's integral elsewhere (Klenin and Langowski 2000, method 1a). None where an end's line
-/// passes through the polygon.
+/// Returns the writhe modulo two of a curve with these tangents, joined by great arcs: the rotation
+/// of a frame without twist, lifted to unit quaternions, against the shortest rotation of the first
+/// tangent into the last. Empty where these are opposite and the chord is along them.
+/// @param tangents  3 x M, unit, M >= 2;  @param chord  from end to end, over the length
+[[nodiscard]] std::optional<double> writhe_modulo_two(const Eigen::Matrix3Xd& tangents,
+                                                      const Eigen::Vector3d& chord);
+
+/// Returns the writhe of a polygon. That modulo two is exact; Gauss's integral (Klenin and
+/// Langowski 2000, method 1a) says which of the numbers of this class it is. Empty as
+/// writhe_modulo_two().
 /// @param points  3 x M, M >= 2;  @param first, last  unit tangents of its ends
-[[nodiscard]] std::optional<double> writhe(const Eigen::Matrix3Xd& points,
+[[nodiscard]] std::optional<Writhe> writhe(const Eigen::Matrix3Xd& points,
                                            const Eigen::Vector3d& first,
                                            const Eigen::Vector3d& last);
 
-/// The same of a shape between two arc lengths [m], by polygons of more and more points until it is
-/// known to 0.01. None where it is for no polygon of at most 1024 points.
-[[nodiscard]] std::optional<double> writhe(
+/// Returns the writhe of a shape between two arc lengths [m], by polygons of more and more points
+/// until its error is below 1e-7 or they have 2048.
+[[nodiscard]] std::optional<Writhe> writhe(
     const std::function<Samples(std::span<const double> arc_lengths)>& sample, double begin,
     double end);
 
