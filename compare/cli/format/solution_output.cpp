@@ -33,11 +33,8 @@ Json twist_json(const std::vector<energy_model::TwistedPart>& twists) {
 
 Json turns_json(const std::vector<compare::Linking>& parts) {
   return json_list(parts, [&](const compare::Linking& part) -> Json {
-    return {{"from_m", part.begin},
-            {"to_m", part.end},
-            {"held", part.held},
-            {"twist", part.twist},
-            {"writhe", part.writhe}};
+    return {{"from_m", part.begin}, {"to_m", part.end},      {"held", part.held},
+            {"twist", part.twist},  {"writhe", part.writhe}, {"writhe_error", part.writhe_error}};
   });
 }
 
@@ -193,7 +190,7 @@ void add_twists(std::string& out, const compare::Solution& solution,
     const double turns = part.twist + part.writhe;
     append(out, "turns      {:.3f} = twist {:.3f} + writhe {:.3f} from s = {:.4g} to {:.4g} m",
            turns, part.twist, part.writhe, part.begin, part.end);
-    constexpr double tolerance = 0.02;  // of the writhe
+    constexpr double tolerance = 5e-4;  // of the digits that are printed
     if (std::abs(turns - part.held) > tolerance) {
       append(out, ", by the grips alone {:.3f}", part.held);
     }
@@ -248,6 +245,12 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
   append(out, "model      {}, {}\n", compare::to_string(solution.model), solution.message);
   append(out, "Gamma      {:.6g}   (w l^3 / EI)\n", scene.gamma());
   if (scene.assumes_torsion()) append(out, "assumed    {}\n", assumption_text(scene));
+  if (const auto normal = scene.assumed_normal()) {
+    append(out,
+           "assumed    natural curvature about the normal [{:.4g}, {:.4g}, {:.4g}] of the plane of "
+           "grippers, gravity and obstacles, as the first clamp has no frame\n",
+           normal->x(), normal->y(), normal->z());
+  }
   if (scene.layers) append(out, "layers     {}\n", layers_text(scene));
   if (scene.rest_shape) append(out, "rest shape {}\n", rest_shape_text(scene));
   add_work(out, solution);
@@ -280,6 +283,9 @@ Json solution_json(const compare::Solution& solution, const compare::Scene& scen
   if (scene.assumes_torsion()) {
     result["assumed"] = {{"torsional_stiffness_Nm2", scene.twisting_stiffness()},
                          {"poisson_ratio", compare::assumed_poisson_ratio}};
+  }
+  if (const auto normal = scene.assumed_normal()) {
+    result["assumed"]["natural_curvature_normal"] = {normal->x(), normal->y(), normal->z()};
   }
   if (scene.layers) result["layers"] = compare::layers_document(scene);
   if (scene.rest_shape) result["rest_shape"] = compare::rest_shape_document(scene);

@@ -165,6 +165,14 @@ Eigen::Matrix3d Scene::first_frame() const {
   return energy_model::first_frame(problem);
 }
 
+std::optional<Eigen::Vector3d> Scene::assumed_normal() const {
+  const std::optional<std::size_t> clamp = first_clamp_of(*this);
+  if (!naturally_curved() || !clamp) return std::nullopt;
+  const std::optional<FrameHold>& frame = grippers[*clamp].frame;
+  if (frame && frame->d1) return std::nullopt;
+  return energy_model::natural_normal(scene_problem(*this));
+}
+
 bool Scene::naturally_twisted() const {
   return natural_strain.z() != 0 ||
          std::any_of(sections.begin(), sections.end(),

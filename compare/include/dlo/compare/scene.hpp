@@ -263,6 +263,10 @@ struct Scene {
   /// Frame (columns d1, d2, t) in which the first clamp holds a rod with material directors.
   /// @throws InputError if no clamp, or no plane, says where it is
   [[nodiscard]] Eigen::Matrix3d first_frame() const;
+  /// Returns the normal of the plane in which an intrinsically curved rod is assumed to be bent,
+  /// because its first clamp gives no d1: that of the scene without loads
+  /// (energy_model::natural_normal). Empty: the clamp gives d1, or the rod is straight.
+  [[nodiscard]] std::optional<Eigen::Vector3d> assumed_normal() const;
   /// The same rod, intrinsically straight.
   [[nodiscard]] Scene without_natural_strain() const;
   /// Mean curvature of the stress-free shape in the axes that the first clamp holds, as a vector

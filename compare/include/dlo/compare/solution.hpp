@@ -98,11 +98,12 @@ struct Choices<StretchDecision> {
 /// Turns of a part of the rod whose ends hold frames, in turns; the writhe is of that part with its
 /// ends going on straight.
 struct Linking {
-  double begin = 0;   ///< arc length [m]
-  double end = 0;     ///< arc length [m]
-  double held = 0;    ///< by the grips, whole turns counted
-  double twist = 0;   ///< of the shape: TwistedPart::angle
-  double writhe = 0;  ///< of its axis
+  double begin = 0;         ///< arc length [m]
+  double end = 0;           ///< arc length [m]
+  double held = 0;          ///< by the grips, whole turns counted
+  double twist = 0;         ///< of the shape: TwistedPart::angle
+  double writhe = 0;        ///< of its axis
+  double writhe_error = 0;  ///< estimate of the error of the writhe
 };
 
 /// A shape and what it cost. Only converged shapes are returned, and those that are not verified or
