@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "dlo/compare/error.hpp"
-#include "motion/normal_equations.hpp"
 
 namespace dlo::compare {
 namespace {

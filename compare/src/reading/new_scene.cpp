@@ -196,9 +196,6 @@ constexpr char optional_lines[] = R"(
 #frame_rate = "{frames:g} Hz"  # Hz, kHz
 #obstacle_rate = "25 Hz"  # how often obstacles move; without it with every frame
 #step_rate = "{steps:g} Hz"  # steps of the force model a second
-# With --dynamic the rod starts from its equilibrium, or from points beside this file: a shape that
-# is released from rest (x,y,z[,s]), or a recording with its velocities (time,s,x,y,z), in s and m.
-#start = "shape.csv"
 
 # The force model, which dlo compare, calibrate and solve --model force use; these are the defaults.
 # dlo calibrate FILE -o params.toml finds the parameters.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -22,6 +23,27 @@
 
 namespace dlo::compare {
 namespace {
+
+/// Returns the points of a whole rod's shape as rows at time 0. Without arc lengths of its own they
+/// are those along the polyline, scaled to the rod.
+/// @param length  of the rod [m]
+std::vector<MarkerPosition> rows_of_shape(const MeasuredShape& shape, double length) {
+  std::vector<double> s = shape.arc_length;
+  if (s.empty()) {
+    s.assign(1, 0);
+    for (Eigen::Index i = 1; i < shape.points.cols(); ++i) {
+      s.push_back(s.back() + (shape.points.col(i) - shape.points.col(i - 1)).norm());
+    }
+    const double polyline = s.back();
+    for (double& at : s) at = std::min(length, at * length / polyline);
+  }
+  std::vector<MarkerPosition> rows;
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    rows.push_back({0, s[i], shape.points.col(static_cast<Eigen::Index>(i))});
+  }
+  std::ranges::sort(rows, {}, &MarkerPosition::arc_length);
+  return rows;
+}
 
 /// Solvers of several spans take memory with the square of the number of grippers, some 250 MB for
 /// the most; of the others no scene has any use for more.

@@ -90,22 +90,4 @@ bool has_marker_columns(std::string_view text, const std::string& file) {
   return found.value_or(false);
 }
 
-std::vector<MarkerPosition> rows_of_shape(const MeasuredShape& shape, double length) {
-  std::vector<double> s = shape.arc_length;
-  if (s.empty()) {
-    s.assign(1, 0);
-    for (Eigen::Index i = 1; i < shape.points.cols(); ++i) {
-      s.push_back(s.back() + (shape.points.col(i) - shape.points.col(i - 1)).norm());
-    }
-    const double polyline = s.back();
-    for (double& at : s) at = std::min(length, at * length / polyline);
-  }
-  std::vector<MarkerPosition> rows;
-  for (std::size_t i = 0; i < s.size(); ++i) {
-    rows.push_back({0, s[i], shape.points.col(static_cast<Eigen::Index>(i))});
-  }
-  std::ranges::sort(rows, {}, &MarkerPosition::arc_length);
-  return rows;
-}
-
 }  // namespace dlo::compare

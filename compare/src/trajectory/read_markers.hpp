@@ -4,7 +4,6 @@
 #include <string_view>
 #include <vector>
 
-#include "dlo/compare/shape_file.hpp"
 #include "dlo/compare/trajectory.hpp"
 
 namespace dlo::compare {
@@ -16,10 +15,5 @@ namespace dlo::compare {
 
 /// Whether the first row of a CSV text is the header of a recording.
 [[nodiscard]] bool has_marker_columns(std::string_view text, const std::string& file);
-
-/// Returns the points of a whole rod's shape as rows at time 0. Without arc lengths of its own they
-/// are those along the polyline, scaled to the rod.
-/// @param length  of the rod [m]
-[[nodiscard]] std::vector<MarkerPosition> rows_of_shape(const MeasuredShape& shape, double length);
 
 }  // namespace dlo::compare

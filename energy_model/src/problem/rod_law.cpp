@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "base/require.hpp"
@@ -33,6 +34,22 @@ void add_line_load(const LineLoad& load, std::vector<RodPart>& parts) {
     part.weight_slope += load.slope();
   }
   parts = std::move(cut);
+}
+
+/// Calls `add` with the directions in which loads act, and with two across each couple.
+void add_loads(const Problem& problem,
+               const std::function<void(const Eigen::Vector3d&, double)>& add) {
+  for (const LineLoad& load : problem.line_loads) {
+    add(load.at_begin, 0);
+    add(load.at_end, 0);
+  }
+  if (problem.drag) add(problem.drag->velocity, 0);
+  for (const Load& load : problem.loads) {
+    if (load.follows) continue;  // that lies in the section's axes
+    add(load.force, 0);
+    if (load.torque.isZero(0)) continue;
+    for (const Eigen::Vector3d& direction : plane_across(load.torque)) add(direction, 0);
+  }
 }
 
 /// Whether a load moves the rod out of a plane by more than about 1e-6 of its length.
@@ -144,6 +161,9 @@ std::optional<Eigen::Vector3d> natural_normal(const Problem& problem) {
   }
   add(problem.weight_per_length, 0);
   for (const Section& section : problem.sections) add(section.weight_per_length, 0);
+  // Loads do not choose the plane of a stress-free shape that is curved.
+  const bool is_straight = problem.natural_strains.empty();
+  if (is_straight) add_loads(problem, add);
   for (const Obstacle& obstacle : problem.obstacles) {
     if (obstacle.body.is_half_space()) add(obstacle.body.normal(), 0);
   }
@@ -161,14 +181,14 @@ std::optional<Eigen::Vector3d> natural_normal(const Problem& problem) {
     if (std::abs(normal[axis]) <= noise) continue;
     if (normal[axis] < 0) normal = -normal;
     const bool is_line = std::ranges::all_of(directions, is_along_first);
-    if (is_line && axis != 2) return std::nullopt;
+    if (!is_straight && is_line && axis != 2) return std::nullopt;
     break;
   }
   const Eigen::Vector3d& within = problem.grips.front().position;
   const bool symmetric = std::ranges::all_of(problem.obstacles, [&](const Obstacle& obstacle) {
     return obstacle.body.is_symmetric(within, normal, problem.length);
   });
-  if (!symmetric || loads_leave_plane(problem, normal)) return std::nullopt;
+  if (!symmetric || (!is_straight && loads_leave_plane(problem, normal))) return std::nullopt;
   return normal;
 }
 

@@ -9,7 +9,6 @@
 
 #include "base/sized_samples.hpp"
 #include "dlo/energy_model/turns.hpp"
-#include "frames/span_shape.hpp"
 #include "shooting/gradient_flow.hpp"
 
 namespace dlo::energy_model {
@@ -101,10 +100,15 @@ class Continuation {
     std::vector<double> at;
     for (int i = 0; i <= points; ++i) at.push_back(begin + (end - begin) * i / points);
     const auto states = states_at(now_, span_, at, tolerance_);
-    Eigen::Matrix3Xd d1(3, points + 1);
-    for (int i = 0; i <= points; ++i) d1.col(i) = states[static_cast<std::size_t>(i)].R.col(0);
-    const Eigen::VectorXd roll = roll_of(tangents_of(states), d1);
-    return roll[points] - roll[0];
+    double twist = 0;
+    for (std::size_t i = 1; i < states.size(); ++i) {
+      const Eigen::Vector3d t = states[i].t();
+      const Eigen::Vector3d carried =
+          Eigen::Quaterniond::FromTwoVectors(states[i - 1].t(), t) * states[i - 1].R.col(0);
+      const Eigen::Vector3d d1 = states[i].R.col(0);
+      twist += std::atan2(carried.cross(d1).dot(t), carried.dot(d1));
+    }
+    return twist;
   }
 
   [[nodiscard]] ShootingOptions options() const {

@@ -199,10 +199,11 @@ TEST_F(SuiteCommand, ASignalEndsAllSimulators) {
   const std::string program = "sh -c \"touch " + path("started_$$") + "; exec sleep 987\" {shape}";
   const std::string two_run =
       "for i in $(seq 200); do [ $(ls " + path("") + " | grep -c started_) -ge 2 ] && break; ";
-  const Outcome outcome =
-      run_line(std::string(DLO_COMMAND) + " suite --jobs 2 --scenes weight --with mine='" +
-               program + "' & " + two_run +
-               "sleep 0.02; done; kill -TERM $!; wait $!; echo $?; pgrep -c -x -f 'sleep 987'");
+  const Outcome outcome = run_line(
+      std::string(DLO_COMMAND) + " suite --jobs 2 --scenes weight --with mine='" + program +
+      "' & " + two_run +
+      "sleep 0.02; done; kill -TERM $!; wait $!; echo $?; for i in $(seq 200); do pgrep -x -f "
+      "'sleep 987' > /dev/null || break; sleep 0.02; done; pgrep -c -x -f 'sleep 987'");
   EXPECT_EQ(outcome.out, "143\n0\n");
 }
 
