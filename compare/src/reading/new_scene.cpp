@@ -196,6 +196,8 @@ constexpr char optional_lines[] = R"(
 #frame_rate = "{frames:g} Hz"  # Hz, kHz
 #obstacle_rate = "25 Hz"  # how often obstacles move; without it with every frame
 #step_rate = "{steps:g} Hz"  # steps of the force model a second
+# With --dynamic, start = "start.csv" beside this file releases the rod from a shape (x,y,z[,s]), or
+# continues a recording (time,s,x,y,z), in s and m; without it the rod starts in equilibrium.
 
 # The force model, which dlo compare, calibrate and solve --model force use; these are the defaults.
 # dlo calibrate FILE -o params.toml finds the parameters.
