@@ -445,7 +445,8 @@ TEST(DynamicTrack, ReleasesTheRodFromAGivenShape) {
 TEST(DynamicTrack, RefusesAStartWithTooFewPointsOrWithoutAnEnd) {
   Scene scene = released_rod(1);
   TrackOptions options = frames_at(40);
-  EXPECT_TRUE(says(error_of<InputError>([&] { (void)track(scene, options); }), {"nothing moves", "--to"}));
+  EXPECT_TRUE(
+      says(error_of<InputError>([&] { (void)track(scene, options); }), {"nothing moves", "--to"}));
   options.to = 1;
   MarkerMotion few = *scene.start;
   few.positions.resize(3);
