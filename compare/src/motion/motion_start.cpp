@@ -132,21 +132,27 @@ Eigen::Vector3d interpolated(const Eigen::Matrix3Xd& table, double share) {
   return (1 - t) * table.col(i) + t * table.col(i + 1);
 }
 
-/// @param duration  of the frames [s]; 0: one frame, at rest
-MotionStart start_of(const std::shared_ptr<SmoothMotion>& motion, double duration) {
-  MotionStart result;
-  result.noise = motion->noise();
-  result.shape = [motion](std::span<const double> at) {
+/// Returns a start with these unit tangents at arc lengths [m]; its points follow from them.
+template <typename Tangent>
+energy_model::StartingShape shape_along(Tangent tangent) {
+  return [tangent = std::move(tangent)](std::span<const double> at) {
     energy_model::Samples samples;
     samples.arc_length.assign(at.begin(), at.end());
     const Eigen::Index points = std::ssize(at);
     samples.points = samples.curvature = Eigen::Matrix3Xd::Zero(3, points);
     samples.tangents.resize(3, points);
     for (Eigen::Index i = 0; i < points; ++i) {
-      samples.tangents.col(i) = motion->tangent(at[static_cast<std::size_t>(i)]);
+      samples.tangents.col(i) = tangent(at[static_cast<std::size_t>(i)]);
     }
     return samples;
   };
+}
+
+/// @param duration  of the frames [s]; 0: one frame, at rest
+MotionStart start_of(const std::shared_ptr<SmoothMotion>& motion, double duration) {
+  MotionStart result;
+  result.noise = motion->noise();
+  result.shape = shape_along([motion](double s) { return motion->tangent(s); });
   result.duration = duration;
   if (!(duration > 0)) return result;
   result.velocities = [motion](std::span<const double> at) {
@@ -256,18 +262,9 @@ MotionStart StartDeviation::with(const Eigen::VectorXd& modes) const {
     velocities.col(i) += sum;
   }
   MotionStart result;
-  result.shape = [tangents, length = length_](std::span<const double> at) {
-    energy_model::Samples samples;
-    samples.arc_length.assign(at.begin(), at.end());
-    const Eigen::Index points = std::ssize(at);
-    samples.points = samples.curvature = Eigen::Matrix3Xd::Zero(3, points);
-    samples.tangents.resize(3, points);
-    for (Eigen::Index i = 0; i < points; ++i) {
-      samples.tangents.col(i) =
-          interpolated(tangents, at[static_cast<std::size_t>(i)] / length).normalized();
-    }
-    return samples;
-  };
+  result.shape = shape_along([tangents, length = length_](double s) -> Eigen::Vector3d {
+    return interpolated(tangents, s / length).normalized();
+  });
   result.velocities = [velocities, length = length_](std::span<const double> at) {
     Eigen::Matrix3Xd found(3, std::ssize(at));
     for (Eigen::Index i = 0; i < found.cols(); ++i) {

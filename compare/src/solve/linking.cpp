@@ -42,15 +42,6 @@ bool passes_opposite(const Scene& before, const Scene& after, const Linking& par
   return shortest_axis(before, part).dot(shortest_axis(after, part)) < 0;
 }
 
-/// Returns the writhe of a part. If the part or a line beyond its ends passes through itself, as a
-/// flat ring does, its writhe is that of either side, and the one nearer to `wanted` is returned.
-double writhe_of(const energy_model::Writhe& writhe, double wanted) {
-  if (writhe.value) return *writhe.value;
-  const double one = writhe.modulo_two;
-  const double other = one - std::copysign(2, one);
-  return std::abs(one - wanted) <= std::abs(other - wanted) ? one : other;
-}
-
 }  // namespace
 
 std::vector<Linking> linking_of(const Scene& scene, const energy_model::Equilibrium& equilibrium) {
@@ -74,7 +65,7 @@ std::vector<Linking> linking_of(const Scene& scene, const energy_model::Equilibr
                  .end = twist.end,
                  .twist = twist.angle / (2 * std::numbers::pi),
                  .writhe_error = writhe->error};
-    part.writhe = writhe_of(*writhe, *held - part.twist);
+    part.writhe = energy_model::nearest_writhe(*writhe, *held - part.twist);
     // A roll counts from the rod as it lies without it.
     if (!energy_model::turns_between(problem, **(last - 1), **last).turns) {
       *held += std::round(part.twist + part.writhe - *held);

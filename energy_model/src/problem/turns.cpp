@@ -1,7 +1,6 @@
 #include "dlo/energy_model/turns.hpp"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -93,11 +92,8 @@ std::optional<double> held_turns(const Problem& problem, const Grip& first, cons
 
 HeldTurns turns_between(const Problem& problem, const Grip& first, const Grip& last) {
   HeldTurns held{.roll = last.frame->roll - first.frame->roll, .turns = std::nullopt};
-  const bool is_curved = !problem.natural_strains.empty() ||
-                         std::ranges::any_of(problem.sections, [](const Section& section) {
-                           return section.natural_curvature || section.natural_twist;
-                         });
-  if (!is_curved || last.frame->d1) held.turns = held_turns(problem, first, last);
+  if (problem.natural_strains.empty() || last.frame->d1)
+    held.turns = held_turns(problem, first, last);
   return held;
 }
 
@@ -113,15 +109,18 @@ double turned_angle(const HeldTurns& held, double ahead, double twist,
   return nearer_to(0, to_turns_with(one), to_turns_with(other));
 }
 
+double nearest_writhe(const Writhe& writhe, double wanted) {
+  const auto [one, other] = writhes_of_class(writhe.modulo_two);
+  return writhe.value.value_or(nearer_to(wanted, one, other));
+}
+
 std::optional<int> turns_lost(const HeldTurns& held, double twist,
                               const std::optional<Writhe>& writhe) {
   if (!held.turns || !writhe) return 0;
   const double missing = *held.turns - twist / (2 * pi);
   const double in_class = std::remainder(missing - writhe->modulo_two, 2);
   if (std::abs(in_class) >= 0.5) return std::nullopt;
-  const auto [one, other] = writhes_of_class(writhe->modulo_two);
-  return static_cast<int>(
-      std::round(missing - writhe->value.value_or(nearer_to(missing, one, other))));
+  return static_cast<int>(std::round(missing - nearest_writhe(*writhe, missing)));
 }
 
 }  // namespace dlo::energy_model

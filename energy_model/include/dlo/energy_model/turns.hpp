@@ -58,6 +58,10 @@ struct HeldTurns {
 [[nodiscard]] double turned_angle(const HeldTurns& held, double ahead, double twist,
                                   const std::optional<Writhe>& writhe);
 
+/// Returns the writhe of a curve. If the curve or a line beyond its ends passes through it, as a
+/// flat ring does, its writhe is that of either side, and the one nearer to `wanted` is returned.
+[[nodiscard]] double nearest_writhe(const Writhe& writhe, double wanted);
+
 /// Returns how many turns a shape lacks whose ends meet the frames: an even number, by two for each
 /// passage through itself. Empty: an odd number, so that the frames along the shape are a path of
 /// the other homotopy class. Returns 0 if the turns or the writhe are not known.
