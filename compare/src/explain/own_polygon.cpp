@@ -22,8 +22,13 @@ namespace {
 /// Segments that a chain may have to be told from the rod itself.
 constexpr Eigen::Index most_segments = 200;
 
-/// From a shape that is hardly that of the chain it would take more.
-constexpr int most_polygon_evaluations = 2000;
+/// Largest number of energies for a chain that may be that of the file. A file that is not near
+/// one would take more.
+constexpr int most_evaluations_near_file = 2000;
+
+/// Largest number of energies for a chain with the segments of another one bisected, which starts
+/// farther from its equilibrium.
+constexpr int most_evaluations_refined = 20000;
 
 using energy_model::JointLaw;
 
@@ -32,9 +37,6 @@ constexpr JointLaw hookean_laws[] = {JointLaw::linear, JointLaw::hooke, JointLaw
 
 /// How much farther from the points the other laws have to be for one to show.
 constexpr double showing = 2;
-
-/// What is farther away than this share of the length is another chain whatever its law.
-constexpr double another_chain = 0.05;
 
 /// Of what is below, as a share of the length, the chain's own stretch is a part: no law shows.
 constexpr double least_showing = 1e-5;
@@ -139,14 +141,15 @@ class Chain {
 
   /// The file's points less its own at rest; nothing if it does not come to rest.
   /// @param factor  of the springs
-  [[nodiscard]] std::optional<Eigen::Matrix3Xd> gaps(double factor, JointLaw law) const {
+  [[nodiscard]] std::optional<Eigen::Matrix3Xd> gaps(
+      double factor, JointLaw law, int max_evaluations = most_evaluations_near_file) const {
     energy_model::PolygonProblem problem = problem_;
     problem.law = law;
     problem.stiffness *= factor;
     problem.stiffnesses *= factor;
     for (energy_model::PolygonTwist& twist : problem.twists) twist.compliance /= factor;
     energy_model::PolygonOptions options;
-    options.max_evaluations = most_polygon_evaluations;
+    options.max_evaluations = max_evaluations;
     options.in_stages = false;
     const energy_model::PolygonResult rest = energy_model::solve_polygon(problem, start(), options);
     if (!energy_model::succeeded(rest.status) || is_strained(rest.points)) return std::nullopt;
@@ -304,7 +307,7 @@ class Chain {
       problem_.node_forces.col(right - 1 + before_) += (1 - share) * load.force;
       problem_.node_forces.col(right + before_) += share * load.force;
     }
-    const double h = l / static_cast<double>(n);
+    const double h = inner_.maxCoeff();  // the whole segment's, as in set_obstacles()
     for (const std::size_t i : obstacles_in_reach(scene_)) {
       const Obstacle& obstacle = scene_.obstacles[i];
       const bool yields = std::isfinite(obstacle.stiffness);
@@ -407,7 +410,6 @@ std::optional<OwnPolygon> with_best_law(const Chain& chain, ChainClamp clamp, Sp
   std::optional<OwnPolygon> best;
   double next = std::numeric_limits<double>::infinity();  // of the others, the nearest
   for (const JointLaw law : hookean_laws) {
-    if (first && first->rms_m > another_chain * length) break;
     const std::optional<OwnPolygon> one = with_law(chain, clamp, springs, law);
     if (!one) continue;
     if (!first) first = one;
@@ -484,7 +486,8 @@ std::optional<Shape> chain_at_rest(const Scene& scene, const Shape& start, const
   const Eigen::Map<const Eigen::VectorXd> s(start.arc_length.data(), n + 1);
   Chain chain(scene, start.points, s.tail(n) - s.head(n), like.clamp, LastPoint::there);
   if (!chain.exists()) return std::nullopt;
-  const std::optional<Eigen::Matrix3Xd> gaps = chain.gaps(like.stiffness, like.law);
+  const std::optional<Eigen::Matrix3Xd> gaps =
+      chain.gaps(like.stiffness, like.law, most_evaluations_refined);
   if (!gaps) return std::nullopt;
   return chain.at_rest(*gaps);
 }

@@ -317,6 +317,42 @@ TEST(ChainVerdict, HookeanChainsPassOrAreTooCoarseAndSoftOnesFail) {
   EXPECT_GE(passed, tried * 3 / 4);
 }
 
+// The force of a yielding floor on a point is that of a whole segment. With that of l/N the chain
+// would be 4 % deeper in it.
+TEST(ChainVerdict, AChainOnAYieldingFloorHasThatFloorsForces) {
+  const std::string rod = "[rod]\nlength = 1\nbending_stiffness = 0.1\nmass_per_length = 2\n";
+  const std::string clamp = "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = [1, 0, 0]\n";
+  const std::string floor =
+      "[[obstacle]]\nshape = \"plane\"\npoint = [0, -0.05, 0]\nnormal = [0, 1, 0]\n"
+      "stiffness = 400\n";
+  const Scene scene =
+      of_chain(parse_scene(rod + clamp + floor, "floor.toml"), 15, energy_model::JointLaw::hooke);
+  const Shape shape = solve(scene, Model::chain).shape;
+  ASSERT_LT(shape.points.row(1).minCoeff(), -0.08);
+  const auto chains =
+      own_polygons(scene, shape, Springs::as_the_rod, energy_model::JointLaw::hooke);
+  const auto nearest = std::ranges::min_element(chains, {}, &OwnPolygon::rms_m);
+  ASSERT_NE(nearest, chains.end());
+  EXPECT_EQ(nearest->clamp, ChainClamp::middle);
+  EXPECT_LT(nearest->rms_m, 5e-5);
+}
+
+// The laws of a chain of few segments differ by more than the twentieth of its length.
+TEST(ChainVerdict, TheLawOfACoarseChainIsFoundFarFromTheOthers) {
+  Scene upwards = clamped();
+  upwards.grippers.front().direction = {std::cos(1.5), std::sin(1.5), 0};
+  upwards.scale_modulus(0.02);
+  const Scene scene = of_chain(upwards, 6, energy_model::JointLaw::binormal);
+  const Shape shape = solve(scene, Model::chain).shape;
+  const auto away_with = [&](std::optional<energy_model::JointLaw> law) {
+    const auto chains = own_polygons(scene, shape, Springs::as_the_rod, law);
+    const auto nearest = std::ranges::min_element(chains, {}, &OwnPolygon::rms_m);
+    return nearest == chains.end() ? NAN : nearest->rms_m;
+  };
+  EXPECT_GT(away_with(energy_model::JointLaw::linear), 0.05);
+  EXPECT_LT(away_with(std::nullopt), 1e-5);
+}
+
 Scene clamped_inside(const std::string& others) {
   return parse_scene(
       "[rod]\nlength = 1\nbending_stiffness = 0.1\nmass_per_length = 0.5\n[[gripper]]\nat = "
