@@ -214,24 +214,46 @@ class Chain {
     return true;
   }
 
+  /// Returns the clamp that holds this point of the file; null if none does.
+  [[nodiscard]] const Gripper* clamp_at(Eigen::Index point) const {
+    const auto clamp = std::ranges::find_if(scene_.grippers, [&](const Gripper& gripper) {
+      const std::optional<HeldAt> held = held_at(gripper, s_);
+      return gripper.direction && held && !held->segment && held->point == point;
+    });
+    return clamp == scene_.grippers.end() ? nullptr : &*clamp;
+  }
+
+  /// Holds the end of the segment at a clamp at one of the rod's ends: the segment of the file, or
+  /// one beyond the rod if the chain has a hinge at the clamp.
+  void hold_direction(const Gripper& clamp, bool at_start) {
+    const Eigen::Index n = inner_.size();
+    const bool hinged = clamp_ == ChainClamp::hinge;
+    const double h = at_start ? inner_[0] : inner_[n - 1];
+    const double way = at_start != hinged ? h : -h;
+    const Eigen::Index beyond = at_start ? 0 : n + before_ + 1;
+    const Eigen::Index inside = at_start ? 1 : n - 1;
+    hold_point(hinged ? beyond : inside, clamp.position + way * *clamp.direction);
+  }
+
+  /// Whether the segment at each clamp of an end is half as long as the next one.
+  [[nodiscard]] bool ends_in_half_segments() const {
+    const Eigen::Index n = inner_.size();
+    const auto is_half = [](double end, double beside) {
+      return std::abs(end / beside - 0.5) < 0.1;
+    };
+    return (!is_clamped_at_start_ || is_half(inner_[0], inner_[1])) &&
+           (!is_clamped_at_end_ || is_half(inner_[n - 1], inner_[n - 2]));
+  }
+
   /// @return whether the grippers hold the chain in this way at the file's points
   [[nodiscard]] bool hold() {
-    const Eigen::Index n = inner_.size();
-    const Gripper* first = nullptr;
-    const Gripper* last = nullptr;
     const bool hinged = clamp_ == ChainClamp::hinge;
-    const auto is_at = [&](const Gripper& gripper, Eigen::Index point) {
-      const std::optional<HeldAt> held = held_at(gripper, s_);
-      return held && !held->segment && held->point == point;
-    };
-    for (const Gripper& gripper : scene_.grippers) {
-      if (gripper.direction && is_at(gripper, 0)) first = &gripper;
-      if (gripper.direction && is_at(gripper, n)) last = &gripper;
-    }
+    const Gripper* const first = clamp_at(0);
+    const Gripper* const last = clamp_at(inner_.size());
     is_clamped_at_start_ = first != nullptr;
     is_clamped_at_end_ = last != nullptr;
-    before_ = first != nullptr && hinged ? 1 : 0;
-    after_ = last != nullptr && hinged ? 1 : 0;
+    before_ = is_clamped_at_start_ && hinged ? 1 : 0;
+    after_ = is_clamped_at_end_ && hinged ? 1 : 0;
     for (const Gripper& gripper : scene_.grippers) {
       const std::optional<HeldAt> at = held_at(gripper, s_);
       if (!at) return false;
@@ -241,22 +263,12 @@ class Chain {
         hold_point(at->point + before_, gripper.position);
       }
     }
-    if (first != nullptr) {
-      const double way = hinged ? -inner_[0] : inner_[0];
-      hold_point(hinged ? 0 : 1, first->position + way * *first->direction);
-    }
-    if (last != nullptr) {
-      const double way = hinged ? inner_[n - 1] : -inner_[n - 1];
-      hold_point(hinged ? n + before_ + 1 : n - 1, last->position + way * *last->direction);
-    }
+    if (first != nullptr) hold_direction(*first, true);
+    if (last != nullptr) hold_direction(*last, false);
     if (holds_twice()) return false;
-    if (first == nullptr && last == nullptr) return hinged || has_inner_clamp_;  // pins: all alike
-    if (clamp_ != ChainClamp::middle) return true;
-    const auto is_half = [](double end, double beside) {
-      return std::abs(end / beside - 0.5) < 0.1;
-    };
-    return (first == nullptr || is_half(inner_[0], inner_[1])) &&
-           (last == nullptr || is_half(inner_[n - 1], inner_[n - 2]));
+    // Chains that pins alone hold are the same with all three clamps.
+    if (first == nullptr && last == nullptr) return hinged || has_inner_clamp_;
+    return clamp_ != ChainClamp::middle || ends_in_half_segments();
   }
 
   /// Whether two grippers hold the same point.
@@ -322,7 +334,12 @@ class Chain {
     if (!scene_.holds_twist()) return;
     const energy_model::Problem rod = scene_problem(scene_);
     const std::vector<std::size_t> framed = framed_grippers(scene_);
-    const Eigen::VectorXd& h = problem_.rest_lengths;
+    Eigen::VectorXd h = problem_.rest_lengths;
+    if (clamp_ == ChainClamp::middle) {
+      // The file has half of the whole segment that a clamp at the rod's end holds.
+      if (is_clamped_at_start_) h[0] *= 2;
+      if (is_clamped_at_end_) h[h.size() - 1] *= 2;
+    }
     for (std::size_t k = 1; k < framed.size(); ++k) {
       const force_model::TwistedSpan span =
           held_span(rod, framed[k - 1], framed[k], held_segment(framed[k - 1]),
