@@ -11,12 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include "base/lobatto_element.hpp"
 #include "base/sized_samples.hpp"
 #include "dlo/energy_model/balance.hpp"
 #include "dlo/energy_model/taut_line.hpp"
-#include "exact/catenary.hpp"
+#include "laws/catenary.hpp"
 #include "problem/rod_law.hpp"
-#include "shooting/lobatto_element.hpp"
 
 namespace dlo::energy_model {
 namespace {

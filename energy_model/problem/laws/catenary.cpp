@@ -1,4 +1,4 @@
-#include "exact/catenary.hpp"
+#include "laws/catenary.hpp"
 
 #include <algorithm>
 #include <array>
