@@ -118,18 +118,6 @@ bool couples_leave_plane(const RodSpan& span, const SpanEquilibrium& equilibrium
   return (normal.transpose() * tangents_of(equilibrium.nodes)).cwiseAbs().maxCoeff() > flat;
 }
 
-/// Loads on clamps belong to no span.
-void add_loads_on_clamps(const Problem& problem, Equilibrium& result) {
-  for (const Load& load : problem.loads) {
-    const std::optional<std::size_t> clamp = clamp_under(problem, load);
-    if (!clamp) continue;
-    const Eigen::Vector3d& position = problem.grips[*clamp].position;
-    result.grips[*clamp].force -= load.force;
-    result.grips[*clamp].torque -= load.torque;
-    result.energy.load -= load.force.dot(position - problem.grips.front().position);
-  }
-}
-
 Samples sample(const Problem& problem, const SolvedRod& rod, double tolerance,
                std::span<const double> arc_lengths) {
   const double l = problem.length;

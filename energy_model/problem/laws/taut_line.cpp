@@ -30,16 +30,6 @@ std::vector<std::size_t> grips_along(const Problem& problem) {
   return along;
 }
 
-/// int ds / GJ between two arc lengths.
-double twist_compliance(const Problem& problem, double begin, double end) {
-  double compliance = 0;
-  for (const Section& part : rod_parts(problem)) {
-    const double length = std::min(end, part.end) - std::max(begin, part.begin);
-    if (length > 0) compliance += length / part.torsional_stiffness;
-  }
-  return compliance;
-}
-
 class TautLine {
  public:
   explicit TautLine(const Problem& problem) : problem_(problem), along_(grips_along(problem)) {
@@ -136,7 +126,7 @@ class TautLine {
         const Grip& before = problem_.grips[*last];
         // The writhe of a line is zero: what is held is twist.
         const double angle = 2 * std::numbers::pi * held_turns(problem_, before, held).value_or(0);
-        const double torque = angle / twist_compliance(problem_, before.at, held.at);
+        const double torque = angle / torsional_compliance(rod_parts(problem_), before.at, held.at);
         result_.twists.push_back({before.at, held.at, angle, torque});
         result_.energy.twisting += angle * torque / 2;
         result_.grips[g].torque += torque * line_;
@@ -162,7 +152,8 @@ class TautLine {
         double angle = 0;
         for (const TwistedPart& part : twists) {
           if (!(s > part.begin)) continue;
-          angle += part.torque * twist_compliance(problem, part.begin, std::min(s, part.end));
+          angle += part.torque *
+                   torsional_compliance(rod_parts(problem), part.begin, std::min(s, part.end));
         }
         samples.d1.col(i) = Eigen::AngleAxisd(angle, line) * d1;
       }

@@ -46,4 +46,15 @@ std::optional<std::size_t> clamp_under(const Problem& problem, const Load& load)
   return nearest;
 }
 
+void add_loads_on_clamps(const Problem& problem, Equilibrium& result) {
+  for (const Load& load : problem.loads) {
+    const std::optional<std::size_t> clamp = clamp_under(problem, load);
+    if (!clamp) continue;
+    const Eigen::Vector3d& position = problem.grips[*clamp].position;
+    result.grips[*clamp].force -= load.force;
+    result.grips[*clamp].torque -= load.torque;
+    result.energy.load -= load.force.dot(position - problem.grips.front().position);
+  }
+}
+
 }  // namespace dlo::energy_model

@@ -93,6 +93,15 @@ std::vector<RodPart> rod_parts(const Problem& problem) {
   return parts;
 }
 
+double torsional_compliance(const std::vector<RodPart>& parts, double begin, double end) {
+  double compliance = 0;
+  for (const RodPart& part : parts) {
+    const double length = std::min(end, part.end) - std::max(begin, part.begin);
+    if (length > 0) compliance += length / part.torsional_stiffness;
+  }
+  return compliance;
+}
+
 bool acts_everywhere(const LineLoad& load, const Problem& problem) {
   return load.begin == 0 && load.end == problem.length && load.at_begin == load.at_end;
 }

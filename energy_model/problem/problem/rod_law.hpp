@@ -20,6 +20,10 @@ struct RodPart : Section {
 /// growing arc length.
 [[nodiscard]] std::vector<RodPart> rod_parts(const Problem& problem);
 
+/// Returns int ds / GJ over the parts between two arc lengths [rad/(N m)]; infinite where GJ is 0.
+[[nodiscard]] double torsional_compliance(const std::vector<RodPart>& parts, double begin,
+                                          double end);
+
 /// Whether it is the same along all of the rod.
 [[nodiscard]] bool acts_everywhere(const LineLoad& load, const Problem& problem);
 

@@ -129,16 +129,6 @@ void place_line_loads(const Problem& problem, const Stretch& stretch, PlacedSpan
   }
 }
 
-/// GJ over EI with which the rod between two arc lengths resists a torque, as if it were uniform.
-double mean_torsion(const Problem& problem, double begin, double end) {
-  double compliance = 0;
-  for (const Section& part : rod_parts(problem)) {
-    const double length = std::min(end, part.end) - std::max(begin, part.begin);
-    if (length > 0) compliance += length / part.torsional_stiffness;
-  }
-  return (end - begin) / compliance / bending_unit(problem);
-}
-
 /// What two clamps do with the rod's frame between them, seen in a span's own axes.
 std::optional<HeldFrames> frames_of(const Problem& problem, const OrderedGrip& start,
                                     const Grip& end, const Eigen::Matrix3d& axes) {
@@ -146,7 +136,10 @@ std::optional<HeldFrames> frames_of(const Problem& problem, const OrderedGrip& s
   // The first clamp of a rod with material directors holds them, frame or none.
   Grip first = *start.grip;
   if (!first.frame) first.frame = FrameHold{};
-  return HeldFrames{.stiffness = mean_torsion(problem, first.at, end.at),
+  // GJ of a uniform rod that twists as much.
+  const double mean =
+      (end.at - first.at) / torsional_compliance(rod_parts(problem), first.at, end.at);
+  return HeldFrames{.stiffness = mean / bending_unit(problem),
                     .start_d1 = axes * held_d1(problem, first),
                     .end_d1 = axes * held_d1(problem, end),
                     .turns = turns_between(problem, first, end)};

@@ -144,7 +144,7 @@ class Assembly {
     }
     std::sort(result_.contacts.begin(), result_.contacts.end(),
               [](const ContactPart& a, const ContactPart& b) { return a.begin < b.begin; });
-    add_loads_on_clamps();
+    add_loads_on_clamps(problem_, result_);
     place_shapes(placed, solutions);
     return std::move(result_);
   }
@@ -242,18 +242,6 @@ class Assembly {
       return force;
     }
     return Eigen::Vector3d::Zero();
-  }
-
-  /// They are the gripper's alone.
-  void add_loads_on_clamps() {
-    for (const Load& load : problem_.loads) {
-      const std::optional<std::size_t> clamp = clamp_under(problem_, load);
-      if (!clamp) continue;
-      result_.grips[*clamp].force -= load.force;
-      result_.grips[*clamp].torque -= load.torque;
-      result_.energy.load -=
-          load.force.dot(problem_.grips[*clamp].position - problem_.grips.front().position);
-    }
   }
 
   void place_shapes(const std::vector<PlacedSpan>& placed,

@@ -17,16 +17,6 @@ namespace {
 /// rounding.
 constexpr double same_hold = 1e-9;
 
-/// 1 / GJ summed over the rod between two arc lengths.
-double torsional_compliance(const std::vector<RodPart>& parts, double begin, double end) {
-  double compliance = 0;
-  for (const Section& part : parts) {
-    const double length = std::min(end, part.end) - std::max(begin, part.begin);
-    if (length > 0) compliance += length / part.torsional_stiffness;
-  }
-  return compliance;
-}
-
 /// Tangent and the material's d1 at an arc length within a shape, in space.
 struct MaterialAt {
   Eigen::Vector3d tangent, d1;
