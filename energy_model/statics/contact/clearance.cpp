@@ -23,33 +23,6 @@ constexpr int halvings_beside_contact = 10;
 /// Of points that are not looked at, since nothing near them is as low.
 constexpr double not_looked_at = std::numeric_limits<double>::infinity();
 
-/// Points of the grid `s` whose clearance may be below `below` or hardly above it, with their
-/// neighbours, by growing s: along the rod the clearance changes by no more than the way, so that
-/// of most parts a coarse grid tells. One point at least.
-std::vector<std::size_t> near_obstacles(const Span& span, const SpanShape& shape, double below,
-                                        const std::vector<double>& s) {
-  std::vector<double> coarse;
-  for (std::size_t i = 0; i < s.size(); i += coarse_stride) coarse.push_back(s[i]);
-  const SpanSamples samples = shape.sample(coarse);
-  Eigen::VectorXd least = Eigen::VectorXd::Constant(samples.points.cols(), not_looked_at);
-  for (const Span::Obstacle& obstacle : span.rigid_obstacles) {
-    least = least.cwiseMin(obstacle.body.clearances(samples.points));
-  }
-  // Half of a coarse interval away, and a neighbour and what it may sag by further.
-  const double most = below + (static_cast<double>(coarse_stride) / 2 + 3) * s[1];
-  std::vector<std::size_t> result;
-  for (std::size_t k = 0; k + 1 < coarse.size(); ++k) {
-    const auto at = static_cast<Eigen::Index>(k);
-    if (std::min(least[at], least[at + 1]) > most) continue;
-    const std::size_t first = k * coarse_stride;
-    for (std::size_t i = first; i <= first + coarse_stride; ++i) {
-      if (result.empty() || result.back() < i) result.push_back(i);
-    }
-  }
-  if (result.empty()) result.push_back(0);
-  return result;
-}
-
 /// The least clearance between `low` and `high`, by Newton's method from `at`.
 GapMinimum lowest_between(const Span::Obstacle& obstacle, const SpanShape& shape, double low,
                           double at, double high) {
@@ -104,9 +77,37 @@ Clearance clearance_at(const obstacle::Body& body, const SpanSamples& samples, E
           gap.gradient.dot(samples.curvature.col(i)) + t.dot(gap.hessian * t)};
 }
 
+std::vector<std::size_t> near_points(
+    const std::vector<double>& s, std::size_t stride, double most,
+    const std::function<Eigen::VectorXd(const std::vector<double>& s)>& clearances) {
+  std::vector<double> coarse;
+  for (std::size_t i = 0; i < s.size(); i += stride) coarse.push_back(s[i]);
+  const Eigen::VectorXd least = clearances(coarse);
+  std::vector<std::size_t> result;
+  for (std::size_t k = 0; k + 1 < coarse.size(); ++k) {
+    const auto at = static_cast<Eigen::Index>(k);
+    if (std::min(least[at], least[at + 1]) > most) continue;
+    for (std::size_t i = k * stride; i <= (k + 1) * stride; ++i) {
+      if (result.empty() || result.back() < i) result.push_back(i);
+    }
+  }
+  return result;
+}
+
 std::vector<GapMinimum> gap_minima(const Span& span, const SpanShape& shape, double below) {
   const std::vector<double> s = equal_arc_lengths(span.length, grid_points);
-  const std::vector<std::size_t> looked_at = near_obstacles(span, shape, below, s);
+  // Half of a coarse interval away, and a neighbour and what it may sag by further.
+  const double most = below + (static_cast<double>(coarse_stride) / 2 + 3) * s[1];
+  std::vector<std::size_t> looked_at =
+      near_points(s, coarse_stride, most, [&](const std::vector<double>& coarse) {
+        const SpanSamples samples = shape.sample(coarse);
+        Eigen::VectorXd least = Eigen::VectorXd::Constant(samples.points.cols(), not_looked_at);
+        for (const Span::Obstacle& obstacle : span.rigid_obstacles) {
+          least = least.cwiseMin(obstacle.body.clearances(samples.points));
+        }
+        return least;
+      });
+  if (looked_at.empty()) looked_at.push_back(0);
   std::vector<double> near;
   near.reserve(looked_at.size());
   for (const std::size_t i : looked_at) near.push_back(s[i]);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <vector>
 
 #include "frames/span_shape.hpp"
@@ -16,6 +17,16 @@ struct Clearance {
 };
 [[nodiscard]] Clearance clearance_at(const obstacle::Body& body, const SpanSamples& samples,
                                      Eigen::Index i);
+
+/// Returns indices of a grid's points, growing: of every coarse interval of `stride` grid intervals
+/// an end of which has a clearance of at most `most`, all points. The clearance changes along a rod
+/// by no more than the arc length, so that the others have more than `most` less half a coarse
+/// interval.
+/// @param s           arc lengths of the grid, equally spaced
+/// @param clearances  returns the least clearance at each of some arc lengths
+[[nodiscard]] std::vector<std::size_t> near_points(
+    const std::vector<double>& s, std::size_t stride, double most,
+    const std::function<Eigen::VectorXd(const std::vector<double>& s)>& clearances);
 
 /// Where a shape comes nearest to a rigid obstacle, or is deepest behind it.
 struct GapMinimum {

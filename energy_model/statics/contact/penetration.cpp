@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <sstream>
 #include <utility>
 #include <vector>
 
+#include "contact/clearance.hpp"
 #include "dlo/energy_model/energy.hpp"
 
 namespace dlo::energy_model {
@@ -50,30 +50,23 @@ double depth_within(const obstacle::Body& body, const Equilibrium& shape, std::v
   return deepest;
 }
 
-/// Points of the grid that may be within a rigid obstacle, or hide a part that is, and the ends:
-/// along the rod the clearance changes by no more than the way, so that of most parts a coarse grid
-/// tells.
+/// Points of the grid that may be within a rigid obstacle, or hide a part that is, and the ends.
 std::vector<double> near_obstacles(const Problem& problem, const Equilibrium& shape) {
   constexpr std::size_t stride = 40;
   const std::vector<double> s = equal_arc_lengths(problem.length, penetration_grid);
-  std::vector<double> coarse;
-  for (std::size_t i = 0; i < s.size(); i += stride) coarse.push_back(s[i]);
-  const Samples samples = shape.sample(coarse);
-  Eigen::VectorXd least =
-      Eigen::VectorXd::Constant(samples.points.cols(), std::numeric_limits<double>::infinity());
-  for (const Obstacle& obstacle : problem.obstacles) {
-    if (is_rigid(obstacle)) least = least.cwiseMin(obstacle.body.clearances(samples.points));
-  }
   // Half of a coarse interval away, and what may hide between two points.
   const double most = (static_cast<double>(stride) / 2 + 2) * s[1];
-  std::vector<double> near = {s.front()};
-  for (std::size_t k = 0; k + 1 < coarse.size(); ++k) {
-    const auto at = static_cast<Eigen::Index>(k);
-    if (std::min(least[at], least[at + 1]) > most) continue;
-    for (std::size_t i = k * stride + 1; i <= (k + 1) * stride; ++i) near.push_back(s[i]);
-    if (k > 0 && near[near.size() - stride - 1] < coarse[k]) {
-      near.insert(near.end() - stride, coarse[k]);
+  const auto clearances = [&](const std::vector<double>& coarse) {
+    const Samples samples = shape.sample(coarse);
+    Eigen::VectorXd least = Eigen::VectorXd::Constant(samples.points.cols(), INFINITY);
+    for (const Obstacle& obstacle : problem.obstacles) {
+      if (is_rigid(obstacle)) least = least.cwiseMin(obstacle.body.clearances(samples.points));
     }
+    return least;
+  };
+  std::vector<double> near = {s.front()};
+  for (const std::size_t i : near_points(s, stride, most, clearances)) {
+    if (i > 0) near.push_back(s[i]);
   }
   if (near.back() < s.back()) near.push_back(s.back());
   return near;
