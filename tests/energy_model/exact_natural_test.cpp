@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "base/sized_samples.hpp"
+#include "base/spin.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "equilibrium_balance.hpp"
 #include "kirchhoff/rod_span.hpp"
@@ -419,7 +420,7 @@ TEST(ExactNatural, AStraightClampedRodBucklesUnderItsTwist) {
                             [&](const std::vector<double>& arc) {
                               std::vector<RodState> states(arc.size());
                               for (std::size_t i = 0; i < arc.size(); ++i) {
-                                states[i].R = rotation_by({0, 0, torque / 0.8 * arc[i]});
+                                states[i].R = from_rotation_vector({0, 0, torque / 0.8 * arc[i]});
                                 states[i].m = {0, 0, torque};
                               }
                               return states;

@@ -13,6 +13,7 @@
 
 #include "../says.hpp"
 #include "base/sized_samples.hpp"
+#include "base/spin.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "dlo/energy_model/turns.hpp"
@@ -72,7 +73,7 @@ TEST(TwistedSecondVariation, VanishesWhereAStraightRodBuckles) {
     return second_variation(span, {}, any_frames(), torque * torque, states_of([&](double) {
                               RodState state;
                               state.R =
-                                  frame_of(Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX());
+                                  frame_along(Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY());
                               state.m = torque * state.t();
                               return state;
                             }))
@@ -91,7 +92,7 @@ RodState ring_state(double c, double angle, double s) {
   const Eigen::Vector3d t(std::cos(k * s), std::sin(k * s), 0);
   RodState state;
   state.r = Eigen::Vector3d(std::sin(k * s), 1 - std::cos(k * s), 0) / k;
-  state.R = frame_of(Eigen::Vector3d::UnitZ(), t);
+  state.R = frame_along(t, Eigen::Vector3d::UnitZ());
   state.m = c * angle * t + k * Eigen::Vector3d::UnitZ();
   state.n = {0, 0, k * c * angle};
   return state;
@@ -138,8 +139,8 @@ struct FramedCurve {
       const double s = static_cast<double>(i) / parts;
       const double next = (i + 1.0) / parts;
       const double middle = (s + next) / 2;
-      const Eigen::Matrix3d a = rotation_by(spin(s)) * frame(s);
-      const Eigen::Matrix3d b = rotation_by(spin(next)) * frame(next);
+      const Eigen::Matrix3d a = from_rotation_vector(spin(s)) * frame(s);
+      const Eigen::Matrix3d b = from_rotation_vector(spin(next)) * frame(next);
       const Eigen::Vector3d own = frame(middle).transpose() * moment(middle);
       const Eigen::Vector3d change = strain(a, b) - strain(frame(s), frame(next));
       energy += own.dot(change) / parts + change.dot(stiffness.cwiseProduct(change)) / (2 * parts);
@@ -169,7 +170,7 @@ TEST(TwistedSecondVariation, IsTheSecondDifferenceOfTheEnergy) {
   // On frames of no special shape, with a force and a moment that do not fit them.
   const auto frame = [](double s) {
     const Eigen::Vector3d turn(1.5 * std::sin(2 * s), 2 * s * s - 1, 5 * s + std::cos(3 * s));
-    return rotation_by(turn);
+    return from_rotation_vector(turn).toRotationMatrix();
   };
   const auto moment = [](double s) { return Eigen::Vector3d(2 - s, std::sin(4 * s), 3 * s * s); };
   for (const double size : {-9.0, 0.0, 4.0, 13.0}) {

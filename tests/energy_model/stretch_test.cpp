@@ -8,10 +8,11 @@
 #include <stdexcept>
 
 #include "../says.hpp"
+#include "base/spin.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
-#include "kirchhoff/rod_flow.hpp"
 #include "runge_kutta.hpp"
+#include "shooting/rod_flow.hpp"
 #include "solved.hpp"
 
 namespace dlo::energy_model {
@@ -186,7 +187,7 @@ TEST(Stretch, DerivativesAreThoseOfDifferences) {
     Vector3d unit = Vector3d::Zero();
     unit[k % 3] = step;
     if (k < 3) moved.r += unit;
-    if (k >= 3 && k < 6) moved.R = rotation_by(unit) * moved.R;
+    if (k >= 3 && k < 6) moved.R = from_rotation_vector(unit) * moved.R;
     if (k >= 6 && k < 9) moved.m += unit;
     if (k >= 9) moved.n += unit;
     RodIntegrals integrals;

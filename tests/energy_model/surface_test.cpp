@@ -9,7 +9,8 @@
 #include <random>
 #include <vector>
 
-#include "kirchhoff/rod_flow.hpp"
+#include "base/spin.hpp"
+#include "shooting/rod_flow.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -32,7 +33,7 @@ RodState random_state(std::mt19937& random) {
   const auto vector = [&] { return Eigen::Vector3d(unit(random), unit(random), unit(random)); };
   RodState state;
   state.r = Eigen::Vector3d(0.4, 0.4, 0) + 0.1 * vector();
-  state.R = rotation_by(2 * vector());
+  state.R = from_rotation_vector(2 * vector());
   state.m = vector();
   state.n = 3 * vector();
   return state;
@@ -40,7 +41,7 @@ RodState random_state(std::mt19937& random) {
 
 RodState moved(RodState state, const Eigen::Matrix<double, 12, 1>& by) {
   state.r += by.segment<3>(0);
-  state.R = rotation_by(by.segment<3>(3)) * state.R;
+  state.R = from_rotation_vector(by.segment<3>(3)) * state.R;
   state.m += by.segment<3>(6);
   state.n += by.segment<3>(9);
   return state;
@@ -140,7 +141,7 @@ TEST(Surface, ARodAroundAPegIsPressedByItsTension) {
   const Surface peg = surface_of(obstacle::Body::cylinder({0, 0, 0}, {0, 0, 1}, radius), {1, 0, 0});
   RodState state;
   state.r = {radius, 0, 0};
-  state.R = frame_of({1, 0, 0}, {0, 1, 0});
+  state.R = frame_along({0, 1, 0}, {1, 0, 0});
   state.m = {0, 0, 1.7 / radius};
   state.n = {0, 12, 0};
   const RodSection section{1.7, 0, Eigen::Vector3d::Zero()};

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <vector>
 
+#include "base/spin.hpp"
 #include "dlo/energy_model/drag.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
@@ -172,7 +173,8 @@ TEST(WithoutPotential, ShootingHasTheDerivativesOfItsEquations) {
     for (Eigen::Index i = 0; i < mesh.s.size(); ++i) {
       RodState node;
       node.r = {mesh.s[i], 0.1 * random.uniform(-1, 1), 0.1 * random.uniform(-1, 1)};
-      node.R = rotation_by(0.3 * random.direction(test::RandomSpace::space)) * span.first_frame;
+      node.R =
+          from_rotation_vector(0.3 * random.direction(test::RandomSpace::space)) * span.first_frame;
       node.m = random.direction(test::RandomSpace::space);
       node.n = 2 * random.direction(test::RandomSpace::space);
       nodes.push_back(node);
@@ -278,7 +280,7 @@ TEST(WithoutPotential, LoadsThatFollowInSpaceTwistAndBendEveryRod) {
     problem.loads = {{1, force, torque, true}};
     const Equilibrium result = solve_exact(problem);
     expect_balance_alone(result);
-    const Eigen::Matrix3d clamp = rolled(frame_of(Eigen::Vector3d(1, 0.1, 0.3), direction), 0.4);
+    const Eigen::Matrix3d clamp = rolled(frame_along(direction, Eigen::Vector3d(1, 0.1, 0.3)), 0.4);
     const TipRod rod{{1, second, 0.6}, Eigen::Vector3d::Zero(), {}};
     EXPECT_LT((place_along(result) - followed_tip(rod, clamp, force, torque)).norm(), 1e-9);
     // It is found again from itself.

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/spin.hpp"
 #include "dlo/energy_model/status.hpp"
 
 namespace dlo::energy_model {
@@ -47,7 +48,7 @@ std::vector<RodState> predicted_states(const RodSpan& span, const std::optional<
     RodState& state = states[i];
     const Eigen::AngleAxisd turned(Eigen::Matrix3d(state.R * earlier[i].R.transpose()));
     state.r += ratio * (state.r - earlier[i].r);
-    state.R = rotation_by(ratio * turned.angle() * turned.axis()) * state.R;
+    state.R = from_rotation_vector(ratio * turned.angle() * turned.axis()) * state.R;
     state.m += ratio * (state.m - earlier[i].m);
     state.n += ratio * (state.n - earlier[i].n);
   }

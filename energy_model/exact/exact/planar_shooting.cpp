@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "base/silence_gsl.hpp"
+#include "base/spin.hpp"
 #include "base/zero_modes_note.hpp"
 #include "exact/tip_shot.hpp"
 #include "shooting/refine_span.hpp"
@@ -208,7 +209,7 @@ SecondVariation stability_of(const Problem& problem, const RodSpan& span,
       const auto column = static_cast<Eigen::Index>(i);
       const Eigen::Vector3d t = samples.tangents.col(column);
       const Eigen::Vector3d curvature = samples.curvature.col(column) * problem.length;
-      states[i].R = frame_of(t.unitOrthogonal(), t);
+      states[i].R = frame_along(t, t.unitOrthogonal());
       states[i].m = t.cross(curvature);
       states[i].n = implied_force(problem, shape, s[i]);
     }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/require.hpp"
+#include "base/spin.hpp"
 #include "dlo/energy_model/natural_frame.hpp"
 #include "exact/follow_loads.hpp"
 #include "kirchhoff/rod_span.hpp"
@@ -72,7 +73,7 @@ Problem frozen_on(const Problem& problem, const RodSpan& span, const Equilibrium
     const Samples here = shape.sample(at);
     const Eigen::Vector3d t = here.tangents.col(0).normalized();
     const Eigen::Matrix3d R =
-        here.d1.cols() > 0 ? frame_of(here.d1.col(0), t) : transported(span.first_frame, t);
+        here.d1.cols() > 0 ? frame_along(t, here.d1.col(0)) : transported(span.first_frame, t);
     load.force = R * load.force;
     load.torque = R * load.torque;
     load.follows = false;

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "kirchhoff/rod_flow.hpp"
+#include "shooting/rod_flow.hpp"
 #include "shooting/shooting_system.hpp"
 
 namespace dlo::energy_model {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/require.hpp"
+#include "base/spin.hpp"
 #include "problem/rod_law.hpp"
 #include "shooting/span_shooting.hpp"
 #include "shooting/span_twist.hpp"
@@ -47,7 +48,7 @@ std::vector<RodState> states_by_curvature(const RodSpan& span, const Problem& pr
     RodState state;
     const Eigen::Vector3d t = samples.tangents.col(i);
     state.r = (samples.points.col(i) - problem.grips.front().position) / problem.length;
-    state.R = frame_of(t.unitOrthogonal(), t);
+    state.R = frame_along(t, t.unitOrthogonal());
     if (i < mesh.intervals()) {
       const Eigen::Vector3d curvature = samples.curvature.col(i) * problem.length;
       state.m = mesh.section_of(i).bending * t.cross(curvature) + torque * t;
@@ -79,7 +80,8 @@ std::vector<RodState> states_by_balance(const RodSpan& span, const Problem& prob
       RodState& state = states[static_cast<std::size_t>(k / parts)];
       const Eigen::Vector3d t = samples.tangents.col(k).normalized();
       state.r = r.col(k);
-      state.R = frame_of(samples.d1.cols() > 0 ? samples.d1.col(k).eval() : t.unitOrthogonal(), t);
+      state.R =
+          frame_along(t, samples.d1.cols() > 0 ? samples.d1.col(k).eval() : t.unitOrthogonal());
       state.m = m;
       if (k < count) state.n = implied_force(problem, shape, s[k]);
       for (const RodSpan::Hold& hold : span.holds) {

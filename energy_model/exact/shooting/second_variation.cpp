@@ -141,7 +141,7 @@ class VariationProblem {
         const auto gap = gap_at(e, at_ends[static_cast<std::size_t>(e)]);
         if (gap) {
           const Eigen::Vector3d& normal = gap->gradient;
-          add_place(e, frame_of(normal.unitOrthogonal(), normal).leftCols<2>(), gap->hessian);
+          add_place(e, frame_along(normal, normal.unitOrthogonal()).leftCols<2>(), gap->hessian);
         }
       }
       if (e + 1 == elements_.size()) break;

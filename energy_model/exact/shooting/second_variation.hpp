@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "dlo/energy_model/equilibrium.hpp"
-#include "kirchhoff/rod_flow.hpp"
 #include "kirchhoff/rod_mesh.hpp"
 #include "kirchhoff/rod_span.hpp"
 #include "shooting/constrained_pencil.hpp"
+#include "shooting/rod_flow.hpp"
 
 namespace dlo::energy_model {
 

@@ -115,7 +115,7 @@ ShootingPoint ShootingSystem::moved(const ShootingPoint& point, const Eigen::Vec
   Eigen::Index at = 0;
   for (RodState& state : result.nodes) {
     state.r += positions_ * step.segment(at, positions);
-    state.R = rotation_by(turns_ * step.segment(at + spin_at(), turns)) * state.R;
+    state.R = from_rotation_vector(turns_ * step.segment(at + spin_at(), turns)) * state.R;
     state.m += rate_ * (turns_ * step.segment(at + m_at(), turns));
     state.n += rate_ * rate_ * (positions_ * step.segment(at + n_at(), positions));
     at += per_node();

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/deadline.hpp"
-#include "kirchhoff/rod_flow.hpp"
 #include "kirchhoff/rod_mesh.hpp"
 #include "kirchhoff/rod_span.hpp"
+#include "shooting/rod_flow.hpp"
 
 namespace dlo::energy_model {
 

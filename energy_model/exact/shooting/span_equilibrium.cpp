@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "base/spin.hpp"
 #include "shooting/close_gaps.hpp"
 
 namespace dlo::energy_model {
@@ -164,7 +165,7 @@ void carry_frames(const RodSpan& span, const RodMesh& mesh, double tolerance,
                                                                       span.clamps.front().at) -
                                                      mesh.s.begin());
   RodState& held = states[first];
-  held.R = span.clamps.empty() ? frame_of(held.t().unitOrthogonal(), held.t())
+  held.R = span.clamps.empty() ? frame_along(held.t(), held.t().unitOrthogonal())
                                : transported(span.first_frame, held.t());
   // The frame at the end of an interval that a frame at its begin comes to.
   const auto carried = [&](std::size_t i) {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "dlo/energy_model/problem.hpp"
-#include "kirchhoff/rod_flow.hpp"
 #include "kirchhoff/rod_mesh.hpp"
 #include "kirchhoff/rod_span.hpp"
+#include "shooting/rod_flow.hpp"
 #include "shooting/second_variation.hpp"
 #include "shooting/shooting_system.hpp"
 

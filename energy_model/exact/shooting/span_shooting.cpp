@@ -211,7 +211,7 @@ SpanEquilibrium shoot_from_lines(const RodSpan& span, double tolerance, const De
     const double inside = std::clamp(mesh.s[k], holds[i].at, holds[i + 1].at);
     const double way = (inside - holds[i].at) * (1 + strains[i]) + mesh.s[k] - inside;
     state.r = holds[i].position + way * tangents[i];
-    state.R = frame_of(tangents[i].unitOrthogonal(), tangents[i]);
+    state.R = frame_along(tangents[i], tangents[i].unitOrthogonal());
     if (inside == mesh.s[k] && inside < holds.back().at) {
       state.n = strains[i] / yields * tangents[i];
     }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/sized_samples.hpp"
+#include "base/spin.hpp"
 #include "dlo/energy_model/turns.hpp"
 #include "shooting/gradient_flow.hpp"
 
@@ -79,7 +80,7 @@ class Continuation {
     };
     for (const RodSpan::Clamp& clamp : span_.clamps) {
       const Eigen::Matrix3d own = now_.nodes[static_cast<std::size_t>(node_at(now_.s, clamp.at))].R;
-      released_.push_back(frame_of(own.col(0), clamp.direction));
+      released_.push_back(frame_along(clamp.direction, own.col(0)));
       targets_.push_back(0);
       if (!clamp.frame) continue;
       const auto& [d1, turns] = *clamp.frame;

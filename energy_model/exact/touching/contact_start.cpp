@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/spin.hpp"
 #include "problem/reduction.hpp"
 #include "problem/rod_law.hpp"
 #include "shooting/refine_span.hpp"
@@ -164,7 +165,7 @@ class Layout {
       const Eigen::Vector3d t = at.tangents.col(i).normalized();
       RodState state;
       state.r = (at.points.col(i) - problem_.grips.front().position) / l_;
-      state.R = frame_of(directors ? Eigen::Vector3d(at.d1.col(i)) : t.unitOrthogonal(), t);
+      state.R = frame_along(t, directors ? Eigen::Vector3d(at.d1.col(i)) : t.unitOrthogonal());
       if (!last) {
         const RodSection& section = start_.mesh.section_of(i);
         const Eigen::Vector3d bent = l_ * at.curvature.col(i);

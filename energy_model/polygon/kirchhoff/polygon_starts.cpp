@@ -16,7 +16,7 @@ using Frames = std::vector<Quaterniond>;
 
 /// The frame that the others are turned from: of a round rod any, in the plane its d2 is across it.
 Quaterniond base_frame(const RodSpan& span) {
-  if (span.round() && span.plane) return Quaterniond(frame_of(span.plane->y, span.plane->x));
+  if (span.round() && span.plane) return Quaterniond(frame_along(span.plane->x, span.plane->y));
   return Quaterniond(span.first_frame);
 }
 

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "base/deadline.hpp"
-#include "kirchhoff/rod_flow.hpp"
 #include "kirchhoff/rod_mesh.hpp"
 #include "kirchhoff/rod_span.hpp"
+#include "kirchhoff/rod_state.hpp"
 
 namespace dlo::energy_model {
 

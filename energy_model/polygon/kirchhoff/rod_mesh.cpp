@@ -61,11 +61,6 @@ RodMesh mesh_at(const RodSpan& span, const Eigen::VectorXd& nodes) {
   return mesh;
 }
 
-RodPiece piece_of(const RodSpan& span, const RodMesh& mesh, Eigen::Index interval) {
-  return {mesh.section_of(interval), span.natural, mesh.s[interval], mesh.width(interval),
-          mesh.contacts.surface_of(interval)};
-}
-
 ForceField carried_force(const RodSpan& span, const RodMesh& mesh) {
   const Eigen::Index last = mesh.intervals();
   ForceField field;

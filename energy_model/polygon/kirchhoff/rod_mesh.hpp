@@ -74,9 +74,6 @@ struct RodMesh {
 /// The mesh with given nodes, the span's ends, parts, grips and loads among them.
 [[nodiscard]] RodMesh mesh_at(const RodSpan& span, const Eigen::VectorXd& nodes);
 
-/// An interval of a mesh, which has to outlive it.
-[[nodiscard]] RodPiece piece_of(const RodSpan& span, const RodMesh& mesh, Eigen::Index interval);
-
 /// The inner force n, of what lies beyond on what lies before, if the first grip alone carried
 /// weight and loads.
 struct ForceField {

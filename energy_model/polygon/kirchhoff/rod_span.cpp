@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/require.hpp"
+#include "base/spin.hpp"
 #include "dlo/energy_model/natural_frame.hpp"
 #include "dlo/energy_model/turns.hpp"
 #include "problem/ordered_grips.hpp"
@@ -132,7 +133,7 @@ void add_grips(const Problem& problem, const std::vector<OrderedGrip>& grips, Di
       } else {
         const Eigen::Vector3d d1 =
             first->frame ? held_d1(problem, *first) : clamp.direction.unitOrthogonal();
-        span.first_frame = frame_of(d1, clamp.direction);
+        span.first_frame = frame_along(clamp.direction, d1);
       }
     } else if (first->frame && grip.grip->frame) {
       clamp.frame =
@@ -173,7 +174,7 @@ RodSpan make_span(const Problem& problem, const std::vector<OrderedGrip>& grips,
 Eigen::Matrix3d material_frame(const Problem& problem) {
   if (first_clamp(problem)) return first_frame(problem);
   const Eigen::Vector3d d2 = natural_normal(problem).value_or(Eigen::Vector3d::UnitZ());
-  return frame_of(d2.unitOrthogonal(), d2.unitOrthogonal().cross(d2));
+  return frame_along(d2.unitOrthogonal().cross(d2), d2.unitOrthogonal());
 }
 
 void require_no_obstacles(const Problem& problem) {
@@ -216,7 +217,7 @@ ClampFrames held_frames(const RodSpan& span) {
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const RodSpan::Clamp& clamp = span.clamps[k];
     if (!clamp.frame) continue;
-    frames[k] = rolled(frame_of(clamp.frame->d1, clamp.direction),
+    frames[k] = rolled(frame_along(clamp.direction, clamp.frame->d1),
                        clamp.frame->turns.roll + span.first_roll);
   }
   return frames;

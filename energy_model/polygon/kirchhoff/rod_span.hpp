@@ -8,7 +8,7 @@
 #include "dlo/energy_model/plane.hpp"
 #include "dlo/energy_model/problem.hpp"
 #include "dlo/energy_model/turns.hpp"
-#include "kirchhoff/rod_flow.hpp"
+#include "kirchhoff/rod_state.hpp"
 
 namespace dlo::energy_model {
 

@@ -39,6 +39,17 @@ inline Eigen::Matrix3d frame_along(const Eigen::Vector3d& tangent, const Eigen::
   return frame;
 }
 
+/// The frame turned about its tangent by an angle [rad].
+inline Eigen::Matrix3d rolled(const Eigen::Matrix3d& frame, double angle) {
+  return from_rotation_vector(angle * Eigen::Vector3d(frame.col(2))) * frame;
+}
+
+/// The frame transported to another unit tangent by the shortest rotation.
+inline Eigen::Matrix3d transported(const Eigen::Matrix3d& frame, const Eigen::Vector3d& tangent) {
+  const Eigen::Vector3d t = frame.col(2);
+  return frame_along(tangent, Eigen::Quaterniond::FromTwoVectors(t, tangent) * frame.col(0));
+}
+
 /// What the square of a spin of the director p costs through g . p: sym(g p^T) - (g.p) 1.
 inline Eigen::Matrix3d spin_curvature(const Eigen::Vector3d& p, const Eigen::Vector3d& g) {
   Eigen::Matrix3d a = (g * p.transpose() + p * g.transpose()) / 2;

@@ -1,8 +1,7 @@
-#include "kirchhoff/rod_flow.hpp"
+#include "shooting/rod_flow.hpp"
 
 #include <gsl/gsl_errno.h>
 
-#include <Eigen/Geometry>
 #include <cmath>
 
 #include "base/integrate.hpp"
@@ -152,29 +151,6 @@ Eigen::Matrix3d stiffness_of(const RodSection& section, const Eigen::Matrix3d& R
   return R * section.stiffness().asDiagonal() * R.transpose();
 }
 
-Eigen::Matrix3d rotation_by(const Eigen::Vector3d& turn) {
-  const double angle = turn.norm();
-  if (angle == 0) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
-}
-
-Eigen::Matrix3d rolled(const Eigen::Matrix3d& frame, double angle) {
-  return rotation_by(angle * Eigen::Vector3d(frame.col(2))) * frame;
-}
-
-Eigen::Matrix3d frame_of(const Eigen::Vector3d& d1, const Eigen::Vector3d& direction) {
-  Eigen::Matrix3d frame;
-  frame.col(0) = (d1 - d1.dot(direction) * direction).normalized();
-  frame.col(1) = direction.cross(Eigen::Vector3d(frame.col(0)));
-  frame.col(2) = direction;
-  return frame;
-}
-
-Eigen::Matrix3d transported(const Eigen::Matrix3d& frame, const Eigen::Vector3d& tangent) {
-  const Eigen::Vector3d t = frame.col(2);
-  return frame_of(Eigen::Quaterniond::FromTwoVectors(t, tangent) * frame.col(0), tangent);
-}
-
 std::vector<Eigen::Matrix3d> frames_of(const std::vector<RodState>& states) {
   std::vector<Eigen::Matrix3d> frames;
   frames.reserve(states.size());
@@ -188,6 +164,11 @@ Eigen::Matrix3Xd tangents_of(const std::vector<RodState>& states) {
     tangents.col(i) = states[static_cast<std::size_t>(i)].t();
   }
   return tangents;
+}
+
+RodPiece piece_of(const RodSpan& span, const RodMesh& mesh, Eigen::Index interval) {
+  return {mesh.section_of(interval), span.natural, mesh.s[interval], mesh.width(interval),
+          mesh.contacts.surface_of(interval)};
 }
 
 RodVariation::RodVariation(Eigen::Index parameters)

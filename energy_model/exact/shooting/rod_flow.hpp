@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "kirchhoff/rod_mesh.hpp"
+#include "kirchhoff/rod_span.hpp"
 #include "kirchhoff/rod_state.hpp"
 #include "kirchhoff/surface.hpp"
 
@@ -19,19 +21,6 @@ namespace dlo::energy_model {
 
 /// Stiffness in space, R K R^T.
 [[nodiscard]] Eigen::Matrix3d stiffness_of(const RodSection& section, const Eigen::Matrix3d& R);
-
-/// The rotation by a vector's length about it.
-[[nodiscard]] Eigen::Matrix3d rotation_by(const Eigen::Vector3d& turn);
-
-/// A frame turned about its tangent.
-[[nodiscard]] Eigen::Matrix3d rolled(const Eigen::Matrix3d& frame, double angle);
-
-/// The frame with a first director, of which the part across the direction counts.
-[[nodiscard]] Eigen::Matrix3d frame_of(const Eigen::Vector3d& d1, const Eigen::Vector3d& direction);
-
-/// A frame transported to another tangent by the shortest rotation.
-[[nodiscard]] Eigen::Matrix3d transported(const Eigen::Matrix3d& frame,
-                                          const Eigen::Vector3d& tangent);
 
 /// The tangents of states, 3 x states.
 [[nodiscard]] Eigen::Matrix3Xd tangents_of(const std::vector<RodState>& states);
@@ -64,6 +53,9 @@ struct RodPiece {
   double length = 0;                 ///< to follow
   const Surface* surface = nullptr;  ///< on which it lies, intrinsically straight; null: it is free
 };
+
+/// An interval of a mesh, which has to outlive it.
+[[nodiscard]] RodPiece piece_of(const RodSpan& span, const RodMesh& mesh, Eigen::Index interval);
 
 /// Derivatives of a cross-section by the arc length at the begin of a piece.
 struct RodRate {
