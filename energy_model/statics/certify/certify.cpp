@@ -178,28 +178,47 @@ SoftMode soft_mode(NewtonSystem& system, const Eigen::MatrixXd& jacobian, Eigen:
   return mode;
 }
 
-/// First and second derivative of v . F'(y + t v) v by t, with Newton's map F and y = (x, mu): how
-/// the eigenvalue changes along its own direction, to second order with what the constraints and
-/// the stiff directions do to it. The first is the coefficient of a fold, zero by symmetry at a
-/// bifurcation.
+/// First and second derivative by t of the eigenvalue of v along the curve y(t) = y + t v +
+/// t^2 w / 2, y = (x, mu), on which the gradient G of the Lagrangian keeps zero in every direction
+/// but v (Lyapunov and Schmidt): G' w = -(G'' v v) without its part along v. The first derivative
+/// is the coefficient of a fold, zero by symmetry at a bifurcation. Without w the second one would
+/// be wrong of a family of equal shapes, which is curved: a helix that slides along the rod.
 struct EigenvalueDerivatives {
   double first = 0, second = 0;
 };
 
 EigenvalueDerivatives eigenvalue_derivatives(SpanSolution& solution, const SoftMode& mode) {
   constexpr double step = 1e-3;  // error step^2, rounding eps / step and eps / step^2
-  const auto eigenvalue = [&](double t) {
-    const SecondDerivatives at =
-        second_derivatives(*solution.model, solution.x + t * mode.direction,
-                           solution.multipliers + t * mode.multipliers);
+  const Eigen::VectorXd& v = mode.direction;
+  const Eigen::Index m = mode.multipliers.size();
+  // Newton's matrix at y + t v, which is G' with the constraints' sign changed, times v.
+  const auto image = [&](double t) {
+    const SecondDerivatives at = second_derivatives(*solution.model, solution.x + t * v,
+                                                    solution.multipliers + t * mode.multipliers);
     ++solution.evaluations;
-    return mode.direction.dot(at.hessian * mode.direction) -
-           2 * mode.multipliers.dot(at.jacobian * mode.direction);
+    Eigen::VectorXd result(v.size() + m);
+    result << at.hessian * v - at.jacobian.transpose() * mode.multipliers, at.jacobian * v;
+    return result;
   };
-  const double ahead = eigenvalue(step);
-  const double behind = eigenvalue(-step);
-  const double here = eigenvalue(0);
-  return {(ahead - behind) / (2 * step), (ahead - 2 * here + behind) / (step * step)};
+  const auto product = [&](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+    return a.head(v.size()).dot(b.head(v.size())) - a.tail(m).dot(b.tail(m));
+  };
+  Eigen::VectorXd along(v.size() + m);
+  along << v, mode.multipliers;
+  const Eigen::VectorXd ahead = image(step);
+  const Eigen::VectorXd behind = image(-step);
+  const Eigen::VectorXd change = (ahead - behind) / (2 * step);
+  const double first = product(change, along);
+  Eigen::VectorXd right = -change;
+  right.head(v.size()) += first * v;
+  NewtonSystem& system = solution.factor->system;
+  Eigen::VectorXd w;
+  system.solve(right, w);
+  constexpr double longest = 1e3;
+  if (!system.is_met(right, w, longest)) w = system.minimum_norm_step(right);
+  w -= w.head(v.size()).dot(v) * along;
+  return {first,
+          product(ahead - 2 * image(0) + behind, along) / (step * step) + 3 * product(change, w)};
 }
 
 /// By how much the eigenvalues of the second variation on the free directions may differ from those
@@ -276,23 +295,18 @@ class Certification {
 
   /// Newton's step and the second variation, by the solution's factor or one of its own.
   void ask_factor() {
+    const Eigen::Index rigid = rigid_.in_plane;
     for (bool near = !obstacles_ && solution_.factor != nullptr;; near = false) {
       const double change = near ? change_since_factor(solution_, scale_) : 0;
       near = near && change < largest_h;
       if (!near) factors_.factor_at(solution_, *point_, load_);
       NewtonSystem& system = solution_.factor->system;
       next_step_ = newton_step(system, *point_, gradient_);
-      solution_.next_step = next_step_.norm();
-      small_step_ = solution_.next_step <= largest_next_step;
-      // Below it what is left of the residual makes a step that is not small.
-      bound_ = std::max(neutral, small_step_ ? 0 : solution_.residual / largest_next_step);
-      found_ = eigenvalues_of(system.reduced_hessian(), rigid_.in_plane);
+      judge_step();
+      rigid_.in_plane = rigid;
+      found_ = eigenvalues_of(system.reduced_hessian(), rigid);
       subtract_ridges();
-      if (found_.neutral_directions > 0 &&
-          slides_along_rod(model_, solution_.x, system.reduced_hessian(),
-                           found_.zero + found_.neutral_directions)) {
-        found_ = eigenvalues_of(system.reduced_hessian(), ++rigid_.in_plane);
-      }
+      if (!small_step_ || found_.neutral_directions > 0) count_sliding_mode(system);
       solution_.smallest_eigenvalue = found_.smallest;
       solution_.eigenvalue_nearest_zero = found_.nearest_zero;
       eta_ = linear_error(solution_, load_);
@@ -302,6 +316,27 @@ class Certification {
       if (!near || tells) break;
     }
     solution_.neutral_directions = found_.neutral_directions;
+  }
+
+  void judge_step() {
+    solution_.next_step = next_step_.norm();
+    small_step_ = solution_.next_step <= largest_next_step;
+    // Below it what is left of the residual makes a step that is not small.
+    bound_ = std::max(neutral, small_step_ ? 0 : solution_.residual / largest_next_step);
+  }
+
+  /// Counts a mode that shifts the shape along the rod as a rigid-body mode. The part of Newton's
+  /// step along zero modes is rounding over their eigenvalues and leaves no doubt of the shape.
+  void count_sliding_mode(NewtonSystem& system) {
+    const auto modes =
+        sliding_modes(model_, solution_.x, system.reduced_hessian(), rigid_.in_plane);
+    if (!modes) return;
+    next_step_ -= *modes * (modes->transpose() * next_step_);
+    judge_step();
+    const Eigen::VectorXd last = modes->rightCols<1>();
+    constexpr double rounding = 1.01;
+    bound_ = std::max(bound_, rounding * std::abs(last.dot(system.hessian() * last)));
+    found_ = eigenvalues_of(system.reduced_hessian(), ++rigid_.in_plane);
   }
 
   /// Takes the second variation at the ridges of boxes that yield into account, which Newton's

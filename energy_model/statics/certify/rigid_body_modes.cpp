@@ -106,9 +106,9 @@ Eigen::VectorXd derivative_along_rod(const SpanEnergy& model, const Eigen::Vecto
 
 }  // namespace
 
-bool slides_along_rod(const SpanEnergy& model, const Eigen::VectorXd& x, ReducedHessian& hessian,
-                      Eigen::Index zero) {
-  if (!is_held_at_ends_alone(model.span()) || !is_straight_at_ends(model, x)) return false;
+std::optional<Eigen::MatrixXd> sliding_modes(const SpanEnergy& model, const Eigen::VectorXd& x,
+                                             ReducedHessian& hessian, Eigen::Index rigid) {
+  if (!is_held_at_ends_alone(model.span()) || !is_straight_at_ends(model, x)) return std::nullopt;
   Eigen::VectorXd shift = derivative_along_rod(model, x);
   const SpanUnknowns& unknowns = model.unknowns();
   if (unknowns.fields == 2) {
@@ -119,13 +119,13 @@ bool slides_along_rod(const SpanEnergy& model, const Eigen::VectorXd& x, Reduced
     rotation.segment(n, n) = x.head(n);
     shift -= shift.dot(rotation) / rotation.squaredNorm() * rotation;
   }
-  // The share of its square that is in the zero modes; that of another mode is about zero.
+  // The share of its square that is in these modes; that of other modes is about zero.
   constexpr double least_share = 0.99;
-  double share = 0;
-  for (Eigen::Index i = 0; i < zero; ++i) {
-    share += std::pow(shift.dot(direction_by_size(hessian, i)), 2) / shift.squaredNorm();
-  }
-  return share > least_share;
+  Eigen::MatrixXd modes(x.size(), rigid + 1);
+  for (Eigen::Index i = 0; i <= rigid; ++i) modes.col(i) = direction_by_size(hessian, i);
+  const double share = (modes.transpose() * shift).squaredNorm() / shift.squaredNorm();
+  if (!(share > least_share)) return std::nullopt;
+  return modes;
 }
 
 RigidBodyModes rigid_body_modes(const Span& span, const Eigen::Matrix3Xd& tangents) {

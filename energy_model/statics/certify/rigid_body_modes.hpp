@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "linear/reduced_hessian.hpp"
 #include "problem/span.hpp"
@@ -24,13 +25,17 @@ struct RigidBodyModes {
 /// rotation
 [[nodiscard]] RigidBodyModes rigid_body_modes(const Span& span, const Eigen::Matrix3Xd& tangents);
 
-/// Whether one of the zero modes of a shape shifts the shape along the rod. A uniform straight rod
-/// that only grips at its ends act on has such a mode if it is straight at both ends, as a helix or
-/// a loop in the middle of a long rod: the shape may be anywhere along the rod, with equal energy.
+/// Returns the unit directions of the eigenvalues nearest to zero, one more than there are
+/// rigid-body modes, if one of them shifts the shape along the rod; else nothing. A uniform
+/// straight rod that only grips at its ends act on has such a mode if it is straight at both ends,
+/// as a helix or a loop in the middle of a long rod: the shape may be anywhere along the rod, with
+/// equal energy.
 /// @param hessian  at the shape
-/// @param zero     number of its eigenvalues that are zero, those of rigid_body_modes() included
-[[nodiscard]] bool slides_along_rod(const SpanEnergy& model, const Eigen::VectorXd& x,
-                                    ReducedHessian& hessian, Eigen::Index zero);
+/// @param rigid    number of rigid_body_modes()
+[[nodiscard]] std::optional<Eigen::MatrixXd> sliding_modes(const SpanEnergy& model,
+                                                           const Eigen::VectorXd& x,
+                                                           ReducedHessian& hessian,
+                                                           Eigen::Index rigid);
 
 /// Whether one shape is another one of such a circle: a proper rotation takes all of its points,
 /// from the anchor, to the other's and keeps what is held and every force.

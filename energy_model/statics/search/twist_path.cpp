@@ -224,7 +224,7 @@ class TwistPath {
 
   /// More terms, where the shape needs them. @return whether it has got some
   bool resolve() {
-    const bool affordable = here_.model->size() * 5 / 4 < most_unknowns;
+    const bool affordable = here_.terms < max_terms && here_.model->size() * 5 / 4 < most_unknowns;
     const bool resolved = here_.model->truncation(here_.x) < tail_left(here_.terms) &&
                           here_.terms >= terms_under_twist(here_);
     if (resolved || !affordable) return false;

@@ -236,7 +236,9 @@ SpanSolution judged(SpanSolution solution, const SpanOptions& options, SpanWorks
   finer.resolved = finer.resolved || solution.resolved;
   certify(finer, load, workspace.factors());
   const int evaluations = solution.evaluations + finer.evaluations;
-  if (finer.error < solution.error) solution = std::move(finer);
+  // More terms may determine a shape that has a zero mode, along which rounding moves it.
+  const bool determined = finer.is_equilibrium() && !solution.is_equilibrium();
+  if (determined || finer.error < solution.error) solution = std::move(finer);
   solution.evaluations = evaluations;
   return solution;
 }
