@@ -119,7 +119,7 @@ class TwistedSpan {
       const UntwistedShape shape = untwisted_shape(from, workspace_);
       SpanSolution solution = twist_to(end_frame(held, shape), placed_.span, held.stiffness, shape,
                                        options_, workspace_);
-      if (!is_of_class(held, solution)) solution.fail(no_equilibrium_of_class);
+      if (!is_of_class(solution, held.turns.turns)) solution.fail(no_equilibrium_of_class);
       (void)found.add(std::move(solution), turned_little_by_little);
     }
     if (placed_.span.has_material_directors() && placed_.span.rigid_obstacles.empty()) {
@@ -141,16 +141,6 @@ class TwistedSpan {
     held.turns.turns = (shape.twist + end_frame(held, shape).twist) / (2 * std::numbers::pi) +
                        shape.writhe->value.value_or(shape.writhe->modulo_two);
     return held;
-  }
-
-  /// Whether the frames along an equilibrium are a path of the homotopy class that the clamps hold;
-  /// notes how many turns it lacks. A round straight rod is not asked: it has been twisted to them.
-  [[nodiscard]] static bool is_of_class(const HeldFrames& held, SpanSolution& solution) {
-    if (!solution.is_equilibrium() || !solution.model->span().has_material_directors()) return true;
-    const auto lost =
-        turns_lost(held.turns, solution.model->twist(solution.x), writhe_of(solution));
-    solution.turns_lost = lost.value_or(0);
-    return lost.has_value();
   }
 
   /// Adds equilibria that are found from starts whose frames meet the held one.

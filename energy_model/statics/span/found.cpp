@@ -63,6 +63,16 @@ std::optional<Writhe> writhe_of(const SpanSolution& solution) {
   return writhe(sample, 0, length);
 }
 
+bool is_of_class(SpanSolution& solution, const std::optional<double>& turns) {
+  const bool asks =
+      turns && solution.is_equilibrium() && solution.model->span().has_material_directors();
+  if (!asks) return true;
+  const std::optional<int> lost =
+      turns_lost({.turns = turns}, solution.model->twist(solution.x), writhe_of(solution));
+  solution.turns_lost = lost.value_or(0);
+  return lost.has_value();
+}
+
 std::vector<SpanSolution> list_of(SpanSolution solution) {
   std::vector<SpanSolution> result;
   result.push_back(std::move(solution));
@@ -117,7 +127,7 @@ const SpanSolution& Found::best() const {
 bool Found::has_stable_lowest() const {
   const SpanSolution* lowest = nullptr;
   for (const SpanSolution& solution : found_) {
-    if (!solution.is_equilibrium()) continue;
+    if (!solution.is_equilibrium() || solution.turns_lost != 0) continue;
     if (lowest == nullptr || solution.energy < lowest->energy) lowest = &solution;
   }
   return lowest != nullptr && succeeded(lowest->status);

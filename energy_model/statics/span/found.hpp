@@ -65,6 +65,11 @@ inline constexpr const char* no_equilibrium_of_class =
 /// Returns the writhe of a shape from its start to its end; empty as writhe().
 [[nodiscard]] std::optional<Writhe> writhe_of(const SpanSolution& solution);
 
+/// Whether the frames along an equilibrium are a path of the homotopy class that clamps with these
+/// turns hold; notes how many turns it lacks. Always true of a round straight rod, which is twisted
+/// to its turns, and if the turns are not known.
+[[nodiscard]] bool is_of_class(SpanSolution& solution, const std::optional<double>& turns);
+
 /// A braced list would copy it.
 [[nodiscard]] std::vector<SpanSolution> list_of(SpanSolution solution);
 
@@ -97,7 +102,7 @@ class Found {
   [[nodiscard]] bool suffices() const {
     return !options_.wants_all() && !empty() && succeeded(best().status);
   }
-  /// Whether the lowest of the equilibria can hold itself.
+  /// Whether the lowest of the equilibria that have not lost turns can hold itself.
   [[nodiscard]] bool has_stable_lowest() const;
   /// All that are wanted, best first; the first one has the evaluations of all.
   [[nodiscard]] std::vector<SpanSolution> take() &&;

@@ -222,23 +222,19 @@ class Search {
   }
 
   bool add(SpanSolution solution) {
-    if (!is_of_class(solution)) return false;
+    if (!is_of_span_class(solution)) return false;
     return found_.add(judged(std::move(solution), options_, workspace_));
   }
   bool add(SpanSolution solution, const std::string& strategy) {
-    if (!is_of_class(solution)) return false;
+    if (!is_of_span_class(solution)) return false;
     return found_.add(judged(std::move(solution), options_, workspace_), strategy);
   }
 
-  /// Whether the frames along an equilibrium are a path of the homotopy class that the clamps hold;
-  /// notes how many turns it lacks.
-  [[nodiscard]] bool is_of_class(SpanSolution& solution) {
-    if (!span_.twist || !span_.twist->turns || !solution.is_equilibrium()) return true;
-    const auto lost = turns_lost({.turns = span_.twist->turns}, solution.model->twist(solution.x),
-                                 writhe_of(solution));
-    if (!lost) found_.spend(std::exchange(solution.evaluations, 0));
-    solution.turns_lost = lost.value_or(0);
-    return lost.has_value();
+  /// is_of_class(); counts the evaluations of what is not.
+  [[nodiscard]] bool is_of_span_class(SpanSolution& solution) {
+    if (!span_.twist || is_of_class(solution, span_.twist->turns)) return true;
+    found_.spend(std::exchange(solution.evaluations, 0));
+    return false;
   }
 
   /// Descends from the unstable equilibria, once more from those that it leads to.
