@@ -28,6 +28,8 @@ struct Span {
     double at = 0;
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
     double couple = 0;  ///< about z, of a planar span: its energy is -couple times the angle there
+    /// couple_zero(): s, and the angle of its direction in the plane [rad].
+    double zero_at = 0, zero_angle = 0;
   };
   struct Obstacle {
     std::size_t index = 0;  ///< of the problem's obstacles

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/require.hpp"
+#include "dlo/energy_model/couple_zero.hpp"
 #include "dlo/energy_model/plane.hpp"
 #include "dlo/energy_model/turns.hpp"
 #include "problem/material_directors.hpp"
@@ -168,6 +169,10 @@ void place_couples(const Problem& problem, const Stretch& stretch, PlacedSpan& p
     const auto at = std::find_if(placed.span.loads.begin(), placed.span.loads.end(),
                                  [s](const Span::Load& other) { return other.at == s; });
     at->couple += own.z() / unit;
+    const CoupleZero zero = couple_zero(problem, load);
+    const Eigen::Vector3d direction = (placed.reversed ? -1 : 1) * (placed.frame * zero.direction);
+    at->zero_at = std::clamp(placed.s_of(zero.at, problem.length), 0.0, placed.span.length);
+    at->zero_angle = std::atan2(direction.y(), direction.x());
   }
 }
 

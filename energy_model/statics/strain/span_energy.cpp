@@ -22,20 +22,16 @@ Eigen::Vector3d first_tangent(const Span& span) {
   return before.norm() > 0 ? Eigen::Vector3d(-before.normalized()) : Eigen::Vector3d::UnitX();
 }
 
-/// Rotation of a planar span's tangent at `s` from the zero of a couple there (couple_zero())
-/// [rad].
+/// Rotation of a planar span's tangent at a load from the zero of its couple (CoupleZero) [rad].
 double couple_angle(const Span& span, const std::vector<Piece>& pieces, const PlanarFrames& frames,
-                    const Eigen::VectorXd& x, double s) {
+                    const Eigen::VectorXd& x, const Span::Load& load) {
+  const double start = span.start_direction ? angle_of(*span.start_direction) : 0;
   const auto angle = [&](double at) {
-    return frames.by_unknown_after(pieces_before(pieces, at) - 1).dot(x) +
+    return start + frames.by_unknown_after(pieces_before(pieces, at) - 1).dot(x) +
            (span.natural.empty() ? 0 : span.natural.integral(at).x());
   };
-  // A clamp at the start has the angle 0 here; a free start counts within half a turn of the chord.
-  double zero = span.start_direction ? 0 : nearest_turn(0, x[0]);
-  for (const Span::Hold& hold : span.holds) {
-    if (hold.direction && hold.at <= s) zero = angle(hold.at);
-  }
-  return angle(s) - zero;
+  const double zero = angle(load.zero_at);
+  return angle(load.at) - zero + nearest_turn(zero - load.zero_angle, 0);
 }
 
 }  // namespace
@@ -373,7 +369,7 @@ Energies SpanEnergy::energies(const SpanPoint& at) const {
   energies.gravity = loads_.force_energy(at.t) - energies.load;
   for (const Span::Load& load : span_.loads) {
     if (load.couple != 0)
-      energies.load -= load.couple * couple_angle(span_, pieces_, plane_, at.x, load.at);
+      energies.load -= load.couple * couple_angle(span_, pieces_, plane_, at.x, load);
   }
   if (has_soft_obstacles()) energies.contact = soft_contact_.energy(at.pressed);
   return energies;
