@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
@@ -38,6 +40,33 @@ void expect_accounted(const Problem& problem) {
     EXPECT_GT(strategy.tried, 0) << strategy.name;
   }
   EXPECT_EQ(search.equilibria.size(), all_energy(problem).size());
+}
+
+TEST(SearchLog, EachEquilibriumHasTheEnergiesOfTheStableOnes) {
+  Problem arch = two_clamps(5, 0.8);
+  arch.confined_to_plane = true;
+  Problem both = two_clamps(5, 0.6);
+  both.grips.insert(both.grips.begin() + 1, {0.5, {0.3, 0, 0}, Eigen::Vector3d::UnitX()});
+  both.confined_to_plane = true;
+  for (const Problem& problem : {arch, both}) {
+    const EnergySearch search = search_energy(problem);
+    std::vector<double> stable;
+    for (const Equilibrium& found : search.equilibria) {
+      if (succeeded(found.status)) stable.push_back(found.energy.total());
+    }
+    ASSERT_GE(stable.size(), 2);
+    for (const Equilibrium& found : search.equilibria) EXPECT_EQ(found.stable_energies, stable);
+    // A search for the lowest ends earlier.
+    const Equilibrium lowest = solve_energy(problem);
+    ASSERT_FALSE(lowest.stable_energies.empty());
+    EXPECT_EQ(lowest.stable_energies.front(), lowest.energy.total());
+    for (const double energy : lowest.stable_energies) {
+      EXPECT_TRUE(std::ranges::any_of(stable, [energy](double other) {
+        return std::abs(energy - other) < 1e-8 * (1 + std::abs(other));
+      })) << energy;
+    }
+    EXPECT_TRUE(solve_energy(problem, {.start = &lowest}).stable_energies.empty());
+  }
 }
 
 TEST(SearchLog, AShapeThatTurnsFreelyIsListedOnce) {

@@ -141,7 +141,9 @@ class ContactSearch {
     std::vector<TangentField> starts;
     std::optional<SpanSolution> failure;
     double lowest_within = std::numeric_limits<double>::infinity();
-    for (SpanSolution& solution : solve_span(span_, without_start, workspace_)) {
+    std::vector<SpanSolution> clear = solve_span(span_, without_start, workspace_);
+    if (!options_.wants_all()) clear.resize(1);
+    for (SpanSolution& solution : clear) {
       found_.spend(std::exchange(solution.evaluations, 0));
       if (!solution.is_equilibrium()) {
         failure = std::move(solution);

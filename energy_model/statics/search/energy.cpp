@@ -73,6 +73,56 @@ std::vector<Equilibrium> combine(const Problem& problem, const std::vector<Place
   return result;
 }
 
+/// Returns the first equilibrium of each span alone.
+std::vector<std::vector<SpanSolution>> firsts_of(
+    const std::vector<std::vector<SpanSolution>>& solutions) {
+  std::vector<std::vector<SpanSolution>> firsts;
+  for (const std::vector<SpanSolution>& of_span : solutions) firsts.push_back({of_span.front()});
+  return firsts;
+}
+
+/// Returns the total energies of the combinations of the spans' stable equilibria, lowest first
+/// [J].
+/// @param lowest  the combination of the spans' first equilibria
+std::vector<double> stable_energies(const Problem& problem, const Equilibrium& lowest,
+                                    const std::vector<std::vector<SpanSolution>>& solutions) {
+  const double unit = bending_unit(problem) / problem.length;
+  std::vector<double> sums = {lowest.energy.total()};
+  for (const std::vector<SpanSolution>& of_span : solutions) {
+    const auto energy = [&](const SpanSolution& found) {
+      return unit * found.model->energies(*found.at_x()).total();
+    };
+    std::vector<double> with_span;
+    for (const SpanSolution& found : of_span) {
+      if (!succeeded(found.status) || found.turns_lost != 0) continue;
+      const double above = &found == &of_span.front() ? 0 : energy(found) - energy(of_span.front());
+      for (const double sum : sums) with_span.push_back(sum + above);
+    }
+    std::sort(with_span.begin(), with_span.end());
+    with_span.resize(std::min(with_span.size(), most_combinations));
+    sums = std::move(with_span);
+  }
+  return sums;
+}
+
+/// Notes in each equilibrium what its search has found.
+/// @param solutions  of the spans; all of their combinations are in `result` where it has several
+void note_search(const Problem& problem, const std::vector<std::vector<SpanSolution>>& solutions,
+                 int passing_starts, std::vector<Equilibrium>& result) {
+  std::vector<double> energies;
+  if (result.size() == 1 && succeeded(result.front().status)) {
+    energies = stable_energies(problem, result.front(), solutions);
+  } else {
+    for (const Equilibrium& found : result) {
+      if (succeeded(found.status)) energies.push_back(found.energy.total());
+    }
+  }
+  for (Equilibrium& found : result) {
+    found.stable_energies = energies;
+    found.passing_starts = passing_starts;
+  }
+}
+
 }  // namespace
 
 class EnergySolver::State {
@@ -193,10 +243,11 @@ class EnergySolver::State {
       followed_ = followed_ && solutions.back().front().followed;
       if (only && !followed_) return undone();
     }
-    std::vector<Equilibrium> result = combine(problem, placed, solutions, log_);
-    if (passing_starts > 0 && wanted == Wanted::lowest) {
-      result.front().message +=
-          "; " + std::to_string(passing_starts) + " starts passed obstacles on another side";
+    std::vector<Equilibrium> result = wanted == Wanted::all
+                                          ? combine(problem, placed, solutions, log_)
+                                          : combine(problem, placed, firsts_of(solutions), log_);
+    if (from == From::nothing && options_.start == nullptr) {
+      note_search(problem, solutions, passing_starts, result);
     }
     followed_ = followed_ && (!only || succeeded(result.front().status));
     if (only && !followed_) return undone();

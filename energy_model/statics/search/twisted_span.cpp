@@ -183,6 +183,7 @@ std::vector<SpanSolution> solve_twisted(const PlacedSpan& placed, const Problem&
   }
   std::vector<SpanSolution> untwisted =
       span.without_twist(memory.untwisted.is_known() ? &memory.untwisted : nullptr);
+  if (!options.wants_all()) untwisted.resize(1);
   SpanSolution& best = untwisted.front();
   memory.untwisted.remember(best, placed);
   if (!succeeded(best.status)) return untwisted;

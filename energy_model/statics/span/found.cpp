@@ -136,7 +136,10 @@ bool Found::has_stable_lowest() const {
 std::vector<SpanSolution> Found::take() && {
   std::stable_sort(found_.begin(), found_.end(), is_better);
   if (!options_.wants_all() && found_.size() > 1) {
-    found_.erase(found_.begin() + 1, found_.end());
+    found_.erase(std::remove_if(found_.begin() + 1, found_.end(),
+                                [](const auto& other) { return !succeeded(other.status); }),
+                 found_.end());
+    for (std::size_t i = 1; i < found_.size(); ++i) found_[i].factor.reset();
   }
   if (!found_.empty()) found_.front().evaluations = evaluations_;
   return std::move(found_);

@@ -104,7 +104,8 @@ class Found {
   }
   /// Whether the lowest of the equilibria that have not lost turns can hold itself.
   [[nodiscard]] bool has_stable_lowest() const;
-  /// All that are wanted, best first; the first one has the evaluations of all.
+  /// Best first: all equilibria if they are wanted, else the best one and the other stable ones.
+  /// The first one has the evaluations of all.
   [[nodiscard]] std::vector<SpanSolution> take() &&;
 
  private:

@@ -81,6 +81,11 @@ struct [[nodiscard]] Equilibrium {
   /// in which a fold or a bifurcation leaves the shape open; 0 where only Newton's step is too
   /// large. Rigid-body modes are not counted: they leave no doubt of the shape. 0 of `exact`.
   int neutral_directions = 0;
+  /// `energy`: energies of the stable equilibria that the search found, lowest first and at most
+  /// 64, each mirror image of its own [J]. Empty if there was no search, as of a shape that is
+  /// followed.
+  std::vector<double> stable_energies;
+  int passing_starts = 0;  ///< `energy`: starts of the search past obstacles on another side
   /// Largest depth of the axis behind a rigid obstacle, between the solver's own nodes too [m]; 0
   /// without such obstacles. Deeper than `allowed_penetration` lengths, of `exact` a tenth of them,
   /// it is not_verified.
