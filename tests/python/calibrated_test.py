@@ -135,7 +135,7 @@ def test_refusals_are_the_commands(wire, found, command, text):
 
 
 def test_arguments_that_are_no_calibration_are_told(wire):
-    with pytest.raises(dlo.InputError, match="calibrated: a int .allowed: a dlo.MaterialFit, or the name"):
+    with pytest.raises(dlo.InputError, match="calibrated: a int .allowed: a dlo.MaterialFit or dlo.MotionFit, or"):
         dlo.solve(wire, calibrated=3)
     with pytest.raises(dlo.InputError, match="none.toml"):
         dlo.check(wire, [[0, 0, 0], [1, 0, 0]], calibrated="none.toml")

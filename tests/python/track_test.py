@@ -139,6 +139,12 @@ def test_stiffness_from_a_recorded_motion(tmp_path):
         assert abs(found.json["stiffness"]["value"] / 0.02 - 1) < 1e-3
     with pytest.raises(dlo.InputError, match="allowed"):
         dlo.calibrate(swung_wire(0.03), motion=[[0.0, 1.0]])
+    as_found = dict(dynamic=True, calibrated=found)
+    assert dlo.check(swung_wire(0.021), motion=rows, tolerance="0.01%", **as_found).passed
+    moved = dlo.track(swung_wire(0.021), frame_rate=40, force=False, **as_found)
+    damped = dlo.track(swung_wire(0.021), frame_rate=40, force=False, damping=0.2, **as_found)
+    for way, damping in (moved, found.json["damping_s"]["value"]), (damped, 0.2):
+        assert way.json["dynamic"]["damping_s"] == pytest.approx(damping, rel=1e-7)
 
 
 def test_a_recorded_motion_is_judged(tmp_path):

@@ -135,8 +135,8 @@ void CalibrateOptions::add_output(CLI::App& command) {
   command
       .add_option("-o,--output", output.file,
                   "write to FILE instead of standard output; .json and .csv are formats, a .toml "
-                  "gets what --parameters (with "
-                  "--shape: --materials) reads, and the text still goes to standard output")
+                  "gets what --parameters (with --shape: --materials and --calibrated, with "
+                  "--motion: --calibrated) reads, and the text still goes to standard output")
       ->type_name("FILE");
   take_format_of_file(command, output, formats);
 }

@@ -1,5 +1,7 @@
 #include "calibration/calibrated_toml.hpp"
 
+#include <optional>
+
 #include "base/quote.hpp"
 #include "calibration/fitted_values.hpp"
 #include "dlo/compare/error.hpp"
@@ -39,6 +41,43 @@ void add_shape_lines(std::string& out, const compare::MaterialFit& fit) {
   }
 }
 
+/// Whether a rod is given by EI and mass per length, not by E and density.
+/// @throws compare::InputError if it is given by one of each
+bool is_given_by_stiffness(const compare::Scene& scene) {
+  if (scene.given_bending_stiffness.has_value() == scene.given_mass_per_length.has_value()) {
+    return scene.given_bending_stiffness.has_value();
+  }
+  throw compare::InputError(
+      fmt::format("calibrate: {} and {} are of no one table (allowed: a scene with both "
+                  "bending_stiffness and "
+                  "mass_per_length, or with neither; -o FILE.json)",
+                  scene.stiffness().name, scene.heaviness().name));
+}
+
+/// Value with the comment that states its interval.
+struct WrittenValue {
+  double value = 0;
+  std::string interval;
+};
+
+/// Adds stiffness, mass and the source of both: lines of [rod], or a [[material]].
+void add_rod_lines(std::string& out, const compare::Scene& scene, const WrittenValue& stiffness,
+                   const WrittenValue& heaviness, const std::string& source) {
+  const bool given = is_given_by_stiffness(scene);
+  if (!given) out += "[[material]]\nname = \"calibrated\"\n";
+  std::string value = fmt::format("{:.8e}", stiffness.value);
+  if (scene.given_bending_stiffness_2) {
+    // A fit leaves the ratio of the two as it is.
+    const double ratio = *scene.given_bending_stiffness_2 / *scene.given_bending_stiffness;
+    value = fmt::format("[{}, {:.8e}]", value, ratio * stiffness.value);
+  }
+  append(out, "{} = {}  # {}, {}\n", stiffness_key(scene).name, value, scene.stiffness().unit,
+         stiffness.interval);
+  append(out, "{} = {:.8e}  # {}, {}\n", heaviness_key(scene).name, heaviness.value,
+         scene.heaviness().unit, heaviness.interval);
+  append(out, "{}{}{}\n", given ? "# " : "source = \"", source, given ? "" : "\"");
+}
+
 void add_clamps(std::string& out, const compare::MaterialFit& fit) {
   for (const compare::ClampCorrection& correction : fit.clamps) {
     append(out, "[[gripper]]\nnumber = {}\nrotation = {}  # rad\ndisplacement = {}  # m\n",
@@ -59,21 +98,11 @@ std::string material_toml(const compare::Calibration& report) {
     throw compare::InputError("calibrate: no material to write, " + fit.not_identified);
   }
   const compare::Scene& scene = report.scenes.front();
-  const compare::NamedValue stiffness = scene.stiffness();
-  const compare::NamedValue heaviness = scene.heaviness();
-  if (scene.given_bending_stiffness.has_value() != scene.given_mass_per_length.has_value()) {
-    throw compare::InputError(
-        fmt::format("calibrate: {} and {} are of no one table (allowed: a scene with both "
-                    "bending_stiffness and "
-                    "mass_per_length, or with neither; -o FILE.json)",
-                    stiffness.name, heaviness.name));
-  }
-  const double density = fit.density ? *fit.density->estimate : heaviness.value;
-  const bool given = scene.given_bending_stiffness.has_value();
   std::string out =
-      given ? "# Written by dlo calibrate, for --calibrated, or lines of a scene's [rod].\n"
-            : "# Written by dlo calibrate, for --calibrated, or --materials and material = "
-              "\"calibrated\" in a scene.\n";
+      is_given_by_stiffness(scene)
+          ? "# Written by dlo calibrate, for --calibrated, or lines of a scene's [rod].\n"
+          : "# Written by dlo calibrate, for --calibrated, or --materials and material = "
+            "\"calibrated\" in a scene.\n";
   if (!identified) {
     append(out,
            "# For shapes like these, of which one is predicted from the others to {:.4g} mm. No "
@@ -81,21 +110,42 @@ std::string material_toml(const compare::Calibration& report) {
            fit.prediction->rms_m * 1000, fit.not_identified);
   }
   add_shape_lines(out, fit);
-  if (!given) out += "[[material]]\nname = \"calibrated\"\n";
-  std::string value = fmt::format("{:.8e}", *E.estimate);
-  if (scene.given_bending_stiffness_2) {
-    // A fit leaves the ratio of the two as it is.
-    const double ratio = *scene.given_bending_stiffness_2 / *scene.given_bending_stiffness;
-    value = fmt::format("[{}, {:.8e}]", value, ratio * *E.estimate);
-  }
-  append(out, "{} = {}  # {}, {}\n", stiffness_key(scene).name, value, stiffness.unit,
-         interval_text(E));
-  append(out, "{} = {:.8e}  # {}, {}\n", heaviness_key(scene).name, density, heaviness.unit,
-         fit.density ? interval_text(*fit.density) : std::string("of the scene"));
-  append(out, "{}least squares of {} measured shape{}, noise {:.3g} m{}{}\n",
-         given ? "# " : "source = \"", fit.shapes.size(), fit.shapes.size() == 1 ? "" : "s",
-         fit.noise_m, fit.correlation ? ", correlated along the rod" : "", given ? "" : "\"");
+  add_rod_lines(out, scene, {*E.estimate, interval_text(E)},
+                fit.density ? WrittenValue{*fit.density->estimate, interval_text(*fit.density)}
+                            : WrittenValue{scene.heaviness().value, "of the scene"},
+                fmt::format("least squares of {} measured shape{}, noise {:.3g} m{}",
+                            fit.shapes.size(), fit.shapes.size() == 1 ? "" : "s", fit.noise_m,
+                            fit.correlation ? ", correlated along the rod" : ""));
   add_clamps(out, fit);
+  return out;
+}
+
+std::string motion_toml(const compare::MotionFit& fit, const compare::Scene& scene) {
+  if (!fit.not_identified.empty()) {
+    throw compare::ConvergenceError(
+        fmt::format("calibrate: nothing is written, {} is not "
+                    "identified: {}",
+                    scene.stiffness().name, fit.not_identified));
+  }
+  const auto interval = [](const compare::MotionNumber& number) {
+    return fmt::format("{}95 %: {:.4g} to {:.4g}", number.identified ? "" : "not identified, ",
+                       number.low, number.high);
+  };
+  std::string out = "# Written by dlo calibrate, for --calibrated.\n";
+  const auto add = [&](const char* key, const char* unit,
+                       const std::optional<compare::MotionNumber>& number) {
+    if (number) {
+      append(out, "{} = {:.8e}  # {}, {}\n", key, number->value, unit, interval(*number));
+    }
+  };
+  add("damping", "s", fit.material);
+  add("drag", "N s/m^2", fit.air);
+  add("quadratic_drag", "N s^2/m^3", fit.quadratic);
+  add_rod_lines(
+      out, scene, {fit.scene_stiffness.value, interval(fit.scene_stiffness)},
+      {scene.heaviness().value, "of the scene"},
+      fmt::format("least squares of {} recorded motion{}, noise {:.3g} m", fit.recordings.size(),
+                  fit.recordings.size() == 1 ? "" : "s", fit.noise));
   return out;
 }
 

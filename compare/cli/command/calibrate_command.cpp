@@ -16,6 +16,7 @@
 #include "format/json.hpp"
 #include "format/material_fit_output.hpp"
 #include "option/exit_status.hpp"
+#include "option/share.hpp"
 #include "option/terminal.hpp"
 #include "picture/fit_figure.hpp"
 #include "series/motion_fit_output.hpp"
@@ -114,11 +115,14 @@ void run_motion(const CalibrateOptions& options, bool format_is_given) {
   }
   ProgressBar bar("calibrate");
   const compare::MotionFit found =
-      compare::fit_motion(scene, recordings, {.solve = options.overrides.solve()},
+      compare::fit_motion(scene, recordings,
+                          {.damping = DampingOptions{}.of(options.overrides.calibrated()),
+                           .solve = options.overrides.solve()},
                           [&bar](const std::string& what) { bar.stage(what); });
   write_calibration(options.output, format_is_given,
                     {.text = [&] { return motion_fit_text(found, scene); },
-                     .json = [&] { return json_text(motion_fit_json(found, scene)); }});
+                     .json = [&] { return json_text(motion_fit_json(found, scene)); },
+                     .toml = [&] { return motion_toml(found, scene); }});
   if (!found.not_identified.empty()) end_with(ExitStatus::not_converged);
 }
 

@@ -36,6 +36,7 @@ struct CheckOptions {
   std::string motion;
   bool dynamic = false;
   compare::MotionCheckRequest moving;
+  DampingOptions damping;
   ToleranceWords tolerance;
   bool no_modulus = false;
   bool no_explanation = false;
@@ -95,6 +96,7 @@ void run_motion(const CheckOptions& options) {
   const compare::Scene scene = options.overrides.load(options.scene);
   warn_of_friction(scene);
   compare::MotionCheckRequest request = options.moving;
+  request.damping = options.damping.of(options.overrides.calibrated());
   if (options.dynamic) request.model = compare::MotionModel::with_inertia;
   if (options.no_explanation) request.explaining = compare::Explaining::no;
   request.tolerance = shape_tolerance("--tolerance", options.tolerance, scene.length);
@@ -128,7 +130,7 @@ void add_motion_to(CLI::App& command, CheckOptions& options) {
       .add_flag("--dynamic", options.dynamic,
                 "with --motion: hold it against the rod with its inertia, not at rest")
       ->needs(motion);
-  add_damping_options(command, options.moving.damping, motion);
+  options.damping.add_to(command, motion);
   constexpr double most = 1e12;  // s, as times in files
   command
       .add_option("--from", options.moving.from,

@@ -26,7 +26,7 @@ struct TrackCommand {
   compare::TrackRequest request;
   bool no_force = false;
   bool dynamic = false;
-  compare::RodDamping damping;
+  DampingOptions damping;
   TrackFrames frames;
   std::string paraview;
   SceneOptions overrides;
@@ -49,7 +49,7 @@ void run(const TrackCommand& command) {
   warn_of_friction(scene);
   compare::TrackRequest request = command.request;
   if (command.no_force) request.options.force = compare::ForceBeside::absent;
-  if (command.dynamic) request.damping = command.damping;
+  if (command.dynamic) request.damping = command.damping.of(command.overrides.calibrated());
   request.options.solve = command.overrides.solve();
   if (!command.no_force) warn_of_polygons(scene);
   const compare::TrackResult result = with_progress(
@@ -106,7 +106,7 @@ void add_track(CLI::App& app) {
       "--dynamic", options->dynamic,
       "the rod with its inertia too, as its shapes at rest move at first; the force model against "
       "it");
-  add_damping_options(*command, options->damping, dynamic);
+  options->damping.add_to(*command, dynamic);
   command->add_option("--samples", options->request.options.samples, "points of a frame's shape")
       ->check(CLI::Range(2, 10000))
       ->capture_default_str();

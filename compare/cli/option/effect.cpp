@@ -52,7 +52,7 @@ const std::vector<IneffectiveOptions> ineffective = {
      {"--bending-rule", "--c-F", "--c-h", "--l-s"},
      {},
      "other options of the force model; calibrate finds these"},
-    {"calibrate", {"--format"}, {{"--format", table_formats}, if_given("--motion")}, "text, json"},
+    {"calibrate", {"--format"}, {{"--format", {"csv"}}, if_given("--motion")}, "text, json, toml"},
     {"calibrate",
      {"--format"},
      {{"--format", table_formats}, if_given("--segments"), if_absent("--shape")},

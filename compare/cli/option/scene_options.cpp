@@ -218,9 +218,10 @@ void SceneOptions::add_materials_to(CLI::App& command) {
   command.add_option("--materials", materials_, "materials file instead of the built-in one")
       ->type_name("FILE");
   command
-      .add_option("--calibrated", calibrated_,
-                  "what dlo calibrate -o FILE.toml wrote: its rod, and how its clamps are held, in "
-                  "the place of the scene's")
+      .add_option(
+          "--calibrated", calibrated_,
+          "what dlo calibrate -o FILE.toml wrote: its rod, how its clamps are held, and its "
+          "damping in motion, in the place of the scene's")
       ->type_name("FILE");
 }
 
@@ -237,11 +238,13 @@ std::vector<compare::Material> SceneOptions::materials() const {
   return materials_.empty() ? compare::materials() : compare::load_materials(materials_);
 }
 
+compare::CalibratedRod SceneOptions::calibrated() const {
+  return calibrated_.empty() ? compare::CalibratedRod{} : compare::load_calibrated_rod(calibrated_);
+}
+
 compare::Scene SceneOptions::load(const std::string& path) const {
-  compare::Scene scene = compare::load_scene(path, materials());
-  if (!calibrated_.empty()) {
-    scene = compare::calibrated_scene(std::move(scene), compare::load_calibrated_rod(calibrated_));
-  }
+  compare::Scene scene =
+      compare::calibrated_scene(compare::load_scene(path, materials()), calibrated());
   apply(scene);
   if (!time_) return scene;
   if (!compare::motion_of(scene)) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "dlo/compare/calibrated_rod.hpp"
 #include "dlo/compare/plan.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/solution.hpp"
@@ -30,6 +31,9 @@ class SceneOptions {
 
   /// Loads a scene and applies the options. @throws compare::InputError
   [[nodiscard]] compare::Scene load(const std::string& path) const;
+  /// Returns the rod of --calibrated; without that option it replaces nothing.
+  /// @throws compare::InputError
+  [[nodiscard]] compare::CalibratedRod calibrated() const;
   [[nodiscard]] const compare::SolveOptions& solve() const { return solve_; }
   [[nodiscard]] std::vector<compare::Material> materials() const;
 

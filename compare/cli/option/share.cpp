@@ -119,19 +119,27 @@ void add_growth_options(CLI::App& command, compare::RegressionTolerance& toleran
       ->capture_default_str();
 }
 
-void add_damping_options(CLI::App& command, compare::RodDamping& damping, CLI::Option* needed) {
-  const std::string with = "with " + needed->get_name() + ": ";
-  const auto add = [&](const char* name, double& value, const char* what, const char* type) {
-    command.add_option(name, value, with + what)
+void DampingOptions::add_to(CLI::App& command, CLI::Option* needed) {
+  const auto add = [&](const char* name, std::optional<double>& value, const char* what,
+                       const char* type) {
+    command
+        .add_option(name, value,
+                    fmt::format("with {}: {}; default that of --calibrated, else 0",
+                                needed->get_name(), what))
         ->check(number_between(0, std::numeric_limits<double>::max()))
         ->needs(needed)
-        ->type_name(type)
-        ->capture_default_str();
+        ->type_name(type);
   };
-  add("--damping", damping.material, "Kelvin-Voigt time tau of the material [s]", "TIME");
-  add("--drag", damping.air, "drag of the air per length and velocity [N s/m^2]", "VALUE");
-  add("--quadratic-drag", damping.quadratic,
+  add("--damping", material, "Kelvin-Voigt time tau of the material [s]", "TIME");
+  add("--drag", air, "drag of the air per length and velocity [N s/m^2]", "VALUE");
+  add("--quadratic-drag", quadratic,
       "drag across the rod per length and squared velocity [N s^2/m^3], 1/2 rho C d", "VALUE");
+}
+
+compare::RodDamping DampingOptions::of(const compare::CalibratedRod& rod) const {
+  return {.material = material.value_or(rod.damping.value_or(0)),
+          .air = air.value_or(rod.drag.value_or(0)),
+          .quadratic = quadratic.value_or(rod.quadratic_drag.value_or(0))};
 }
 
 compare::ShapeTolerance shape_tolerance(const std::string& name, const ToleranceWords& words,

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "batch/regression.hpp"
+#include "dlo/compare/calibrated_rod.hpp"
 #include "dlo/compare/shape_verdict.hpp"
 #include "motion/moving_scene.hpp"
 
@@ -31,9 +32,15 @@ void set_growth(const std::string& name, const std::string& text,
 /// --relative and --absolute: by how much an error may grow.
 void add_growth_options(CLI::App& command, compare::RegressionTolerance& tolerance);
 
-/// --damping, --drag and --quadratic-drag of a rod with inertia.
-/// @param needed  the option that they go with
-void add_damping_options(CLI::App& command, compare::RodDamping& damping, CLI::Option* needed);
+/// --damping, --drag and --quadratic-drag of a rod with inertia, where they are given.
+struct DampingOptions {
+  std::optional<double> material, air, quadratic;  ///< as RodDamping's
+
+  /// @param needed  the option that they require
+  void add_to(CLI::App& command, CLI::Option* needed);
+  /// Returns the given values, in the place of others those of a calibrated rod, else 0.
+  [[nodiscard]] compare::RodDamping of(const compare::CalibratedRod& rod) const;
+};
 
 /// What a shape is held against.
 struct ToleranceWords {

@@ -114,14 +114,15 @@ SharedScene scene_at(const SharedScene& data, double time) {
                     data->scene.file, time));
   }
   return std::make_shared<SceneData>(
-      SceneData{compare::scene_at(data->scene, time), data->obstacle_offsets});
+      SceneData{compare::scene_at(data->scene, time), data->obstacle_offsets, data->calibrated});
 }
 
 SharedScene calibrated_scene(const SharedScene& data, const std::string& text,
                              const std::string& file) {
+  compare::CalibratedRod rod = compare::parse_calibrated_rod(text, file);
+  compare::Scene scene = compare::calibrated_scene(data->scene, rod);
   return std::make_shared<SceneData>(
-      SceneData{compare::calibrated_scene(data->scene, compare::parse_calibrated_rod(text, file)),
-                data->obstacle_offsets});
+      SceneData{std::move(scene), data->obstacle_offsets, std::move(rod)});
 }
 
 py::dict table_keys() {

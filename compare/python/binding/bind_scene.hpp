@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "dlo/compare/calibrated_rod.hpp"
 #include "dlo/compare/material.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape_file.hpp"
@@ -21,6 +22,8 @@ struct SceneData {
   /// By which each obstacle's body is larger than what its point says: the rod's radius, or 0 where
   /// the axis touches [m].
   std::vector<double> obstacle_offsets;
+  /// Rod that the scene has in the place of its own, whose damping counts for a rod in motion.
+  compare::CalibratedRod calibrated = {};
 };
 
 using SharedScene = std::shared_ptr<SceneData>;

@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "base/display.hpp"
 #include "base/input_file.hpp"
 #include "bind_scene.hpp"
+#include "calibration/calibrated_toml.hpp"
 #include "errors.hpp"
 #include "format/json.hpp"
 #include "long_call.hpp"
@@ -30,6 +32,13 @@
 namespace dlo::python {
 namespace {
 
+/// Damping of a rod in motion: of the arguments, where they are none that of `calibrated`.
+compare::RodDamping damping_of(const SharedScene& shared, const py::dict& what) {
+  const auto given = [&what](const char* key) { return what[key].cast<std::optional<double>>(); };
+  return cli::DampingOptions{given("damping"), given("drag"), given("quadratic_drag")}.of(
+      shared->calibrated);
+}
+
 py::object track(const SharedScene& shared, const py::dict& what, const py::object& make_result,
                  const py::dict& limits) {
   using Given = std::optional<double>;
@@ -45,7 +54,7 @@ py::object track(const SharedScene& shared, const py::dict& what, const py::obje
       .obstacle_rate = what["obstacle_rate"].cast<Given>(),
       .step_rate = what["step_rate"].cast<Given>()};
   if (what["dynamic"].cast<bool>()) {
-    request.damping = {what["damping"].cast<double>(), what["drag"].cast<double>()};
+    request.damping = damping_of(shared, what);
   }
   const compare::TrackResult found = run_long([&](Signals& signals) {
     return compare::follow(scene, request, [&](auto, auto) { signals.throw_if_stopped(); });
@@ -81,18 +90,21 @@ compare::MarkerMotion recorded_motion(const RecordedRows& rows, const std::strin
   return compare::parse_markers(text, name);
 }
 
-std::pair<std::string, std::string> calibrate_motion(const SharedScene& shared,
-                                                     const RecordedRows& rows,
-                                                     const std::string& name,
-                                                     const py::dict& limits) {
+std::tuple<std::string, std::string, std::string> calibrate_motion(const SharedScene& shared,
+                                                                   const RecordedRows& rows,
+                                                                   const std::string& name,
+                                                                   const py::dict& limits) {
   const compare::MarkerMotion recorded = recorded_motion(rows, name);
   const compare::SolveOptions solve = verified_options(limits);
   const compare::MotionFit found = run_long([&](Signals& signals) {
-    return compare::fit_motion(shared->scene, {recorded}, {.solve = solve},
-                               [&](const std::string&) { signals.throw_if_stopped(); });
+    return compare::fit_motion(
+        shared->scene, {recorded},
+        {.damping = cli::DampingOptions{}.of(shared->calibrated), .solve = solve},
+        [&](const std::string&) { signals.throw_if_stopped(); });
   });
   return {cli::motion_fit_text(found, shared->scene),
-          cli::json_text(cli::motion_fit_json(found, shared->scene))};
+          cli::json_text(cli::motion_fit_json(found, shared->scene)),
+          found.not_identified.empty() ? cli::motion_toml(found, shared->scene) : ""};
 }
 
 std::pair<std::string, std::string> check_motion(const SharedScene& shared,
@@ -102,8 +114,7 @@ std::pair<std::string, std::string> check_motion(const SharedScene& shared,
   compare::MotionCheckRequest request{
       .model = what["dynamic"].cast<bool>() ? compare::MotionModel::with_inertia
                                             : compare::MotionModel::at_rest,
-      .damping = {what["damping"].cast<double>(), what["drag"].cast<double>(),
-                  what["quadratic_drag"].cast<double>()},
+      .damping = damping_of(shared, what),
       .from = what["begin"].cast<std::optional<double>>(),
       .frame_rate = what["frame_rate"].cast<std::optional<double>>(),
       .explaining =

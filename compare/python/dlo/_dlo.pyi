@@ -287,7 +287,7 @@ def calibrate_motion(
     rows: Union[bytes, Sequence[Sequence[float]]],
     name: str,
     limits: dict[str, Any],
-) -> tuple[str, str]: ...
+) -> tuple[str, str, str]: ...
 def check_motion(
     scene: SceneData,
     rows: Union[bytes, Sequence[Sequence[float]]],

@@ -284,7 +284,8 @@ class Calibration(Document):
 
     def to_toml(self) -> str:
         """What `dlo calibrate -o FILE.toml` writes: a file of parameters (of the force model) or of
-        materials (of measured shapes; "" where E is not identified and no shapes were predicted)."""
+        materials (of measured shapes; "" where E is not identified and no shapes were predicted), or
+        stiffness and damping (of a recorded motion; "" where the stiffness is not identified)."""
         return self._toml
 
 
@@ -311,6 +312,10 @@ class MaterialFit(Calibration):
         unit = "_Pa" if "youngs_modulus_Pa" in self.json else "_Nm2"
         low, high = self["interval_95" + unit]
         return low, high
+
+
+class MotionFit(Calibration):
+    """Stiffness and damping from a recorded motion; of calibrate()."""
 
 
 class ForceModelFit(Calibration):

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from . import _dlo
 from ._arguments import INTEGER, LIST, NUMBER, NUMBERS, QUANTITY, TEXT, TRUTH, checked, require
-from ._documents import Document, ForceModelFit, MaterialFit, MotionCheck, Plan
+from ._documents import ForceModelFit, MaterialFit, MotionCheck, MotionFit, Plan
 from ._errors import InputError
 from ._files import FileName, file_name
 from ._scene import Calibrated, Quantity, Scene, SceneLike, data_of
@@ -81,7 +81,7 @@ def solve(
     equilibria that solve_all() lists, stable ones first, by energy. near: points, a pair of points and arc lengths, or
     the name of a file of these: the equilibrium of model energy that a local search from them leads to,
     in place of the lowest. time: of a scene that moves, as it is then [s]; None: at the first pose.
-    materials: a file in which the name of a material is looked up instead. calibrated: a MaterialFit of
+    materials: a file in which the name of a material is looked up instead. calibrated: a MaterialFit or MotionFit of
     calibrate(), or a file that `dlo calibrate -o` wrote: its rod, and how clamps and camera are held, in
     the place of the scene's.
     limits: time_limit [s], terms, max_evaluations, max_steps, rest_tolerance.
@@ -149,9 +149,9 @@ def check(
     explain: bool = True,
     motion: Optional[Union[ArrayLike, FileName]] = None,
     dynamic: bool = False,
-    damping: float = 0.0,
-    drag: float = 0.0,
-    quadratic_drag: float = 0.0,
+    damping: Optional[float] = None,
+    drag: Optional[float] = None,
+    quadratic_drag: Optional[float] = None,
     begin: Optional[float] = None,
     frame_rate: Optional[float] = None,
     materials: Optional[FileName] = None,
@@ -173,7 +173,7 @@ def check(
     With motion in place of points a MotionCheck of a scene that moves: rows of time [s], arc length, x, y,
     z [m], shape (R, 5), or the name of a CSV file of these.
     dynamic: hold it against the rod with inertia, of that damping [s], drag [N s/m^2] and
-    quadratic_drag [N s^2/m^3], not at rest. begin: of the rod's motion [s]; None: the recording's.
+    quadratic_drag [N s^2/m^3] (None: of calibrated, else 0), not at rest. begin: of the rod's motion [s]; None: the recording's.
     frame_rate: of the rod [Hz]; None: as needed.
     """
     what: dict[str, Any] = {
@@ -187,9 +187,9 @@ def check(
         data = data_of(scene, materials, None, calibrated)
         what.update(
             dynamic=bool(dynamic),
-            damping=float(damping),
-            drag=float(drag),
-            quadratic_drag=float(quadratic_drag),
+            damping=damping,
+            drag=drag,
+            quadratic_drag=quadratic_drag,
             begin=begin,
             frame_rate=frame_rate,
         )
@@ -293,7 +293,7 @@ def calibrate(
     materials: Optional[FileName] = None,
     calibrated: Optional[Calibrated] = None,
     **limits: Any,
-) -> Union[MaterialFit, ForceModelFit, Document]:
+) -> Union[MaterialFit, ForceModelFit, MotionFit]:
     """Young's modulus from measured shapes, or the force model's parameters: `dlo calibrate`.
 
     With shapes, one of each scene or several of one: a MaterialFit. A shape is an array of points
@@ -306,7 +306,7 @@ def calibrate(
     then found too ("chains" of the document); segment_lengths [m] where they are unequal. register, arc_lengths: as of check(). time, materials,
     calibrated: as of solve(), of all scenes.
 
-    With motion, markers recorded on the rod of one scene that moves: a Document with stiffness over
+    With motion, markers recorded on the rod of one scene that moves: a MotionFit with stiffness over
     mass and damping. It is an array of time [s], arc length, x, y, z [m] by row, or a file of these.
 
     Without: a ForceModelFit of the scenes. holdout: scenes that only judge. target: RMS deviation
@@ -316,7 +316,7 @@ def calibrate(
     if motion is not None:
         if shapes is not None or len(data) != 1:
             raise InputError("calibrate: motion with shapes or of several scenes (allowed: one scene)")
-        return Document(*_dlo.calibrate_motion(data[0], _recorded(motion), "motion", limits))
+        return MotionFit(*_dlo.calibrate_motion(data[0], _recorded(motion), "motion", limits))
     if shapes is None:
         held_out = [data_of(cast(SceneLike, scene), materials, time, calibrated) for scene in holdout]
         return ForceModelFit(*_dlo.calibrate_force_model(data, held_out, points, target, limits))

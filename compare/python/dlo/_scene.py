@@ -7,7 +7,7 @@ from typing import Any, Callable, Iterable, Optional, Sequence, Union
 
 from . import _dlo
 from ._arguments import LIST, TABLE, TEXT, Strict, require
-from ._documents import MaterialFit
+from ._documents import MaterialFit, MotionFit
 from ._errors import InputError
 from ._files import FileName, Materials, file_name, file_text, materials_file
 from ._parts import (
@@ -31,7 +31,7 @@ from ._parts import (
 SceneLike = Union["Scene", FileName]
 """A scene, or the name of a scene file."""
 
-Calibrated = Union[MaterialFit, FileName]
+Calibrated = Union[MaterialFit, MotionFit, FileName]
 """What calibrate() found of a rod and its fixture, or the name of a file of it."""
 
 
@@ -438,10 +438,10 @@ def data_of(
     """What the extension takes. time: of a scene that moves, as it is then [s]. calibrated: in the place of
     its rod and clamps."""
     data = as_scene(scene, materials)._data
-    if isinstance(calibrated, MaterialFit):
+    if isinstance(calibrated, (MaterialFit, MotionFit)):
         data = _dlo.calibrated_scene(data, calibrated.to_toml(), "calibrated")
     elif calibrated is not None:
-        name = file_name(calibrated, "calibrated", "a dlo.MaterialFit, or the name of its file")
+        name = file_name(calibrated, "calibrated", "a dlo.MaterialFit or dlo.MotionFit, or the name of its file")
         data = _dlo.calibrated_scene(data, *file_text(name))
     return data if time is None else _dlo.scene_at(data, time)
 

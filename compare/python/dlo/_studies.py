@@ -287,6 +287,7 @@ def modes(
     dynamic=TRUTH,
     damping=NUMBER,
     drag=NUMBER,
+    quadratic_drag=NUMBER,
     samples=INTEGER,
 )
 def track(
@@ -299,8 +300,9 @@ def track(
     step_rate: Optional[float] = None,
     force: bool = True,
     dynamic: bool = False,
-    damping: float = 0.0,
-    drag: float = 0.0,
+    damping: Optional[float] = None,
+    drag: Optional[float] = None,
+    quadratic_drag: Optional[float] = None,
     samples: int = 41,
     materials: Optional[FileName] = None,
     calibrated: Optional[Calibrated] = None,
@@ -312,11 +314,11 @@ def track(
     step_rate: frames, moves of obstacles and steps of the force model a second; None: as the scene
     says. force: the force model beside it. dynamic: the rod with inertia too, from rest at the first
     pose; damping: its material's Kelvin-Voigt time [s], drag: the air's force per length and velocity
-    [N s/m^2]. samples: M points of each frame. materials, calibrated: as of solve().
+    [N s/m^2], quadratic_drag: that across the rod [N s^2/m^3]; None: of calibrated, else 0. samples: M points of each frame. materials, calibrated: as of solve().
 
     Raises InputError, or ConvergenceError where it had to stop, whose result is what was before.
     """
-    if not dynamic and (damping != 0 or drag != 0):
+    if not dynamic and (damping or drag or quadratic_drag):
         raise InputError("track: damping and drag are those of a rod with inertia (allowed: dynamic=True)")
     what = {
         "begin": begin,
@@ -328,6 +330,7 @@ def track(
         "dynamic": bool(dynamic),
         "damping": damping,
         "drag": drag,
+        "quadratic_drag": quadratic_drag,
         "samples": samples,
     }
     found: Track = _dlo.track(data_of(scene, materials, None, calibrated), what, Track, limits)

@@ -55,8 +55,8 @@ ClampCorrection read_correction(StrictTable& entry) {
 CalibratedRod parse_calibrated_rod(const std::string& text, const std::string& file) {
   const toml::table root = parse_toml(text, file);
   StrictTable table(root, "", file);
-  table.only({"bending_stiffness", "camera_tilt", "gripper", "mass_per_length", "material",
-              "natural_curvature", "torsional_stiffness"});
+  table.only({"bending_stiffness", "camera_tilt", "damping", "drag", "gripper", "mass_per_length",
+              "material", "natural_curvature", "quadratic_drag", "torsional_stiffness"});
   CalibratedRod rod;
   read_calibrated_material(table, rod);
   read_calibrated_stiffness(table, rod);
@@ -70,6 +70,12 @@ CalibratedRod parse_calibrated_rod(const std::string& text, const std::string& f
   if (table.has("natural_curvature")) {
     rod.natural_curvature = table.pairs("natural_curvature", Dimension::curvature, most_terms);
   }
+  const auto damping = [&table](const char* key, Dimension dimension) {
+    return table.optional_number(key, dimension, Range::not_negative());
+  };
+  rod.damping = damping("damping", Dimension::time);
+  rod.drag = damping("drag", Dimension::number);
+  rod.quadratic_drag = damping("quadratic_drag", Dimension::number);
   rod.camera_tilt =
       table.optional_vector("camera_tilt", Dimension::angle).value_or(rod.camera_tilt);
   for (StrictTable& entry : table.tables("gripper")) rod.clamps.push_back(read_correction(entry));

@@ -61,6 +61,7 @@ TEST(CalibratedRod, RefusesWhatItCannotReplace) {
   EXPECT_EQ(refusal("bending_stiffness = 1\nmass_per_length = 1\n"),
             "heavy.toml: the rod is given by E, the calibrated one by EI (allowed: both alike)");
   EXPECT_TRUE(says(refusal("bending_stiffnes = 1\n"), {"bending_stiffnes"}));
+  EXPECT_TRUE(says(refusal("damping = -0.01\n" + material), {"found.toml:1: damping", ">= 0"}));
 }
 
 std::vector<std::string> words_in(const std::string& text) {

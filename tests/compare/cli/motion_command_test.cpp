@@ -161,7 +161,22 @@ TEST_F(MotionCommand, CalibrateFindsTheStiffnessThatMovedTheMarkers) {
     EXPECT_LT(document.at(none).at("high"), 0.01) << none;
   }
   expect_error(calibrate + "--format csv", 2, {"--format csv: not available with --motion"});
-  expect_error(calibrate + "-o found.toml", 2, {"--format toml: not available with --motion"});
+}
+
+TEST_F(MotionCommand, WhatCalibrateWritesMakesTheMotionRight) {
+  write_markers("markers.csv");
+  write("softer.toml", swung(0.015));
+  const std::string found = path("found.toml");
+  succeeds(words({"calibrate", path("softer.toml"), "--motion", path("markers.csv"), "-o", found}));
+  EXPECT_TRUE(dlo::test::says(read(found), {"bending_stiffness = 2.0", "\nmass_per_length = 5.0",
+                                            "\ndamping = ", "# s, 95 %: ", "1 recorded motion,"}));
+  const std::string as_found = " --dynamic --calibrated " + found;
+  succeeds(words({"check", path("softer.toml"), "--motion", path("markers.csv"),
+                  "--tolerance 0.01%" + as_found}));
+  const std::string track = words({"track", path("softer.toml"), "--no-force --frame-rate 40"});
+  EXPECT_NEAR(json_of(track + as_found).at("dynamic").at("damping_s"), 0.01, 1e-3);
+  // An option counts more than the file.
+  EXPECT_EQ(json_of(track + as_found + " --damping 0.2").at("dynamic").at("damping_s"), 0.2);
 }
 
 // A point that the clamp carries moves alike with every stiffness.
@@ -173,6 +188,9 @@ TEST_F(MotionCommand, CalibrateReportsAStiffnessThatIsNotIdentifiedWithExitStatu
   const Outcome outcome = run(calibrate);
   EXPECT_EQ(outcome.status, 3) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("EI          not identified: "));
+  const Outcome written = run(calibrate + "-o " + path("found.toml"));
+  EXPECT_EQ(written.status, 3);
+  EXPECT_THAT(written.err, HasSubstr("nothing is written, EI is not identified: "));
   const json document = json::parse(run(calibrate + " --format json").out);
   EXPECT_FALSE(document.at("identified").get<bool>());
   EXPECT_EQ(document.at("damping_s").at("value"), nullptr);

@@ -29,6 +29,10 @@ struct CalibratedRod {
   /// Coefficients of P_0, P_1, .. about d1 and d2 [1/m]; empty: the scene's.
   std::vector<Eigen::Vector2d> natural_curvature;
   std::vector<ClampCorrection> clamps;  ///< of those that are held otherwise than scenes say
+  /// Damping of the rod in motion: Kelvin-Voigt time of the material [s], drag of the air per
+  /// length and velocity [N s/m^2], and drag across the rod per length and squared velocity [N
+  /// s^2/m^3].
+  std::optional<double> damping, drag, quadratic_drag;
   /// By what shapes are turned in the coordinates in which they were measured, about the first
   /// gripper, gravity with them: a rotation vector [rad].
   Eigen::Vector3d camera_tilt = Eigen::Vector3d::Zero();
