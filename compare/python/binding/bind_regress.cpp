@@ -55,9 +55,6 @@ py::object regress(const std::vector<SharedScene>& scenes, const std::string& fi
 
 }  // namespace
 
-void bind_regress(py::module_& module) {
-  module.def("regress", &regress, py::arg("scenes"), py::arg("file"), py::arg("update"),
-             py::arg("what"), py::arg("make_result"), py::arg("limits"));
-}
+void bind_regress(py::module_& module) { module.def("regress", &regress); }
 
 }  // namespace dlo::python

@@ -205,29 +205,23 @@ void bind_scene(py::module_& module) {
   });
   bound.def_property_readonly("force_model", settings_of).def_property_readonly("track", rates_of);
   module.attr("scene_keys") = table_keys();
-  module.def("did_you_mean", &compare::did_you_mean, py::arg("written"), py::arg("words"));
-  module.def(
-      "read_scene",
-      [](const py::dict& document, const std::string& file, const MaterialsFile& materials) {
-        return scene_from({to_toml(document, ""), file, file, std::nullopt}, materials);
-      },
-      py::arg("document"), py::arg("file"), py::arg("materials"));
-  module.def("parse_scene", &parse_scene, py::arg("text"), py::arg("file"), py::arg("materials"));
-  module.def(
-      "scene_document",
-      [](const SharedScene& scene, std::optional<int> points) {
-        compare::Scene told = scene->scene;
-        if (points) told.force_model.points = *points;
-        return compare::scene_document_text(told);
-      },
-      py::arg("scene"), py::arg("points"));
-  module.def("scene_at", &scene_at, py::arg("scene"), py::arg("time"));
-  module.def("calibrated_scene", &calibrated_scene, py::arg("scene"), py::arg("text"),
-             py::arg("file"));
-  module.def("read_file", &compare::read_file, py::arg("path"));
-  module.def("toml_text", &toml_text, py::arg("document"));
-  module.def("quantity", &quantity, py::arg("text"), py::arg("dimension"));
-  module.def("materials", &material_list, py::arg("file"));
+  module.def("did_you_mean", &compare::did_you_mean);
+  module.def("read_scene",
+             [](const py::dict& document, const std::string& file, const MaterialsFile& materials) {
+               return scene_from({to_toml(document, ""), file, file, std::nullopt}, materials);
+             });
+  module.def("parse_scene", &parse_scene);
+  module.def("scene_document", [](const SharedScene& scene, std::optional<int> points) {
+    compare::Scene told = scene->scene;
+    if (points) told.force_model.points = *points;
+    return compare::scene_document_text(told);
+  });
+  module.def("scene_at", &scene_at);
+  module.def("calibrated_scene", &calibrated_scene);
+  module.def("read_file", &compare::read_file);
+  module.def("toml_text", &toml_text);
+  module.def("quantity", &quantity);
+  module.def("materials", &material_list);
 }
 
 }  // namespace dlo::python

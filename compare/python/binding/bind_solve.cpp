@@ -28,19 +28,6 @@ namespace {
 
 using compare::Solution;
 
-/// A solution, and what its document needs besides. Never changed once it is made.
-struct SolvedScene {
-  SharedScene scene;
-  Solution solution;
-  double time_limit = 0;  ///< of the solve [s]
-};
-
-struct SolvedStates {
-  SharedScene scene;
-  compare::AllSolutions all;
-  double time_limit = 0;  ///< of each solve [s]
-};
-
 template <typename Number>
 Number positive(const std::string& name, py::handle value) {
   const auto number = value.cast<double>();
@@ -57,27 +44,62 @@ compare::Plan plan_of(const compare::Scene& scene, double time_limit) {
   return compare::make_plan(scene, options);
 }
 
-std::string solution_document(const SolvedScene& solved) {
-  return run_long([&](Signals& /*signals*/) {
-    const compare::Scene& scene = solved.scene->scene;
-    return cli::json_text(
-        cli::solution_json(solved.solution, scene, plan_of(scene, solved.time_limit)));
-  });
-}
+/// A solution, and what its document needs besides.
+struct SolvedScene : Result {
+  SolvedScene(SharedScene from, Solution found, double limit)
+      : scene(std::move(from)), solution(std::move(found)), time_limit(limit) {}
 
-std::string states_document(const SolvedStates& solved) {
-  return run_long([&](Signals& /*signals*/) {
-    const compare::Scene& scene = solved.scene->scene;
-    return cli::json_text(
-        cli::equilibria_json(solved.all, scene, plan_of(scene, solved.time_limit)));
-  });
+  [[nodiscard]] std::string text() const override {
+    return cli::solution_text(solution, scene->scene);
+  }
+  [[nodiscard]] std::string json() const override {
+    return run_long([&](Signals& /*signals*/) {
+      return cli::json_text(
+          cli::solution_json(solution, scene->scene, plan_of(scene->scene, time_limit)));
+    });
+  }
+  [[nodiscard]] compare::Drawing drawing() const override {
+    return compare::solution_drawing(scene->scene, {solution});
+  }
+
+  SharedScene scene;
+  Solution solution;
+  double time_limit;  ///< of the solve [s]
+};
+
+struct SolvedStates : Result {
+  SolvedStates(SharedScene from, compare::AllSolutions found, double limit)
+      : scene(std::move(from)), all(std::move(found)), time_limit(limit) {}
+
+  [[nodiscard]] std::string text() const override {
+    return cli::equilibria_text(all, scene->scene);
+  }
+  [[nodiscard]] std::string json() const override {
+    return run_long([&](Signals& /*signals*/) {
+      return cli::json_text(
+          cli::equilibria_json(all, scene->scene, plan_of(scene->scene, time_limit)));
+    });
+  }
+  [[nodiscard]] compare::Drawing drawing() const override {
+    return compare::solution_drawing(scene->scene, all.solutions);
+  }
+
+  SharedScene scene;
+  compare::AllSolutions all;
+  double time_limit;  ///< of each solve [s]
+};
+
+/// Returns equal arc lengths; none for 0, so that the model chooses them.
+std::vector<double> samples_of(const SharedScene& scene, int count) {
+  return count > 0 ? compare::equal_arc_lengths(scene->scene.length, count) : std::vector<double>{};
 }
 
 /// @param model_name  empty: the scene's reference_model()
 /// @param number  of an equilibrium in the list of solve_all(), from 1; none: that of the model
 /// @param near  none, or points, a pair of points and arc lengths, or as bytes the name of a file
-py::object solve(const SharedScene& scene, const std::string& model_name, int samples,
-                 const std::optional<int>& number, const py::object& near, const py::dict& limits) {
+std::shared_ptr<SolvedScene> solve(const SharedScene& scene, const std::string& model_name,
+                                   int samples, const std::optional<int>& number,
+                                   const py::object& near, const py::dict& limits) {
   const compare::Model model = model_name.empty() ? compare::reference_model(scene->scene)
                                                   : compare::from_name<compare::Model>(model_name);
   const compare::SolveOptions options = solve_options(limits);
@@ -92,13 +114,8 @@ py::object solve(const SharedScene& scene, const std::string& model_name, int sa
       throw compare::InputError("near: only model energy starts from points");
     }
   }
-  auto solved = std::make_shared<SolvedScene>();
-  solved->scene = scene;
-  solved->time_limit = options.time_limit;
-  solved->solution = run_long([&](Signals& /*signals*/) {
-    const std::vector<double> s = samples > 0
-                                      ? compare::equal_arc_lengths(scene->scene.length, samples)
-                                      : std::vector<double>{};
+  Solution found = run_long([&](Signals& /*signals*/) {
+    const std::vector<double> s = samples_of(scene, samples);
     if (number) {
       return cli::numbered_equilibrium(compare::solve_all(scene->scene, options, s), *number,
                                        scene->scene);
@@ -106,38 +123,40 @@ py::object solve(const SharedScene& scene, const std::string& model_name, int sa
     if (from) return compare::solve_near(scene->scene, *from, options, s);
     return compare::solve(scene->scene, model, options, s);
   });
-  py::object result = py::cast(solved);
+  const auto solved = std::make_shared<SolvedScene>(scene, std::move(found), options.time_limit);
   if (!energy_model::succeeded(solved->solution.status) &&
       !compare::is_balance_alone(scene->scene, solved->solution)) {
     raise_convergence(fmt::format("{}: the {} model: {}", scene->scene.file,
                                   compare::to_string(model), solved->solution.message),
-                      result);
+                      py::cast(solved));
   }
-  return result;
+  return solved;
 }
 
 std::shared_ptr<SolvedStates> solve_all(const SharedScene& scene, int samples,
                                         const py::dict& limits) {
   const compare::SolveOptions options = solve_options(limits);
-  auto solved = std::make_shared<SolvedStates>();
-  solved->scene = scene;
-  solved->time_limit = options.time_limit;
-  solved->all = run_long([&](Signals& /*signals*/) {
-    const std::vector<double> s = samples > 0
-                                      ? compare::equal_arc_lengths(scene->scene.length, samples)
-                                      : std::vector<double>{};
-    return compare::solve_all(scene->scene, options, s);
-  });
-  return solved;
+  return std::make_shared<SolvedStates>(scene, run_long([&](Signals& /*signals*/) {
+                                          return compare::solve_all(scene->scene, options,
+                                                                    samples_of(scene, samples));
+                                        }),
+                                        options.time_limit);
 }
 
-/// A field of a GripperLoad of all grippers, without copies. @param get  of one
-template <typename Get>
-py::array gripper_rows(const py::object& self, const Get& get) {
-  const auto& loads = self.cast<const SolvedScene&>().solution.grippers;
-  constexpr py::ssize_t stride = sizeof(compare::GripperLoad) / sizeof(double);
-  const double* first = loads.empty() ? nullptr : get(loads.front()).data();
-  return rows_view(first, static_cast<py::ssize_t>(loads.size()), self, stride);
+/// Binds a view of vectors, one of each of the solution's grippers or obstacles.
+/// @param vector  of one of them
+template <typename Class, typename Loads, typename Vector>
+void bind_rows(Class& bound, const char* name, Loads Solution::*loads, const Vector& vector,
+               const char* words) {
+  bound.def_property_readonly(
+      name,
+      [loads, vector](const py::object& self) {
+        const Loads& all = self.cast<const SolvedScene&>().solution.*loads;
+        constexpr py::ssize_t stride = sizeof(typename Loads::value_type) / sizeof(double);
+        const double* first = all.empty() ? nullptr : vector(all.front()).data();
+        return rows_view(first, static_cast<py::ssize_t>(all.size()), self, stride);
+      },
+      words);
 }
 
 template <typename Class>
@@ -160,39 +179,24 @@ void bind_arrays(Class& bound) {
       bound, "d1", [](S s) -> const auto& { return s.solution.d1; },
       "First directors of the rod's frame [-], shape (M, 3), or (0, 3) where the model has\n"
       "none; read only.");
-  bound
-      .def_property_readonly(
-          "gripper_forces",
-          [](const py::object& self) {
-            return gripper_rows(
-                self, [](const auto& load) -> const auto& { return load.force; });
-          },
-          "What each gripper exerts on the rod [N], shape (G, 3), read only.")
-      .def_property_readonly(
-          "gripper_torques",
-          [](const py::object& self) {
-            return gripper_rows(
-                self, [](const auto& load) -> const auto& { return load.torque; });
-          },
-          "The same about each gripper's position [N m], shape (G, 3), read only.")
-      .def_property_readonly(
-          "obstacle_forces",
-          [](const py::object& self) {
-            const auto& forces = self.cast<const SolvedScene&>().solution.obstacles;
-            return rows_view(forces.empty() ? nullptr : forces.front().data(),
-                             static_cast<py::ssize_t>(forces.size()), self);
-          },
-          "What each obstacle exerts on the rod [N], shape (O, 3), read only.");
+  bind_rows(
+      bound, "gripper_forces", &Solution::grippers,
+      [](const compare::GripperLoad& load) -> const auto& { return load.force; },
+      "What each gripper exerts on the rod [N], shape (G, 3), read only.");
+  bind_rows(
+      bound, "gripper_torques", &Solution::grippers,
+      [](const compare::GripperLoad& load) -> const auto& { return load.torque; },
+      "The same about each gripper's position [N m], shape (G, 3), read only.");
+  bind_rows(
+      bound, "obstacle_forces", &Solution::obstacles,
+      [](const Eigen::Vector3d& force) -> const auto& { return force; },
+      "What each obstacle exerts on the rod [N], shape (O, 3), read only.");
 }
 
 void bind_equilibria(py::module_& module) {
-  py::class_<SolvedStates, std::shared_ptr<SolvedStates>> equilibria(
+  py::class_<SolvedStates, Result, std::shared_ptr<SolvedStates>> equilibria(
       module, "Equilibria",
       "Every equilibrium that was found: a sequence of Solution, stable ones first, by energy.");
-  bind_result(equilibria);
-  bind_picture(equilibria, [](const SolvedStates& solved) {
-    return compare::solution_drawing(solved.scene->scene, solved.all.solutions);
-  });
   equilibria.def("__len__", [](const SolvedStates& solved) { return solved.all.solutions.size(); })
       .def(
           "__getitem__",
@@ -201,8 +205,8 @@ void bind_equilibria(py::module_& module) {
             if (index < 0) index += size;
             if (index < 0 || index >= size) throw py::index_error("no such equilibrium");
             return std::make_shared<SolvedScene>(
-                SolvedScene{solved.scene, solved.all.solutions[static_cast<std::size_t>(index)],
-                            solved.time_limit});
+                solved.scene, solved.all.solutions[static_cast<std::size_t>(index)],
+                solved.time_limit);
           },
           py::arg("index"))
       .def("__iter__",
@@ -211,11 +215,7 @@ void bind_equilibria(py::module_& module) {
            })
       .def_property_readonly(
           "not_looked", [](const SolvedStates& solved) { return solved.all.not_looked; },
-          "What a limit has cut short, or the search does not cover.")
-      .def("to_json", &states_document, "The document of `dlo solve --all --format json`, as text.")
-      .def("__str__", [](const SolvedStates& solved) {
-        return cli::equilibria_text(solved.all, solved.scene->scene);
-      });
+          "What a limit has cut short, or the search does not cover.");
 }
 
 }  // namespace
@@ -251,39 +251,25 @@ compare::SolveOptions verified_options(const py::dict& given) {
 }
 
 void bind_solve(py::module_& module) {
-  py::class_<SolvedScene, std::shared_ptr<SolvedScene>> solution(
+  py::class_<SolvedScene, Result, std::shared_ptr<SolvedScene>> solution(
       module, "Solution",
       "A shape of a scene's rod in balance, and what it cost; of solve() and solve_all().\n\n"
       "Arrays are views into it, read only; they keep it alive.");
   bind_arrays(solution);
-  bind_result(solution);
-  bind_picture(solution, [](const SolvedScene& solved) {
-    return compare::solution_drawing(solved.scene->scene, {solved.solution});
-  });
   const auto of = [](const SolvedScene& solved) {
     return compare::SolvedShape{solved.scene->scene, solved.solution};
   };
   bind_fields(solution, compare::solution_fields(), of);
   bind_fields(solution, compare::shape_numbers(), of);
-  solution.def("to_json", &solution_document, "The document of `dlo solve --format json`, as text.")
-      .def("__str__", [](const SolvedScene& solved) {
-        return cli::solution_text(solved.solution, solved.scene->scene);
-      });
   bind_equilibria(module);
-  module.def("solve", &solve, py::arg("scene"), py::arg("model"), py::arg("samples"),
-             py::arg("number"), py::arg("near"), py::arg("limits"));
-  module.def("solve_all", &solve_all, py::arg("scene"), py::arg("samples"), py::arg("limits"));
-  module.def(
-      "plan",
-      [](const SharedScene& scene, double target, double speed, double time_limit) {
-        return run_long([&](Signals& /*signals*/) {
-          const compare::Plan plan = compare::make_plan(
-              scene->scene, {.target = target, .gripper_speed = speed, .time_limit = time_limit});
-          return std::pair(cli::plan_text(plan, scene->scene),
-                           cli::json_text(cli::plan_json(plan)));
-        });
-      },
-      py::arg("scene"), py::arg("target"), py::arg("gripper_speed"), py::arg("time_limit"));
+  module.def("solve", &solve).def("solve_all", &solve_all);
+  module.def("plan", [](const SharedScene& scene, double target, double speed, double time_limit) {
+    return run_long([&](Signals& /*signals*/) {
+      const compare::Plan plan = compare::make_plan(
+          scene->scene, {.target = target, .gripper_speed = speed, .time_limit = time_limit});
+      return std::pair(cli::plan_text(plan, scene->scene), cli::json_text(cli::plan_json(plan)));
+    });
+  });
 }
 
 }  // namespace dlo::python

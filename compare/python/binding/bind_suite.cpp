@@ -162,9 +162,6 @@ py::object suite(const py::object& function, const std::string& name, const py::
 
 }  // namespace
 
-void bind_suite(py::module_& module) {
-  module.def("suite", &suite, py::arg("function"), py::arg("name"), py::arg("what"),
-             py::arg("make_result"));
-}
+void bind_suite(py::module_& module) { module.def("suite", &suite); }
 
 }  // namespace dlo::python

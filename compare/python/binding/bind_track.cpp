@@ -135,12 +135,9 @@ std::pair<std::string, std::string> check_motion(const SharedScene& shared,
 }  // namespace
 
 void bind_track(py::module_& module) {
-  module.def("track", &track, py::arg("scene"), py::arg("what"), py::arg("make_result"),
-             py::arg("limits"));
-  module.def("calibrate_motion", &calibrate_motion, py::arg("scene"), py::arg("rows"),
-             py::arg("name"), py::arg("limits"));
-  module.def("check_motion", &check_motion, py::arg("scene"), py::arg("rows"), py::arg("what"),
-             py::arg("limits"));
+  module.def("track", &track);
+  module.def("calibrate_motion", &calibrate_motion);
+  module.def("check_motion", &check_motion);
 }
 
 }  // namespace dlo::python

@@ -10,6 +10,7 @@ PYBIND11_MODULE(_dlo, module) {
   dlo::python::stop_calls_at_exit(module);
   dlo::python::bind_errors(module);
   dlo::python::bind_scene(module);
+  dlo::python::bind_result(module);
   dlo::python::bind_solve(module);
   dlo::python::bind_judge(module);
   dlo::python::bind_studies(module);

@@ -9,6 +9,7 @@ namespace py = pybind11;
 // What the module has, by subject.
 void bind_errors(py::module_& module);
 void bind_scene(py::module_& module);
+void bind_result(py::module_& module);
 void bind_solve(py::module_& module);
 void bind_judge(py::module_& module);
 void bind_studies(py::module_& module);

@@ -1,5 +1,11 @@
 #include "picture.hpp"
 
+#include <memory>
+#include <optional>
+
+#include "module.hpp"
+#include "result.hpp"
+
 namespace dlo::python {
 namespace {
 
@@ -34,7 +40,50 @@ py::dict curve_dict(const compare::PlottedCurve& curve) {
   return result;
 }
 
+/// A function of Python that is called with the result, and more.
+auto in_python(const char* module, const char* function) {
+  return [module, function](const py::args& arguments) {
+    return py::module_::import(module).attr(function)(*arguments);
+  };
+}
+
 }  // namespace
+
+void bind_result(py::module_& module) {
+  py::class_<Result, std::shared_ptr<Result>> bound(module, "Result");
+  refuse_pickle(bound, "pickled", "its to_json(), its arrays");
+  refuse_new(bound, "the functions of dlo");
+  bound
+      // Never changed, so that one is as good as two.
+      .def("__copy__", [](const py::object& self) { return self; })
+      .def("__deepcopy__", [](const py::object& self, const py::dict& /*memo*/) { return self; })
+      .def("to_json", &Result::json, "The command's document, as text.")
+      .def_property_readonly(
+          "json",
+          [](const py::object& self) {
+            return py::module_::import("json").attr("loads")(self.attr("to_json")());
+          },
+          "The command's document, as a dict.")
+      .def(
+          "plot",
+          [](const py::object& self, const py::object& ax) {
+            return py::module_::import("dlo._plot").attr("plot")(self, ax);
+          },
+          py::arg("ax") = py::none(),
+          "Draws the shape with matplotlib, at equal aspect. ax: the axes to draw into, new ones\n"
+          "for None; returned.")
+      .def("_panel",
+           [](const Result& result, std::optional<bool> in_space) {
+             const compare::Drawing drawn = result.drawing();
+             return panel_dict(in_space.value_or(drawn.views.size() > 1)
+                                   ? compare::spatial_panel(drawn)
+                                   : compare::shape_panels(drawn).front());
+           })
+      .def("__str__", &Result::text)
+      .def("__repr__", in_python("dlo._show", "line"))
+      .def("_repr_html_", in_python("dlo._show", "html"))
+      .def("_repr_svg_", in_python("dlo._show", "svg"));
+}
 
 py::dict panel_dict(const compare::Panel& described) {
   const compare::Panel panel = compare::laid_out(described);

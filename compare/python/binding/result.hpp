@@ -45,23 +45,4 @@ void refuse_new(Class& bound, const char* maker) {
       py::reinterpret_steal<py::object>(PyStaticMethod_New(py::object(refuse).ptr()));
 }
 
-/// What all results have besides to_json(): the same as a dict.
-template <typename Class>
-void bind_result(Class& bound) {
-  refuse_pickle(bound, "pickled", "its to_json(), its arrays");
-  refuse_new(bound, "the functions of dlo");
-  bound
-      // Never changed, so that one is as good as two.
-      .def("__copy__", [](const py::object& self) { return self; })
-      .def(
-          "__deepcopy__", [](const py::object& self, const py::dict& /*memo*/) { return self; },
-          py::arg("memo"))
-      .def_property_readonly(
-          "json",
-          [](const py::object& self) {
-            return py::module_::import("json").attr("loads")(self.attr("to_json")());
-          },
-          "The command's document, as a dict.");
-}
-
 }  // namespace dlo::python

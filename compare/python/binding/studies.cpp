@@ -153,15 +153,11 @@ py::object modes(const SharedScene& scene, const py::dict& what, const py::objec
 
 void bind_studies(py::module_& module) {
   module.attr("largest_table") = largest_table;
-  module.def("sweep", &sweep, py::arg("text"), py::arg("file"), py::arg("materials"),
-             py::arg("fields"), py::arg("what"), py::arg("limits"));
-  module.def("hard_cases", &hard_cases, py::arg("name_contains"), py::arg("steppers"),
-             py::arg("max_steps"), py::arg("threads"));
-  module.def("stability_map", &stability_map, py::arg("scene"), py::arg("axis"), py::arg("columns"),
-             py::arg("rows"), py::arg("steps"), py::arg("threads"));
-  module.def("bench", &bench, py::arg("scenes"), py::arg("seconds"), py::arg("repeats"));
-  module.def("modes", &modes, py::arg("scene"), py::arg("what"), py::arg("make_result"),
-             py::arg("limits"));
+  module.def("sweep", &sweep);
+  module.def("hard_cases", &hard_cases);
+  module.def("stability_map", &stability_map);
+  module.def("bench", &bench);
+  module.def("modes", &modes);
 }
 
 }  // namespace dlo::python

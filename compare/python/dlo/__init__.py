@@ -17,92 +17,20 @@ will do. Results have NumPy arrays, json (the document of the command dlo), to_j
 text), and those with a shape plot(); a notebook shows verdict, picture and text. Long calls let other threads run, and Ctrl-C ends them.
 """
 
+from . import _documents, _functions, _loops, _parts, _scene, _studies
 from ._dlo import Check, Comparison, Equilibria, Solution, __version__
-from ._documents import (
-    Benchmark,
-    Document,
-    ForceModelFit,
-    MaterialFit,
-    Modes,
-    MotionCheck,
-    MotionFit,
-    Plan,
-    Regression,
-    ScoreCard,
-    Stability,
-    Track,
-)
+from ._documents import *
 from ._errors import ConvergenceError, InputError
-from ._functions import calibrate, check, compare, plan, solve, solve_all
-from ._loops import Batch, ForceModel
-from ._parts import (
-    DistributedLoad,
-    ForceModelSettings,
-    Gripper,
-    Load,
-    Medium,
-    Obstacle,
-    Section,
-    TrackRates,
-    clamp,
-    distributed_load,
-    load,
-    obstacle,
-    pin,
-    section,
-)
-from ._scene import Scene, materials
-from ._studies import bench, modes, regress, stability, suite, sweep, track
+from ._functions import *
+from ._loops import *
+from ._parts import *
+from ._scene import *
+from ._studies import *
 
-__all__ = [
-    "Batch",
-    "Benchmark",
-    "Check",
-    "Comparison",
-    "ConvergenceError",
-    "DistributedLoad",
-    "Document",
-    "Equilibria",
-    "ForceModel",
-    "ForceModelFit",
-    "ForceModelSettings",
-    "Gripper",
-    "InputError",
-    "Load",
-    "MaterialFit",
-    "Medium",
-    "Modes",
-    "MotionCheck",
-    "MotionFit",
-    "Obstacle",
-    "Plan",
-    "Regression",
-    "Scene",
-    "ScoreCard",
-    "Section",
-    "Solution",
-    "Stability",
-    "Track",
-    "TrackRates",
-    "__version__",
-    "bench",
-    "calibrate",
-    "check",
-    "clamp",
-    "compare",
-    "distributed_load",
-    "load",
-    "materials",
-    "modes",
-    "obstacle",
-    "pin",
-    "plan",
-    "regress",
-    "section",
-    "solve",
-    "solve_all",
-    "stability",
-    "suite",
-    "sweep",
-    "track",
-]
+__all__ = ["Check", "Comparison", "ConvergenceError", "Equilibria", "InputError", "Solution", "__version__"]
+__all__ += _documents.__all__
+__all__ += _functions.__all__
+__all__ += _loops.__all__
+__all__ += _parts.__all__
+__all__ += _scene.__all__
+__all__ += _studies.__all__

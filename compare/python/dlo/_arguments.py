@@ -6,12 +6,14 @@ import functools
 import inspect
 import operator
 import reprlib
-from typing import Any, Callable, Mapping, Optional, TypeVar
+from typing import TYPE_CHECKING, Any, Callable, Generic, Mapping, Optional, TypeVar
 
 from . import _dlo
 from ._errors import InputError
 
 Function = TypeVar("Function", bound=Callable[..., Any])
+
+Value = TypeVar("Value")
 
 Kind = Callable[[Any], Optional[str]]
 """Why a value is none of this kind: "what it is (allowed: ...)", or None if it is one."""
@@ -118,28 +120,60 @@ def require(key: str, value: Any, kind: Kind) -> None:
     raise InputError(f"{key} = {shown}: {problem}")
 
 
+_BY_ANNOTATION = {
+    "str": TEXT,
+    "int": INTEGER,
+    "float": NUMBER,
+    "bool": TRUTH,
+    "Quantity": QUANTITY,
+    "Sequence[str]": TEXTS,
+    "Sequence[float]": NUMBERS,
+}
+_BY_ANNOTATION.update({f"Optional[{name}]": kind for name, kind in _BY_ANNOTATION.items()})
+_CONVERTED: dict[Kind, Callable[[Any], Any]] = {
+    TRUTH: bool,
+    NUMBER: float,
+    TEXTS: list,
+    NUMBERS: lambda values: list(map(float, values)),
+}
+
+
 def checked(**kinds: Kind) -> Callable[[Function], Function]:
-    """A function whose arguments, and limits, are of these kinds; None where it is the default."""
+    """Checks and converts a function's arguments before each call, by their kinds.
+
+    kinds: of arguments whose annotation does not determine the kind. None passes where it is the default.
+    """
 
     def decorate(function: Function) -> Function:
         signature = inspect.signature(function)
-        optional = {key for key, one in signature.parameters.items() if one.default is None}
+        found = {key: kinds.get(key, _BY_ANNOTATION.get(one.annotation)) for key, one in signature.parameters.items()}
 
         @functools.wraps(function)
         def call(*arguments: Any, **named: Any) -> Any:
-            given = signature.bind(*arguments, **named).arguments
+            bound = signature.bind(*arguments, **named)
+            given = bound.arguments
+            for key, kind in found.items():
+                if kind is None or key not in given or given[key] is signature.parameters[key].default:
+                    continue
+                require(key, given[key], kind)
+                given[key] = _CONVERTED.get(kind, lambda value: value)(given[key])
             limits = given.get("limits", {})
-            for key, kind in kinds.items():
-                if key in given and not (given[key] is None and key in optional):
-                    require(key, given[key], kind)
             for key, kind in _LIMITS.items():
                 if limits.get(key) is not None:
                     require(key, limits[key], kind)
-            return function(*arguments, **named)
+            return function(*bound.args, **bound.kwargs)
 
         return call  # type: ignore[return-value]
 
     return decorate
+
+
+class Attribute(property, Generic[Value]):
+    """A property whose value has a type."""
+
+    if TYPE_CHECKING:
+
+        def __get__(self, instance: Any, owner: Optional[type] = None, /) -> Value: ...
 
 
 class Strict:

@@ -3,13 +3,45 @@
 from __future__ import annotations
 
 import json
-from typing import Any, Optional
+from typing import Any, Callable, Optional
 
 import numpy
 from numpy.typing import NDArray
 
 from . import _plot, _show
+from ._arguments import Attribute, Value
 from ._errors import InputError
+
+__all__ = [
+    "Benchmark", "Document", "ForceModelFit", "MaterialFit", "Modes", "MotionCheck", "MotionFit", "Plan", "Regression",
+    "ScoreCard", "Stability", "Track",
+]
+
+
+def _found(value: Any, path: list[str]) -> Any:
+    """What is at a path of keys; of a list, where the key is *, what is there in each element."""
+    for i, key in enumerate(path):
+        if key == "*":
+            return [_found(one, path[i + 1 :]) for one in value]
+        value = value[key]
+    return value
+
+
+def _at(path: str, kind: Callable[[Any], Value], doc: str) -> Attribute[Value]:
+    """An attribute that a document has at a path, such as "frames/*/time_s"."""
+    return Attribute(lambda self: kind(_found(self.json, path.split("/"))), doc=doc)
+
+
+def _array(values: Any) -> NDArray[numpy.float64]:
+    return numpy.array(values, dtype=float)
+
+
+def _passes(verdict: Any) -> bool:
+    return bool(verdict == "pass")
+
+
+def _number(value: Any) -> Optional[float]:
+    return None if value is None else float(value)
 
 
 class Document:
@@ -59,20 +91,20 @@ class Benchmark(Document):
 class Modes(Document):
     """The slowest modes of a scene's rod; of modes()."""
 
-    @property
-    def frequencies(self) -> NDArray[numpy.float64]:
-        """Of the rod [Hz], shape (n,); NaN where the shape is unstable."""
-        return numpy.array([mode["frequency_Hz"] for mode in self["modes"]], dtype=float)
+    frequencies = _at("modes/*/frequency_Hz", _array, "Of the rod [Hz], shape (n,); NaN where the shape is unstable.")
+    arc_length = _at("arc_length_m", _array, "Where the modes' shapes are given [m], shape (M,).")
+    shapes = _at("modes/*/shape_m", _array, "The modes' displacements, shape (n, M, 3).")
 
-    @property
-    def arc_length(self) -> NDArray[numpy.float64]:
-        """Where the modes' shapes are given [m], shape (M,)."""
-        return numpy.array(self["arc_length_m"], dtype=float)
 
-    @property
-    def shapes(self) -> NDArray[numpy.float64]:
-        """The modes' displacements, shape (n, M, 3)."""
-        return numpy.array([mode["shape_m"] for mode in self["modes"]], dtype=float)
+def _moving(path: str, doc: str) -> Attribute[NDArray[numpy.float64]]:
+    """An attribute of the frames of a rod with inertia, if one was asked for."""
+
+    def read(self: Document) -> NDArray[numpy.float64]:
+        if "dynamic" not in self.json:
+            raise InputError("track: no rod with inertia was asked for (allowed: dynamic=True)")
+        return _array(_found(self.json, ["dynamic", "frames", "*", *path.split("/")]))
+
+    return Attribute(read, doc=doc)
 
 
 class Track(Document):
@@ -91,100 +123,30 @@ class Track(Document):
     def _repr_svg_(self) -> Optional[str]:
         return _show.svg(self)
 
-    @property
-    def arc_length(self) -> NDArray[numpy.float64]:
-        """Of the frames' points [m], shape (M,)."""
-        return numpy.array(self["arc_length_m"], dtype=float)
-
-    @property
-    def time(self) -> NDArray[numpy.float64]:
-        """Of the frames [s], shape (F,)."""
-        return self._frames("time_s")
-
-    @property
-    def points(self) -> NDArray[numpy.float64]:
-        """At rest [m], shape (F, M, 3)."""
-        return self._frames("points_m")
-
-    @property
-    def gripper_forces(self) -> NDArray[numpy.float64]:
-        """What each gripper exerts on the rod at rest [N], shape (F, G, 3)."""
-        return self._grippers("force_N")
-
-    @property
-    def gripper_torques(self) -> NDArray[numpy.float64]:
-        """The same about each gripper's position [N m], shape (F, G, 3)."""
-        return self._grippers("torque_Nm")
-
-    @property
-    def moving_points(self) -> NDArray[numpy.float64]:
-        """Of the rod with inertia [m], shape (F, M, 3); of one that was asked for (dynamic)."""
-        return self._frames("points_m", moving=True)
-
-    @property
-    def moving_gripper_forces(self) -> NDArray[numpy.float64]:
-        """The same of the grippers' forces [N], shape (F, G, 3)."""
-        return self._grippers("force_N", moving=True)
-
-    @property
-    def moving_gripper_torques(self) -> NDArray[numpy.float64]:
-        """The same of their torques [N m], shape (F, G, 3)."""
-        return self._grippers("torque_Nm", moving=True)
-
-    def _list(self, moving: bool) -> list[dict[str, Any]]:
-        if moving and "dynamic" not in self.json:
-            raise InputError("track: no rod with inertia was asked for (allowed: dynamic=True)")
-        frames: list[dict[str, Any]] = (self["dynamic"] if moving else self.json)["frames"]
-        return frames
-
-    def _frames(self, key: str, moving: bool = False) -> NDArray[numpy.float64]:
-        return numpy.array([frame[key] for frame in self._list(moving)], dtype=float)
-
-    def _grippers(self, key: str, moving: bool = False) -> NDArray[numpy.float64]:
-        frames = self._list(moving)
-        return numpy.array(
-            [[gripper[key] for gripper in frame["grippers"]] for frame in frames], dtype=float
-        )
+    arc_length = _at("arc_length_m", _array, "Of the frames' points [m], shape (M,).")
+    time = _at("frames/*/time_s", _array, "Of the frames [s], shape (F,).")
+    points = _at("frames/*/points_m", _array, "At rest [m], shape (F, M, 3).")
+    gripper_forces = _at(
+        "frames/*/grippers/*/force_N", _array, "What each gripper exerts on the rod at rest [N], shape (F, G, 3)."
+    )
+    gripper_torques = _at(
+        "frames/*/grippers/*/torque_Nm", _array, "The same about each gripper's position [N m], shape (F, G, 3)."
+    )
+    moving_points = _moving("points_m", "Of the rod with inertia [m], shape (F, M, 3); of one that was asked for (dynamic).")
+    moving_gripper_forces = _moving("grippers/*/force_N", "The same of the grippers' forces [N], shape (F, G, 3).")
+    moving_gripper_torques = _moving("grippers/*/torque_Nm", "The same of their torques [N m], shape (F, G, 3).")
 
 
 class MotionCheck(Document):
     """A recorded motion against its scene's rod; of check() with motion."""
 
-    @property
-    def passed(self) -> bool:
-        """Whether it is within the tolerance, 1 % of the length if none was given."""
-        return bool(self["verdict"] == "pass")
-
-    @property
-    def reason(self) -> str:
-        """Why, in words."""
-        return str(self["reason"])
-
-    @property
-    def rms(self) -> float:
-        """RMS distance of all points from the rod [m]."""
-        return float(self["rms_m"])
-
-    @property
-    def largest(self) -> float:
-        """Largest distance of a point [m]."""
-        return float(self["largest_m"])
-
-    @property
-    def time(self) -> NDArray[numpy.float64]:
-        """Of the frames [s], shape (F,)."""
-        return numpy.array([frame["time_s"] for frame in self["frames"]], dtype=float)
-
-    @property
-    def errors(self) -> NDArray[numpy.float64]:
-        """RMS distance of each frame's points [m], shape (F,)."""
-        return numpy.array([frame["rms_m"] for frame in self["frames"]], dtype=float)
-
-    @property
-    def lag(self) -> Optional[float]:
-        """By which the recording is late [s], where that explains much of the distance; else None."""
-        lag: Optional[float] = self["lag_s"]
-        return lag
+    passed = _at("verdict", _passes, "Whether it is within the tolerance, 1 % of the length if none was given.")
+    reason = _at("reason", str, "Why, in words.")
+    rms = _at("rms_m", float, "RMS distance of all points from the rod [m].")
+    largest = _at("largest_m", float, "Largest distance of a point [m].")
+    time = _at("frames/*/time_s", _array, "Of the frames [s], shape (F,).")
+    errors = _at("frames/*/rms_m", _array, "RMS distance of each frame's points [m], shape (F,).")
+    lag = _at("lag_s", _number, "By which the recording is late [s], where that explains much of the distance; else None.")
 
     @property
     def causes(self) -> list[tuple[str, float]]:
@@ -200,10 +162,7 @@ class Regression(Document):
         self._junit = junit
         self._update = update
 
-    @property
-    def passed(self) -> bool:
-        """Whether no case fails; of an update, whether every scene was solved."""
-        return bool(self["verdict"] == "pass")
+    passed = _at("verdict", _passes, "Whether no case fails; of an update, whether every scene was solved.")
 
     @property
     def reason(self) -> str:
@@ -289,22 +248,19 @@ class Calibration(Document):
         return self._toml
 
 
+def _fitted(key: str, doc: str) -> Attribute[Optional[float]]:
+    return Attribute(lambda self: _number(self.json.get(key)), doc=doc)
+
+
 class MaterialFit(Calibration):
     """Young's modulus from measured shapes; of calibrate()."""
 
-    def _number(self, key: str) -> Optional[float]:
-        value = self.json.get(key)
-        return None if value is None else float(value)
-
-    @property
-    def youngs_modulus(self) -> Optional[float]:
-        """E [Pa]; None if it is not identifiable, or the rod is given by its bending_stiffness."""
-        return self._number("youngs_modulus_Pa")
-
-    @property
-    def bending_stiffness(self) -> Optional[float]:
-        """EI [N m^2] of a rod that is given by it; None if it is not identifiable, or E is fitted."""
-        return self._number("bending_stiffness_Nm2")
+    youngs_modulus = _fitted(
+        "youngs_modulus_Pa", "E [Pa]; None if it is not identifiable, or the rod is given by its bending_stiffness."
+    )
+    bending_stiffness = _fitted(
+        "bending_stiffness_Nm2", "EI [N m^2] of a rod that is given by it; None if it is not identifiable, or E is fitted."
+    )
 
     @property
     def interval(self) -> tuple[Optional[float], Optional[float]]:

@@ -8,11 +8,13 @@ import numpy
 from numpy.typing import ArrayLike
 
 from . import _dlo
-from ._arguments import INTEGER, LIST, NUMBER, NUMBERS, QUANTITY, TEXT, TRUTH, checked, require
+from ._arguments import LIST, checked, require
 from ._documents import ForceModelFit, MaterialFit, MotionCheck, MotionFit, Plan
 from ._errors import InputError
 from ._files import FileName, file_name
 from ._scene import Calibrated, Quantity, Scene, SceneLike, data_of
+
+__all__ = ["calibrate", "check", "compare", "plan", "solve", "solve_all"]
 
 Shape = Union[ArrayLike, tuple[ArrayLike, ArrayLike], FileName]
 """Points [m], shape (M, 3) or (M, 2), or a pair of these and their arc lengths [m], shape (M,), or the
@@ -59,7 +61,7 @@ def _si(value: Quantity, dimension: str) -> float:
     return _dlo.quantity(value, dimension) if isinstance(value, str) else float(value)
 
 
-@checked(model=TEXT, samples=INTEGER, equilibrium=INTEGER, time=NUMBER)
+@checked()
 def solve(
     scene: SceneLike,
     model: Optional[str] = None,
@@ -93,7 +95,7 @@ def solve(
     return _dlo.solve(data, model or "", samples or 0, equilibrium, from_points, limits)
 
 
-@checked(samples=INTEGER, time=NUMBER)
+@checked()
 def solve_all(
     scene: SceneLike,
     samples: Optional[int] = None,
@@ -120,21 +122,7 @@ def check(
 ) -> MotionCheck: ...
 
 
-@checked(
-    tolerance=QUANTITY,
-    measure=TEXT,
-    min_seen=NUMBER,
-    register=TEXT,
-    arc_lengths=TEXT,
-    modulus=TRUTH,
-    explain=TRUTH,
-    dynamic=TRUTH,
-    damping=NUMBER,
-    drag=NUMBER,
-    quadratic_drag=NUMBER,
-    begin=NUMBER,
-    frame_rate=NUMBER,
-)
+@checked()
 def check(
     scene: SceneLike,
     points: Optional[Union[ArrayLike, FileName]] = None,
@@ -176,35 +164,21 @@ def check(
     quadratic_drag [N s^2/m^3] (None: of calibrated, else 0), not at rest. begin: of the rod's motion [s]; None: the recording's.
     frame_rate: of the rod [Hz]; None: as needed.
     """
-    what: dict[str, Any] = {
-        "tolerance": None if tolerance is None else str(tolerance),
-        "measure": measure,
-        "explain": bool(explain),
-    }
+    what = locals()
+    what["tolerance"] = None if tolerance is None else str(tolerance)
     if motion is not None:
         if points is not None:
             raise InputError("check: points and motion (allowed: one of them)")
         data = data_of(scene, materials, None, calibrated)
-        what.update(
-            dynamic=bool(dynamic),
-            damping=damping,
-            drag=drag,
-            quadratic_drag=quadratic_drag,
-            begin=begin,
-            frame_rate=frame_rate,
-        )
         return MotionCheck(*_dlo.check_motion(data, _recorded(motion), what, limits))
     if points is None:
         raise InputError("check: nothing to check (allowed: points, or motion)")
-    what.update(
-        min_seen=min_seen, pose=register, arc_lengths=arc_lengths, modulus=bool(modulus)
-    )
     data = data_of(scene, materials, None, calibrated)
     taken: Any = file_name(points, "points") if is_file(points) else points
     return _dlo.check(data, taken, arc_length, what, limits)
 
 
-@checked(modulus=TRUTH, plan=TRUTH, time=NUMBER)
+@checked()
 def compare(
     scene: SceneLike,
     *,
@@ -220,10 +194,10 @@ def compare(
     modulus: look for E*/E. plan: make a plan too, as `dlo compare --explain` does, at the cost of some
     ten solves. time, materials, calibrated: as of solve().
     """
-    return _dlo.compare(data_of(scene, materials, time, calibrated), bool(modulus), bool(plan), limits)
+    return _dlo.compare(data_of(scene, materials, time, calibrated), modulus, plan, limits)
 
 
-@checked(target=NUMBER, gripper_speed=NUMBER, time_limit=NUMBER, time=NUMBER)
+@checked()
 def plan(
     scene: SceneLike,
     *,
@@ -242,29 +216,17 @@ def plan(
     return Plan(*_dlo.plan(data_of(scene, materials, time, calibrated), target, gripper_speed, time_limit))
 
 
-@checked(
-    shapes=LIST,
-    holdout=LIST,
-    target=NUMBER,
-    points=INTEGER,
-    register=TEXT,
-    arc_lengths=TEXT,
-    density=TRUTH,
-    torsional_stiffness=TRUTH,
-    natural_curvature=INTEGER,
-    clamp_angles=QUANTITY,
-    clamp_positions=QUANTITY,
-    clamp_rolls=QUANTITY,
-    same_clamps=TRUTH,
-    clamp_scatter=QUANTITY,
-    camera_tilt=QUANTITY,
-    predict=TRUTH,
-    options=TEXT,
-    noise=QUANTITY,
-    segments=INTEGER,
-    segment_lengths=NUMBERS,
-    time=NUMBER,
-)
+_CALIBRATED_QUANTITIES = {
+    "clamp_angles": "angle",
+    "clamp_positions": "length",
+    "clamp_rolls": "angle",
+    "clamp_scatter": "angle",
+    "camera_tilt": "angle",
+    "noise": "length",
+}
+
+
+@checked(shapes=LIST, holdout=LIST)
 def calibrate(
     scenes: Union[SceneLike, Iterable[SceneLike]],
     shapes: Optional[Sequence[Shape]] = None,
@@ -312,6 +274,7 @@ def calibrate(
     Without: a ForceModelFit of the scenes. holdout: scenes that only judge. target: RMS deviation
     wanted over the length (0.001 if not given). points: N; None: as the target needs.
     """
+    what = locals()
     data = [data_of(scene, materials, time, calibrated) for scene in many(scenes)]
     if motion is not None:
         if shapes is not None or len(data) != 1:
@@ -320,23 +283,8 @@ def calibrate(
     if shapes is None:
         held_out = [data_of(cast(SceneLike, scene), materials, time, calibrated) for scene in holdout]
         return ForceModelFit(*_dlo.calibrate_force_model(data, held_out, points, target, limits))
-    what = {
-        "pose": register,
-        "arc_lengths": arc_lengths,
-        "density": bool(density),
-        "torsional_stiffness": bool(torsional_stiffness),
-        "natural_curvature_terms": natural_curvature,
-        "clamp_angles": _si(clamp_angles, "angle"),
-        "clamp_positions": _si(clamp_positions, "length"),
-        "clamp_rolls": _si(clamp_rolls, "angle"),
-        "same_clamps": bool(same_clamps),
-        "clamp_scatter": _si(clamp_scatter, "angle"),
-        "camera_tilt": _si(camera_tilt, "angle"),
-        "predict": bool(predict),
-        "holdout": list(map(_pair, holdout)),
-        "options": options,
-        "segments": segments,
-        "segment_lengths": [] if segment_lengths is None else [float(part) for part in segment_lengths],
-        "noise": None if noise is None else _si(noise, "length"),
-    }
+    for key, dimension in _CALIBRATED_QUANTITIES.items():
+        if what[key] is not None:
+            what[key] = _si(what[key], dimension)
+    what["holdout"] = list(map(_pair, holdout))
     return MaterialFit(*_dlo.calibrate_material(data, list(map(_pair, shapes)), what, limits))

@@ -10,6 +10,8 @@ from . import _dlo
 from ._arguments import COUNT, INDEX, INTEGER, LIST, NUMBER, require, told
 from ._scene import SceneLike, data_of
 
+__all__ = ["Batch", "ForceModel"]
+
 
 class ForceModel(_dlo.ForceModel):
     """A scene's force model in a loop of your own: step, move grippers and walls, read points.

@@ -13,6 +13,11 @@ from . import _dlo
 from ._arguments import Strict
 from ._errors import InputError
 
+__all__ = [
+    "DistributedLoad", "ForceModelSettings", "Gripper", "Load", "Medium", "Obstacle", "Section", "TrackRates",
+    "clamp", "distributed_load", "load", "obstacle", "pin", "section",
+]
+
 if TYPE_CHECKING:
     from ._scene import Scene
 
@@ -296,15 +301,7 @@ def clamp(
     (rows d1, d2, d3) or quaternion [w, x, y, z] also keep the rod from rotating about itself; turns
     are whole turns more than the least.
     """
-    return Gripper(
-        at=at,
-        position=position,
-        direction=direction,
-        roll=roll,
-        frame=frame,
-        quaternion=quaternion,
-        turns=turns,
-    )
+    return Gripper(**locals())
 
 
 def pin(at: Quantity, position: Vector) -> Gripper:
@@ -324,7 +321,12 @@ def load(
 
     follows: force and torque are along d1, d2 and the tangent of the rod there, and turn with them.
     """
-    return Load(at=at, force=force, mass=mass, torque=torque, follows=follows)
+    return Load(**locals())
+
+
+def _between(given: dict[str, Any]) -> dict[str, Any]:
+    """Renames start and end as a file has them: `from` is no name in Python."""
+    return {{"start": "from", "end": "to"}.get(key, key): value for key, value in given.items()}
 
 
 def distributed_load(
@@ -336,7 +338,7 @@ def distributed_load(
 
     Rows of three are forces per length at equal distances from start to end, linear between.
     """
-    return DistributedLoad(**{"from": start, "to": end, "force_per_length": force_per_length})
+    return DistributedLoad(**_between(locals()))
 
 
 def obstacle(
@@ -357,18 +359,7 @@ def obstacle(
     shape: "sphere" (radius), "cylinder" (axis, radius), "capsule" (axis, length, radius) or "box"
     (size, axis, normal, radius of its edges). stiffness [N/m^2]: of one that yields.
     """
-    return Obstacle(
-        point=point,
-        normal=normal,
-        shape=shape,
-        axis=axis,
-        radius=radius,
-        length=length,
-        size=size,
-        stiffness=stiffness,
-        friction=friction,
-        touches=touches,
-    )
+    return Obstacle(**locals())
 
 
 def section(
@@ -382,14 +373,4 @@ def section(
     natural_twist: Optional[Quantity] = None,
 ) -> Section:
     """A part of the rod, from an arc length to another [m], that is another one or bent at rest."""
-    return Section(
-        **{
-            "from": start,
-            "to": end,
-            "bending_stiffness": bending_stiffness,
-            "mass_per_length": mass_per_length,
-            "torsional_stiffness": torsional_stiffness,
-            "natural_curvature": natural_curvature,
-            "natural_twist": natural_twist,
-        }
-    )
+    return Section(**_between(locals()))

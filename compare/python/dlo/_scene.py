@@ -6,27 +6,14 @@ import json
 from typing import Any, Callable, Iterable, Optional, Sequence, Union
 
 from . import _dlo
-from ._arguments import LIST, TABLE, TEXT, Strict, require
+from ._arguments import LIST, TABLE, TEXT, Attribute, Strict, Value, require
 from ._documents import MaterialFit, MotionFit
 from ._errors import InputError
 from ._files import FileName, Materials, file_name, file_text, materials_file
-from ._parts import (
-    DistributedLoad,
-    ForceModelSettings,
-    Gripper,
-    Load,
-    Medium,
-    Obstacle,
-    Part,
-    Quantity,
-    Section,
-    Settings,
-    TrackRates,
-    Vector,
-    as_it_is,
-    copied,
-    number_of,
-)
+from ._parts import DistributedLoad, ForceModelSettings, Gripper, Load, Medium, Obstacle, Part, Quantity, Section
+from ._parts import Settings, TrackRates, Vector, as_it_is, copied, number_of
+
+__all__ = ["Scene", "materials"]
 
 SceneLike = Union["Scene", FileName]
 """A scene, or the name of a scene file."""
@@ -292,6 +279,15 @@ class Scene(Strict):
             lambda self: self._parts[key], lambda self, value: self._put_one(key, value), doc=doc
         )
 
+    def _given(key: str, doc: str) -> Attribute[Any]:  # type: ignore[misc]
+        """A field that is a copy of what was given, or None."""
+        return Attribute(
+            lambda self: as_it_is(self._rod.get(key)), lambda self, value: self._put_one(key, value), doc=doc
+        )
+
+    def _set_of(key: str, kind: type[Value], doc: str) -> Attribute[Value]:  # type: ignore[misc]
+        return Attribute(lambda self: self._settings[key], lambda self, value: self._put_one(key, value), doc=doc)
+
     def _derived(key: str, doc: str) -> property:  # type: ignore[misc]
         return property(lambda self: getattr(self._data, key), doc=doc)
 
@@ -334,92 +330,25 @@ class Scene(Strict):
     mass = _derived("mass", "Of the rod, with sections [kg].")
     gamma = _derived("gamma", "w l^3 / (EI) [-]: below 0.1 nearly straight, from 1000 on a rope.")
     planar = _derived("planar", "Whether grips, forces and obstacles in reach share a plane.")
-    del _top_field, _rod_field, _part_field, _derived
+    material: Attribute[Optional[Union[str, dict[str, Any]]]] = _given(
+        "material", "Its name, or a copy of its table; None of a rod that is given by EI and mass."
+    )
+    layers = _given("layers", "Of a cable, as given: tables from the inside out; or None.")
+    layer_bound: Attribute[Optional[str]] = _given(
+        "layer_bound", 'Of a cable, as given: "bonded" or "free" to slip; or None, which is bonded.'
+    )
+    helix: Attribute[Optional[dict[str, Any]]] = _given("helix", "A copy of its table, or None.")
+    rest_shape = _given("rest_shape", "As given: a file's name or points; or None.")
+    force_model = _set_of("force_model", ForceModelSettings, "How it is stepped; set a dict or ForceModelSettings.")
+    medium = _set_of("medium", Medium, "What the rod is immersed in; set a dict or Medium.")
+    track = _set_of("track", TrackRates, "How it is looked at while it moves; set a dict or TrackRates.")
+    del _top_field, _rod_field, _part_field, _given, _set_of, _derived
 
-    @property
-    def material(self) -> Optional[Union[str, dict[str, Any]]]:
-        """Its name, or a copy of its table; None of a rod that is given by EI and mass."""
-        value: Optional[Union[str, dict[str, Any]]] = as_it_is(self._rod.get("material"))
-        return value
-
-    @material.setter
-    def material(self, value: Optional[Union[str, dict[str, Any]]]) -> None:
-        self._put_one("material", value)
-
-    @property
-    def stretch(self) -> Union[bool, str]:
-        """Whether it stretches by its tension over EA, which model exact alone takes; "auto": where it matters."""
-        value: Union[bool, str] = self._rod.get("stretch", False)
-        return value
-
-    @stretch.setter
-    def stretch(self, value: Optional[Union[bool, str]]) -> None:
-        self._put_one("stretch", value)
-
-    @property
-    def layers(self) -> Any:
-        """Of a cable, as given: tables from the inside out; or None."""
-        return as_it_is(self._rod.get("layers"))
-
-    @layers.setter
-    def layers(self, value: Any) -> None:
-        self._put_one("layers", value)
-
-    @property
-    def layer_bound(self) -> Optional[str]:
-        """Of a cable, as given: "bonded" or "free" to slip; or None, which is bonded."""
-        value: Optional[str] = self._rod.get("layer_bound")
-        return value
-
-    @layer_bound.setter
-    def layer_bound(self, value: Optional[str]) -> None:
-        self._put_one("layer_bound", value)
-
-    @property
-    def helix(self) -> Optional[dict[str, Any]]:
-        """A copy of its table, or None."""
-        value: Optional[dict[str, Any]] = as_it_is(self._rod.get("helix"))
-        return value
-
-    @helix.setter
-    def helix(self, value: Optional[dict[str, Any]]) -> None:
-        self._put_one("helix", value)
-
-    @property
-    def rest_shape(self) -> Any:
-        """As given: a file's name or points; or None."""
-        return as_it_is(self._rod.get("rest_shape"))
-
-    @rest_shape.setter
-    def rest_shape(self, value: Any) -> None:
-        self._put_one("rest_shape", value)
-
-    @property
-    def force_model(self) -> ForceModelSettings:
-        """How it is stepped; set a dict or ForceModelSettings."""
-        return self._settings["force_model"]  # type: ignore[return-value]
-
-    @force_model.setter
-    def force_model(self, value: Union[dict[str, Any], ForceModelSettings]) -> None:
-        self._put_one("force_model", value)
-
-    @property
-    def medium(self) -> Medium:
-        """What the rod is immersed in; set a dict or Medium."""
-        return self._settings["medium"]  # type: ignore[return-value]
-
-    @medium.setter
-    def medium(self, value: Union[dict[str, Any], Medium]) -> None:
-        self._put_one("medium", value)
-
-    @property
-    def track(self) -> TrackRates:
-        """How it is looked at while it moves; set a dict or TrackRates."""
-        return self._settings["track"]  # type: ignore[return-value]
-
-    @track.setter
-    def track(self, value: Union[dict[str, Any], TrackRates]) -> None:
-        self._put_one("track", value)
+    stretch: Attribute[Union[bool, str]] = Attribute(
+        lambda self: self._rod.get("stretch", False),
+        lambda self, value: self._put_one("stretch", value),
+        doc='Whether it stretches by its tension over EA, which model exact alone takes; "auto": where it matters.',
+    )
 
 
 def as_scene(scene: SceneLike, materials: Optional[FileName] = None) -> Scene:

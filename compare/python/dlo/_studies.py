@@ -10,25 +10,15 @@ import numpy
 from numpy.typing import NDArray
 
 from . import _dlo
-from ._arguments import (
-    COUNT,
-    INTEGER,
-    LIST,
-    NUMBER,
-    QUANTITY,
-    TABLE,
-    TEXT,
-    TEXTS,
-    TRUTH,
-    checked,
-    require,
-)
+from ._arguments import COUNT, LIST, NUMBER, TABLE, TEXT, checked, require
 from ._documents import Benchmark, Modes, Regression, ScoreCard, Stability, Track
 from ._errors import InputError
 from ._files import FileName, file_name
 from ._functions import many, shape_pair
 from ._scene import Calibrated, Quantity, Scene, SceneLike, as_scene, data_of
 from ._time_limit import within
+
+__all__ = ["bench", "modes", "regress", "stability", "suite", "sweep", "track"]
 
 
 def _spelled(field: str, value: Any, depth: int = 0) -> str:
@@ -57,7 +47,7 @@ def _axis(field: str, values: Union[str, Iterable[Any]]) -> tuple[str, Union[str
     return field, [_spelled(f"vary: {field}", value) for value in some]
 
 
-@checked(vary=TABLE, model=TEXT, threads=INTEGER)
+@checked(vary=TABLE)
 def sweep(
     scene: SceneLike,
     vary: Mapping[str, Union[str, Iterable[Any]]],
@@ -79,22 +69,13 @@ def sweep(
     none); all others float64, with all digits (NaN where there is none). A row whose column "status"
     is not "ok" has no results.
     """
+    what = locals()
     made = as_scene(scene, materials)
     fields = [_axis(field, values) for field, values in vary.items()]
-    what = {"model": model, "threads": threads}
     return _dlo.sweep(made.to_toml(), made._file, made._materials, fields, what, limits)
 
 
-@checked(
-    map=TEXT,
-    case=TEXT,
-    steppers=TEXTS,
-    max_steps=COUNT,
-    columns=INTEGER,
-    rows=INTEGER,
-    map_steps=COUNT,
-    threads=INTEGER,
-)
+@checked(max_steps=COUNT)
 def stability(
     scene: Optional[SceneLike] = None,
     *,
@@ -121,7 +102,7 @@ def stability(
     return Stability(*_dlo.stability_map(data, map, columns, rows, map_steps, threads))
 
 
-@checked(seconds=NUMBER, repeats=INTEGER)
+@checked()
 def bench(
     scenes: Union[SceneLike, Iterable[SceneLike]] = (), *, seconds: float = 40.0, repeats: int = 5
 ) -> Benchmark:
@@ -133,15 +114,7 @@ def bench(
     return Benchmark(*_dlo.bench(list(map(data_of, many(scenes))), seconds, repeats))
 
 
-@checked(
-    update=TRUTH,
-    model=TEXT,
-    relative=NUMBER,
-    absolute=NUMBER,
-    tolerance=QUANTITY,
-    programs=TEXTS,
-    time=NUMBER,
-)
+@checked()
 def regress(
     scenes: Union[SceneLike, Iterable[SceneLike]],
     baseline: FileName,
@@ -168,34 +141,20 @@ def regress(
     Raises InputError, or ConvergenceError where a scene of an update is not solved and the baseline is
     left as it was.
     """
+    what = locals()
     data = [data_of(scene, materials, time, calibrated) for scene in many(scenes)]
-    what = {
-        "model": model,
-        "programs": list(programs),
-        "relative": float(relative),
-        "absolute": float(absolute),
-        "tolerance": None if tolerance is None else str(tolerance),
-    }
+    what["tolerance"] = None if tolerance is None else str(tolerance)
     file = file_name(baseline, "baseline")
     name = os.fsdecode(file) if update else ""
 
     def told(text: str, json_text: str, junit: str) -> Regression:
         return Regression(text, json_text, junit, name)
 
-    found: Regression = _dlo.regress(data, file, bool(update), what, told, limits)
+    found: Regression = _dlo.regress(data, file, update, what, told, limits)
     return found
 
 
-@checked(
-    name=TEXT,
-    scenes=TEXTS,
-    points=INTEGER,
-    threads=INTEGER,
-    time_limit=NUMBER,
-    update=TRUTH,
-    relative=NUMBER,
-    absolute=NUMBER,
-)
+@checked()
 def suite(
     run: Callable[[Scene, int], Any],
     *,
@@ -226,10 +185,11 @@ def suite(
     update: write the errors of these scenes into it. An error may change by relative of it and absolute of
     the rod's length.
     """
+    what = locals()
     if not callable(run):
         raise InputError(f"run: a {type(run).__name__} (allowed: a function of a scene and a number of points)")
 
-    limited = within(float(time_limit), run)
+    limited = within(time_limit, run)
 
     def called(text: str, file: str, count: int) -> Any:
         made = limited(Scene.from_text(text, file), count)
@@ -237,23 +197,14 @@ def suite(
             return made.points, made.arc_length
         return shape_pair(made)
 
-    what = {
-        "scenes": list(scenes),
-        "points": points,
-        "threads": threads,
-        "time_limit": float(time_limit),
-        "state": b"" if state is None else file_name(state, "state", "the name of a folder"),
-        "baseline": b"" if baseline is None else file_name(baseline, "baseline"),
-        "update": bool(update),
-        "relative": float(relative),
-        "absolute": float(absolute),
-    }
+    what["state"] = b"" if state is None else file_name(state, "state", "the name of a folder")
+    what["baseline"] = b"" if baseline is None else file_name(baseline, "baseline")
     title = str(getattr(run, "__name__", "run")) if name is None else name
     card: ScoreCard = _dlo.suite(called, title, what, ScoreCard)
     return card
 
 
-@checked(count=INTEGER, rate=NUMBER, damping=NUMBER, samples=INTEGER, time=NUMBER)
+@checked()
 def modes(
     scene: SceneLike,
     *,
@@ -272,24 +223,12 @@ def modes(
     slowest mode that the material has [-]. samples: points of each mode's shape. time, materials,
     calibrated: as of solve().
     """
-    what = {"count": count, "rate": rate, "damping": damping, "samples": samples}
+    what = locals()
     found: Modes = _dlo.modes(data_of(scene, materials, time, calibrated), what, Modes, limits)
     return found
 
 
-@checked(
-    begin=NUMBER,
-    end=NUMBER,
-    frame_rate=NUMBER,
-    obstacle_rate=NUMBER,
-    step_rate=NUMBER,
-    force=TRUTH,
-    dynamic=TRUTH,
-    damping=NUMBER,
-    drag=NUMBER,
-    quadratic_drag=NUMBER,
-    samples=INTEGER,
-)
+@checked()
 def track(
     scene: SceneLike,
     *,
@@ -318,20 +257,8 @@ def track(
 
     Raises InputError, or ConvergenceError where it had to stop, whose result is what was before.
     """
+    what = locals()
     if not dynamic and (damping or drag or quadratic_drag):
         raise InputError("track: damping and drag are those of a rod with inertia (allowed: dynamic=True)")
-    what = {
-        "begin": begin,
-        "end": end,
-        "frame_rate": frame_rate,
-        "obstacle_rate": obstacle_rate,
-        "step_rate": step_rate,
-        "force": bool(force),
-        "dynamic": bool(dynamic),
-        "damping": damping,
-        "drag": drag,
-        "quadratic_drag": quadratic_drag,
-        "samples": samples,
-    }
     found: Track = _dlo.track(data_of(scene, materials, None, calibrated), what, Track, limits)
     return found
