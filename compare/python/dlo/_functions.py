@@ -39,7 +39,7 @@ def _pair(shape: Any) -> tuple[Any, Any]:
 
 def shape_pair(shape: Any) -> tuple[Any, Any]:
     """The same of what is no file."""
-    if isinstance(shape, tuple) and len(shape) == 2 and not _is_point(shape[0]):
+    if isinstance(shape, tuple) and len(shape) == 2 and _dimensions(shape[0]) != 1:
         return shape[0], shape[1]
     return shape, None
 
@@ -49,12 +49,21 @@ def _recorded(motion: Any) -> Any:
     return file_name(motion, "motion") if is_file(motion) else numpy.asarray(motion, float).tolist()
 
 
-def _is_point(value: Any) -> bool:
-    """A list of numbers; of points it would be one of lists."""
+def _dimensions(value: Any) -> int:
+    """Number of dimensions of an array; -1 of lists of several lengths."""
     try:
-        return numpy.ndim(value) == 1
-    except ValueError:  # of several lengths
-        return False
+        return numpy.ndim(value)
+    except ValueError:
+        return -1
+
+
+def _shapes(shapes: Any) -> list[Any]:
+    """Returns each shape. Points, a pair of points and arc lengths, and a file are one shape."""
+    if is_file(shapes) or _dimensions(shapes) == 2:
+        return [shapes]
+    require("shapes", shapes, LIST)
+    pair = isinstance(shapes, tuple) and [_dimensions(part) for part in shapes] == [2, 1]
+    return [shapes] if pair else list(shapes)
 
 
 def _si(value: Quantity, dimension: str) -> float:
@@ -226,10 +235,10 @@ _CALIBRATED_QUANTITIES = {
 }
 
 
-@checked(shapes=LIST, holdout=LIST)
+@checked(holdout=LIST)
 def calibrate(
     scenes: Union[SceneLike, Iterable[SceneLike]],
-    shapes: Optional[Sequence[Shape]] = None,
+    shapes: Optional[Union[Shape, Sequence[Shape]]] = None,
     *,
     holdout: Iterable[Union[SceneLike, Shape]] = (),
     target: Optional[float] = None,
@@ -258,7 +267,7 @@ def calibrate(
 ) -> Union[MaterialFit, ForceModelFit, MotionFit]:
     """Young's modulus from measured shapes, or the force model's parameters: `dlo calibrate`.
 
-    With shapes, one of each scene or several of one: a MaterialFit. A shape is an array of points
+    With shapes, one of each scene or several of one, or a single shape: a MaterialFit. A shape is an array of points
     [m], a tuple of points and their arc lengths, or the name of a file in metres. density, torsional_stiffness: fit these as well;
     natural_curvature: so many terms of it. clamp_angles, clamp_positions, clamp_rolls: how well the clamps are
     known (standard deviations, "5 deg", "2 mm"); each shape's own are then fitted,
@@ -287,4 +296,4 @@ def calibrate(
         if what[key] is not None:
             what[key] = _si(what[key], dimension)
     what["holdout"] = list(map(_pair, holdout))
-    return MaterialFit(*_dlo.calibrate_material(data, list(map(_pair, shapes)), what, limits))
+    return MaterialFit(*_dlo.calibrate_material(data, list(map(_pair, _shapes(shapes))), what, limits))
