@@ -11,7 +11,7 @@
 #include "dlo/compare/shape_check.hpp"
 #include "dlo/compare/solve.hpp"
 #include "dlo/force_model/simulation.hpp"
-#include "polygon/step_constants.hpp"
+#include "polygon/point_layout.hpp"
 
 namespace {
 

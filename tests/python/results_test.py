@@ -286,24 +286,17 @@ def test_two_points_are_points(cable):
     assert len(dlo.calibrate(cable, [pair])["shapes"][0]["points_m"]) == 3
 
 
-def test_one_shape_needs_no_list(root):
-    scene, shape = root / "data/scenes/cable.toml", root / "data/shapes/cable.csv"
-    points = numpy.loadtxt(shape, delimiter=",", skiprows=3)
-    s = numpy.linspace(0.1, 1, len(points))
-    for one in (points, points.tolist(), shape, (points, s)):
-        assert dlo.calibrate(scene, one).youngs_modulus == dlo.calibrate(scene, [one]).youngs_modulus
-    assert len(dlo.calibrate(scene, (points, points + 1e-4))["shapes"]) == 2
-
-
-def test_a_shape_may_be_the_name_of_a_file(root, cable, command):
+def test_a_shape_may_be_the_name_of_a_file_and_one_needs_no_list(root, cable, command):
     scene, shape = root / "data/scenes/cable.toml", root / "data/shapes/cable.csv"
     for name in (shape, str(shape)):
         assert dlo.check(scene, name, tolerance="1%").json == command_json(
             command, "check", scene, "--shape", shape, "--tolerance", "1%"
         )
-    fit = dlo.calibrate(scene, [shape])
     points = numpy.loadtxt(shape, delimiter=",", skiprows=3)
-    assert fit.youngs_modulus == dlo.calibrate(scene, [points]).youngs_modulus
+    pair = (points, numpy.linspace(0.1, 1, len(points)))
+    for one, listed in ((shape, [points]), (points.tolist(), [shape]), (pair, [pair])):
+        assert dlo.calibrate(scene, one).youngs_modulus == dlo.calibrate(scene, listed).youngs_modulus
+    assert len(dlo.calibrate(scene, (points, points + 1e-4))["shapes"]) == 2
     for call, words in [
         (lambda: dlo.check(cable, shape, arc_length=[0, 1]), "arc_length: given besides the name of a file"),
         (lambda: dlo.check(cable, "none.csv"), "none.csv"),

@@ -3,16 +3,15 @@
 #include "command/commands.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solution.hpp"
-#include "format/benchmark_output.hpp"
 #include "format/json.hpp"
 #include "option/exit_status.hpp"
 #include "option/option_values.hpp"
 #include "option/output.hpp"
 #include "option/plot.hpp"
-#include "option/program_options.hpp"
 #include "option/scene_options.hpp"
 #include "option/terminal.hpp"
-#include "picture/front_figure.hpp"
+#include "picture/figures.hpp"
+#include "series/study_output.hpp"
 #include "study/benchmark.hpp"
 
 namespace dlo::cli {

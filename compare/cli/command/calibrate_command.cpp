@@ -7,20 +7,18 @@
 
 #include "base/input_file.hpp"
 #include "calibration/calibrate_options.hpp"
-#include "calibration/calibrated_toml.hpp"
-#include "calibration/chain_springs_output.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
 #include "fit/chain_springs.hpp"
-#include "format/force_model_fit_output.hpp"
+#include "format/calibration_output.hpp"
 #include "format/json.hpp"
-#include "format/material_fit_output.hpp"
+#include "format/result_output.hpp"
 #include "option/exit_status.hpp"
 #include "option/share.hpp"
 #include "option/terminal.hpp"
-#include "picture/fit_figure.hpp"
-#include "series/motion_fit_output.hpp"
-#include "trajectory/read_markers.hpp"
+#include "picture/figures.hpp"
+#include "series/series_output.hpp"
+#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include "dlo/compare/check.hpp"
 #include "dlo/compare/error.hpp"
 #include "format/json.hpp"
-#include "format/shape_check_output.hpp"
+#include "format/result_output.hpp"
 #include "option/exit_status.hpp"
 #include "option/option_values.hpp"
 #include "option/output.hpp"
@@ -20,12 +20,11 @@
 #include "option/shape_options.hpp"
 #include "option/share.hpp"
 #include "option/terminal.hpp"
-#include "picture/check_figure.hpp"
-#include "picture/motion_figure.hpp"
+#include "picture/figures.hpp"
 #include "recording/motion_check.hpp"
-#include "report/check_page.hpp"
-#include "series/motion_check_output.hpp"
-#include "trajectory/read_markers.hpp"
+#include "report/page.hpp"
+#include "series/series_output.hpp"
+#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::cli {
 namespace {

@@ -6,16 +6,14 @@
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/solution.hpp"
-#include "format/comparison_output.hpp"
 #include "format/json.hpp"
-#include "format/plan_output.hpp"
+#include "format/result_output.hpp"
 #include "option/output.hpp"
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
 #include "option/terminal.hpp"
-#include "picture/budget_figure.hpp"
-#include "picture/comparison_figure.hpp"
-#include "report/check_page.hpp"
+#include "picture/figures.hpp"
+#include "report/page.hpp"
 
 namespace dlo::cli {
 namespace {

@@ -9,7 +9,7 @@
 #include "option/option_values.hpp"
 #include "option/output.hpp"
 #include "option/scene_options.hpp"
-#include "series/modes_series.hpp"
+#include "series/series_output.hpp"
 
 namespace dlo::cli {
 namespace {

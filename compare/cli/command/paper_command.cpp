@@ -2,12 +2,11 @@
 
 #include "command/commands.hpp"
 #include "format/json.hpp"
-#include "format/moving_output.hpp"
-#include "format/paper_output.hpp"
 #include "option/output.hpp"
 #include "option/scene_options.hpp"
 #include "option/terminal.hpp"
 #include "paper/paper.hpp"
+#include "series/study_output.hpp"
 
 namespace dlo::cli {
 namespace {

@@ -5,13 +5,13 @@
 #include "command/commands.hpp"
 #include "dlo/compare/solution.hpp"
 #include "format/json.hpp"
-#include "format/regression_output.hpp"
 #include "option/exit_status.hpp"
+#include "option/option_values.hpp"
 #include "option/output.hpp"
-#include "option/program_options.hpp"
 #include "option/scene_options.hpp"
 #include "option/share.hpp"
 #include "option/terminal.hpp"
+#include "series/study_output.hpp"
 
 namespace dlo::cli {
 namespace {

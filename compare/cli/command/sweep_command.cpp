@@ -17,9 +17,9 @@
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
 #include "option/terminal.hpp"
-#include "picture/sweep_figure.hpp"
+#include "picture/figures.hpp"
 #include "polygon/natural_plane.hpp"
-#include "scene/reach.hpp"
+#include "scene/scene_problem.hpp"
 
 namespace dlo::cli {
 namespace {

@@ -13,10 +13,8 @@
 #include "option/scene_options.hpp"
 #include "option/share.hpp"
 #include "option/terminal.hpp"
-#include "picture/track_figure.hpp"
-#include "series/dynamic_track_series.hpp"
-#include "series/paraview.hpp"
-#include "series/track_series.hpp"
+#include "picture/figures.hpp"
+#include "series/series_output.hpp"
 
 namespace dlo::cli {
 namespace {

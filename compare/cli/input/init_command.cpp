@@ -6,8 +6,8 @@
 #include <system_error>
 #include <utility>
 
-#include "base/display.hpp"
 #include "base/quote.hpp"
+#include "base/text.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene.hpp"

@@ -6,7 +6,7 @@
 #include <limits>
 #include <sstream>
 
-#include "base/words.hpp"
+#include "base/text.hpp"
 #include "dlo/compare/error.hpp"
 
 namespace dlo::cli {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/words.hpp"
+#include "base/text.hpp"
 
 namespace dlo::cli {
 

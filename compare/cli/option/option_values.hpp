@@ -35,4 +35,7 @@ void refuse_empty_values(CLI::App& app);
 /// @throws compare::InputError
 void require_values(const std::vector<std::string>& words);
 
+/// --with NAME=COMMAND, which may be given again; compare::parse_foreign_programs() takes them.
+void add_program_options(CLI::App& command, std::vector<std::string>& programs);
+
 }  // namespace dlo::cli

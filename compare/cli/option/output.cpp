@@ -13,12 +13,11 @@
 #include <ctime>
 #include <filesystem>
 
-#include "base/display.hpp"
 #include "base/input_file.hpp"
 #include "base/output_file.hpp"
+#include "base/text.hpp"
 #include "dlo/compare/error.hpp"
 #include "option/help.hpp"
-#include "trajectory/series_files.hpp"
 #include "trajectory/trajectory_files.hpp"
 
 namespace dlo::cli {

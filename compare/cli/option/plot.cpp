@@ -11,7 +11,6 @@
 #include "base/temporary_path.hpp"
 #include "dlo/compare/error.hpp"
 #include "figure/gnuplot.hpp"
-#include "figure/gnuplot_script.hpp"
 
 namespace dlo::cli {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "figure/gnuplot_script.hpp"
+#include "figure/gnuplot.hpp"
 #include "figure/layout.hpp"
 #include "report/page.hpp"
 

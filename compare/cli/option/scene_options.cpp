@@ -16,7 +16,7 @@
 #include "option/option_values.hpp"
 #include "option/share.hpp"
 #include "polygon/natural_plane.hpp"
-#include "scene/reach.hpp"
+#include "scene/scene_problem.hpp"
 #include "toml/quantity.hpp"
 
 namespace dlo::cli {

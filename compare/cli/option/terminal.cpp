@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-#include "base/display.hpp"
+#include "base/text.hpp"
 #include "option/output.hpp"
 
 namespace dlo::cli {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "base/display.hpp"
 #include "base/quote.hpp"
+#include "base/text.hpp"
 #include "batch/junit.hpp"
 #include "option/output.hpp"
 

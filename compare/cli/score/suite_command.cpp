@@ -7,7 +7,6 @@
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
 #include "format/json.hpp"
-#include "format/regression_output.hpp"
 #include "option/exit_status.hpp"
 #include "option/option_values.hpp"
 #include "option/output.hpp"
@@ -16,7 +15,8 @@
 #include "option/share.hpp"
 #include "option/terminal.hpp"
 #include "score/card_output.hpp"
-#include "suite/card_document.hpp"
+#include "series/study_output.hpp"
+#include "suite/card.hpp"
 #include "suite/pack.hpp"
 
 namespace dlo::cli {

@@ -1,13 +1,12 @@
-#include "series/dynamic_track_series.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/display.hpp"
 #include "base/number.hpp"
+#include "base/text.hpp"
 #include "option/output.hpp"
+#include "series/series_output.hpp"
 
 namespace dlo::cli {
 namespace {

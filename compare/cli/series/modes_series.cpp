@@ -1,15 +1,14 @@
-#include "series/modes_series.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "base/display.hpp"
 #include "base/number.hpp"
-#include "format/solution_output.hpp"
+#include "base/text.hpp"
+#include "format/result_output.hpp"
 #include "option/output.hpp"
 #include "record/csv_table.hpp"
+#include "series/series_output.hpp"
 
 namespace dlo::cli {
 namespace {

@@ -1,13 +1,12 @@
-#include "series/motion_check_output.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 
-#include "base/display.hpp"
 #include "base/number.hpp"
+#include "base/text.hpp"
 #include "record/csv_table.hpp"
 #include "recording/motion_check_fields.hpp"
+#include "series/series_output.hpp"
 
 namespace dlo::cli {
 namespace {

@@ -1,10 +1,11 @@
-#include "series/motion_fit_output.hpp"
-
 #include <fmt/format.h>
 
 #include <optional>
 
-#include "base/display.hpp"
+#include "base/text.hpp"
+#include "dlo/compare/error.hpp"
+#include "format/calibration_output.hpp"
+#include "series/series_output.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -113,6 +114,35 @@ Json motion_fit_json(const compare::MotionFit& fit, const compare::Scene& scene)
           {"markers", markers},
           {"terms", fit.terms},
           {"simulations", fit.simulations}};
+}
+
+std::string motion_toml(const compare::MotionFit& fit, const compare::Scene& scene) {
+  if (!fit.not_identified.empty()) {
+    throw compare::ConvergenceError(
+        fmt::format("calibrate: nothing is written, {} is not "
+                    "identified: {}",
+                    scene.stiffness().name, fit.not_identified));
+  }
+  const auto interval = [](const compare::MotionNumber& number) {
+    return fmt::format("{}95 %: {:.4g} to {:.4g}", number.identified ? "" : "not identified, ",
+                       number.low, number.high);
+  };
+  std::string out = "# Written by dlo calibrate, for --calibrated.\n";
+  const auto add = [&](const char* key, const char* unit,
+                       const std::optional<compare::MotionNumber>& number) {
+    if (number) {
+      append(out, "{} = {:.8e}  # {}, {}\n", key, number->value, unit, interval(*number));
+    }
+  };
+  add("damping", "s", fit.material);
+  add("drag", "N s/m^2", fit.air);
+  add("quadratic_drag", "N s^2/m^3", fit.quadratic);
+  add_rod_lines(
+      out, scene, {fit.scene_stiffness.value, interval(fit.scene_stiffness)},
+      {scene.heaviness().value, "of the scene"},
+      fmt::format("least squares of {} recorded motion{}, noise {:.3g} m", fit.recordings.size(),
+                  fit.recordings.size() == 1 ? "" : "s", fit.noise));
+  return out;
 }
 
 }  // namespace dlo::cli

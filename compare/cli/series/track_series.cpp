@@ -1,18 +1,20 @@
-#include "series/track_series.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
-#include "base/display.hpp"
 #include "base/number.hpp"
+#include "base/output_file.hpp"
+#include "base/text.hpp"
 #include "format/json.hpp"
-#include "format/solution_output.hpp"
+#include "format/result_output.hpp"
 #include "option/output.hpp"
 #include "record/csv_table.hpp"
 #include "record/solution_fields.hpp"
-#include "series/dynamic_track_series.hpp"
+#include "series/series_output.hpp"
+#include "shape/write_vtk.hpp"
+#include "trajectory/trajectory_files.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -344,6 +346,29 @@ std::string track_csv(const Track& track, const compare::Scene& scene, const Tra
     out += table.row(row);
   }
   return out;
+}
+
+void write_series(const compare::Track& track, const compare::Scene& scene,
+                  const TrackFrames& frames, const std::string& file,
+                  const compare::DynamicTrack* dynamic) {
+  namespace fs = std::filesystem;
+  const std::string stem = compare::series_stem(file);
+  const fs::path folder = fs::path(file).parent_path();
+  Json files = Json::array();
+  for (const std::size_t i : frames.of(track)) {
+    if (dynamic != nullptr && i >= dynamic->frames.size()) break;
+    const compare::TrackFrame& frame = track.frames[i];
+    const Eigen::Matrix3Xd& points =
+        dynamic != nullptr ? dynamic->frames[i].points : frame.shape.points;
+    const std::string name = fmt::format("{}_{:05}.vtk", stem, i);
+    compare::write_file(
+        (folder / name).string(),
+        compare::vtk_polyline({track.arc_length, points}, {},
+                              fmt::format("{}, t = {:.9g} s", scene.name, frame.time)));
+    files.push_back({{"name", name}, {"time", frame.time}});
+  }
+  compare::write_file(file,
+                      json_text({{"file-series-version", "1.0"}, {"files", std::move(files)}}));
 }
 
 }  // namespace dlo::cli

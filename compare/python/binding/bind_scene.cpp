@@ -7,19 +7,17 @@
 #include <sstream>
 
 #include "array.hpp"
-#include "base/display.hpp"
 #include "base/input_file.hpp"
-#include "base/words.hpp"
+#include "base/text.hpp"
 #include "dlo/compare/calibrated_rod.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/material.hpp"
 #include "document.hpp"
-#include "foreign/scene_document.hpp"
+#include "format/scene_document.hpp"
 #include "module.hpp"
 #include "reading/read_scene.hpp"
 #include "result.hpp"
 #include "toml/quantity.hpp"
-#include "toml/scene_keys.hpp"
 #include "toml/strict_table.hpp"
 
 namespace dlo::python {

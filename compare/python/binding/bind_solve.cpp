@@ -10,18 +10,14 @@
 #include "dlo/compare/plan.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solve.hpp"
-#include "errors.hpp"
 #include "fields.hpp"
 #include "format/json.hpp"
-#include "format/plan_output.hpp"
-#include "format/solution_output.hpp"
+#include "format/result_output.hpp"
 #include "long_call.hpp"
 #include "module.hpp"
-#include "picture.hpp"
-#include "picture/solution_figure.hpp"
+#include "picture/figures.hpp"
 #include "record/solution_fields.hpp"
 #include "result.hpp"
-#include "solve_options.hpp"
 
 namespace dlo::python {
 namespace {

@@ -15,12 +15,11 @@
 #include "dlo/compare/shape_file.hpp"
 #include "foreign/foreign_program.hpp"
 #include "format/json.hpp"
-#include "format/regression_output.hpp"
 #include "long_call.hpp"
 #include "module.hpp"
 #include "score/card_output.hpp"
+#include "series/study_output.hpp"
 #include "suite/card.hpp"
-#include "suite/card_document.hpp"
 
 namespace dlo::python {
 namespace {

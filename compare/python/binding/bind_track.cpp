@@ -8,26 +8,20 @@
 #include <variant>
 #include <vector>
 
-#include "base/display.hpp"
 #include "base/input_file.hpp"
+#include "base/text.hpp"
 #include "bind_scene.hpp"
-#include "calibration/calibrated_toml.hpp"
-#include "errors.hpp"
 #include "format/json.hpp"
 #include "long_call.hpp"
 #include "module.hpp"
 #include "motion/dynamic_track.hpp"
 #include "option/share.hpp"
-#include "picture.hpp"
-#include "picture/track_figure.hpp"
+#include "picture/figures.hpp"
 #include "recording/motion_check.hpp"
 #include "recording/motion_fit.hpp"
-#include "series/dynamic_track_series.hpp"
-#include "series/motion_check_output.hpp"
-#include "series/motion_fit_output.hpp"
-#include "series/track_series.hpp"
-#include "solve_options.hpp"
-#include "trajectory/read_markers.hpp"
+#include "result.hpp"
+#include "series/series_output.hpp"
+#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::python {
 namespace {

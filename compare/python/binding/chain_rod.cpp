@@ -7,7 +7,7 @@
 
 #include "dlo/compare/error.hpp"
 #include "polygon/natural_plane.hpp"
-#include "polygon/step_constants.hpp"
+#include "polygon/point_layout.hpp"
 #include "solve/polygon_solution.hpp"
 
 namespace dlo::python {

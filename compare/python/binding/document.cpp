@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "base/text_limits.hpp"
+#include "base/text.hpp"
 #include "dlo/compare/error.hpp"
 
 namespace dlo::python {

@@ -11,7 +11,6 @@
 #include "chain_rod.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/force_model/simulation.hpp"
-#include "errors.hpp"
 #include "long_call.hpp"
 #include "module.hpp"
 #include "result.hpp"

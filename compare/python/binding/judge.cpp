@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "array.hpp"
-#include "base/display.hpp"
 #include "base/input_file.hpp"
+#include "base/text.hpp"
 #include "bind_scene.hpp"
 #include "dlo/compare/check.hpp"
 #include "dlo/compare/comparison.hpp"
@@ -16,21 +16,15 @@
 #include "dlo/compare/material_fit.hpp"
 #include "dlo/compare/result_text.hpp"
 #include "dlo/compare/shape_file.hpp"
-#include "errors.hpp"
 #include "fields.hpp"
-#include "format/force_model_fit_output.hpp"
 #include "format/json.hpp"
-#include "format/material_fit_output.hpp"
-#include "format/plan_output.hpp"
+#include "format/result_output.hpp"
 #include "long_call.hpp"
 #include "module.hpp"
 #include "option/share.hpp"
-#include "picture.hpp"
-#include "picture/check_figure.hpp"
-#include "picture/comparison_figure.hpp"
+#include "picture/figures.hpp"
 #include "record/solution_fields.hpp"
 #include "result.hpp"
-#include "solve_options.hpp"
 
 namespace dlo::python {
 namespace {

@@ -1,5 +1,3 @@
-#include "picture.hpp"
-
 #include <memory>
 #include <optional>
 

@@ -1,29 +1,111 @@
 #include <fmt/format.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
+#include "batch/baseline.hpp"
+#include "batch/regression_run.hpp"
 #include "batch/sweep.hpp"
 #include "bind_scene.hpp"
 #include "dlo/compare/error.hpp"
-#include "errors.hpp"
-#include "format/benchmark_output.hpp"
 #include "format/json.hpp"
-#include "format/stability_output.hpp"
 #include "long_call.hpp"
 #include "module.hpp"
 #include "motion/scene_modes.hpp"
-#include "series/modes_series.hpp"
-#include "solve_options.hpp"
+#include "option/share.hpp"
+#include "series/series_output.hpp"
+#include "series/study_output.hpp"
 #include "study/benchmark.hpp"
 #include "study/hard_case.hpp"
 #include "study/stability.hpp"
 #include "study/stability_map.hpp"
-#include "table.hpp"
 
 namespace dlo::python {
 namespace {
+
+using compare::CellKind;
+
+/// A sweep's table, column by column.
+class Table {
+ public:
+  explicit Table(const std::vector<compare::SweepColumn>& columns);
+
+  /// @param cells  of a row, one for each column
+  void add(const std::vector<compare::SweepCell>& cells);
+
+  /// A dict of arrays: int64 of what is whole, float64 of numbers (NaN where there is none), str of
+  /// text ("" there). With the GIL.
+  [[nodiscard]] py::dict arrays() const;
+
+ private:
+  struct Column {
+    compare::SweepColumn is;
+    std::vector<std::int64_t> whole;  // only the one that `is` says is filled
+    std::vector<double> numbers;
+    std::vector<std::string> words;
+  };
+  static void add_cell(Column& column, const compare::SweepCell& cell);
+
+  std::vector<Column> columns_;
+};
+
+double number_of(const compare::SweepCell& cell) {
+  if (const auto* number = std::get_if<double>(&cell)) return *number;
+  if (const auto* count = std::get_if<std::int64_t>(&cell)) return static_cast<double>(*count);
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+template <typename Number>
+py::array array_of(const std::vector<Number>& numbers) {
+  return py::array_t<Number>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
+}
+
+Table::Table(const std::vector<compare::SweepColumn>& columns) {
+  for (const compare::SweepColumn& column : columns) columns_.push_back({column, {}, {}, {}});
+}
+
+void Table::add(const std::vector<compare::SweepCell>& cells) {
+  for (std::size_t i = 0; i < columns_.size(); ++i) add_cell(columns_[i], cells.at(i));
+}
+
+void Table::add_cell(Column& column, const compare::SweepCell& cell) {
+  switch (column.is.kind) {
+    case CellKind::whole:
+      column.whole.push_back(std::get<std::int64_t>(cell));
+      break;
+    case CellKind::number:
+      column.numbers.push_back(number_of(cell));
+      break;
+    case CellKind::text: {
+      const auto* text = std::get_if<std::string>(&cell);
+      column.words.push_back(text != nullptr ? *text : std::string());
+      break;
+    }
+  }
+}
+
+py::dict Table::arrays() const {
+  py::dict result;
+  for (const Column& column : columns_) {
+    const py::str name(column.is.name);
+    if (column.is.kind == CellKind::whole) {
+      result[name] = array_of(column.whole);
+    } else if (column.is.kind == CellKind::number) {
+      result[name] = array_of(column.numbers);
+    } else {
+      result[name] = py::array(py::cast(column.words));
+    }
+  }
+  return result;
+}
 
 using StudyDocuments = std::pair<std::string, std::string>;  // text and JSON
 
@@ -149,6 +231,42 @@ py::object modes(const SharedScene& scene, const py::dict& what, const py::objec
   return result;
 }
 
+/// @param what  model, programs, relative, absolute, tolerance  @param make_result  of text, JSON,
+/// JUnit XML
+py::object regress(const std::vector<SharedScene>& scenes, const std::string& file, bool update,
+                   const py::dict& what, const py::object& make_result, const py::dict& limits) {
+  const auto model = what["model"].cast<std::string>();
+  if (model != "force" && model != "chain") compare::refuse_choice(model, {"force", "chain"});
+  compare::RegressRequest request{.model = compare::from_name<compare::Model>(model),
+                                  .programs = compare::parse_foreign_programs(
+                                      what["programs"].cast<std::vector<std::string>>()),
+                                  .tolerance = {.relative = what["relative"].cast<double>(),
+                                                .absolute = what["absolute"].cast<double>()},
+                                  .solve = verified_options(limits)};
+  if (const auto growth = what["tolerance"].cast<std::optional<std::string>>()) {
+    cli::set_growth("tolerance", *growth, request.tolerance);
+  }
+  bool written = false;
+  const compare::Regression found = run_long([&](Signals& signals) {
+    // An unreadable baseline is told before minutes of solving.
+    const auto baseline = update ? compare::present_baseline(file) : compare::load_baseline(file);
+    compare::Regression measured = compare::regress(
+        scenes_of(scenes), baseline, request, [&](auto, auto) { signals.throw_if_stopped(); });
+    written = update && measured.solved();
+    if (written) compare::replace_baseline(file, baseline, measured.cases);
+    return measured;
+  });
+  const bool good = update ? found.solved() : found.passes();
+  py::object result = make_result(written ? cli::baseline_update_text(found.results)
+                                          : cli::regression_text(found.results, "text"),
+                                  cli::json_text(cli::regression_json(found.results, good)),
+                                  compare::junit_xml(found.results));
+  if (update && !written) {
+    raise_convergence("regress: a scene was not solved, the baseline is left as it was", result);
+  }
+  return result;
+}
+
 }  // namespace
 
 void bind_studies(py::module_& module) {
@@ -158,6 +276,7 @@ void bind_studies(py::module_& module) {
   module.def("stability_map", &stability_map);
   module.def("bench", &bench);
   module.def("modes", &modes);
+  module.def("regress", &regress);
 }
 
 }  // namespace dlo::python

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-#include "base/display.hpp"
+#include "base/text.hpp"
 
 namespace dlo::compare {
 namespace {

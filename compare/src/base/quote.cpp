@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/display.hpp"
+#include "base/text.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -18,7 +18,7 @@
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solve.hpp"
-#include "reading/fingerprint.hpp"
+#include "reading/read_scene.hpp"
 
 namespace dlo::compare {
 namespace {

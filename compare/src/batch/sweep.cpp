@@ -12,9 +12,9 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "base/display.hpp"
 #include "base/number.hpp"
 #include "base/quote.hpp"
+#include "base/text.hpp"
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"

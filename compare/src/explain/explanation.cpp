@@ -19,7 +19,7 @@
 #include "explain/own_polygon.hpp"
 #include "explain/scene_causes.hpp"
 #include "shape/aligner.hpp"
-#include "shape/arc_lengths.hpp"
+#include "shape/curve.hpp"
 #include "shape/shape_measure.hpp"
 
 namespace dlo::compare {

@@ -14,7 +14,7 @@
 
 #include "base/number.hpp"
 #include "explain/file_axes.hpp"
-#include "shape/arc_lengths.hpp"
+#include "shape/curve.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "explain/file_axes.hpp"
-#include "shape/arc_lengths.hpp"
+#include "shape/curve.hpp"
 
 namespace dlo::compare {
 namespace {

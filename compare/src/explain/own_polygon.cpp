@@ -12,7 +12,6 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/energy_model/polygon.hpp"
 #include "dlo/obstacle/body.hpp"
-#include "scene/reach.hpp"
 #include "scene/scene_problem.hpp"
 #include "solve/held_frames.hpp"
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "shape/arc_lengths.hpp"
+#include "shape/curve.hpp"
 
 namespace dlo::compare {
 namespace {

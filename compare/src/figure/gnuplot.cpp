@@ -9,7 +9,7 @@
 #include <system_error>
 
 #include "base/quote.hpp"
-#include "base/words.hpp"
+#include "base/text.hpp"
 #include "foreign/child_process.hpp"
 
 namespace dlo::compare {

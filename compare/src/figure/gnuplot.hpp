@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <string>
 
+#include "figure/layout.hpp"
+
 namespace dlo::compare {
 
 /// Version of the gnuplot that would draw, as it says it; empty if there is none.
@@ -19,5 +21,15 @@ namespace dlo::compare {
 /// @throws std::invalid_argument if there is no svg element
 [[nodiscard]] std::string inline_svg(const std::string& svg, const std::string& name,
                                      const std::string& title);
+
+/// The endings of files that a picture can be drawn into.
+enum class PictureFormat { svg, png, pdf };
+
+/// A text as a gnuplot string that nothing in it can end or run.
+[[nodiscard]] std::string gnuplot_string(const std::string& text);
+
+/// The script that draws a picture with its figures' titles, numbers and all.
+[[nodiscard]] std::string picture_script(const Picture& picture, PictureFormat format,
+                                         const std::string& output);
 
 }  // namespace dlo::compare

@@ -1,5 +1,3 @@
-#include "figure/gnuplot_script.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "base/quote.hpp"
+#include "figure/gnuplot.hpp"
 
 namespace dlo::compare {
 namespace {

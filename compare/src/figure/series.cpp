@@ -11,7 +11,7 @@
 
 #include "dlo/compare/deviation.hpp"
 #include "dlo/obstacle/outline.hpp"
-#include "scene/reach.hpp"
+#include "scene/scene_problem.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -1,10 +1,10 @@
-#include "figure/shape_panels.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "figure/series.hpp"
 
 namespace dlo::compare {
 namespace {

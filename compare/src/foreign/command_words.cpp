@@ -1,11 +1,10 @@
-#include "foreign/command_words.hpp"
-
 #include <fmt/format.h>
 
 #include <string_view>
 
 #include "base/quote.hpp"
 #include "dlo/compare/error.hpp"
+#include "foreign/child_process.hpp"
 
 namespace dlo::compare {
 namespace {

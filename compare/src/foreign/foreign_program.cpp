@@ -13,19 +13,17 @@
 #include <string_view>
 #include <system_error>
 
-#include "base/display.hpp"
 #include "base/input_file.hpp"
 #include "base/output_file.hpp"
 #include "base/quote.hpp"
 #include "base/temporary_path.hpp"
-#include "base/words.hpp"
+#include "base/text.hpp"
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/choice.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/solution.hpp"
 #include "foreign/child_process.hpp"
-#include "foreign/command_words.hpp"
-#include "foreign/scene_document.hpp"
+#include "format/scene_document.hpp"
 #include "shape/curve.hpp"
 #include "shape/shape_measure.hpp"
 

@@ -16,7 +16,7 @@
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"
 #include "shape/aligner.hpp"
-#include "shape/arc_lengths.hpp"
+#include "shape/curve.hpp"
 #include "shape/shape_measure.hpp"
 #include "solve/states.hpp"
 

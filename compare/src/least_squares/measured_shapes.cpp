@@ -12,7 +12,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
 #include "polygon/energy_problems.hpp"
-#include "shape/arc_lengths.hpp"
+#include "shape/curve.hpp"
 #include "shape/shape_measure.hpp"
 
 namespace dlo::compare {

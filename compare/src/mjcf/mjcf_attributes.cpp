@@ -11,8 +11,7 @@
 
 #include "base/number.hpp"
 #include "base/quote.hpp"
-#include "base/words.hpp"
-#include "mjcf/mjcf_words.hpp"
+#include "base/text.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "base/number.hpp"
 #include "base/quote.hpp"
-#include "base/words.hpp"
+#include "base/text.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "base/quote.hpp"
-#include "mjcf/mjcf_springs.hpp"
+#include "mjcf/mjcf_body.hpp"
 
 namespace dlo::compare {
 namespace {

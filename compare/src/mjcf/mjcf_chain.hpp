@@ -53,4 +53,29 @@ struct MjcfChain {
 /// @throws InputError naming file, line, element and attribute of what no rod has
 [[nodiscard]] MjcfChain find_mjcf_chain(const MjcfAttributes& attributes, const MjcfWorld& world);
 
+/// A gripper of a cable.
+struct MjcfHold {
+  double at = 0;                                       ///< arc length [m]
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
+  std::optional<Eigen::Vector3d> direction;            ///< of a clamp, unit
+  std::optional<Eigen::Vector3d> d1;  ///< of a clamp that turns it from its reference
+  std::string words;                  ///< "the first body is fixed"
+};
+
+/// What holds a cable: a first body that is fixed or jointed to what is, and constraints weld and
+/// connect to what does not move.
+/// @param constrained  whether constraints count;  @param notes  on what was assumed, added to
+/// @throws InputError naming file, line, element and attribute of what no gripper does
+[[nodiscard]] std::vector<MjcfHold> find_mjcf_holds(const MjcfAttributes& attributes,
+                                                    const MjcfWorld& world, const MjcfChain& chain,
+                                                    bool constrained,
+                                                    std::vector<std::string>& notes);
+
+/// The geoms of what does not move that collide with a cable, as tables [[obstacle]] of a scene.
+/// @param notes  on such as are neglected, added to
+/// @throws InputError naming file, line and element of one that no obstacle is like
+[[nodiscard]] std::string mjcf_obstacles(const MjcfAttributes& attributes, const MjcfWorld& world,
+                                         const MjcfChain& chain, const std::vector<MjcfHold>& holds,
+                                         std::vector<std::string>& notes);
+
 }  // namespace dlo::compare

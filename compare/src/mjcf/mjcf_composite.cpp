@@ -1,11 +1,11 @@
-#include "mjcf/mjcf_composite.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
 #include <sstream>
 #include <utility>
+
+#include "mjcf/mjcf_world.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -1,5 +1,3 @@
-#include "mjcf/mjcf_holds.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <utility>
 
 #include "base/quote.hpp"
+#include "mjcf/mjcf_chain.hpp"
 
 namespace dlo::compare {
 namespace {

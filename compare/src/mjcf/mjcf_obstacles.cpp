@@ -1,5 +1,3 @@
-#include "mjcf/mjcf_obstacles.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <string_view>
 
 #include "base/quote.hpp"
+#include "mjcf/mjcf_chain.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "base/display.hpp"
 #include "base/quote.hpp"
+#include "base/text.hpp"
 #include "decode/xml.hpp"
 #include "mjcf/mjcf_attributes.hpp"
 #include "mjcf/mjcf_chain.hpp"
-#include "mjcf/mjcf_holds.hpp"
-#include "mjcf/mjcf_obstacles.hpp"
 #include "mjcf/mjcf_world.hpp"
 
 namespace dlo::compare {

@@ -1,11 +1,11 @@
-#include "mjcf/mjcf_springs.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
+
+#include "mjcf/mjcf_body.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -1,7 +1,7 @@
-#include "mjcf/mjcf_words.hpp"
-
 #include <algorithm>
 #include <iterator>
+
+#include "mjcf/mjcf_attributes.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -8,8 +8,7 @@
 #include <utility>
 
 #include "base/quote.hpp"
-#include "mjcf/mjcf_composite.hpp"
-#include "mjcf/mjcf_words.hpp"
+#include "mjcf/mjcf_attributes.hpp"
 
 namespace dlo::compare {
 namespace {

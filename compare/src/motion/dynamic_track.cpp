@@ -11,7 +11,7 @@
 #include "dlo/compare/error.hpp"
 #include "motion/frame_clock.hpp"
 #include "motion/motion_misfit.hpp"
-#include "scene/reach.hpp"
+#include "scene/scene_problem.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -13,7 +13,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/force_model/simulation.hpp"
 #include "polygon/natural_plane.hpp"
-#include "polygon/step_constants.hpp"
+#include "polygon/point_layout.hpp"
 #include "solve/polygon_solution.hpp"
 
 namespace dlo::compare {

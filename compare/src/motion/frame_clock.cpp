@@ -7,7 +7,7 @@
 
 #include "dlo/compare/error.hpp"
 #include "polygon/energy_problems.hpp"
-#include "scene/reach.hpp"
+#include "scene/scene_problem.hpp"
 
 namespace dlo::compare {
 

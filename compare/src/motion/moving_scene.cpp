@@ -10,7 +10,7 @@
 #include "dlo/compare/error.hpp"
 #include "motion/scene_inertia.hpp"
 #include "motion/trajectory_motion.hpp"
-#include "scene/reach.hpp"
+#include "scene/scene_problem.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -10,7 +10,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/solve.hpp"
 #include "dlo/force_model/tangent_stiffness.hpp"
-#include "polygon/point_masses.hpp"
+#include "polygon/point_layout.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -13,7 +13,7 @@
 #include "motion/polygon_modes.hpp"
 #include "motion/scene_inertia.hpp"
 #include "polygon/energy_problems.hpp"
-#include "polygon/step_constants.hpp"
+#include "polygon/point_layout.hpp"
 #include "scene/scene_problem.hpp"
 
 namespace dlo::compare {

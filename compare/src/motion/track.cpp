@@ -14,8 +14,8 @@
 #include "dlo/compare/solve.hpp"
 #include "motion/branch.hpp"
 #include "motion/frame_clock.hpp"
-#include "scene/reach.hpp"
-#include "solve/linking.hpp"
+#include "scene/scene_problem.hpp"
+#include "solve/held_frames.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "trajectory/trajectory_leg.hpp"
+#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
 namespace {

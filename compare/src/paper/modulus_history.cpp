@@ -9,7 +9,7 @@
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"
 #include "dlo/force_model/simulation.hpp"
-#include "polygon/step_constants.hpp"
+#include "polygon/point_layout.hpp"
 
 namespace dlo::compare {
 namespace {

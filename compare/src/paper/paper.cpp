@@ -8,7 +8,7 @@
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solution.hpp"
 #include "paper/printed_tables.hpp"
-#include "polygon/step_constants.hpp"
+#include "polygon/point_layout.hpp"
 
 namespace dlo::compare {
 namespace {

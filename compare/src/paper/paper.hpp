@@ -8,7 +8,6 @@
 #include "dlo/compare/progress.hpp"
 #include "paper/modulus_history.hpp"
 #include "paper/printed_tables.hpp"
-#include "paper/recomputed_tables.hpp"
 
 namespace dlo::compare {
 

@@ -3,7 +3,9 @@
 #include <toml++/toml.h>
 
 #include <Eigen/Core>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace dlo::compare {
 
@@ -44,5 +46,19 @@ enum class PaperWeight {
 
 /// c_c that the text says Fig. 12 was calculated with [N].
 [[nodiscard]] double printed_contraction_stiffness();
+
+/// A number the paper prints, beside what its formula gives.
+struct TableRow {
+  std::string table;        ///< the paper's number of it
+  std::string quantity;     ///< symbol as printed
+  std::string unit;         ///< as printed
+  std::string printed;      ///< digits as in the paper
+  double computed = 0;      ///< in `unit`
+  std::string explanation;  ///< how it was computed
+  bool agrees = false;      ///< computed, rounded to the printed digits, is what is printed
+};
+
+/// Tables 1 and 5 recomputed from the quantities they are said to follow from.
+[[nodiscard]] std::vector<TableRow> recompute_tables();
 
 }  // namespace dlo::compare

@@ -1,5 +1,3 @@
-#include "picture/budget_figure.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +7,7 @@
 #include <vector>
 
 #include "judge/budget_parts.hpp"
-#include "picture/comparison_figure.hpp"
+#include "picture/figures.hpp"
 
 namespace dlo::compare {
 namespace {

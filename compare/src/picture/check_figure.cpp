@@ -1,12 +1,11 @@
-#include "picture/check_figure.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "figure/shape_panels.hpp"
+#include "figure/series.hpp"
+#include "picture/figures.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -1,12 +1,11 @@
-#include "picture/comparison_figure.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <utility>
 
 #include "dlo/compare/deviation.hpp"
-#include "figure/shape_panels.hpp"
+#include "figure/series.hpp"
+#include "picture/figures.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -1,12 +1,10 @@
-#include "picture/fit_figure.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <utility>
 
 #include "figure/series.hpp"
-#include "figure/shape_panels.hpp"
+#include "picture/figures.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -1,5 +1,3 @@
-#include "picture/front_figure.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,6 +5,8 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "picture/figures.hpp"
 
 namespace dlo::compare {
 namespace {

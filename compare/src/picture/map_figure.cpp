@@ -1,11 +1,10 @@
-#include "picture/map_figure.hpp"
-
 #include <fmt/format.h>
 
 #include <string>
 #include <utility>
 
-#include "polygon/step_constants.hpp"
+#include "picture/figures.hpp"
+#include "polygon/point_layout.hpp"
 
 namespace dlo::compare {
 

@@ -1,12 +1,10 @@
-#include "picture/motion_figure.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <utility>
 
-#include "figure/shape_panels.hpp"
-#include "picture/check_figure.hpp"
+#include "figure/series.hpp"
+#include "picture/figures.hpp"
 
 namespace dlo::compare {
 namespace {

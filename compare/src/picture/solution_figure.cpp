@@ -1,5 +1,3 @@
-#include "picture/solution_figure.hpp"
-
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -7,7 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "figure/shape_panels.hpp"
+#include "figure/series.hpp"
+#include "picture/figures.hpp"
 #include "record/solution_fields.hpp"
 
 namespace dlo::compare {

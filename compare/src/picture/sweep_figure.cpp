@@ -1,5 +1,3 @@
-#include "picture/sweep_figure.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +7,7 @@
 
 #include "base/number.hpp"
 #include "dlo/compare/error.hpp"
+#include "picture/figures.hpp"
 
 namespace dlo::compare {
 namespace {

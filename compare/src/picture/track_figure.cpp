@@ -1,5 +1,3 @@
-#include "picture/track_figure.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 
 #include "figure/series.hpp"
 #include "motion/frame_clock.hpp"
+#include "picture/figures.hpp"
 
 namespace dlo::compare {
 namespace {

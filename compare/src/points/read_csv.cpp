@@ -1,5 +1,3 @@
-#include "points/read_csv.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 #include "decode/csv_rows.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
+#include "points/readers.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -1,13 +1,12 @@
-#include "points/read_json.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "base/text_limits.hpp"
+#include "base/text.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
+#include "points/readers.hpp"
 
 namespace dlo::compare {
 namespace {

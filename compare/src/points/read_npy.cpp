@@ -1,5 +1,3 @@
-#include "points/read_npy.hpp"
-
 #include <fmt/format.h>
 
 #include <cstdint>
@@ -9,7 +7,7 @@
 #include "base/quote.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
-#include "points/shape_name.hpp"
+#include "points/readers.hpp"
 
 namespace dlo::compare {
 namespace {

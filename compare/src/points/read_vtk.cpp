@@ -1,5 +1,3 @@
-#include "points/read_vtk.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +6,7 @@
 #include "base/quote.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
-#include "points/polyline.hpp"
+#include "points/readers.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -6,17 +6,13 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <string_view>
 #include <system_error>
 
 #include "base/input_file.hpp"
 #include "decode/xml.hpp"
 #include "dlo/compare/error.hpp"
-#include "points/raw_shape.hpp"
-#include "points/read_csv.hpp"
-#include "points/read_json.hpp"
-#include "points/read_npy.hpp"
-#include "points/read_vtk.hpp"
-#include "points/shape_name.hpp"
+#include "points/readers.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -209,6 +205,52 @@ std::string file_of_shape(const std::string& name) {
 
 MeasuredShape load_shape(const std::string& path, double unit) {
   return parse_shape(read_file(file_of_shape(path)), path, unit);
+}
+
+void require_point_count(std::size_t count, const std::string& where) {
+  if (count <= static_cast<std::size_t>(most_shape_points)) return;
+  throw InputError(
+      fmt::format("{}: {} points (allowed: 2 to {})", where, count, most_shape_points));
+}
+
+void require_as_many_d1(const RawShape& raw, const std::string& file) {
+  if (raw.d1.empty() || raw.d1.size() == raw.points.size()) return;
+  throw InputError(fmt::format("{}: d1: {} vectors of {} points (allowed: one a point, or none)",
+                               file, raw.d1.size(), raw.points.size()));
+}
+
+ShapeName shape_name(const std::string& name) {
+  constexpr std::string_view array = ".npy:";
+  const std::size_t found = name.rfind(array);
+  if (found == std::string::npos) return {name, ""};
+  const std::size_t colon = found + array.size() - 1;
+  return {name.substr(0, colon), name.substr(colon + 1)};
+}
+
+void join_cell(const std::vector<std::size_t>& cell, std::vector<std::size_t>& order,
+               const std::string& where) {
+  if (cell.size() < 2) {
+    throw InputError(fmt::format("{}: a line of fewer than two points", where));
+  }
+  if (!order.empty() && cell.front() != order.back()) {
+    throw InputError(fmt::format(
+        "{}: several separate lines (allowed: one polyline, or lines that follow on)", where));
+  }
+  order.insert(order.end(), cell.begin() + (order.empty() ? 0 : 1), cell.end());
+  require_point_count(order.size(), where);
+}
+
+RawShape in_order(const RawShape& points, const std::vector<std::size_t>& order) {
+  RawShape result;
+  result.in_metres = points.in_metres;
+  result.notes = points.notes;
+  for (const std::size_t i : order) {
+    result.points.push_back(points.points[i]);
+    if (!points.lines.empty()) result.lines.push_back(points.lines[i]);
+    if (!points.arc_length.empty()) result.arc_length.push_back(points.arc_length[i]);
+    if (!points.d1.empty()) result.d1.push_back(points.d1[i]);
+  }
+  return result;
 }
 
 }  // namespace dlo::compare

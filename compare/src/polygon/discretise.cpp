@@ -11,8 +11,6 @@
 #include "dlo/compare/error.hpp"
 #include "polygon/natural_plane.hpp"
 #include "polygon/point_layout.hpp"
-#include "polygon/start_shape.hpp"
-#include "scene/reach.hpp"
 #include "scene/scene_problem.hpp"
 
 namespace dlo::compare {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "scene/reach.hpp"
+#include "scene/scene_problem.hpp"
 
 namespace dlo::compare {
 namespace {

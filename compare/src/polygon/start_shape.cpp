@@ -1,9 +1,8 @@
-#include "polygon/start_shape.hpp"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
+#include "polygon/point_layout.hpp"
 #include "polygon/scalar_search.hpp"
 
 namespace dlo::compare {

@@ -1,6 +1,6 @@
-#include "reading/fingerprint.hpp"
-
 #include <fmt/format.h>
+
+#include "reading/read_scene.hpp"
 
 #define XXH_INLINE_ALL  // headers only, nothing to link
 #include <xxhash.h>

@@ -1,5 +1,3 @@
-#include "reading/read_gripper.hpp"
-
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -8,10 +6,11 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "dlo/compare/scene.hpp"
 #include "dlo/energy_model/turns.hpp"
-#include "reading/read_place.hpp"
+#include "reading/read_parts.hpp"
 #include "scene/scene_problem.hpp"
-#include "toml/scene_keys.hpp"
+#include "toml/strict_table.hpp"
 #include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
@@ -199,6 +198,28 @@ void check_rolls(const Scene& scene, const std::vector<StrictTable>& entries) {
                       "clamp's and in line with it (allowed: frame or quaternion)");
     }
   }
+}
+
+double read_arc_length(StrictTable& table, std::string_view key, double length) {
+  Range range = Range::between(0, length, " m, the rod's length");
+  range.low -= arc_rounding * length;
+  range.high += arc_rounding * length;
+  return *on_rod(table.number(key, Dimension::length, range), length);
+}
+
+Eigen::Vector3d unit_vector(StrictTable& table, std::string_view key) {
+  const Eigen::Vector3d vector = table.vector(key, Dimension::number);
+  if (!(vector.norm() > 0)) table.fail(key, "must not be the zero vector");
+  return vector.normalized();
+}
+
+Eigen::Vector3d read_place(StrictTable& table, const char* key, const Trajectory& trajectory) {
+  if (trajectory.empty()) return table.vector(key, Dimension::length);
+  if (table.has(key)) {
+    table.fail(key,
+               fmt::format("given besides poses, which say where it is (allowed: no {})", key));
+  }
+  return trajectory.poses().front().position;
 }
 
 }  // namespace dlo::compare

@@ -1,12 +1,11 @@
-#include "reading/read_layers.hpp"
-
 #include <fmt/format.h>
 
 #include <string>
 
-#include "base/words.hpp"
+#include "base/text.hpp"
 #include "dlo/compare/error.hpp"
-#include "toml/scene_keys.hpp"
+#include "reading/read_parts.hpp"
+#include "toml/strict_table.hpp"
 
 namespace dlo::compare {
 namespace {

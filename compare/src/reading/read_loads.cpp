@@ -1,5 +1,3 @@
-#include "reading/read_loads.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,8 +5,8 @@
 #include <numbers>
 #include <optional>
 
-#include "reading/read_place.hpp"
-#include "toml/scene_keys.hpp"
+#include "reading/read_parts.hpp"
+#include "toml/strict_table.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -1,13 +1,11 @@
-#include "reading/read_obstacle.hpp"
-
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <string>
 
-#include "reading/read_place.hpp"
-#include "toml/scene_keys.hpp"
+#include "reading/read_parts.hpp"
+#include "toml/strict_table.hpp"
 #include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {

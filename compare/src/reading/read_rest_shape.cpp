@@ -1,5 +1,3 @@
-#include "reading/read_rest_shape.hpp"
-
 #include <fmt/format.h>
 
 #include <optional>
@@ -9,7 +7,8 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/rest_shape.hpp"
 #include "dlo/compare/shape_file.hpp"
-#include "toml/scene_keys.hpp"
+#include "reading/read_parts.hpp"
+#include "toml/strict_table.hpp"
 #include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {

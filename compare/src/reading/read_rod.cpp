@@ -1,15 +1,11 @@
-#include "reading/read_rod.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 
-#include "reading/read_layers.hpp"
-#include "reading/read_place.hpp"
-#include "reading/read_rest_shape.hpp"
-#include "toml/scene_keys.hpp"
+#include "reading/read_parts.hpp"
+#include "toml/strict_table.hpp"
 
 namespace dlo::compare {
 namespace {

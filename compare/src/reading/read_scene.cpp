@@ -8,17 +8,12 @@
 #include <memory>
 #include <utility>
 
-#include "base/display.hpp"
+#include "base/text.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
-#include "reading/read_gripper.hpp"
-#include "reading/read_loads.hpp"
-#include "reading/read_obstacle.hpp"
-#include "reading/read_rod.hpp"
+#include "reading/read_parts.hpp"
 #include "scene/read_force_model.hpp"
-#include "toml/scene_keys.hpp"
 #include "toml/strict_table.hpp"
-#include "trajectory/read_markers.hpp"
 #include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {

@@ -29,4 +29,7 @@ struct SceneSource {
 [[nodiscard]] Scene read_scene(const SceneSource& source,
                                const std::vector<Material>& known_materials);
 
+/// 16 hexadecimal digits that differ for different texts, but for accidents (XXH3, 64 bits).
+[[nodiscard]] std::string fingerprint(const std::string& text);
+
 }  // namespace dlo::compare

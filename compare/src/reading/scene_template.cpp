@@ -13,7 +13,7 @@
 #include "base/input_file.hpp"
 #include "base/number.hpp"
 #include "base/quote.hpp"
-#include "base/text_limits.hpp"
+#include "base/text.hpp"
 #include "dlo/compare/error.hpp"
 #include "reading/read_scene.hpp"
 #include "toml/strict_table.hpp"

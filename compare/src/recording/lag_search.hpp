@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "recording/model_motion.hpp"
-#include "trajectory/read_markers.hpp"
+#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
 

@@ -14,7 +14,7 @@
 #include "motion/moving_scene.hpp"
 #include "recording/frame_shapes.hpp"
 #include "recording/motion_residuals.hpp"
-#include "trajectory/read_markers.hpp"
+#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
 

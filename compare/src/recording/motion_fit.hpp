@@ -7,7 +7,7 @@
 #include "dlo/compare/progress.hpp"
 #include "dlo/compare/scene.hpp"
 #include "motion/moving_scene.hpp"
-#include "trajectory/read_markers.hpp"
+#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "recording/model_motion.hpp"
-#include "trajectory/read_markers.hpp"
+#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
 

@@ -1,5 +1,3 @@
-#include "report/check_page.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -7,13 +5,14 @@
 
 #include "base/number.hpp"
 #include "judge/budget_parts.hpp"
+#include "report/page.hpp"
 
 namespace dlo::compare {
 namespace {
 
 std::string millimetres(double metres) { return page_number(metres * 1e3) + "\u00a0mm"; }
 
-std::string percent(double share) { return page_number(share * 100) + "\u00a0%"; }
+std::string page_percent(double share) { return page_number(share * 100) + "\u00a0%"; }
 
 /// What would explain a shape that fails; empty if nothing does.
 std::string cause_of(const CheckResult& result) {
@@ -31,8 +30,9 @@ std::string summary_of(const std::string& what, double judged_m, const ShapeTole
 }
 
 std::vector<PageNumber> distances(const Deviation& d) {
-  return {{"RMS distance", millimetres(d.rms_m), percent(d.rms_over_length) + " of the length"},
-          {"largest", millimetres(d.max_m), fmt::format("at s = {:.4g} m", d.max_at_m)}};
+  return {
+      {"RMS distance", millimetres(d.rms_m), page_percent(d.rms_over_length) + " of the length"},
+      {"largest", millimetres(d.max_m), fmt::format("at s = {:.4g} m", d.max_at_m)}};
 }
 
 PageTable cause_table() { return {"What would explain it", {"cause", "RMS then"}, {}}; }
@@ -82,7 +82,8 @@ PageResult page_result(const MotionCheck& check) {
       .verdict = verdict_of(check.passes),
       .summary = summary_of(check.file, shown(check.judged_m, length), check.tolerance),
       .cause = {},
-      .numbers = {{"RMS distance", millimetres(rms_m), percent(rms_m / length) + " of the length"},
+      .numbers = {{"RMS distance", millimetres(rms_m),
+                   page_percent(rms_m / length) + " of the length"},
                   {"worst frame", left(check.worst().rms_m),
                    fmt::format("at {:.4g} s", check.worst().time)},
                   {"lag", lags ? page_number(check.lag * 1e3) + "\u00a0ms" : "\u2013",
@@ -127,13 +128,13 @@ PageResult page_result(const Comparison& comparison) {
                                                      : modulus.why_none});
   const auto parts = shown_parts(comparison);
   for (const auto& [name, part] : parts) {
-    page.table.rows.push_back({name, millimetres(part->rms_m), percent(part->share)});
+    page.table.rows.push_back({name, millimetres(part->rms_m), page_percent(part->share)});
   }
   const auto largest =
       std::ranges::max_element(parts, {}, [](const auto& part) { return part.second->share; });
   if (!passes && largest != parts.end()) {
     page.cause = fmt::format("Largest part of the deviation: {}, {}.", largest->first,
-                             percent(largest->second->share));
+                             page_percent(largest->second->share));
   }
   return page;
 }

@@ -6,45 +6,10 @@
 #include <cmath>
 
 #include "base/quote.hpp"
+#include "scene/builtin_data.hpp"
 
 namespace dlo::compare {
 namespace {
-
-/// Style sheet of the page. gnuplot draws for a light page; on a dark one pictures are inverted and
-/// their hues rotated back.
-constexpr const char* style = R"~~~(
-:root { color-scheme: light dark; --back: #ffffff; --text: #1b1f24; --faint: #57606a; --line: #c9d1d9;
-  --card: #f6f8fa; }
-@media (prefers-color-scheme: dark) {
-  :root { --back: #14181d; --text: #e6eaee; --faint: #a3adb8; --line: #3b444e; --card: #1c2229; }
-  figure svg { filter: invert(1) hue-rotate(180deg); }
-}
-* { box-sizing: border-box; }
-body { margin: 0 auto; padding: 1rem; max-width: 76rem; background: var(--back); color: var(--text);
-  font: 1rem/1.5 system-ui, sans-serif; overflow-wrap: break-word; }
-h1 { font-size: 1.6rem; line-height: 1.25; margin: 0.5rem 0; }
-.faint, caption { color: var(--faint); font-size: 0.9rem; }
-.screen { display: grid; grid-template-columns: 1fr; gap: 1rem 2rem; }
-@media (min-width: 70rem) { .screen { grid-template-columns: 2fr 3fr; } }
-p.badge { display: inline-block; margin: 0.4rem 0; padding: 0.2rem 1rem; border-radius: 6px;
-  font-size: 1.6rem; font-weight: 700; color: #ffffff; background: #1a7f37; }
-p.badge.fail { background: #b3261e; }
-dl { display: flex; flex-wrap: wrap; gap: 0.6rem 2rem; }
-dd { margin: 0; }
-dl strong { display: block; font-size: 1.4rem; font-variant-numeric: tabular-nums; }
-dl span, dt { color: var(--faint); font-size: 0.9rem; }
-pre { overflow-x: auto; font: 0.8rem/1.4 ui-monospace, monospace; background: var(--card); padding: 0.8rem; }
-.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 20rem), 1fr)); gap: 1.2rem; }
-figure { margin: 0; min-width: 0; }
-figure svg { display: block; width: 100%; max-width: 32rem; height: auto; }
-.missing { border: 1px dashed var(--line); padding: 1rem; }
-.table { overflow-x: auto; }
-table { border-collapse: collapse; font-size: 0.85rem; font-variant-numeric: tabular-nums; }
-caption { text-align: left; }
-th, td { padding: 0.3rem 0.6rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
-summary { cursor: pointer; padding: 0.3rem 0; }
-@media print { figure svg { filter: none; } }
-)~~~";
 
 /// Returns escape_markup() of each line; lines stay lines.
 std::string escape_lines(const std::string& text) {
@@ -130,8 +95,8 @@ std::string page_html(const std::vector<PageResult>& results, const std::string&
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta name=\"generator\" content=\"{}\">\n<link rel=\"icon\" href=\"data:,\">\n"
-      "<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n",
-      command, escape_markup(title), style);
+      "<title>{}</title>\n<style>\n{}</style>\n</head>\n<body>\n<main>\n",
+      command, escape_markup(title), builtin::page_css);
   for (const PageResult& result : results) out += to_html(result);
   return out + fmt::format("<p class=\"faint\">dlo {}</p>\n</main>\n</body>\n</html>\n",
                            escape_markup(version));

@@ -3,6 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "dlo/compare/check.hpp"
+#include "dlo/compare/comparison.hpp"
+#include "recording/motion_check.hpp"
+
 namespace dlo::compare {
 
 /// Returns a number with 4 significant digits; a dash for NaN.
@@ -44,5 +48,15 @@ struct PageResult {
 /// @param command  that writes it, such as "dlo check";  @param version  of dlo
 [[nodiscard]] std::string page_html(const std::vector<PageResult>& results,
                                     const std::string& command, const std::string& version);
+
+/// Returns a judged shape for a page, without pictures and details.
+[[nodiscard]] PageResult page_result(const CheckResult& result);
+
+/// Returns a judged motion for a page, without pictures and details.
+[[nodiscard]] PageResult page_result(const MotionCheck& check);
+
+/// Returns a comparison for a page, without pictures and details. It passes if the RMS is within
+/// default_tolerance(); its cause is the largest part of the error budget.
+[[nodiscard]] PageResult page_result(const Comparison& comparison);
 
 }  // namespace dlo::compare

@@ -1,7 +1,7 @@
-#include "scene/reach.hpp"
-
 #include <algorithm>
 #include <cmath>
+
+#include "scene/scene_problem.hpp"
 
 namespace dlo::compare {
 namespace {

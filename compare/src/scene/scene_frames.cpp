@@ -8,7 +8,6 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/energy_model/natural_frame.hpp"
-#include "scene/reach.hpp"
 #include "scene/scene_problem.hpp"
 
 // How a scene's rod is curved and twisted without stress, how clamps hold that, and in which plane

@@ -5,8 +5,6 @@
 #include <numbers>
 #include <utility>
 
-#include "scene/reach.hpp"
-
 namespace dlo::compare {
 
 std::vector<energy_model::LineLoad> line_loads(const DistributedLoad& load) {

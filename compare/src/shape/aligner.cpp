@@ -11,9 +11,10 @@
 #include <span>
 #include <utility>
 
+#include "dlo/compare/alignment.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/energy_model/problem.hpp"
-#include "shape/arc_lengths.hpp"
+#include "shape/curve.hpp"
 #include "shape/shape_measure.hpp"
 
 namespace dlo::compare {
@@ -366,6 +367,20 @@ Alignment Aligner::align(const Curve& curve) const {
   if (against.rms_m + rounding < (1 - 1e-9) * along.rms_m) std::swap(along, against);
   along.other_rms_m = against.rms_m;
   return along;
+}
+
+Eigen::Vector3d up_of(const Scene& scene, PoseFreedom pose) {
+  if (pose != PoseFreedom::upright) return Eigen::Vector3d::UnitY();
+  if (!(scene.gravity.norm() > 0)) {
+    throw InputError(fmt::format(
+        "{}: no gravity, so no frame is upright (allowed: translation, rigid)", scene.file));
+  }
+  return -scene.gravity.normalized();
+}
+
+Alignment align(const MeasuredShape& shape, const Reference& reference, double length,
+                const AlignOptions& options) {
+  return Aligner(shape, length, options).align(Curve(reference, length));
 }
 
 }  // namespace dlo::compare

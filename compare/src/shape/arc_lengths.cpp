@@ -1,5 +1,3 @@
-#include "shape/arc_lengths.hpp"
-
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -9,6 +7,7 @@
 #include <optional>
 
 #include "dlo/compare/error.hpp"
+#include "shape/curve.hpp"
 
 namespace dlo::compare {
 namespace {

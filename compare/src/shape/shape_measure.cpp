@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "dlo/compare/deviation.hpp"
-#include "shape/arc_lengths.hpp"
+#include "shape/curve.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -12,7 +12,7 @@
 #include "polygon/natural_plane.hpp"
 #include "solve/held_frames.hpp"
 #include "solve/polygon_solution.hpp"
-#include "solve/turned_solution.hpp"
+#include "solve/states.hpp"
 
 namespace dlo::compare {
 namespace {

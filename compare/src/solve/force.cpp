@@ -17,11 +17,11 @@
 #include "dlo/energy_model/interrupt.hpp"
 #include "dlo/force_model/simulation.hpp"
 #include "dlo/force_model/tangent_stiffness.hpp"
-#include "polygon/drag_forces.hpp"
 #include "polygon/natural_plane.hpp"
-#include "polygon/step_constants.hpp"
+#include "polygon/point_layout.hpp"
+#include "polygon/shape_loads.hpp"
 #include "solve/polygon_solution.hpp"
-#include "solve/turned_solution.hpp"
+#include "solve/states.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -17,7 +17,7 @@
 #include "dlo/force_model/heuristics.hpp"
 #include "polygon/natural_plane.hpp"
 #include "polygon/polygon_response.hpp"
-#include "scene/reach.hpp"
+#include "scene/scene_problem.hpp"
 
 namespace dlo::compare {
 namespace {

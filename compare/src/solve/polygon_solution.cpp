@@ -11,7 +11,7 @@
 #include "dlo/compare/error.hpp"
 #include "polygon/energy_problems.hpp"
 #include "polygon/natural_plane.hpp"
-#include "scene/reach.hpp"
+#include "scene/scene_problem.hpp"
 #include "solve/held_frames.hpp"
 
 namespace dlo::compare {

@@ -15,8 +15,8 @@
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "polygon/energy_problems.hpp"
-#include "scene/reach.hpp"
-#include "solve/linking.hpp"
+#include "scene/scene_problem.hpp"
+#include "solve/held_frames.hpp"
 #include "solve/stretch_effect.hpp"
 
 namespace dlo::compare {

@@ -15,9 +15,9 @@
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "polygon/shape_loads.hpp"
-#include "scene/reach.hpp"
-#include "shape/arc_lengths.hpp"
-#include "solve/linking.hpp"
+#include "scene/scene_problem.hpp"
+#include "shape/curve.hpp"
+#include "solve/held_frames.hpp"
 #include "solve/stretch_effect.hpp"
 
 namespace dlo::compare {

@@ -8,7 +8,7 @@
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
-#include "scene/reach.hpp"
+#include "scene/scene_problem.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -165,6 +165,18 @@ ComparedState describe_state(const Scene& scene, const std::vector<Equilibrium>&
          .rms_from_shape_m = from_shape[i]});
   }
   return result;
+}
+
+Solution turned_back(Solution solution, const PlaneTurn& turn) {
+  const auto back = [&turn](Eigen::Vector3d& vector) { vector = turn.vectors_back(vector); };
+  solution.shape.points = turn.points_back(solution.shape.points);
+  if (solution.to_rest.cols() > 0) solution.to_rest = turn.vectors_back(solution.to_rest);
+  for (GripperLoad& load : solution.grippers) {
+    back(load.force);
+    back(load.torque);
+  }
+  for (Eigen::Vector3d& force : solution.obstacles) back(force);
+  return solution;
 }
 
 }  // namespace dlo::compare

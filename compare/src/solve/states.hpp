@@ -6,6 +6,7 @@
 
 #include "dlo/compare/compared_state.hpp"
 #include "dlo/compare/solution.hpp"
+#include "polygon/natural_plane.hpp"
 
 namespace dlo::compare {
 
@@ -44,5 +45,8 @@ inline constexpr double surely_nearest = same_shape / 2;
                                            const std::vector<energy_model::Equilibrium>& states,
                                            std::size_t compared,
                                            const std::vector<double>& from_shape);
+
+/// A polygon's solution of the scene that `turn` has laid into its plane, as it is in space.
+[[nodiscard]] Solution turned_back(Solution solution, const PlaneTurn& turn);
 
 }  // namespace dlo::compare

@@ -12,7 +12,6 @@
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solve.hpp"
 #include "polygon/polygon_response.hpp"
-#include "scene/reach.hpp"
 #include "scene/scene_problem.hpp"
 
 namespace dlo::compare {

@@ -8,7 +8,6 @@
 
 #include "dlo/compare/solution.hpp"
 #include "study/benchmark_runs.hpp"
-#include "study/benchmark_tracking.hpp"
 
 namespace dlo::compare {
 

@@ -1,5 +1,3 @@
-#include "study/benchmark_tracking.hpp"
-
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -16,7 +14,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/force_model/simulation.hpp"
 #include "polygon/energy_problems.hpp"
-#include "polygon/step_constants.hpp"
+#include "polygon/point_layout.hpp"
 #include "study/benchmark_runs.hpp"
 
 namespace dlo::compare {

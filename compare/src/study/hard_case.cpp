@@ -13,7 +13,7 @@
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/energy_model/polygon.hpp"
 #include "polygon/energy_problems.hpp"
-#include "polygon/step_constants.hpp"
+#include "polygon/point_layout.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -15,7 +15,7 @@
 #include "dlo/force_model/simulation.hpp"
 #include "parallel/threads.hpp"
 #include "polygon/energy_problems.hpp"
-#include "polygon/step_constants.hpp"
+#include "polygon/point_layout.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "dlo/compare/scene.hpp"
+#include "dlo/compare/shape.hpp"
 #include "dlo/compare/solution.hpp"
+#include "dlo/compare/solve.hpp"
 #include "suite/battery.hpp"
 
 namespace dlo::compare {
@@ -57,5 +60,55 @@ inline constexpr double chain_agrees = 2e-4;
 
 /// The model of the first method.
 [[nodiscard]] Model answer_model(const Scene& scene);
+
+/// How far a shape is from balance.
+struct MomentBalance {
+  double imbalance = 0;  ///< share of its bending moments that nothing explains [-]
+  double stiffness = 1;  ///< c, over EI
+  double weight = 1;     ///< a, over the scene's; 1 unless there is weight and another load
+  /// Share of the moments that is not identifiable from points at such distances: curvatures of a
+  /// rod in which forces F bend layers of sqrt(EI / F) are found to a quarter of h^2 F / EI, EI
+  /// being the scene's or, if that is less, the shape's [-]
+  double resolution = 0;
+};
+
+/// The share of a shape's bending moments that neither its loads nor forces and torques of the
+/// grippers at its ends explain, whatever the stiffness and the weight are,
+///     min over c, a, M, F of |c EI kappa_i - a w_i - m_i - M - (P_n - P_i) x F| / |c EI kappa_i|,
+/// w_i and m_i the moments about P_i of the weight and of the loads beyond it. At rest it is an
+/// error of discretisation. Nothing where the scene has more than a round, straight rod of one
+/// section, held at its ends alone.
+/// @param shape  in the scene's frame, along the whole rod
+/// @param power  of springs whose moments go with a power of 2 sin(angle / 2), > 0; 1: EI kappa
+[[nodiscard]] std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& shape,
+                                                          double power = 1);
+
+/// A scene's motion, by two methods.
+struct MotionAnswer {
+  BatteryScene of;                       ///< the scene, which has a motion
+  std::vector<double> times;             ///< [s]
+  std::vector<double> arc_length;        ///< [m]
+  std::vector<Eigen::Matrix3Xd> frames;  ///< the answer: points by time, of `energy` [m]
+  std::string second_method;             ///< in words
+  /// Largest distance of a point from that of the second method, and what both say of their own
+  /// errors [m].
+  double points_bound_m = 0;
+};
+
+/// Arc lengths of such an answer's points.
+inline constexpr int motion_points = 25;
+
+/// How far its two methods may be apart, of the length: farther they do not agree.
+inline constexpr double motions_agree = 2e-4;
+
+/// By the energy model, and by chains of 24, 48 and 96 hinges (hinge_limit()).
+/// @throws ConvergenceError if one does not come to the end, or if they do not agree
+[[nodiscard]] MotionAnswer certified_motion(const BatteryScene& scene,
+                                            const SolveOptions& options = {});
+
+/// Of several scenes, in order. @param threads  0: all cores
+[[nodiscard]] std::vector<MotionAnswer> certified_motions(const std::vector<BatteryScene>& scenes,
+                                                          int threads,
+                                                          const SolveOptions& options = {});
 
 }  // namespace dlo::compare

@@ -1,10 +1,9 @@
-#include "suite/balance.hpp"
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
-#include "scene/reach.hpp"
+#include "scene/scene_problem.hpp"
+#include "suite/answer.hpp"
 
 namespace dlo::compare {
 namespace {

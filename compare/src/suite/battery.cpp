@@ -8,7 +8,7 @@
 #include <set>
 
 #include "base/input_file.hpp"
-#include "base/words.hpp"
+#include "base/text.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/shape.hpp"

@@ -19,9 +19,9 @@
 #include "dlo/compare/shape_verdict.hpp"
 #include "foreign/foreign_program.hpp"
 #include "parallel/threads.hpp"
-#include "shape/arc_lengths.hpp"
+#include "shape/curve.hpp"
 #include "suite/answer.hpp"
-#include "suite/motion_cause.hpp"
+#include "suite/cause.hpp"
 
 namespace dlo::compare {
 namespace {

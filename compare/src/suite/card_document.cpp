@@ -1,11 +1,10 @@
-#include "suite/card_document.hpp"
-
 #include <set>
 #include <string>
 #include <utility>
 
 #include "dlo/compare/error.hpp"
 #include "record/field.hpp"
+#include "suite/card.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -16,8 +16,6 @@
 #include "explain/own_polygon.hpp"
 #include "polygon/scalar_search.hpp"
 #include "suite/answer.hpp"
-#include "suite/balance.hpp"
-#include "suite/stiffness_cause.hpp"
 
 namespace dlo::compare {
 namespace {

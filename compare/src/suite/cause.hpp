@@ -6,7 +6,11 @@
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape.hpp"
 #include "dlo/compare/solution.hpp"
+#include "dlo/compare/solve.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
+#include "recording/model_motion.hpp"
+#include "suite/battery.hpp"
+#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
 
@@ -41,5 +45,42 @@ inline constexpr double error_floor = 1e-7;
                                            const energy_model::Equilibrium& reference,
                                            const std::vector<CardShape>& shapes,
                                            const SolveOptions& options = {});
+
+/// The bending stiffness that fits a shape with so many points best.
+struct StiffnessFactor {
+  int points = 0;     ///< N
+  double factor = 0;  ///< over the scene's [-], > 0
+};
+
+/// What a stiffness is that depends on the number of points, or does not: a power of the element's
+/// length, or a weight to which each element's ends add, as those of capsules do.
+/// @param coarse, fine  of the smallest and the largest N
+[[nodiscard]] Cause cause_of_factors(const Scene& scene, const StiffnessFactor& coarse,
+                                     const StiffnessFactor& fine);
+
+/// What a simulator's motion is held against.
+struct MotionReference {
+  ModelMotion motion;   ///< of the energy model, beyond `until`
+  double length = 0;    ///< of the rod [m]
+  double until = 0;     ///< [s]
+  int frames = 0;       ///< that are asked for
+  double travel = 0;    ///< RMS distance of its points from where they begin, of these frames [m]
+  ModelMotion at_rest;  ///< the scene's equilibrium, at all times
+};
+
+/// Of a scene that has a motion. @throws InputError, ConvergenceError as release_rod()
+[[nodiscard]] MotionReference motion_reference(const BatteryScene& scene,
+                                               const SolveOptions& options = {});
+
+/// RMS distance of all its points, at their own times and arc lengths, over the reference's travel.
+/// @throws InputError if it leaves the rod or the time, has less than half of the frames, or none
+/// near the first and the last time
+[[nodiscard]] double motion_error(const MotionReference& reference, const MarkerMotion& recorded);
+
+/// What is wrong with a motion, as far as it leaves little of its error: it stays where it begins,
+/// follows without inertia, is late or early, has another frequency, or is damped.
+/// @return one, or none
+[[nodiscard]] std::vector<Cause> motion_causes(const MotionReference& reference,
+                                               const MarkerMotion& recorded);
 
 }  // namespace dlo::compare

@@ -1,5 +1,3 @@
-#include "suite/motion_cause.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +13,7 @@
 #include "recording/lag_search.hpp"
 #include "recording/motion_residuals.hpp"
 #include "released/released_rod.hpp"
+#include "suite/cause.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "suite/answer.hpp"
-#include "suite/motion_answer.hpp"
 
 namespace dlo::compare {
 

@@ -10,7 +10,7 @@
 #include "dlo/compare/solution.hpp"
 #include "foreign/foreign_program.hpp"
 #include "suite/battery.hpp"
-#include "trajectory/read_markers.hpp"
+#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
 

@@ -1,9 +1,9 @@
-#include "suite/stiffness_cause.hpp"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <limits>
+
+#include "suite/cause.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -1,7 +1,7 @@
-#include "toml/scene_keys.hpp"
-
 #include <algorithm>
 #include <stdexcept>
+
+#include "toml/strict_table.hpp"
 
 namespace dlo::compare {
 

@@ -7,8 +7,7 @@
 #include <limits>
 #include <sstream>
 
-#include "base/text_limits.hpp"
-#include "base/words.hpp"
+#include "base/text.hpp"
 #include "dlo/compare/error.hpp"
 
 namespace dlo::compare {

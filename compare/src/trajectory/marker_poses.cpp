@@ -1,5 +1,3 @@
-#include "trajectory/marker_poses.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,7 +6,7 @@
 #include <utility>
 
 #include "dlo/compare/error.hpp"
-#include "trajectory/smooth_poses.hpp"
+#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -1,5 +1,3 @@
-#include "trajectory/read_markers.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +11,7 @@
 #include "decode/xml.hpp"
 #include "dlo/compare/error.hpp"
 #include "toml/quantity.hpp"
+#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
 namespace {

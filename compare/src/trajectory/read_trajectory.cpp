@@ -18,9 +18,6 @@
 #include "base/quote.hpp"
 #include "decode/csv_rows.hpp"
 #include "dlo/compare/error.hpp"
-#include "trajectory/marker_poses.hpp"
-#include "trajectory/read_markers.hpp"
-#include "trajectory/smooth_poses.hpp"
 #include "trajectory/trajectory_files.hpp"
 
 namespace dlo::compare {

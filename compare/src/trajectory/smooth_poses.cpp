@@ -1,5 +1,3 @@
-#include "trajectory/smooth_poses.hpp"
-
 #include <fmt/format.h>
 
 #include <Eigen/SparseCholesky>
@@ -7,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+
+#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
 namespace {

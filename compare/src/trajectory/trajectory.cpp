@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "trajectory/trajectory_leg.hpp"
+#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
 namespace {

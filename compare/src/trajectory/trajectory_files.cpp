@@ -1,10 +1,13 @@
 #include "trajectory/trajectory_files.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
+#include <string_view>
 #include <system_error>
 
 #include "base/input_file.hpp"
+#include "base/output_file.hpp"
 #include "dlo/compare/error.hpp"
 #include "toml/strict_table.hpp"
 
@@ -47,6 +50,50 @@ std::vector<std::string> trajectory_files(const std::string& scene_file) {
     }
   }
   return files;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Whether a name is STEM_00000.vtk, of five digits or more.
+bool is_frame_name(std::string_view name, const std::string& stem) {
+  constexpr std::string_view ending = ".vtk";
+  constexpr std::size_t fewest_digits = 5;
+  if (!name.starts_with(stem + "_") || !name.ends_with(ending)) return false;
+  name.remove_prefix(stem.size() + 1);
+  if (name.size() < fewest_digits + ending.size()) return false;
+  name.remove_suffix(ending.size());
+  return name.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+}  // namespace
+
+std::string series_stem(const std::string& series) {
+  fs::path stem = fs::path(series).filename();
+  while (stem.has_extension()) stem = stem.stem();
+  return stem.string();
+}
+
+std::string frame_names(const std::string& series) {
+  return series_stem(series) + "_00000.vtk, ..";
+}
+
+bool is_frame_of_series(const std::string& file, const std::string& series) {
+  const std::string stem = series_stem(series);
+  std::error_code unknown;
+  const fs::path folder = fs::weakly_canonical(fs::absolute(series).parent_path(), unknown);
+  // By its own name too: where a link is a frame, the file that it leads to is written.
+  for (const fs::path& path : {fs::weakly_canonical(fs::absolute(file), unknown),
+                               fs::weakly_canonical(fs::absolute(file).parent_path(), unknown) /
+                                   fs::path(file).filename()}) {
+    if (path.parent_path() == folder && is_frame_name(path.filename().string(), stem)) return true;
+  }
+  const fs::directory_iterator entries(folder, unknown);
+  return std::any_of(fs::begin(entries), fs::end(entries), [&](const fs::directory_entry& entry) {
+    return is_frame_name(entry.path().filename().string(), stem) &&
+           same_file(entry.path().string(), file);
+  });
 }
 
 }  // namespace dlo::compare

@@ -1,10 +1,10 @@
-#include "trajectory/trajectory_leg.hpp"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <tuple>
 #include <utility>
+
+#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
 namespace {

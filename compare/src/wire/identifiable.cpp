@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/gsl.hpp"
-#include "scene/reach.hpp"
+#include "scene/scene_problem.hpp"
 
 namespace dlo::compare {
 

@@ -7,7 +7,7 @@
 
 #include "base/timer.hpp"
 #include "least_squares/measured_shapes.hpp"
-#include "shape/arc_lengths.hpp"
+#include "shape/curve.hpp"
 #include "wire/between_shapes.hpp"
 #include "wire/wire_numbers.hpp"
 

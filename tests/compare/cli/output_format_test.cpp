@@ -10,19 +10,19 @@
 #include <string>
 #include <vector>
 
-#include "base/display.hpp"
 #include "base/number.hpp"
 #include "base/quote.hpp"
+#include "base/text.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/material.hpp"
 #include "dlo/compare/plan.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solve.hpp"
 #include "format/json.hpp"
-#include "format/solution_output.hpp"
+#include "format/result_output.hpp"
 #include "output_fixture.hpp"
 #include "scene_text.hpp"
-#include "series/dynamic_track_series.hpp"
+#include "series/series_output.hpp"
 
 namespace {
 

@@ -1,7 +1,5 @@
 // What `dlo paper` writes of a report, without the minutes that it takes to make one.
 
-#include "format/paper_output.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +12,7 @@
 
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/scene_file.hpp"
-#include "format/moving_output.hpp"
+#include "series/study_output.hpp"
 
 namespace dlo::cli {
 namespace {

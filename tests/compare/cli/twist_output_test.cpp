@@ -10,8 +10,7 @@
 
 #include "command_fixture.hpp"
 #include "dlo/compare/scene_file.hpp"
-#include "format/plan_output.hpp"
-#include "format/solution_output.hpp"
+#include "format/result_output.hpp"
 #include "scenes.hpp"
 
 namespace {

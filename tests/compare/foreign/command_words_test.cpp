@@ -1,10 +1,9 @@
-#include "foreign/command_words.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "../../says.hpp"
 #include "dlo/compare/error.hpp"
+#include "foreign/child_process.hpp"
 
 namespace dlo::compare {
 namespace {

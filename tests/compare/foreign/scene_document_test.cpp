@@ -1,4 +1,4 @@
-#include "foreign/scene_document.hpp"
+#include "format/scene_document.hpp"
 
 #include <gtest/gtest.h>
 

@@ -15,7 +15,7 @@
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solution.hpp"
 #include "dlo/compare/solve.hpp"
-#include "format/comparison_output.hpp"
+#include "format/result_output.hpp"
 #include "scenes.hpp"
 
 namespace dlo::compare {

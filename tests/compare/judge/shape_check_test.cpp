@@ -22,7 +22,7 @@
 #include "measured_shapes.hpp"
 #include "rope_beside_peg.hpp"
 #include "scenes.hpp"
-#include "shape/arc_lengths.hpp"
+#include "shape/curve.hpp"
 #include "solve/states.hpp"
 
 namespace dlo::compare {

@@ -11,7 +11,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/force_model/simulation.hpp"
 #include "motion/polygon_modes.hpp"
-#include "polygon/step_constants.hpp"
+#include "polygon/point_layout.hpp"
 #include "scenes.hpp"
 
 namespace dlo::compare {

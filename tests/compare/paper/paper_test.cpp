@@ -7,7 +7,7 @@
 
 #include "dlo/compare/force_model_settings.hpp"
 #include "paper/modulus_history.hpp"
-#include "paper/recomputed_tables.hpp"
+#include "paper/printed_tables.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -1,8 +1,6 @@
 // The picture of a recorded motion: recordings that are the rod's, late, displaced, in the plane,
 // in space, and of a rod that is straight.
 
-#include "picture/motion_figure.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +11,8 @@
 
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solve.hpp"
-#include "figure/gnuplot_script.hpp"
+#include "figure/gnuplot.hpp"
+#include "picture/figures.hpp"
 
 namespace dlo::compare {
 namespace {

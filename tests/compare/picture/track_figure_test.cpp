@@ -1,5 +1,3 @@
-#include "picture/track_figure.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +8,7 @@
 #include <string>
 
 #include "dlo/compare/scene_file.hpp"
+#include "picture/figures.hpp"
 
 namespace dlo::compare {
 namespace {

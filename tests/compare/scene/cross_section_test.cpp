@@ -13,7 +13,7 @@
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/scene_file.hpp"
-#include "foreign/scene_document.hpp"
+#include "format/scene_document.hpp"
 #include "scene/scene_problem.hpp"
 #include "scene_text.hpp"
 

@@ -1,7 +1,5 @@
 // Turns of a shape: what the solvers return against what the grips hold.
 
-#include "solve/linking.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,6 +9,7 @@
 #include "../../says.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/solve.hpp"
+#include "solve/held_frames.hpp"
 
 namespace dlo::compare {
 namespace {

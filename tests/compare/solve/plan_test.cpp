@@ -14,7 +14,7 @@
 #include "dlo/compare/solution.hpp"
 #include "dlo/compare/solve.hpp"
 #include "polygon/energy_problems.hpp"
-#include "scene/reach.hpp"
+#include "scene/scene_problem.hpp"
 #include "scenes.hpp"
 
 namespace dlo::compare {

@@ -1,5 +1,3 @@
-#include "scene/reach.hpp"
-
 #include <gtest/gtest.h>
 
 #include "dlo/compare/chain.hpp"
@@ -9,6 +7,7 @@
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/shape_check.hpp"
 #include "dlo/compare/solve.hpp"
+#include "scene/scene_problem.hpp"
 #include "scenes.hpp"
 
 namespace dlo::compare {

@@ -16,9 +16,7 @@
 #include "dlo/compare/solve.hpp"
 #include "explain/own_polygon.hpp"
 #include "suite/answer.hpp"
-#include "suite/balance.hpp"
 #include "suite/battery.hpp"
-#include "suite/stiffness_cause.hpp"
 
 namespace {
 

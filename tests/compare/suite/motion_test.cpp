@@ -13,9 +13,9 @@
 
 #include "command_fixture.hpp"
 #include "dlo/compare/shape.hpp"
+#include "suite/answer.hpp"
 #include "suite/battery.hpp"
-#include "suite/motion_answer.hpp"
-#include "suite/motion_cause.hpp"
+#include "suite/cause.hpp"
 #include "suite/pack.hpp"
 
 namespace {

@@ -18,7 +18,7 @@
 #include "dlo/compare/shape.hpp"
 #include "dlo/compare/shape_file.hpp"
 #include "dlo/compare/solve.hpp"
-#include "foreign/scene_document.hpp"
+#include "format/scene_document.hpp"
 #include "suite/answer.hpp"
 #include "suite/battery.hpp"
 

@@ -1,7 +1,5 @@
 // Grippers that two markers show, each at its own times.
 
-#include "trajectory/marker_poses.hpp"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -14,6 +12,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "folder_fixture.hpp"
+#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -1,11 +1,10 @@
-#include "trajectory/read_markers.hpp"
-
 #include <gtest/gtest.h>
 
 #include <string>
 
 #include "../../says.hpp"
 #include "dlo/compare/error.hpp"
+#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -1,13 +1,13 @@
 // Poses without what is faster than a cut-off: gain by the closed form, no lag, lines kept.
 
-#include "trajectory/smooth_poses.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <vector>
+
+#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -1,0 +1,267 @@
+#include "format/calibration_output.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+#include "base/quote.hpp"
+#include "base/text.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/material_fit.hpp"
+
+namespace dlo::cli {
+
+Key stiffness_key(const compare::Scene& scene) {
+  return scene.given_bending_stiffness ? Key{"bending_stiffness", "_Nm2"}
+                                       : Key{"youngs_modulus", "_Pa"};
+}
+
+Key heaviness_key(const compare::Scene& scene) {
+  return scene.given_mass_per_length ? Key{"mass_per_length", "_kg_per_m"}
+                                     : Key{"density", "_kg_per_m3"};
+}
+
+Key torsion_key() { return {"torsional_stiffness", "_Nm2"}; }
+
+std::vector<ShownValue> fitted_values(const compare::Calibration& report) {
+  const compare::Scene& scene = report.scenes.front();
+  const compare::MaterialFit& fit = report.fit;
+  std::vector<ShownValue> values = {
+      {scene.stiffness(), stiffness_key(scene), "", fit.youngs_modulus}};
+  const auto add = [&](const compare::NamedValue& said, const Key& key,
+                       const std::optional<compare::FittedValue>& value) {
+    if (value) values.push_back({said, key, key.name + "_", *value});
+  };
+  const double GJ = scene.twisting_stiffness();
+  add(scene.heaviness(), heaviness_key(scene), fit.density);
+  add({"GJ", "N m^2", GJ}, torsion_key(), fit.torsional_stiffness);
+  add({"GJ / EI", "", GJ / scene.mean_bending_stiffness()},
+      {"torsional_over_bending_stiffness", ""}, fit.torsion_over_bending);
+  return values;
+}
+
+std::string interval_text(const compare::FittedValue& value) {
+  const auto end = [](const std::optional<double>& at) {
+    return at ? fmt::format("{:.4g}", *at) : "...";
+  };
+  return fmt::format("95 %: {} to {}", end(value.low), end(value.high));
+}
+
+std::string option_words(const compare::FitAlternative& alternative) {
+  std::string out;
+  const auto add = [&](double number, const char* option, double unit, const char* name) {
+    if (!(number > 0)) return;
+    compare::append(out, " {} \"{:.3g} {}\"", option, number / unit, name);
+  };
+  constexpr double degree = std::numbers::pi / 180;
+  if (alternative.natural_curvature_terms > 0) {
+    compare::append(out, " --natural-curvature {}", alternative.natural_curvature_terms);
+  }
+  add(alternative.direction_tolerance, "--clamp-angles", degree, "deg");
+  add(alternative.position_tolerance, "--clamp-positions", 1e-3, "mm");
+  if (alternative.shared_clamps) out += " --same-clamps";
+  add(alternative.direction_scatter, "--clamp-scatter", degree, "deg");
+  add(alternative.camera_tilt, "--camera-tilt", degree, "deg");
+  return out.empty() ? out : out.substr(1);
+}
+
+namespace {
+
+using compare::append;
+using compare::Json;
+
+const char* text_of(compare::ChainClamp clamp) {
+  switch (clamp) {
+    case compare::ChainClamp::hinge:
+      return "a hinge at the clamp";
+    case compare::ChainClamp::welded:
+      return "segments at clamps welded to them";
+    case compare::ChainClamp::middle:
+      break;
+  }
+  return "clamped in the middle of a segment";
+}
+
+std::string spring_range_text(double low, double high, const char* unit) {
+  return low == high ? fmt::format("{:.4g}{}", low, unit)
+                     : fmt::format("{:.4g} to {:.4g}{}", low, high, unit);
+}
+
+std::string lengths_text(const compare::ChainSprings& chain) {
+  const std::vector<double>& h = chain.segment_lengths;
+  if (h.empty()) return fmt::format("{:.4g} m", chain.segment_length);
+  const auto [low, high] = std::minmax_element(h.begin(), h.end());
+  return spring_range_text(*low, *high, " m");
+}
+
+std::string stiffness_text(const compare::ChainSprings& chain) {
+  if (chain.joints.empty()) return fmt::format("{:.5g}", chain.stiffness);
+  const auto [low, high] =
+      std::minmax_element(chain.joints.begin(), chain.joints.end(),
+                          [](const auto& a, const auto& b) { return a.stiffness < b.stiffness; });
+  return spring_range_text(low->stiffness, high->stiffness, "");
+}
+
+/// Of unequal segments each joint.
+std::string joints_text(const compare::ChainSprings& chain) {
+  if (chain.joints.empty()) return "";
+  std::string out = fmt::format("              {:>11} {:>15} {:>24}\n", "s [m]", "k [N m/rad]",
+                                "discrete elastic rods'");
+  for (const compare::ChainJoint& joint : chain.joints) {
+    append(out, "              {:11.6f} {:15.6g} {:>24}\n", joint.at, joint.stiffness,
+           joint.binormal_stiffness > 0 ? fmt::format("{:.6g}", joint.binormal_stiffness) : "-");
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string chains_text(const std::vector<compare::ChainSprings>& chains) {
+  std::string out;
+  for (std::size_t i = 0; i < chains.size(); ++i) {
+    const compare::ChainSprings& chain = chains[i];
+    append(out, "{:<11} {} segments of {}, {}: {} N m/rad a joint, {:.4g} times EI/h{}\n",
+           i == 0 ? "chain" : "", chain.segments, lengths_text(chain), text_of(chain.clamp),
+           stiffness_text(chain), chain.over_rod,
+           chain.joints.empty() ? "" : ", h the mean of its two segments");
+    append(out, "            ({:.4g} mm from the rod on {}, RMS)\n", chain.rms_m * 1e3,
+           compare::display(chain.scene));
+    if (chain.joints.empty() && chain.binormal_stiffness > 0) {
+      append(out, "            ({:.5g} N m/rad a joint of discrete elastic rods)\n",
+             chain.binormal_stiffness);
+    }
+    out += joints_text(chain);
+  }
+  return out;
+}
+
+Json chains_json(const std::vector<compare::ChainSprings>& chains) {
+  Json result = Json::array();
+  for (const compare::ChainSprings& chain : chains) {
+    result.push_back({{"scene", chain.scene},
+                      {"clamp", compare::to_string(chain.clamp)},
+                      {"segments", chain.segments},
+                      {"segment_length_m", chain.segment_length},
+                      {"joint_stiffness_Nm_per_rad", chain.stiffness},
+                      {"binormal_stiffness_Nm_per_rad", chain.binormal_stiffness},
+                      {"over_bending_stiffness_per_length", chain.over_rod},
+                      {"rms_m", chain.rms_m}});
+    if (!chain.joints.empty()) {
+      result.back()["segment_lengths_m"] = chain.segment_lengths;
+      result.back()["joints"] =
+          compare::json_list(chain.joints, [](const compare::ChainJoint& joint) -> Json {
+            return {{"at_m", joint.at},
+                    {"joint_stiffness_Nm_per_rad", joint.stiffness},
+                    {"binormal_stiffness_Nm_per_rad", joint.binormal_stiffness}};
+          });
+    }
+  }
+  return result;
+}
+
+namespace {
+
+using compare::append;
+using compare::FittedValue;
+
+/// As a scene file has it.
+std::string vector_text(const Eigen::Vector3d& v) {
+  return compare::formatted("[{:.6e}, {:.6e}, {:.6e}]", v.x(), v.y(), v.z());
+}
+
+/// As a scene file has it [1/m].
+std::string natural_curvature_text(const compare::MaterialFit& fit) {
+  std::string out;
+  for (const Eigen::Vector2d& term : fit.natural_curvature) {
+    append(out, "{}[{:.6e}, {:.6e}]", out.empty() ? "" : ", ", term.x(), term.y());
+  }
+  return "[" + out + "]";
+}
+
+/// What the fit says of the rod beside its material, and of the camera.
+void add_shape_lines(std::string& out, const compare::MaterialFit& fit) {
+  if (fit.torsional_stiffness && fit.torsional_stiffness->value) {
+    append(out, "torsional_stiffness = {:.8e}  # N m^2, {}\n", *fit.torsional_stiffness->value,
+           interval_text(*fit.torsional_stiffness));
+  }
+  if (!fit.natural_curvature.empty()) {
+    append(out, "natural_curvature = {}\n", natural_curvature_text(fit));
+  }
+  if (!fit.camera_tilt.isZero(0)) {
+    append(out, "camera_tilt = {}  # rad, of the shapes' coordinates\n",
+           vector_text(fit.camera_tilt));
+  }
+}
+
+/// Whether a rod is given by EI and mass per length, not by E and density.
+/// @throws compare::InputError if it is given by one of each
+bool is_given_by_stiffness(const compare::Scene& scene) {
+  if (scene.given_bending_stiffness.has_value() == scene.given_mass_per_length.has_value()) {
+    return scene.given_bending_stiffness.has_value();
+  }
+  throw compare::InputError(
+      fmt::format("calibrate: {} and {} are of no one table (allowed: a scene with both "
+                  "bending_stiffness and "
+                  "mass_per_length, or with neither; -o FILE.json)",
+                  scene.stiffness().name, scene.heaviness().name));
+}
+
+void add_clamps(std::string& out, const compare::MaterialFit& fit) {
+  for (const compare::ClampCorrection& correction : fit.clamps) {
+    append(out, "[[gripper]]\nnumber = {}\nrotation = {}  # rad\ndisplacement = {}  # m\n",
+           correction.gripper + 1, vector_text(correction.rotation),
+           vector_text(correction.displacement));
+  }
+}
+
+}  // namespace
+
+void add_rod_lines(std::string& out, const compare::Scene& scene, const WrittenValue& stiffness,
+                   const WrittenValue& heaviness, const std::string& source) {
+  const bool given = is_given_by_stiffness(scene);
+  if (!given) out += "[[material]]\nname = \"calibrated\"\n";
+  std::string value = fmt::format("{:.8e}", stiffness.value);
+  if (scene.given_bending_stiffness_2) {
+    // A fit leaves the ratio of the two as it is.
+    const double ratio = *scene.given_bending_stiffness_2 / *scene.given_bending_stiffness;
+    value = fmt::format("[{}, {:.8e}]", value, ratio * stiffness.value);
+  }
+  append(out, "{} = {}  # {}, {}\n", stiffness_key(scene).name, value, scene.stiffness().unit,
+         stiffness.interval);
+  append(out, "{} = {:.8e}  # {}, {}\n", heaviness_key(scene).name, heaviness.value,
+         scene.heaviness().unit, heaviness.interval);
+  append(out, "{}{}{}\n", given ? "# " : "source = \"", source, given ? "" : "\"");
+}
+
+std::string material_toml(const compare::Calibration& report) {
+  const compare::MaterialFit& fit = report.fit;
+  const FittedValue& E = fit.youngs_modulus;
+  const bool identified = E.value && (!fit.density || fit.density->value);
+  // Numbers that are no material may still predict shapes, all together.
+  const bool predicts = fit.prediction && E.estimate && (!fit.density || fit.density->estimate);
+  if (!identified && !predicts) {
+    throw compare::InputError("calibrate: no material to write, " + fit.not_identified);
+  }
+  const compare::Scene& scene = report.scenes.front();
+  std::string out =
+      is_given_by_stiffness(scene)
+          ? "# Written by dlo calibrate, for --calibrated, or lines of a scene's [rod].\n"
+          : "# Written by dlo calibrate, for --calibrated, or --materials and material = "
+            "\"calibrated\" in a scene.\n";
+  if (!identified) {
+    append(out,
+           "# For shapes like these, of which one is predicted from the others to {:.4g} mm. No "
+           "material: {}.\n",
+           fit.prediction->rms_m * 1000, fit.not_identified);
+  }
+  add_shape_lines(out, fit);
+  add_rod_lines(out, scene, {*E.estimate, interval_text(E)},
+                fit.density ? WrittenValue{*fit.density->estimate, interval_text(*fit.density)}
+                            : WrittenValue{scene.heaviness().value, "of the scene"},
+                fmt::format("least squares of {} measured shape{}, noise {:.3g} m{}",
+                            fit.shapes.size(), fit.shapes.size() == 1 ? "" : "s", fit.noise_m,
+                            fit.correlation ? ", correlated along the rod" : ""));
+  add_clamps(out, fit);
+  return out;
+}
+
+}  // namespace dlo::cli

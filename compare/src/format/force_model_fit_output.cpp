@@ -1,0 +1,176 @@
+#include <algorithm>
+#include <cmath>
+
+#include "base/quote.hpp"
+#include "base/text.hpp"
+#include "dlo/compare/force_model_settings.hpp"
+#include "format/result_output.hpp"
+#include "record/csv_table.hpp"
+
+namespace dlo::cli {
+namespace {
+
+using compare::ForceModelFit;
+using compare::RuleDeviations;
+
+bool is_holdout(const ForceModelFit& fit, std::size_t i) {
+  return i + fit.holdouts >= fit.scenes.size();
+}
+
+std::string percent(double share) {
+  return std::isfinite(share) ? fmt::format("{:.3g} %", share * 100) : "-";
+}
+
+const char* c_c_origin(const ForceModelFit& fit) {
+  if (fit.c_c_was_given) return "as given";
+  return fit.c_c_is_physical ? "A E of the rod"
+                             : "stretches the rod by a tenth of the target at most";
+}
+
+}  // namespace
+
+std::string force_model_text(const ForceModelFit& fit, bool target_was_given) {
+  const compare::ForceModelSettings& s = fit.settings;
+  std::string out;
+  append(out, "law {}, bookkeeping {}, N = {}", compare::to_string(s.law),
+         compare::to_string(s.bookkeeping), s.points);
+  if (fit.order > 0) {
+    append(out, " (for a target of {:.3g} % of l; order of convergence {:.2f})", fit.target * 100,
+           fit.order);
+  }
+  append(out, "\n");
+  if (s.c_b && fit.c_b_was_given) {
+    append(out, "  c_b   {:.6g} N   as given\n", *s.c_b);
+  } else if (s.c_b) {
+    append(out, "  c_b   {:.6g} N   fitted to {} scene{}\n", *s.c_b,
+           fit.scenes.size() - fit.holdouts, fit.scenes.size() - fit.holdouts == 1 ? "" : "s");
+  } else {
+    append(out, "  EI    {:.6g} N m^2   physical, in place of c_b\n", fit.bending_stiffness);
+  }
+  append(out, "  c_c   {:.6g} N   {}\n", *s.c_c, c_c_origin(fit));
+  if (s.c_F) {
+    append(out, "  c_F   {:.6g} m/N   with stepper {}\n  c_h   {:.8f}\n  l_s   {:.6g} m\n\n",
+           *s.c_F, compare::to_string(s.stepper), *s.c_h, *s.l_s);
+  } else {
+    append(out, "  stepper {}, which has no parameters\n\n", compare::to_string(s.stepper));
+  }
+  append(out, "RMS deviation from the energy model, share of l\n");
+  append(out, "  {:<28} {:>8}", "", "Gamma");
+  for (const RuleDeviations& rule : fit.rules) {
+    append(out, " {:>15}", compare::to_string(rule.rule));
+  }
+  append(out, " {:>15} {:>9}\n", "stepped", "steps");
+  for (std::size_t i = 0; i < fit.scenes.size(); ++i) {
+    const std::string name = compare::display(fit.scenes[i].substr(0, 26));
+    append(out, "  {:<28} {:8.4g}", is_holdout(fit, i) ? name + " *" : name, fit.gammas[i]);
+    for (const RuleDeviations& rule : fit.rules) {
+      append(out, " {:>15}", percent(rule.rms_over_length[i]));
+    }
+    append(out, " {:>15} {:9}\n", percent(fit.stepped_rms_over_length[i]), fit.steps[i]);
+  }
+  append(out, "  ({}: rigid segments, no stretch; stepped: the force model itself, with stretch)\n",
+         s.law == compare::BendingLaw::hooke ? "physical" : "rules for c_b");
+  if (fit.holdouts > 0) append(out, "  (* held out: judged, not fitted)\n");
+  append(out, "\nworst {}", percent(fit.worst()));
+  if (fit.holdouts > 0) append(out, ", of the hold-out scenes {}", percent(fit.worst_holdout()));
+  append(out, ": the {} of {} is {}\n", target_was_given ? "target" : "default target",
+         percent(fit.target), fit.reached() ? "reached" : "not reached");
+  for (const std::string& reason : fit.why_missed())
+    append(out, "  {}\n", compare::wrap(reason, 2, 100));
+  return out;
+}
+
+std::string force_model_csv(const ForceModelFit& fit) {
+  compare::CsvTable table(
+      "scene,gamma,holdout,law=parameters/law,bookkeeping=parameters/bookkeeping,"
+      "points=parameters/points,c_c=parameters/c_c,c_F=parameters/c_F,c_h=parameters/c_h,"
+      "l_s=parameters/l_s,c_b=parameters/c_b");
+  for (const RuleDeviations& rule : fit.rules) {
+    table.add(fmt::format("rms_over_length_{0}=rules/{0}/rms_over_length",
+                          compare::to_string(rule.rule)));
+  }
+  table.add("rms_over_length_stepped=rms_over_length,steps");
+  Json document = force_model_json(fit);
+  for (Json& row : document["scenes"]) row["parameters"] = document["parameters"];
+  return table.text(document["scenes"]);
+}
+
+Json force_model_json(const ForceModelFit& fit) {
+  const compare::ForceModelSettings& s = fit.settings;
+  Json scenes = Json::array();
+  for (std::size_t i = 0; i < fit.scenes.size(); ++i) {
+    Json rules = Json::object();
+    for (const RuleDeviations& rule : fit.rules) {
+      Json entry = {{"rms_over_length", rule.rms_over_length[i]}};
+      if (!rule.c_b.empty()) entry["c_b"] = rule.c_b[i];
+      rules[compare::to_string(rule.rule)] = std::move(entry);
+    }
+    scenes.push_back({{"scene", fit.scenes[i]},
+                      {"gamma", fit.gammas[i]},
+                      {"holdout", is_holdout(fit, i)},
+                      {"rms_over_length", fit.stepped_rms_over_length[i]},
+                      {"stretch_rms_over_length", fit.stretch_rms_over_length[i]},
+                      {"steps", fit.steps[i]},
+                      {"rules", std::move(rules)}});
+  }
+  return {{"schema", "dlo/calibrate/1"},
+          {"parameters",
+           {{"law", compare::to_string(s.law)},
+            {"bookkeeping", compare::to_string(s.bookkeeping)},
+            {"points", s.points},
+            {"c_b", json_or_null(s.c_b)},
+            {"bending_stiffness_Nm2", fit.bending_stiffness},
+            {"segment_length_m", fit.segment_length},
+            {"c_c", *s.c_c},
+            {"stepper", compare::to_string(s.stepper)},
+            {"c_F", json_or_null(s.c_F)},
+            {"c_h", json_or_null(s.c_h)},
+            {"l_s", json_or_null(s.l_s)}}},
+          {"order_of_convergence", fit.order > 0 ? Json(fit.order) : Json(nullptr)},
+          {"target", fit.target},
+          {"reached", fit.reached()},
+          {"why_missed", fit.why_missed()},
+          {"deviation",
+           {{"worst_rms_over_length", fit.worst()},
+            {"worst_holdout_rms_over_length",
+             fit.holdouts > 0 ? Json(fit.worst_holdout()) : Json(nullptr)}}},
+          {"scenes", std::move(scenes)}};
+}
+
+std::string force_model_toml(const ForceModelFit& fit) {
+  const compare::ForceModelSettings& s = fit.settings;
+  const bool hooke = s.law == compare::BendingLaw::hooke;
+  std::string out =
+      "# Parameters of the force model, written by dlo calibrate from these scenes:\n";
+  for (std::size_t i = 0; i < fit.scenes.size(); ++i) {
+    std::string name = fit.scenes[i];
+    std::replace_if(
+        name.begin(), name.end(), [](unsigned char c) { return c < ' '; }, ' ');
+    append(out, "#   {} (Gamma = {:.4g}): RMS deviation {} of the length{}\n", name, fit.gammas[i],
+           percent(fit.stepped_rms_over_length[i]), is_holdout(fit, i) ? ", held out" : "");
+  }
+  append(out, "# Target {}: {}.\n", percent(fit.target), fit.reached() ? "reached" : "not reached");
+  append(out, "# dlo reads it with --parameters. Lengths in m, forces in N.\n\n[force_model]\n");
+  append(out, "law = \"{}\"\nbookkeeping = \"{}\"\n", compare::to_string(s.law),
+         compare::to_string(s.bookkeeping));
+  append(out, "points = {}  # N\n", s.points);
+  if (s.c_b) {
+    append(out, "c_b = {:.9e}  # N, bending stiffness: {}\n", *s.c_b,
+           fit.c_b_was_given ? "as given" : "fitted to the scenes' energy shapes");
+  }
+  append(out, "c_c = {:.9e}  # N, stretch stiffness: {}\n", *s.c_c, c_c_origin(fit));
+  append(out, "stepper = \"{}\"{}\n", compare::to_string(s.stepper),
+         s.c_F ? "  # Formulas 19 and 20" : "");
+  if (s.c_F) {
+    append(out, "c_F = {:.9e}  # m/N, heavy ball of the stiffest and slowest modes\n", *s.c_F);
+    append(out, "c_h = {:.9f}  # share of the last movement that is kept, likewise\n", *s.c_h);
+    append(out, "l_s = {:.9e}  # m, largest relative movement per step: L/4\n", *s.l_s);
+  }
+  append(out, "\n[derived]  # for programs of your own, of the first scene\n");
+  append(out, "segment_length = {:.9e}  # m, L\n", fit.segment_length);
+  append(out, "bending_stiffness = {:.9e}  # N m^2, EI{}\n", fit.bending_stiffness,
+         hooke ? ": the hooke law's joint moment is 2 (EI/L) tan(alpha/2)" : "");
+  return out;
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,324 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+
+#include "base/text.hpp"
+#include "dlo/compare/alignment.hpp"
+#include "format/calibration_output.hpp"
+#include "format/result_output.hpp"
+#include "record/csv_table.hpp"
+
+namespace dlo::cli {
+namespace {
+
+using compare::FittedValue;
+
+std::string value_text(const FittedValue& value, const char* unit) {
+  const std::string_view blank = *unit == '\0' ? "" : " ";
+  const std::string interval = fmt::format("{}{}{}", interval_text(value), blank, unit);
+  if (!value.low && !value.high) return "not identified";
+  if (!value.value) return "not identified, " + interval;
+  return fmt::format("{:.5g}{}{}, {}", *value.value, blank, unit, interval);
+}
+
+/// What makes the interval wider than that of independent errors.
+std::string correlation_text(const compare::Calibration& report) {
+  const compare::CorrelatedErrors& errors = *report.fit.correlation;
+  const FittedValue& E = report.fit.youngs_modulus;
+  const bool has_interval = E.low || E.high;
+  return fmt::format(
+      "            errors along the rod are correlated: {:.0f} % of their variance over about "
+      "{:.2g} "
+      "m\n            ({:.0f} % of the rod){} ({:.3g} degrees of freedom)\n",
+      errors.share * 100, errors.length_m, errors.length_m / report.scenes.front().length * 100,
+      has_interval ? fmt::format("; the interval is {:.3g} times as wide to account for that",
+                                 errors.widening)
+                   : "",
+      errors.degrees_of_freedom);
+}
+
+/// A number beside E, in the units that people read.
+std::string text_of(const compare::FittedNumber& number) {
+  struct Shown {
+    double factor;
+    const char* unit;
+  };
+  const Shown shown = number.unit == "rad" ? Shown{180 / std::numbers::pi, "deg"}
+                      : number.unit == "m" ? Shown{1e3, "mm"}
+                                           : Shown{1, number.unit.c_str()};
+  if (!number.is_seen()) {
+    return fmt::format("{}: not seen by these shapes, known to {:.3g} {}", number.name,
+                       number.known_before * shown.factor, shown.unit);
+  }
+  return fmt::format("{}: {:.4g} {}, standard deviation {:.2g} {}", number.name,
+                     number.value * shown.factor, shown.unit, number.deviation * shown.factor,
+                     shown.unit);
+}
+
+/// The wire's own numbers, or those of one shape, indented.
+std::string numbers_text(const compare::MaterialFit& fit, const std::optional<std::size_t>& shape) {
+  std::string out;
+  for (const compare::FittedNumber& number : fit.others) {
+    if (number.shape == shape) append(out, "            {}\n", text_of(number));
+  }
+  return out;
+}
+
+/// The options that were chosen, and what the others predict.
+std::string tried_text(const std::vector<compare::FitAlternative>& tried) {
+  std::string out;
+  for (std::size_t i = 0; i < tried.size(); ++i) {
+    const std::string words = option_words(tried[i]);
+    append(out, "{} {}: {}residual {:.4g} mm{}\n", i == 0 ? "chosen     " : "           ",
+           words.empty() ? "no option" : words,
+           tried[i].prediction_m ? fmt::format("predicts {:.4g} mm, ", *tried[i].prediction_m * 1e3)
+                                 : "",
+           tried[i].rms_m * 1e3, tried.size() == 1 ? ", nothing in it is systematic" : "");
+  }
+  return out;
+}
+
+std::string alternatives_text(const compare::Calibration& report) {
+  std::string out;
+  const compare::NamedValue stiffness = report.scenes.front().stiffness();
+  for (const compare::FitAlternative& alternative : report.fit.alternatives) {
+    append(out, "            {} would leave {:.4g} mm, {} {}\n", option_words(alternative),
+           alternative.rms_m * 1e3, stiffness.name,
+           value_text(alternative.youngs_modulus, stiffness.unit));
+  }
+  return out;
+}
+
+std::string prediction_text(const compare::Prediction& prediction) {
+  std::string out = fmt::format(
+      "prediction  {:.4g} mm between each shape and the rod fitted to the others (RMS)\n",
+      prediction.rms_m * 1e3);
+  if (!prediction.repeatability_m) return out;
+  append(out, "            {:.4g} mm between each shape and the mean of the others: ",
+         *prediction.repeatability_m * 1e3);
+  const double ratio = prediction.over_repeatability().value_or(1);
+  if (ratio > compare::worse_than_repeatability) {
+    append(out,
+           "predictions are {:.3g} times worse\n            than the shapes repeat, so the fit "
+           "lacks something that all shapes have in common\n",
+           ratio);
+  } else {
+    out += "a prediction can hardly come nearer\n";
+  }
+  return out;
+}
+
+/// "length, scale and vertical are"
+std::string assumed_text(std::vector<std::string> assumed) {
+  if (assumed.size() == 1) return assumed.front() + " is";
+  const std::string last = assumed.back();
+  assumed.pop_back();
+  return fmt::format("{} and {} are", fmt::join(assumed, ", "), last);
+}
+
+/// Noise, correlation along the rod, scatter between shapes.
+std::string errors_text(const compare::Calibration& report) {
+  const compare::MaterialFit& fit = report.fit;
+  std::string out;
+  if (fit.scatter) {
+    append(out,
+           "            the shapes do not agree: they scatter by {:.2g} % in {} (by chance in "
+           "{:.2g} % of cases);\n            the interval is {:.3g} times as wide to account for "
+           "that\n",
+           fit.scatter->relative_deviation * 100, report.scenes.front().stiffness().name,
+           fit.scatter->chance * 100, fit.scatter->widening);
+  }
+  append(out, "noise       {:.4g} mm in each coordinate, {} ({} degrees of freedom)\n",
+         fit.noise_m * 1e3, fit.noise_is_estimated ? "estimated from the residuals" : "given",
+         fit.degrees_of_freedom);
+  if (fit.correlation) {
+    out += correlation_text(report);
+    if (fit.others.empty() && fit.alternatives.empty()) {
+      out +=
+          "            (misaligned clamps, or a wire that is not intrinsically straight, leave "
+          "such "
+          "residuals:\n            --clamp-angles, --natural-curvature)\n";
+    }
+  }
+  return out;
+}
+
+std::string shapes_text(const compare::Calibration& report) {
+  const compare::MaterialFit& fit = report.fit;
+  std::string out;
+  for (std::size_t i = 0; i < fit.shapes.size(); ++i) {
+    const compare::Alignment& a = fit.shapes[i].alignment;
+    append(out, "shape       {} on {}: {} points, {}, RMS {:.4g} mm\n",
+           compare::display(report.files[i]), compare::display(fit.shapes[i].scene),
+           a.shape.points.cols(), range_text(a, report.scenes[i].length),
+           std::sqrt(a.mean_square) * 1e3);
+    append(out, "            arc lengths: {}\n", compare::to_string(a.arc_lengths));
+    if (report.frame_was_found)
+      append(out, "            frame {}\n", pose_text(a.pose, report.scenes[i].length));
+    out += numbers_text(fit, i);
+  }
+  return out;
+}
+
+/// Of the two sides the larger; none if the interval is open.
+std::optional<double> half_width(const FittedValue& value) {
+  if (!value.value) return std::nullopt;
+  return std::max(*value.high - *value.value, *value.value - *value.low);
+}
+
+Json numbers_json(const compare::MaterialFit& fit) {
+  return json_list(fit.others, [&](const compare::FittedNumber& number) -> Json {
+    return {{"name", number.name},
+            {"unit", number.unit},
+            {"value", number.value},
+            {"standard_deviation", number.deviation},
+            {"known_before", number.known_before},
+            {"seen", number.is_seen()},
+            {"shape", json_or_null(number.shape)}};
+  });
+}
+
+Json scatter_json(const compare::ScatterBetweenShapes& scatter) {
+  return {{"relative_deviation", scatter.relative_deviation},
+          {"chance", scatter.chance},
+          {"interval_widened_by", scatter.widening}};
+}
+
+/// @param prefix  of the keys of its uncertainty and its interval
+void add_value(Json& result, const Key& key, const std::string& prefix, const FittedValue& value) {
+  result[key.text()] = json_or_null(value.value);
+  result[prefix + "uncertainty" + key.unit] = json_or_null(half_width(value));
+  result[prefix + "interval_95" + key.unit] = {json_or_null(value.low), json_or_null(value.high)};
+}
+
+Json alternatives_json(const compare::Calibration& report,
+                       const std::vector<compare::FitAlternative>& alternatives) {
+  Json result = Json::array();
+  for (const compare::FitAlternative& alternative : alternatives) {
+    Json one = {{"options", option_words(alternative)},
+                {"natural_curvature_terms", alternative.natural_curvature_terms},
+                {"direction_tolerance_rad", alternative.direction_tolerance},
+                {"position_tolerance_m", alternative.position_tolerance},
+                {"same_clamps", alternative.shared_clamps},
+                {"direction_scatter_rad", alternative.direction_scatter},
+                {"camera_tilt_rad", alternative.camera_tilt},
+                {"prediction_rms_m", json_or_null(alternative.prediction_m)},
+                {"rms_m", alternative.rms_m}};
+    add_value(one, stiffness_key(report.scenes.front()), "", alternative.youngs_modulus);
+    result.push_back(std::move(one));
+  }
+  return result;
+}
+
+Json shapes_json(const compare::Calibration& report) {
+  const compare::MaterialFit& fit = report.fit;
+  Json shapes = Json::array();
+  for (std::size_t i = 0; i < fit.shapes.size(); ++i) {
+    const compare::Alignment& alignment = fit.shapes[i].alignment;
+    Json shape = {{"scene", fit.shapes[i].scene}, {"shape", report.files[i]}};
+    shape.update(to_json(alignment));
+    shape["rms_m"] = std::sqrt(alignment.mean_square);
+    shape["arc_length_m"] = alignment.shape.arc_length;
+    shape["points_m"] = points_json(alignment.shape.points);
+    shapes.push_back(std::move(shape));
+  }
+  return shapes;
+}
+
+}  // namespace
+
+std::string material_text(const compare::Calibration& report) {
+  const compare::MaterialFit& fit = report.fit;
+  std::string out;
+  for (const ShownValue& one : fitted_values(report)) {
+    const compare::NamedValue& said = one.said;
+    append(out, "{:<11} {}   (scene: {:.5g}{}{})\n", said.name, value_text(one.value, said.unit),
+           said.value, *said.unit == '\0' ? "" : " ", said.unit);
+  }
+  if (!fit.assumed.empty()) {
+    append(out, "            (if {} as given: errors of these may leave no residual)\n",
+           assumed_text(fit.assumed));
+  }
+  if (!fit.not_identified.empty()) append(out, "            {}\n", fit.not_identified);
+  if (!fit.warning.empty()) append(out, "            {}\n", fit.warning);
+  out += numbers_text(fit, std::nullopt);
+  out += errors_text(report);
+  append(out, "residual    {:.4g} mm between points and rod (RMS)\n", fit.rms_m * 1e3);
+  if (fit.prediction) out += prediction_text(*fit.prediction);
+  for (const compare::HeldOutShape& shape : report.held_out) {
+    append(out, "held out    {} on {}: {:.4g} mm between its points and the fitted rod (RMS)\n",
+           compare::display(shape.file), compare::display(shape.scene), shape.rms_m * 1e3);
+  }
+  out += tried_text(fit.tried);
+  out += alternatives_text(report);
+  out += shapes_text(report);
+  out += chains_text(report.fit.chains);
+  return out;
+}
+
+std::string material_csv(const compare::Calibration& report) {
+  const Key stiffness = stiffness_key(report.scenes.front());
+  const Key heaviness = heaviness_key(report.scenes.front());
+  compare::CsvTable table(fmt::format(
+      "{0},low{1}=interval_95{1}/0,high{1}=interval_95{1}/1,{2},{3}_low={3}_interval_95{4}/0,"
+      "{3}_high={3}_interval_95{4}/1",
+      stiffness.text(), stiffness.unit, heaviness.text(), heaviness.name, heaviness.unit));
+  table.add(
+      "noise_m,degrees_of_freedom,rms_m,not_identified,warning,errors_are_correlated,"
+      "correlation_length_m=correlation/length_m,correlation_share=correlation/share_of_variance,"
+      "interval_widened_by=correlation/interval_widened_by,"
+      "effective_degrees_of_freedom=correlation/effective_degrees_of_freedom");
+  table.add(fmt::format("{0}{1},{0}_low={0}_interval_95{1}/0,{0}_high={0}_interval_95{1}/1",
+                        torsion_key().name, torsion_key().unit));
+  return table.header() + table.row(material_json(report));
+}
+
+Json material_json(const compare::Calibration& report) {
+  const compare::MaterialFit& fit = report.fit;
+  Json result = {{"schema", "dlo/calibrate/1"}};
+  for (const ShownValue& one : fitted_values(report)) {
+    add_value(result, one.key, one.prefix, one.value);
+  }
+  result["assumed"] = fit.assumed;
+  result["not_identified"] = text_or_null(fit.not_identified);
+  result["warning"] = text_or_null(fit.warning);
+  result["noise_m"] = fit.noise_m;
+  for (const compare::HeldOutShape& shape : report.held_out) {
+    result["held_out"].push_back(
+        {{"file", shape.file}, {"scene", shape.scene}, {"rms_m", shape.rms_m}});
+  }
+  result["noise_is_estimated"] = fit.noise_is_estimated;
+  result["degrees_of_freedom"] = fit.degrees_of_freedom;
+  result["errors_are_correlated"] =
+      fit.correlation_was_tested ? Json(fit.correlation.has_value()) : Json(nullptr);
+  result["correlation"] = json_or_null(fit.correlation, [](const auto& errors) -> Json {
+    return {{"length_m", errors.length_m},
+            {"share_of_variance", errors.share},
+            {"interval_widened_by", errors.widening},
+            {"effective_degrees_of_freedom", errors.degrees_of_freedom}};
+  });
+  result["common_share"] = json_or_null(fit.common_share);
+  result["alternatives"] = alternatives_json(report, fit.alternatives);
+  result["tried"] = alternatives_json(report, fit.tried);
+  result["others"] = numbers_json(fit);
+  result["chains"] = chains_json(fit.chains);
+  result["clamps"] = json_list(fit.clamps, [](const compare::ClampCorrection& one) -> Json {
+    return {{"gripper", one.gripper},
+            {"rotation_rad", compare::to_json(one.rotation)},
+            {"displacement_m", compare::to_json(one.displacement)}};
+  });
+  result["camera_tilt_rad"] = compare::to_json(fit.camera_tilt);
+  result["prediction"] = json_or_null(fit.prediction, [](const auto& found) -> Json {
+    return {{"rms_m", found.rms_m},
+            {"repeatability_m", json_or_null(found.repeatability_m)},
+            {"over_repeatability", json_or_null(found.over_repeatability())},
+            {"shapes_m", found.shapes_m}};
+  });
+  result["scatter_between_shapes"] = json_or_null(fit.scatter, scatter_json);
+  result["rms_m"] = fit.rms_m;
+  result["shapes"] = shapes_json(report);
+  return result;
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,264 @@
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "base/text.hpp"
+#include "dlo/compare/deviation.hpp"
+#include "format/result_output.hpp"
+#include "record/csv_table.hpp"
+#include "record/solution_fields.hpp"
+#include "scene/scene_problem.hpp"
+
+namespace dlo::cli {
+namespace {
+
+const char* rule_text(compare::ArcLengths rule) {
+  switch (rule) {
+    case compare::ArcLengths::file:
+      return "the file's own";
+    case compare::ArcLengths::chord:
+      return "chord lengths of the whole rod";
+    case compare::ArcLengths::nearest:
+    case compare::ArcLengths::automatic:
+      break;
+  }
+  return "nearest points, so differences along the rod do not show";
+}
+
+/// What was derived of a simulator's model.
+void add_model(std::string& out, const compare::Scene& scene) {
+  const compare::ModelChain& model = *scene.model;
+  const Eigen::Vector3d& g = scene.gravity;
+  append(out,
+         "  model           {}: {} segments of {:.4g} m, l = {:.4g} m\n"
+         "                  mass {:.4g} kg, EI = {:.4g} N m^2, ",
+         compare::display(model.words), model.segments,
+         scene.length / static_cast<double>(model.segments), scene.length, scene.mass(),
+         scene.bending_stiffness());
+  if (scene.torsional_stiffness) append(out, "GJ = {:.4g} N m^2, ", *scene.torsional_stiffness);
+  append(out, "gravity [{:g}, {:g}, {:g}] m/s^2\n", g.x(), g.y(), g.z());
+  for (const compare::Gripper& gripper : scene.grippers) {
+    append(out, "                  {} at s = {:.4g} m\n", gripper.direction ? "clamp" : "pin",
+           gripper.at);
+  }
+  for (const std::string& note : model.notes) {
+    append(out, "                  ({})\n", compare::display(note));
+  }
+}
+
+/// The same for other programs.
+Json model_json(const compare::Scene& scene) {
+  return {{"made_from", scene.model->words},
+          {"segments", scene.model->segments},
+          {"length_m", scene.length},
+          {"mass_kg", scene.mass()},
+          {"bending_stiffness_Nm2", scene.bending_stiffness()},
+          {"torsional_stiffness_Nm2",
+           scene.torsional_stiffness ? Json(*scene.torsional_stiffness) : Json()},
+          {"notes", scene.model->notes}};
+}
+
+/// A text as one cell of a table of Markdown, none of its characters a mark.
+std::string markdown(const std::string& text) {
+  std::string out;
+  for (const char c : compare::display(text)) {
+    if (std::string_view("\\`*_[]<>|#&").find(c) != std::string_view::npos) out += '\\';
+    out += c;
+  }
+  return out;
+}
+
+/// What of the rod the file shows.
+void add_seen(std::string& out, const compare::CheckResult& report, const std::string& unit_hint) {
+  const compare::ShapeCheck& c = report.check;
+  const std::vector<double>& s = c.reference.arc_length;
+  append(out, "  shape           {}: {} points, {}\n", compare::display(c.file), s.size(),
+         range_text(c.alignment, report.scene.length));
+  for (const std::string& note : report.notes) {
+    append(out, "                  ({})\n", compare::display(note));
+  }
+  if (!c.direction_is_clear) append(out, "                  (the other direction fits as well)\n");
+  append(out, "  arc lengths     {}\n", rule_text(c.alignment.arc_lengths));
+  append(out,
+         "  seen            s = {:.4g} to {:.4g} m, {:.4g} % of l; polyline {:.4g} m; largest gap "
+         "{:.4g} m at s = {:.4g} m\n",
+         s.front(), s.back(), c.seen_share * 100, c.polyline_length_m, c.largest_gap_m,
+         c.largest_gap_at_m);
+  const std::string hint = c.hint.empty() ? unit_hint : c.hint;
+  if (!hint.empty()) append(out, "                  ({})\n", hint);
+}
+
+void add_frame(std::string& out, const compare::CheckResult& report) {
+  if (report.pose == compare::PoseFreedom::known) {
+    append(out, "  frame           the scene's\n");
+    return;
+  }
+  append(out, "  frame           found ({}): {}\n", compare::to_string(report.pose),
+         pose_text(report.check.alignment.pose, report.scene.length));
+  if (!report.check.turn_is_clear) {
+    append(out,
+           "                  (the rotation about the rod's own line is not identifiable from "
+           "these points)\n");
+  }
+}
+
+void add_deviation(std::string& out, const compare::ShapeCheck& c, double length) {
+  const compare::Deviation& d = c.deviation;
+  add_largest_and_rms(out, d);
+  const Eigen::Vector3d at = shown(c.worst_position, length);
+  append(out, " (point {} of the file, at [{:.4g}, {:.4g}, {:.4g}] m)\n", c.worst_point, at.x(),
+         at.y(), at.z());
+  if (std::isfinite(d.tip_m)) append(out, "                  tip {:.4g} mm\n", d.tip_m * 1e3);
+  if (c.whole_rms_m > d.rms_m * (1 + 1e-6)) {
+    append(out,
+           "                  as the whole rod RMS {:.4g} mm, largest {:.4g} mm: what is missing "
+           "counts with its distance from the outermost point\n",
+           c.whole_rms_m * 1e3, c.whole_max_m * 1e3);
+  }
+  if (std::isfinite(d.angle_rms_rad)) add_angle_and_curvature(out, d);
+  if (std::isfinite(c.movement_m)) {
+    append(out, "  movement        the rod is {:.4g} mm = {:.4g} % of l away from straight (RMS)\n",
+           c.movement_m * 1e3, c.movement_m / length * 100);
+  }
+}
+
+void add_explanations(std::string& out, const compare::CheckResult& report) {
+  constexpr std::size_t most_explanations = 3;
+  for (std::size_t i = 0; i < std::min(most_explanations, report.explanations.size()); ++i) {
+    const compare::Explanation& explanation = report.explanations[i];
+    append(out, "  {}  RMS {:.4g} mm if {}{}\n", i == 0 ? "explained by  " : "              ",
+           explanation.rms_m * 1e3,
+           explanation.kind == compare::ExplanationKind::discretisation ? "it is " : "",
+           explanation.cause);
+  }
+}
+
+}  // namespace
+
+std::string shape_check_text(const CheckPage& page) {
+  const compare::CheckResult& report = page.result;
+  const compare::ShapeCheck& c = report.check;
+  const compare::Scene& scene = report.scene;
+  std::string out;
+  append(out, "{}   Gamma = {:.4g}\n", compare::display(c.scene), c.gamma);
+  if (scene.model) add_model(out, scene);
+  add_seen(out, report, page.unit_hint);
+  add_frame(out, report);
+  add_deviation(out, c, scene.length);
+  if (report.supersedes_modulus) {
+    append(out,
+           "  {:<15} no measure of the material: what explains the shape comes nearer than any "
+           "stiffness, which leaves {:.4g} mm (RMS)\n",
+           fmt::format("{0}*/{0}", c.stiffness.name), c.effective_modulus.rms_m * 1e3);
+  } else {
+    add_modulus(out, c.effective_modulus, NAN, c.stiffness, c.modulus);
+  }
+  add_state(out, c.state, scene.length, "the shape");
+  if (compare::friction_in_reach(scene)) {
+    append(out, "  neglected       friction that the scene has: all above is without it\n");
+  }
+  add_explanations(out, report);
+  append(out, "  verdict         {}: {}\n",
+         page.verdict.empty() ? compare::to_string(report.judgement.verdict) : page.verdict,
+         report.judgement.reason);
+  const std::string both = compare::other_stiffness_within(report);
+  if (!both.empty()) append(out, "                  ({})\n", both);
+  return out;
+}
+
+Json shape_check_json(const compare::CheckResult& report) {
+  const compare::ShapeCheck& c = report.check;
+  const std::vector<double>& s = c.reference.arc_length;
+  Json result = {{"schema", "dlo/check/1"},
+                 {"scene", c.scene},
+                 {"shape", c.file},
+                 {"gamma", c.gamma},
+                 {"points", s.size()}};
+  if (report.scene.model) result["model"] = model_json(report.scene);
+  if (!report.notes.empty()) result["notes"] = report.notes;
+  result.update(to_json(c.alignment));
+  result["direction_is_clear"] = c.direction_is_clear;
+  result["turn_is_clear"] = c.turn_is_clear;
+  result["seen"] = {{"from_m", s.front()},
+                    {"to_m", s.back()},
+                    {"share", c.seen_share},
+                    {"polyline_length_m", c.polyline_length_m},
+                    {"largest_gap_m", c.largest_gap_m},
+                    {"largest_gap_at_m", c.largest_gap_at_m},
+                    {"excess_m", c.excess_m}};
+  result["hint"] = c.hint.empty() ? Json() : Json(c.hint);
+  result["deviation"] =
+      compare::json_of(compare::numbers_of(compare::deviation_fields(), c.deviation));
+  result["deviation"]["whole_rms_m"] = c.whole_rms_m;
+  result["deviation"]["whole_max_m"] = c.whole_max_m;
+  result["deviation"]["worst_point"] = c.worst_point;
+  result["deviation"]["worst_position_m"] = to_json(c.worst_position);
+  result["movement_m"] = c.movement_m;
+  result.update(modulus_json(c.effective_modulus));
+  const bool given_by_EI = report.scene.given_bending_stiffness.has_value();
+  result[given_by_EI ? "effective_bending_stiffness_Nm2" : "effective_modulus_Pa"] = c.modulus;
+  result["superseded_by"] =
+      report.supersedes_modulus ? Json(report.supersedes_modulus->cause) : Json();
+  result["tolerance"] = {{"measure", report.tolerance.largest ? "max" : "rms"},
+                         {"allowed_m", report.tolerance.allowed_m},
+                         {"of_deflection", report.tolerance.deflection_share > 0},
+                         {"least_seen_share", report.tolerance.least_seen_share},
+                         {"part", report.tolerance.part},
+                         {"default", report.tolerance.by_default}};
+  result["judged_m"] = report.judgement.judged_m;
+  result["verdict"] = compare::to_string(report.judgement.verdict);
+  const std::optional<bool>& significant = report.judgement.significant;
+  result["significant"] = significant ? Json(*significant) : Json();
+  result["deflection_m"] = report.deflection_m;
+  result["reason"] = report.judgement.reason;
+  result["explanations"] =
+      json_list(report.explanations, [](const compare::Explanation& explanation) -> Json {
+        return {{"cause", explanation.cause},
+                {"kind", compare::to_string(explanation.kind)},
+                {"numbers", explanation.numbers},
+                {"rms_m", explanation.rms_m}};
+      });
+  result["state"] = to_json(c.state);
+  if (compare::friction_in_reach(report.scene)) result["neglected"] = {"friction"};
+  result["arc_length_m"] = s;
+  result["points_m"] = points_json(c.alignment.shape.points);
+  result["reference_points_m"] = points_json(c.reference.points);
+  return result;
+}
+
+std::string shape_check_markdown(const compare::CheckResult& report) {
+  const compare::ShapeCheck& c = report.check;
+  std::string out = fmt::format("### {} {}: {}\n\n{}\n\n", report.passes() ? "\u2705" : "\u274c",
+                                compare::to_string(report.judgement.verdict), markdown(c.scene),
+                                markdown(report.judgement.reason));
+  append(out, "| | |\n|---|---|\n");
+  append(out, "| shape | {} |\n", markdown(c.file));
+  append(out, "| RMS | {:.4g} mm = {:.3g} % of l |\n", c.deviation.rms_m * 1e3,
+         c.deviation.rms_over_length * 100);
+  append(out, "| largest | {:.4g} mm at s = {:.4g} m |\n", c.deviation.max_m * 1e3,
+         c.deviation.max_at_m);
+  if (compare::is_identified(c.effective_modulus.optimum) && !report.supersedes_modulus) {
+    append(out, "| E\\*/E | {:.4g} |\n", c.effective_modulus.ratio);
+  }
+  for (const compare::Explanation& explanation : report.explanations) {
+    append(out, "| RMS {:.3g} mm if | {} |\n", explanation.rms_m * 1e3,
+           markdown(explanation.cause));
+  }
+  const std::string both = compare::other_stiffness_within(report);
+  return both.empty() ? out : out + "\n" + markdown(both) + "\n";
+}
+
+std::string shape_check_csv(const compare::CheckResult& report) {
+  const compare::CsvTable table(
+      "scene,shape,gamma,points,reversed,arc_lengths,from_m=seen/from_m,to_m=seen/to_m,"
+      "rms_m=deviation/rms_m,rms_over_length=deviation/rms_over_length,"
+      "rms_over_movement=deviation/rms_over_movement,max_m=deviation/max_m,"
+      "max_at_m=deviation/max_at_m,worst_point=deviation/worst_point,tip_m=deviation/tip_m,"
+      "movement_m,effective_modulus_ratio,rms_at_effective_modulus_m,optimum,"
+      "tolerance_m=tolerance/allowed_m,verdict,seen_share=seen/share,reason,"
+      "whole_rms_m=deviation/whole_rms_m,whole_max_m=deviation/whole_max_m,"
+      "significant,deflection_m");
+  return table.header() + table.row(shape_check_json(report));
+}
+
+}  // namespace dlo::cli
