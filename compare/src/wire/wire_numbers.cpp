@@ -40,10 +40,12 @@ std::optional<Eigen::Vector3d> plane_of(const Scene& scene, const MeasuredShape&
 bool twists(const Scene& scene) { return scene.twisting_stiffness() > 0 && !scene.planar(); }
 
 void add_natural_curvature(std::vector<WireNumber>& numbers, const std::vector<Scene>& scenes,
+                           const std::vector<MeasuredShape>& shapes,
                            const MaterialFitOptions& options) {
-  const bool planar =
-      options.roll_tolerance == 0 &&
-      std::all_of(scenes.begin(), scenes.end(), [](const Scene& scene) { return scene.planar(); });
+  bool planar = options.roll_tolerance == 0;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    planar = planar && plane_of(scenes[i], shapes[i]).has_value();
+  }
   // Where nothing is known of how the rod is turned, its mean curvature is about d2.
   const bool turned = options.roll_tolerance > unknown_roll;
   for (const Scene& scene : scenes) {
@@ -275,7 +277,7 @@ std::vector<WireNumber> wire_numbers(const std::vector<Scene>& scenes,
   }
   if (options.torsional_stiffness) add_torsion(numbers, scenes);
   if (options.natural_curvature_terms > 0) {
-    add_natural_curvature(numbers, scenes, options);
+    add_natural_curvature(numbers, scenes, shapes, options);
   }
   const std::size_t sets = options.shared_clamps ? 1 : scenes.size();
   if (options.shared_clamps) require_like_clamps(scenes);

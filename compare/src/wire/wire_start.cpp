@@ -41,25 +41,40 @@ struct NearestStart {
   }
 };
 
+/// Whether the mean natural curvature is fitted about both axes of the section, about d2 first.
+bool is_about_both_axes(const WireProblem& problem) {
+  const auto second = static_cast<std::size_t>(problem.first_of_others()) + 1;
+  return second < problem.numbers.size() && problem.numbers[second].term == 0 &&
+         problem.numbers[second].described.unit == "1/m";
+}
+
 /// The same of each mean curvature all over what is likely [turns of the rod], gone through from
 /// both ends, each shape following its own equilibrium; where it is not known how the clamp holds
-/// the rod, with angles all around.
+/// the rod, with angles all around. A curvature about both axes has several directions.
 std::vector<NearestStart> nearest_by_curvature(const WireProblem& problem,
                                                const Eigen::VectorXd& from, FittedRods& rods) {
   constexpr std::array turns = {8.0, 5.0, 3.0, 1.5, 0.0, -1.5, -3.0, -5.0, -8.0};
   constexpr int angles = 6;
   const bool turns_the_rod =
       std::ranges::any_of(problem.numbers, [](const WireNumber& one) { return one.turns_the_rod; });
-  std::vector<NearestStart> found(turns.size());
-  for (int angle = 0; angle < (turns_the_rod ? angles : 1); ++angle) {
+  const bool both_axes = is_about_both_axes(problem);
+  // Negative turns are about the opposite axes.
+  const int directions = both_axes ? angles / 2 : 1;
+  std::vector<NearestStart> found(directions * turns.size());
+  for (int i = 0; i < directions * (turns_the_rod ? angles : 1); ++i) {
+    const int direction = i % directions;
+    const int angle = i / directions;
     const auto look_at = [&](std::size_t k) {
       Eigen::VectorXd values = from;
-      values[problem.first_of_others()] = turns[k] / problem.scenes.front().length;
-      for (std::size_t i = 0; i < problem.numbers.size(); ++i) {
-        if (!problem.numbers[i].turns_the_rod) continue;
-        values[static_cast<Eigen::Index>(i)] = 2 * std::numbers::pi * angle / angles;
+      const double curvature = turns[k] / problem.scenes.front().length;
+      const double about = 2 * std::numbers::pi * direction / angles;
+      values[problem.first_of_others()] = curvature * std::cos(about);
+      if (both_axes) values[problem.first_of_others() + 1] = curvature * std::sin(about);
+      for (std::size_t n = 0; n < problem.numbers.size(); ++n) {
+        if (!problem.numbers[n].turns_the_rod) continue;
+        values[static_cast<Eigen::Index>(n)] = 2 * std::numbers::pi * angle / angles;
       }
-      found[k].take_nearer(problem, rods.state(values), values);
+      found[direction * turns.size() + k].take_nearer(problem, rods.state(values), values);
     };
     rods.search_next();
     for (std::size_t k = 0; k < turns.size(); ++k) look_at(k);

@@ -193,7 +193,34 @@ TEST(WireFit, PerfectPicturesOfAWireThatLeavesItsPlaneGiveBackEveryNumber) {
       fit_material(scenes, shapes, {.natural_curvature_terms = 3, .direction_tolerance = 5 * deg});
   EXPECT_LT(found.rms_m, 1e-6);
   EXPECT_NEAR(found.others[0].value, 1.85, 1e-5);
-  EXPECT_NEAR(found.others[1].value, 0.75, 1e-4);
+  EXPECT_EQ(found.others[1].name, "natural curvature about d1, P_0");
+  EXPECT_NEAR(found.others[1].value, 0, 1e-4);
+  EXPECT_NEAR(found.others[2].value, 0.75, 1e-4);
+}
+
+// The scenes have a plane, but a curvature about d1 bends the wire out of it.
+TEST(WireFit, PerfectPointsInSpaceGiveBackTheCurvatureAboutBothAxes) {
+  std::vector<Scene> scenes;
+  std::vector<MeasuredShape> shapes;
+  const std::vector<double> s = equal_arc_lengths(1, 40);
+  for (const double angle : {-40.0, 10.0}) {
+    Scene said = test::heavy_scene(10, angle);
+    said.grippers[0].frame =
+        FrameHold{.d1 = Eigen::Vector3d::UnitZ().cross(*said.grippers[0].direction)};
+    EXPECT_TRUE(said.planar());
+    Scene truth = said;
+    truth.natural_strain.head<2>() << -2.5, 1.5;
+    truth.natural_variation = {{1, 0.5}};
+    shapes.push_back({"seen", solve_reference(truth, Model::energy).sample(s).points, s});
+    scenes.push_back(said);
+    scenes.back().scale_modulus(too_stiff);
+  }
+  const MaterialFit found = fit_material(scenes, shapes, {.natural_curvature_terms = 2});
+  EXPECT_LT(found.rms_m, 1e-6);
+  EXPECT_NEAR(*found.youngs_modulus.value * too_stiff / scenes[0].material.youngs_modulus, 1, 1e-4);
+  ASSERT_EQ(found.others.size(), 4U);
+  const double terms[] = {1.5, -2.5, 0.5, 1};  // about d2 and d1
+  for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(found.others[k].value, terms[k], 1e-3) << k;
 }
 
 /// Pictures of a wire that is what it is said to be, but for a change.
