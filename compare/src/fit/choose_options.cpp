@@ -68,6 +68,8 @@ class OptionsSearch {
     }
     const Trial& chosen = best();
     MaterialFit fit = with_all_outputs(chosen);
+    // The trials with these numbers predict the shapes less well, or the interval includes them.
+    fit.assumed.clear();
     widen(fit, chosen);
     for (const Trial& trial : trials_) {
       fit.tried.push_back(described(trial.options, trial.fit));

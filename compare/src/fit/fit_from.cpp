@@ -48,6 +48,7 @@ void refuse_limited(MaterialProfiles& material, const MaterialFit& fit) {
 MaterialFit whole_wire(MaterialProfiles& material, const MaterialPoint& start, double least) {
   MaterialFit fit = fit_wire(material.scenes(), material.shapes(), material.measured(),
                              material.options(), start, material.has_density());
+  fit.assumed = unfitted_assumptions(material.scenes(), material.options());
   material.refuse_unverified(least);
   if (fit.warning.empty()) {
     fit.warning = warning_of(material, fit.rms_m * fit.rms_m * material.points(), std::nullopt);

@@ -10,6 +10,7 @@
 #include "fit/material_errors.hpp"
 #include "fit/systematic_residuals.hpp"
 #include "wire/identifiable.hpp"
+#include "wire/leave_one_out.hpp"
 #include "wire/wire_result.hpp"
 
 namespace dlo::compare {
@@ -139,7 +140,10 @@ MaterialFit fit_material_alone(MaterialProfiles& material, const MaterialProfile
   for (std::size_t i = 0; i < rods.size() && rods[i]; ++i) {
     fit.shapes.push_back({scenes[i].name, material.measured().alignment(i, *rods[i]), {}});
   }
-  if (options.alternatives) look_for_alternatives(material, found.best, fit);
+  const bool holds_any_wire =
+      options.alternatives && look_for_alternatives(material, found.best, fit);
+  // See MaterialFit::assumed.
+  if (!holds_any_wire) fit.assumed = unfitted_assumptions(scenes, options);
   if (options.profile_points > 0) {
     draw_profile(material, modulus.interval, found.best, errors, fit);
   }

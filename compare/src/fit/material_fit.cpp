@@ -91,6 +91,7 @@ std::vector<std::string> assumed_by(const Calibration& found, const MaterialFitO
   if (weight && !tilt_is_fitted && options.pose != PoseFreedom::rigid) {
     result.emplace_back("vertical");
   }
+  result.insert(result.end(), fit.assumed.begin(), fit.assumed.end());
   return result;
 }
 

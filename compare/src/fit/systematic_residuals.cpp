@@ -148,17 +148,17 @@ void note_weight(const Scene& scene, MaterialFit& fit) {
 
 }  // namespace
 
-void look_for_alternatives(MaterialProfiles& material, const MaterialPoint& best,
+bool look_for_alternatives(MaterialProfiles& material, const MaterialPoint& best,
                            MaterialFit& fit) {
   const std::vector<Scene>& scenes = material.scenes();
-  if (!(fit.rms_m > MaterialErrors::least_noise(scenes.front()))) return;
+  if (!(fit.rms_m > MaterialErrors::least_noise(scenes.front()))) return false;
   fit.common_share = common_to_shapes(material, best, fit.shapes);
   const double common = fit.common_share ? beyond_chance(*fit.common_share, scenes.size()) : 0;
   const bool explained = material.options().noise && fit.warning.empty();
-  if (explained || !(common > maybe_common || fit.correlation)) return;
+  if (explained || !(common > maybe_common || fit.correlation)) return false;
   try_alternatives(material, best, fit);
   // Without forces E has no interval that could be wrong.
-  if (!material.is_forced()) return;
+  if (!material.is_forced()) return false;
   const bool widened = scenes.size() < fewest_predicted && widen_to_any_wire(material, best, fit);
   if (fit.warning.empty()) {
     fit.warning = doubt(fit, common > surely_common, widened, scenes.front().stiffness().name);
@@ -166,6 +166,7 @@ void look_for_alternatives(MaterialProfiles& material, const MaterialPoint& best
   const bool weight_alone = std::none_of(scenes.begin(), scenes.end(), has_forces_beside_weight);
   // Where the density was asked for it is said already.
   if (weight_alone && !material.options().density) note_weight(scenes.front(), fit);
+  return widened;
 }
 
 }  // namespace dlo::compare

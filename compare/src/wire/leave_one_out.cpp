@@ -17,20 +17,6 @@ namespace {
 /// Of grippers that hold a rod alike, in lengths.
 constexpr double alike = 0.02;
 
-/// Whether two scenes would have the same shape but for how well grippers come back to their
-/// places.
-bool are_alike(const Scene& a, const Scene& b) {
-  return a.length == b.length &&
-         std::equal(
-             a.grippers.begin(), a.grippers.end(), b.grippers.begin(), b.grippers.end(),
-             [&](const Gripper& one, const Gripper& other) {
-               return one.at == other.at &&
-                      one.direction.has_value() == other.direction.has_value() &&
-                      (!one.direction || (*one.direction - *other.direction).norm() <= alike) &&
-                      (one.position - other.position).norm() <= alike * a.length;
-             });
-}
-
 /// A laid shape, by lengths along its own points if they are the whole rod: where on the rod they
 /// are nearest depends on what else is fitted.
 Shape by_its_own_lengths(Shape shape, double length) {
@@ -58,6 +44,36 @@ std::optional<double> repeatability_of(const std::vector<Scene>& scenes, const M
 }
 
 }  // namespace
+
+bool are_alike(const Scene& a, const Scene& b) {
+  return a.length == b.length &&
+         std::equal(
+             a.grippers.begin(), a.grippers.end(), b.grippers.begin(), b.grippers.end(),
+             [&](const Gripper& one, const Gripper& other) {
+               return one.at == other.at &&
+                      one.direction.has_value() == other.direction.has_value() &&
+                      (!one.direction || (*one.direction - *other.direction).norm() <= alike) &&
+                      (one.position - other.position).norm() <= alike * a.length;
+             });
+}
+
+std::vector<std::string> unfitted_assumptions(const std::vector<Scene>& scenes,
+                                              const MaterialFitOptions& options) {
+  constexpr int enough = 3;
+  int different = 0;
+  for (auto scene = scenes.begin(); scene != scenes.end(); ++scene) {
+    const auto is_like = [&](const Scene& before) { return are_alike(before, *scene); };
+    different += std::none_of(scenes.begin(), scene, is_like) ? 1 : 0;
+  }
+  std::vector<std::string> result;
+  if (different >= enough) return result;
+  if (options.natural_curvature_terms == 0) result.emplace_back("natural curvature");
+  const bool clamped = std::ranges::any_of(scenes.front().grippers, [](const Gripper& gripper) {
+    return gripper.direction.has_value();
+  });
+  if (clamped && options.direction_tolerance == 0) result.emplace_back("clamp directions");
+  return result;
+}
 
 double distance_from_rod(const Scene& scene, const MeasuredShape& shape,
                          const MaterialFitOptions& options,

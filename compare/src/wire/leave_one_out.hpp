@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "dlo/compare/fitted_material.hpp"
@@ -17,6 +18,14 @@ namespace dlo::compare {
 [[nodiscard]] double distance_from_rod(const Scene& scene, const MeasuredShape& shape,
                                        const MaterialFitOptions& options,
                                        const energy_model::Equilibrium* known = nullptr);
+
+/// Whether two scenes have the same shape, but for how exactly a gripper is put back to its place.
+[[nodiscard]] bool are_alike(const Scene& a, const Scene& b);
+
+/// Returns what of "natural curvature" and "clamp directions" is not fitted, if the shapes are of
+/// fewer than three different scenes: these may hide in such shapes without a residual.
+[[nodiscard]] std::vector<std::string> unfitted_assumptions(const std::vector<Scene>& scenes,
+                                                            const MaterialFitOptions& options);
 
 /// What the fit to all others says of a shape.
 struct PredictedScene {

@@ -123,9 +123,17 @@ TEST_F(CalibrateCommand, FailedSolvesAreAnError) {
 TEST_F(CalibrateCommand, StatesWhatTheShapesCannotShow) {
   const std::string a = scene_of("a.toml", "5 GPa", 0);
   const std::string command = words({"calibrate", a, "--shape", seen(a, "a.csv")});
-  EXPECT_TRUE(says(run(command).out, {"(if length, weight, scale and vertical are as given"}));
-  EXPECT_EQ(json_of(command).at("assumed"), json({"length", "weight", "scale", "vertical"}));
-  EXPECT_EQ(json_of(command + " --register").at("assumed"), json({"length", "weight", "scale"}));
+  const auto assumed = [&](const std::string& options) {
+    return json_of(command + options).at("assumed");
+  };
+  EXPECT_TRUE(says(run(command).out, {"(if length, weight, scale, vertical, natural curvature and "
+                                      "clamp directions are as given"}));
+  EXPECT_EQ(assumed(""), json({"length", "weight", "scale", "vertical", "natural curvature",
+                               "clamp directions"}));
+  EXPECT_EQ(assumed(" --register"),
+            json({"length", "weight", "scale", "natural curvature", "clamp directions"}));
+  EXPECT_EQ(assumed(" --clamp-angles \"5 deg\""),
+            json({"length", "weight", "scale", "vertical", "natural curvature"}));
 }
 
 TEST_F(CalibrateCommand, WritesAMaterialThatScenesCanUse) {

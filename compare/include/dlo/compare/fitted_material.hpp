@@ -212,7 +212,7 @@ struct MaterialFit {
   /// What is not identifiable from the shapes, and why; empty if all is identified.
   std::string not_identified;
   /// Given quantities whose errors may leave no residual, so that the interval of E holds only if
-  /// they are right: "length", "weight", "loads", "scale", "vertical". Empty without an interval.
+  /// they are right, such as "length", "weight", "natural curvature". Empty without an interval.
   std::vector<std::string> assumed;
   /// Why the fit is not to be believed: residuals far above the given noise (chance 1e-3), or above
   /// a twentieth of the length, or half of which something would remove that is not fitted; else
