@@ -76,9 +76,8 @@ DynamicTrack dynamic_track(const Scene& scene, const Track& track, const TrackOp
                            const RodDamping& damping) {
   const FrameClock clock = clock_of(scene, options);
   require_dynamic(scene);
-  const MovingScene moving(
-      scene, clock, damping, options.solve,
-      options.start ? options.start : given_start(scene, clock.time(0), damping, options.solve));
+  const MovingScene moving(scene, clock, damping, options.solve,
+                           given_start(scene, clock.time(0), damping, options.solve));
   DynamicTrack result;
   result.damping = damping;
   result.in_motion = moving.in_motion();

@@ -11,7 +11,6 @@
 #include "dlo/compare/solution.hpp"
 #include "motion/contact_events.hpp"
 #include "motion/force_track.hpp"
-#include "motion/motion_start.hpp"
 
 namespace dlo::compare {
 
@@ -23,7 +22,6 @@ struct TrackOptions {
   ForceBeside force = ForceBeside::runs;
   int samples = 41;  ///< points of a frame's shape, >= 2
   SolveOptions solve;
-  std::optional<MotionStart> start;  ///< of the rod with inertia; none: as Scene::start
 };
 
 /// The rod at one time, at rest: its solution by `energy`, at Track::arc_length. Gravity and loads

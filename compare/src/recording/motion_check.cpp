@@ -8,8 +8,8 @@
 
 #include "base/number.hpp"
 #include "dlo/compare/error.hpp"
-#include "motion/dynamic_track.hpp"
 #include "motion/motion_misfit.hpp"
+#include "motion/moving_scene.hpp"
 #include "motion/track.hpp"
 #include "recording/gripper_causes.hpp"
 #include "recording/lag_search.hpp"
@@ -55,7 +55,6 @@ struct Models {
   TrackOptions options;
   std::optional<ModelMotion> at_rest, with_inertia;
   std::string no_inertia;  // why
-  bool in_motion = false;  // at first
 
   [[nodiscard]] const std::optional<ModelMotion>& of(MotionModel model) const {
     return model == MotionModel::at_rest ? at_rest : with_inertia;
@@ -103,22 +102,51 @@ std::string stop_text(const std::optional<TrackStop>& stop) {
   return stop ? fmt::format("stopped at {:g} s: {}", stop->time, stop->why) : "has too few frames";
 }
 
-/// The rod with inertia: without a start in the scene, nor a time at which it begins in
-/// equilibrium, from the recording's own start.
-void add_inertia(const Scene& scene, const MarkerMotion& recorded, const Track& at_rest,
-                 const MotionCheckRequest& request, Models& models) {
-  const double last = recorded.positions.back().time;
+/// Adds the rod at rest. Returns why it stopped before its last frame; none: it did not.
+std::optional<TrackStop> add_at_rest(const Scene& scene, double last,
+                                     const MotionCheckRequest& request, const Progress& progress,
+                                     Models& models) {
   try {
-    const bool is_judged = request.model == MotionModel::with_inertia;
-    if (is_judged && !scene.start && !request.from) {
-      models.options.start = recorded_start(scene, recorded, request.damping, request.solve);
-    }
-    const DynamicTrack moving = dynamic_track(scene, at_rest, models.options, request.damping);
-    models.with_inertia = motion_model(
-        moving.frames, [](const DynamicFrame& frame) { return frame.points; }, scene,
+    const Track at_rest = track(scene, models.options, progress);
+    models.at_rest = motion_model(
+        at_rest.frames, [](const TrackFrame& frame) { return frame.shape.points; }, scene,
         models.options, last);
-    models.in_motion = moving.in_motion;
-    if (!models.with_inertia) models.no_inertia = stop_text(moving.stopped);
+    return at_rest.stopped;
+  } catch (const ConvergenceError&) {
+    if (request.model == MotionModel::at_rest) throw;
+    return std::nullopt;
+  }
+}
+
+/// Adds the rod with inertia: without a start in the scene, nor a time at which it begins in
+/// equilibrium, from the recording's own start. It needs no equilibria of the rod on its way, which
+/// a fast motion of the grippers may not have.
+void add_inertia(const Scene& scene, const MarkerMotion& recorded,
+                 const MotionCheckRequest& request, Models& models) {
+  const TrackOptions& options = models.options;
+  try {
+    const FrameClock clock(scene, {options.from, options.to}, options.rates);
+    const bool is_judged = request.model == MotionModel::with_inertia;
+    const bool starts_as_recorded = is_judged && !scene.start && !request.from;
+    const MovingScene moving(
+        scene, clock, request.damping, request.solve,
+        starts_as_recorded ? recorded_start(scene, recorded, request.damping, request.solve)
+                           : given_start(scene, clock.time(0), request.damping, request.solve));
+    std::vector<double> times;
+    for (std::size_t i = 0; i < clock.frames(); ++i) times.push_back(clock.time(i));
+    const SimulatedMotion run = moving.run(times, request.solve.terms);
+    const std::vector<double> s = equal_arc_lengths(scene.length, options.samples);
+    models.with_inertia = motion_model(
+        run.moved.frames,
+        [&s](const energy_model::MovingFrame& frame) -> Eigen::Matrix3Xd {
+          return frame.sample(s).points;
+        },
+        scene, options, recorded.positions.back().time);
+    if (models.with_inertia) return;
+    const std::size_t reached = run.moved.frames.size();
+    models.no_inertia = stop_text(reached < times.size()
+                                      ? std::optional(TrackStop{times[reached], run.why_stopped()})
+                                      : std::nullopt);
   } catch (const ResultError& error) {
     if (request.model == MotionModel::with_inertia) throw;
     models.no_inertia = error.what();
@@ -130,15 +158,13 @@ Models run_models(const Scene& scene, const MarkerMotion& recorded,
   const RecordedTimes times = times_of(scene, recorded);
   Models models{.options = track_options(scene, times, request)};
   if (request.model == MotionModel::with_inertia) require_dynamic(scene);
-  const Track at_rest = track(scene, models.options, progress);
-  models.at_rest = motion_model(
-      at_rest.frames, [](const TrackFrame& frame) { return frame.shape.points; }, scene,
-      models.options, times.last);
-  add_inertia(scene, recorded, at_rest, request, models);
+  const std::optional<TrackStop> stopped =
+      add_at_rest(scene, times.last, request, progress, models);
+  add_inertia(scene, recorded, request, models);
   if (!models.of(request.model)) {
     throw ConvergenceError(fmt::format(
         "{}: the rod {}", scene.file,
-        request.model == MotionModel::at_rest ? stop_text(at_rest.stopped) : models.no_inertia));
+        request.model == MotionModel::at_rest ? stop_text(stopped) : models.no_inertia));
   }
   return models;
 }

@@ -69,6 +69,17 @@ TEST_F(MotionCommand, CheckJudgesMarkersByTheRodThatIsAsked) {
   succeeds(check(path("markers.csv")));
 }
 
+// Three terms resolve no equilibrium of so soft a rod.
+TEST_F(MotionCommand, CheckOfARodWithInertiaNeedsNoEquilibria) {
+  write_markers("markers.csv");
+  write("swung.toml", swung(1e-4));
+  const std::string few = path("markers.csv") + " --terms 3 --no-explanation";
+  expect_error(check(few), 3, {"did not converge"});
+  const Outcome judged = run(check(few + " --dynamic --damping 0.01"));
+  EXPECT_EQ(judged.status, 0) << judged.err;
+  EXPECT_THAT(judged.out, HasSubstr("no rod at rest to its end"));
+}
+
 TEST_F(MotionCommand, CheckTellsLagAndFramesInEveryFormat) {
   write_markers("late.csv", 0.02);
   const std::string late = path("late.csv") + " --dynamic --damping 0.01 --from 0";
