@@ -50,7 +50,8 @@ class SpreadActions {
   [[nodiscard]] const std::vector<std::size_t>& yielding() const { return yielding_; }
 
   /// The first column, then those of yielding().
-  [[nodiscard]] std::vector<Action> integrate() const {
+  /// @param middle  of the rod [m], at which they act, so that their lever is counted
+  [[nodiscard]] std::vector<Action> integrate(const Eigen::Vector3d& middle) const {
     constexpr int most_halvings = 24;
     constexpr std::size_t most_panels = 512;  // if a shape is noise, more would not resolve it
     std::vector<Panel> panels;
@@ -85,7 +86,7 @@ class SpreadActions {
       }
       panels = std::move(open);
     }
-    return actions_of(total);
+    return actions_of(total, middle);
   }
 
  private:
@@ -185,10 +186,8 @@ class SpreadActions {
     }
   }
 
-  /// At the middle of the rod, so that their lever is counted.
-  [[nodiscard]] std::vector<Action> actions_of(const Sums& sums) const {
-    const std::vector<double> middle = {problem_.length / 2};
-    const Eigen::Vector3d point = shape_.sample(middle).points.col(0);
+  [[nodiscard]] std::vector<Action> actions_of(const Sums& sums,
+                                               const Eigen::Vector3d& point) const {
     std::vector<Action> actions;
     for (Eigen::Index column = 0; column < columns(); ++column) {
       const Eigen::Vector3d force = sums.col(column).head<3>();
@@ -269,6 +268,7 @@ Imbalance imbalance_of(const Problem& problem, const Equilibrium& shape) {
   for (const ContactPart& part : shape.contacts) {
     at.push_back(std::clamp(part.begin, 0.0, problem.length));
   }
+  at.push_back(problem.length / 2);
   const Samples samples = shape.sample(at);
   Eigen::Index column = 0;
   for (const Load& load : problem.loads) actions.push_back(load_on(samples, column++, load));
@@ -279,7 +279,7 @@ Imbalance imbalance_of(const Problem& problem, const Equilibrium& shape) {
     differences[part.obstacle] -= part.force;
   }
   const SpreadActions spread(problem, shape);
-  const std::vector<Action> sums = spread.integrate();
+  const std::vector<Action> sums = spread.integrate(samples.points.rightCols<1>());
   actions.insert(actions.end(), sums.begin(), sums.end());
   for (std::size_t i = 0; i < spread.yielding().size(); ++i) {
     differences[spread.yielding()[i]] -= sums[i + 1].force;

@@ -32,10 +32,6 @@ constexpr double largest_error = 2;
 /// not further than 2 / (1 + (1 - 2h)^(1/2)) eta; half of it is kept for what is estimated in h.
 constexpr double largest_h = 0.25;
 
-/// Share of an eigenvalue by which it may have changed since the factor that tells it: the
-/// eigenvalue is known no better.
-constexpr double largest_change = 0.01;
-
 /// Third derivatives of E - mu . c along a unit direction of strains are forces times angles of 1
 /// or less, those of positions three times counted, over the scale of forces.
 constexpr double largest_third_derivative = 4;
@@ -83,14 +79,11 @@ double error_estimate(const SpanSolution& solution, double moved) {
   return std::min(moved / std::sqrt(least_stiffness) + angle, largest_error);
 }
 
-/// Largest distance by which points move as the coefficients change, of the length.
-double points_moved(const SpanSolution& solution, const Eigen::VectorXd& change) {
-  const SpanEnergy& model = *solution.model;
+/// Returns the model's points at its nodes, of a rod of length 1.
+Eigen::Matrix3Xd points_at(const SpanEnergy& model, const Eigen::VectorXd& x) {
   const std::span<const double> nodes(model.nodes().data(),
                                       static_cast<std::size_t>(model.nodes().size()));
-  const Eigen::Matrix3Xd here = model.shape(solution.x).sample(nodes).points;
-  const Eigen::Matrix3Xd there = model.shape(solution.x + change).sample(nodes).points;
-  return (there - here).colwise().norm().maxCoeff();
+  return model.shape(x).sample(nodes).points;
 }
 
 /// Change of the coefficients, to first order, to the equilibrium with two coefficients fewer in
@@ -129,8 +122,13 @@ double measured_error(const SpanSolution& solution, const SpanPoint& point,
   const double smallest = std::min(solution.eigenvalue_nearest_zero, 1.0);
   const double soft =
       (rounding_of(scale) * (1 - smallest) + misplaced_contact(solution)) / smallest;
-  return safety * (points_moved(solution, next_step) +
-                   points_moved(solution, change_with_fewer_terms(solution, point))) +
+  const Eigen::Matrix3Xd here = points_at(*solution.model, solution.x);
+  const auto points_moved = [&](const Eigen::VectorXd& change) {
+    const Eigen::Matrix3Xd there = points_at(*solution.model, solution.x + change);
+    return (there - here).colwise().norm().maxCoeff();
+  };
+  return safety *
+             (points_moved(next_step) + points_moved(change_with_fewer_terms(solution, point))) +
          soft;
 }
 
@@ -150,8 +148,6 @@ SmallEigenvalues small_eigenvalues(ReducedHessian& hessian, double bound, Eigen:
   const Eigen::VectorXd eigenvalues = smallest_eigenvalues(hessian, 2 * bound);
   SmallEigenvalues result;
   result.smallest = eigenvalues.size() > 0 ? eigenvalues[0] : 1;
-  result.nearest_zero = std::abs(result.smallest);
-  if (result.smallest > 2 * bound) return result;
   Eigen::VectorXd sizes = eigenvalues.cwiseAbs();
   std::sort(sizes.begin(), sizes.end());
   result.zero = std::max(std::min(free, (sizes.array() <= bound).count()),
@@ -221,17 +217,8 @@ EigenvalueDerivatives eigenvalue_derivatives(SpanSolution& solution, const SoftM
           product(ahead - 2 * image(0) + behind, along) / (step * step) + 3 * product(change, w)};
 }
 
-/// By how much the eigenvalues of the second variation on the free directions may differ from those
-/// at the point that the solution's factor is of: by third derivatives, and as the constraints turn
-/// what is free.
-double change_since_factor(const SpanSolution& solution, double scale) {
-  const NewtonFactor& factor = *solution.factor;
-  return factor.distance(solution, scale) * largest_third_derivative * scale /
-         std::min(1.0, factor.system.reduced_hessian().least_constraint());
-}
-
 /// Whether the second variation might change so much within `eta` that h is above its limit; false
-/// where the largest forces there are could not do it.
+/// where the largest forces there are could not do it. True if the eigenvalue is not known.
 bool may_be_at_fold(const SpanSolution& solution, double load, double eta) {
   return !(eta * largest_third_derivative * scale_of_forces(solution, load) <=
            largest_h * solution.eigenvalue_nearest_zero);
@@ -252,7 +239,7 @@ class Certification {
     const bool undetermined = solution_.status == SolveStatus::near_singular;
     if (!evaluate()) return;
     rigid_ = rigid_body_modes(model_.span(), point_->tangents());
-    ask_factor();
+    factorise();
     solution_.rigid_body_modes = static_cast<int>(rigid_.all());
     const bool at_fold = estimate_error();
     if (model_.span().planar && !model_.span().stays_in_plane()) look_out_of_plane();
@@ -293,29 +280,26 @@ class Certification {
     return small_eigenvalues(hessian, bound_, rigid, obstacles_ ? 128 * rounding_of(scale_) : -1);
   }
 
-  /// Newton's step and the second variation, by the solution's factor or one of its own.
-  void ask_factor() {
-    const Eigen::Index rigid = rigid_.in_plane;
-    for (bool near = !obstacles_ && solution_.factor != nullptr;; near = false) {
-      const double change = near ? change_since_factor(solution_, scale_) : 0;
-      near = near && change < largest_h;
-      if (!near) factors_.factor_at(solution_, *point_, load_);
-      NewtonSystem& system = solution_.factor->system;
-      next_step_ = newton_step(system, *point_, gradient_);
-      judge_step();
-      rigid_.in_plane = rigid;
-      found_ = eigenvalues_of(system.reduced_hessian(), rigid);
-      subtract_ridges();
-      if (!small_step_ || found_.neutral_directions > 0) count_sliding_mode(system);
-      solution_.smallest_eigenvalue = found_.smallest;
-      solution_.eigenvalue_nearest_zero = found_.nearest_zero;
-      eta_ = linear_error(solution_, load_);
-      const bool tells = small_step_ && found_.smallest > 2 * bound_ &&
-                         change <= largest_change * found_.smallest &&
-                         !may_be_at_fold(solution_, load_, eta_);
-      if (!near || tells) break;
+  /// Computes Newton's step and the second variation at the shape.
+  void factorise() {
+    factors_.factor_at(solution_, *point_, load_);
+    NewtonSystem& system = solution_.factor->system;
+    next_step_ = newton_step(system, *point_, gradient_);
+    solution_.next_step = next_step_.norm();
+    small_step_ = solution_.next_step <= largest_next_step;
+    // Below it what is left of the residual makes a step that is not small.
+    bound_ = std::max(neutral, small_step_ ? 0 : solution_.residual / largest_next_step);
+    found_ = eigenvalues_of(system.reduced_hessian(), rigid_.in_plane);
+    subtract_ridges();
+    if (found_.neutral_directions > 0 &&
+        slides_along_rod(model_, solution_.x, system.reduced_hessian(),
+                         found_.zero + found_.neutral_directions)) {
+      found_ = eigenvalues_of(system.reduced_hessian(), ++rigid_.in_plane);
     }
+    solution_.smallest_eigenvalue = found_.smallest;
+    solution_.eigenvalue_nearest_zero = found_.nearest_zero;
     solution_.neutral_directions = found_.neutral_directions;
+    eta_ = linear_error(solution_, load_);
   }
 
   void judge_step() {
@@ -430,12 +414,11 @@ void certify_out_of_plane(SpanSolution& solution, double load, NewtonFactors& fa
         static_cast<int>(rigid_body_modes(span, solution.at_x()->tangents()).all());
   }
   const double eta = linear_error(solution, load);
-  // Of what is no minimum in the plane the factor tells nothing.
-  const bool looked_at = solution.is_equilibrium() && !std::isnan(solution.eigenvalue_nearest_zero);
-  const bool unsure = looked_at && (solution.eigenvalue_nearest_zero <= neutral ||
-                                    may_be_at_fold(solution, load, eta));
-  if (unsure || solution.status == SolveStatus::near_singular)
+  // Newton's method knows no eigenvalue of a saddle in the plane. An eigenvalue up to `neutral` may
+  // be at a fold by rounding alone.
+  if (solution.status == SolveStatus::near_singular || may_be_at_fold(solution, load, eta)) {
     return certify(solution, load, factors);
+  }
   if (!solution.is_equilibrium()) return;
   solution.error = error_estimate(solution, eta);
   if (solution.status != SolveStatus::converged) return;

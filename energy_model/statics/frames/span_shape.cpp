@@ -85,8 +85,9 @@ class Sampler {
  private:
   [[nodiscard]] Eigen::Index first_strain() const { return shape_.free_start ? 1 : 0; }
 
-  [[nodiscard]] Eigen::VectorXd coefficients(const Eigen::VectorXd& field, Eigen::Index first,
-                                             std::size_t e) const {
+  [[nodiscard]] Eigen::VectorXd::ConstSegmentReturnType coefficients(const Eigen::VectorXd& field,
+                                                                     Eigen::Index first,
+                                                                     std::size_t e) const {
     return field.segment(first + static_cast<Eigen::Index>(e) * shape_.terms, shape_.terms);
   }
 
@@ -119,11 +120,11 @@ class Sampler {
     frames.resize(state);
     frames.evaluate(shape_.strains, state);
     const Eigen::Index Q = table_.nodes.size();
+    const Eigen::MatrixXd weighted = table_.weights.asDiagonal() * table_.values;
     for (std::size_t e = 0; e < shape_.pieces.size(); ++e) {
       const Eigen::Index node = frames.turn_nodes() + static_cast<Eigen::Index>(e) * Q;
       PlacedPiece placed;
       placed.piece = shape_.pieces[e];
-      const Eigen::MatrixXd weighted = table_.weights.asDiagonal() * table_.values;
       placed.tangent = state.t.middleRows(node, Q).transpose() * weighted;
       placed.frame = state.q.middleRows(node, Q).transpose() * weighted;
       pieces_.push_back(std::move(placed));
