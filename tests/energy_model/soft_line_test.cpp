@@ -167,6 +167,27 @@ TEST(SoftLine, LiftsOffAsTheRodDoes) {
   EXPECT_NEAR(soft->contacts[0].end_force / rod.contacts[0].end_force, 1, 0.05);
 }
 
+// A rod that is pulled straight along (3, 4, 0), 1e10 l from the origin: its ends are numbers of
+// double precision there, but the point at which its load acts is rounded by up to 1e-6, so that
+// the moments do not balance.
+TEST(LineWithoutSearch, IsNotVerifiedWhereItsForcesDoNotBalance) {
+  Problem problem = line(1);
+  problem.length = 5;
+  problem.weight_per_length.setZero();
+  problem.loads = {{1, Vector3d(3, 4, 0)}};
+  for (const double far : {0.0, 1e10}) {
+    problem.grips = {{0, {far, far, 0}, {}, {}}, {5, {far + 3, far + 4, 0}, {}, {}}};
+    const std::optional<Equilibrium> taut = line_without_search(problem);
+    ASSERT_TRUE(taut);
+    if (far == 0) {
+      EXPECT_EQ(taut->status, SolveStatus::converged) << taut->message;
+    } else {
+      EXPECT_EQ(taut->status, SolveStatus::not_verified);
+      EXPECT_NE(taut->message.find("the forces leave"), std::string::npos) << taut->message;
+    }
+  }
+}
+
 TEST(SoftLine, TakesNothingElse) {
   EXPECT_FALSE(is_soft_line(line(1e-9)));
   Problem upright = line(1e-12);
