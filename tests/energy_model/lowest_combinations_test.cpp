@@ -41,10 +41,10 @@ TEST(LowestCombinations, AreThoseOfAFullEnumeration) {
 
 TEST(LowestCombinations, PutStableOnesFirstAndFailedOnesLast) {
   const double failed = std::numeric_limits<double>::quiet_NaN();
-  const Combinations lowest =
-      lowest_combinations({{{false, 1}, {true, 5}, {true, 4}}, {{true, 2}, {false, failed}}}, 64);
-  const std::vector<std::vector<std::size_t>> expected = {{2, 0}, {1, 0}, {0, 0},
-                                                          {2, 1}, {1, 1}, {0, 1}};
+  const Combinations lowest = lowest_combinations(
+      {{{false, -1}, {true, 5}, {true, 4}}, {{true, 2}, {true, 2.5}, {false, failed}}}, 64);
+  const std::vector<std::vector<std::size_t>> expected = {{2, 0}, {2, 1}, {1, 0}, {1, 1}, {0, 0},
+                                                          {0, 1}, {2, 2}, {1, 2}, {0, 2}};
   EXPECT_EQ(lowest.choices, expected);
   EXPECT_FALSE(lowest.truncated);
 }
