@@ -159,7 +159,10 @@ class EnergySolver::State {
     if (result.empty()) result = solve_placed(problem, placed, wanted, from, deadline);
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    for (Equilibrium& equilibrium : result) equilibrium.seconds = seconds;
+    for (Equilibrium& equilibrium : result) {
+      equilibrium.seconds = seconds;
+      if (wanted == Wanted::lowest && deadline.passed()) add_time_limit(equilibrium);
+    }
     return result;
   }
 
@@ -183,6 +186,12 @@ class EnergySolver::State {
   [[nodiscard]] bool followed() const { return followed_; }
 
  private:
+  /// Adds the time limit to why a search has found no shape, unless it is the reason already.
+  static void add_time_limit(Equilibrium& result) {
+    if (succeeded(result.status) || result.message.find("time limit") != std::string::npos) return;
+    result.message += "; the search ended at its time limit";
+  }
+
   /// Solves with one of each set of similar obstacles. If the rod enters one that was omitted, that
   /// one takes the place of those that are similar to it.
   /// @return empty if no obstacle was omitted, or if the result is not certified with all obstacles
