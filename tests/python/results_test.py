@@ -58,7 +58,9 @@ def test_solve_near_points_is_the_equilibrium_beside_them(root, command, tmp_pat
     second = dlo.solve(scene, equilibrium=2)
     assert abs(second.energy["total"] - near.energy["total"]) < 1e-9
     assert near.stable and near.points[-1, 0] > 0
-    assert dlo.solve(scene).points[-1, 0] < -0.3
+    lowest = dlo.solve(scene)
+    assert lowest.points[-1, 0] < -0.3
+    assert lowest.stable_energies == [lowest.energy["total"]] and lowest.passing_starts == 2
     file = tmp_path / "over.csv"
     file.write_text("".join(f"{x},{y},0\n" for x, y in over))
     assert numpy.allclose(dlo.solve(scene, near=file).points, near.points)

@@ -194,6 +194,23 @@ void add_twists(std::string& out, const compare::Solution& solution,
     }
     append(out, "\n");
   }
+}
+
+/// What the search has found besides the shape, and what it has not tried.
+void add_search(std::string& out, const compare::Solution& solution,
+                const compare::Magnitudes& large) {
+  const std::vector<double>& stable = solution.stable_energies;
+  if (!stable.empty()) {
+    append(out, "search     {} stable equilibri{} found: ", stable.size(),
+           stable.size() == 1 ? "um" : "a");
+    for (std::size_t i = 0; i < stable.size(); ++i) {
+      append(out, "{}{:.9g} J", i == 0 ? "" : ", ", compare::shown(stable[i], large.energy));
+    }
+    append(out, "\n");
+  }
+  if (solution.passing_starts > 0) {
+    append(out, "search     {} starts passed obstacles on another side\n", solution.passing_starts);
+  }
   if (follows_twist(solution)) {
     append(
         out,
@@ -266,6 +283,7 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
   const compare::Magnitudes large = compare::magnitudes(scene);
   add_energies(out, solution, large);
   add_twists(out, solution, large);
+  add_search(out, solution, large);
   out += compare::text_rows(compare::shape_numbers(), {scene, solution}, scene);
   add_forces(out, solution, scene, large);
   add_points(out, solution.shape);

@@ -34,9 +34,10 @@ enum FieldPlace : unsigned {
 template <typename T>
 struct Field {
   /// What it is worth; NaN is none.
-  using Get = std::variant<double (*)(const T&), long (*)(const T&), bool (*)(const T&),
-                           std::string (*)(const T&), std::vector<std::string> (*)(const T&),
-                           Numbers (*)(const T&), Json (*)(const T&)>;
+  using Get =
+      std::variant<double (*)(const T&), long (*)(const T&), bool (*)(const T&),
+                   std::string (*)(const T&), std::vector<std::string> (*)(const T&),
+                   std::vector<double> (*)(const T&), Numbers (*)(const T&), Json (*)(const T&)>;
 
   std::string_view name = {};   ///< words joined by "_"
   std::string_view unit = {};   ///< as keys end with; empty: a pure number, or none at all

@@ -121,6 +121,8 @@ Solution solution_of(const Scene& scene, Model model, const energy_model::Equili
     solution.tension.push_back(force.dot(shape.tangents.col(column)) + 0.0);
   }
   solution.smallest_eigenvalue = equilibrium.smallest_eigenvalue;
+  solution.stable_energies = equilibrium.stable_energies;
+  solution.passing_starts = equilibrium.passing_starts;
   solution.neutral_directions = equilibrium.neutral_directions;
   solution.evaluations = equilibrium.evaluations;
   solution.terms = equilibrium.terms;

@@ -327,10 +327,22 @@ TEST_F(Command, SolveReturnsAnEquilibriumByItsNumberInTheListOfAll) {
                    {"--equilibrium: only model energy"}));
 }
 
-TEST_F(Command, SolvePrintsHowManyStartsPassedObstacles) {
+TEST_F(Command, SolveStatesTheStableEquilibriaThatItsSearchFound) {
   const std::string path = scene(dlo::test::rope_beside_peg);
-  EXPECT_TRUE(says(run("solve " + path).out, {"2 starts passed obstacles on another side"}));
+  EXPECT_TRUE(says(run("solve " + path).out, {"\nsearch     1 stable equilibrium found: ",
+                                              "2 starts passed obstacles on another side"}));
+  const json lowest = json_of("solve " + path);
+  EXPECT_EQ(lowest.at("passing_starts"), 2);
+  EXPECT_EQ(lowest.at("stable_energies_J"), json::array({lowest.at("energy_J").at("total")}));
+  const json all = json_of("solve " + path + " --all");
+  json energies = json::array();
+  for (const json& equilibrium : all.at("equilibria")) {
+    if (equilibrium.at("stable")) energies.push_back(equilibrium.at("energy_J"));
+  }
+  ASSERT_GT(energies.size(), 1);
+  EXPECT_EQ(all.at("stable_energies_J"), energies);
   EXPECT_TRUE(says_none(run("solve " + scene(back_bent_rod)).out, {"starts passed"}));
+  EXPECT_TRUE(json_of("solve " + path + " --model chain").at("stable_energies_J").empty());
 }
 
 }  // namespace

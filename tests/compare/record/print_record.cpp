@@ -17,7 +17,7 @@ using dlo::compare::SolvedShape;
 
 /// In the order of Field::Get.
 constexpr const char* python_types[] = {
-    "float", "int", "bool", "str", "list[str]", "dict[str, float]", ""};
+    "float", "int", "bool", "str", "list[str]", "list[float]", "dict[str, float]", ""};
 static_assert(std::size(python_types) == std::variant_size_v<Field<SolvedShape>::Get>);
 
 void add(Json& list, std::span<const Field<SolvedShape>> fields, bool everywhere) {

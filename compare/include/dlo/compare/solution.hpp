@@ -142,6 +142,9 @@ struct Solution {
   StretchDecision stretch_decision = StretchDecision::given;  ///< likewise
   /// Smallest eigenvalue of the reduced Hessian over EI/l, where a search looked; else NaN.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
+  /// Of energy, from solve() and solve_all(): as Equilibrium::stable_energies [J].
+  std::vector<double> stable_energies;
+  int passing_starts = 0;  ///< of energy: as Equilibrium::passing_starts
   /// Of a `near_singular` one of energy: directions in which it is singular, at a fold or
   /// bifurcation.
   int neutral_directions = 0;
