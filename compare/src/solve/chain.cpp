@@ -4,6 +4,8 @@
 
 #include <Eigen/Geometry>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/error.hpp"
@@ -55,9 +57,9 @@ std::optional<Solution> solve_rigid_chain(const Scene& scene, const ForceModelSe
   solution.status = result.status;
   solution.message = result.message;
   if (settings.joint_law) solution.energy.bending = result.bending_energy;
-  solution.grippers = {holding_load(discretisation, chain, result)};
-  require_balanced(scene, polygon_imbalance(discretisation.rod, points, solution.grippers),
-                   energy_model::allowed_imbalance, "chain");
+  solution.grippers =
+      balanced(scene, discretisation.rod, points, {holding_load(discretisation, chain, result)},
+               energy_model::allowed_imbalance, "chain");
   solution.evaluations = result.evaluations;
   solution.seconds = result.seconds;
   return solution;
@@ -78,6 +80,7 @@ Solution solve_elastic_chain(const Scene& scene, const ForceModelSettings& setti
   }
   solution.status = lowest.result.status;
   solution.message = lowest.result.message;
+  std::vector<GripperLoad> grippers;
   Eigen::Index next = 0;  // grip_forces are in the order of the grips' points
   for (const force_model::Grip& grip : discretisation.rod.grips) {
     GripperLoad load;
@@ -87,11 +90,11 @@ Solution solve_elastic_chain(const Scene& scene, const ForceModelSettings& setti
       load.force += force;
       load.torque += arm.cross(force);
     }
-    solution.grippers.push_back(load);
+    grippers.push_back(load);
   }
-  add_twisting_torques(lowest.rod, points, solution.grippers);
-  require_balanced(scene, polygon_imbalance(lowest.rod, points, solution.grippers),
-                   energy_model::allowed_imbalance, "chain");
+  add_twisting_torques(lowest.rod, points, grippers);
+  solution.grippers = balanced(scene, lowest.rod, points, std::move(grippers),
+                               energy_model::allowed_imbalance, "chain");
   solution.evaluations = lowest.evaluations;
   solution.seconds = lowest.seconds;
   return solution;

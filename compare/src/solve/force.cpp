@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -198,12 +199,11 @@ std::string why_not_at_rest(const Scene& scene, const ForceModelSettings& settin
             "steps");
 }
 
-/// Forces of the grippers, and how the rest was found.
+/// How the rest was found.
 void add_rest(const RestingRod& rest, Solution& solution) {
   const force_model::Simulation& simulation = rest.simulation;
   solution.model = Model::force;
   solution.message = rest.result.message;
-  solution.grippers = gripper_loads(simulation.rod(), simulation.points());
   solution.steps = rest.result.steps;
   solution.c_F = simulation.options().c_F;
   solution.c_h = simulation.options().c_h;
@@ -274,10 +274,10 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
   constexpr double near_rest = 1e-6;  // of the length
   const bool is_bounded =
       settings.law == BendingLaw::hooke && solution.error_estimate <= near_rest * scene.length;
-  if (is_bounded) {
-    require_balanced(scene, polygon_imbalance(resting, points, solution.grippers),
-                     allowed_rest_imbalance(resting, points, solution.to_rest), "force");
-  }
+  const double allowed = is_bounded ? allowed_rest_imbalance(resting, points, solution.to_rest)
+                                    : std::numeric_limits<double>::infinity();
+  solution.grippers =
+      balanced(scene, resting, points, gripper_loads(resting, points), allowed, "force");
   if (is_dragged) solution.status = energy_model::SolveStatus::not_verified;
   if (!is_dragged && strayed()) solution.message += ", in another state than the chain";
   solution.seconds = timer.seconds();

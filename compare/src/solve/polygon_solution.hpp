@@ -39,11 +39,15 @@ namespace dlo::compare {
                                             const Eigen::Matrix3Xd& points,
                                             const Eigen::Matrix3Xd& to_rest);
 
-/// A polygon whose forces and moments do not balance is no equilibrium.
-/// @param allowed  largest Imbalance::share()
-/// @throws ConvergenceError then, with what is left
-void require_balanced(const Scene& scene, const energy_model::Imbalance& imbalance, double allowed,
-                      const char* model);
+/// Returns what the grippers exert on a polygon if the polygon is an equilibrium with it.
+/// @param grippers  in the order of the rod's grips
+/// @param allowed   largest polygon_imbalance().share()
+/// @param model     of the message
+/// @throws ConvergenceError if the forces and moments on the polygon do not balance
+[[nodiscard]] std::vector<GripperLoad> balanced(const Scene& scene, const force_model::Rod& rod,
+                                                const Eigen::Matrix3Xd& points,
+                                                std::vector<GripperLoad> grippers, double allowed,
+                                                const char* model);
 
 /// A polygon that had to stretch or to shrink is no shape of the rod, however well it balances.
 /// @throws ConvergenceError then, with the number of points that may do
