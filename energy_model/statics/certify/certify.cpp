@@ -285,17 +285,10 @@ class Certification {
     factors_.factor_at(solution_, *point_, load_);
     NewtonSystem& system = solution_.factor->system;
     next_step_ = newton_step(system, *point_, gradient_);
-    solution_.next_step = next_step_.norm();
-    small_step_ = solution_.next_step <= largest_next_step;
-    // Below it what is left of the residual makes a step that is not small.
-    bound_ = std::max(neutral, small_step_ ? 0 : solution_.residual / largest_next_step);
+    judge_step();
     found_ = eigenvalues_of(system.reduced_hessian(), rigid_.in_plane);
     subtract_ridges();
-    if (found_.neutral_directions > 0 &&
-        slides_along_rod(model_, solution_.x, system.reduced_hessian(),
-                         found_.zero + found_.neutral_directions)) {
-      found_ = eigenvalues_of(system.reduced_hessian(), ++rigid_.in_plane);
-    }
+    if (!small_step_ || found_.neutral_directions > 0) count_sliding_mode(system);
     solution_.smallest_eigenvalue = found_.smallest;
     solution_.eigenvalue_nearest_zero = found_.nearest_zero;
     solution_.neutral_directions = found_.neutral_directions;
