@@ -278,6 +278,12 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
                                     : std::numeric_limits<double>::infinity();
   solution.grippers =
       balanced(scene, resting, points, gripper_loads(resting, points), allowed, "force");
+  constexpr double stated_above = 1e-6;  // of the largest force or moment
+  const double imbalance = polygon_imbalance(resting, points, solution.grippers).share();
+  if (imbalance > stated_above) {
+    solution.message +=
+        fmt::format(", forces and moments are balanced within {:.2g} of the largest", imbalance);
+  }
   if (is_dragged) solution.status = energy_model::SolveStatus::not_verified;
   if (!is_dragged && strayed()) solution.message += ", in another state than the chain";
   solution.seconds = timer.seconds();

@@ -584,5 +584,18 @@ TEST(PolygonBalance, HoldsAndIsLostWithEveryForce) {
   }
 }
 
+// A distance from rest of 1e-4 l says little about the forces of a stiff polygon.
+TEST(PolygonBalance, OfTheForceModelIsStatedWhereItIsCoarse) {
+  const Scene scene = spatial_clamps();
+  EXPECT_FALSE(says(solve(scene, Model::force).message, {"balanced within"}));
+  const Solution coarse = solve(scene, Model::force, {.rest_tolerance = 1e-4});
+  const std::string words = "balanced within ";
+  const std::size_t at = coarse.message.find(words);
+  ASSERT_NE(at, std::string::npos) << coarse.message;
+  const force_model::Rod rod = discretise(scene, scene.force_model).rod;
+  const double share = polygon_imbalance(rod, coarse.shape.points, coarse.grippers).share();
+  EXPECT_NEAR(std::stod(coarse.message.substr(at + words.size())) / share, 1, 0.1);
+}
+
 }  // namespace
 }  // namespace dlo::compare
