@@ -9,47 +9,52 @@
 
 namespace dlo::energy_model {
 
-/// Imbalance (Imbalance::share()) up to which a shape is called an equilibrium [-].
+/// Largest Imbalance::share() with which a shape is accepted as an equilibrium [-].
 inline constexpr double allowed_imbalance = 1e-8;
 
 /// A force and a couple on a rod.
 struct Action {
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< at which the force acts [m]
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N]
-  Eigen::Vector3d couple = Eigen::Vector3d::Zero();  ///< besides the moment of the force [N m]
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< point at which the force acts [m]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N]
+  /// Couple in addition to the moment of the force [N m].
+  Eigen::Vector3d couple = Eigen::Vector3d::Zero();
 
-  /// Returns the couple and the moment of the force about a point [N m].
+  /// Returns the couple plus the moment of the force about `origin` [N m].
   [[nodiscard]] Eigen::Vector3d moment_about(const Eigen::Vector3d& origin) const;
 };
 
-/// What all actions on a rod leave, which is zero at rest.
+/// Sums of the forces and moments of all actions on a rod. Both are zero at equilibrium.
 struct Imbalance {
-  double force = 0;           ///< size of the sum of all forces [N]
-  double moment = 0;          ///< size of the sum of all moments about the first point [N m]
-  double largest_force = 0;   ///< of the actions [N]
-  double largest_moment = 0;  ///< largest couple or force times distance, of the actions [N m]
+  double force = 0;          ///< size of the sum of all forces [N]
+  double moment = 0;         ///< size of the sum of all moments about the first point [N m]
+  double largest_force = 0;  ///< largest force of a single action [N]
+  /// Larger of the largest couple and of the largest force times the largest distance from the
+  /// first point [N m].
+  double largest_moment = 0;
 
-  /// force / largest_force or moment / largest_moment, whichever is larger [-]; NaN if one of the
-  /// actions is.
+  /// Returns force / largest_force or moment / largest_moment, whichever is larger [-]; NaN if an
+  /// action contains NaN.
   [[nodiscard]] double share() const;
-  /// Both sums with their shares, in words.
+  /// Returns a text with both sums and their shares of the largest force and moment.
   [[nodiscard]] std::string text() const;
 };
 
-/// Sums actions.
-/// @param least  the largest force [N] and moment [N m] are not taken as less, since the solver
-///               rounds on that scale
+/// Sums forces and moments of actions, the moments about the point of the first action.
+/// @param least  lower bounds of Imbalance::largest_force [N] and of the largest couple [N m]. The
+///               solver rounds on that scale, so smaller actions do not make the share larger
 [[nodiscard]] Imbalance imbalance_of(const std::vector<Action>& actions, const Action& least);
 
-/// Sums what acts on the rod in a shape that a solver has returned: reactions of the grips, weight,
-/// loads, line loads, drag and obstacles, each where the returned shape has it. A rigid obstacle
-/// exerts what Equilibrium::contacts state; what one that yields exerts follows from its depth in
-/// the shape. A difference from Equilibrium::obstacles counts as a force that is left.
-/// @param shape  with `sample` and a reaction for each grip
+/// Sums the actions on the rod in a shape that a solver has returned: reactions of the grips,
+/// weight, loads, line loads, drag and obstacles, each at its position in the returned shape. The
+/// action of a rigid obstacle is taken from Equilibrium::contacts, and that of a yielding obstacle
+/// is computed from its depth in the shape. A difference of an obstacle's force from
+/// Equilibrium::obstacles counts as an unbalanced force.
+/// @param shape  equilibrium with `sample` and a reaction for each grip
 [[nodiscard]] Imbalance imbalance_of(const Problem& problem, const Equilibrium& shape);
 
-/// Marks an equilibrium whose imbalance is larger than allowed as not_verified, with both sums in
-/// its message. Leaves alone what claims to be no equilibrium.
+/// Sets the status of an equilibrium to not_verified if its imbalance is larger than `allowed`, and
+/// writes both sums into its message. Results that are not claimed to be an equilibrium are
+/// unchanged.
 void judge_balance(const Problem& problem, Equilibrium& equilibrium,
                    double allowed = allowed_imbalance);
 

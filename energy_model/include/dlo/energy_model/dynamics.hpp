@@ -13,121 +13,136 @@
 
 namespace dlo::energy_model {
 
-/// A rod that moves: what Problem says of it at rest, its masses, what its grips do, and what takes
-/// energy from it. Its points obey
+/// A moving rod: its Problem, its masses, the motion of its grips, and its dissipation. Its points
+/// obey
 ///     rho A r'' + c r' + q |v| v = w + N_s,   M_s + t x N = 0,   M = t x (EI t_s + tau EI t_s')
-/// (primes: by time, s: by arc length), |t| = 1, v = r' - (t.r') t. Where clamps hold frames or the
-/// rod has material directors M is of all strains u beyond the natural ones, K (u + tau u'), K =
-/// (EI, EI_2, GJ).
+/// (primes: derivatives by time, s: by arc length), |t| = 1, v = r' - (t.r') t. If clamps hold
+/// frames or the rod has material directors, M is computed from all elastic strains u (those beyond
+/// the natural ones): K (u + tau u'), K = (EI, EI_2, GJ).
 struct MovingRod {
-  Problem problem;  ///< loads and weight stay; poses of grips that have a motion are those of it
-  Inertia inertia;  ///< what `problem`'s weights do not say
-  std::vector<GripMotion> motions;  ///< by grip; empty, or null for one: it stands
-  /// By obstacle: what carries its body along, which is where the problem has it at the begin;
-  /// empty, or null for one: it stands.
+  /// Rod, grips, loads and obstacles; loads and weight are constant. The pose of a grip that has a
+  /// motion is taken from its motion.
+  Problem problem;
+  Inertia inertia;  ///< masses, which `problem` does not contain
+  /// Motion of each grip; an empty vector or a null entry: the grip does not move.
+  std::vector<GripMotion> motions;
+  /// Motion that carries the body of each obstacle, whose pose in `problem` is that at the first
+  /// time. An empty vector or a null entry: the obstacle does not move.
   std::vector<GripMotion> obstacle_motions;
-  double material_damping = 0;  ///< tau of Kelvin-Voigt [s], >= 0
-  double air_drag = 0;          ///< c, force per length and velocity [N s/m^2], >= 0
-  double quadratic_drag = 0;   ///< q, the same across it, by the squared velocity [N s^2/m^3], >= 0
+  double material_damping = 0;  ///< relaxation time tau of Kelvin-Voigt damping [s], >= 0
+  double air_drag = 0;          ///< c, drag per length and velocity [N s/m^2], >= 0
+  /// q, drag across the rod per length and squared velocity [N s^2/m^3], >= 0.
+  double quadratic_drag = 0;
   std::vector<double> breaks;  ///< times at which a motion is not smooth [s]
 };
 
-/// The shape that motion begins with: samples at arc lengths, of which the tangents count.
-/// Equilibrium::sample is one. Grips have to hold it nearly: it is moved to where they do.
+/// Shape from which the motion begins, as a function that returns samples at arc lengths; only its
+/// tangents are used. Equilibrium::sample is one. The grips have to hold it approximately: it is
+/// moved to the positions at which they do.
 using StartingShape = std::function<Samples(std::span<const double>)>;
 
-/// Velocities of the rod's points at arc lengths [m/s], 3 x their number.
+/// Velocities of the rod's points at M arc lengths, 3 x M [m/s].
 using StartingVelocities = std::function<Eigen::Matrix3Xd(std::span<const double>)>;
 
-/// A straight rod along a direction, to start from.
+/// Returns the shape of a straight rod along a direction, as the start of a simulation.
 [[nodiscard]] StartingShape straight_rod(const Eigen::Vector3d& direction);
 
-/// What a moving rod has and has done, up to one time [J].
+/// Energies of a moving rod at one time, and the work and losses up to that time [J].
 struct EnergyBalance {
-  double kinetic = 0;     ///< of the points' movement
-  double bending = 0;     ///< int 1/2 EI kappa^2 ds; of strains beyond the natural ones
-  double twisting = 0;    ///< int 1/2 GJ u3^2 ds, the same
-  double gravity = 0;     ///< of weight and line loads; zero at the first grip at time 0
-  double load = 0;        ///< of dead loads, the same
-  double obstacles = 0;   ///< of the springs of what yields, and of those that stand for rigid ones
-  double dissipated = 0;  ///< since the begin, in the material and in the air
-  double lost = 0;        ///< since the begin, on rigid obstacles
-  double work = 0;        ///< since the begin, of grips and of obstacles that move on the rod
+  double kinetic = 0;  ///< kinetic energy of the points
+  double bending = 0;  ///< bending energy int 1/2 EI kappa^2 ds, of strains beyond the natural ones
+  double twisting = 0;  ///< twisting energy int 1/2 GJ u3^2 ds, of twist beyond the natural one
+  double gravity = 0;   ///< potential of weight and line loads; zero at the first grip at time 0
+  double load = 0;      ///< potential of dead loads; zero at the first grip at time 0
+  /// Energy of the springs of yielding obstacles and of the stiff springs that represent rigid
+  /// ones.
+  double obstacles = 0;
+  double dissipated = 0;  ///< energy dissipated in the material and in the air since the first time
+  double lost = 0;        ///< energy lost on rigid obstacles since the first time
+  double work = 0;        ///< work of grips and of moving obstacles on the rod since the first time
 
-  /// kinetic + bending + twisting + gravity + load + obstacles.
+  /// Returns kinetic + bending + twisting + gravity + load + obstacles [J].
   [[nodiscard]] double total() const {
     return kinetic + bending + twisting + gravity + load + obstacles;
   }
 };
 
-/// A rod at one time.
+/// State of a rod at one time.
 struct MovingFrame {
   double time = 0;                         ///< [s]
-  EnergyBalance energy;                    ///< of all of the rod
-  std::vector<Reaction> grips;             ///< in the order of Problem::grips
+  EnergyBalance energy;                    ///< energies of the whole rod
+  std::vector<Reaction> grips;             ///< reactions in the order of Problem::grips
   std::vector<Eigen::Vector3d> obstacles;  ///< force of each obstacle on the rod [N]
-  /// The shape at arc lengths within [0, length] [m].
+  /// Returns samples of the shape at arc lengths within [0, length] [m].
   std::function<Samples(std::span<const double>)> sample;
 };
 
 /// Outcome of a simulation.
 struct [[nodiscard]] Dynamics {
-  SolveStatus status = SolveStatus::not_run;  ///< `converged`: to the last time, as asked
-  std::string message = "never ran";          ///< the same in words
-  std::vector<MovingFrame> frames;            ///< at the times that were asked for and reached
-  int terms = 0;                              ///< of each piece and field
-  long steps = 0;                             ///< of the integrator, all spans, those repeated too
-  double smallest_step = std::numeric_limits<double>::infinity();  ///< [s]
-  /// Sum over the steps of what halving a step changed: root mean square of the points'
-  /// displacement over the length. NaN with a fixed step, which is not halved.
+  /// `converged`: the last requested time is reached with the requested accuracy.
+  SolveStatus status = SolveStatus::not_run;
+  std::string message = "never ran";  ///< the status in words
+  std::vector<MovingFrame> frames;    ///< states at the requested times that were reached
+  int terms = 0;                      ///< coefficients of each element and strain component
+  long steps = 0;  ///< number of integrator steps of all spans, rejected ones included
+  /// Size of the smallest step [s].
+  double smallest_step = std::numeric_limits<double>::infinity();
+  /// Sum over all steps of the change by halving the step: root mean square of the points'
+  /// displacement divided by the length. NaN with a fixed step, which is not halved.
   double error_estimate = std::numeric_limits<double>::quiet_NaN();
   /// Largest depth of the rod's axis in a rigid obstacle at the end of a step [m].
   double deepest_contact = 0;
-  /// Largest |total - total at the begin + dissipated + lost - work| of the frames, over
+  /// Largest |total - total at the first time + dissipated + lost - work| of all frames, divided by
   /// `largest_energy`.
   double energy_error = std::numeric_limits<double>::infinity();
-  /// Of the frames: the largest kinetic, bending, twisting, obstacles', dissipated or lost energy
-  /// or work, or change of gravity and load [J].
+  /// Largest of the following in all frames: kinetic, bending, twisting, obstacle, dissipated or
+  /// lost energy, work, and change of gravity and load energy [J].
   double largest_energy = 0;
 };
 
-/// How exact a simulation is.
+/// Discretisation and accuracy of a simulation.
 struct DynamicsOptions {
-  int terms = 12;  ///< of each piece and field, > 0; converged if more do not change the result
-  /// Of one step: root mean square of the displacement by which a step differs from two of half the
-  /// size, over the length, and what the energy balance of the two misses, over the largest energy
-  /// so far. The two are kept, and their displacement is better by orders of magnitude.
+  /// Coefficients of each element and strain component, > 0; converged if more do not change the
+  /// result.
+  int terms = 12;
+  /// Error limit of one step. Two quantities are limited: the root mean square of the displacement
+  /// between one step and two steps of half the size, divided by the length; and the error of the
+  /// energy balance of the two half steps, divided by the largest energy so far. The two half steps
+  /// are kept. Their displacement is more accurate by orders of magnitude.
   double tolerance = 1e-7;
-  /// [s]; 0: chosen by the tolerance. A fixed one keeps the method symmetric in time, so that an
-  /// undamped rod's energy does not drift.
+  /// Fixed step size [s]; 0: steps are chosen by the tolerance. A fixed step keeps the method
+  /// symmetric in time, so that the energy of an undamped rod does not drift.
   double step = 0;
-  /// Largest depth of the rod's axis in a rigid obstacle, over the length, > 0: obstacles are made
-  /// stiff enough for it. Forces of contact are spread over a time that is as this depth over the
-  /// speed of what strikes.
+  /// Largest depth of the rod's axis in a rigid obstacle, divided by the length, > 0. The stiffness
+  /// of the obstacles is chosen for this depth. Contact forces last for about this depth divided by
+  /// the impact velocity.
   double contact_depth = 1e-3;
   bool spatial = false;  ///< whether a rod whose grips and forces share a plane may leave it
-  /// Whether the rod has been in motion before: strains begin with the rates at which shapes in
-  /// equilibrium would follow the grips and obstacles. Else they do not change at first.
+  /// Whether the rod has been in motion before the first time. If so, strains begin with the rates
+  /// at which equilibrium shapes would follow the grips and obstacles; else the initial strain
+  /// rates are zero.
   bool in_motion = false;
   /// Velocities with which the motion begins, instead of `in_motion`; null: none are given. The rod
-  /// starts with velocities that its length and its grips allow: those whose difference from the
-  /// given ones has the smallest kinetic energy.
+  /// starts with the velocities that are compatible with its length and its grips and whose
+  /// difference from the given ones has the smallest kinetic energy.
   StartingVelocities velocities;
   double time_limit = std::numeric_limits<double>::infinity();  ///< wall time [s], > 0
 };
 
-/// Motion of an inextensible rod from a shape at rest, whose strains do not change
-/// at first (but DynamicsOptions::in_motion and velocities): its grips carry it along. Strains in
-/// Legendre polynomials, as in solve_energy(); by time collocation at Gauss' four points (order 8),
-/// with damping of the material or rigid obstacles, or with twist, Radau's IIA (order 7).
-/// Cross-sections have no inertia: twist, where clamps hold frames or the rod has material
-/// directors, is in equilibrium at each time. There Samples::d1 of a frame is the material's. Rigid
-/// obstacles are stiff ones, p = k d^2 max(0, 1 + d' / u) per length at a depth d (Hunt and
-/// Crossley 1975), without friction. Method, evidence and limits: energy_model/doc/dynamics.md.
-/// @param start  held by the grips, nearly: it is moved to where they do
-/// @param times  to give frames at [s], growing; motion begins at 0, or at the first of them if
-/// that is below zero
-/// @throws std::invalid_argument if something is out of range
+/// Simulates the motion of an inextensible rod from a shape whose strain rates are zero at first
+/// (but see DynamicsOptions::in_motion and velocities); the grips move it. Strains are series of
+/// Legendre polynomials, as in solve_energy(). Time integration is collocation at Gauss' four
+/// points (order 8); with damping of the material, rigid obstacles or twist it is Radau IIA (order
+/// 7). Cross-sections have no inertia: twist, where clamps hold frames or the rod has material
+/// directors, is in equilibrium at each time, and Samples::d1 of a frame is then the material
+/// director. Rigid obstacles are stiff springs without friction, with the force per length p = k
+/// d^2 max(0, 1 + d' / u) at a depth d (Hunt and Crossley 1975). Method, evidence and limits:
+/// energy_model/doc/dynamics.md.
+/// @param start  shape that the grips hold approximately: it is moved to the positions at which
+///               they do
+/// @param times  times of the frames [s], growing. The motion begins at 0, or at the first of them
+///               if that is negative
+/// @throws std::invalid_argument if an argument is out of range
 Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<const double> times,
                   const DynamicsOptions& options = {});
 

@@ -12,87 +12,94 @@
 
 namespace dlo::energy_model {
 
-/// Depth of the axis behind a rigid obstacle up to which a shape is called converged, over the
-/// rod's length [-].
+/// Largest depth of the axis behind a rigid obstacle with which a shape is accepted as converged,
+/// divided by the rod length [-].
 inline constexpr double allowed_penetration = 1e-8;
 
-/// How well to solve, and from where.
+/// Discretisation, limits and initial guess of the energy model.
 struct EnergyOptions {
-  /// Coefficients K of each smooth piece and field, 1 to max_terms = 128; 0: as many as `tolerance`
-  /// needs.
+  /// Coefficients K of each element and strain component, 1 to max_terms = 128; 0: as many as
+  /// `tolerance` requires.
   int terms = 0;
-  /// Of truncation: what the last coefficients add to points of the shape, in l; > 0. Newton's
-  /// method goes to rounding whatever this is.
+  /// Truncation tolerance: largest contribution of the last coefficients to any point of the shape,
+  /// divided by the rod length; > 0. Newton's method always iterates to rounding and does not use
+  /// it.
   double tolerance = 1e-10;
-  /// Of one descent by NLopt, >= 1; beyond, `evaluation_limit`. Descents between grips and Newton's
-  /// method have limits of their own.
+  /// Maximum number of energy evaluations of one NLopt descent, >= 1. A descent that reaches it
+  /// returns `evaluation_limit`. Descents between grips and Newton's method have separate limits.
   int max_evaluations = 20000;
-  /// Of the whole call [s], > 0; the status is then `time_limit`.
+  /// Time limit of the whole call [s], > 0. A call that reaches it returns `time_limit`.
   double time_limit = std::numeric_limits<double>::infinity();
-  /// A known equilibrium of a similar problem, of the same length and clamps, to start from
-  /// instead of a search: it is followed, so that snapping shows where the branch ends. Has to
-  /// outlive the call. Of clamps that twist the rod its `twists` say how much it is twisted.
+  /// Known equilibrium of a similar problem with the same length and clamps, from which the solver
+  /// starts instead of a search. The solver follows its branch, so that a snap-through shows where
+  /// the branch ends. It has to outlive the call. If clamps twist the rod, its `twists` hold the
+  /// twist angle of each part.
   const Equilibrium* start = nullptr;
 };
 
-/// Lowest equilibrium that a search finds (energy_model/doc/search.md), of an inextensible rod with
+/// Returns the lowest equilibrium that a search finds (energy_model/doc/search.md) of an
+/// inextensible rod with the energy
 ///     E = int 1/2 (u - u0) . K (u - u0) ds - int w . r ds - sum_j F_j . r(s_j) + int 1/2 k d^2 ds
-/// [J]: strains u, natural strains u0, K = diag(EI_1, EI_2, GJ), w weight per length, d the depth
-/// in obstacles that yield; |r'| = 1, grips and rigid obstacles are constraints. Unknowns are the
-/// strains' coefficients in orthonormal Legendre polynomials (README.md).
-/// @return the lowest shape that was found and is stable, else the lowest other equilibrium, else
-/// why there is none. Stability is proven by the second variation; that nothing is lower is proven
-/// only of one clamp under parallel forces without an obstacle
+/// [J]: strains u, natural strains u0, K = diag(EI_1, EI_2, GJ), weight per length w, depth d in
+/// yielding obstacles; |r'| = 1, grips and rigid obstacles are constraints. The unknowns are the
+/// coefficients of the strains in orthonormal Legendre polynomials (README.md).
+/// @return the lowest stable shape that was found, else the lowest other equilibrium, else the
+/// reason why there is none. Stability is proven by the second variation. It is proven that no
+/// equilibrium is lower only for one clamp under parallel forces without an obstacle
 /// @throws std::invalid_argument if the problem or an option is out of range, with the numbers; if
-/// grips are as far apart as the rod between them is long; if loads, grips and sections cut the rod
-/// into more pieces than can be afforded
+/// grips are as far apart as the rod between them is long; if loads, grips and sections divide the
+/// rod into too many elements
 Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options = {});
 
-/// Finds the equilibrium that a local search from the points of a shape leads to: a polygon through
-/// them comes to rest where obstacles are, each of them on the side on which the points lie, and
-/// says what touches; the rod descends from there, Newton's method follows, and the certificate. A
-/// saddle is left downhill. No other start is tried, so that the result need not be the lowest
-/// equilibrium; its status says whether it is one, and whether it is stable. Only the directions of
-/// the points from each other count: the grips place the rod.
-/// Each span between clamps starts from its own points; a rod that is taut, or soft as a line, has
-/// one equilibrium, which is returned wherever the points are.
-/// @param arc_lengths  of the points [m], strictly growing, in [0, length], two or more
-/// @param points       [m], 3 x M
+/// Finds the equilibrium to which a local search from the points of a shape converges. A penalty
+/// equilibrium of a polygon through the points detects the contacts, with each obstacle on the side
+/// on which the points lie. The rod descends from that polygon; Newton's method and the certificate
+/// follow. A saddle is left along a direction of negative curvature. No other initial guess is
+/// tried, so the result need not be the lowest equilibrium; its status states whether it is an
+/// equilibrium and whether it is stable. Only the directions from point to point are used: the
+/// grips determine the position of the rod. Each span between clamps starts from its own points. A
+/// taut rod, or one with negligible bending stiffness (line_without_search()), has one equilibrium,
+/// which is returned for all points.
+/// @param arc_lengths  arc lengths of the points [m], strictly growing, in [0, length], two or more
+/// @param points       positions [m], 3 x M
 /// @throws std::invalid_argument as solve_energy(), or if the points are out of range
 Equilibrium energy_near(const Problem& problem, const std::vector<double>& arc_lengths,
                         const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                         const EnergyOptions& options = {});
 
-/// A kind of start that a search for all equilibria has looked from.
+/// A kind of initial guess that a search for all equilibria has used.
 struct SearchStrategy {
-  std::string name;     ///< in words: the start, and how it is left
-  int tried = 0;        ///< starts
-  int found_first = 0;  ///< equilibria that no start before had led to
+  std::string name;     ///< description of the initial guess and of the solver that starts from it
+  int tried = 0;        ///< number of initial guesses
+  int found_first = 0;  ///< number of equilibria that no earlier initial guess had converged to
 };
 
-/// What a search for all equilibria has found, from where, and what it may have missed. A search
-/// proves nothing of what it has not found.
+/// Result of a search for all equilibria: the equilibria, the initial guesses used, and those not
+/// used. A search does not prove that there are no other equilibria.
 struct EnergySearch {
-  /// Stable ones first, by energy; unstable ones have the status `saddle`, those at a fold or
+  /// Stable equilibria first, by energy. Unstable ones have the status `saddle`, those at a fold or
   /// bifurcation `near_singular`. Never empty.
   std::vector<Equilibrium> equilibria;
-  /// In the order of their first use. Spans count each on their own; their equilibria are combined
-  /// to those of the rod.
+  /// Kinds of initial guess in the order of their first use. Each span counts separately; the
+  /// equilibria of the spans are combined to those of the rod.
   std::vector<SearchStrategy> looked_from;
-  std::vector<std::string> not_looked;  ///< what was cut short or left out, and why; in words
+  /// Initial guesses that were interrupted or omitted, and why; in words.
+  std::vector<std::string> not_looked;
 };
 
-/// Every equilibrium that the search's starts lead to, and what these were
-/// (energy_model/doc/search.md).
+/// Returns every equilibrium to which the search's initial guesses converge, and describes these
+/// guesses (energy_model/doc/search.md).
 /// @throws std::invalid_argument as solve_energy()
 [[nodiscard]] EnergySearch search_energy(const Problem& problem, const EnergyOptions& options = {});
 
-/// Its equilibria alone: stable ones first, by energy.
+/// Returns the equilibria of search_energy(): stable ones first, by energy.
 /// @throws std::invalid_argument as solve_energy()
 [[nodiscard]] std::vector<Equilibrium> all_energy(const Problem& problem,
                                                   const EnergyOptions& options = {});
 
-/// The same with buffers that survive a solve, for loops. One thread at a time.
+/// Solver of the energy model with buffers that are reused between solves, for loops. Not
+/// thread-safe. Its functions that take a problem throw std::invalid_argument under the same
+/// conditions as solve_energy().
 class EnergySolver {
  public:
   /// @throws std::invalid_argument if an option is out of range
@@ -104,30 +111,33 @@ class EnergySolver {
   EnergySolver(const EnergySolver& other) = delete;
   EnergySolver& operator=(const EnergySolver& other) = delete;
 
-  /// solve_energy(). What follows throws std::invalid_argument as it does.
+  /// Solves as solve_energy() does.
   Equilibrium solve(const Problem& problem);
-  /// From the shape of the last call instead of a search, if it had one: for a gripper or an
-  /// obstacle that has moved a little. By Newton's method with its contacts, which are updated as
-  /// they change. Where that leads to no equilibrium near the last shape, or to an unstable one,
-  /// the branch has ended: the shape is the next minimum downhill of the last, or failing that what
-  /// solve() finds. The problem has the same obstacles in the same order.
+  /// Solves from the shape of the previous call instead of a search, if that call had a shape: for
+  /// a gripper or an obstacle that has moved a little. It uses Newton's method with contacts, which
+  /// are updated as they change. The branch has ended if Newton's method finds no equilibrium near
+  /// the last shape, or an unstable one. The returned shape is then the next minimum downhill of
+  /// the last shape, or failing that the result of solve(). The problem must have the same
+  /// obstacles in the same order.
   Equilibrium follow(const Problem& problem);
-  /// follow() as far as Newton's method stays on the branch, without what it does beyond. None
-  /// where that leads to no stable equilibrium near the last shape, or there is none: the next call
-  /// then goes on from the same shape as this one, in a smaller step for instance.
+  /// Follows the branch by Newton's method as follow() does, but does not continue beyond the end
+  /// of the branch. Returns std::nullopt if no stable equilibrium is found near the last shape, or
+  /// if there is no last shape. The next call then starts from the same shape as this one, for
+  /// example with a smaller step.
   std::optional<Equilibrium> try_follow(const Problem& problem);
-  /// Forgets the shape of the last follow() or try_follow() that had one: the next call goes on
-  /// from the shape before it. Once for each of them.
+  /// Discards the shape of the last successful follow() or try_follow(): the next call starts from
+  /// the shape before it. At most once for each of them.
   void undo();
-  /// Whether the last follow() has stayed on its branch, as far as Newton's method tells: the shape
-  /// is next to the one before. Work and energy tell too (a snap-through releases energy).
+  /// Whether the last follow() stayed on its branch, as far as Newton's method can detect: the new
+  /// shape is adjacent to the previous one. Work and energy detect a branch jump too (a
+  /// snap-through releases energy).
   [[nodiscard]] bool followed() const;
-  /// energy_near(); EnergyOptions::start is not used.
+  /// Solves as energy_near() does; EnergyOptions::start is not used.
   Equilibrium near(const Problem& problem, const std::vector<double>& arc_lengths,
                    const Eigen::Ref<const Eigen::Matrix3Xd>& points);
-  /// search_energy().
+  /// Searches as search_energy() does.
   [[nodiscard]] EnergySearch search(const Problem& problem);
-  /// all_energy().
+  /// Returns the equilibria that all_energy() returns.
   [[nodiscard]] std::vector<Equilibrium> solve_all(const Problem& problem);
 
  private:

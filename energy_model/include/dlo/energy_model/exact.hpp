@@ -7,46 +7,48 @@
 
 namespace dlo::energy_model {
 
-/// How well to integrate, and from where.
+/// Accuracy, limits and initial guess of `exact`.
 struct ExactOptions {
-  /// Local error of the integrator per step [-], > 0, of angles, positions and moments in units of
+  /// Local error of the integrator per step [-], > 0, in angles, positions and moments in units of
   /// l and EI.
   double tolerance = 1e-13;
-  /// Of the whole call [s], > 0; the status is then `time_limit`, with the lowest shape so far if
-  /// there is one: it is an equilibrium, but others were not looked for.
+  /// Time limit of the whole call [s], > 0. A call that reaches it returns `time_limit`, with the
+  /// lowest shape found so far if there is one. That shape is an equilibrium, but the search for
+  /// others is incomplete.
   double time_limit = std::numeric_limits<double>::infinity();
-  /// A shape to confirm or correct, of this problem or a similar one, with its grips' reactions:
-  /// Newton's method starts from it, without a search. Has to outlive the call. Where clamps twist
-  /// the rod it starts with the torque of the shape's `twists` and counts whole turns as they do;
-  /// without `twists` it is taken for the rod without twist. Of a rod with material directors the
-  /// frames are the shape's d1 or, if it has none, follow from the first clamp's, which there has
-  /// to be, and from what the grips exert.
+  /// Shape of this problem or a similar one, with the reactions of its grips, which Newton's method
+  /// confirms or corrects without a search. It has to outlive the call. If clamps twist the rod,
+  /// the solver starts with the torque of the shape's `twists` and counts whole turns as they do; a
+  /// shape without `twists` is treated as the rod without twist. For a rod with material directors
+  /// the frames are given by the shape's d1. If it has no d1, they are computed from the frame of
+  /// the first clamp, which has to exist, and from the reactions.
   const Equilibrium* start = nullptr;
 };
 
-/// Lowest stable equilibrium that shooting finds, of the inextensible rod as a boundary value
-/// problem (Kirchhoff's equations; Love, Mathematical Theory of Elasticity, ch. 18-19)
+/// Returns the lowest stable equilibrium that shooting finds, of the inextensible rod as a boundary
+/// value problem (Kirchhoff's equations; Love, Mathematical Theory of Elasticity, ch. 18-19)
 ///     r' = t,  R' = R hat(u),  m = R diag(EI_1, EI_2, GJ) (u - u0),  m' = n x t,  n' = -w - f(t),
-/// R = (d1, d2, t), m and n what lies beyond s exerts, f the drag; no basis, no code of
-/// solve_energy(). energy_model/doc/exact.md describes what it searches and which contacts it
-/// confirms. It detects no contact: where there are obstacles, ExactOptions::start has to hold the
-/// contacts.
-///
-/// Where a load has no potential (has_potential()), it is the equilibrium that the lowest one under
-/// the others goes over into as that load and all couples grow from nothing; `not_verified`, since
-/// no energy says whether it is stable. Its energies are without such loads.
-/// @return the lowest `converged` shape, else the lowest other one, else why there is none; its
-/// stability is that of the second variation by finite elements on its own shape
-/// @throws std::invalid_argument if the problem or an option is out of range; of obstacles any
-/// without a start, those that yield, any where a rod has natural strains; of a round straight rod
-/// a clamp without a frame between two that hold theirs
+/// R = (d1, d2, t); m and n are the moment and force that the part beyond s exerts, f is the drag.
+/// It uses no basis functions and no code of solve_energy(). energy_model/doc/exact.md describes
+/// the search and the contacts that it confirms. It detects no contact: if there are obstacles,
+/// ExactOptions::start has to contain the contacts.
+/// If a load has no potential (has_potential()), that load and all couples are increased from zero,
+/// and the result is the equilibrium that continues the lowest one under the other loads. It is
+/// `not_verified`, because no energy determines its stability. Its energies do not include such
+/// loads.
+/// @return the lowest `converged` shape, else the lowest other one, else the reason why there is
+/// none. Its stability is that of the second variation by finite elements on its own shape
+/// @throws std::invalid_argument if the problem or an option is out of range. Also for obstacles
+/// without a start, for yielding obstacles, for obstacles of a rod with natural strains, and for a
+/// clamp without a frame between two that hold frames of a round straight rod
 Equilibrium solve_exact(const Problem& problem, const ExactOptions& options = {});
 
-/// Every equilibrium that the scan or the search finds, `converged` ones first, by energy, then
-/// `saddle`; others are left out. Of several spans the 64 lowest combinations; the message says if
-/// there are more. If the time is up, what was found until then: all have the status `time_limit`,
-/// and the message says what they are. Empty if nothing was found. One clamp in the plane: all of
-/// them up to the scan's resolution (energy_model/doc/exact.md); elsewhere it may miss some.
+/// Returns every equilibrium that the scan or the search finds: `converged` ones first, by energy,
+/// then `saddle`; others are omitted. With several spans these are the 64 lowest combinations, and
+/// the message states if there are more. If the time limit is reached, the equilibria found until
+/// then have the status `time_limit`, and the message describes them. Empty if none was found. For
+/// one clamp in the plane the list is complete up to the resolution of the scan
+/// (energy_model/doc/exact.md); elsewhere equilibria may be missing.
 /// @throws std::invalid_argument as solve_exact()
 [[nodiscard]] std::vector<Equilibrium> all_exact(const Problem& problem,
                                                  const ExactOptions& options = {});

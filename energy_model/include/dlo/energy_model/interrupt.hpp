@@ -2,26 +2,28 @@
 
 namespace dlo::energy_model {
 
-/// A question that every solver of this thread asks between evaluations while this lives: "shall it
-/// stop?" Once the answer is yes, solves end as at their time limit, those begun later too, as long
-/// as it stays yes. For programs that stop long computations by hand, from whatever called them; a
-/// program that knows beforehand how long it will wait sets a time limit.
+/// Interrupts solvers of this thread. During the lifetime of this object every solver calls a
+/// function between evaluations, which returns whether to stop. If it returns true, solves end as
+/// at their time limit, and so do later solves as long as it returns true. It is meant for programs
+/// in which a user stops long computations; a program that knows in advance how long it will wait
+/// sets a time limit.
 class Interruption {
  public:
-  /// @param asked  must not throw, and be quick: it is called some hundred thousand times a second
+  /// @param asked  returns whether to stop. It must not throw and must be fast: it is called some
+  ///               hundred thousand times a second
   explicit Interruption(bool (*asked)());
   Interruption(const Interruption&) = delete;
   Interruption& operator=(const Interruption&) = delete;
   Interruption(Interruption&&) = delete;
   Interruption& operator=(Interruption&&) = delete;
-  /// What was asked before is asked again.
+  /// Restores the function that was in use before.
   ~Interruption();
 
  private:
   bool (*before_)();
 };
 
-/// Whether solves of this thread shall stop; no if nobody asks.
+/// Whether solves of this thread have to stop; false without an Interruption.
 [[nodiscard]] bool interrupted();
 
 }  // namespace dlo::energy_model

@@ -8,19 +8,23 @@
 
 namespace dlo::energy_model {
 
-/// Returns the normal that d2 is where the first clamp of a rod with material directors does not
-/// say otherwise: that of the plane of grips, weight and obstacles, on the side of +z (+y, +x). For
-/// a rod without natural strains loads choose the plane too; a line lies in the plane that holds x,
-/// or y. For one with natural strains they do not. Empty: there is no such plane. With natural
-/// strains also: there is more than one, as along a line that is not in x-y; or a load has a
-/// component across it that moves the rod by more than about 1e-6 of its length.
+/// Returns the direction of d2 at the first clamp of a rod with material directors if that clamp
+/// has no d1. It is the normal of the plane of grips, weight and obstacles, on the side of +z (+y,
+/// +x). Without natural strains loads determine the plane too, and a straight line lies in the
+/// plane that contains x, or y. With natural strains loads do not determine the plane. Returns
+/// std::nullopt if there is no such plane. With natural strains it also does so if there is more
+/// than one, as along a line that is not in x-y, or if a load has a component across the plane that
+/// moves the rod by more than about 1e-6 of its length.
 [[nodiscard]] std::optional<Eigen::Vector3d> natural_normal(const Problem& problem);
 
-/// Index of the first clamp along the rod in Problem::grips. None: there are but pins.
+/// Returns the index in Problem::grips of the first clamp along the rod; std::nullopt if there are
+/// only pins.
 [[nodiscard]] std::optional<std::size_t> first_clamp(const Problem& problem);
 
-/// Frame (columns d1, d2, t) that the first clamp holds a rod with material directors in.
-/// @throws std::invalid_argument if it does not say where d1 is and there is no plane that does
+/// Returns the frame (columns d1, d2, t) in which the first clamp holds a rod with material
+/// directors.
+/// @throws std::invalid_argument if the clamp has no d1 and no plane determines it
+/// (natural_normal())
 [[nodiscard]] Eigen::Matrix3d first_frame(const Problem& problem);
 
 }  // namespace dlo::energy_model

@@ -2,26 +2,27 @@
 
 namespace dlo::energy_model {
 
-/// How a solver ended. All but `converged` and `roundoff_limited` are failures; the default of
-/// every result is one.
+/// Outcome of a solver. All but `converged` and `roundoff_limited` are failures. The default of
+/// every result is `not_run`.
 enum class SolveStatus {
-  not_run,           ///< the solver was not called
-  converged,         ///< an equilibrium with a positive second variation, on what is returned
-  roundoff_limited,  ///< the same, as far as double precision goes; the shape is usable
+  not_run,    ///< the solver was not called
+  converged,  ///< an equilibrium; the second variation of the returned shape is positive
+  /// As `converged`, to the accuracy that double precision allows; the shape is usable.
+  roundoff_limited,
   saddle,            ///< an equilibrium, but the second variation has a negative direction
-  near_singular,     ///< next to a fold or bifurcation: not determined to the tolerance
-  not_verified,      ///< a shape, but what is claimed of it is not proven: see the message
+  near_singular,     ///< close to a fold or bifurcation: not determined to the tolerance
+  not_verified,      ///< a shape with a claim that is not proven: see the message
   evaluation_limit,  ///< `max_evaluations` of the options; no claim
-  time_limit,        ///< `time_limit` of the options, or interrupted (interrupt.hpp)
+  time_limit,        ///< `time_limit` of the options, or an interruption (interrupt.hpp)
   failed,            ///< the solver gave up, see the message; no claim
 };
 
-/// The shape can be used.
+/// Whether the shape is usable.
 [[nodiscard]] constexpr bool succeeded(SolveStatus status) {
   return status == SolveStatus::converged || status == SolveStatus::roundoff_limited;
 }
 
-/// In words, for messages.
+/// Returns the status in words, for messages.
 [[nodiscard]] constexpr const char* to_string(SolveStatus status) {
   switch (status) {
     case SolveStatus::not_run:

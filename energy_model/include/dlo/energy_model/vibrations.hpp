@@ -16,23 +16,24 @@ struct PointMass {
   double mass = 0;  ///< [kg], >= 0
 };
 
-/// What moves with a rod; Problem knows weights only. Cross-sections have no rotary inertia.
+/// Mass distribution of a rod; Problem contains weights only. Cross-sections have no rotary
+/// inertia.
 struct Inertia {
   double mass_per_length = 0;           ///< rho A [kg/m], outside sections
-  std::vector<double> of_sections;      ///< the same of each of Problem::sections
+  std::vector<double> of_sections;      ///< rho A of each of Problem::sections [kg/m]
   std::vector<PointMass> point_masses;  ///< may be empty
 };
 
-/// Where a mode moves the rod, of a shape that lies in a plane; of a straight one in that which
-/// its grips and forces share.
+/// Plane of a mode's motion, relative to the plane of the shape. A straight shape has the plane
+/// that its grips and forces share.
 enum class ModePlane {
   in,       ///< in the shape's plane
-  out,      ///< across it
+  out,      ///< across the shape's plane
   mixed,    ///< both
   spatial,  ///< the shape lies in no plane
 };
 
-/// In words, for files.
+/// Returns the name of the plane, as files contain it.
 [[nodiscard]] constexpr const char* to_string(ModePlane plane) {
   switch (plane) {
     case ModePlane::in:
@@ -49,62 +50,65 @@ enum class ModePlane {
 
 /// A free vibration about an equilibrium.
 struct VibrationMode {
-  /// Square of the angular frequency [1/s^2]; negative: unstable, growing as
+  /// Square of the angular frequency [1/s^2]; negative: unstable, the mode grows as
   /// exp((-omega_squared)^(1/2) t).
   double omega_squared = 0;
-  /// What the terms left out change of omega, over it: by how much it differed with fewer. Of a
-  /// rod with a zero mode, whose omega_squared is below 1e-2 EI / (m l^3) with its mass m,
-  /// over the root of that.
+  /// Estimated relative truncation error of omega: its change from fewer terms, divided by omega.
+  /// If the rod has a zero mode, whose omega_squared is below 1e-2 EI / (m l^3) with the rod's mass
+  /// m, the change is divided by the square root of that limit.
   double error = std::numeric_limits<double>::infinity();
-  ModePlane plane = ModePlane::spatial;  ///< of the movement, about the plane of the shape
-  double begin = 0;                      ///< of the part between clamps that moves, arc length [m]
-  double end = 0;                        ///< its end [m]
-  /// Displacements at arc lengths within [0, length], 3 x M [m], of the movement in which the
-  /// farthest point goes 1 m.
+  /// Plane of the motion, relative to the plane of the shape.
+  ModePlane plane = ModePlane::spatial;
+  double begin = 0;  ///< begin of the moving part between clamps, arc length [m]
+  double end = 0;    ///< end of the moving part, arc length [m]
+  /// Returns the displacements at arc lengths within [0, length], 3 x M [m], scaled to a largest
+  /// displacement of 1 m.
   std::function<Eigen::Matrix3Xd(std::span<const double>)> shape;
 
-  /// [rad/s]; NaN of an unstable one.
+  /// Returns the angular frequency [rad/s]; NaN for an unstable mode.
   [[nodiscard]] double omega() const;
 };
 
-/// The slowest modes of a rod about an equilibrium.
+/// Modes of a rod about an equilibrium with the lowest frequencies.
 struct [[nodiscard]] Vibrations {
   SolveStatus status =
       SolveStatus::not_run;           ///< converged: each mode's error is below the tolerance
-  std::string message = "never ran";  ///< the same in words
-  int terms = 0;                      ///< of each piece and field
+  std::string message = "never ran";  ///< the status in words
+  int terms = 0;                      ///< coefficients of each element and strain component
   std::vector<VibrationMode> modes;   ///< by growing omega_squared
 };
 
-/// How many, and how well.
+/// Number, accuracy and time limit of the modes.
 struct VibrationOptions {
-  int count = 6;                                                ///< modes, > 0
-  double tolerance = 1e-9;                                      ///< of omega, relative
-  double time_limit = std::numeric_limits<double>::infinity();  ///< [s], > 0
+  int count = 6;                                                ///< number of modes, > 0
+  double tolerance = 1e-9;                                      ///< relative error of omega
+  double time_limit = std::numeric_limits<double>::infinity();  ///< time limit [s], > 0
 };
 
-/// Small free vibrations without damping about an equilibrium of the energy model: H v = omega^2 M
-/// v on the directions that grips leave, H the second variation of the energy less the grips' work,
-/// M the mass matrix of the points' movement over the same unknowns. Spans between clamps vibrate
-/// each on its own. Twist follows at once, because cross-sections have no inertia. Grips stand, and
-/// obstacles that yield push as springs do. Terms are added until omega does not change.
-/// @param known  of the same problem; unstable ones have negative squares
+/// Computes small free vibrations without damping about an equilibrium of the energy model: H v =
+/// omega^2 M v in the directions that grips leave free. H is the second variation of the energy
+/// minus the work of the grips, M the mass matrix of the points' motion in the same unknowns. Spans
+/// between clamps vibrate independently. Twist is in equilibrium at each time, because
+/// cross-sections have no rotary inertia. Grips do not move, and yielding obstacles act as springs.
+/// Terms are added until omega does not change.
+/// @param known  equilibrium of the same problem; modes of an unstable one have negative squares
 /// @throws std::invalid_argument if the problem, the inertia or an option is out of range. A shape
-/// that touches a rigid obstacle is `failed`: what vibrates leaves it, and that is not linear
+/// that touches a rigid obstacle is `failed`: a vibrating rod lifts off, which is not linear
 Vibrations vibrations(const Problem& problem, const Inertia& inertia, const Equilibrium& known,
                       const VibrationOptions& options = {});
 
-/// Whether clamps hold a rod straight: each as far from the next one, along the directions of both,
-/// as the rod between them is long, to rounding. It has no other shape, and solve_energy() none.
+/// Whether clamps hold a rod straight: each is as far from the next one, along the directions of
+/// both, as the rod between them is long, to rounding. The line is then its only shape, which
+/// solve_energy() returns only if taut_line() applies.
 [[nodiscard]] bool is_held_straight(const Problem& problem);
 
-/// vibrations() of a rod that is held straight, whose shape does not determine its tension. To
-/// first order a deflection takes no length, so that without tension the modes are those of a beam
-/// that is clamped at both ends; with it there is w_ssss EI - tension w_ss = omega^2 m w. The rod
-/// that does not stretch keeps them for deflections whose length, int w_s^2/2 ds, the grips' give
-/// or the rod's own stretch has.
-/// @param tension  of the rod between its clamps [N]; pressed where < 0
-/// @throws std::invalid_argument as vibrations(), and if the rod is not held straight, or its
+/// Computes vibrations() of a rod that is_held_straight(), whose shape does not determine its
+/// tension. To first order a deflection needs no additional length, so that without tension the
+/// modes are those of a beam that is clamped at both ends; with tension w_ssss EI - tension w_ss =
+/// omega^2 m w. An inextensible rod has these modes if compliance of the grips or stretch of the
+/// rod provides the length of the deflection, int w_s^2/2 ds.
+/// @param tension  tension of the rod between its clamps [N]; compression if < 0
+/// @throws std::invalid_argument as vibrations(), and if the rod is not held straight, or if its
 /// weight, a load, natural strains, an obstacle or clamps that hold frames could bend or twist it
 Vibrations taut_vibrations(const Problem& problem, const Inertia& inertia, double tension,
                            const VibrationOptions& options = {});
