@@ -8,17 +8,17 @@
 
 namespace dlo::energy_model {
 
-/// When a solve has to end: at a time, or as soon as its thread is interrupted. Solvers ask between
-/// evaluations, so they overrun it by one at most.
+/// Time limit of a solve, which also ends as soon as its thread is interrupted (Interruption).
+/// Solvers check it between evaluations, so they exceed it by one evaluation at most.
 class Deadline {
  public:
-  /// @param seconds  from now on, > 0; infinity never passes
+  /// @param seconds  time limit from now on [s], > 0; infinity never passes
   explicit Deadline(double seconds = std::numeric_limits<double>::infinity()) : seconds_(seconds) {}
 
   [[nodiscard]] bool passed() const {
     return interrupted() || (std::isfinite(seconds_) && remaining() <= 0);
   }
-  /// [s], below zero once it has passed
+  /// Returns the remaining time [s], negative after the deadline.
   [[nodiscard]] double remaining() const {
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
     return seconds_ - spent.count();

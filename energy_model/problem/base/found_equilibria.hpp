@@ -7,7 +7,8 @@
 
 namespace dlo::energy_model {
 
-/// Of what searches find by shooting (SpanEquilibrium).
+/// Returns the lowest energy of the stable shapes that a search by shooting has found
+/// (SpanEquilibrium); infinity if none is stable.
 template <typename Shape>
 [[nodiscard]] double lowest_stable_energy(const std::vector<Shape>& found) {
   double lowest = std::numeric_limits<double>::infinity();
@@ -17,9 +18,9 @@ template <typename Shape>
   return lowest;
 }
 
-/// The lowest one that is unstable and yet below all stable ones, which shows that a minimum has
-/// been missed; null: none.
-/// @param left  energies of those that are not asked for
+/// Returns the lowest unstable shape whose energy is below that of all stable ones, which shows
+/// that a minimum has been missed; null if there is none.
+/// @param left  energies of the shapes to exclude: the saddles that have already been left
 template <typename Shape>
 [[nodiscard]] const Shape* missed_minimum(const std::vector<Shape>& found,
                                           const std::vector<double>& left) {
@@ -34,7 +35,8 @@ template <typename Shape>
   return lowest;
 }
 
-/// Stable ones first, by energy. Mirror images have the same up to rounding and keep their order.
+/// Sorts stable shapes first, by energy. Mirror images have equal energies up to rounding and keep
+/// their order.
 template <typename Shape>
 void sort_by_stability(std::vector<Shape>& found) {
   std::stable_sort(found.begin(), found.end(), [](const Shape& a, const Shape& b) {

@@ -11,7 +11,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// P_n(x) and its derivative.
+/// Legendre polynomial P_n(x) and its derivative.
 struct Polynomial {
   double value, slope;
 };
@@ -28,7 +28,8 @@ Polynomial legendre_polynomial(Eigen::Index n, double x) {
   return {current, static_cast<double>(n) * (x * current - previous) / (x * x - 1)};
 }
 
-/// Gauss-Legendre rule on [0, 1] by Newton's method. GSL's tables stop at 1e-10 for most sizes.
+/// Computes the Gauss-Legendre rule on [0, 1] by Newton's method. GSL's tables are accurate to
+/// 1e-10 only for most sizes.
 void gauss_legendre(Eigen::VectorXd& nodes, Eigen::VectorXd& weights) {
   const Eigen::Index n = nodes.size();
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -68,7 +69,7 @@ LegendreTable make_table(int terms, Eigen::Index Q) {
   return table;
 }
 
-/// One table for each number of terms, made when it is first asked for.
+/// Tables for each number of terms, computed at the first request.
 class Tables {
  public:
   const LegendreTable& of(int terms, int nodes) {
@@ -136,7 +137,8 @@ FittedAngle fit_angle(const LegendreTable& table, const std::vector<double>& tur
   const Eigen::Index Q = table.nodes.size();
   const Eigen::Index K = table.fit.rows() - 1;
   const auto count = static_cast<Eigen::Index>(turns.size());
-  // Every piece on its own, with the angle where it begins; then p_0 makes them meet.
+  // The angle is fitted on each element separately, with its value at the begin. The coefficient of
+  // p_0 then makes neighbouring elements meet.
   Eigen::MatrixXd own(K + 1, count);
   for (Eigen::Index e = 0; e < count; ++e) {
     own.col(e).noalias() = table.fit * angles.segment(e * Q, Q);

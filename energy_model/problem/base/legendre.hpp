@@ -7,46 +7,48 @@
 namespace dlo::energy_model {
 
 /// Orthonormal Legendre polynomials p_k on [0, 1] at the Q nodes of a Gauss-Legendre rule. All Q
-/// polynomials are tabulated, the first K are the unknowns' own.
+/// polynomials are tabulated; the unknowns are the coefficients of the first K.
 struct LegendreTable {
-  Eigen::VectorXd nodes;        ///< Q
-  Eigen::VectorXd weights;      ///< Q, sum 1
+  Eigen::VectorXd nodes;        ///< Q nodes in [0, 1]
+  Eigen::VectorXd weights;      ///< Q weights, sum 1
   Eigen::MatrixXd values;       ///< p_k at the nodes, Q x Q
   Eigen::MatrixXd integrals;    ///< int_0^node p_k, Q x Q
-  Eigen::MatrixXd integration;  ///< from values at the nodes to int_0^node, Q x Q
-  /// Of `values` and `integration`.
+  Eigen::MatrixXd integration;  ///< maps values at the nodes to int_0^node, Q x Q
+  /// Transposed matrices of `values` and `integration`.
   Eigen::MatrixXd values_transposed, integration_transposed;
-  /// From values f at the nodes to c and a_k with c + sum_{k < K} a_k int_0^node p_k nearest to f,
-  /// (K + 1) x Q.
+  /// Maps values f at the nodes to c and a_k, for which c + sum_{k < K} a_k int_0^node p_k is
+  /// nearest to f; (K + 1) x Q.
   Eigen::MatrixXd fit;
 };
 
-/// Values p_k(xi) and integrals int_0^xi p_k for k = 0 .. K-1 into `values` and `integrals`.
+/// Computes the values p_k(xi) and the integrals int_0^xi p_k for k = 0 .. K-1.
 void legendre(double xi, Eigen::Ref<Eigen::VectorXd> values, Eigen::Ref<Eigen::VectorXd> integrals);
 
-/// Derivatives p_k'(xi) for k = 0 .. K-1.
+/// Computes the derivatives p_k'(xi) for k = 0 .. K-1.
 void legendre_slopes(double xi, Eigen::Ref<Eigen::VectorXd> slopes);
 
-/// Table of K terms, made once and kept, with Q = K + 6: for a tangent angle of degree K the sines
-/// and cosines of the integrand are then resolved as far as the angle itself is. Safe to call from
-/// several threads.
+/// Returns the table for K terms, which is computed once, with Q = K + 6. The sines and cosines of
+/// a tangent angle of degree K in the integrand are then resolved as accurately as the angle
+/// itself. Thread-safe.
 [[nodiscard]] const LegendreTable& legendre_table(int terms);
 
-/// The same with Q = 3 K / 2 + 8, on which directors are collocated whose strains have K terms.
+/// Returns the table for K terms with Q = 3 K / 2 + 8, at whose nodes directors with strains of K
+/// terms are collocated. Thread-safe.
 [[nodiscard]] const LegendreTable& director_table(int terms);
 
-/// Largest number of terms that the tables know.
+/// Largest number of terms of a table.
 inline constexpr int max_terms = 128;
 
-/// An angle by its start and the coefficients of its derivative, piece by piece.
+/// An angle by its start value and the coefficients of its derivative, element by element.
 struct FittedAngle {
   double start = 0;
   Eigen::VectorXd coefficients;
 };
 
-/// The angle nearest to values at the nodes of all pieces, by least squares on each piece.
-/// @param turns  rotation, by the coefficient of p_0 = 1, of the end of each piece (Piece::angle())
-/// @param start  of the angle, if it is known
+/// Fits an angle to values at the nodes of all elements, by least squares on each element.
+/// @param turns  rotation of the end of each element for a coefficient of 1 of p_0 = 1
+///               (Piece::angle())
+/// @param start  start value of the angle, if it is prescribed
 [[nodiscard]] FittedAngle fit_angle(const LegendreTable& table, const std::vector<double>& turns,
                                     const Eigen::VectorXd& angles, std::optional<double> start);
 

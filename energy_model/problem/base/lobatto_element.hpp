@@ -8,8 +8,8 @@
 
 namespace dlo::energy_model {
 
-inline constexpr std::size_t element_order = 4;       // of the elements' polynomials
-inline constexpr std::size_t element_quadrature = 6;  // exact to order 11
+inline constexpr std::size_t element_order = 4;       // polynomial order of the elements
+inline constexpr std::size_t element_quadrature = 6;  // Gauss nodes per element, exact to order 11
 
 /// Gauss-Lobatto nodes of an element on [-1, 1].
 inline const std::array<double, element_order + 1> element_lobatto = {-1, -std::sqrt(3.0 / 7.0), 0,
@@ -22,7 +22,7 @@ inline constexpr std::array<double, element_quadrature> element_weight = {
     0.171324492379170345, 0.360761573048138608, 0.467913934572691047,
     0.467913934572691047, 0.360761573048138608, 0.171324492379170345};
 
-/// The Gauss nodes of all elements between neighbouring borders.
+/// Returns the Gauss nodes of all elements between neighbouring borders.
 inline std::vector<double> gauss_points(const Eigen::VectorXd& borders) {
   std::vector<double> points;
   points.reserve(element_quadrature * static_cast<std::size_t>(borders.size()));
@@ -34,7 +34,7 @@ inline std::vector<double> gauss_points(const Eigen::VectorXd& borders) {
   return points;
 }
 
-/// Lagrange's polynomials on the Lobatto nodes, and their derivatives, at the Gauss nodes.
+/// Values and derivatives of Lagrange's polynomials on the Lobatto nodes at the Gauss nodes.
 struct ElementBasis {
   Eigen::Matrix<double, element_quadrature, element_order + 1> value;
   Eigen::Matrix<double, element_quadrature, element_order + 1> rate;

@@ -16,7 +16,7 @@ double energy_or_infinite(const SpanCandidate& candidate) {
   return std::isnan(candidate.energy) ? std::numeric_limits<double>::infinity() : candidate.energy;
 }
 
-/// Candidates by growing cost.
+/// Returns the indices of the candidates: stable ones first, by energy.
 std::vector<std::size_t> by_cost(const std::vector<SpanCandidate>& candidates) {
   std::vector<std::size_t> order(candidates.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -30,10 +30,11 @@ std::vector<std::size_t> by_cost(const std::vector<SpanCandidate>& candidates) {
 struct PartialChoice {
   std::size_t unstable = 0;
   double energy = 0;
-  std::size_t moved = 0;  // the last span that is not at its first candidate, or the first span
+  std::size_t moved = 0;  // last span that is not at its first candidate, or the first span
   std::vector<std::size_t> ranks;
 
-  /// Cheapest first; of equal ones that with the lowest ranks.
+  /// Whether this choice comes first: fewest unstable candidates, then lowest energy, then lowest
+  /// ranks.
   bool operator<(const PartialChoice& other) const {
     return std::tie(unstable, energy, ranks) < std::tie(other.unstable, other.energy, other.ranks);
   }
@@ -50,7 +51,8 @@ Combinations lowest_combinations(const std::vector<std::vector<SpanCandidate>>& 
     orders.push_back(by_cost(own));
   }
   const auto priced = [&](std::vector<std::size_t> ranks, std::size_t moved) {
-    // Summed anew each time: differences of large energies would pile up rounding.
+    // The energy is summed anew each time, because differences of large energies would accumulate
+    // rounding.
     PartialChoice choice;
     choice.moved = moved;
     for (std::size_t i = 0; i < ranks.size(); ++i) {
@@ -61,14 +63,15 @@ Combinations lowest_combinations(const std::vector<std::vector<SpanCandidate>>& 
     choice.ranks = std::move(ranks);
     return choice;
   };
-  std::set<PartialChoice> queue;  // no longer than what may still be asked for
+  std::set<PartialChoice> queue;  // no longer than the number of choices that may still be returned
   if (most > 0) queue.insert(priced(std::vector<std::size_t>(candidates.size(), 0), 0));
   while (!queue.empty()) {
     const PartialChoice best = std::move(queue.extract(queue.begin()).value());
     std::vector<std::size_t> chosen;
     for (std::size_t i = 0; i < orders.size(); ++i) chosen.push_back(orders[i][best.ranks[i]]);
     result.choices.push_back(std::move(chosen));
-    // Every combination is reached once: its spans are moved on from the first to the last.
+    // Only spans from the last advanced one on are advanced, so that each combination is reached
+    // once.
     for (std::size_t i = best.moved; i < orders.size(); ++i) {
       if (best.ranks[i] + 1 == orders[i].size()) continue;
       std::vector<std::size_t> next = best.ranks;

@@ -16,14 +16,15 @@ struct Call {
   nlopt_opt optimiser;
   const MinimiseOptions* options;
   Eigen::VectorXd gradient;
-  Eigen::VectorXd best;  // x where the gradient was small enough
+  Eigen::VectorXd best;  // x at which the gradient was small enough
   bool small_gradient = false;
   bool late = false;
   int evaluations = 0;
-  std::exception_ptr thrown;  // by the objective
+  std::exception_ptr thrown;  // exception thrown by the objective
 };
 
-/// Exceptions may not cross NLopt, which is C: what the objective throws is kept, and stops it.
+/// Evaluates the objective for NLopt. Exceptions must not cross NLopt, which is C: an exception of
+/// the objective is stored and stops NLopt.
 double evaluate(unsigned n, const double* x, double* gradient, void* data) {
   auto& call = *static_cast<Call*>(data);
   if (call.thrown) return NAN;
@@ -48,9 +49,10 @@ double evaluate(unsigned n, const double* x, double* gradient, void* data) {
   }
 }
 
-/// NLopt keeps two vectors of n numbers for each step, in one block whose size it counts in an int.
+/// Returns the number of steps that L-BFGS stores. NLopt stores two vectors of n numbers for each
+/// step, in one block whose size is counted in an int.
 unsigned remembered_steps(const MinimiseOptions& options, unsigned n) {
-  constexpr unsigned most_numbers = 1U << 24U;  // 128 MB in either half
+  constexpr unsigned most_numbers = 1U << 24U;  // 128 MB in each of the two halves
   constexpr unsigned fewest_steps = 8;
   const unsigned wanted =
       options.remembered_steps > 0 ? static_cast<unsigned>(options.remembered_steps) : n;
@@ -74,8 +76,8 @@ MinimiseResult translate_nlopt(int code) {
     case NLOPT_FORCED_STOP:
       return {SolveStatus::failed, "NLopt was stopped"};
     case NLOPT_FAILURE:
-      // Also said by its line search when rounding leaves it no descent: that the point is good
-      // then, a residual has to prove.
+      // NLopt also returns this code if rounding leaves its line search no descent. A residual has
+      // to prove that the point is good then.
       return {SolveStatus::not_verified, "NLopt's line search failed"};
     case NLOPT_INVALID_ARGS:
       return {SolveStatus::failed, "NLopt refused its arguments"};

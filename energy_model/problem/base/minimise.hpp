@@ -9,16 +9,17 @@
 
 namespace dlo::energy_model {
 
-/// Value of an objective; writes the gradient into its second argument.
+/// Returns the value of an objective and writes the gradient into the second argument.
 using Objective =
     std::function<double(const Eigen::Ref<const Eigen::VectorXd>&, Eigen::Ref<Eigen::VectorXd>)>;
 
 struct MinimiseOptions {
-  double gradient_tolerance = 0;  ///< stop at a Euclidean gradient norm below this
+  double gradient_tolerance = 0;  ///< Euclidean norm of the gradient at which the minimisation ends
   int max_evaluations = 0;
-  /// Steps that L-BFGS remembers; 0: as many as unknowns, which takes fewer but longer ones.
+  /// Steps that L-BFGS stores; 0: as many as unknowns, which needs fewer but slower steps.
   int remembered_steps = 0;
-  Deadline deadline{};  ///< asked at every evaluation; the result is then `time_limit`
+  /// Checked at every evaluation; a minimisation that reaches it returns `time_limit`.
+  Deadline deadline{};
 };
 
 struct [[nodiscard]] MinimiseResult {
@@ -26,20 +27,21 @@ struct [[nodiscard]] MinimiseResult {
   std::string message = "never ran";
   int evaluations = 0;
 
-  /// A point that Newton's method may start from, or that a residual may prove to be good enough:
-  /// a failed line search may mean that rounding left no descent, or anything else.
+  /// Whether Newton's method may start from the point, or a residual may prove it to be good
+  /// enough. A failed line search may mean that rounding left no descent, or anything else.
   [[nodiscard]] bool is_a_start() const {
     return succeeded(status) || status == SolveStatus::not_verified;
   }
 };
 
-/// Every result code of NLopt by name; one that is unknown is a failure. NLOPT_FORCED_STOP is a
-/// failure too unless the caller has stopped it: who has, knows. NLOPT_FAILURE is `not_verified`.
+/// Translates each result code of NLopt into a status and a message; an unknown code is a failure.
+/// NLOPT_FORCED_STOP is a failure too: a caller that stopped NLopt has to replace this status.
+/// NLOPT_FAILURE is `not_verified`.
 [[nodiscard]] MinimiseResult translate_nlopt(int code);
 
-/// NLopt's LD_LBFGS from and into `x`. NLopt itself cannot stop on the gradient, so the objective's
-/// wrapper stops it; the point with that gradient is what `x` then holds. What the objective throws
-/// stops NLopt and is thrown again from here.
+/// Minimises with NLopt's LD_LBFGS from `x`, which is overwritten by the result. NLopt itself
+/// cannot stop on the gradient, so the objective's wrapper stops it; `x` is then the point with
+/// that gradient. An exception of the objective stops NLopt and is rethrown.
 MinimiseResult minimise_lbfgs(const Objective& objective, Eigen::VectorXd& x,
                               const MinimiseOptions& options);
 

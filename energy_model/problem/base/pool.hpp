@@ -7,12 +7,13 @@
 
 namespace dlo::energy_model {
 
-/// Objects whose buffers are used again once nobody holds them any more.
+/// Pool of objects whose buffers are reused when no one else owns them.
 template <typename T>
 class Pool {
  public:
-  /// One that nobody holds and that fits; where there is none a new one or, of a full pool, any.
-  /// @param fits  const T& -> bool: its buffers have the size that is wanted
+  /// Returns an unused object that fits. If there is none, returns a new object or, from a full
+  /// pool, any unused one.
+  /// @param fits  const T& -> bool: whether its buffers have the required size
   template <typename Fits>
   [[nodiscard]] std::shared_ptr<T> take(const Fits& fits) {
     const auto is_unused = [](const auto& kept) { return kept.use_count() == 1; };

@@ -7,7 +7,7 @@
 
 namespace dlo::energy_model {
 
-/// Throws "function: argument = value, must be allowed".
+/// Throws std::invalid_argument "function: argument = value, must be allowed" unless `good`.
 inline void require(bool good, std::string_view function, std::string_view argument, double value,
                     std::string_view allowed) {
   if (good) return;

@@ -7,14 +7,14 @@
 
 namespace dlo::energy_model {
 
-/// Turns off GSL's error handler, which aborts the program. Every function that calls GSL calls
-/// this first and checks each status.
+/// Turns off GSL's error handler, which aborts the program. Every function that uses GSL calls this
+/// first and checks each status.
 inline void silence_gsl() {
   static const bool silent = gsl_set_error_handler_off() != nullptr;
   (void)silent;
 }
 
-/// An object that GSL has allocated, with the function that frees it.
+/// An object that GSL has allocated, together with the function that frees it.
 template <class T>
 using GslOwned = std::unique_ptr<T, void (*)(T*)>;
 

@@ -8,11 +8,12 @@
 
 namespace dlo::energy_model {
 
-/// Samples at these arc lengths of a rod of this length, still to be filled, without d1.
+/// Returns samples with matrices of the right size, not yet filled and without d1, at these arc
+/// lengths of a rod of this length.
 /// @throws std::invalid_argument for an arc length that is not on the rod
 [[nodiscard]] inline Samples sized_samples(std::span<const double> arc_lengths, double length) {
   for (const double at : arc_lengths) {
-    // Asked first, because the text costs more than what is sampled.
+    // Checked before require(), because composing the message costs more than a sample.
     if (at >= 0 && at <= length) continue;
     require(false, "sample", "arc length", at, "in [0, " + std::to_string(length) + "]");
   }

@@ -8,14 +8,14 @@
 
 namespace dlo::energy_model {
 
-/// cross_matrix(v) w = v x w
+/// Returns the matrix whose product with w is v x w.
 inline Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;
   m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
   return m;
 }
 
-/// Row by row.
+/// Returns the cross products of the rows of a with the rows of b.
 inline Eigen::MatrixX3d cross_rows(const Eigen::MatrixX3d& a, const Eigen::MatrixX3d& b) {
   Eigen::MatrixX3d result(a.rows(), 3);
   result.col(0) = a.col(1).cwiseProduct(b.col(2)) - a.col(2).cwiseProduct(b.col(1));
@@ -24,14 +24,15 @@ inline Eigen::MatrixX3d cross_rows(const Eigen::MatrixX3d& a, const Eigen::Matri
   return result;
 }
 
-/// The rotation about v by the angle |v|.
+/// Returns the rotation about v by the angle |v| [rad].
 inline Eigen::Quaterniond from_rotation_vector(const Eigen::Vector3d& v) {
   const double angle = v.norm();
   const double half_sine = angle > 1e-8 ? std::sin(angle / 2) / angle : 0.5;
   return {std::cos(angle / 2), half_sine * v.x(), half_sine * v.y(), half_sine * v.z()};
 }
 
-/// The frame (d1, d2, t) with this unit tangent and with d1 on this side of it.
+/// Returns the frame (d1, d2, t) with this unit tangent, whose d1 is the normalised part of the
+/// given d1 across the tangent.
 inline Eigen::Matrix3d frame_along(const Eigen::Vector3d& tangent, const Eigen::Vector3d& d1) {
   const Eigen::Vector3d first = (d1 - tangent.dot(d1) * tangent).normalized();
   Eigen::Matrix3d frame;
@@ -39,31 +40,31 @@ inline Eigen::Matrix3d frame_along(const Eigen::Vector3d& tangent, const Eigen::
   return frame;
 }
 
-/// The frame turned about its tangent by an angle [rad].
+/// Returns the frame rotated about its tangent by an angle [rad].
 inline Eigen::Matrix3d rolled(const Eigen::Matrix3d& frame, double angle) {
   return from_rotation_vector(angle * Eigen::Vector3d(frame.col(2))) * frame;
 }
 
-/// The frame transported to another unit tangent by the shortest rotation.
+/// Returns the frame transported to another unit tangent by the shortest rotation.
 inline Eigen::Matrix3d transported(const Eigen::Matrix3d& frame, const Eigen::Vector3d& tangent) {
   const Eigen::Vector3d t = frame.col(2);
   return frame_along(tangent, Eigen::Quaterniond::FromTwoVectors(t, tangent) * frame.col(0));
 }
 
-/// What the square of a spin of the director p costs through g . p: sym(g p^T) - (g.p) 1.
+/// Returns the Hessian of g . p with respect to a spin of the director p: sym(g p^T) - (g.p) 1.
 inline Eigen::Matrix3d spin_curvature(const Eigen::Vector3d& p, const Eigen::Vector3d& g) {
   Eigen::Matrix3d a = (g * p.transpose() + p * g.transpose()) / 2;
   a.diagonal().array() -= g.dot(p);
   return a;
 }
 
-/// The shortest rotation of a unit vector into another; if they are opposite, about the normal of
-/// the plane that they share with the chord. Empty: that is along them.
-/// @param chord  between the points where the vectors are tangents, over the length
+/// Returns the shortest rotation of a unit vector into another. If they are opposite, it is about
+/// the normal of the plane of the vectors and the chord, and empty if the chord is along them.
+/// @param chord  vector between the points at which the vectors are tangents, divided by the length
 inline std::optional<Eigen::Quaterniond> shortest_rotation(const Eigen::Vector3d& first,
                                                            const Eigen::Vector3d& last,
                                                            const Eigen::Vector3d& chord) {
-  constexpr double rounding = 1e-9;  // of the cosine, and of the chord
+  constexpr double rounding = 1e-9;  // tolerance of the cosine and of the normal's length
   if (first.dot(last) > rounding - 1) return Eigen::Quaterniond::FromTwoVectors(first, last);
   const Eigen::Vector3d normal = first.cross(chord);
   if (!(normal.norm() > rounding)) return std::nullopt;

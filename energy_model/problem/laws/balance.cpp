@@ -14,11 +14,11 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Share of EI/l^2 and EI/l below which forces and moments are the solver's rounding: 1e-8 of it is
-/// a thousand times that of a rod bent by forces of EI/l^2.
+/// Share of EI/l^2 and EI/l below which forces and moments are rounding errors of the solver. 1e-8
+/// of this share is a thousand times the rounding error of a rod bent by forces of EI/l^2.
 constexpr double negligible_share = 1e-4;
 
-/// Arc lengths at which what acts on the rod changes abruptly, growing, each once.
+/// Returns the arc lengths at which the actions on the rod change abruptly, growing, each once.
 std::vector<double> abrupt_changes(const Problem& problem, const Equilibrium& shape) {
   std::vector<double> at = {0, problem.length};
   for (const Grip& grip : problem.grips) at.push_back(grip.at);
@@ -26,14 +26,15 @@ std::vector<double> abrupt_changes(const Problem& problem, const Equilibrium& sh
   for (const Section& part : problem.sections) at.insert(at.end(), {part.begin, part.end});
   for (const LineLoad& load : problem.line_loads) at.insert(at.end(), {load.begin, load.end});
   for (const ContactPart& part : shape.contacts) at.insert(at.end(), {part.begin, part.end});
-  for (double& s : at) s = std::clamp(s, 0.0, problem.length);  // but for rounding
+  // Rounding may have moved them off the rod.
+  for (double& s : at) s = std::clamp(s, 0.0, problem.length);
   std::sort(at.begin(), at.end());
   at.erase(std::unique(at.begin(), at.end()), at.end());
   return at;
 }
 
-/// Forces and moments of what is spread over the rod: weight, line loads and drag in the first
-/// column, obstacles that yield in one column each; moments about the first grip.
+/// Integrates the forces and moments of distributed actions: weight, line loads and drag in the
+/// first column, yielding obstacles in one column each; moments about the first grip.
 class SpreadActions {
  public:
   SpreadActions(const Problem& problem, const Equilibrium& shape)
@@ -46,21 +47,22 @@ class SpreadActions {
     }
   }
 
-  /// Of the problem's obstacles.
+  /// Indices of the yielding obstacles in Problem::obstacles.
   [[nodiscard]] const std::vector<std::size_t>& yielding() const { return yielding_; }
 
-  /// The first column, then those of yielding().
-  /// @param middle  of the rod [m], at which they act, so that their lever is counted
+  /// Returns the action of the first column, then those of yielding().
+  /// @param middle  middle of the rod [m], at which the actions are applied, so that imbalance_of()
+  ///                counts their lever arm
   [[nodiscard]] std::vector<Action> integrate(const Eigen::Vector3d& middle) const {
     constexpr int most_halvings = 24;
-    constexpr std::size_t most_panels = 512;  // if a shape is noise, more would not resolve it
+    constexpr std::size_t most_panels = 512;  // a shape of noise would not be resolved by more
     std::vector<Panel> panels;
     const std::vector<double> cuts = abrupt_changes(problem_, shape_);
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
       panels.push_back({cuts[i], cuts[i + 1] - cuts[i], {}, false});
     }
     sum(panels);
-    double scale = 0;  // of forces
+    double scale = 0;  // scale of the forces
     for (const Panel& panel : panels) scale += panel.sums.topRows(3).norm();
     Sums total = Sums::Zero(6, columns());
     for (int level = 0; !panels.empty(); ++level) {
@@ -94,15 +96,16 @@ class SpreadActions {
   struct Panel {
     double begin, width;
     Sums sums;
-    /// Contact with a body that yields may begin, end or pass to another face where no node is:
-    /// between an end of the panel and the node next to it, or between two nodes that are outside
-    /// of the body and near.
+    /// Whether contact with a yielding body may begin, end or pass to another face between nodes:
+    /// between an end of the panel and the adjacent node, or between two nodes that are outside of
+    /// the body but near it.
     bool may_hide_contact = false;
   };
 
   [[nodiscard]] Eigen::Index columns() const { return 1 + std::ssize(yielding_); }
 
-  /// By more than what a panel may add to an imbalance; NaN does not.
+  /// Whether two sums differ by more than a panel may contribute to an imbalance; false if one is
+  /// NaN.
   [[nodiscard]] bool differ(const Sums& one, const Sums& other, double scale) const {
     constexpr double share = 1e-11;
     const double force = (one - other).topRows(3).norm();
@@ -143,10 +146,11 @@ class SpreadActions {
     }
   }
 
-  /// @param points  of the rod at the begin, the nodes and the end of a panel
+  /// Whether contact with a yielding body may stay undetected in a panel.
+  /// @param points  points of the rod at the begin, the nodes and the end of the panel
   [[nodiscard]] bool may_hide_contact(const Eigen::Matrix3Xd& points, double width) const {
-    constexpr double half_gap = 0.1;         // between two nodes of a panel, of its width
-    constexpr double shortest = 1.0 / 2048;  // contact is longer than that
+    constexpr double half_gap = 0.1;         // between two nodes, in panel widths
+    constexpr double shortest = 1.0 / 2048;  // contact is longer than this share of the rod
     const Eigen::Index last = points.cols() - 1;
     return std::any_of(yielding_.begin(), yielding_.end(), [&](std::size_t i) {
       const obstacle::Body& body = problem_.obstacles[i].body;
@@ -208,7 +212,7 @@ Action load_on(const Samples& samples, Eigen::Index column, const Load& load) {
   const Eigen::Vector3d point = samples.points.col(column);
   if (!load.follows) return {point, load.force, load.torque};
   const Eigen::Vector3d t = samples.tangents.col(column);
-  // Without d1 the load is along the tangent.
+  // Without d1 the load has no component across the tangent.
   const Eigen::Vector3d d1 =
       samples.d1.cols() > 0 ? Eigen::Vector3d(samples.d1.col(column)) : t.unitOrthogonal();
   Eigen::Matrix3d frame;
@@ -225,7 +229,7 @@ Eigen::Vector3d Action::moment_about(const Eigen::Vector3d& origin) const {
 double Imbalance::share() const {
   const double of_force = force / largest_force;
   const double of_moment = moment / largest_moment;
-  // The moment of a force that is NaN is NaN.
+  // A force that is NaN makes the moment NaN, which this comparison returns.
   return of_force > of_moment ? of_force : of_moment;
 }
 
@@ -288,7 +292,8 @@ Imbalance imbalance_of(const Problem& problem, const Equilibrium& shape) {
   Imbalance result =
       imbalance_of(actions, {.force = {unit / problem.length, 0, 0}, .couple = {unit, 0, 0}});
   for (const Eigen::Vector3d& left : differences) {
-    result.force = left.norm() <= result.force ? result.force : left.norm();  // NaN raises it too
+    // NaN in `left` is taken too.
+    result.force = left.norm() <= result.force ? result.force : left.norm();
   }
   return result;
 }

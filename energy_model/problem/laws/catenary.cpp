@@ -9,7 +9,7 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-/// u of sinh(u) / u = ratio, given ratio - 1.
+/// Solves sinh(u) / u = ratio for u, given ratio - 1.
 double root_of_sinh_ratio(double excess) {
   const auto excess_at = [](double u) {
     if (u > 1) return std::sinh(u) / u - 1;

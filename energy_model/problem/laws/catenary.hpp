@@ -5,44 +5,47 @@
 
 namespace dlo::energy_model {
 
-/// Of the length: arc lengths and heights that are meant to be the same.
+/// Difference of arc lengths or heights, divided by the length, up to which they are treated as
+/// equal.
 inline constexpr double negligible_way = 1e-9;
 
-/// A line without bending stiffness under its weight w per length, part of which may lie on the
-/// level of its lowest point. Its arc lengths s begin at one end of it [m]. With q the arc length
+/// A line without bending stiffness under its weight w per length, part of which may lie at the
+/// level of its lowest point. Its arc length s begins at one end of it [m]. With q the arc length
 /// from the lowest point,
 ///     height = (a^2 + q^2)^(1/2),  x = a asinh(q / a).
 struct Catenary {
   double a = 0;            ///< T / w at the lowest point [m]; 0: a line that hangs straight
-  double low = 0;          ///< s of that point; beyond the ends if the line rises all along
-  double lying = 0;        ///< length that lies from there on
-  Eigen::Vector3d origin;  ///< that point
-  Eigen::Vector3d level;   ///< unit, along growing s
-  Eigen::Vector3d up;      ///< unit
+  double low = 0;          ///< s of the lowest point [m]; beyond an end if the line rises all along
+  double lying = 0;        ///< length of the part from `low` on that lies [m]
+  Eigen::Vector3d origin;  ///< lowest point [m]
+  Eigen::Vector3d level;   ///< horizontal unit vector along growing s
+  Eigen::Vector3d up;      ///< vertical unit vector
 
-  /// Arc length from the lowest point, or from the end of what lies.
+  /// Returns the arc length from the lowest point, or from the end of the part that lies [m].
   [[nodiscard]] double own(double s) const;
-  /// T / w there, which is the height above the line's directrix.
+  /// Returns T / w [m], which is the height above the line's directrix.
   [[nodiscard]] double height(double s) const;
   [[nodiscard]] bool lies(double s) const { return s > low && s < low + lying; }
   [[nodiscard]] Eigen::Vector3d point(double s) const;
   [[nodiscard]] Eigen::Vector3d tangent(double s) const;
-  /// dt/ds [1/m]; none of what lies.
+  /// Returns the derivative of the tangent by s [1/m]; zero on the part that lies.
   [[nodiscard]] Eigen::Vector3d curvature(double s) const;
-  /// int (height - a) ds from the lowest point to own arc length q [m^2].
+  /// Returns int (height - a) ds from the lowest point to the arc length q of own() [m^2].
   [[nodiscard]] double height_integral(double q) const;
-  /// int |curvature|^2 ds from there on [1/m].
+  /// Returns int |curvature|^2 ds from the lowest point to the arc length q of own() [1/m].
   [[nodiscard]] double bend_integral(double q) const;
 };
 
-/// Between two points, arc length l apart; none if they are above each other or as far as that.
-/// @param up  unit
+/// Computes the catenary of length l between two points; std::nullopt if they are above each other
+/// or at least l apart.
+/// @param up  vertical unit vector
 [[nodiscard]] std::optional<Catenary> hang_between(const Eigen::Vector3d& begin,
                                                    const Eigen::Vector3d& end, double l,
                                                    const Eigen::Vector3d& up);
 
-/// The same on a floor that carries its lowest part; none if it does not.
-/// @param floor  height along `up` [m]
+/// Computes the catenary of length l between two points on a floor that carries its lowest part;
+/// std::nullopt if the floor carries none of it.
+/// @param floor  height of the floor along `up` [m]
 [[nodiscard]] std::optional<Catenary> lie_between(const Eigen::Vector3d& begin,
                                                   const Eigen::Vector3d& end, double l,
                                                   const Eigen::Vector3d& up, double floor);

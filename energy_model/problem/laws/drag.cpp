@@ -16,7 +16,7 @@ Eigen::Matrix3d Drag::by_tangent(const Eigen::Vector3d& tangent) const {
   const double along = velocity.dot(tangent);
   const Eigen::Vector3d across = velocity - along * tangent;
   const double speed = across.norm();
-  const Eigen::Matrix3d lengthened = tangent * velocity.transpose();  // dt to (v.dt) t
+  const Eigen::Matrix3d lengthened = tangent * velocity.transpose();  // maps dt to (v.dt) t
   const Eigen::Matrix3d turned = along * Eigen::Matrix3d::Identity();
   Eigen::Matrix3d result = std::abs(along) * tangential * (2 * lengthened + turned) -
                            normal * speed * (lengthened + turned);

@@ -23,39 +23,41 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
-/// What a clamp may bend the rod by: of a straight fold nobody says to which side.
+/// Largest angle by which a clamp may bend the rod [rad]. The side to which a rod folds at 180 deg
+/// is undetermined.
 constexpr double most_turned = 170 * std::numbers::pi / 180;
-/// Lengths of a layer after which nothing is left of it: exp(-40) = 4e-18.
+/// Distance in layer lengths after which a layer has decayed: exp(-40) = 4e-18.
 constexpr double layer_reach = 40;
-/// Of the length; the models' own estimates are lower where they succeed.
+/// Largest error_estimate divided by the length with which a soft line is returned. The models' own
+/// estimates are lower where they succeed.
 constexpr double most_error = 1e-7;
 
-/// How the rod leaves a grip at one of its ends.
+/// Bending layer of the rod at a grip at one of its ends.
 struct Layer {
-  std::size_t grip = 0;  // in the problem
+  std::size_t grip = 0;  // index in Problem::grips
   bool at_end = false;
   bool clamped = false;
-  double length = 0;               // lambda
-  double turn = 0;                 // phi_0; 0 of a pin
-  Vector along = Vector::Zero();   // the catenary's tangent into the rod
-  Vector across = Vector::Zero();  // unit; to where the clamp turns the rod
+  double length = 0;               // decay length lambda [m]
+  double turn = 0;                 // angle phi_0 at the grip [rad]; 0 at a pin
+  Vector along = Vector::Zero();   // tangent of the catenary, into the rod
+  Vector across = Vector::Zero();  // unit vector to the side to which the clamp rotates the rod
 
   [[nodiscard]] double angle(double sigma) const {
     return 4 * std::atan(std::tan(turn / 4) * std::exp(-sigma / length));
   }
-  /// From the asymptote to the rod.
+  /// Returns the vector from the asymptote to the rod [m] where the angle is `angle`.
   [[nodiscard]] Vector way(double angle) const {
     return 2 * length * ((1 - std::cos(angle / 2)) * along - std::sin(angle / 2) * across);
   }
   [[nodiscard]] Vector axis() const { return along.cross(across); }
 };
 
-/// The catenary and the layers at its ends.
+/// The catenary and the bending layers at its ends.
 struct Composite {
   Catenary line;
   std::vector<Layer> layers;
   double length = 0;
-  double edge_layer = 0;  // length of the layer in which the rod bends as it leaves what carries it
+  double edge_layer = 0;  // length of the layer in which the rod bends where it lifts off [m]
 
   struct Place {
     Vector point, tangent, curvature;
@@ -81,7 +83,8 @@ struct Composite {
     return place;
   }
 
-  /// The curvature grows from zero where the rod lifts off.
+  /// Makes the curvature grow from zero where the rod lifts off, instead of the jump of the
+  /// catenary.
   void lift(double s, Vector& curvature) const {
     for (const double sign : {-1.0, 1.0}) {
       const double off = sign < 0 ? line.low + edge_layer : line.low + line.lying - edge_layer;
@@ -92,11 +95,12 @@ struct Composite {
     }
   }
 
-  /// By which the unit tangents, integrated over the rod, miss its other end [m].
+  /// Returns the gap between the integral of the unit tangents over the rod and its other end [m].
   [[nodiscard]] double gap() const {
     std::vector<double> nodes = {0, length};
     const auto add_layer = [&](double begin, double way, double size) {
-      constexpr int steps = 160;  // of a quarter of a layer: Gauss' rule is then exact to rounding
+      // Steps per layer_reach, a quarter of a layer each: Gauss's rule is then exact to rounding.
+      constexpr int steps = 160;
       for (int i = 0; i <= steps; ++i)
         nodes.push_back(begin + way * size * layer_reach * i / steps);
     };
@@ -105,7 +109,7 @@ struct Composite {
     }
     constexpr int parts = 400;
     for (int i = 0; i < parts; ++i) nodes.push_back(length * i / parts);
-    // Where the line turns sharply its arc lengths are those of equal angles.
+    // Nodes at equal angles resolve the part where the line rotates sharply.
     for (int i = -parts; i <= parts; ++i) {
       constexpr double angles = 12;
       const double q = line.a * std::sinh(angles * i / parts);
@@ -139,7 +143,7 @@ class SoftLine {
                          .at_end = grip.at > problem_.length / 2,
                          .clamped = grip.direction.has_value()});
     }
-    constexpr int rounds = 12;  // each leaves a layer's share of the length of the gap
+    constexpr int rounds = 12;  // each reduces the gap to a share of a layer's length in the rod's
     for (int i = 0; i < rounds; ++i) {
       if (!find_catenary()) return std::nullopt;
       for (Layer& layer : layers_) bend(layer);
@@ -166,7 +170,7 @@ class SoftLine {
     return std::abs(grips[0].at - grips[1].at) > l / 2;
   }
 
-  /// Height of a floor, if that is what the obstacle is.
+  /// Returns the height of the floor if the obstacle is a horizontal rigid half-space.
   [[nodiscard]] std::optional<double> floor() const {
     if (problem_.obstacles.empty()) return std::nullopt;
     const Obstacle& obstacle = problem_.obstacles.front();
@@ -178,7 +182,7 @@ class SoftLine {
 
   [[nodiscard]] const Grip& grip_of(const Layer& layer) const { return problem_.grips[layer.grip]; }
 
-  /// Where the asymptote of a layer leads.
+  /// Returns the point at which the catenary begins, where the asymptote of a layer ends [m].
   [[nodiscard]] Vector begin_of(const Layer& layer) const {
     return grip_of(layer).position - (layer.length > 0 ? layer.way(layer.turn) : Vector::Zero());
   }
@@ -227,12 +231,13 @@ class SoftLine {
     if (across.norm() > 0) layer.across = across.normalized();
   }
 
-  /// Where the rod bends as what lies next to it lifts off.
+  /// Returns the length of the layer in which the rod bends where it lifts off [m].
   [[nodiscard]] double edge_layer() const {
     return line_.a > 0 ? std::sqrt(problem_.bending_stiffness / (weight_ * line_.a)) : 0.0;
   }
 
-  /// Whether layers end before others begin, and above the floor, and bend to a side.
+  /// Whether layers decay before others begin and above the floor, and each bends to a definite
+  /// side.
   [[nodiscard]] bool is_well_apart() const {
     const std::optional<double> ground = floor();
     for (const Layer& layer : layers_) {
@@ -243,7 +248,7 @@ class SoftLine {
       const bool lies_there = line_.lies(layer.at_end ? problem_.length * (1 - 1e-15) : 1e-300) ||
                               line_.own(at(layer)) == 0;
       if (lies_there) {
-        // On the floor, along it.
+        // The end has to be on the floor and along it.
         if (std::abs(above) > negligible_way * problem_.length || layer.turn > negligible_way)
           return false;
       } else if (!(above > layer_reach * layer.length)) {
@@ -317,7 +322,7 @@ class SoftLine {
     return result;
   }
 
-  /// Where the line rises from what carries it, it lifts off a layer's length before.
+  /// Adds the contact with the floor. The rod lifts off one layer length before the line does.
   void add_contact(Equilibrium& result) const {
     const double pressed = weight_ * edge_layer();
     const double end = line_.low + line_.lying;
@@ -330,7 +335,8 @@ class SoftLine {
     part.end = rises_at_end ? end - edge_layer() : problem_.length;
     part.force = result.obstacles.front();
     part.moment = (line_.point(line_.low + line_.lying / 2) - line_.point(part.begin))
-                      .cross(part.force);  // the middle of what lies
+                      // Moment of the weight about the begin, at the middle of the part that lies.
+                      .cross(part.force);
     part.begin_force = rises_at_begin ? pressed : 0.0;
     part.end_force = rises_at_end ? pressed : 0.0;
     part.largest_pressure = weight_;

@@ -16,11 +16,12 @@
 namespace dlo::energy_model {
 namespace {
 
-/// What lengths may differ by, and directions and forces leave the line by, in theirs.
+/// Allowed difference of lengths, and allowed deviation of directions, positions and forces from
+/// the line, relative to their sizes.
 constexpr double length_rounding = 1e-12;
 constexpr double line_rounding = 1e-9;
 
-/// Indices of the grips by growing arc length.
+/// Returns the indices of the grips by growing arc length.
 std::vector<std::size_t> grips_along(const Problem& problem) {
   std::vector<std::size_t> along(problem.grips.size());
   for (std::size_t i = 0; i < along.size(); ++i) along[i] = i;
@@ -65,7 +66,8 @@ class TautLine {
     return grip(0).position + (s - grip(0).at) * line_;
   }
 
-  /// @param force  on the line at s, between grips i and i + 1
+  /// Distributes a force between the two adjacent grips.
+  /// @param force  force on the line at s, between grips i and i + 1
   void carry(const Eigen::Vector3d& force, double s, std::size_t i) {
     const double share = (s - grip(i).at) / (grip(i + 1).at - grip(i).at);
     result_.grips[along_[i]].force -= (1 - share) * force;
@@ -80,8 +82,8 @@ class TautLine {
         "forces along the line)");
   }
 
-  /// With the line loads on it, which are linear: the rule of two points is exact for what the
-  /// grips carry of them and for their energy.
+  /// Adds weight and line loads, which are linear: the rule of two points is exact for the
+  /// reactions of the grips and for the energy.
   void add_weight(const RodPart& part) {
     for (std::size_t i = 0; i + 1 < along_.size(); ++i) {
       const double begin = std::max(part.begin, grip(i).at);
@@ -124,7 +126,7 @@ class TautLine {
       if (!held.frame) continue;
       if (last) {
         const Grip& before = problem_.grips[*last];
-        // The writhe of a line is zero: what is held is twist.
+        // The writhe of a straight line is zero, so that the held turns are all twist.
         const double angle = 2 * std::numbers::pi * held_turns(problem_, before, held).value_or(0);
         const double torque = angle / torsional_compliance(rod_parts(problem_), before.at, held.at);
         result_.twists.push_back({before.at, held.at, angle, torque});
@@ -164,7 +166,7 @@ class TautLine {
   const Problem& problem_;
   std::vector<std::size_t> along_;
   Eigen::Vector3d line_;
-  Eigen::Vector3d first_d1_ = Eigen::Vector3d::Zero();  // where the first frame is held
+  Eigen::Vector3d first_d1_ = Eigen::Vector3d::Zero();  // where the first clamp holds its frame
   Equilibrium result_;
 };
 

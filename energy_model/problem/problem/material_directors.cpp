@@ -14,15 +14,15 @@ namespace {
 
 using std::numbers::pi;
 
-/// The frame in which a clamp holds a rod with material directors; it is the first one, or holds
-/// its frame.
+/// Returns the frame in which a clamp holds a rod with material directors. The clamp is the first
+/// one, or it holds its frame.
 Eigen::Matrix3d material_frame(const Problem& problem, const OrderedGrip& clamp) {
   if (clamp.index == first_clamp(problem)) return first_frame(problem);
   return held_frame(*clamp.grip, held_d1(problem, *clamp.grip));
 }
 
-/// The rod's directors at the start of a span, as columns in the span's axes; its tangent there is
-/// `along`. Where no clamp holds the start they are those of a rod in its plane.
+/// Returns the rod's directors at the start of a span, as columns in the span's axes; its tangent
+/// there is `along`. If no clamp holds the start, they are those of a rod in its plane.
 Eigen::Matrix3d directors_at_start(const Problem& problem, const PlacedSpan& placed,
                                    const OrderedGrip& anchor, const Eigen::Vector3d& along) {
   Eigen::Matrix3d own;
@@ -36,10 +36,11 @@ Eigen::Matrix3d directors_at_start(const Problem& problem, const PlacedSpan& pla
   return own;
 }
 
-/// Chooses the frame that the span has at its start, and by which angle the rod's own is ahead of
-/// it. That of a round rod is Span::d1()'s whatever the angle. Two bending stiffnesses want one
-/// along the principal axes: of the four the one next to Span::d1()'s, so that a rod in a plane
-/// across one of its axes bends about the frame's first one.
+/// Chooses the frame at the start of the span, and the angle by which the rod's directors are ahead
+/// of it. A round rod has the frame of Span::d1(), whatever the angle. A rod with two bending
+/// stiffnesses needs a frame along its principal axes: of the four, the one nearest to Span::d1()
+/// is chosen, so that a rod in a plane across one of its axes bends about the first axis of the
+/// frame.
 void place_start_frame(const Eigen::Vector3d& along, const Eigen::Matrix3d& own, bool is_round,
                        PlacedSpan& placed) {
   constexpr double rounding = 1e-12;
@@ -60,7 +61,7 @@ void place_start_frame(const Eigen::Vector3d& along, const Eigen::Matrix3d& own,
   for (Span::Part& part : span.parts) std::swap(part.stiffness[0], part.stiffness[1]);
 }
 
-/// What sections have of natural strains of their own, about the same axes.
+/// Places the natural strains of sections, about the same axes as the span's.
 void place_natural_parts(const Problem& problem, PlacedSpan& placed) {
   const double l = problem.length;
   Span& span = placed.span;
@@ -105,7 +106,7 @@ void place_material_directors(const Problem& problem, const OrderedGrip& anchor,
   const double sense = placed.reversed ? -1 : 1;
   span.natural.rate = 2 * sense;
   span.natural.from = 2 * placed.start / l - 1;
-  // What an obstacle keeps from leaving the plane is looked at in space.
+  // Whether contact keeps the rod from leaving the plane is decided in space.
   if (!span.soft_obstacles.empty() || !span.rigid_obstacles.empty()) span.planar = false;
   constexpr double rounding = 1e-12;
   const double largest = span.natural.largest();

@@ -6,10 +6,11 @@
 
 namespace dlo::energy_model {
 
-/// Stiffnesses and natural strains of a rod with material directors, about the axes of the frame
-/// that the span has at its start, in its units; `ahead`; and whether it still lies in its plane.
-/// @param anchor  the grip that the span counts from
-/// @param placed  with everything else in its frame
+/// Places stiffnesses and natural strains of a rod with material directors in a span, about the
+/// axes of the span's frame at its start, in the span's units. Sets `ahead`, and whether the span
+/// is still planar.
+/// @param anchor  grip from which the span is measured
+/// @param placed  span whose other members are already in its frame
 void place_material_directors(const Problem& problem, const OrderedGrip& anchor,
                               PlacedSpan& placed);
 

@@ -5,7 +5,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// P_0(x) .. P_{count-1}(x).
+/// Returns P_0(x) .. P_{count-1}(x).
 std::vector<double> legendre_polynomials(double x, std::size_t count) {
   std::vector<double> p(count, 1);
   if (count > 1) p[1] = x;
@@ -16,7 +16,7 @@ std::vector<double> legendre_polynomials(double x, std::size_t count) {
   return p;
 }
 
-/// Of the series from one place to another.
+/// Returns the integral of the series from a to b.
 Eigen::Vector3d series_integral(const NaturalStrains& natural, double a, double b) {
   // int P_j = (P_{j+1} - P_{j-1}) / (2 j + 1), int P_0 = P_1
   const std::size_t count = natural.coefficients.size();

@@ -8,7 +8,8 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double same_arc_length_share = 1e-9;  // of the rod's length
+// Arc lengths nearer to each other are equal, in rod lengths.
+constexpr double same_arc_length_share = 1e-9;
 
 }  // namespace
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double planar_tolerance = 1e-12;
 
-/// The part of `vector` across the unit vector `direction`.
+/// Returns the part of `vector` across the unit vector `direction`.
 Eigen::Vector3d across(const Eigen::Vector3d& vector, const Eigen::Vector3d& direction) {
   return vector - vector.dot(direction) * direction;
 }
@@ -33,7 +33,7 @@ std::optional<Plane> find_plane(const Eigen::Vector3d& origin, const Eigen::Vect
     if (furthest.norm() < 1e-6) furthest = across(Eigen::Vector3d::UnitY(), plane.x);
   }
   plane.y = furthest.normalized();
-  // Once more, so that x and y are orthogonal to rounding even for a nearly parallel force.
+  // A second projection makes x and y orthogonal to rounding even for a nearly parallel force.
   plane.y = across(plane.y, plane.x).normalized();
   const Eigen::Vector3d normal = plane.x.cross(plane.y);
   for (const Eigen::Vector3d& force : forces) {

@@ -14,7 +14,8 @@ namespace dlo::energy_model {
 namespace {
 
 void require_on_rod(const char* argument, double at, double length) {
-  // Asked first, because the text costs more than a solve's other checks together.
+  // Checked before require(), because composing the message costs more than all other checks of a
+  // solve.
   if (at >= 0 && at <= length) return;
   require(false, "Problem", argument, at, "in [0, " + std::to_string(length) + "]");
 }
@@ -80,7 +81,7 @@ void check_material_directors(const Problem& problem) {
                    problem.torsional_stiffness);
 }
 
-/// Whether a rod with material directors bends about its d2 alone, across a plane with this normal.
+/// Whether a rod with material directors bends only about its d2, in a plane with this normal.
 bool bends_in_plane(const Problem& problem, const Eigen::Vector3d& normal) {
   constexpr double rounding = 1e-12;
   if (!has_material_directors(problem)) return true;

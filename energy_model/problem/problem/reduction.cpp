@@ -96,7 +96,7 @@ Energies restore(const Problem& problem, const Energies& own_units) {
 
 void separate_line_loads(const Problem& problem, Equilibrium& result) {
   if (problem.line_loads.empty() || !result.sample) return;
-  constexpr int panels = 16;  // between two kinks
+  constexpr int panels = 16;  // per interval between two kinks
   const LegendreTable& rule = legendre_table(6);
   std::vector<double> kinks = {0, problem.length};
   for (const Grip& grip : problem.grips) kinks.push_back(grip.at);

@@ -12,59 +12,62 @@
 namespace dlo::energy_model {
 
 /// A rod clamped at one end, in its plane and in its own units: lengths in l, forces in EI/l^2,
-/// energies in EI/l. The clamp is the origin and the rod leaves it along +x; s is the distance from
-/// the clamp along the rod.
+/// energies in EI/l. The clamp is at the origin, and the rod leaves it along +x. s is the distance
+/// from the clamp along the rod.
 struct PlanarCantilever {
-  /// A force and a couple at a point.
+  /// A force and a couple at one point.
   struct Load {
-    double at = 0;                                    ///< s, 0 < s <= 1
+    double at = 0;                                    ///< s of the load, 0 < s <= 1
     Eigen::Vector2d force = Eigen::Vector2d::Zero();  ///< in EI/l^2
-    double couple = 0;                                ///< in EI/l
+    double couple = 0;                                ///< in EI/l, about the normal of the plane
   };
-  Eigen::Vector2d weight = Eigen::Vector2d::Zero();  ///< its norm is Gamma = w l^3 / (EI)
-  std::vector<Load> loads;                           ///< sorted by `at`
+  /// Weight of the rod; its norm is Gamma = w l^3 / (EI).
+  Eigen::Vector2d weight = Eigen::Vector2d::Zero();
+  std::vector<Load> loads;  ///< sorted by `at`
 };
 
-/// A problem with one clamp at either end, reduced to its plane and its own units. Only geometry
-/// and units live here.
+/// A problem with one clamp at either end, reduced to its plane and its own units. It contains
+/// geometry and units only.
 struct ReducedCantilever {
   PlanarCantilever rod;
-  Plane plane;            ///< origin at the clamp, x along the rod as it leaves the clamp
-  bool reversed = false;  ///< the clamp is at the end: s = 1 - arc length / l
+  Plane plane;            ///< origin at the clamp, x along the rod at the clamp
+  bool reversed = false;  ///< whether the clamp is at the end: s = 1 - arc length / l
 };
 
-/// @return nothing if the problem is not planar or not held by one clamp at an end
+/// Reduces a problem with one clamp to its plane.
+/// @return std::nullopt if the problem is not planar, or not held by one clamp at an end
 /// @throws std::invalid_argument if the problem is out of range
 [[nodiscard]] std::optional<ReducedCantilever> reduce_cantilever(const Problem& problem);
 
-/// Distances from the clamp in units of l.
+/// Returns the distances from the clamp, in units of l, of these arc lengths [m].
 [[nodiscard]] std::vector<double> distances_from_clamp(const Problem& problem, bool reversed,
                                                        std::span<const double> arc_lengths);
 
-/// A planar shape in the rod's own units, as a solver leaves it.
+/// A planar shape in the rod's own units, as a solver returns it.
 struct PlanarSamples {
   Eigen::Matrix2Xd points;
-  Eigen::VectorXd angle;  ///< of the tangent that points away from the clamp [rad]
+  Eigen::VectorXd angle;  ///< angle of the tangent that points away from the clamp [rad]
   Eigen::VectorXd curvature;
 
   explicit PlanarSamples(Eigen::Index count) : points(2, count), angle(count), curvature(count) {}
 };
 
-/// Back to space and SI units.
+/// Converts a planar shape to space and SI units.
 [[nodiscard]] Samples restore(const Problem& problem, const ReducedCantilever& reduced,
                               std::span<const double> arc_lengths, const PlanarSamples& planar);
 
-/// What the clamp exerts on the rod: the force that holds weight and loads, the torque that bends
-/// the rod to the curvature it has there.
-/// @param clamp_curvature  in 1/l, in the plane's frame
+/// Returns force and torque of the clamp on the rod: the force balances weight and loads, the
+/// torque bends the rod to its curvature at the clamp.
+/// @param clamp_curvature  curvature in 1/l, in the plane's frame
 [[nodiscard]] Reaction clamp_reaction(const Problem& problem, const ReducedCantilever& reduced,
                                       double clamp_curvature);
 
-/// From EI/l to [J].
+/// Converts energies from EI/l to [J].
 [[nodiscard]] Energies restore(const Problem& problem, const Energies& own_units);
 
-/// Solvers carry line loads with the weight: moves their energy from `gravity` to `load`, by
-/// Gauss's quadrature between what the shape has kinks at. Of a shape that can be sampled.
+/// Moves the energy of line loads from `gravity` to `load`, because solvers treat line loads as
+/// weight. It is integrated by Gauss's quadrature between the kinks of the shape. No effect on a
+/// shape that cannot be sampled.
 void separate_line_loads(const Problem& problem, Equilibrium& result);
 
 }  // namespace dlo::energy_model

@@ -7,13 +7,15 @@
 namespace dlo::energy_model {
 namespace {
 
-/// By how much a body may stick out of another one and be within it, in lengths: a tenth of what a
-/// shape may be behind a rigid obstacle.
+/// Distance in span units by which a body may stick out of another one and still count as within
+/// it: a tenth of the allowed depth of a shape behind a rigid obstacle.
 constexpr double rounding = 1e-10;
-/// A rod stays within its length of the anchor; the core of a body is cut a little farther out.
+/// Radius, in lengths of the span, within which the core of a body is used. A rod stays within one
+/// length of the anchor; the margin is 5 %.
 constexpr double beyond_reach = 1.05;
 
-/// Of the core of a body, as far as a point near the anchor can be next to it.
+/// Returns the corners of the core of a body, cut to the part that a point near the anchor can
+/// reach.
 Eigen::Matrix<double, 3, 8> corners_in_reach(const obstacle::Body& body, double reach) {
   const Eigen::Vector3d origin = body.axes().transpose() * -body.centre();
   const auto in_reach = [&](const Eigen::Vector3d& end) {
@@ -34,8 +36,9 @@ Eigen::Matrix<double, 3, 8> corners_in_reach(const obstacle::Body& body, double 
   return corners;
 }
 
-/// A body is convex: it holds another one if it holds the balls around the corners of its core.
-/// @param beyond  distance by which the other one may stick out, in lengths
+/// Whether a convex body contains another one, which it does if it contains the balls around the
+/// corners of its core.
+/// @param beyond  distance by which the other body may stick out, in lengths
 bool holds(const obstacle::Body& outer, const Eigen::Matrix<double, 3, 8>& corners, double radius,
            double beyond = rounding) {
   for (Eigen::Index i = 0; i < corners.cols(); ++i) {
@@ -65,7 +68,7 @@ void remove_redundant_obstacles(Span& span) {
 }
 
 bool omit_similar_obstacles(Span& span, std::size_t preferred) {
-  constexpr double similar = 1e-3;  // in lengths; floors tilted by as many radians
+  constexpr double similar = 1e-3;  // in lengths; also the angle between similar floors [rad]
   std::vector<Span::Obstacle>& all = span.rigid_obstacles;
   std::stable_partition(all.begin(), all.end(), [&](const Span::Obstacle& obstacle) {
     return obstacle.index == preferred;

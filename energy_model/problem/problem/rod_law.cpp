@@ -15,7 +15,7 @@ namespace dlo::energy_model {
 
 namespace {
 
-/// Cuts parts where a line load begins or ends, and adds it to those within.
+/// Cuts parts where a line load begins or ends, and adds the load to the parts within it.
 void add_line_load(const LineLoad& load, std::vector<RodPart>& parts) {
   std::vector<RodPart> cut;
   for (RodPart& part : parts) {
@@ -36,7 +36,7 @@ void add_line_load(const LineLoad& load, std::vector<RodPart>& parts) {
   parts = std::move(cut);
 }
 
-/// Calls `add` with the directions in which loads act, and with two across each couple.
+/// Calls `add` with the directions in which loads act, and with two directions across each couple.
 void add_loads(const Problem& problem,
                const std::function<void(const Eigen::Vector3d&, double)>& add) {
   for (const LineLoad& load : problem.line_loads) {
@@ -45,7 +45,7 @@ void add_loads(const Problem& problem,
   }
   if (problem.drag) add(problem.drag->velocity, 0);
   for (const Load& load : problem.loads) {
-    if (load.follows) continue;  // that lies in the section's axes
+    if (load.follows) continue;  // its direction is given in the axes of the section
     add(load.force, 0);
     if (load.torque.isZero(0)) continue;
     for (const Eigen::Vector3d& direction : plane_across(load.torque)) add(direction, 0);
@@ -66,7 +66,7 @@ bool loads_leave_plane(const Problem& problem, const Eigen::Vector3d& normal) {
   const bool drag_leaves = problem.drag && std::abs(problem.drag->velocity.dot(normal)) >
                                                noise * problem.drag->velocity.norm();
   return line_leaves || drag_leaves || std::ranges::any_of(problem.loads, [&](const Load& load) {
-           if (load.follows) return false;  // that lies in the section's axes
+           if (load.follows) return false;  // its direction is given in the axes of the section
            const Eigen::Vector3d couple = load.torque / problem.length;
            return leaves(load.force) || (couple - couple.dot(normal) * normal).norm() > most;
          });
@@ -159,7 +159,7 @@ Eigen::Vector3d natural_strain(const Problem& problem, double arc_length) {
 }
 
 std::optional<Eigen::Vector3d> natural_normal(const Problem& problem) {
-  // find_plane() wants a direction and all else at one scale.
+  // find_plane() needs one direction, and all others at the same scale.
   std::vector<Eigen::Vector3d> directions;
   const auto add = [&](const Eigen::Vector3d& v, double unit) {
     if (v.norm() > 1e-9 * unit) directions.push_back(v.normalized());
@@ -170,13 +170,13 @@ std::optional<Eigen::Vector3d> natural_normal(const Problem& problem) {
   }
   add(problem.weight_per_length, 0);
   for (const Section& section : problem.sections) add(section.weight_per_length, 0);
-  // Loads do not choose the plane of a stress-free shape that is curved.
+  // Loads do not determine the plane of a curved stress-free shape.
   const bool is_straight = problem.natural_strains.empty();
   if (is_straight) add_loads(problem, add);
   for (const Obstacle& obstacle : problem.obstacles) {
     if (obstacle.body.is_half_space()) add(obstacle.body.normal(), 0);
   }
-  // A line in x-y lies in that plane.
+  // Without another direction, a line in x-y determines the plane x-y.
   const Eigen::Vector3d first = directions.empty() ? Eigen::Vector3d::UnitX() : directions.front();
   const auto is_along_first = [&](const Eigen::Vector3d& v) {
     constexpr double parallel = 1e-9;

@@ -11,54 +11,58 @@
 
 namespace dlo::energy_model {
 
-/// A part whose weight holds the line loads on it too: weight_per_length at its begin.
+/// A part of the rod whose weight includes the line loads on it; weight_per_length is that at its
+/// begin.
 struct RodPart : Section {
-  Eigen::Vector3d weight_slope = Eigen::Vector3d::Zero();  ///< by which it grows [N/m^2]
+  /// Derivative of weight_per_length by arc length [N/m^2].
+  Eigen::Vector3d weight_slope = Eigen::Vector3d::Zero();
 };
 
-/// The rod from end to end as parts of one section each, cut where line loads begin and end, by
-/// growing arc length.
+/// Returns the rod from end to end as parts of one section each, cut where line loads begin and
+/// end, by growing arc length.
 [[nodiscard]] std::vector<RodPart> rod_parts(const Problem& problem);
 
 /// Returns int ds / GJ over the parts between two arc lengths [rad/(N m)]; infinite where GJ is 0.
 [[nodiscard]] double torsional_compliance(const std::vector<RodPart>& parts, double begin,
                                           double end);
 
-/// Whether it is the same along all of the rod.
+/// Whether a line load is constant along the whole rod.
 [[nodiscard]] bool acts_everywhere(const LineLoad& load, const Problem& problem);
 
-/// Weight per length outside sections, with the line loads that act everywhere [N/m].
+/// Returns the weight per length outside sections, including the line loads that act everywhere
+/// [N/m].
 [[nodiscard]] Eigen::Vector3d weight_everywhere(const Problem& problem);
 
-/// Two directions of the plane in which couples about this axis bend a rod.
+/// Returns two orthogonal unit directions of the plane in which couples about this axis bend a rod.
 [[nodiscard]] inline std::array<Eigen::Vector3d, 2> plane_across(const Eigen::Vector3d& axis) {
   const Eigen::Vector3d one = axis.unitOrthogonal();
   return {one, axis.normalized().cross(one)};
 }
 
-/// The smaller EI outside sections [N m^2]: what stiffnesses, and with the length forces, are
-/// measured in, so that a strip's scales are those of the axis about which it yields.
+/// Returns the smaller EI outside sections [N m^2]. It is the unit of stiffness, and with the
+/// length that of forces, so that the scales of a strip are those of its more flexible axis.
 [[nodiscard]] double bending_unit(const Problem& problem);
 
-/// Neither drag nor a load that follows the rod.
+/// Whether there is neither drag nor a load that follows the rod.
 [[nodiscard]] bool has_dead_loads(const Problem& problem);
 
-/// How many clamps hold the rod's frame: two twist it.
+/// Returns the number of clamps that hold the rod's frame; two of them twist it.
 [[nodiscard]] int clamps_with_frames(const Problem& problem);
 
-/// @throws std::invalid_argument if the rod stretches, which solve_exact() alone knows
+/// Throws if the rod stretches, which only solve_exact() supports.
+/// @throws std::invalid_argument naming `function`
 void require_inextensible(const Problem& problem, std::string_view function);
 
-/// Whether it or one of its sections has a bending_stiffness_2.
+/// Whether the rod or one of its sections has a bending_stiffness_2.
 [[nodiscard]] bool has_two_stiffnesses(const Problem& problem);
 
-/// EI about d1 and d2 and GJ, over a unit [N m^2].
+/// Returns EI about d1 and d2 and GJ, divided by a unit [N m^2].
 [[nodiscard]] Eigen::Vector3d principal_stiffness(const Section& section, double unit);
 
-/// Strains of the stress-free shape at an arc length [1/m].
+/// Returns the strains of the stress-free shape at an arc length [1/m].
 [[nodiscard]] Eigen::Vector3d natural_strain(const Problem& problem, double arc_length);
 
-/// Frame (columns d1, d2, t) of a clamp that has this d1 before it is rolled.
+/// Returns the frame (columns d1, d2, t) of a clamp that has this d1 before its roll is applied.
 [[nodiscard]] Eigen::Matrix3d held_frame(const Grip& clamp, const Eigen::Vector3d& d1);
 
 }  // namespace dlo::energy_model

@@ -6,24 +6,23 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Share of its length by which a segment that is stretched may be longer than its chord: with more
-/// it hangs or arches.
+/// Slack, divided by its length, above which a segment is not stretched but hangs or arches.
 constexpr double largest_slack = 0.05;
 
-/// No rod is pulled harder without being stretched to its length.
+/// Upper bound of the tension; no rod is pulled harder without being stretched to its length.
 constexpr double largest_tension = 1e9;
 
 double sine_of_half(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return (a - b).norm() / 2;
 }
 
-/// 1 - cos(phi / 2) of the angle between two unit vectors.
+/// Returns 1 - cos(phi / 2) of the angle phi between two unit vectors.
 double turn_of(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   const double sine = sine_of_half(a, b);
   return 1 - std::sqrt(std::max(0.0, 1 - sine * sine));
 }
 
-/// Across the pull and to the side of a tangent, as long as sin(phi / 2).
+/// Returns the vector across the pull to the side of a tangent, of length sin(phi / 2).
 Eigen::Vector3d side_of(const Eigen::Vector3d& tangent, const Eigen::Vector3d& pull) {
   const Eigen::Vector3d side = tangent - tangent.dot(pull) * pull;
   const double size = side.norm();
@@ -31,7 +30,7 @@ Eigen::Vector3d side_of(const Eigen::Vector3d& tangent, const Eigen::Vector3d& p
   return sine_of_half(tangent, pull) / size * side;
 }
 
-/// Tension under which a segment reaches this far; 0 for one that has slack enough.
+/// Returns the tension with which a segment reaches this distance; 0 if it has enough slack.
 double tension_for(const Span& span, const Segment& segment, double distance) {
   const double length = segment.length();
   const double slack = length - distance;
@@ -46,7 +45,7 @@ double tension_for(const Span& span, const Segment& segment, double distance) {
     const double x = load.at - segment.begin;
     if (x > 0 && x < length) sag += across(load.force) * x * (length - x) / (2 * length);
   }
-  // What both take falls as the tension grows.
+  // The slack that layers and sag take decreases as the tension grows.
   double low = 0;
   double high = largest_tension;
   for (int i = 0; i < 60; ++i) {
@@ -56,23 +55,24 @@ double tension_for(const Span& span, const Segment& segment, double distance) {
   return low;
 }
 
-/// Direction of the pull and tension: the layers carry the rod aside, and what is between them
-/// points at what is left of the chord.
-/// @return by how much the tension has changed, of itself
+/// Updates direction of the pull and tension: the layers at the ends displace the rod sideways, and
+/// the part between them points along the rest of the chord.
+/// @return relative change of the tension
 double pull(const Span& span, Segment& segment) {
   const Eigen::Vector3d aside =
       2 / std::sqrt(segment.tension) *
       (side_of(segment.begin_tangent, segment.pull) + side_of(segment.end_tangent, segment.pull));
   const Eigen::Vector3d rest = segment.chord - aside;
   segment.pull = rest.normalized();
-  // Half way, where aside and tension chase each other.
+  // The geometric mean damps the alternation between displacement and tension.
   const double before = segment.tension;
   segment.tension = std::sqrt(before * tension_for(span, segment, rest.dot(segment.pull)));
   return std::abs(segment.tension / before - 1);
 }
 
-/// The tangent at a pin between two segments, where both bend the rod as much: their angles to it
-/// are as the other's stiffness, the square root of its tension.
+/// Returns the tangent at a pin between two segments, at which both bend the rod equally: the
+/// angles to the tangent are inversely proportional to the stiffness, which is the square root of
+/// the tension.
 Eigen::Vector3d tangent_between(const Segment& before, const Segment& after) {
   const auto stiffness = [](const Segment& segment) {
     return std::max(std::sqrt(segment.tension), 2 / segment.length());

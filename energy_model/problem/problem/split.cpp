@@ -16,7 +16,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// The arc lengths between which a span lies, and whether clamps hold it there.
+/// Interval of arc length of a span [m], and whether clamps hold its ends.
 struct Stretch {
   double begin = 0, end = 0;
   bool clamped_begin = false, clamped_end = false;
@@ -25,14 +25,14 @@ struct Stretch {
   [[nodiscard]] bool is_between_clamps() const { return clamped_begin && clamped_end; }
 };
 
-/// What a span's frame has to reckon with: directions of grips, chords and forces, in space.
+/// Directions of grips, chords and forces that determine a span's frame, in space.
 struct Directions {
   std::vector<Eigen::Vector3d> grips;
   std::vector<Eigen::Vector3d> forces;
 };
 
 void choose_frame(PlacedSpan& placed, const Directions& directions) {
-  // find_plane wants the first direction and everything else; a direction and a force count alike.
+  // find_plane() needs the first direction and all others at the same scale.
   Eigen::Vector3d first = Eigen::Vector3d::UnitX();
   std::vector<Eigen::Vector3d> others;
   others.reserve(directions.forces.size() + directions.grips.size());
@@ -53,7 +53,7 @@ void choose_frame(PlacedSpan& placed, const Directions& directions) {
     placed.frame << plane->x.transpose(), plane->y.transpose(),
         plane->x.cross(plane->y).transpose();
   } else {
-    // Any will do; a rod that nothing clamps starts near to this x.
+    // Any frame is valid; a rod without clamps starts nearly along this x.
     const Eigen::Vector3d across = first.unitOrthogonal();
     placed.frame << first.transpose(), across.transpose(), first.cross(across).transpose();
   }
@@ -82,7 +82,7 @@ void turn_vectors(Span& span, const Eigen::Matrix3d& rotation) {
   turn(span.weight);
 }
 
-/// Whether all that the rod may touch leaves a planar shape in its plane.
+/// Whether all obstacles leave a planar shape in its plane.
 bool are_symmetric(const Span& span) {
   const auto symmetric = [&span](const Span::Obstacle& obstacle) {
     return obstacle.body.is_symmetric(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ(),
@@ -92,8 +92,7 @@ bool are_symmetric(const Span& span) {
          std::all_of(span.rigid_obstacles.begin(), span.rigid_obstacles.end(), symmetric);
 }
 
-/// The parts of the rod that have another section, between two arc lengths of a span that runs from
-/// placed.start on.
+/// Adds the sections of the rod between two arc lengths to a span that runs from placed.start on.
 void place_sections(const Problem& problem, const Stretch& stretch, PlacedSpan& placed) {
   const double l = problem.length;
   const double force_unit = bending_unit(problem) / (l * l);
@@ -111,7 +110,7 @@ void place_sections(const Problem& problem, const Stretch& stretch, PlacedSpan& 
   if (placed.reversed) std::reverse(placed.span.parts.begin(), placed.span.parts.end());
 }
 
-/// What of line loads is not in the span's weight, between two arc lengths.
+/// Adds the line loads between two arc lengths that are not contained in the span's weight.
 void place_line_loads(const Problem& problem, const Stretch& stretch, PlacedSpan& placed) {
   const double l = problem.length;
   const double unit = bending_unit(problem) / (l * l * l);
@@ -130,14 +129,15 @@ void place_line_loads(const Problem& problem, const Stretch& stretch, PlacedSpan
   }
 }
 
-/// What two clamps do with the rod's frame between them, seen in a span's own axes.
+/// Returns the frames that two clamps hold, in the axes of the span between them; std::nullopt if
+/// they do not twist the rod.
 std::optional<HeldFrames> frames_of(const Problem& problem, const OrderedGrip& start,
                                     const Grip& end, const Eigen::Matrix3d& axes) {
   if (!end.frame || !(has_material_directors(problem) || start.grip->frame)) return std::nullopt;
-  // The first clamp of a rod with material directors holds them, frame or none.
+  // The first clamp of a rod with material directors holds them with or without a frame.
   Grip first = *start.grip;
   if (!first.frame) first.frame = FrameHold{};
-  // GJ of a uniform rod that twists as much.
+  // mean GJ: that of a uniform rod with the same torsional stiffness
   const double mean =
       (end.at - first.at) / torsional_compliance(rod_parts(problem), first.at, end.at);
   return HeldFrames{.stiffness = mean / bending_unit(problem),
@@ -154,7 +154,7 @@ constexpr const char* couples_need =
     "0, or across the plane of grips and forces, of a rod that keeps to it, without obstacles and "
     "held frames: elsewhere a couple has no potential";
 
-/// About the normal of the span's plane, in the order of its loads.
+/// Adds couples about the normal of the span's plane to the loads of the span.
 void place_couples(const Problem& problem, const Stretch& stretch, PlacedSpan& placed) {
   constexpr double rounding = 1e-9;
   const double unit = bending_unit(problem) / problem.length;
@@ -164,7 +164,8 @@ void place_couples(const Problem& problem, const Stretch& stretch, PlacedSpan& p
     require(placed.span.planar && own.head<2>().norm() <= rounding * own.norm() &&
                 clamps_with_frames(problem) < 2 && problem.obstacles.empty(),
             "Problem", "torque of a load", load.torque.norm(), couples_need);
-    // Beside those without one; loads at one place add up.
+    // The couple is added to the load without a couple that place_loads() has placed at s; couples
+    // at one position add up.
     const double s = placed.s_of(load.at, problem.length);
     const auto at = std::find_if(placed.span.loads.begin(), placed.span.loads.end(),
                                  [s](const Span::Load& other) { return other.at == s; });
@@ -176,7 +177,7 @@ void place_couples(const Problem& problem, const Stretch& stretch, PlacedSpan& p
   }
 }
 
-/// Grips that hold the span, by growing s, of which the first is its anchor.
+/// Places the grips of the span by growing s; the first of them is its anchor.
 void place_grips(const Problem& problem, const std::vector<OrderedGrip>& held,
                  const Stretch& stretch, PlacedSpan& placed, Directions& directions) {
   const double l = problem.length;
@@ -208,7 +209,7 @@ void place_grips(const Problem& problem, const std::vector<OrderedGrip>& held,
   }
 }
 
-/// Weight, line loads and loads, but those on clamps.
+/// Places the loads that are not on clamps, and collects the directions of all forces.
 void place_loads(const Problem& problem, const Stretch& stretch, PlacedSpan& placed,
                  Directions& directions) {
   const double l = problem.length;
@@ -220,7 +221,7 @@ void place_loads(const Problem& problem, const Stretch& stretch, PlacedSpan& pla
     directions.forces.insert(directions.forces.end(), {load.at_begin, load.at_end});
   }
   for (const Load& load : problem.loads) {
-    // A load on a clamp is the gripper's alone.
+    // A load on a clamp is carried by the gripper alone.
     if (!stretch.contains(load.at) || clamp_under(problem, load)) continue;
     span.loads.push_back({placed.s_of(load.at, l), load.force / force_unit});
     directions.forces.push_back(span.loads.back().force);
@@ -250,7 +251,7 @@ void place_obstacles(const Problem& problem, PlacedSpan& placed, Directions& dir
   }
 }
 
-/// The span of a stretch; it runs backwards from a clamp at its end if there is none at its begin.
+/// Creates the span of an interval. It runs backwards if only its end is clamped.
 PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips,
                  const Stretch& stretch) {
   const double l = problem.length;
@@ -293,9 +294,9 @@ PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips,
   return placed;
 }
 
-/// Arc lengths of the clamps that nothing passes through: one about which the rod rotates freely,
-/// its direction passes a torque on, which there is between clamps that hold frames, and all along
-/// a rod with material directors.
+/// Returns the arc lengths of the clamps that end spans. A clamp about which the rod rotates freely
+/// transmits a torque; there is one between clamps that hold frames, and all along a rod with
+/// material directors.
 std::vector<double> cuts_at_clamps(const Problem& problem, const std::vector<OrderedGrip>& grips) {
   std::vector<OrderedGrip> clamps;
   for (const OrderedGrip& g : grips) {

@@ -11,24 +11,24 @@
 
 namespace dlo::energy_model {
 
-/// What the clamps at both ends of a span do with the rod's frame; in the span's frame.
+/// Frames that the clamps at both ends of a span hold, in the span's frame.
 struct HeldFrames {
-  double stiffness = 0;              ///< GJ / EI
-  Eigen::Vector3d start_d1, end_d1;  ///< not rolled
+  double stiffness = 0;              ///< mean GJ, divided by EI
+  Eigen::Vector3d start_d1, end_d1;  ///< first directors without roll
   HeldTurns turns;
 };
 
-/// A span and where it lies in its problem.
+/// A span and its position in the problem.
 struct PlacedSpan {
-  Span span;                                            ///< without twist
-  std::optional<HeldFrames> frames;                     ///< that twist it
-  double ahead = 0;                                     ///< of a rod with material directors: by
-                                                        ///< which its d1 is turned from the span's
-  bool reversed = false;                                ///< s runs against the arc length
+  Span span;                         ///< the span, without twist
+  std::optional<HeldFrames> frames;  ///< frames whose rotation twists the span
+  /// Angle by which d1 of a rod with material directors is ahead of the span's [rad].
+  double ahead = 0;
+  bool reversed = false;                                ///< whether s decreases with the arc length
   double start = 0;                                     ///< arc length of s = 0 [m]
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< rows: the span's axes in space
   std::size_t anchor_grip = 0;
-  std::vector<std::size_t> hold_grips;                        ///< of span.holds
+  std::vector<std::size_t> hold_grips;  ///< grips of span.holds in Problem::grips
   Eigen::Vector3d anchor_position = Eigen::Vector3d::Zero();  ///< [m]
 
   [[nodiscard]] double s_of(double arc_length, double length) const {
@@ -36,9 +36,9 @@ struct PlacedSpan {
   }
 };
 
-/// Cuts a problem at its clamps and puts every span into its units and its frame.
-/// @throws std::invalid_argument if the problem is out of range or grips are further apart than the
-/// rod between them
+/// Cuts a problem at its clamps, and converts every span to its units and its frame.
+/// @throws std::invalid_argument if the problem is out of range, or grips are farther apart than
+/// the rod between them
 [[nodiscard]] std::vector<PlacedSpan> split(const Problem& problem);
 
 }  // namespace dlo::energy_model

@@ -16,7 +16,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// In (-pi, pi]: half a turn is half a turn, whatever rounding says.
+/// Returns the equivalent angle in (-pi, pi]. An angle of -pi up to rounding becomes pi.
 double within_half_turn(double angle) {
   constexpr double rounding = 1e-9;
   const double least = std::remainder(angle, 2 * pi);
@@ -27,7 +27,7 @@ Eigen::Vector3d part_across(const Eigen::Vector3d& v, const Eigen::Vector3d& dir
   return (v - v.dot(direction) * direction).normalized();
 }
 
-/// The shortest rotation of a clamp's direction into another's.
+/// Returns the shortest rotation of a clamp's direction into another's.
 std::optional<Eigen::Quaterniond> rotation_between(const Grip& from, const Grip& to,
                                                    double length) {
   return shortest_rotation(from.direction->normalized(), to.direction->normalized(),
@@ -44,7 +44,7 @@ double nearer_to(double wanted, double one, double other) {
   return std::abs(one - wanted) <= std::abs(other - wanted) ? one : other;
 }
 
-/// The clamp that says where the others without d1 have it.
+/// Returns the clamp whose d1 determines that of clamps without d1.
 const Grip& reference_clamp(const Problem& problem) {
   if (has_material_directors(problem)) return problem.grips[first_clamp(problem).value()];
   const Grip* first = nullptr;
@@ -54,7 +54,7 @@ const Grip& reference_clamp(const Problem& problem) {
   return *first;
 }
 
-/// Its own d1, not rolled.
+/// Returns the d1 of that clamp, without roll.
 Eigen::Vector3d reference_d1(const Problem& problem, const Grip& clamp) {
   const Eigen::Vector3d direction = clamp.direction->normalized();
   if (clamp.frame && clamp.frame->d1) return part_across(*clamp.frame->d1, direction);

@@ -14,16 +14,16 @@ namespace {
 
 using std::numbers::pi;
 
-/// Gauss's integral over two segments, ab and cd: the solid angle of the directions in which they
-/// are seen to cross [rad]. Returns 0 for segments in one plane, where the sign of the triple
-/// product would be rounding.
+/// Computes Gauss's integral over two segments, ab and cd: the solid angle of the directions from
+/// which they appear to cross [rad]. Returns 0 for segments in one plane, for which the sign of the
+/// triple product would be rounding.
 double crossing_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                       const Eigen::Vector3d& d) {
   const Eigen::Vector3d ac = c - a;
   const Eigen::Vector3d ad = d - a;
   const Eigen::Vector3d bc = c - b;
   const Eigen::Vector3d bd = d - b;
-  constexpr double coplanar = 1e-9;  // of the triple product
+  constexpr double coplanar = 1e-9;  // relative size of the triple product
   const double side = (d - c).cross(b - a).dot(ac);
   if (!(std::abs(side) > coplanar * (d - c).norm() * (b - a).norm() * ac.norm())) return 0;
   std::array<Eigen::Vector3d, 4> normals = {ac.cross(ad), ad.cross(bd), bd.cross(bc), bc.cross(ac)};
@@ -35,7 +35,8 @@ double crossing_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const 
   return std::copysign(angle, side);
 }
 
-/// Whether the half-line from `from` passes the segment ab at less than `distance`.
+/// Whether the half-line from `from` along `direction` passes the segment ab at less than
+/// `distance`.
 bool passes(const Eigen::Vector3d& from, const Eigen::Vector3d& direction, const Eigen::Vector3d& a,
             const Eigen::Vector3d& b, double distance) {
   const auto across = [&](const Eigen::Vector3d& v) -> Eigen::Vector3d {
@@ -49,17 +50,17 @@ bool passes(const Eigen::Vector3d& from, const Eigen::Vector3d& direction, const
   return along > distance && (to_a + t * side).norm() < distance;
 }
 
-/// The area, signed, of the triangle of three unit vectors on the sphere [rad].
+/// Returns the signed area of the triangle of three unit vectors on the sphere [rad].
 double spherical_area(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                       const Eigen::Vector3d& c) {
   return 2 * std::atan2(a.dot(b.cross(c)), 1 + a.dot(b) + b.dot(c) + c.dot(a));
 }
 
-/// Fuller's area over 2 pi, between the tangents and the great circle that joins the end ones. It
-/// is the writhe if all are on one side of the sphere, about the middle of these. Empty: they are
-/// not.
+/// Returns Fuller's area divided by 2 pi, between the tangents and the great circle that joins the
+/// end ones. It is the writhe if all tangents are in the half sphere about the middle of the end
+/// tangents; empty otherwise.
 std::optional<double> writhe_of_graph(const Eigen::Matrix3Xd& tangents) {
-  constexpr double least = 1e-3;  // of a tangent along the middle
+  constexpr double least = 1e-3;  // smallest cosine between a tangent and the middle
   const Eigen::Vector3d middle = (tangents.leftCols<1>() + tangents.rightCols<1>()).normalized();
   if (!((middle.transpose() * tangents).minCoeff() > least)) return std::nullopt;
   double area = 0;
@@ -74,7 +75,8 @@ double length_of(const Eigen::Matrix3Xd& points) {
   return (points.rightCols(segments) - points.leftCols(segments)).colwise().norm().sum();
 }
 
-/// Gauss's integral of a polygon and the lines beyond its ends. Empty: a line passes through it.
+/// Computes Gauss's integral of a polygon and the lines beyond its ends; empty if a line passes
+/// through the polygon.
 std::optional<double> gauss_integral(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& first,
                                      const Eigen::Vector3d& last) {
   const Eigen::Index size = points.cols();
@@ -96,8 +98,8 @@ std::optional<double> gauss_integral(const Eigen::Matrix3Xd& points, const Eigen
   return angle / (2 * pi);
 }
 
-/// The number of a class modulo two that is nearest to Gauss's integral. Empty: both neighbours are
-/// as near, as where the curve meets itself.
+/// Returns the number of a class modulo two that is nearest to Gauss's integral; empty if the two
+/// nearest are about equally near, as for a curve that intersects itself.
 std::optional<double> nearest_of_class(double modulo_two, std::optional<double> integral) {
   constexpr double farthest = 0.6;
   if (!integral) return std::nullopt;
@@ -106,7 +108,7 @@ std::optional<double> nearest_of_class(double modulo_two, std::optional<double> 
   return *integral - off;
 }
 
-/// Tangents of the arcs of a polygon and of its ends.
+/// Returns the tangents of the segments of a polygon and of its ends.
 Eigen::Matrix3Xd tangents_of(const Eigen::Matrix3Xd& points, const Eigen::Vector3d& first,
                              const Eigen::Vector3d& last) {
   const Eigen::Index size = points.cols();
@@ -149,7 +151,7 @@ std::optional<Writhe> writhe(
   constexpr int most_points = 2048;
   constexpr int most_crossing_points = 512;
   constexpr double tolerance = 1e-7;
-  std::optional<double> coarse;  // of half as many points
+  std::optional<double> coarse;  // writhe modulo two of half as many segments
   Writhe result{0, std::nullopt, 2};
   std::optional<double> crossings;
   bool settled = false;
@@ -165,7 +167,8 @@ std::optional<Writhe> writhe(
         samples.tangents,
         (samples.points.rightCols<1>() - samples.points.leftCols<1>()) / (end - begin));
     if (!now) return std::nullopt;
-    // The error of great arcs between tangents is of second order.
+    // The error of great arcs between tangents is of second order, so that Richardson's
+    // extrapolation applies.
     const double change = coarse ? std::remainder(*now - *coarse, 2) : 2;
     const double better = coarse ? *now + change / 3 : *now;
     result.error =
