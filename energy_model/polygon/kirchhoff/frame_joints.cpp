@@ -9,7 +9,7 @@ std::vector<FrameJoint> frame_joints(const RodSpan& span, const RodMesh& mesh) {
   std::vector<FrameJoint> joints;
   const auto stiffness = [&](Eigen::Index i) {
     Eigen::Vector3d own = mesh.section_of(i).stiffness();
-    if (span.round()) own.z() = 0;  // nothing twists it
+    if (span.round()) own.z() = 0;  // no torque twists a round rod here
     return own;
   };
   const auto natural = [&](double s) {

@@ -9,15 +9,15 @@
 
 namespace dlo::energy_model {
 
-/// A place where two frames meet.
+/// Joint between two neighbouring frames: of intervals, or of an interval and a clamp.
 struct FrameJoint {
-  Eigen::Index left, right;   // frames: of intervals, then of clamps
-  Eigen::Index node;          // of the mesh
-  double h;                   // of the rod between
-  Eigen::Vector3d stiffness;  // of the rod between
+  Eigen::Index left, right;   // indices of frames: first those of intervals, then those of clamps
+  Eigen::Index node;          // node of the mesh
+  double h;                   // length of the rod between the two frames
+  Eigen::Vector3d stiffness;  // stiffness of that rod about d1, d2 and the tangent
   Eigen::Vector3d natural;
 
-  /// Strains less the natural ones are factor vec(turn) - natural.
+  /// Returns f, with which the strains minus the natural ones are f vec(turn) - natural.
   [[nodiscard]] double factor(const Eigen::Quaterniond& turn) const {
     return (turn.w() < 0 ? -2 : 2) / h;
   }
@@ -26,13 +26,16 @@ struct FrameJoint {
   }
 };
 
-/// Of a polygon, its clamps' frames after the intervals'. Nothing twists a round rod.
+/// Returns the joints of a polygon, in whose list of frames those of clamps follow those of
+/// intervals. A round rod has no torsional stiffness here.
 [[nodiscard]] std::vector<FrameJoint> frame_joints(const RodSpan& span, const RodMesh& mesh);
 
-/// The frame of a clamp, turned about its direction from where a turn is zero.
+/// Returns the frame of a clamp, rotated by `turn` about its direction from the reference frame
+/// [rad].
 [[nodiscard]] Eigen::Quaterniond clamp_frame(const RodSpan& span, std::size_t clamp, double turn);
 
-/// Turns at clamps, of which the first one holds its frame, that the rod beside them has.
+/// Returns the rotation of the frame of each clamp about its direction that the adjacent interval
+/// has [rad]; that of the first clamp, which holds its frame, is 0.
 [[nodiscard]] std::vector<double> turns_beside(const RodSpan& span, const RodMesh& mesh,
                                                const std::vector<Eigen::Quaterniond>& frames);
 

@@ -8,18 +8,18 @@
 
 namespace dlo::energy_model {
 
-/// The intervals between two neighbouring grips, whose sum of h_i t_i is the way from one to the
-/// other, and an augmented Lagrangian's means to keep it: of energy
+/// Constraint of an augmented Lagrangian that the sum of h_i t_i over the intervals between two
+/// neighbouring grips is the vector from one to the other. Its energy is
 ///     multiplier . gap + 1/2 penalty |gap|^2,
-/// so that the rod between them carries - multiplier - penalty gap.
+/// so that the rod between the grips carries the force - multiplier - penalty gap.
 struct GripGap {
   Eigen::Index first, end;
   Eigen::Vector3d chord;
-  double slack;  ///< rod to spare
+  double slack;  ///< length of the rod minus the distance of the grips
   double penalty;
   Eigen::Vector3d multiplier = Eigen::Vector3d::Zero();
 
-  /// Whether a gap is closed to 1e-4, or to a hundredth of what there is to spare.
+  /// Whether a gap is smaller than 1e-4 and than a hundredth of the slack.
   [[nodiscard]] bool closed(const Eigen::Vector3d& gap) const;
 };
 

@@ -14,14 +14,15 @@ using Eigen::Quaterniond;
 using std::numbers::pi;
 using Frames = std::vector<Quaterniond>;
 
-/// The frame that the others are turned from: of a round rod any, in the plane its d2 is across it.
+/// Returns the frame from which the initial guesses are rotated. For a round rod it is arbitrary in
+/// space; in a plane its d2 is across the plane.
 Quaterniond base_frame(const RodSpan& span) {
   if (span.round() && span.plane) return Quaterniond(frame_along(span.plane->x, span.plane->y));
   return Quaterniond(span.first_frame);
 }
 
-/// A frame turned to a tangent by the shortest rotation; by half a turn, which has no least one,
-/// about d2, so that it stays in the plane.
+/// Rotates a frame to a tangent by the shortest rotation. The axis of half a rotation is
+/// undetermined; d2 is used, so that the frame stays in the plane.
 Quaterniond turned_to(const Quaterniond& frame, const Eigen::Vector3d& tangent) {
   const Eigen::Vector3d t = frame * Eigen::Vector3d::UnitZ();
   constexpr double opposite = 1e-9;  // of the cosine
@@ -31,8 +32,8 @@ Quaterniond turned_to(const Quaterniond& frame, const Eigen::Vector3d& tangent) 
 
 double middle_of(const RodMesh& mesh, Eigen::Index i) { return (mesh.s[i] + mesh.s[i + 1]) / 2; }
 
-/// A line that the span runs along, more or less, and the share of the span's length that it may
-/// cover.
+/// Line along which the span roughly extends, and the ratio of the distance of the outermost grips
+/// to the length of rod between them (0.7 with a single grip).
 struct Line {
   Eigen::Vector3d direction;
   double share;
@@ -50,22 +51,24 @@ Line line_of(const RodSpan& span) {
   return {base_frame(span) * Eigen::Vector3d::UnitZ(), share};
 }
 
-/// Axes across the line about which a frame along it is turned away from it.
+/// Returns the axes across the line about which frames along it are rotated away from it.
 std::vector<Eigen::Vector3d> axes_of(const RodSpan& span, const Quaterniond& along, Motion motion) {
   const Eigen::Vector3d line = along * Eigen::Vector3d::UnitZ();
-  const Eigen::Vector3d normal = along * Eigen::Vector3d::UnitY();  // of the plane, if it has one
+  // Normal of the plane, if the span has one.
+  const Eigen::Vector3d normal = along * Eigen::Vector3d::UnitY();
   if (motion == Motion::in_plane) return {normal, -normal};
   std::vector<Eigen::Vector3d> axes;
-  const int count = span.round() ? 6 : 4;  // a polygon of frames costs more
+  // a polygon of frames is more expensive than one of tangents.
+  const int count = span.round() ? 6 : 4;
   for (int i = 0; i < count; ++i) {
-    // Not through the plane itself, where the planar search has been.
+    // The axes avoid the plane itself, which the planar search covers.
     const double angle = 2 * pi * (i - 0.1) / count;
     axes.emplace_back(std::cos(angle) * line.cross(normal) - std::sin(angle) * normal);
   }
   return axes;
 }
 
-/// The stress-free rod, from its first clamp on.
+/// Returns the frames of the stress-free rod, with its first clamp at the right place.
 Frames natural_shape(const RodSpan& span, const RodMesh& mesh, const Quaterniond& along) {
   Frames shape(static_cast<std::size_t>(mesh.intervals()));
   const auto half = [&](Eigen::Index i, double side) {
@@ -88,7 +91,7 @@ Frames natural_shape(const RodSpan& span, const RodMesh& mesh, const Quaterniond
   return shape;
 }
 
-/// Tangents along the force that is carried, or against it.
+/// Rotates the tangents along the carried force, or against it if `side` is negative.
 Frames hanging(const RodSpan& span, const RodMesh& mesh, Frames frames, double side) {
   const Eigen::Matrix3Xd carried = carried_force(span, mesh).on_interval;
   for (Eigen::Index i = 0; i < mesh.intervals(); ++i) {
@@ -99,7 +102,7 @@ Frames hanging(const RodSpan& span, const RodMesh& mesh, Frames frames, double s
   return frames;
 }
 
-/// Out of the plane, where the shapes that lie in it may be unstable.
+/// Rotates frames out of the plane, because shapes that lie in it may be unstable in space.
 void tilt(const RodSpan& span, const RodMesh& mesh, Frames& frames) {
   constexpr double out = 0.2;
   const double from = span.clamps.empty() ? 0 : span.clamps.front().at;

@@ -8,16 +8,16 @@
 
 namespace dlo::energy_model {
 
-/// Frames of the intervals of a mesh from which a polygon is relaxed: straight along a line, their
-/// tangents along the force that is carried, and at an angle a(x) to the line, x in [0, 1] along
-/// the span, towards each of several normals,
+/// Returns initial guesses for relaxing a polygon, as frames of the intervals of a mesh. They are:
+/// straight along a line; with tangents along the carried force; and at an angle a(x) to the line,
+/// x in [0, 1] along the span, towards each of several normals,
 ///     a = A cos(pi x) (arch),  A sin(2 pi x) (arch with straight ends),  A cos(2 pi x) (S),
 ///     2 pi x (loop),
-/// where A fits the distance of the outermost grips. The line is theirs, or a clamp's direction. In
-/// the plane the normals are its two, in space six or four around the line. Of a rod that is not
-/// round also its natural shape from its first clamp on, and tangents against the force: what is
-/// round may be in equilibrium there, and stay. What of these would lie in a plane is
-/// tilted out of it in space.
+/// where A fits the distance of the outermost grips. The line connects these grips, or has the
+/// direction of a clamp. In a plane there are two normals, in space six or four around the line.
+/// For a rod that is not round there are two more: its natural shape from its first clamp on, and
+/// tangents against the force. A round rod may be in equilibrium in the latter and stay there. In
+/// space, guesses that would lie in a plane are tilted out of it.
 [[nodiscard]] std::vector<std::vector<Eigen::Quaterniond>> polygon_starts(const RodSpan& span,
                                                                           const RodMesh& mesh,
                                                                           Motion motion);

@@ -15,12 +15,14 @@ using Eigen::Quaterniond;
 
 constexpr int augmented_rounds = 12;
 constexpr int round_evaluations = 400;
-constexpr int remembered = 15;            // steps of L-BFGS: an evaluation is cheap
-constexpr double polygon_at_rest = 1e-5;  // gradient over 1 + load
+constexpr int remembered = 15;  // number of steps that L-BFGS stores; an evaluation is cheap
+// Norm of the gradient over 1 + load at which the polygon counts as an equilibrium.
+constexpr double polygon_at_rest = 1e-5;
 
 Eigen::Vector4d vector_of(const Quaterniond& q) { return {q.w(), q.x(), q.y(), q.z()}; }
 
-/// The polygon's energy, of the quaternions of the intervals and the turns at clamps.
+/// Energy of the polygon as a function of the quaternions of the intervals and the rotations at
+/// clamps.
 class PolygonEnergy {
  public:
   PolygonEnergy(const RodSpan& span, const RodMesh& mesh, Motion motion)
@@ -61,7 +63,7 @@ class PolygonEnergy {
     return gap;
   }
 
-  /// n_i with the multipliers'.
+  /// Returns the force n_i in each interval, including the multipliers' part.
   [[nodiscard]] Eigen::Matrix3Xd force(const Eigen::Ref<const Eigen::VectorXd>& x) const {
     Eigen::Matrix3Xd force = carried_;
     for (const GripGap& of : gaps) {
@@ -131,7 +133,7 @@ class PolygonEnergy {
       }
       gradient.segment<4>(4 * i) = along / x.segment<4>(4 * i).norm();
     }
-    if (normal_) return;  // turns at clamps leave the plane
+    if (normal_) return;  // the rotations at clamps would leave the plane
     for (Eigen::Index i = count + 1; i < by_frame.cols(); ++i) {
       const Quaterniond rate = q[static_cast<std::size_t>(i)] * Quaterniond(0, 0, 0, 0.5);
       gradient[3 * count + i] = by_frame.col(i).dot(vector_of(rate));
@@ -142,7 +144,7 @@ class PolygonEnergy {
   const RodMesh& mesh_;
   std::vector<FrameJoint> joints_;
   Eigen::Matrix3Xd carried_;
-  std::optional<Eigen::Vector3d> normal_;  // of the plane that it does not leave
+  std::optional<Eigen::Vector3d> normal_;  // normal of the plane to which the motion is restricted
 };
 
 }  // namespace

@@ -10,8 +10,8 @@
 
 namespace dlo::energy_model {
 
-/// relax_polygon() of any rod by NLopt's L-BFGS on the quaternions' components, with an augmented
-/// Lagrangian that closes the gaps at the grips.
+/// Computes relax_polygon() for any rod by NLopt's L-BFGS on the components of the quaternions,
+/// with an augmented Lagrangian that closes the gaps at the grips.
 [[nodiscard]] RelaxedPolygon relax_frames(const RodSpan& span, const RodMesh& mesh,
                                           const std::vector<Eigen::Quaterniond>& start,
                                           Motion motion, const Deadline& deadline);

@@ -13,7 +13,8 @@ namespace {
 
 using Eigen::Quaterniond;
 
-constexpr double same_polygon = 0.02;  // of tangents, or of frames [rad]
+// Difference of tangents, or of frames [rad], below which two polygons are the same.
+constexpr double same_polygon = 0.02;
 
 double distance(const RodSpan& span, const RelaxedPolygon& a, const RelaxedPolygon& b) {
   if (span.round()) return (a.tangents() - b.tangents()).colwise().norm().maxCoeff();
@@ -24,7 +25,7 @@ double distance(const RodSpan& span, const RelaxedPolygon& a, const RelaxedPolyg
   return distance;
 }
 
-/// Frames with tangents, without twist from one to the next.
+/// Returns frames without twist from one to the next that have these tangents.
 std::vector<Quaterniond> frames_along(const Eigen::Matrix3Xd& tangents, const Quaterniond& first) {
   std::vector<Quaterniond> frames = {first};
   for (Eigen::Index i = 0; i < tangents.cols(); ++i) {
@@ -44,7 +45,8 @@ Eigen::Matrix3Xd tangents_along(const std::vector<Quaterniond>& frames) {
   return result;
 }
 
-/// Its tangents are enough, and relaxed at a hundredth of the cost.
+/// Relaxes a round rod. Its tangents determine its energy, and relaxing them costs a hundredth of
+/// relaxing frames.
 RelaxedPolygon relax_round(const RodSpan& span, const RodMesh& mesh,
                            const std::vector<Quaterniond>& start, Motion motion,
                            const Deadline& deadline) {
@@ -111,7 +113,8 @@ std::vector<RodState> states_of(const RodSpan& span, const RodMesh& mesh,
   for (std::size_t k = 0; k < span.clamps.size(); ++k) {
     q.push_back(clamp_frame(span, k, polygon.turns[k]));
   }
-  // The moment after a node is that of the joint there, of two the later one.
+  // The moment after a node is that of the joint there; at a clamp, which has two joints, that of
+  // the later one.
   for (const FrameJoint& joint : frame_joints(span, mesh)) {
     const Quaterniond& a = q[static_cast<std::size_t>(joint.left)];
     const Quaterniond& b = q[static_cast<std::size_t>(joint.right)];
@@ -137,7 +140,7 @@ std::vector<RodState> states_of(const RodSpan& span, const RodMesh& mesh,
       state.m.setZero();
       break;
     }
-    // What the grips add is constant between them.
+    // The contribution of the grips to the force is constant between them.
     state.n = carried.after_node.col(i) + polygon.force.col(i) - carried.on_interval.col(i);
     r += mesh.width(i) * (polygon.frames[static_cast<std::size_t>(i)] * Eigen::Vector3d::UnitZ());
   }

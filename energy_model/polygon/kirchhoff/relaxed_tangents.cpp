@@ -15,23 +15,26 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Directions across a tangent in which it may turn; in the plane the second one is zero.
+/// Two orthogonal directions across a tangent in which it may move; in the plane the second one is
+/// zero.
 using Across = Eigen::Matrix<double, 3, 2>;
 
-constexpr int most_steps = 200;            // of Newton's method, which takes some 30
-constexpr int most_shifts = 60;            // of a Hessian, each four times the last one
-constexpr int most_halvings = 30;          // of a step
-constexpr double at_rest = 1e-4;           // step of a tangent [rad]
-constexpr double nearly_at_rest = 0.05;    // step with which multipliers may change [rad]
-constexpr double least_shift = 1e-4;       // of unit: zero modes stay where they are
-constexpr double longest_turn = 0.5;       // of a tangent in a step [rad]
-constexpr double sufficient = 1e-4;        // share of the slope's promise (Armijo)
-constexpr double energy_rounding = 1e-13;  // of an energy
-constexpr double closing = 0.25;           // of a gap in a round, or else its penalty grows
-constexpr double penalty_growth = 4;       // in a round
-constexpr double largest_penalty = 1e12;   // over the first one
+constexpr int most_steps = 200;    // of Newton's method, which needs about 30
+constexpr int most_shifts = 60;    // increases of the shift of a Hessian, by a factor of 4 each
+constexpr int most_halvings = 30;  // halvings of a step
+constexpr double at_rest = 1e-4;   // step of a tangent at which the iteration ends [rad]
+constexpr double nearly_at_rest = 0.05;  // step below which multipliers are updated [rad]
+constexpr double least_shift = 1e-4;     // in units of b / l^2; keeps steps along zero modes small
+constexpr double longest_turn = 0.5;     // largest rotation of a tangent in a step [rad]
+// Share of the predicted decrease that a step has to reach (Armijo).
+constexpr double sufficient = 1e-4;
+constexpr double energy_rounding = 1e-13;  // relative rounding error of an energy
+// The penalty of a gap that a round does not reduce to this share grows.
+constexpr double closing = 0.25;
+constexpr double penalty_growth = 4;      // factor by which a penalty grows in a round
+constexpr double largest_penalty = 1e12;  // divided by the initial penalty
 
-/// Tangents between those of clamps at the ends, and what joins them.
+/// Chain of the intervals' tangents between those of clamps at the ends, with its joints.
 class TangentChain {
  public:
   TangentChain(const RodSpan& span, const RodMesh& mesh, const Eigen::Matrix3Xd& tangents,
@@ -64,7 +67,7 @@ class TangentChain {
   [[nodiscard]] double width(Eigen::Index i) const { return h_[i]; }
   [[nodiscard]] Eigen::Vector3d tangent(Eigen::Index i) const { return t_.col(i + 1); }
   [[nodiscard]] Eigen::Matrix3Xd tangents() const { return t_.middleCols(1, size()); }
-  /// Between an interval, or the end, and the one before it.
+  /// Returns the stiffness of the joint between interval i, or the end, and the interval before it.
   [[nodiscard]] double stiffness(Eigen::Index i) const { return stiffness_[i]; }
 
   [[nodiscard]] Eigen::Vector3d gap(const GripGap& of) const {
@@ -90,7 +93,7 @@ class TangentChain {
     return energy;
   }
 
-  /// Of the augmented energy minus the derivatives by t_i: what pulls each tangent.
+  /// Returns minus the derivatives of the augmented energy by the tangents t_i.
   [[nodiscard]] Eigen::Matrix3Xd pulls() const {
     Eigen::Matrix3Xd pulls(3, size());
     for (Eigen::Index i = 0; i < size(); ++i) pulls.col(i) = pull_without_grips(i);
@@ -124,7 +127,7 @@ class TangentChain {
   std::vector<GripGap> gaps;
 
  private:
-  /// From a symmetric shape a symmetric step leads to a saddle: it takes the symmetry away.
+  /// Disturbs the tangents. A symmetric shape would converge to a saddle by symmetric steps.
   void disturb() {
     constexpr double amplitude = 1e-3;  // [rad]
     for (Eigen::Index i = 0; i < size(); ++i) {
@@ -134,13 +137,13 @@ class TangentChain {
     }
   }
 
-  /// What neighbours and what the interval carries pull it along.
+  /// Returns minus the derivative of the energy by t_i without the augmented Lagrangian.
   [[nodiscard]] Eigen::Vector3d pull_without_grips(Eigen::Index i) const {
     return stiffness_[i] * t_.col(i) + stiffness_[i + 1] * t_.col(i + 2) + h_[i] * carried_.col(i);
   }
 
-  /// The multiplier with which a shape is as near to equilibrium as it can be, by least squares. A
-  /// flat arch would otherwise be straight before its thrust has grown.
+  /// Sets the multiplier with which the shape is nearest to equilibrium, by least squares.
+  /// Otherwise a flat arch would become straight before its thrust has grown.
   void fit_multiplier(GripGap& of) const {
     Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
     Eigen::Vector3d right = Eigen::Vector3d::Zero();
@@ -154,14 +157,16 @@ class TangentChain {
   }
 
   Eigen::VectorXd h_;
-  Eigen::Matrix3Xd t_;         // of the intervals, between the clamps'
-  Eigen::VectorXd stiffness_;  // between neighbours; zero: no clamp
+  Eigen::Matrix3Xd t_;  // tangents of the intervals, between those of the clamps
+  // Stiffness of joints between neighbours; zero at an end without a clamp.
+  Eigen::VectorXd stiffness_;
   Eigen::Matrix3Xd carried_;
-  Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();  // of the plane; zero: none
+  Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();  // normal of the plane; zero: motion in space
 };
 
-/// The Hessian of the energy with the gaps' forces as dead ones, in directions across the tangents:
-/// blocks p_i.t_i + shift h_i beside - stiffness of neighbours. Its factors L D L^T, blocks of two.
+/// Hessian of the energy in directions across the tangents, with the forces of the gaps held
+/// constant. Its diagonal blocks are p_i.t_i + shift h_i, those beside them minus the stiffness of
+/// the joints. It is factorised as L D L^T with blocks of two.
 class ChainFactor {
  public:
   ChainFactor(const TangentChain& chain, const std::vector<Across>& across,
@@ -184,7 +189,7 @@ class ChainFactor {
     }
   }
 
-  /// How many eigenvalues are negative.
+  /// Returns the number of negative eigenvalues.
   [[nodiscard]] int negative() const { return negative_; }
 
   [[nodiscard]] Eigen::MatrixXd solve(Eigen::MatrixXd x) const {
@@ -204,27 +209,28 @@ class ChainFactor {
   }
 
  private:
-  std::vector<Eigen::Matrix2d> inverse_;  // of D's blocks
-  std::vector<Eigen::Matrix2d> below_;    // the diagonal
+  std::vector<Eigen::Matrix2d> inverse_;  // inverses of the blocks of D
+  std::vector<Eigen::Matrix2d> below_;    // blocks below the diagonal
   int negative_ = 0;
 };
 
 struct ChainStep {
-  Eigen::Matrix3Xd turn;  ///< of the tangents
-  double largest = 0;     ///< of one [rad]
-  double slope = 0;       ///< of the augmented energy along it, not positive
+  Eigen::Matrix3Xd turn;  ///< displacement of each tangent
+  double largest = 0;     ///< largest displacement of a tangent [rad]
+  double slope = 0;       ///< derivative of the augmented energy along the step, <= 0
 };
 
-/// Newton's step H x = -g of the augmented energy, H = T + J^T P J + shift, T of ChainFactor, J the
-/// gaps' derivatives, P their penalties: by Woodbury's formula with S = P^-1 + J T^-1 J^T. H is
-/// positive definite where T has as many negative eigenvalues as S (Haynsworth 1968).
-/// @return none: it is not, the shift is too small
+/// Computes Newton's step H x = -g of the augmented energy, H = T + J^T P J + shift, with T of
+/// ChainFactor, the derivatives J of the gaps and their penalties P. It uses Woodbury's formula
+/// with S = P^-1 + J T^-1 J^T. H is positive definite if T has as many negative eigenvalues as S
+/// (Haynsworth 1968).
+/// @return std::nullopt if H is not positive definite because the shift is too small
 std::optional<ChainStep> newton_step(const TangentChain& chain, double shift) {
   const Eigen::Index count = chain.size();
   const auto gaps = static_cast<Eigen::Index>(chain.gaps.size());
   const Eigen::Matrix3Xd pulls = chain.pulls();
   std::vector<Across> across;
-  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(2 * count, 1 + 3 * gaps);  // -g, J^T
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(2 * count, 1 + 3 * gaps);  // columns: -g, then J^T
   for (Eigen::Index i = 0; i < count; ++i) {
     across.push_back(chain.across(i));
     right.col(0).segment<2>(2 * i) = across.back().transpose() * pulls.col(i);
@@ -263,8 +269,8 @@ std::optional<ChainStep> newton_step(const TangentChain& chain, double shift) {
   return step;
 }
 
-/// One step of Newton's method downhill. @param shift  that the last one has taken, of this one
-/// after it
+/// Takes one damped step of Newton's method that decreases the energy.
+/// @param shift  in: shift of the previous step; out: shift with which the next step begins
 std::optional<ChainStep> descend_once(TangentChain& chain, double unit, double& shift) {
   std::optional<ChainStep> step = newton_step(chain, shift);
   for (int k = 0; k < most_shifts && !step; ++k) {
@@ -304,14 +310,15 @@ RelaxedTangents relax_tangents(const RodSpan& span, const RodMesh& mesh,
   for (int k = 0; k < most_steps && !deadline.passed(); ++k) {
     const std::optional<ChainStep> step = descend_once(chain, unit, shift);
     if (!step) break;
-    // A shift makes steps short that are not near the end.
+    // Steps with a shift are short, even far from the minimum.
     if (step->largest > nearly_at_rest || shift > unit) continue;
     bool closed = true;
     for (std::size_t i = 0; i < chain.gaps.size(); ++i) {
       GripGap& of = chain.gaps[i];
       const Eigen::Vector3d open = chain.gap(of);
       closed = closed && of.closed(open);
-      // The step's curvature is in the gap too.
+      // The gap also contains the second-order error of the step, which is no reason to change the
+      // multiplier.
       const double bent = step->largest * step->largest * span.length;
       if (step->largest > at_rest && open.norm() < bent) continue;
       of.multiplier += of.penalty * open;

@@ -20,7 +20,7 @@ RodMesh make_mesh(const RodSpan& span, double longest, const std::vector<double>
   std::vector<double> nodes = {0};
   for (std::size_t i = 0; i + 1 < fixed.size(); ++i) {
     const double width = fixed[i + 1] - fixed[i];
-    // Rod to spare between two grips has to bend: one interval could not.
+    // A rod with slack between two grips has to bend, which one interval could not.
     constexpr int least_parts = 8;
     const auto next =
         std::upper_bound(span.holds.begin(), span.holds.end(), fixed[i],
@@ -66,7 +66,7 @@ ForceField carried_force(const RodSpan& span, const RodMesh& mesh) {
   ForceField field;
   field.on_interval.resize(3, last);
   field.after_node.resize(3, last + 1);
-  // The first grip carries what nothing else does.
+  // The first grip carries the sum of all loads.
   Eigen::Vector3d n = Eigen::Vector3d::Zero();
   Eigen::Vector3d all = mesh.load.rowwise().sum();
   for (const RodSpan::Part& part : span.parts) {

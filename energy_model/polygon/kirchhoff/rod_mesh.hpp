@@ -9,47 +9,48 @@
 
 namespace dlo::energy_model {
 
-/// A node of a mesh at which contact with a rigid body begins, ends or is a point.
+/// Node of a mesh at which contact with a rigid body begins, ends or is a point.
 struct RodContact {
   Eigen::Index node = 0;
-  bool moves = false;  ///< its arc length is unknown
-  double force = 0;    ///< of the body on the rod there, unknown, along its normal
-  std::optional<obstacle::Body> touched;  ///< at this node alone
-  std::optional<Surface> surface;         ///< or else that on which the rod lies beside it
+  bool moves = false;  ///< whether its arc length is unknown
+  double force = 0;  ///< unknown force of the body on the rod at the node, along the body's normal
+  std::optional<obstacle::Body> touched;  ///< body that only this node touches
+  std::optional<Surface> surface;  ///< otherwise the surface on which the rod lies beside this node
 
-  /// Of a point next to it.
+  /// Returns the gap between a point near this node and the body or surface.
   [[nodiscard]] obstacle::Gap gap(const Eigen::Vector3d& r) const {
     return touched ? touched->gap(r) : surface->gap(r);
   }
 };
 
-/// What a rod touches.
+/// Contacts of a rod.
 struct RodContacts {
-  std::vector<RodContact> nodes;                ///< by growing arc length
-  std::vector<std::optional<Surface>> surface;  ///< of each interval, on which it lies; none: empty
+  std::vector<RodContact> nodes;  ///< nodes of contact by growing arc length
+  /// Surface on which each interval lies; empty: no interval lies.
+  std::vector<std::optional<Surface>> surface;
 
-  /// Null: it is free.
+  /// Returns the surface on which an interval lies; null if it is free.
   [[nodiscard]] const Surface* surface_of(Eigen::Index interval) const {
     const auto i = static_cast<std::size_t>(interval);
     return i < surface.size() && surface[i] ? &*surface[i] : nullptr;
   }
 };
 
-/// The nodes of a span: its ends and those of its parts, grips and loads, and as many between them
-/// as are asked for.
+/// Nodes of a span: its ends, the ends of its parts, grips, loads, and as many nodes between them
+/// as requested.
 struct RodMesh {
-  Eigen::VectorXd s;            ///< growing, at least 2
-  Eigen::Matrix3Xd load;        ///< on each node
-  Eigen::Matrix3Xd couple;      ///< the same
-  Eigen::Matrix3Xd own_load;    ///< that follows it, along d1, d2 and t
-  Eigen::Matrix3Xd own_couple;  ///< the same
-  Eigen::Matrix3Xd pull;        ///< q on each node's tangent, of energy -q.t; zero at first
-  Eigen::Matrix3Xd pull_d1;     ///< the same on its d1
-  std::vector<const RodSpan::Hold*> hold;  ///< at each node, null for none; of the span
-  std::vector<const RodSection*> section;  ///< of each interval; of the span
+  Eigen::VectorXd s;            ///< arc lengths of the nodes, growing, at least 2
+  Eigen::Matrix3Xd load;        ///< force on each node
+  Eigen::Matrix3Xd couple;      ///< couple on each node
+  Eigen::Matrix3Xd own_load;    ///< force that follows the rod, along its d1, d2 and t
+  Eigen::Matrix3Xd own_couple;  ///< couple that follows the rod, along its d1, d2 and t
+  Eigen::Matrix3Xd pull;  ///< vector q on each node's tangent with the energy -q.t; initially zero
+  Eigen::Matrix3Xd pull_d1;  ///< vector q on each node's d1 with the energy -q.d1; initially zero
+  std::vector<const RodSpan::Hold*> hold;  ///< grip of the span at each node; null: none
+  std::vector<const RodSection*> section;  ///< section of the span in each interval
   RodContacts contacts;
 
-  /// Whether a node is an end, a grip, a load or where another part begins, which stays there.
+  /// Whether a node has a fixed arc length: an end, a grip, a load, or the begin of another part.
   [[nodiscard]] bool is_fixed(Eigen::Index node) const {
     const auto i = static_cast<std::size_t>(node);
     return node == 0 || node == intervals() || hold[i] != nullptr || !load.col(node).isZero(0) ||
@@ -63,21 +64,24 @@ struct RodMesh {
   }
 };
 
-/// Where s is, or would be inserted, among nodes.
+/// Returns the index of the first node whose arc length is not less than s.
 [[nodiscard]] Eigen::Index node_at(const Eigen::VectorXd& nodes, double s);
 
-/// @param longest  no interval is longer; between two grips there are eight at least
-/// @param further  arc lengths that have to be nodes
+/// Creates a mesh with equal intervals between fixed nodes.
+/// @param longest  largest length of an interval; between two grips there are at least eight
+///                 intervals
+/// @param further  additional arc lengths of nodes
 [[nodiscard]] RodMesh make_mesh(const RodSpan& span, double longest,
                                 const std::vector<double>& further = {});
 
-/// The mesh with given nodes, the span's ends, parts, grips and loads among them.
+/// Creates the mesh with given nodes, which have to include the span's ends, parts, grips and
+/// loads.
 [[nodiscard]] RodMesh mesh_at(const RodSpan& span, const Eigen::VectorXd& nodes);
 
-/// The inner force n, of what lies beyond on what lies before, if the first grip alone carried
-/// weight and loads.
+/// Inner force n, of the part beyond on the part before, if the first grip alone carried weight and
+/// loads.
 struct ForceField {
-  Eigen::Matrix3Xd on_interval;  ///< in the middle of each interval
+  Eigen::Matrix3Xd on_interval;  ///< force in the middle of each interval
   Eigen::Matrix3Xd after_node;
 };
 [[nodiscard]] ForceField carried_force(const RodSpan& span, const RodMesh& mesh);

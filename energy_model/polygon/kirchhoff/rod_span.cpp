@@ -13,16 +13,17 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double same_arc_length = 1e-9;  // in l
+constexpr double same_arc_length = 1e-9;  // arc lengths nearer to each other are equal, in l
 
-/// In units of l; what is nearly at an end of the rod is there.
+/// Returns an arc length in units of l; one that is nearly at an end of the rod is moved there.
 double own_arc_length(double at, double length) {
   const double s = at / length;
   if (s < same_arc_length) return 0;
   return s > 1 - same_arc_length ? 1 : s;
 }
 
-/// Of clamps, from grip to grip and of forces: unit, but for those of forces.
+/// Returns the directions of clamps, of chords between grips and of forces. They are unit vectors,
+/// except those of forces, which are divided by the total load.
 std::vector<Eigen::Vector3d> directions_of(const RodSpan& span) {
   std::vector<Eigen::Vector3d> directions;
   for (const RodSpan::Clamp& clamp : span.clamps) directions.push_back(clamp.direction);
@@ -54,7 +55,8 @@ std::vector<Eigen::Vector3d> directions_of(const RodSpan& span) {
 std::optional<Plane> plane_of(const RodSpan& span) {
   std::vector<Eigen::Vector3d> directions = directions_of(span);
   if (directions.empty()) directions.emplace_back(Eigen::Vector3d::UnitX());
-  // A pinned rod without a direction of its own starts with its weight, which may be zero.
+  // If a pinned rod has no unit direction, its largest force is the first direction, which may be
+  // zero.
   const auto first = std::max_element(
       directions.begin(), directions.end(),
       [](const auto& a, const auto& b) { return a.norm() < b.norm() * (1 - same_arc_length); });
@@ -62,24 +64,25 @@ std::optional<Plane> plane_of(const RodSpan& span) {
   return find_plane(span.holds.front().position, *first, directions);
 }
 
-/// The plane across the second axis of the first frame, if the span keeps to it.
+/// Returns the plane across the second axis of the first frame, if grips, forces and natural
+/// strains keep the span in it.
 std::optional<Plane> plane_across_d2(const RodSpan& span) {
   constexpr double rounding = 1e-12;
   const Eigen::Vector3d normal = span.first_frame.col(1);
   for (const Eigen::Vector3d& direction : directions_of(span)) {
     if (std::abs(normal.dot(direction)) > rounding) return std::nullopt;
   }
-  // A polynomial of the second strain alone has only zeros of the others.
+  // If the polynomials of the other two strains vanish at all probes, they are zero.
   for (const Eigen::Vector3d& u : natural_probes(span, 24)) {
     if (u[0] != 0 || u[2] != 0) return std::nullopt;
   }
   return Plane{span.holds.front().position, span.first_frame.col(2), span.first_frame.col(0)};
 }
 
-/// Which law a span obeys.
+/// Treatment of the directors of a span: arbitrary, or fixed to the material.
 enum class Directors { any, of_material };
 
-/// Of the rod from `begin` to `end`, both in units of l.
+/// Returns the parts of the rod from `begin` to `end`, both in units of l.
 std::vector<RodSpan::Part> parts_between(const Problem& problem, double begin, double end,
                                          Directors directors) {
   const double l = problem.length;
@@ -88,7 +91,7 @@ std::vector<RodSpan::Part> parts_between(const Problem& problem, double begin, d
   for (const RodPart& section : rod_parts(problem)) {
     const double from = std::max(own_arc_length(section.begin, l), begin);
     const double to = std::min(own_arc_length(section.end, l), end);
-    // What is shorter than the distance of two places is none.
+    // A part shorter than the smallest distance of two arc lengths is omitted.
     if (to - from < same_arc_length) continue;
     RodSection own{section.bending_stiffness / unit, section.torsional_stiffness / unit,
                    section.weight_per_length * l * l * l / unit};
@@ -113,12 +116,12 @@ std::vector<RodSpan::Part> parts_between(const Problem& problem, double begin, d
   return parts;
 }
 
-/// Grips and clamps, and the frames that these hold.
+/// Adds grips and clamps, with the frames that the clamps hold.
 void add_grips(const Problem& problem, const std::vector<OrderedGrip>& grips, Directors directors,
                RodSpan& span) {
   const double l = problem.length;
   const Eigen::Vector3d origin = problem.grips.front().position;
-  std::optional<Grip> first;  // clamp
+  std::optional<Grip> first;  // first clamp
   for (const OrderedGrip& grip : grips) {
     const double at = own_arc_length(grip.grip->at, l) - span.begin;
     if (at < 0 || at > span.length) continue;
@@ -170,7 +173,8 @@ RodSpan make_span(const Problem& problem, const std::vector<OrderedGrip>& grips,
   return span;
 }
 
-/// Where nothing holds the frame of a rod on pins, its plane has the second axis for a normal.
+/// Returns the frame at the first clamp. Without a clamp, the second axis of a rod on pins is the
+/// normal of its plane.
 Eigen::Matrix3d material_frame(const Problem& problem) {
   if (first_clamp(problem)) return first_frame(problem);
   const Eigen::Vector3d d2 = natural_normal(problem).value_or(Eigen::Vector3d::UnitZ());

@@ -12,119 +12,124 @@
 
 namespace dlo::energy_model {
 
-/// Whether a rod keeps to its plane.
+/// Whether the motion of a rod is restricted to its plane.
 enum class Motion { in_plane, in_space };
 
-/// A piece of rod between two clamps, or between a clamp and a free end, or all of it. Lengths in
-/// l, forces in EI/l^2; s runs along the arc length from the piece's beginning, positions are
-/// relative to the problem's first grip.
+/// Part of a rod that is solved separately: between two clamps, between a clamp and a free end, or
+/// the whole rod. Lengths are in l, forces in EI/l^2. s is the arc length from the begin of the
+/// span, and positions are relative to the problem's first grip.
 struct RodSpan {
   struct Hold {
     double at = 0;  ///< s
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
-    std::size_t grip = 0;  ///< in Problem::grips
+    std::size_t grip = 0;  ///< index in Problem::grips
   };
   struct Load {
     double at = 0;  ///< s
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
     Eigen::Vector3d couple = Eigen::Vector3d::Zero();
-    bool follows = false;  ///< both are along d1, d2 and t there
+    /// Whether force and couple are given along d1, d2 and t at the load, and follow them.
+    bool follows = false;
   };
-  /// Of one section.
+  /// An interval with one section.
   struct Part {
     double begin = 0;  ///< s
     double end = 0;    ///< s
     RodSection section;
   };
-  /// Of a clamp that holds the rod's frame, after one that does so too.
+  /// Frame that a clamp holds if an earlier clamp holds a frame too.
   struct Frame {
-    Eigen::Vector3d d1;  ///< across the direction, unit, not rolled
-    HeldTurns turns;     ///< from the first clamp on
+    Eigen::Vector3d d1;  ///< unit vector across the direction, without roll
+    HeldTurns turns;     ///< turns from the first clamp to this one
   };
   struct Clamp {
     double at = 0;                                         ///< s
     Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit
     std::optional<Frame> frame;
   };
-  double begin = 0;  ///< arc length of s = 0
+  double begin = 0;  ///< arc length of s = 0, in l
   double length = 1;
-  std::vector<Part> parts;    ///< by growing s, from 0 to its length
-  std::vector<Hold> holds;    ///< by growing s, those of the clamps included
-  std::vector<Clamp> clamps;  ///< by growing s; of a rod that is cut, at its ends
-  std::vector<Load> loads;    ///< by growing s; none on clamps
-  NaturalStrain natural;      ///< none: straight
-  /// If grips and forces lie in one, and the rod bends in it: its normal is the second axis of a
-  /// rod that is not round().
+  std::vector<Part> parts;  ///< parts by growing s, from 0 to the span's length
+  std::vector<Hold> holds;  ///< grips by growing s, those of the clamps included
+  /// Clamps by growing s; at the ends of a rod that is cut at its clamps.
+  std::vector<Clamp> clamps;
+  std::vector<Load> loads;  ///< loads by growing s; none on clamps
+  NaturalStrain natural;    ///< natural strains; empty: straight
+  /// Plane of grips and forces, if they share one and the rod bends in it. Its normal is the second
+  /// axis of a rod that is not round().
   std::optional<Plane> plane;
-  /// That the first clamp holds; of a rod that is round() and not twisted() any one will do.
+  /// Frame that the first clamp holds. It is arbitrary about the tangent for a rod that is round()
+  /// and not twisted().
   Eigen::Matrix3d first_frame = Eigen::Matrix3d::Identity();
-  bool has_potential = true;  ///< of its loads
-  bool has_axes = false;      ///< a load follows d1 or d2, round or not
-  double first_roll = 0;      ///< of that frame, which contains it; zero of a rod that is cut [rad]
+  bool has_potential = true;  ///< whether all loads have a potential
+  bool has_axes = false;      ///< whether a load follows d1 or d2, for a round rod too
+  /// Roll that first_frame contains [rad]; zero for a rod that is cut at its clamps.
+  double first_roll = 0;
 
-  /// Null: no clamp there.
+  /// Returns the clamp at s; null if there is none.
   [[nodiscard]] const Clamp* clamp_at(double s) const;
-  /// Whether a clamp after the first one holds the rod's frame, so that torque twists it.
+  /// Whether a clamp after the first one holds the rod's frame, so that a torque twists the rod.
   [[nodiscard]] bool twisted() const;
   [[nodiscard]] bool has_couples() const;
-  /// Whether all sections are round and the rod is intrinsically straight: without twist a turn of
-  /// its sections about their tangents changes nothing.
+  /// Whether all sections are round and the rod is intrinsically straight: without twist its energy
+  /// does not depend on the rotation of sections about their tangents.
   [[nodiscard]] bool round() const;
 };
 
-/// Rotations at the clamps of a span, one each; none: the frame rotates freely around the
+/// Frame that each clamp of a span holds; empty: the frame rotates freely about the clamp's
 /// direction.
 using ClampFrames = std::vector<std::optional<Eigen::Matrix3d>>;
 
-/// The frames that are held if those after the first clamp are released.
+/// Returns the held frames if those after the first clamp are released.
 [[nodiscard]] ClampFrames released_frames(const RodSpan& span);
 
-/// The frames that the directors of its clamps say, with all of their roll.
+/// Returns the frames that the clamps prescribe by d1 and roll.
 [[nodiscard]] ClampFrames held_frames(const RodSpan& span);
 
-/// The span whose clamps after the first one hold no frame.
+/// Returns the span with all frames of clamps released, except that of the first clamp.
 [[nodiscard]] RodSpan without_frames(RodSpan span);
 
-/// Cuts a problem at its clamps, as one of a round rod that is intrinsically straight. Grips within
-/// 1e-9 l of an end of the rod are at that end.
+/// Cuts a problem at its clamps, as for a round rod that is intrinsically straight. Grips within
+/// 1e-9 l of an end of the rod are moved to that end.
 /// @throws std::invalid_argument if the problem is out of range, has obstacles, or grips are
-/// further apart than the rod between them
+/// farther apart than the rod between them
 [[nodiscard]] std::vector<RodSpan> cut_at_clamps(const Problem& problem);
 
-/// All of the rod as one span with its clamps, of any obstacles; loads on them are the gripper's.
+/// Returns the whole rod as one span with its clamps. Obstacles are ignored, and loads on clamps
+/// are carried by the gripper.
 /// @throws std::invalid_argument if the problem is out of range, or the frame of the first clamp of
-/// a rod with material directors is not known
+/// a rod with material directors is undetermined
 [[nodiscard]] RodSpan whole(const Problem& problem);
 
-/// The same of a rod with material directors, whose torque passes through clamps that do not hold
-/// the frame, with its natural strains and its plane.
+/// Returns the whole of a rod with material directors as one span, with its natural strains and its
+/// plane. Its torque passes through clamps that do not hold the frame.
 /// @throws std::invalid_argument as whole(), or if there are obstacles
 [[nodiscard]] RodSpan uncut(const Problem& problem);
 
-/// All of a rod, as uncut() or whole() says, for loads without a potential: the frame of the first
-/// clamp is that which such loads count from, round or not.
-/// @throws std::invalid_argument as uncut(), or if a load follows a rod along a d1 that nobody
-/// knows
+/// Returns the whole rod as uncut() or whole() does, for loads without a potential: the frame of
+/// the first clamp is that in which such loads are given, for a round rod too.
+/// @throws std::invalid_argument as uncut(), or if a load follows a rod along a d1 that is
+/// undetermined
 [[nodiscard]] RodSpan with_own_axes(const Problem& problem);
 
-/// Natural strains at places that are `count` equal lengths apart, and in the middle of each part:
-/// none of a straight rod.
+/// Returns natural strains at count + 1 equally spaced points and in the middle of each part; empty
+/// for a straight rod.
 [[nodiscard]] std::vector<Eigen::Vector3d> natural_probes(const RodSpan& span, int count);
 
-/// The section at s; of two that meet there the one after it.
+/// Returns the section at s; where two meet, the later one.
 [[nodiscard]] const RodSection& section_at(const RodSpan& span, double s);
 
-/// Intervals that resolve boundary layers under a force over b, and the bends of a span without
-/// any.
+/// Returns the length of intervals that resolves boundary layers under a force over b, and the
+/// bends of a span without layers.
 [[nodiscard]] double longest_interval(const RodSpan& span, double force);
 
-/// Least bending stiffness of a span, about either axis.
+/// Returns the least bending stiffness of a span, about either axis.
 [[nodiscard]] double least_bending_stiffness(const RodSpan& span);
 
-/// The span with its drag and what follows it, and all couples, times a factor.
+/// Returns the span with its drag, the loads that follow it and all couples multiplied by a factor.
 [[nodiscard]] RodSpan loaded_by(RodSpan span, double factor);
 
-/// Sum of the norms of weight and loads.
+/// Returns the sum of the norms of weight and loads.
 [[nodiscard]] double total_load(const RodSpan& span);
 
 }  // namespace dlo::energy_model

@@ -8,19 +8,20 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double flat_curvature = 1e-9;  // of curvature, in 1/l
+// Curvature in 1/l below which a surface is treated as flat.
+constexpr double flat_curvature = 1e-9;
 
-/// A number and its derivatives by r, a spin of R, m and n.
+/// A number and its derivatives by r, a spin of R, m and n, three each.
 using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 12, 1>>;
 template <class T>
 using Vector3 = Eigen::Matrix<T, 3, 1>;
 template <class T>
 using Matrix3 = Eigen::Matrix<T, 3, 3>;
 
-/// r and, in axes of the cross-section, what else is asked of it.
+/// Quantities of a cross-section near a surface, in the axes of the cross-section.
 template <class T>
 struct OnSurface {
-  Vector3<T> normal;  ///< N of lying_conditions(), not divided by its length
+  Vector3<T> normal;  ///< N of lying_conditions(), not normalised
   Matrix3<T> A;
   Vector3<T> moment;
   Vector3<T> force;
@@ -56,13 +57,13 @@ OnSurface<T> on_surface(const Surface& surface, const RodSection& section, const
   return on;
 }
 
-/// Derivatives of the tangent by the arc length in axes of the cross-section, and what of Y'''' the
-/// pressure decides.
+/// Derivatives of the tangent by the arc length in axes of the cross-section. The third derivative
+/// is linear in the pressure.
 template <class T>
 struct TangentRates {
   Vector3<T> first;
   Vector3<T> second;
-  Vector3<T> third;  ///< without pressure
+  Vector3<T> third;  ///< part without pressure
   Vector3<T> third_by_pressure;
 };
 
@@ -136,7 +137,8 @@ Surface surface_of(const obstacle::Body& body, const Eigen::Vector3d& near) {
   Surface surface;
   surface.normal = gap.gradient;
   surface.centre = near - gap.value * gap.gradient;
-  // Both curvatures of a ball, the one of a cylinder are one over the distance to the core.
+  // Both curvatures of a ball, and the only one of a cylinder, are one over the distance from the
+  // core.
   const double curvature =
       gap.hessian.norm() / (gap.hessian.trace() > 1.2 * gap.hessian.norm() ? std::sqrt(2.0) : 1.0);
   if (curvature > flat_curvature) {

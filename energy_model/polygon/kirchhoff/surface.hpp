@@ -8,29 +8,30 @@
 
 namespace dlo::energy_model {
 
-/// The feature of a body on which a rod lies: a plane, a cylinder about an axis or a ball,
-///     gap = |P (r - centre)| - radius,  P the projection across the axis (identity of a ball),
-/// of a plane normal . (r - centre). Lengths in l.
+/// Feature of a body on which a rod lies: a plane, a cylinder about an axis or a ball,
+///     gap = |P (r - centre)| - radius,  P the projection across the axis (identity for a ball),
+/// and for a plane gap = normal . (r - centre). Lengths are in l.
 struct Surface {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitY();        ///< of a plane
-  Eigen::Matrix3d across = Eigen::Matrix3d::Zero();         ///< P; zero of a plane
-  double radius = std::numeric_limits<double>::infinity();  ///< infinite of a plane
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitY();        ///< normal of a plane
+  Eigen::Matrix3d across = Eigen::Matrix3d::Zero();         ///< P; zero for a plane
+  double radius = std::numeric_limits<double>::infinity();  ///< infinite for a plane
 
   [[nodiscard]] double curvature() const { return 1 / radius; }
-  /// Of a point, with derivatives.
+  /// Returns the gap of a point, with derivatives.
   [[nodiscard]] obstacle::Gap gap(const Eigen::Vector3d& r) const;
 };
 
-/// That of a body next to a point outside of its core.
+/// Returns the surface of a body next to a point outside of its core.
 [[nodiscard]] Surface surface_of(const obstacle::Body& body, const Eigen::Vector3d& near);
 
 /// Derivatives by r, a spin of R, m and n, three columns each.
 using ByState = Eigen::Matrix<double, Eigen::Dynamic, 12>;
 
-/// What a cross-section fulfils that lies on a surface whatever the pressure is: for
-///     Y = (|P (r - centre)|^2 / radius - radius) / 2,  of a plane its gap,
-/// Y = Y' = Y'' = Y''' = 0, derivatives by the arc length of a rod that is intrinsically straight,
+/// Conditions for a cross-section that lies on a surface, which do not depend on the pressure. With
+///     Y = (|P (r - centre)|^2 / radius - radius) / 2,  for a plane Y = gap,
+/// they are Y = Y' = Y'' = Y''' = 0, derivatives by the arc length of an intrinsically straight
+/// rod,
 ///     Y' = N.t,  Y'' = N.t' + t.A t,  Y''' = N.t'' + 3 t.A t',  A = P / radius.
 struct LyingConditions {
   Eigen::Vector4d values;
@@ -39,8 +40,8 @@ struct LyingConditions {
 [[nodiscard]] LyingConditions lying_conditions(const Surface& surface, const RodSection& section,
                                                const RodState& state);
 
-/// Force per length p of a surface on a rod that lies on it, along its outward normal: Y'''' = 0 of
-/// lying_conditions(), which n' = -w - p N enters.
+/// Force per length p of a surface on a rod that lies on it, along its outward normal. It follows
+/// from Y'''' = 0 of lying_conditions(), which contains n' = -w - p N.
 struct Pressure {
   double value = 0;
   Eigen::Matrix<double, 1, 12> by_state;

@@ -15,7 +15,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Potential of a joint and its first two derivatives by the turning angle.
+/// Potential of a joint and its first two derivatives by the bending angle.
 struct AngleJoint {
   double energy, moment, stiffness;
 };
@@ -41,7 +41,7 @@ AngleJoint joint_by_angle(JointLaw law, double stiffness, double L, double alpha
             followed == alpha ? k * (1 + t * t) * (1 + 3 * t * t) : 0};
   }
   const double moment = 2 * k * std::tan(followed / 2);
-  // ln cos(alpha/2) without cancellation for small angles
+  // log1p computes ln cos(alpha/2) without cancellation for small angles.
   return {-4 * k * std::log1p(-2 * quarter * quarter) + moment * (alpha - followed), moment,
           followed == alpha ? k / (c * c) : 0};
 }
@@ -50,7 +50,8 @@ double joint_length(const ChainProblem& problem, Eigen::Index i) {
   return (problem.segment_lengths[i - 1] + problem.segment_lengths[i]) / 2;
 }
 
-/// The joint between segments i-1 and i as it is bent by alpha, its natural turn counted.
+/// Returns the joint between segments i-1 and i at the angle alpha, including its stress-free
+/// angle.
 AngleJoint joint_at(const ChainProblem& problem, Eigen::Index i, double alpha) {
   const double stiffness =
       problem.stiffnesses.size() > 0 ? problem.stiffnesses[i - 1] : problem.stiffness;
@@ -64,7 +65,7 @@ AngleJoint joint_at(const ChainProblem& problem, Eigen::Index i, double alpha) {
   return joint;
 }
 
-/// Force in each segment: the sum of the node forces beyond it.
+/// Returns the force in each segment: the sum of the node forces beyond it.
 Eigen::Matrix2Xd segment_forces(const ChainProblem& problem) {
   const Eigen::Index n = problem.segment_lengths.size();
   Eigen::Matrix2Xd forces(2, n);
@@ -101,8 +102,9 @@ void check(const ChainProblem& problem, const ChainOptions& options) {
           options.start_angles.norm(), "finite");
 }
 
-/// Joints as the law would bend them under the moments of the straight chain, kept below a turn
-/// that the whole chain can make.
+/// Returns initial angles: each joint is bent as its law would bend it under the moments of the
+/// straight chain. The sum of the bends is limited to the angle between the held segment and the
+/// total force.
 Eigen::VectorXd start_from_moments(const ChainProblem& problem) {
   const Eigen::Index n = problem.segment_lengths.size();
   const Eigen::Matrix2Xd forces = segment_forces(problem);
@@ -124,7 +126,7 @@ Eigen::VectorXd start_from_moments(const ChainProblem& problem) {
   const double limit = std::abs(std::atan2(total.dot(normal), total.dot(tangent)));
   const double turned = std::abs(turns.sum());
   if (turned > limit) turns *= limit / turned;
-  // An upright chain has no moment at all; a hair's turn lets it find its buckled shape.
+  // An upright chain has no moment at all; a small rotation lets it find its buckled shape.
   if (turned < 1e-6 && total.dot(tangent) < 0) turns[1] = 1e-3;
   if (problem.natural_turns.size() > 0) turns.tail(n - 1) += problem.natural_turns;
   Eigen::VectorXd angles(n);
@@ -141,7 +143,7 @@ struct Tridiagonal {
   Eigen::VectorXd diagonal;
   Eigen::VectorXd below;
 
-  /// L D L^T in place. @return whether every pivot is positive
+  /// Factorises L D L^T in place. @return whether every pivot is positive
   bool factor() {
     for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
       if (i > 0) {
@@ -178,8 +180,9 @@ Tridiagonal second_derivative(const ChainProblem& problem, const Eigen::Matrix2X
   return matrix;
 }
 
-/// Second derivative by the angles of the free segments out of the plane, without natural turns.
-/// With psi the angles and alpha the joint between segments j = i - 1 and i of the planar chain,
+/// Computes the second derivative by the angles of the free segments out of the plane, without
+/// natural turns. With the angles psi, and the angle alpha of the joint between segments j = i - 1
+/// and i of the planar chain,
 ///     cos(alpha') = cos(psi_j) cos(psi_i) cos(alpha) + sin(psi_j) sin(psi_i)
 /// so that with the moment M = P'(alpha) and the force F in the segment of length L
 ///     2 E = sum M / sin(alpha) (cos(alpha) (psi_j^2 + psi_i^2) - 2 psi_j psi_i) + sum L F.t
@@ -216,7 +219,7 @@ Eigen::Matrix2Xd chain_points(const ChainProblem& problem, const Eigen::VectorXd
   return points;
 }
 
-/// Of the joints' couples that turn them at rest [N m].
+/// Returns the largest moment of a straight joint that is bent in its stress-free shape [N m].
 double largest_natural_moment(const ChainProblem& problem) {
   double largest = 0;
   for (Eigen::Index i = 1; i <= problem.natural_turns.size(); ++i) {
@@ -225,7 +228,8 @@ double largest_natural_moment(const ChainProblem& problem) {
   return largest;
 }
 
-/// Damped Newton steps; each must lower the energy or the gradient.
+/// Takes damped Newton steps until the gradient is below the tolerance. No step may increase the
+/// energy beyond rounding or double the gradient.
 void newton_in_chain(const ChainProblem& problem, const ChainOptions& options,
                      const Deadline& deadline, double moment_scale, ChainResult& result) {
   const Eigen::Matrix2Xd forces = segment_forces(problem);
@@ -233,7 +237,7 @@ void newton_in_chain(const ChainProblem& problem, const ChainOptions& options,
   Eigen::VectorXd gradient(result.angles.size());
   double energy = chain_energy(problem, result.angles, gradient);
   ++result.evaluations;
-  // Angles near pi carry a rounding error that the stiff joints turn into moments.
+  // Angles near pi have a rounding error that stiff joints turn into moments.
   const double rounding_moment =
       4 * std::numeric_limits<double>::epsilon() * std::numbers::pi *
       std::sqrt(static_cast<double>(free)) *
@@ -325,8 +329,9 @@ ChainResult solve_chain(const ChainProblem& problem, const ChainOptions& options
       options.start_angles.size() > 0 ? options.start_angles : start_from_moments(problem);
   result.angles[0] = problem.held_angle;
 
-  // Over the joint angles the Hessian of a Hookean chain is a multiple of the identity plus a
-  // compact part, whatever N is; over the segment angles it would be a Laplacian.
+  // With the joint angles as unknowns, the Hessian of a Hookean chain is a multiple of the identity
+  // plus a compact part, for any number of segments. With the segment angles it would be a discrete
+  // Laplacian.
   Eigen::VectorXd turns = result.angles.tail(n - 1) - result.angles.head(n - 1);
   Eigen::VectorXd gradient(n);
   const Objective objective = [&](const Eigen::Ref<const Eigen::VectorXd>& x,
@@ -346,7 +351,8 @@ ChainResult solve_chain(const ChainProblem& problem, const ChainOptions& options
   };
   const double moment_scale =
       problem.node_forces.colwise().norm().sum() * problem.segment_lengths.sum() +
-      largest_natural_moment(problem) + 1e-300;  // a chain without forces is straight at once
+      // Not zero without forces: the straight chain then converges at once.
+      largest_natural_moment(problem) + 1e-300;
   const MinimiseResult first = minimise_lbfgs(objective, turns,
                                               {.gradient_tolerance = 1e-6 * moment_scale,
                                                .max_evaluations = options.max_evaluations,

@@ -2,7 +2,8 @@
 
 namespace dlo::energy_model {
 
-/// Beyond this angle the moment of a `hooke` joint stays constant, as the force model's does [rad].
+/// Angle beyond which the moment of a `hooke` or `binormal` joint is constant, as in the force
+/// model [rad].
 constexpr double fold_angle = 3.0;
 
 }  // namespace dlo::energy_model

@@ -20,29 +20,30 @@ namespace {
 using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
-/// Stretch that the softest stage may have [-].
+/// Strain that the first, softest stage allows under the acting forces [-].
 constexpr double soft_strain = 0.01;
-/// How near a stage has to come before the next stiffer one begins, in polygon lengths.
+/// RMS of Newton's step at which a stage ends and the next stiffer one begins, in polygon lengths.
 constexpr double stage_tolerance = 1e-6;
-/// Newton's step below which no further progress means rounding, in polygon lengths.
+/// RMS of Newton's step, in polygon lengths, below which missing progress is attributed to
+/// rounding.
 constexpr double rounding_step = 1e-7;
-/// No point moves further in one step, in polygon lengths.
+/// Largest displacement of a coordinate in one step, in polygon lengths.
 constexpr double largest_step = 0.2;
 constexpr int most_escapes = 10;
-/// Step, in polygon lengths, from which on a polygon that is not near a minimum may be near a
-/// saddle.
+/// Initial step, in polygon lengths, below which slow steps with a modified Hessian are treated as
+/// an approach to a saddle.
 constexpr double first_beside_saddle = 1e-3;
 constexpr int most_slow = 3;
-/// Largest force that may be left on a free point, divided by the forces that act [-]. The forces
-/// on a hundred points then balance within allowed_imbalance. What rounding of the positions makes
-/// of the stiffest segment may be left as well (prove()). A polygon that is pressed between two
-/// constraints does not come below it.
+/// Largest residual force on a free point, divided by the forces that act [-]. The forces on a
+/// hundred points then balance within allowed_imbalance. The rounding error of positions times the
+/// largest stiffness is allowed as well (prove()). A polygon that is compressed between two
+/// constraints does not reach a smaller residual.
 constexpr double force_left = 1e-10;
 
-/// Descends on one problem; holds what all steps need.
+/// Newton's method for one problem, with the data that all steps need.
 class PolygonDescent {
  public:
-  /// @param problem  its twists are counted on, with the points of the result
+  /// @param problem  the angles of its twists are updated with the points of the result
   PolygonDescent(PolygonProblem& problem, const PolygonOptions& options, const Deadline& deadline,
                  PolygonResult& result)
       : problem_(problem),
@@ -60,7 +61,7 @@ class PolygonDescent {
     }
   }
 
-  /// Newton steps until they are below `tolerance` polygon lengths.
+  /// Takes Newton steps until they are below `tolerance` polygon lengths.
   SolveStatus run(double tolerance) {
     tolerance_ = tolerance;
     way_ = {};
@@ -75,10 +76,11 @@ class PolygonDescent {
     return SolveStatus::evaluation_limit;
   }
 
-  /// Evaluates the returned points anew, whatever run() has left, and takes back a success that
-  /// they do not prove: the Hessian there is positive definite, Newton's step from there is
-  /// rounding, and no force that is left on a free point counts among those that act. (A step below
-  /// the tolerance may leave one, since segments are stiff: then it is taken.)
+  /// Evaluates the returned points anew, and revokes a success that they do not prove. Three
+  /// conditions are required: the Hessian is positive definite, Newton's step is of the size of
+  /// rounding, and the residual force on each free point is negligible against the forces that act.
+  /// (A step below the tolerance may leave a larger residual, because segments are stiff. Up to
+  /// three further steps are then taken.)
   void prove() {
     constexpr int most_steps = 3;
     for (int taken = 0;; ++taken) {
@@ -109,17 +111,17 @@ class PolygonDescent {
   static constexpr double first_damping = 1e-12;
   static constexpr double most_damping = 1e3;
 
-  /// What a run() has come through.
+  /// State of the iteration of one run().
   struct Way {
     double damping = 0;
     double last_step = std::numeric_limits<double>::infinity();
     double last_stiffening = 0;
     double beside_saddle = first_beside_saddle;
-    int slows = 0;  // steps in a row without all second derivatives that became shorter
+    int slows = 0;  // consecutive steps with an incomplete Hessian that became shorter
     int escapes = 0;
   };
 
-  /// One step of run(). @return how it ends; nothing: it goes on
+  /// Takes one step of run(). @return the final status; std::nullopt if the iteration continues
   [[nodiscard]] std::optional<SolveStatus> advance() {
     const bool exact = which_ == HessianTerms::all;
     if (!factor(way_.damping)) {
@@ -138,8 +140,8 @@ class PolygonDescent {
       way_.slows = 0;
     } else if (const bool at_rest = force.dot(step) <= rounding_energy();
                at_rest || (size < way_.beside_saddle && way_.slows >= most_slow)) {
-      // At rest, but only the terms omitted, or damping, made the Hessian positive; or on the
-      // slow way there.
+      // The polygon is in equilibrium, or approaches it slowly, but only omitted terms or damping
+      // made the Hessian positive.
       way_.beside_saddle = size / 4;
       way_.slows = 0;
       return leave(at_rest);
@@ -148,7 +150,8 @@ class PolygonDescent {
     return take(step, size);
   }
 
-  /// Past a saddle, if it is one.
+  /// Leaves a saddle along the lowest mode. If the exact Hessian is positive, the iteration only
+  /// continues without damping.
   [[nodiscard]] std::optional<SolveStatus> leave(bool at_rest) {
     assemble(HessianTerms::all);
     if (at_rest && factor(0)) {
@@ -165,7 +168,7 @@ class PolygonDescent {
     return std::nullopt;
   }
 
-  /// Goes a step if that lowers the energy; else the next one is shorter.
+  /// Takes a step if it does not increase the energy; otherwise makes the next step shorter.
   [[nodiscard]] std::optional<SolveStatus> take(const Eigen::VectorXd& step, double size) {
     const bool exact = which_ == HessianTerms::all;
     const Eigen::Matrix3Xd trial = moved(step);
@@ -194,7 +197,8 @@ class PolygonDescent {
     return std::nullopt;
   }
 
-  /// Energy, gradient and residual of the points. @return the largest force that acts on them [N]
+  /// Evaluates energy, gradient and residual of the points. @return the largest force that acts on
+  /// them [N]
   double evaluate() {
     result_.energy = energy_ = polygon_energy(problem_, result_.points, gradient_);
     ++result_.evaluations;
@@ -256,7 +260,8 @@ class PolygonDescent {
     largest_ = std::max(largest_, columns_.colwise().squaredNorm().maxCoeff());
   }
 
-  /// @return whether the Hessian plus damping is positive definite to rounding
+  /// Factorises the Hessian. @return whether the Hessian plus damping is positive definite, to
+  /// rounding
   bool factor(double damping) {
     return solver_.compute(hessian_, columns_, (damping + 64 * epsilon) * largest_);
   }
@@ -279,13 +284,14 @@ class PolygonDescent {
     return points;
   }
 
-  /// Leaves a saddle along its lowest curvature, found by inverse iteration with the damped factor.
+  /// Leaves a saddle along the direction of its lowest curvature, found by inverse iteration with
+  /// the damped factor.
   void escape() {
     constexpr int iterations = 20;
     constexpr double size = 1e-3;
     Eigen::VectorXd direction(axes_ * free_);
     for (Eigen::Index i = 0; i < direction.size(); ++i) {
-      direction[i] = 1 + std::sin(static_cast<double>(i));  // anything without a symmetry
+      direction[i] = 1 + std::sin(static_cast<double>(i));  // a vector without symmetry
     }
     for (int i = 0; i < iterations; ++i) direction = solver_.solve(direction).normalized();
     direction *= size * length_ / direction.cwiseAbs().maxCoeff();
@@ -304,27 +310,28 @@ class PolygonDescent {
   const Deadline& deadline_;
   PolygonResult& result_;
   double length_;
-  Eigen::Index axes_;  // in which free points move: of a polygon with natural turns x and y
+  // Coordinates in which free points move: x and y with natural turns, else all three.
+  Eigen::Index axes_;
   double tolerance_ = 0;
   Way way_;
-  std::vector<Eigen::Index> index_;  // of each point among the free ones, -1 for held points
+  std::vector<Eigen::Index> index_;  // index of each point among the free ones; -1 for held points
   Eigen::Index free_ = 0;
   double energy_ = 0;
   double largest_ = 0;
   Eigen::Matrix3Xd gradient_;
   Eigen::Matrix3Xd trial_gradient_;
-  HessianTerms which_ = HessianTerms::all;  // are in hessian_
+  HessianTerms which_ = HessianTerms::all;  // terms in hessian_
   Eigen::MatrixXd hessian_;                 // of the free points, banded: see PolygonFactor
-  Eigen::MatrixXd columns_;                 // of the same
+  Eigen::MatrixXd columns_;                 // twist_columns() of the free points
   PolygonFactor solver_;
 };
 
-/// The stretch stiffness of the first stage.
+/// Returns the stretch stiffness of the first stage.
 double first_stretch_stiffness(const PolygonProblem& problem, const Eigen::Matrix3Xd& start) {
   PolygonProblem bending = problem;
   bending.node_forces.setZero();
   bending.obstacles.clear();
-  // No stretch: what is left is the bending of the start.
+  // Without stretch the energy is that of the bent joints and twists.
   bending.stretch_stiffness = 0;
   Eigen::Matrix3Xd unused(3, start.cols());
   const double force = polygon_energy(bending, start, unused) / problem.rest_lengths.sum() +
@@ -361,7 +368,7 @@ PolygonResult solve_polygon(const PolygonProblem& problem, const Points& start,
     result.message = to_string(result.status);
     const bool go_on = succeeded(result.status) || result.status == SolveStatus::saddle;
     if (!last && go_on) continue;
-    // A softer stage may have failed; what is returned belongs to the problem that was asked.
+    // A softer stage may have failed; the result has to be evaluated for the problem itself.
     stage.stretch_stiffness = problem.stretch_stiffness;
     stage.obstacles = problem.obstacles;
     PolygonDescent asked(stage, options, deadline, result);

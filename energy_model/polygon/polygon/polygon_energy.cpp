@@ -12,15 +12,15 @@ namespace {
 
 using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
 
-/// Potential of a joint and its first two derivatives by h = sin^2(alpha/2) = |u - v|^2 / 4, u and
-/// v the segments' directions. Unlike alpha, h is smooth where the segments are in line.
+/// Potential of a joint and its first two derivatives by h = sin^2(alpha/2) = |u - v|^2 / 4, with
+/// the directions u and v of the segments. Unlike alpha, h is smooth for aligned segments.
 struct Joint {
   double energy, first, second;
 };
 
-/// k alpha^2 / 2. Its slope is 2 k f(h) with f = asin(sqrt h) / sqrt(h (1 - h)), the series
-/// 1 + 2/3 h + 8/15 h^2 + .., each coefficient 2n / (2n + 1) of the one before, and
-/// 2 h (1 - h) f' = 1 - (1 - 2 h) f.
+/// Computes k alpha^2 / 2. Its slope is 2 k f(h) with f = asin(sqrt h) / sqrt(h (1 - h)), the
+/// series 1 + 2/3 h + 8/15 h^2 + .., in which each coefficient is 2n / (2n + 1) of the previous
+/// one, and 2 h (1 - h) f' = 1 - (1 - 2 h) f.
 Joint linear_joint(double k, double h) {
   constexpr double small = 0.02;  // below it 1 - (1 - 2 h) f loses digits, and 10 terms are exact
   constexpr int terms = 10;
@@ -32,7 +32,7 @@ Joint linear_joint(double k, double h) {
   }
   double f = 1;
   double slope = 0;
-  double term = 1;  // c_n h^(n - 1), but for the first
+  double term = 1;  // c_n h^(n - 1) within the loop
   for (int n = 1; n <= terms; ++n) {
     term *= 2.0 * n / (2 * n + 1) * (n > 1 ? h : 1.0);
     f += term * h;
@@ -65,14 +65,14 @@ Joint joint(JointLaw law, double stiffness, double L, double h) {
           -moment * (1 - 2 * h) / (2 * root * root * root)};
 }
 
-/// A joint that bends.
+/// The two segments at a bent joint, with derivatives of its angle.
 struct Corner : SegmentPair {
   double h;
-  Eigen::Vector3d by_a, by_b;  // derivative of cos alpha = u.v by either segment
+  Eigen::Vector3d by_a, by_b;  // derivatives of cos alpha = u.v by the two segments
 
   Corner(const Points& points, Eigen::Index i) : SegmentPair(points, i) {
     const Eigen::Vector3d turn = v - u;
-    // Rounding may carry a full fold beyond one.
+    // Rounding may yield a value above that of a full fold.
     h = std::min(turn.squaredNorm() / 4, 1.0);
     by_a = (turn - turn.dot(u) * u) / a;
     by_b = -(turn - turn.dot(v) * v) / b;
@@ -87,8 +87,8 @@ double joint_stiffness(const PolygonProblem& problem, Eigen::Index i) {
   return problem.stiffnesses.size() > 0 ? problem.stiffnesses[i - 1] : problem.stiffness;
 }
 
-/// What a natural turn alpha_0 adds to the potential P of a joint: -P(alpha_0) - C (alpha -
-/// alpha_0), C = P'(alpha_0), alpha from a to b in the plane z = 0.
+/// Contribution to the potential P of a joint by its stress-free angle alpha_0: -P(alpha_0) - C
+/// (alpha - alpha_0), C = P'(alpha_0), alpha from a to b in the plane z = 0.
 struct NaturalTurn {
   double couple = 0;    // C [N m]
   double constant = 0;  // P(alpha_0) - C alpha_0 [J]
@@ -109,7 +109,7 @@ NaturalTurn natural_turn(const PolygonProblem& problem, Eigen::Index i) {
   return result;
 }
 
-/// Second derivative by d = length u of the angle of d in the plane z = 0.
+/// Returns the second derivative of the angle of d = length u in the plane z = 0 by d.
 Eigen::Matrix3d second_of_angle(const Eigen::Vector3d& u, double length) {
   const double xy = 2 * u.x() * u.y();
   const double difference = u.y() * u.y() - u.x() * u.x();
@@ -120,16 +120,16 @@ Eigen::Matrix3d second_of_angle(const Eigen::Vector3d& u, double length) {
 
 Eigen::Vector3d left_of(const Eigen::Vector3d& u) { return {-u.y(), u.x(), 0}; }
 
-/// Whether a point is held, for each; a held one does not feel obstacles.
+/// Returns whether each point is held; obstacles do not act on a held point.
 std::vector<bool> held_points(const PolygonProblem& problem) {
   std::vector<bool> held(static_cast<std::size_t>(problem.node_forces.cols()), false);
   for (const HeldPoint& point : problem.held) held[static_cast<std::size_t>(point.point)] = true;
   return held;
 }
 
-/// Calls action(i, share, point) for each point of the polygon that an obstacle may push, which is
-/// the share of the way from point i to the next.
-/// @param held  of held_points()
+/// Calls action(i, share, point) for each sample point of the polygon on which an obstacle may act.
+/// `share` is its position between point i and the next, from 0 to 1.
+/// @param held  result of held_points()
 template <typename Action>
 void for_each_look(const std::vector<bool>& held, const PointObstacle& obstacle,
                    const Points& points, const Action& action) {
@@ -250,11 +250,11 @@ void polygon_hessian(const PolygonProblem& problem, const Points& points, Hessia
     const Corner c(points, i);
     const Joint j = joint(problem.law, joint_stiffness(problem, i), joint_length(problem, i), c.h);
     const double curved = (all ? j.second : std::max(j.second, 0.0)) / 4;
-    const double slope = -j.first / 2;  // by cos alpha
+    const double slope = -j.first / 2;  // derivative of the potential by cos alpha
     const Eigen::Matrix3d beside_u = one - c.u * c.u.transpose();
     const Eigen::Matrix3d beside_v = one - c.v * c.v.transpose();
-    // h is |v - u|^2 / 4: of its second derivative what u and v do to first order is never
-    // negative.
+    // h is |v - u|^2 / 4. The part of its second derivative from first-order changes of u and v is
+    // never negative.
     Eigen::Matrix3d of_u = beside_u / c.a;
     Eigen::Matrix3d of_v = beside_v / c.b;
     if (all) {

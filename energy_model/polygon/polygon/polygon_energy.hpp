@@ -7,25 +7,27 @@
 
 namespace dlo::energy_model {
 
-/// Takes a 3 x 3 block of a Hessian that belongs to the points `row` and `column`; every block is
-/// given, those below the diagonal too, some more than once to be added up.
+/// Function that receives a 3 x 3 block of a Hessian that belongs to the points `row` and `column`.
+/// Blocks on both sides of the diagonal are passed. Some are passed more than once and have to be
+/// added up.
 using AddBlock =
     std::function<void(Eigen::Index row, Eigen::Index column, const Eigen::Matrix3d& block)>;
 
-/// Adds the Hessian H of a function of the differences d_p = P_(p+1) - P_p, d_q likewise.
+/// Adds the Hessian H by the differences d_p = P_(p+1) - P_p and d_q to the blocks of points.
 void add_difference_block(Eigen::Index p, Eigen::Index q, const Eigen::Matrix3d& H,
                           const AddBlock& add);
 
-/// Which terms of the Hessian are wanted.
+/// Terms of the Hessian to compute.
 enum class HessianTerms {
   all,
-  /// Without what makes them negative: forces of compressed segments, couples of joints and pushes
-  /// of round obstacles turn as the points move aside. Far from rest these terms are the largest
-  /// and say least (as projected Newton methods for cloth have it: Teran et al., 2005).
+  /// Without the terms that make the Hessian negative: compressed segments, moments of joints and
+  /// forces of round obstacles change their direction as the points move sideways. Far from
+  /// equilibrium these terms are the largest and the least informative (as in projected Newton
+  /// methods for cloth: Teran et al., 2005).
   stiffening,
 };
 
-/// Hessian of polygon_energy, but for twist_columns.
+/// Computes the Hessian of polygon_energy(), without the part of twist_columns().
 void polygon_hessian(const PolygonProblem& problem,
                      const Eigen::Ref<const Eigen::Matrix3Xd>& points, HessianTerms which,
                      const AddBlock& add);

@@ -10,7 +10,8 @@
 namespace dlo::energy_model {
 namespace {
 
-/// GSL keeps a column of a banded matrix in a row, and rows one after the other.
+/// Returns a GSL view of a banded matrix. GSL stores a column of the band in a row, and rows
+/// consecutively.
 gsl_matrix_view view_of(Eigen::MatrixXd& band) {
   return gsl_matrix_view_array(band.data(), static_cast<std::size_t>(band.cols()),
                                static_cast<std::size_t>(band.rows()));

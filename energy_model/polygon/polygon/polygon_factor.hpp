@@ -5,20 +5,21 @@
 
 namespace dlo::energy_model {
 
-/// H = A + B B^T + shift, A symmetric and banded, B of few columns, factored in O(rows): L D L^T of
-/// A + shift by GSL, and S = 1 + B^T (A + shift)^-1 B. The border
+/// Factors of H = A + B B^T + shift, with A symmetric and banded and B of few columns, computed in
+/// O(rows): L D L^T of A + shift by GSL, and S = 1 + B^T (A + shift)^-1 B. The bordered matrix
 ///     [ A + shift  B ]
 ///     [ B^T       -1 ]
-/// has a negative eigenvalue for each column of B besides those of H, and besides those of A +
-/// shift those of -S (Haynsworth).
+/// has the negative eigenvalues of H and one more for each column of B. It also has the negative
+/// eigenvalues of A + shift and those of -S (Haynsworth).
 class PolygonFactor {
  public:
+  /// Factorises H.
   /// @param band  lower half of A, A(j + d, j) in row d and column j; at most as many rows as
   ///              columns
-  /// @param B     rows x 0 where there is none
+  /// @param B     rows x 0 if there is none
   /// @return whether H is positive definite
   bool compute(const Eigen::MatrixXd& band, const Eigen::MatrixXd& B, double shift);
-  /// H^-1 of a vector.
+  /// Returns H^-1 times a vector.
   [[nodiscard]] Eigen::VectorXd solve(Eigen::VectorXd right);
 
  private:

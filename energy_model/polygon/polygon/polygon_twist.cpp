@@ -17,8 +17,8 @@ Eigen::Vector3d unit_segment(const Points& points, Eigen::Index k) {
   return (points.col(k + 1) - points.col(k)).normalized();
 }
 
-/// A joint with the vector q = tan(alpha/2) b, b the joint's binormal, along which
-/// either direction has to be moved for the frame behind it to turn.
+/// A joint with the vector q = tan(alpha/2) b, b the joint's binormal. A displacement of either
+/// direction along q rotates the transported frame behind the joint.
 struct TurningCorner : SegmentPair {
   double sum;  // 1 + u.v
   Eigen::Vector3d q;
@@ -37,8 +37,9 @@ void for_each_corner(const PolygonTwist& twist, const Points& points, const Acti
   }
 }
 
-/// A unit tangent that moves by dt sweeps an area q.dt on the sphere with the arcs to its
-/// neighbours, and a frame brought along those is turned back by as much (Gauss and Bonnet).
+/// Adds the gradient of the twist angle times a factor. A unit tangent that moves by dt sweeps an
+/// area q.dt on the sphere with the arcs to its neighbours, and a frame transported along those
+/// arcs rotates back by that angle (Gauss and Bonnet).
 void add_angle_gradient(const PolygonTwist& twist, double factor, const Points& points,
                         Eigen::Ref<Eigen::Matrix3Xd> gradient) {
   for_each_corner(twist, points, [&](Eigen::Index i, const TurningCorner& corner) {
@@ -111,8 +112,8 @@ void add_twist_hessian(const PolygonProblem& problem, const Points& points, cons
     for_each_corner(twist, points, [&](Eigen::Index i, const TurningCorner& corner) {
       const auto& [u, v, a, b] = static_cast<const SegmentPair&>(corner);
       const Eigen::Vector3d& q = corner.q;
-      // Derivatives of q / a and q / b by the segments. What of the diagonal blocks is skew cancels
-      // between the corners of a segment, since the angle is a function of the points.
+      // Derivatives of q / a and q / b by the segments. The skew part of the diagonal blocks
+      // cancels between the corners of a segment, because the angle is a function of the points.
       const Eigen::Vector3d t = (u + v) / corner.sum;
       const Eigen::Matrix3d aa = -moment / (2 * a * a) * q * (t + u).transpose();
       const Eigen::Matrix3d bb = -moment / (2 * b * b) * q * (t + v).transpose();

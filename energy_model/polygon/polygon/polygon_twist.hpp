@@ -7,21 +7,22 @@
 
 namespace dlo::energy_model {
 
-/// What the twists of a polygon have to be. @throws std::invalid_argument naming the first number
-/// that is out of range
+/// Checks the twists of a polygon.
+/// @throws std::invalid_argument naming the first number out of range
 void require_twists(const PolygonProblem& problem);
 
-/// Energy of all twists [J]; their gradient [N] is added.
+/// Returns the energy of all twists [J] and adds their gradient [N] to `gradient`.
 [[nodiscard]] double add_twist_energy(const PolygonProblem& problem,
                                       const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                                       Eigen::Ref<Eigen::Matrix3Xd> gradient);
 
-/// Of the Hessian the part M d2 theta, of neighbours; the other is B B^T, with a column
-/// d theta / sqrt(C) of B for each twist (twist_columns).
+/// Adds the part M d2 theta of the Hessian, which couples neighbours. The other part is B B^T, with
+/// a column d theta / sqrt(C) of B for each twist (twist_columns()).
 void add_twist_hessian(const PolygonProblem& problem,
                        const Eigen::Ref<const Eigen::Matrix3Xd>& points, const AddBlock& add);
 
-/// 3 (n+1) x the number of twists, coordinates of a point side by side [sqrt(N/m)].
+/// Returns the matrix B of add_twist_hessian(): 3 (n+1) rows, the coordinates of each point
+/// consecutively, and a column for each twist [sqrt(N/m)].
 [[nodiscard]] Eigen::MatrixXd twist_columns(const PolygonProblem& problem,
                                             const Eigen::Ref<const Eigen::Matrix3Xd>& points);
 

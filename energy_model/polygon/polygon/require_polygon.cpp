@@ -13,7 +13,7 @@ namespace {
 
 using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
 
-/// Of polygons whose joints are bent at rest.
+/// Checks that vectors have no z component, as polygons whose joints are bent at rest require.
 void require_in_plane(const char* problem, const char* what, const Points& vectors) {
   const double across = vectors.row(2).cwiseAbs().maxCoeff();
   require(across == 0, problem, (std::string("z of ") + what).c_str(), across,

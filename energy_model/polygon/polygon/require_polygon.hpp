@@ -7,13 +7,13 @@
 
 namespace dlo::energy_model {
 
-/// What solve_polygon takes. @throws std::invalid_argument naming the first number that is out of
-/// range
+/// Checks the arguments of solve_polygon().
+/// @throws std::invalid_argument naming the first number out of range
 void require_polygon(const PolygonProblem& problem, const Eigen::Ref<const Eigen::Matrix3Xd>& start,
                      const PolygonOptions& options);
 
-/// What the joints of chains and polygons of n segments may be.
-/// @throws std::invalid_argument naming `problem` and the first number that is out of range
+/// Checks stiffnesses and natural turns of the joints of chains and polygons with n segments.
+/// @throws std::invalid_argument naming `problem` and the first number out of range
 void require_unlike_joints(const char* problem, JointLaw law, const Eigen::VectorXd& stiffnesses,
                            const Eigen::VectorXd& natural_turns, Eigen::Index n);
 

@@ -13,16 +13,17 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Of the largest twist in one step [rad].
+/// Size of the first and of the longest continuation step: change of the largest twist angle [rad].
 constexpr double first_turning = 0.25;
 constexpr double longest_turning = 1;
-/// A step that moves a point by more than this share of the length is made shorter, down to
-/// `turning_at_jump`: what moves as far then has jumped to another shape.
+/// Displacement of a point, divided by the length, above which a step is repeated with a smaller
+/// size. A step of at most `turning_at_jump` is accepted: a shape that still moves as far has
+/// jumped to another branch.
 constexpr double longest_movement = 0.05;
 constexpr double turning_at_jump = 0.02;
 constexpr double least_turning = 1e-4;
 
-/// Problems on the way from no twist to all of it.
+/// Intermediate problems between no twist and the prescribed twist.
 class TwistedWay {
  public:
   TwistedWay(PolygonProblem problem, const Eigen::Matrix3Xd& start) : last_(std::move(problem)) {
@@ -33,14 +34,16 @@ class TwistedWay {
     }
   }
 
-  /// The largest twist of the start, all of it on [rad].
+  /// Returns the largest twist angle of the start under the full twist [rad].
   [[nodiscard]] double length() const { return longest_; }
 
-  /// @param to    part of the way, 0 .. 1
-  /// @param now   twists that a shape has at the part `from`
+  /// Returns the problem at an intermediate twist.
+  /// @param to    share of the full twist, 0 .. 1
+  /// @param now   twist angles of a shape at the share `from` [rad]
   [[nodiscard]] PolygonProblem at(double to, const std::vector<double>& now, double from) const {
     PolygonProblem problem = last_;
-    double turned = 0;  // of the first frame of a twist, which may be the last of another
+    // Rotation of the first frame of a twist, which may be the last frame of another.
+    double turned = 0;
     for (std::size_t k = 0; k < problem.twists.size(); ++k) {
       PolygonTwist& twist = problem.twists[k];
       const bool follows = k > 0 && problem.twists[k - 1].last_segment == twist.first_segment;
@@ -54,7 +57,7 @@ class TwistedWay {
   }
 
  private:
-  /// About a held segment.
+  /// Returns the rotation about a held segment by minus an angle.
   [[nodiscard]] Eigen::AngleAxisd turned_back(Eigen::Index segment, double angle) const {
     Eigen::Vector3d along = Eigen::Vector3d::Zero();
     for (const HeldPoint& held : last_.held) {
@@ -84,7 +87,7 @@ PolygonResult twist_polygon(const PolygonProblem& problem,
   PolygonResult now;
   now.points = start;
   now.twists.assign(problem.twists.size(), 0);
-  Eigen::Matrix3Xd slope;  // of the points by part; empty after a jump
+  Eigen::Matrix3Xd slope;  // derivative of the points by the share of the twist; empty after a jump
   double part = 0;
   double turning = first_turning;
   while (part < 1) {
