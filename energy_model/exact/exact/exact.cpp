@@ -27,16 +27,18 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr std::size_t most_results = 64;  // of the spans' equilibria
+constexpr std::size_t most_results = 64;  // largest number of combinations of the spans' equilibria
 
-/// What a search has found: equilibria, stable ones first, by energy; and what it has not done.
+/// Result of a search: equilibria, stable ones first, by energy; and the omitted parts of the
+/// search.
 struct Found {
   std::vector<Equilibrium> equilibria;
   bool out_of_time = false;
-  std::string not_searched;  // empty: nothing
+  std::string not_searched;  // description of an omitted part; empty: none
 };
 
-/// The lowest combinations of what is found for the spans. A rod with material directors is one.
+/// Returns the lowest combinations of the equilibria that are found for the spans. A rod with
+/// material directors is one span.
 Found solve_spans(const Problem& problem, const ExactOptions& options, const Deadline& deadline) {
   SolvedRod rod;
   rod.spans = has_material_directors(problem) ? std::vector<RodSpan>{uncut(problem)}
@@ -85,7 +87,8 @@ Found scan_tip(const Problem& problem, const ReducedCantilever& cantilever,
   return result;
 }
 
-/// The spans of a round rod that is intrinsically straight are twisted each on its own.
+/// Refuses clamps that transmit a torque, because the spans of a round, intrinsically straight rod
+/// are twisted independently.
 void refuse_passed_torque(const Problem& problem) {
   const std::vector<OrderedGrip> grips = ordered_grips(problem);
   const auto holds = [](const OrderedGrip& g) { return g.grip->frame.has_value(); };
@@ -104,7 +107,7 @@ Found search(const Problem& problem, const ExactOptions& options, const Deadline
   const bool same_everywhere =
       std::all_of(problem.line_loads.begin(), problem.line_loads.end(),
                   [&](const LineLoad& load) { return acts_everywhere(load, problem); });
-  // The scan knows of one section.
+  // The scan supports a single section.
   const std::optional<ReducedCantilever> cantilever =
       problem.sections.empty() && same_everywhere && !problem.axial_stiffness
           ? reduce_cantilever(problem)
@@ -143,8 +146,8 @@ Found search_touching(const Problem& problem, const ExactOptions& options,
   return {{*std::move(found)}, false, ""};
 }
 
-/// Never empty. Out of time, what is found is marked: it is an equilibrium, but others were not
-/// looked for to the end.
+/// Solves the problem. The result is never empty. After the time limit the equilibria found so far
+/// have the status `time_limit`: they are equilibria, but the search for others is incomplete.
 std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& options) {
   const Deadline deadline(options.time_limit);
   const auto begin = std::chrono::steady_clock::now();
@@ -185,7 +188,8 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
 std::vector<Equilibrium> all_exact(const Problem& problem, const ExactOptions& options) {
   std::vector<Equilibrium> equilibria = solve(problem, options);
   std::erase_if(equilibria, [](const Equilibrium& equilibrium) {
-    // What is found before the time is up is an equilibrium, of a list that may lack others.
+    // A shape that was found before the time limit is an equilibrium; only the list may be
+    // incomplete.
     const bool cut_short =
         equilibrium.status == SolveStatus::time_limit && static_cast<bool>(equilibrium.sample);
     return !succeeded(equilibrium.status) && equilibrium.status != SolveStatus::saddle &&

@@ -14,15 +14,19 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double first_load_step = 0.125;   // of the loads
-constexpr double least_load_step = 1e-4;    // below, they do not grow
-constexpr double longest_load_step = 0.5;   // of the loads: two at least
-constexpr double largest_correction = 0.5;  // of a tangent from what is predicted [rad]
-constexpr double small_correction = 0.1;    // after which the next step is twice as long [rad]
-constexpr double path_tolerance = 1e-10;    // of the integrator before all loads are there
-constexpr int path_iterations = 12;         // of Newton's method, which starts near
+constexpr double first_load_step = 0.125;  // share of the loads
+// Share of the loads; a continuation with shorter steps fails.
+constexpr double least_load_step = 1e-4;
+constexpr double longest_load_step = 0.5;  // share of the loads; at least two steps are taken
+// Largest rotation of a tangent from its prediction [rad].
+constexpr double largest_correction = 0.5;
+// Rotation from the prediction after which the next step is twice as long [rad].
+constexpr double small_correction = 0.1;
+// Local error of the integrator before all loads are applied.
+constexpr double path_tolerance = 1e-10;
+constexpr int path_iterations = 12;  // of Newton's method, which starts near a solution
 
-/// A point of the path.
+/// A point of the solution branch.
 struct Loaded {
   double factor = 0;
   SpanEquilibrium equilibrium;
@@ -36,7 +40,7 @@ std::vector<RodState> path_states_on(const RodSpan& span, const SpanEquilibrium&
   return states;
 }
 
-/// What a secant through two points of the path predicts, on the nodes of a mesh.
+/// Returns the prediction of a secant through two points of the branch, at the nodes of a mesh.
 std::vector<RodState> predicted_states(const RodSpan& span, const std::optional<Loaded>& before,
                                        const Loaded& now, double factor, const Eigen::VectorXd& s) {
   std::vector<RodState> states = path_states_on(loaded_by(span, now.factor), now.equilibrium, s);

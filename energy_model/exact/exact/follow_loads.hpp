@@ -6,11 +6,11 @@
 
 namespace dlo::energy_model {
 
-/// The equilibrium that an unloaded one goes over into while loads without a potential grow from
-/// nothing (loaded_by()): continuation with a secant predictor, whose steps are as long as Newton's
-/// method turns no tangent by more than half a radian from what is predicted. It does not pass a
-/// fold: then it has not converged, and the message says at which part of the loads.
-/// @param unloaded  of loaded_by(span, 0), which has converged
+/// Follows an equilibrium while loads without a potential grow from zero (loaded_by()). The
+/// continuation uses a secant predictor. A step is halved if Newton's method rotates a tangent by
+/// more than half a radian from the prediction. It does not pass a fold: the result is then not
+/// converged, and the message states the share of the loads that was reached.
+/// @param unloaded  converged equilibrium of loaded_by(span, 0)
 [[nodiscard]] SpanEquilibrium follow_loads(const RodSpan& span, const SpanEquilibrium& unloaded,
                                            double tolerance, const Deadline& deadline);
 

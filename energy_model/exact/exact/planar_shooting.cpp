@@ -21,12 +21,14 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int most_shots = 20000;       // of a scan
-constexpr int deepest_cell = 6;         // halvings of a cell of the scan
-constexpr double cell_resolved = 0.02;  // a cubic's error in a cell over the residual there
-constexpr double double_root = 1e-11;   // of the residual: rounding of a shot
+constexpr int most_shots = 20000;  // of a scan
+constexpr int deepest_cell = 6;    // halvings of a cell of the scan
+// Error of the cubic in a cell, divided by the residual there.
+constexpr double cell_resolved = 0.02;
+constexpr double double_root = 1e-11;  // of the residual: rounding of a shot
 
-/// A tip's angle, the residual at the clamp's angle, and the derivative of that.
+/// Tip angle of a shot, its residual at the clamp, and the derivative of the residual by the tip
+/// angle.
 struct ScanPoint {
   double start = 0;
   double residual = 0;
@@ -38,16 +40,17 @@ struct Shooter {
   double tolerance;
   Deadline deadline;
   int shots = 0;
-  int failures = 0;  // shots and searches for a root that did not converge
+  int failures = 0;  // shots and root searches that did not converge
   bool out_of_time = false;
-  std::exception_ptr thrown;  // within GSL, which is C
+  std::exception_ptr thrown;  // exception thrown within GSL, which is C
 
-  /// Of the clamp's angle; zero at every winding number. NaN if the shot fails.
+  /// Returns the sine of half the error of the clamp's angle, which is zero at every winding
+  /// number; NaN if the shot fails.
   double residual(double start) {
     return std::sin(half(is_in_time() ? shoot_angle(frame, start, tolerance) : NAN));
   }
 
-  /// The same with its derivative.
+  /// Returns the residual with its derivative.
   ScanPoint point(double start) {
     const TipShot shot = is_in_time() ? shoot(frame, start, tolerance) : TipShot{NAN, NAN};
     const double angle = half(shot.psi);
@@ -85,7 +88,8 @@ double slope_of(double start, void* data) {
   }
 }
 
-/// Root of the residual or of its slope between two starts of different sign; NaN if there is none.
+/// Finds a root of the residual or of its slope between two tip angles at which its signs differ;
+/// NaN if it fails.
 double refine_root(Shooter& shooter, double (*function_of)(double, void*), double low,
                    double high) {
   gsl_function function{function_of, &shooter};
@@ -103,9 +107,10 @@ double refine_root(Shooter& shooter, double (*function_of)(double, void*), doubl
   return good ? gsl_root_fsolver_root(solver.get()) : NAN;
 }
 
-/// Starts psi at the tip, growing from -pi to pi. Where all forces are parallel the tip's angle
-/// against them is exponentially small and the grid goes down to it. Where they are not, the tip's
-/// angle has no known limit and is found to rounding only, so the rod must not magnify it too much.
+/// Returns the tip angles psi of the scan, growing from -pi to pi. If all forces are parallel, the
+/// tip angle against them may be exponentially small, and the grid includes such angles. Otherwise
+/// the tip angle has no known limit and is found only to rounding, so the rod must not amplify its
+/// error too much.
 std::vector<double> scan_grid(const PlanarCantilever& rod, bool parallel) {
   const double load = total_load(rod);
   std::vector<double> positive;
@@ -120,7 +125,7 @@ std::vector<double> scan_grid(const PlanarCantilever& rod, bool parallel) {
   return grid;
 }
 
-/// Looks for the roots of the residual, cell by cell.
+/// Finds the roots of the residual, cell by cell.
 class TipScan {
  public:
   explicit TipScan(Shooter& shooter) : shooter_(shooter) {}
@@ -130,12 +135,13 @@ class TipScan {
     for (std::size_t i = 0; i < grid.size(); ++i) {
       const ScanPoint next = shooter_.point(grid[i]);
       if (i > 0) look_into(previous, next, 0);
-      // Only a tip that keeps its angle all along the rod is a root without a change of sign.
+      // A root without a change of sign is only possible if the tip angle is constant along the
+      // rod.
       const bool straight = next.start == 0 || std::abs(next.start) == pi;
       if (straight && is_zero(next)) roots_.push_back(next.start);
       previous = next;
     }
-    // -pi and pi are the same tip.
+    // The tip angles -pi and pi are the same.
     if (roots_.size() > 1 && roots_.front() == -pi && roots_.back() == pi) roots_.pop_back();
     return roots_;
   }
@@ -143,7 +149,7 @@ class TipScan {
  private:
   static bool is_zero(const ScanPoint& point) { return std::abs(point.residual) < 1e-15; }
 
-  /// Halves a cell until a cubic through its ends tells what the residual is in its middle.
+  /// Halves a cell until a cubic through its ends predicts the residual in its middle.
   void look_into(const ScanPoint& low, const ScanPoint& high, int depth) {
     if (!std::isfinite(low.residual) || !std::isfinite(high.residual)) return;
     const ScanPoint middle = shooter_.point((low.start + high.start) / 2);
@@ -168,7 +174,7 @@ class TipScan {
       add(refine_root(shooter_, residual_at, low.start, high.start));
       return;
     }
-    // Two roots, or none, where the residual comes nearer to zero from both sides.
+    // If the residual approaches zero from both ends, the cell contains two roots or none.
     if (low.residual * low.slope >= 0 || high.residual * high.slope <= 0) return;
     const double extremum = refine_root(shooter_, slope_of, low.start, high.start);
     if (!std::isfinite(extremum)) {
@@ -196,7 +202,7 @@ class TipScan {
   std::vector<double> roots_;
 };
 
-/// Stability of a shape that holds, from its samples and its clamp's force.
+/// Returns the stability of an equilibrium, from its samples and the force of its clamp.
 SecondVariation stability_of(const Problem& problem, const RodSpan& span,
                              const Equilibrium& shape) {
   const auto states_of = [&](const std::vector<double>& s) {
@@ -242,7 +248,7 @@ TipShots shoot_from_tip(const Problem& problem, const ReducedCantilever& reduced
   for (const double start : starts) {
     Equilibrium result;
     result.residual = std::abs(shooter.residual(start)) * 2;
-    if (!(result.residual < 1e-8)) continue;  // a jump of the winding, not a root
+    if (!(result.residual < 1e-8)) continue;  // a jump of the winding number, not a root
     const auto own = [frame = shooter.frame, start, tolerance](const std::vector<double>& s) {
       return sample(frame, start, tolerance, s);
     };
@@ -265,7 +271,7 @@ TipShots shoot_from_tip(const Problem& problem, const ReducedCantilever& reduced
   found.out_of_time = shooter.out_of_time;
   found.shots = shooter.shots;
   for (Equilibrium& result : equilibria) result.evaluations = shooter.shots;
-  // Mirror images have the same energy up to rounding; the one that bends towards the plane's y
+  // Mirror images have equal energies up to rounding; the one that bends towards the plane's y
   // comes first.
   const double unit = problem.bending_stiffness / problem.length;
   const auto tip_height = [&](const Equilibrium& e) {

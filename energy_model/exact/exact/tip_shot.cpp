@@ -15,9 +15,9 @@ namespace dlo::energy_model {
 namespace {
 
 /// State along sigma = 1 - s, from the tip to the clamp, in the frame of the last force: angle psi
-/// of the tangent against that force, curvature by sigma, position relative to the tip, bending
-/// energy, and the potential of the weight relative to the clamp; then, if asked for, the
-/// derivatives of psi and its rate by psi at the tip.
+/// of the tangent from that force, its derivative by sigma, position relative to the tip, bending
+/// energy, and potential of the weight relative to the clamp. On request also the derivatives of
+/// psi and its rate by psi at the tip.
 enum TipComponent : std::size_t {
   psi,
   psi_rate,
@@ -32,18 +32,19 @@ enum TipComponent : std::size_t {
 };
 using TipState = std::array<double, components_and_changes>;
 
-constexpr int most_shot_steps = 100000;  // of the integrator, in a shot
+constexpr int most_shot_steps = 100000;  // of the integrator in one shot
 
 struct TipSection {
   Eigen::Vector2d weight;
-  Eigen::Vector2d loads;  // sum of those that have been passed
-  bool changes = false;   // by psi at the tip
+  Eigen::Vector2d loads;  // sum of the loads between the tip and sigma
+  bool changes = false;   // whether derivatives by psi at the tip are integrated
 };
 
 Eigen::Vector2d into_frame(const Eigen::Vector2d& force, double axis_angle) {
   const Eigen::Vector2d axis(std::cos(axis_angle), std::sin(axis_angle));
   Eigen::Vector2d turned(axis.dot(force), axis.x() * force.y() - axis.y() * force.x());
-  // What is parallel up to rounding is parallel: it may not disturb an exponentially small psi.
+  // A force that is parallel up to rounding is made parallel, because it must not disturb an
+  // exponentially small psi.
   if (std::abs(turned.y()) < 1e-14 * turned.norm()) turned.y() = 0;
   return turned;
 }
@@ -66,9 +67,9 @@ int section_rates(double sigma, const double* state, double* rate, void* data) {
   return GSL_SUCCESS;
 }
 
-/// Through every sigma of `stops` (growing).
-/// @param changes  the derivatives by `start` too
-/// @return false if the integrator failed; `states` are then incomplete
+/// Integrates through every sigma of `stops`, which grow.
+/// @param changes  whether the derivatives by `start` are integrated too
+/// @return false if the integrator failed; `states` is then incomplete
 bool integrate(const TipFrame& frame, double start, double tolerance,
                const std::vector<double>& stops, std::vector<TipState>& states, bool changes) {
   const std::size_t n = changes ? components_and_changes : components;
@@ -78,7 +79,7 @@ bool integrate(const TipFrame& frame, double start, double tolerance,
   const auto step =
       gsl_owned(gsl_odeiv2_step_alloc(gsl_odeiv2_step_rk8pd, n), gsl_odeiv2_step_free);
   const auto evolve = gsl_owned(gsl_odeiv2_evolve_alloc(n), gsl_odeiv2_evolve_free);
-  // psi may start exponentially small, and its relative error is what counts then.
+  // psi may start exponentially small; its relative error is then controlled.
   const double small = std::max(std::min(std::abs(start), 1.0), 1e-300);
   const double angle_scale = frame.parallel() ? small : 1.0;
   const std::array<double, components_and_changes> scale = {angle_scale, angle_scale, 1, 1,
@@ -98,7 +99,8 @@ bool integrate(const TipFrame& frame, double start, double tolerance,
   for (const double stop : stops) {
     for (;;) {
       while (next_load < frame.loads.size() && frame.loads[next_load].at <= sigma) {
-        state[psi_rate] -= frame.loads[next_load].couple;  // by sigma: minus the curvature
+        // Derivative by sigma, which is minus the curvature.
+        state[psi_rate] -= frame.loads[next_load].couple;
         section.loads += frame.loads[next_load++].force;
         gsl_odeiv2_evolve_reset(evolve.get());
         gsl_odeiv2_step_reset(step.get());
@@ -182,7 +184,7 @@ PlanarSamples sample(const TipFrame& frame, double start, double tolerance,
   const TipState& clamp = states.back();
   const double cosine = std::cos(frame.axis_angle);
   const double sine = std::sin(frame.axis_angle);
-  // The clamp's tangent is 0 up to whole turns that the rod makes on its way.
+  // The clamp's tangent has the angle 0 up to the whole turns of the rod.
   const double turns =
       2 * std::numbers::pi * std::round((clamp[psi] + frame.axis_angle) / (2 * std::numbers::pi));
   for (std::size_t i = 0; i < distances.size(); ++i) {

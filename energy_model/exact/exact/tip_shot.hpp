@@ -8,40 +8,40 @@
 
 namespace dlo::energy_model {
 
-/// Forces in the frame whose x axis is the last force.
+/// Forces in the frame whose x axis is the direction of the last force.
 struct TipFrame {
-  double axis_angle = 0;  // of the last force against the clamp's tangent
+  double axis_angle = 0;  // angle of the last force from the clamp's tangent [rad]
   Eigen::Vector2d weight = Eigen::Vector2d::Zero();
-  std::vector<PlanarCantilever::Load> loads;  // by growing sigma; `at` is sigma here
+  std::vector<PlanarCantilever::Load> loads;  // by growing sigma = 1 - s; `at` contains sigma
 
   [[nodiscard]] bool parallel() const;
 };
 
 [[nodiscard]] TipFrame tip_frame(const PlanarCantilever& rod);
 
-/// Sum of the sizes of weight and loads [EI/l^2].
+/// Returns the sum of the norms of weight and loads [EI/l^2].
 [[nodiscard]] double total_load(const PlanarCantilever& rod);
 
-/// What a shot has at the clamp, NaN if the integrator failed: the angle psi of the tangent against
-/// the last force, with the whole turns that the rod makes on its way [rad], and its derivative by
-/// psi at the tip.
+/// Result of a shot at the clamp, NaN if the integrator failed: the angle psi of the tangent from
+/// the last force, including the whole turns of the rod [rad], and its derivative by psi at the
+/// tip.
 struct TipShot {
   double psi = 0;
   double psi_change = 0;
 };
 
-/// Integrates from the tip, psi = start there, to the clamp.
+/// Integrates from the tip, where psi = start, to the clamp.
 /// @param tolerance  local error per step
 [[nodiscard]] TipShot shoot(const TipFrame& frame, double start, double tolerance);
-/// The same without the derivative.
+/// Returns the angle psi of shoot() without its derivative.
 [[nodiscard]] double shoot_angle(const TipFrame& frame, double start, double tolerance);
 
-/// The shape whose tip starts at this angle, seen from the clamp; NaN if the shot fails.
-/// @param distances  from the clamp, s
+/// Returns the shape whose tip angle is `start`, in the frame of the clamp; NaN if the shot fails.
+/// @param distances  distances s from the clamp
 [[nodiscard]] PlanarSamples sample(const TipFrame& frame, double start, double tolerance,
                                    const std::vector<double>& distances);
 
-/// Its energies [EI/l]; NaN if the shot fails.
+/// Returns the energies of the shape whose tip angle is `start` [EI/l]; NaN if the shot fails.
 [[nodiscard]] Energies energies(const PlanarCantilever& rod, const TipFrame& frame, double start,
                                 double tolerance);
 

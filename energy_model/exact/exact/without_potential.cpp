@@ -34,8 +34,8 @@ void refuse_unfollowable(const Problem& problem) {
           "number of clamps that hold frames", held, "<= 2 where a load has no potential");
 }
 
-/// Without drag, couples, and loads that follow the rod. Material directors stay where they are:
-/// the plane that says so may be another one.
+/// Returns the problem without drag, couples and loads that follow the rod. Material directors keep
+/// their direction, which a plane of the remaining forces might otherwise change.
 Problem without_those(Problem problem, const RodSpan& span) {
   const std::optional<std::size_t> first = first_clamp(problem);
   if (has_material_directors(problem) && first) {
@@ -52,7 +52,8 @@ Problem without_those(Problem problem, const RodSpan& span) {
   return problem;
 }
 
-/// Its loads as they are on a given shape, dead.
+/// Returns the problem with its loads replaced by dead ones that are equal to them on a given
+/// shape.
 Problem frozen_on(const Problem& problem, const RodSpan& span, const Equilibrium& shape) {
   constexpr Eigen::Index pieces = 64;
   Problem dead = problem;

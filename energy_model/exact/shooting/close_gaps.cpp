@@ -13,13 +13,16 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double least_newton_part = 1e-3;  // of a Newton step
-constexpr double last_newton_step = 1e-9;   // Newton's next one is of the size of rounding
-constexpr double nearly_closed = 0.1;   // gaps of a twisted rod, from which on it must not drift
-constexpr double least_weight = 1e-12;  // of Levenberg's: its root is far above rounding
+constexpr double least_newton_part = 1e-3;  // smallest accepted share of a Newton step
+// Size of a step after which the next Newton step is of the size of rounding.
+constexpr double last_newton_step = 1e-9;
+// Size of the gaps of a twisted rod below which steps along nearly zero modes are suppressed.
+constexpr double nearly_closed = 0.1;
+// Of Levenberg's method: its square root is far above rounding.
+constexpr double least_weight = 1e-12;
 
-/// Largest number of unknowns of Levenberg's steps. Each of its rows for the weight stays in all
-/// later columns of the factors, which take 6 bytes times the square of this number, and a second.
+/// Largest number of unknowns for a Levenberg step. Each of its rows for the weight stays in all
+/// later columns of the factors, which need 6 bytes times the square of this number, and a second.
 constexpr Eigen::Index most_weighted = 4000;
 
 using Solver = Eigen::SparseQR<Eigen::SparseMatrix<double>, Eigen::NaturalOrdering<int>>;
@@ -32,8 +35,10 @@ Eigen::SparseMatrix<double> matrix_of(const Triplets& triplets, Eigen::Index row
   return matrix;
 }
 
-/// Newton's step, as much of it as makes the next simplified one shorter.
-/// @return its largest component; nothing if there is no such part or it does not close the gaps
+/// Takes the largest share of Newton's step, halved repeatedly from the allowed one, for which the
+/// next simplified step is shorter.
+/// @return largest component of the step; std::nullopt if no share suffices or it does not close
+/// the gaps
 std::optional<double> newton_step(const ShootingSystem& system, const Triplets& derivatives,
                                   const Eigen::VectorXd& equations, ShootingPoint& point,
                                   int& shots) {
@@ -62,7 +67,8 @@ std::optional<double> newton_step(const ShootingSystem& system, const Triplets& 
   return std::nullopt;
 }
 
-/// The step for which |derivatives step + equations|^2 + weight |step|^2 is least.
+/// Returns the step that minimises |derivatives step + equations|^2 + weight |step|^2; std::nullopt
+/// if there are too many unknowns or the factorisation fails.
 std::optional<Eigen::VectorXd> regular_step(Triplets derivatives, Eigen::Index unknowns,
                                             const Eigen::VectorXd& equations, double weight) {
   if (unknowns > most_weighted) return std::nullopt;
@@ -77,8 +83,8 @@ std::optional<Eigen::VectorXd> regular_step(Triplets derivatives, Eigen::Index u
   return Eigen::VectorXd(solver.solve(right));
 }
 
-/// Levenberg's step with a weight of the order of the gaps: it makes them smaller and moves nothing
-/// that has a zero mode, where Newton's step is not defined.
+/// Takes a Levenberg step whose weight is of the order of the gaps. It reduces the gaps and does
+/// not move along zero modes, for which Newton's step is undefined.
 std::optional<double> levenberg_step(const ShootingSystem& system, const Triplets& derivatives,
                                      const Eigen::VectorXd& equations, ShootingPoint& point,
                                      int& shots) {
@@ -100,9 +106,10 @@ std::optional<double> levenberg_step(const ShootingSystem& system, const Triplet
   return std::nullopt;
 }
 
-/// The same near the end, where a twisted rod would drift: a buckle far from both clamps moves
-/// along the rod, and rotates around its line, with a nearly zero mode, so that Newton's steps stay
-/// long. As fast as Newton's method in all other directions (Yamashita and Fukushima 2001).
+/// Takes a Levenberg step near the solution, where a twisted rod would drift: a buckle far from
+/// both clamps slides along the rod and rotates about its line, both with nearly zero modes, so
+/// that Newton's steps stay long. It converges as fast as Newton's method in all other directions
+/// (Yamashita and Fukushima 2001).
 std::optional<double> last_newton_steps(const ShootingSystem& system, const Triplets& derivatives,
                                         const Eigen::VectorXd& equations, ShootingPoint& point,
                                         int& shots) {

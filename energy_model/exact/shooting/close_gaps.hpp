@@ -8,20 +8,20 @@
 
 namespace dlo::energy_model {
 
-/// How Newton's method has ended.
+/// Outcome of Newton's method.
 struct [[nodiscard]] ClosedGaps {
   bool converged = false;
   std::string message = "Newton's method took too many steps";
   int shots = 0;
 };
 
-/// Whether the rod can move for nearly nothing, as a buckle along a twisted rod: then it must not
-/// drift that way.
+/// Whether the rod has nearly zero modes, such as a buckle that slides along a twisted rod: steps
+/// along them are then suppressed.
 enum class Modes { stiff, nearly_zero };
 
-/// Newton's method on the equations of multiple shooting. Steps are damped until the next
-/// simplified step is shorter (Deuflhard's natural monotonicity); where there is no such step,
-/// because of a zero mode or nearly one, a Levenberg step makes the gaps smaller.
+/// Solves the equations of multiple shooting by Newton's method. Steps are damped until the next
+/// simplified step is shorter (Deuflhard's natural monotonicity). If there is no such step, because
+/// of a zero mode or nearly one, a Levenberg step reduces the gaps.
 ClosedGaps close_gaps(const ShootingSystem& system, ShootingPoint& point, int max_iterations,
                       Modes modes);
 

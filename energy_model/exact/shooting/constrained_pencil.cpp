@@ -9,16 +9,16 @@ namespace {
 
 using Factors = Eigen::SimplicialLDLT<Sparse, Eigen::Lower, Eigen::NaturalOrdering<int>>;
 
-/// Factors of the matrix of the header's formula. @return false if a pivot is zero
+/// Factorises the bordered matrix of ConstrainedPencil. @return false if a pivot is zero
 bool factorise(const ConstrainedPencil& pencil, double mu, Factors& factors) {
   factors.compute(pencil.second - mu * pencil.norm + pencil.fixed);
   return factors.info() == Eigen::Success && factors.vectorD().allFinite();
 }
 
-/// Number of eigenvalues below mu; -1: undetermined by the pivots.
+/// Returns the number of eigenvalues below mu; -1: undetermined by the pivots.
 int count_below(const ConstrainedPencil& pencil, double mu) {
   Factors factors;
-  // A pivot is zero on a set of mu that a small change leaves.
+  // A pivot is zero only for isolated mu, so that a small change of mu suffices.
   for (int attempt = 0; attempt < 5; ++attempt) {
     if (factorise(pencil, mu, factors)) {
       const auto negative = (factors.vectorD().array() < 0).count();
@@ -29,7 +29,7 @@ int count_below(const ConstrainedPencil& pencil, double mu) {
   return -1;
 }
 
-/// Bounds of the smallest eigenvalue, to 1 % or a tenth of what counts as zero.
+/// Bounds of the smallest eigenvalue, to 1 % or a tenth of neutral_eigenvalue.
 struct EigenvalueBracket {
   double low;
   double high;
@@ -72,7 +72,7 @@ SmallestMode smallest_mode(const ConstrainedPencil& pencil,
   if (result.negative < 0 || not_positive < 0) return {.negative = -1};
   result.neutral = not_positive - result.negative;
   const EigenvalueBracket bracket = bracket_smallest(pencil);
-  // Inverse iteration from below the smallest eigenvalue.
+  // The shift for inverse iteration is below the smallest eigenvalue.
   const double shift = bracket.low - (bracket.high - bracket.low) / 2;
   Factors factors;
   result.smallest = (bracket.low + bracket.high) / 2;

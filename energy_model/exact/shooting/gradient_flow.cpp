@@ -11,19 +11,22 @@ namespace dlo::energy_model {
 namespace {
 
 constexpr int most_flow_steps = 200;
-constexpr int flow_iterations = 10;       // of Newton's method, which starts nearby
-constexpr double first_duration = 0.01;   // of a step, in the rod's units: it bends in about 1 / 40
-constexpr double shortest = 1e-8;         // step
-constexpr double longest = 1e8;           // step
-constexpr double most_flow_turn = 0.4;    // of a tangent in one step [rad]
-constexpr double small_turn = 0.1;        // that lets the next step be longer [rad]
-constexpr double settled_turn = 3e-3;     // turn in a step of at least settled_duration [rad]
-constexpr double settled_duration = 0.1;  // several times that of most modes
-constexpr double flow_departure = 0.1;    // from a saddle: largest change of a tangent [rad]
+constexpr int flow_iterations = 10;  // of Newton's method, which starts near a solution
+// Of a step, in the rod's units: the rod bends in about 1 / 40.
+constexpr double first_duration = 0.01;
+constexpr double shortest = 1e-8;       // duration of a step
+constexpr double longest = 1e8;         // duration of a step
+constexpr double most_flow_turn = 0.4;  // rotation of a tangent in one step [rad]
+constexpr double small_turn = 0.1;  // rotation in a step below which the next step is longer [rad]
+// Rotation in a step of at least settled_duration at which the flow ends [rad].
+constexpr double settled_turn = 3e-3;
+constexpr double settled_duration = 0.1;  // several times the relaxation time of most modes
+constexpr double flow_departure = 0.1;    // largest change of a tangent when a saddle is left [rad]
 constexpr int most_flow_departures = 6;
-constexpr int steps_after_failure = 3;  // of equal duration: a failure costs as much as ten of them
+// Of constant duration: a failed step costs as much as ten others.
+constexpr int steps_after_failure = 3;
 
-/// Of tangents, of a rod that is not round of d1 too.
+/// Returns the largest change of a tangent; for a rod that is not round also of d1.
 double widest_turn(const RodSpan& span, const std::vector<Eigen::Matrix3d>& a,
                    const std::vector<Eigen::Matrix3d>& b) {
   double widest = 0;
@@ -35,7 +38,8 @@ double widest_turn(const RodSpan& span, const std::vector<Eigen::Matrix3d>& a,
   return widest;
 }
 
-/// The spins of the mode of smallest eigenvalue that turn what widest_turn() looks at by 1 at most.
+/// Returns the spins of the mode of the smallest eigenvalue, scaled to a largest change of 1: of a
+/// tangent for a round rod, of the frame otherwise.
 Eigen::Matrix3Xd unit_spins(const RodSpan& span, const SpanEquilibrium& equilibrium) {
   const Eigen::Matrix3Xd spins = equilibrium.stability.spin_at(equilibrium.s);
   double widest = 1e-300;
@@ -57,7 +61,7 @@ std::vector<Eigen::Matrix3d> frames_beside(const RodSpan& span, const SpanEquili
   return frames;
 }
 
-/// A mesh whose nodes are pulled to the directions of `aim`, for a step of this duration.
+/// Returns a mesh whose nodes are pulled to the directions of `aim`, for a step of this duration.
 RodMesh pulled(const RodSpan& span, RodMesh mesh, const std::vector<Eigen::Matrix3d>& aim,
                double duration) {
   for (Eigen::Index i = 1; i < mesh.intervals(); ++i) {
@@ -80,7 +84,7 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
   step.max_iterations = flow_iterations;
   double duration = first_duration;
   int departures = 0;
-  int wait = 0;  // steps before the next longer one
+  int wait = 0;  // number of steps before the next longer one
   for (int k = 0; k < most_flow_steps && duration > shortest; ++k) {
     if (options.deadline.passed()) {
       failed.message = to_string(SolveStatus::time_limit);

@@ -13,10 +13,10 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double largest_force = 1e6;    // over b, that the first mesh resolves
-constexpr double plane_of_start = 1e-6;  // of tangents
+constexpr double largest_force = 1e6;    // force over b that the first mesh resolves
+constexpr double plane_of_start = 1e-6;  // component of tangents across a plane
 
-/// What a shape says of the twist of a span that holds some; null for nothing.
+/// Returns the twist that a shape has for a span whose clamps hold frames; null if it has none.
 const TwistedPart* twist_of(const RodSpan& span, const Problem& problem, const Equilibrium& shape) {
   if (!span.twisted()) return nullptr;
   const double middle = (span.begin + span.length / 2) * problem.length;
@@ -32,13 +32,13 @@ Samples sample_at(const RodSpan& span, const Problem& problem, const Equilibrium
   for (const double at : s) {
     arc_lengths.push_back(std::min((span.begin + at) * problem.length, problem.length));
   }
-  // At a clamp the curvature jumps: that of this side is wanted.
+  // At a clamp the curvature jumps; the value on this side is required.
   constexpr double inside = 1e-12;
   if (span.begin > 0) arc_lengths.front() += inside * problem.length;
   return shape.sample(arc_lengths);
 }
 
-/// The moment of a round rod is that of its curvature, and a torque.
+/// Returns states of a round rod: the moment is computed from the curvature and a torque.
 std::vector<RodState> states_by_curvature(const RodSpan& span, const Problem& problem,
                                           const Equilibrium& shape, const RodMesh& mesh,
                                           double torque) {
@@ -59,7 +59,7 @@ std::vector<RodState> states_by_curvature(const RodSpan& span, const Problem& pr
   return states;
 }
 
-/// The moment of the whole of a rod is the sum of what its grips exert.
+/// Returns states of a whole rod: the moment is the sum of the actions of its grips.
 std::vector<RodState> states_by_balance(const RodSpan& span, const Problem& problem,
                                         const Equilibrium& shape, const RodMesh& mesh) {
   constexpr Eigen::Index parts = 8;  // of an interval

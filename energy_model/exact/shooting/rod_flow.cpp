@@ -9,16 +9,17 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Layout of the integrated vector: r, R, m, the first four integrals, then r, spin and m of each
-/// parameter; of a piece that lies the impulse int p N ds and its derivatives too, where a stream
-/// drags it that of the drag; of one that stretches, which does not lie, that energy.
+/// Layout of the integrated vector: r, R, m, the first four integrals, then r, spin and m for each
+/// parameter. A piece that lies on a surface or has drag adds the impulse int p N ds or that of the
+/// drag, with its derivatives. A piece that stretches (and does not lie) adds the energy of
+/// stretch.
 constexpr Eigen::Index first_integral = 15;
 constexpr Eigen::Index state_size = 19;
 constexpr Eigen::Index variation_size = 9;
 
 struct FlowPiece {
   const RodPiece* rod;
-  Eigen::Vector3d n;  // at its beginning, less what presses on it
+  Eigen::Vector3d n;  // at its begin, without the force of a surface
   const RodVariation* variation;
 
   [[nodiscard]] bool has_impulse() const {
@@ -33,7 +34,7 @@ struct FlowPiece {
   }
 };
 
-/// What a surface exerts.
+/// Adds the pressure of a surface to the rates, with its derivatives.
 void press(const FlowPiece& piece, const RodState& state, const double* y, double* rate) {
   using Vector = Eigen::Map<const Eigen::Vector3d>;
   using Rate = Eigen::Map<Eigen::Vector3d>;
@@ -56,7 +57,7 @@ void press(const FlowPiece& piece, const RodState& state, const double* y, doubl
   }
 }
 
-/// What a stream exerts.
+/// Adds the drag of a stream to the rates, with its derivatives.
 void drag(const FlowPiece& piece, const Eigen::Vector3d& t, const double* y, double* rate) {
   const Drag& own = *piece.rod->section.drag;
   const Eigen::Index impulse = piece.impulse();

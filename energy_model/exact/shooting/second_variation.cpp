@@ -14,7 +14,8 @@ namespace {
 constexpr double longest_element = 1.0 / 16;  // [l]
 constexpr double most_elements = 5000;
 
-/// Short where the rod changes its shape over a short length.
+/// Returns the ends of the elements, which are short where the force bends the rod over a short
+/// length.
 Eigen::VectorXd elements_of(const RodSpan& span, const RodMesh& mesh, double force) {
   const double longest = std::min({span.length / 8, longest_element, 1 / std::sqrt(force)});
   std::vector<double> touched;
@@ -22,7 +23,7 @@ Eigen::VectorXd elements_of(const RodSpan& span, const RodMesh& mesh, double for
   return make_mesh(span, std::max(longest, span.length / most_elements), touched).s;
 }
 
-/// The matrices of second_variation().
+/// Assembles the matrices of second_variation().
 class VariationProblem {
  public:
   VariationProblem(const RodSpan& span, const RodMesh& mesh, const ClampFrames& frames,
@@ -74,24 +75,25 @@ class VariationProblem {
 
   struct SpinNode {
     double s;
-    Eigen::Matrix3Xd basis;  // of the spins that are free, one a column
-    Eigen::Index first;      // unknown
+    Eigen::Matrix3Xd basis;  // free spins, one per column
+    Eigen::Index first;      // index of the first unknown
   };
 
-  /// Where dr is zero at a grip, or along what is touched.
+  /// Point at which dr is zero, at a grip, or tangential to an obstacle.
   struct Place {
-    Eigen::Index end;         // of an element
-    Eigen::Matrix3Xd basis;   // of dr, one a column
-    Eigen::Matrix3d hessian;  // of the gap to what is touched
-    Eigen::Index first;       // unknown
-    Eigen::Index multiplier;  // of dr - (dr at the place before) = int eta x t ds
+    Eigen::Index end;         // index of an element's end
+    Eigen::Matrix3Xd basis;   // free directions of dr, one per column
+    Eigen::Matrix3d hessian;  // Hessian of the gap to the obstacle
+    Eigen::Index first;       // index of the first unknown
+    // Index of the multiplier of dr - (dr at the previous place) = int eta x t ds.
+    Eigen::Index multiplier;
   };
 
   [[nodiscard]] bool touches() const {
     return !mesh_.contacts.nodes.empty() || !mesh_.contacts.surface.empty();
   }
 
-  /// The contact at an end of elements; null: none.
+  /// Returns the contact at an element's end; null: none.
   [[nodiscard]] const RodContact* contact_at(Eigen::Index end) const {
     const auto found = std::ranges::find_if(mesh_.contacts.nodes, [&](const RodContact& contact) {
       return mesh_.s[contact.node] == elements_[end];
@@ -99,7 +101,7 @@ class VariationProblem {
     return found == mesh_.contacts.nodes.end() ? nullptr : &*found;
   }
 
-  /// On which the rod lies between two ends of elements; null: none.
+  /// Returns the surface on which an element lies; null: none.
   [[nodiscard]] const Surface* surface_of(Eigen::Index element) const {
     if (!touches()) return nullptr;
     const double middle = (elements_[element] + elements_[element + 1]) / 2;
@@ -107,7 +109,8 @@ class VariationProblem {
     return mesh_.contacts.surface_of(after - 1);
   }
 
-  /// The gap to what is touched at an end of elements; none: nothing.
+  /// Returns the gap to the obstacle that the rod touches at an element's end; std::nullopt: it
+  /// touches none.
   [[nodiscard]] std::optional<obstacle::Gap> gap_at(Eigen::Index end, const RodState& state) const {
     if (const RodContact* contact = contact_at(end)) return contact->gap(state.r);
     const Surface* surface = end + 1 < elements_.size() ? surface_of(end) : nullptr;
@@ -116,7 +119,8 @@ class VariationProblem {
     return surface->gap(state.r);
   }
 
-  /// Three unknowns a node, fewer at clamps; at a place those of dr and three multipliers.
+  /// Numbers the unknowns: three per node, fewer at clamps; at a place those of dr, and three
+  /// multipliers except at the first place.
   void number_unknowns(const ClampFrames& frames, const std::vector<RodState>& at_ends) {
     const auto add_node = [&](double s) {
       Eigen::Matrix3Xd basis = Eigen::Matrix3d::Identity();
@@ -151,14 +155,14 @@ class VariationProblem {
     }
   }
 
-  /// Multipliers first: dr has no pivot but what they give it.
+  /// Adds a place. Multipliers precede dr, because dr has a pivot only through them.
   void add_place(Eigen::Index end, const Eigen::Matrix3Xd& basis, const Eigen::Matrix3d& hessian) {
     const Eigen::Index multipliers = places_.empty() ? 0 : 3;
     places_.push_back({end, basis, hessian, size_ + multipliers, size_});
     size_ += multipliers + basis.cols();
   }
 
-  /// Spins across the tangents alone.
+  /// Restricts spins to directions across the tangents.
   void leave_out_twist(const SpanStates& states) {
     const Eigen::VectorXd s = arc_lengths();
     const std::vector<RodState> at_nodes = states({s.begin(), s.end()});
@@ -168,7 +172,8 @@ class VariationProblem {
     }
   }
 
-  /// Of an element, by spins of its nodes: second derivatives, norm, and the way between its ends.
+  /// Sums of an element by the spins of its nodes: second derivatives, norm, and the integral of
+  /// dr' between its ends.
   struct ElementSums {
     static constexpr Eigen::Index own = 3 * (element_order + 1);
     Eigen::Matrix<double, own, own> second = Eigen::Matrix<double, own, own>::Zero();
@@ -246,7 +251,8 @@ class VariationProblem {
     }
   }
 
-  /// What lies within an element bends with its surface, half of it at either end.
+  /// Adds the curvature of the surface on which an element lies, with half of the pressure at
+  /// either end.
   void press(Eigen::Index e, const std::vector<RodState>& inside) {
     const Surface* surface = surface_of(e);
     if (surface == nullptr) return;
@@ -262,7 +268,7 @@ class VariationProblem {
     }
   }
 
-  /// Minus f dr.(H dr).
+  /// Adds minus f dr.(H dr) to the second variation.
   void bend(const Place& place, double force) {
     add(second_, place.first, place.first,
         -force * place.basis.transpose() * place.hessian * place.basis);
@@ -291,7 +297,7 @@ class VariationProblem {
     add(second_, place.first, place.first, share * by_place.transpose() * by_place);
   }
 
-  /// What dr of two neighbouring places is besides the integral.
+  /// Adds the parts of the constraint between two neighbouring places that contain their dr.
   void join(const Place& before, const Place& after) {
     for (Eigen::Index i = 0; i < 3; ++i) {
       fixed_.emplace_back(after.multiplier + i, after.multiplier + i, -constraint_compliance);
@@ -311,14 +317,15 @@ class VariationProblem {
     }
   }
 
-  /// Null: none.
+  /// Returns the place at an element's end; null: none.
   [[nodiscard]] const Place* place_at(Eigen::Index end) const {
     const auto found =
         std::ranges::find_if(places_, [&](const Place& place) { return place.end == end; });
     return found == places_.end() ? nullptr : &*found;
   }
 
-  /// Of the constraint that an element between two places belongs to; -1 beyond them.
+  /// Returns the index of the multiplier of the constraint between the two places around an
+  /// element; -1 outside the places.
   [[nodiscard]] Eigen::Index multiplier_of(Eigen::Index e) const {
     const auto next =
         std::ranges::find_if(places_, [&](const Place& place) { return place.end > e; });
@@ -327,9 +334,12 @@ class VariationProblem {
 
   const RodSpan& span_;
   const RodMesh& mesh_;
-  bool free_twist_;           // nothing holds it: spins about the tangent are no unknowns
-  bool in_plane_;             // spins about the plane's normal alone: of others couples know none
-  Eigen::VectorXd elements_;  // their ends
+  // Whether nothing holds the twist: spins about the tangent are then no unknowns.
+  bool free_twist_;
+  // Whether spins are restricted to the plane's normal, because couples have no potential for
+  // others.
+  bool in_plane_;
+  Eigen::VectorXd elements_;  // arc lengths of the elements' ends
   std::vector<SpinNode> nodes_;
   std::vector<Place> places_;
   Eigen::Index size_ = 0;

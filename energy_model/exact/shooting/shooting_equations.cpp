@@ -9,24 +9,25 @@
 namespace dlo::energy_model {
 namespace {
 
-/// The rotation b a^T by its axis, as long as its angle.
+/// Returns the rotation vector of b a^T: along its axis, as long as its angle [rad].
 Eigen::Vector3d rotation_between(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
   const Eigen::AngleAxisd rotation(Eigen::Matrix3d(b * a.transpose()));
   return rotation.angle() * rotation.axis();
 }
 
-/// Its derivative by a spin of b; that by a spin of a is less its transpose.
+/// Returns the derivative of rotation_between() by a spin of b. Its derivative by a spin of a is
+/// minus the transpose.
 Eigen::Matrix3d rotation_rate(const Eigen::Vector3d& rotation) {
   const double angle = rotation.norm();
   const double half = angle / 2;
-  // (1 - x cot x) / (2 x)^2 and its limit, whose next term is of the size of rounding.
+  // (1 - x cot x) / (2 x)^2 and its limit, whose next term is of the size of rounding
   const double share =
       half < 1e-4 ? 1.0 / 12 : (1 - half * std::cos(half) / std::sin(half)) / (angle * angle);
   const Eigen::Matrix3d cross = cross_matrix(rotation);
   return Eigen::Matrix3d::Identity() - cross / 2 + share * cross * cross;
 }
 
-/// Two axes across a direction.
+/// Returns two axes across a direction.
 Eigen::Matrix<double, 3, 2> axes_across(const Eigen::Vector3d& direction) {
   Eigen::Matrix<double, 3, 2> axes;
   const Eigen::Vector3d first = direction.unitOrthogonal();
@@ -34,7 +35,8 @@ Eigen::Matrix<double, 3, 2> axes_across(const Eigen::Vector3d& direction) {
   return axes;
 }
 
-/// What pulls on the tangent and d1 of a node take from its moment, and its derivative by a spin.
+/// Returns the jump of the moment by the pulls on the tangent and d1 of a node, and its derivative
+/// by a spin.
 std::pair<Eigen::Vector3d, Eigen::Matrix3d> jump_of_moment(const RodState& node,
                                                            const Eigen::Vector3d& on_tangent,
                                                            const Eigen::Vector3d& on_d1) {
@@ -45,7 +47,7 @@ std::pair<Eigen::Vector3d, Eigen::Matrix3d> jump_of_moment(const RodState& node,
               (t.dot(on_tangent) + d1.dot(on_d1)) * Eigen::Matrix3d::Identity()};
 }
 
-/// A load that follows a cross-section in space, and its derivative by a spin.
+/// Returns a load that follows a cross-section in the axes of space, and its derivative by a spin.
 std::pair<Eigen::Vector3d, Eigen::Matrix3d> following(const RodState& node,
                                                       const Eigen::Vector3d& own) {
   const Eigen::Vector3d load = node.R * own;
@@ -54,7 +56,7 @@ std::pair<Eigen::Vector3d, Eigen::Matrix3d> following(const RodState& node,
 
 }  // namespace
 
-/// Equations as they come.
+/// Equations and derivatives, in the order in which they are added.
 struct ShootingSystem::Rows {
   Eigen::VectorXd values;
   Triplets* derivatives;
@@ -85,7 +87,8 @@ bool ShootingSystem::evaluate(const ShootingPoint& point, Eigen::VectorXd& equat
   for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
     if (out_of_time() || !interval_equations(point, i, rows)) return false;
   }
-  // Where a clamp holds the end, its conditions came in place of what is continuous elsewhere.
+  // n and m after the last node are zero. Where a clamp holds the end, its conditions have replaced
+  // the continuity of n and m there.
   const Eigen::Index last = mesh_.intervals() * per_node();
   const auto one = [](Eigen::Index size) { return Eigen::MatrixXd::Identity(size, size); };
   rows.add(positions_.transpose() * nodes.back().n / (rate_ * rate_),
@@ -120,12 +123,12 @@ Eigen::Matrix3Xd ShootingSystem::frame_equations(const RodState& node, Eigen::In
   return turns_.cols() == 1 ? turns_ : across;
 }
 
-/// What a contact takes from n, and its derivatives.
+/// Force that a contact subtracts from n, and its derivatives.
 struct ShootingSystem::Push {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
-  std::vector<Block> by;  // of the force in its unit
+  std::vector<Block> by;  // derivatives of the force in its unit
 
-  /// Blocks of the balance of forces, of which it is subtracted.
+  /// Returns the blocks of the balance of forces together with those of this force.
   [[nodiscard]] std::vector<Block> with(std::vector<Block> blocks) const {
     blocks.insert(blocks.end(), by.begin(), by.end());
     return blocks;
@@ -219,7 +222,8 @@ std::vector<ShootingSystem::Block> ShootingSystem::with_width(
   return blocks;
 }
 
-/// Of a node's state by its own unknowns, of its position the first ones only.
+/// Returns the derivatives of a node's state by its own unknowns.
+/// @param placed  number of the unknowns of its position to include, from the first on
 RodVariation ShootingSystem::variation_by(Eigen::Index placed) const {
   const Eigen::Index turns = turns_.cols();
   RodVariation change(placed + 2 * turns + positions_.cols());
@@ -239,7 +243,8 @@ bool ShootingSystem::interval_equations(const ShootingPoint& point, Eigen::Index
   RodPiece piece = piece_of(span_, mesh_, i);
   piece.begin = point.s[i];
   piece.length = point.s[i + 1] - point.s[i];
-  // An end without a grip moves as the begin moves; on a surface the pressure changes with r.
+  // The end of an interval without a surface moves as its begin moves; on a surface the pressure
+  // depends on r.
   const Eigen::Index placed = piece.surface != nullptr ? positions : 0;
   RodState end = node;
   RodVariation change = rows.derivatives != nullptr ? variation_by(placed) : RodVariation(0);
@@ -278,7 +283,8 @@ bool ShootingSystem::interval_equations(const ShootingPoint& point, Eigen::Index
   }
   const Eigen::Matrix3Xd free = frame_equations(next, i + 1, rows);
   if (free.cols() == turns_.cols()) return true;
-  // What of the moment is continuous, but for what pulls the tangent and d1: m = ... - t x q.
+  // Components of the moment that are continuous, except for the jump by pulls on the tangent and
+  // d1: m = ... - t x q.
   const Eigen::MatrixXd kept =
       free.cols() == 0
           ? Eigen::MatrixXd(turns_.transpose())

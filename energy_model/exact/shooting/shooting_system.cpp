@@ -11,8 +11,9 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double largest_turn = 0.5;   // of a tangent in one Newton step [rad]
-constexpr double longest_share = 0.3;  // of the way to what is next, by which a contact moves
+constexpr double largest_turn = 0.5;  // rotation of a tangent in one Newton step [rad]
+// Largest step of a contact, divided by the distance of its neighbouring fixed nodes or contacts.
+constexpr double longest_share = 0.3;
 
 double unit_of_force(const RodSpan& span, const std::vector<RodState>& start) {
   double force = std::max(1.0, total_load(span));

@@ -21,7 +21,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Cross-sections just before what the nodes of a span add to force and moment.
+/// Returns the cross-sections just before the nodes of a span, which add to force and moment.
 std::vector<RodState> before_nodes(const RodSpan& span, const SpanEquilibrium& equilibrium,
                                    double tolerance) {
   const RodMesh mesh = closed_mesh(span, equilibrium);
@@ -37,7 +37,7 @@ std::vector<RodState> before_nodes(const RodSpan& span, const SpanEquilibrium& e
   return before;
 }
 
-/// What the grips of a span exert makes up for the jumps of n and m.
+/// Adds the reactions of the grips of a span, which balance the jumps of n and m.
 void add_reactions(const Problem& problem, const RodSpan& span, const SpanEquilibrium& equilibrium,
                    const std::vector<RodState>& before, std::vector<Reaction>& reactions) {
   const double torque_unit = bending_unit(problem) / problem.length;
@@ -56,7 +56,7 @@ void add_reactions(const Problem& problem, const RodSpan& span, const SpanEquili
   }
 }
 
-/// Between neighbouring clamps that hold frames, of which the first one is one.
+/// Adds the twist between neighbouring clamps that hold frames; the first clamp counts as one.
 void add_twists(const Problem& problem, const RodSpan& span, const SpanEquilibrium& equilibrium,
                 const std::vector<RodState>& before, std::vector<TwistedPart>& twists) {
   if (span.clamps.empty()) return;
@@ -74,11 +74,12 @@ void add_twists(const Problem& problem, const RodSpan& span, const SpanEquilibri
   }
 }
 
-/// Returns the potential of the couples of a span in a plane [EI/l], from couple_zero() on.
+/// Returns the potential of the couples of a span in a plane [EI/l], relative to couple_zero().
 double energy_of_couples(const Problem& problem, const RodSpan& span,
                          const SpanEquilibrium& equilibrium, double tolerance) {
   if (!span.plane) return 0;
-  constexpr Eigen::Index points = 513;  // that no two have half a turn between them
+  // So many that the tangent rotates by less than pi between two points.
+  constexpr Eigen::Index points = 513;
   const Eigen::Vector3d normal = span.plane->x.cross(span.plane->y);
   double energy = 0;
   for (const RodSpan::Load& load : span.loads) {
@@ -102,14 +103,15 @@ double energy_of_couples(const Problem& problem, const RodSpan& span,
   return energy;
 }
 
-/// Which load it is that has none, for a message.
+/// Returns the reason why the loads have no potential, for a message.
 std::string why_no_potential(const Problem& problem) {
   if (problem.drag) return "drag has no potential";
   return has_dead_loads(problem) ? "out of a plane a couple has no potential"
                                  : "a load that follows the rod has no potential";
 }
 
-/// Whether couples act where nothing says that the shape is stable: out of its span's plane.
+/// Whether couples act on a shape that is not in its span's plane, so that its stability is
+/// undetermined.
 bool couples_leave_plane(const RodSpan& span, const SpanEquilibrium& equilibrium) {
   if (!span.has_couples()) return false;
   if (!span.plane) return true;
@@ -127,7 +129,7 @@ Samples sample(const Problem& problem, const SolvedRod& rod, double tolerance,
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(),
             [&](std::size_t a, std::size_t b) { return arc_lengths[a] < arc_lengths[b]; });
-  std::size_t first = 0;  // of a span, in order
+  std::size_t first = 0;  // index of the first arc length of a span, in order
   for (std::size_t p = 0; p < rod.spans.size(); ++p) {
     const RodSpan& span = rod.spans[p];
     const double end = p + 1 < rod.spans.size() ? rod.spans[p + 1].begin : INFINITY;

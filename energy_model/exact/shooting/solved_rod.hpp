@@ -9,19 +9,20 @@
 
 namespace dlo::energy_model {
 
-/// The spans of a rod and an equilibrium of each.
+/// The spans of a rod, and an equilibrium of each.
 struct SolvedRod {
   std::vector<RodSpan> spans;  ///< by growing arc length
   std::vector<SpanEquilibrium> equilibria;
 
-  /// Whether it is one whose directors are followed from end to end.
+  /// Whether the rod is a single span whose directors are integrated from end to end.
   [[nodiscard]] bool has_directors() const {
     return spans.front().has_axes || !spans.front().round();
   }
 };
 
-/// The rod's equilibrium with its verdict, in the problem's units; `failed` where a span has none.
-/// @param tolerance  of the integrator, wherever the shape is sampled
+/// Combines the spans to an equilibrium of the rod with its status, in the problem's units;
+/// `failed` if a span has none.
+/// @param tolerance  local error of the integrator, also for later samples of the shape
 [[nodiscard]] Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance);
 
 }  // namespace dlo::energy_model

@@ -11,7 +11,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Of the integrator for the second variation, whose elements are right to 1e-8.
+/// Local error of the integrator for the second variation, whose elements are accurate to 1e-8.
 constexpr double variation_tolerance = 1e-10;
 
 void add_energies(const RodSpan& span, double tolerance, SpanEquilibrium& equilibrium) {
@@ -106,7 +106,7 @@ RodMesh closed_mesh(const RodSpan& span, const SpanEquilibrium& equilibrium) {
 void complete(const RodSpan& span, double tolerance, SpanEquilibrium& equilibrium) {
   add_energies(span, tolerance, equilibrium);
   if (!span.has_potential) {
-    equilibrium.stability.negative = 0;  // nor is any counted
+    equilibrium.stability.negative = 0;  // without a potential no eigenvalue is counted
     equilibrium.stability.neutral = 0;
   } else if (equilibrium.converged) {
     judge_stability(span, tolerance, equilibrium);
@@ -134,7 +134,8 @@ std::vector<RodState> states_at(const SpanEquilibrium& equilibrium, const RodSpa
   Eigen::Index interval = -1;
   double reached = 0;
   for (const double at : s) {
-    // That at the end is followed too: a last node may lie beyond what a grip there exerts.
+    // The state at the end is integrated too, because the last node may be the state after the
+    // action of a grip there.
     const Eigen::Index after = std::upper_bound(nodes.begin(), nodes.end(), at) - nodes.begin();
     const Eigen::Index i = std::clamp<Eigen::Index>(after - 1, 0, nodes.size() - 2);
     if (i != interval) {
@@ -167,7 +168,7 @@ void carry_frames(const RodSpan& span, const RodMesh& mesh, double tolerance,
   RodState& held = states[first];
   held.R = span.clamps.empty() ? frame_along(held.t(), held.t().unitOrthogonal())
                                : transported(span.first_frame, held.t());
-  // The frame at the end of an interval that a frame at its begin comes to.
+  // Returns the frame at the end of an interval that results from the frame at its begin.
   const auto carried = [&](std::size_t i) {
     RodState state = states[i];
     const auto interval = static_cast<Eigen::Index>(i);

@@ -13,67 +13,69 @@
 
 namespace dlo::energy_model {
 
-/// An equilibrium of a span in its own units, or why there is none.
+/// An equilibrium of a span in its own units, or the reason why there is none.
 struct SpanEquilibrium {
   bool converged = false;
   std::string message = "never ran";
   int shots = 0;  ///< integrations of the whole span, with or without linearisation
-  /// Largest gap in r, R, m / f, n / f^2 at a node, f^2 the largest |n| or 1.
+  /// Largest gap in r, R, m / f, n / f^2 at a node, where f^2 is the largest of |n|, |m|^2, the
+  /// total load and 1 in the initial guess.
   double residual = -1;
-  Eigen::VectorXd s;            ///< nodes, which are grips, loads and some between
-  std::vector<RodState> nodes;  ///< m and n are those after the node
-  Energies energy;              ///< zero where points sit at the problem's first grip
-  std::vector<double> turns;    ///< int u_3 ds of each interval
-  ClampFrames frames;           ///< that it is an equilibrium with
-  RodContacts contacts;         ///< and what it touches
-  SecondVariation stability;    ///< of an equilibrium that has converged
+  Eigen::VectorXd s;  ///< arc lengths of the nodes: grips, loads and others between them
+  /// Cross-sections at the nodes; m and n are those just after the node.
+  std::vector<RodState> nodes;
+  Energies energy;  ///< gravity and loads are zero if their points are at the problem's first grip
+  std::vector<double> turns;  ///< int u_3 ds of each interval [rad]
+  ClampFrames frames;         ///< frames that its clamps hold
+  RodContacts contacts;       ///< contacts
+  SecondVariation stability;  ///< second variation of a converged equilibrium
 
   [[nodiscard]] bool stable() const { return converged && stability.stable(); }
 };
 
-/// Growth of errors over an interval, its length times bending_force^(1/2), that is too much.
+/// Largest growth exponent of errors over an interval: its length times bending_force()^(1/2).
 inline constexpr double largest_growth = 3;
 
-/// The length of its longest interval.
+/// Returns the length of the longest interval.
 [[nodiscard]] double longest_of(const RodMesh& mesh);
 
-/// The nodes to which Newton's method leads from a start (shooting_system.hpp), without a look at
-/// energies and stability. Frames that are held at both ends of a round rod are rotated by many
-/// turns, and its shape slides for nearly nothing: close_gaps.hpp says how it steps then.
-/// @param start  one for each node of the mesh
+/// Solves for the nodes by Newton's method from an initial guess (shooting_system.hpp), without
+/// energies and stability. If frames are held at both ends of a round rod, they are rotated by many
+/// turns, and its shape has nearly zero modes; close_gaps.hpp describes the steps then.
+/// @param start  cross-sections, one for each node of the mesh
 [[nodiscard]] SpanEquilibrium close_span(const RodSpan& span, const RodMesh& mesh,
                                          const std::vector<RodState>& start,
                                          const ClampFrames& frames, const ShootingOptions& options);
 
-/// Newton's method from a start, on a finer mesh once more if what bends the rod turns out to be
-/// large; energies and stability of where it leads.
+/// Solves by Newton's method from an initial guess, and again on a finer mesh if the force that
+/// bends the rod turns out to be large for the mesh. Computes energies and stability of the result.
 [[nodiscard]] SpanEquilibrium shoot_span(const RodSpan& span, RodMesh mesh,
                                          std::vector<RodState> start, const ClampFrames& frames,
                                          const ShootingOptions& options);
 
-/// The mesh on which it has been closed.
+/// Returns the mesh of the equilibrium, with its contacts.
 [[nodiscard]] RodMesh closed_mesh(const RodSpan& span, const SpanEquilibrium& equilibrium);
 
-/// Energies of an equilibrium that close_span() has found, and its stability if the span's loads
+/// Computes the energies of an equilibrium of close_span(), and its stability if the span's loads
 /// have a potential.
 void complete(const RodSpan& span, double tolerance, SpanEquilibrium& equilibrium);
 
-/// Looks at the second variation of an equilibrium.
-/// @param tolerance  of the integrator
+/// Computes the second variation of an equilibrium.
+/// @param tolerance  local error of the integrator
 void judge_stability(const RodSpan& span, double tolerance, SpanEquilibrium& equilibrium);
 
-/// What bends a rod over lengths of one over its root: the largest |n| / b, (|m| / b)^2 and square
-/// of a natural strain.
+/// Returns the force over b that determines the length 1 / force^(1/2) over which a rod bends: the
+/// largest of 1, |n| / b, (|m| / b)^2 and the square of a natural strain.
 [[nodiscard]] double bending_force(const RodSpan& span, const std::vector<RodState>& states);
 
-/// The cross-sections at arc lengths that grow; NaN if the integrator gave up.
+/// Returns the cross-sections at growing arc lengths; NaN if the integrator failed.
 [[nodiscard]] std::vector<RodState> states_at(const SpanEquilibrium& equilibrium,
                                               const RodSpan& span, const std::vector<double>& s,
                                               double tolerance);
 
-/// Frames for states whose tangents, moments and forces are known, one for each node: they follow
-/// that of the first clamp, or any if there is none, from node to node by the rod's equations and
-/// by the shortest rotation to the next tangent.
+/// Computes frames for states with known tangents, moments and forces, one for each node. They
+/// start from that of the first clamp, or an arbitrary one without a clamp, and are continued from
+/// node to node by the rod's equations and the shortest rotation to the next tangent.
 void carry_frames(const RodSpan& span, const RodMesh& mesh, double tolerance,
                   std::vector<RodState>& states);
 

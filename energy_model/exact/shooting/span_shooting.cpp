@@ -16,20 +16,21 @@ namespace {
 
 using Eigen::Quaterniond;
 
-constexpr double in_plane = 1e-6;         // of directors
-constexpr double same_directors = 1e-6;   // of two equilibria
-constexpr std::size_t most_descents = 6;  // polygons that are shot from if one leads to a minimum
-constexpr std::size_t most_without_minimum = 16;  // and while none does
-constexpr int most_saddles_left = 8;              // saddles that are left
+constexpr double in_plane = 1e-6;         // component of directors across the plane
+constexpr double same_directors = 1e-6;   // difference of directors of two equal equilibria
+constexpr std::size_t most_descents = 6;  // polygons to shoot from if one converges to a minimum
+constexpr std::size_t most_without_minimum = 16;  // polygons to shoot from while none does
+constexpr int most_saddles_left = 8;              // saddles to leave
 constexpr double departure = 0.3;                 // largest spin when a saddle is left [rad]
-constexpr int finer_polygons = 2;                 // after a shot that has failed
-constexpr Eigen::Index most_intervals = 1000;     // of a polygon that is made finer
-constexpr int search_iterations = 30;     // of Newton's method, which takes 6 to 12 near a minimum
-constexpr double start_tolerance = 1e-6;  // of the integrator along a polygon
-constexpr double polygons_share = 0.5;    // of the time that is left
-constexpr double most_bend = 0.3;         // of a stress-free polygon at a node [rad]
+constexpr int finer_polygons = 2;  // number of finer polygons after a shot that has failed
+constexpr Eigen::Index most_intervals = 1000;  // of a polygon on a finer mesh
+constexpr int search_iterations = 30;     // of Newton's method, which needs 6 to 12 near a minimum
+constexpr double start_tolerance = 1e-6;  // local error of the integrator along a polygon
+constexpr double polygons_share = 0.5;    // share of the remaining time for polygons
+constexpr double most_bend = 0.3;         // rotation of a stress-free polygon at a node [rad]
 
-/// The frames of a round rod without twist are any: its tangents count.
+/// Whether two equilibria are equal. The frames of a round rod without twist are arbitrary, so that
+/// only its tangents are compared.
 bool same(const RodSpan& span, const SpanEquilibrium& a, const SpanEquilibrium& b) {
   constexpr double coarse = 1e-10;
   const Eigen::VectorXd probes = Eigen::VectorXd::LinSpaced(33, 0, span.length);
@@ -45,7 +46,7 @@ bool same(const RodSpan& span, const SpanEquilibrium& a, const SpanEquilibrium& 
   return distance < same_directors;
 }
 
-/// What search_span() has found so far, of a span whose frames are released.
+/// Search of search_span() for a span whose frames are released, with the equilibria found so far.
 class SpanSearch {
  public:
   SpanSearch(const RodSpan& span, double tolerance, const Deadline& deadline)
@@ -82,7 +83,8 @@ class SpanSearch {
     SpanEquilibrium equilibrium =
         shoot_span(span_, mesh, std::move(start), released_frames(span_),
                    {.tolerance = tolerance_,
-                    // What keeps material directors in the plane is looked at like all else.
+                    // Whether material directors stay in the plane is decided by a solution in
+                    // space.
                     .motion = span_.round() ? polygon.motion : Motion::in_space,
                     .max_iterations = search_iterations,
                     .deadline = deadline_});
@@ -100,7 +102,7 @@ class SpanSearch {
       polygon = relax_on(span_, finer, mesh, polygon, deadline_);
       mesh = std::move(finer);
     };
-    // Under a large reaction the coarse polygon is not near enough.
+    // Under a large reaction the coarse polygon is not accurate enough.
     const double force = polygon.force.colwise().norm().maxCoeff() / least_bending_stiffness(span_);
     const double resolved = std::max(1 / std::sqrt(std::max(force, 1.0)),
                                      span_.length / static_cast<double>(most_intervals));
@@ -121,9 +123,9 @@ class SpanSearch {
     if (!known) found_.push_back(std::move(equilibrium));
   }
 
-  /// An unstable equilibrium below all stable ones shows that a minimum has been missed.
+  /// Leaves unstable equilibria below all stable ones, which show that a minimum has been missed.
   void leave_saddles() {
-    std::vector<double> energies;  // of those that have been left
+    std::vector<double> energies;  // energies of the saddles that have been left
     for (int i = 0; i < most_saddles_left && !deadline_.passed(); ++i) {
       const SpanEquilibrium* lowest = missed_minimum(found_, energies);
       if (lowest == nullptr) return;
@@ -133,7 +135,7 @@ class SpanSearch {
     }
   }
 
-  /// Relaxes the polygon from beside a saddle.
+  /// Relaxes the polygon from beside a saddle, and shoots from it.
   void leave(const SpanEquilibrium& saddle, double amplitude) {
     if (saddle.stability.s.size() == 0) return;
     const Eigen::VectorXd middles =
@@ -151,7 +153,8 @@ class SpanSearch {
     descend(relax_polygon(span_, mesh_, frames, motion, deadline_));
   }
 
-  /// From beside a saddle a polygon may come back to it, which the gradient flow does not.
+  /// Follows the gradient flow from the lowest saddle if no stable equilibrium is found. A polygon
+  /// may return to the saddle, but the gradient flow does not.
   void flow_from_saddle() {
     if (found_.empty() || std::isfinite(lowest_stable_energy(found_))) return;
     sort_by_stability(found_);
@@ -177,7 +180,7 @@ class SpanSearch {
   int shots_ = 0;
 };
 
-/// Whether grips hold a part of it no nearer than that is long.
+/// Whether two neighbouring grips are at least as far apart as the rod between them is long.
 bool is_pulled_straight(const RodSpan& span) {
   for (std::size_t i = 0; i + 1 < span.holds.size(); ++i) {
     const RodSpan::Hold& a = span.holds[i];
@@ -188,7 +191,7 @@ bool is_pulled_straight(const RodSpan& span) {
   return false;
 }
 
-/// A rod that stretches, from lines between its grips, of which there are two or more, and beyond.
+/// Solves for a rod that stretches, from straight lines between its two or more grips and beyond.
 SpanEquilibrium shoot_from_lines(const RodSpan& span, double tolerance, const Deadline& deadline) {
   const std::vector<RodSpan::Hold>& holds = span.holds;
   const double yields = span.parts.front().section.stretch;
@@ -221,13 +224,14 @@ SpanEquilibrium shoot_from_lines(const RodSpan& span, double tolerance, const De
                     {.tolerance = tolerance, .deadline = deadline});
 }
 
-/// The span with a share of its stretch.
+/// Returns the span with a share of its stretch.
 RodSpan stretching(RodSpan span, double share) {
   for (RodSpan::Part& part : span.parts) part.section.stretch *= share;
   return span;
 }
 
-/// From an equilibrium of the span that does not stretch, by continuation in the stretch.
+/// Continues an equilibrium of the inextensible span to the span that stretches, by continuation in
+/// the stretch.
 SpanEquilibrium let_stretch(const RodSpan& span, SpanEquilibrium rigid, double tolerance,
                             const Deadline& deadline) {
   constexpr double least_step = 1.0 / 256;
@@ -261,7 +265,7 @@ SpanSearchResult search_released(const RodSpan& span, double tolerance, const De
   for (SpanEquilibrium& found : search.found) {
     found = let_stretch(span, std::move(found), tolerance, deadline);
   }
-  // What would have to bend may be pressed instead.
+  // A rod that would have to bend may be compressed instead.
   if (span.holds.size() > 1) {
     SpanEquilibrium pressed = shoot_from_lines(span, tolerance, deadline);
     const bool known = std::ranges::any_of(search.found, [&](const SpanEquilibrium& other) {

@@ -8,29 +8,31 @@
 
 namespace dlo::energy_model {
 
-/// What a search has found, and whether it came to its end.
+/// Result of a search for equilibria of a span.
 struct SpanSearchResult {
   std::vector<SpanEquilibrium> found;  ///< stable ones first, by energy; never empty
-  bool complete = true;                ///< false: the deadline has cut it short
+  bool complete = true;                ///< false: the deadline ended the search early
 };
 
-/// Equilibria that Newton's method finds from the minima of polygons (relaxed_polygon.hpp), in the
-/// span's plane and out of it: from the six lowest ones, from ten more while none of what they led
-/// to is stable. Where a polygon's force is large for its mesh, or Newton's method does not
-/// converge, it is relaxed again on a finer one. What is unstable and lower than all that is stable
-/// is left both ways along the mode of its smallest eigenvalue, and the polygon is relaxed from
-/// there; if nothing is stable then, the gradient flow leads on from the lowest one. If nothing is
-/// found, one that has failed.
-///
-/// Frames after the first clamp are released for that. From the lowest equilibrium on they are then
-/// turned to where they are held (span_twist.hpp): one equilibrium then, or one that has failed.
+/// Finds equilibria by Newton's method from the minima of polygons (relaxed_polygon.hpp), in the
+/// span's plane and out of it: from the six lowest ones, and from ten more while none of the
+/// results is stable. If a polygon's force is large for its mesh, or Newton's method does not
+/// converge, the polygon is relaxed again on a finer mesh. An unstable equilibrium below all stable
+/// ones is left in both directions along the mode of its smallest eigenvalue, and the polygon is
+/// relaxed from there. If nothing is stable then, the gradient flow starts from the lowest
+/// equilibrium. If nothing is found, a failed result is returned.
+/// Frames after the first clamp are released for this search. If clamps hold frames, those of the
+/// lowest equilibrium are then rotated to the held ones (span_twist.hpp); the result is then one
+/// equilibrium, or a failed one.
 [[nodiscard]] SpanSearchResult search_span(const RodSpan& span, double tolerance,
                                            const Deadline& deadline);
 
-/// Intervals that resolve what a force over b and the natural strains bend.
+/// Returns the length of intervals that resolves the bends by a force over b and by the natural
+/// strains.
 [[nodiscard]] double resolving_interval(const RodSpan& span, double force);
 
-/// @throws std::invalid_argument if weight and loads are too large for the softest section
+/// Checks that weight and loads are not too large for the softest section.
+/// @throws std::invalid_argument if they are
 void check_load(const RodSpan& span);
 
 }  // namespace dlo::energy_model

@@ -18,16 +18,16 @@ namespace {
 constexpr double first_step = 0.5;          // of the roll [rad]
 constexpr double longest_twist_step = 3;    // [rad]
 constexpr double shortest_step = 1.0 / 64;  // [rad]
-constexpr int few_shots = 12;               // Newton's method takes two an iteration
+constexpr int few_shots = 12;  // shots of a fast step; Newton's method needs two per iteration
 constexpr int step_iterations = 12;       // of Newton's method: more are slower than a shorter step
-constexpr double most_turn = 0.5;         // of a tangent in a step [rad]
-constexpr double most_correction = 0.15;  // of a predicted tangent [rad]
+constexpr double most_turn = 0.5;         // rotation of a tangent in a step [rad]
+constexpr double most_correction = 0.15;  // error of a predicted tangent [rad]
 
 double largest_change(const std::vector<RodState>& a, const std::vector<RodState>& b) {
   return (tangents_of(a) - tangents_of(b)).colwise().norm().maxCoeff();
 }
 
-/// A span on its way from no roll of its frames to all of it.
+/// Continuation of a span from no roll of its frames to the full roll.
 class Continuation {
  public:
   Continuation(const RodSpan& span, double tolerance, const Deadline& deadline)
@@ -37,7 +37,7 @@ class Continuation {
     now_ = without;
     shots_ = without.shots;
     find_targets();
-    // The frames are held: what turns them costs twist.
+    // With the frames held, rotating them needs energy, so that stability has to be judged again.
     now_.frames = frames(0);
     judge_stability(span_, tolerance_, now_);
     if (now_.converged && !now_.stable()) now_ = leave_saddle(span_, now_, options());
@@ -52,7 +52,7 @@ class Continuation {
         continue;
       }
       if (!before_.nodes.empty()) {
-        before_ = {};  // a shape that has slid for nearly nothing spoils the secant
+        before_ = {};  // the secant is spoiled if the shape has moved along a nearly zero mode
         continue;
       }
       if (step > shortest_step) {
@@ -67,7 +67,7 @@ class Continuation {
   }
 
  private:
-  /// Rolls of the frames from where the shape without them has them.
+  /// Computes the rolls of the frames, measured from the frames of the shape that ignores them.
   void find_targets() {
     const auto sample = [this](std::span<const double> at) {
       Samples samples = sized_samples(at, span_.length);
@@ -84,7 +84,7 @@ class Continuation {
       targets_.push_back(0);
       if (!clamp.frame) continue;
       const auto& [d1, turns] = *clamp.frame;
-      // From the frame that the rod without rolls would have there.
+      // The angle is measured from the frame that the rod without rolls would have there.
       const Eigen::Matrix3d ahead_of = rolled(released_.back(), -span_.first_roll);
       const double ahead = std::atan2(ahead_of.col(1).dot(d1), ahead_of.col(0).dot(d1));
       const double first = span_.clamps.front().at;
@@ -95,7 +95,7 @@ class Continuation {
     }
   }
 
-  /// Rotation of the frames about the tangent of the shape without rolls [rad].
+  /// Returns the rotation of the frames about the tangents of the shape without rolls [rad].
   [[nodiscard]] double twist_between(double begin, double end) const {
     constexpr int points = 512;
     std::vector<double> at;
@@ -116,7 +116,7 @@ class Continuation {
     return {.tolerance = tolerance_, .max_iterations = step_iterations, .deadline = deadline_};
   }
 
-  /// Those whose widest roll is this.
+  /// Returns the frames for which the largest roll is `roll` [rad].
   [[nodiscard]] ClampFrames frames(double roll) const {
     ClampFrames held = released_frames(span_);
     for (std::size_t k = 0; k < held.size(); ++k) {
@@ -134,7 +134,7 @@ class Continuation {
     return failed;
   }
 
-  /// The secant through the last two shapes, or the last one.
+  /// Returns the secant through the last two shapes, or the last shape if there is only one.
   [[nodiscard]] std::vector<RodState> predicted(double next) const {
     std::vector<RodState> nodes = now_.nodes;
     if (before_.nodes.empty()) return nodes;
@@ -146,7 +146,8 @@ class Continuation {
       node.r += part * (node.r - before[i].r);
       node.m += part * (node.m - before[i].m);
       node.n += part * (node.n - before[i].n);
-      // The frame rotates around the tangent by many times what tangents turn, on a circle.
+      // The frame rotates about the tangent by many times the angle of the tangents, so that it is
+      // extrapolated on a circle.
       const Eigen::Vector3d t = node.t();
       const Eigen::Matrix3d old = transported(before[i].R, t);
       const double turn = std::atan2(old.col(1).dot(node.R.col(0)), old.col(0).dot(node.R.col(0)));
@@ -156,8 +157,8 @@ class Continuation {
     return nodes;
   }
 
-  /// One step by Newton's method.
-  /// @return by how much the next one may be longer; 0 if this one has to be shorter
+  /// Takes one step by Newton's method.
+  /// @return factor for the next step size; 0 if this step has to be shorter
   double advance(double next) {
     const std::vector<RodState> start = predicted(next);
     const RodMesh mesh = mesh_at(span_, now_.s);
@@ -179,11 +180,11 @@ class Continuation {
     problem_ = left.message;
     if (!left.converged) return 0;
     accept(next, std::move(left));
-    before_ = {};  // a secant across a jump leads nowhere
+    before_ = {};  // a secant across a branch jump is useless
     return 1;
   }
 
-  /// The gradient flow at a roll beyond the end of the branch.
+  /// Follows the gradient flow at a roll beyond the end of the branch.
   bool fall(double next) {
     const RodMesh mesh = mesh_at(span_, now_.s);
     SpanEquilibrium found =
@@ -204,13 +205,13 @@ class Continuation {
   const RodSpan& span_;
   double tolerance_;
   Deadline deadline_;
-  std::vector<Eigen::Matrix3d> released_;  // frames at the clamps that are not turned
-  std::vector<double> targets_;            // rolls [rad]
-  double target_ = 0;                      // the widest of them [rad]
+  std::vector<Eigen::Matrix3d> released_;  // frames at the clamps before their rotation
+  std::vector<double> targets_;            // roll of each frame [rad]
+  double target_ = 0;                      // largest roll [rad]
   double reached_ = 0;
   double reached_before_ = 0;
   SpanEquilibrium now_;
-  SpanEquilibrium before_;  // without nodes: no secant
+  SpanEquilibrium before_;  // last but one shape; without nodes: no secant
   std::string problem_;
   int shots_ = 0;
 };

@@ -16,14 +16,16 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double confirmed_depth = 1e-9;     // in l; a tenth of what a converged shape may have
-constexpr double allowed_pull = 1e-7;        // of forces, over 1 + the largest one
-constexpr int samples = 8;                   // at an interval, for pressures
-constexpr double least_halved_width = 1e-9;  // in l: no point within it is deeper by more than this
+constexpr double confirmed_depth = 1e-9;  // in l; a tenth of what a converged shape may have
+constexpr double allowed_pull = 1e-7;     // tensile contact force, divided by 1 + the largest force
+constexpr int samples = 8;                // number of parts of an interval, for pressures
+// In l: no point within a part of this width is deeper by more than this.
+constexpr double least_halved_width = 1e-9;
 constexpr const char* integration_failed =
     "the rod between its nodes is not known: the integrator failed";
 
-/// A rod in contact that Newton's method has closed, in its own units, and what its contacts do.
+/// A rod in contact that Newton's method has closed, in its own units, with the forces of its
+/// contacts.
 class ClosedRod {
  public:
   ClosedRod(const Problem& problem, const ContactStart& start, const SpanEquilibrium& closed,
@@ -57,7 +59,7 @@ class ClosedRod {
     }
   }
 
-  /// Empty: none.
+  /// Returns the reason why the contacts are not confirmed; empty: they are.
   [[nodiscard]] std::string objection(Equilibrium& result) const {
     double largest = 1 + total_load(start_.span);
     for (const Reaction& grip : result.grips) {
@@ -94,7 +96,7 @@ class ClosedRod {
     return section_at(start_.span, (closed_.s[i] + closed_.s[i + 1]) / 2);
   }
 
-  /// A part of the rod between two cross-sections.
+  /// Part of the rod between two cross-sections.
   struct Part {
     double s = 0;
     double width = 0;
@@ -152,7 +154,7 @@ class ClosedRod {
     return begin.value + begin_slope * std::clamp(x, 0.0, part.width);
   }
 
-  /// Cross-sections of an interval, those at its ends as they are within it.
+  /// Returns cross-sections of an interval; those at its ends are limits from within it.
   [[nodiscard]] std::vector<RodState> along(Eigen::Index i) const {
     std::vector<RodState> states = {closed_.nodes[static_cast<std::size_t>(i)]};
     const double width = (closed_.s[i + 1] - closed_.s[i]) / samples;
@@ -182,8 +184,8 @@ class ClosedRod {
     return closed_.nodes[static_cast<std::size_t>(node)].r;
   }
 
-  /// Of an interval that lies: what of n its weight does not take; the moment about a point by
-  /// Boole's rule.
+  /// Adds the pressure on an interval that lies. The force is the part of the change of n that the
+  /// weight does not cause; the moment about a point is integrated by Boole's rule.
   void add_pressure(Eigen::Index i, const Eigen::Vector3d& about, ContactPart& part) const {
     constexpr std::array<double, samples + 1> boole = {7, 32, 12, 32, 14, 32, 12, 32, 7};
     const std::vector<RodState> states = along(i);

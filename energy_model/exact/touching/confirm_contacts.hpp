@@ -8,13 +8,14 @@
 
 namespace dlo::energy_model {
 
-/// The equilibrium next to a shape that says which parts of the rod touch which obstacles: of a rod
-/// that is intrinsically straight, held by any grips, on rigid bodies of any form. Whether it is
-/// one is judged here: gaps, forces and pressures of the right sign, a positive second variation.
-/// @param shape      of this problem or of a similar one, with its grips' reactions and contacts
-/// @param tolerance  of the integrator
-/// @return nothing where the problem is another one or the rod touches as it is not known here: it
-///         lies on both sides of a grip, or next to where it lies elsewhere
+/// Returns the equilibrium near a shape that states which parts of the rod touch which obstacles,
+/// for an intrinsically straight rod with any grips on rigid bodies of any shape. The result is
+/// verified here: gaps, forces and pressures of the right sign, and a positive second variation.
+/// @param shape      shape of this problem or of a similar one, with the reactions of its grips and
+///               its contacts
+/// @param tolerance  local error of the integrator
+/// @return std::nullopt for another kind of problem, and for contacts that are not supported: on
+/// both sides of a grip, or next to another part that lies
 [[nodiscard]] std::optional<Equilibrium> confirm_contacts(const Problem& problem,
                                                           const Equilibrium& shape,
                                                           double tolerance,

@@ -15,9 +15,10 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double same_place = 1e-9;       // of arc lengths, in l
-constexpr double growth_of_interval = 3;  // its length times the root of the force that bends
-constexpr double twist_step = 1e-4;       // over which d1's turn is measured, in l
+constexpr double same_place = 1e-9;  // difference of equal arc lengths, in l
+// Length of an interval times the square root of the force that bends.
+constexpr double growth_of_interval = 3;
+constexpr double twist_step = 1e-4;  // distance over which the rotation of d1 is measured, in l
 
 class Layout {
  public:
@@ -46,7 +47,8 @@ class Layout {
   }
 
  private:
-  /// Next to an end, a grip, a load or a part of the rod it is there.
+  /// Returns the arc length of an end, a grip, a load or a part of the rod if `s` is equal to it up
+  /// to rounding; else `s`.
   [[nodiscard]] double snapped(double s) const {
     std::vector<double> fixed = {0, start_.span.length};
     for (const RodSpan::Hold& hold : start_.span.holds) fixed.push_back(hold.at);
@@ -108,7 +110,8 @@ class Layout {
                                   &RodContact::node);
   }
 
-  /// A node where contact ends and a force may be. @return nothing at a grip
+  /// Adds a node at which contact ends and a force may act. @return its index; std::nullopt at a
+  /// grip
   std::optional<std::size_t> add_end(Eigen::Index node, double force) {
     if (start_.mesh.hold[static_cast<std::size_t>(node)] != nullptr) return std::nullopt;
     RodContact contact;
@@ -119,7 +122,8 @@ class Layout {
     return start_.mesh.contacts.nodes.size() - 1;
   }
 
-  /// Nothing else happens within what lies, nor is it next to where the rod lies elsewhere.
+  /// Whether no grip, load or part is within a part that lies, and no such part is adjacent to
+  /// another one.
   [[nodiscard]] bool lies_alone() const {
     for (const PlacedContact& contact : start_.contacts) {
       for (Eigen::Index i = contact.begin + 1; i < contact.end; ++i) {
@@ -136,7 +140,7 @@ class Layout {
     return (sample.points.col(0) - problem_.grips.front().position) / l_;
   }
 
-  /// Strain about the tangent at s, of a shape that has a d1.
+  /// Returns the strain about the tangent at s, for a shape with d1.
   [[nodiscard]] double twist_at(double s) const {
     const double from = std::max(0.0, s - twist_step);
     const double to = std::min(1.0, s + twist_step);
@@ -155,7 +159,7 @@ class Layout {
 
   void sample() {
     const bool directors = has_material_directors(problem_);
-    // Just after the nodes, where curvature may jump.
+    // The shape is sampled just after the nodes, at which its curvature may jump.
     std::vector<double> after;
     for (const double s : start_.mesh.s) after.push_back(std::min(s + same_place, 1.0) * l_);
     const Samples at = shape_.sample(after);
@@ -178,7 +182,8 @@ class Layout {
     }
   }
 
-  /// n just after a node, of what the shape's grips, contacts and loads exert before.
+  /// Returns n just after a node, from the actions of the shape's grips, contacts and loads before
+  /// it.
   [[nodiscard]] Eigen::Vector3d force_after(Eigen::Index node) const {
     Eigen::Vector3d force = implied_force(problem_, shape_, start_.mesh.s[node]);
     for (const PlacedContact& contact : start_.contacts) {
@@ -187,8 +192,8 @@ class Layout {
     return force;
   }
 
-  /// Of what lies the force is the surface's: across it at its begin as it has to be, pressed from
-  /// there on.
+  /// Sets n of parts that lie. At the begin its component across the surface follows from the lying
+  /// conditions; from there on the pressure of the surface is integrated.
   [[nodiscard]] bool press(double tolerance) {
     for (const PlacedContact& contact : start_.contacts) {
       for (Eigen::Index i = contact.begin; i < contact.end; ++i) {

@@ -12,28 +12,31 @@
 
 namespace dlo::energy_model {
 
-/// Where a contact of a shape stands in a mesh.
+/// Position of a contact of a shape in a mesh.
 struct PlacedContact {
   ContactPart part;
-  Eigen::Index begin = 0;                  ///< node; of what lies the first one
-  Eigen::Index end = 0;                    ///< node
-  std::optional<std::size_t> begin_force;  ///< of RodContacts::nodes; none: a grip's
-  std::optional<std::size_t> end_force;    ///< the same; of a point none
+  Eigen::Index begin = 0;  ///< node; of a part that lies the first one
+  Eigen::Index end = 0;    ///< node; of a part that lies the last one
+  /// Index in RodContacts::nodes; none: a grip carries the force.
+  std::optional<std::size_t> begin_force;
+  /// Index in RodContacts::nodes for the end of a part that lies; none: a grip carries the force,
+  /// or contact at a point.
+  std::optional<std::size_t> end_force;
 };
 
-/// The whole rod in its own units, and cross-sections from which to shoot.
+/// The whole rod in its own units, with initial cross-sections for shooting.
 struct ContactStart {
   RodSpan span;
-  RodMesh mesh;  ///< of that span
+  RodMesh mesh;  ///< mesh of `span`
   ClampFrames frames;
   std::vector<RodState> states;
   std::vector<PlacedContact> contacts;
   std::vector<obstacle::Body> bodies;
 };
 
-/// From a shape that says which parts of the rod touch which obstacles.
-/// @return nothing where that is not known here: the rod lies on both sides of a grip, or next to
-///         where it lies elsewhere, or something else acts on what lies
+/// Creates an initial guess from a shape that states which parts of the rod touch which obstacles.
+/// @return std::nullopt for contacts that are not supported: on both sides of a grip, next to
+/// another part that lies, or with another action on a part that lies
 [[nodiscard]] std::optional<ContactStart> start_with_contacts(const Problem& problem,
                                                               const Equilibrium& shape,
                                                               double tolerance);
