@@ -14,17 +14,19 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double first_load_step = 0.125;  // share of the loads
-// Share of the loads; a continuation with shorter steps fails.
+constexpr double first_load_step = 0.125;  // first step, as a share of the loads
+// Shortest step, as a share of the loads; below it the continuation fails.
 constexpr double least_load_step = 1e-4;
-constexpr double longest_load_step = 0.5;  // share of the loads; at least two steps are taken
+// Longest step, as a share of the loads: at least two steps are taken.
+constexpr double longest_load_step = 0.5;
 // Largest rotation of a tangent from its prediction [rad].
 constexpr double largest_correction = 0.5;
 // Rotation from the prediction after which the next step is twice as long [rad].
 constexpr double small_correction = 0.1;
-// Local error of the integrator before all loads are applied.
+// Local error of the integrator before the full loads are applied.
 constexpr double path_tolerance = 1e-10;
-constexpr int path_iterations = 12;  // of Newton's method, which starts near a solution
+// Maximum number of Newton iterations; the method starts near a solution.
+constexpr int path_iterations = 12;
 
 /// A point of the solution branch.
 struct Loaded {

@@ -21,11 +21,11 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr int most_shots = 20000;  // of a scan
-constexpr int deepest_cell = 6;    // halvings of a cell of the scan
-// Error of the cubic in a cell, divided by the residual there.
+constexpr int most_shots = 20000;  // maximum number of shots of a scan
+constexpr int deepest_cell = 6;    // maximum number of halvings of a cell of the scan
+// Allowed error of the cubic in a cell, divided by the residual there.
 constexpr double cell_resolved = 0.02;
-constexpr double double_root = 1e-11;  // of the residual: rounding of a shot
+constexpr double double_root = 1e-11;  // residual of a double root: rounding error of a shot
 
 /// Tip angle of a shot, its residual at the clamp, and the derivative of the residual by the tip
 /// angle.

@@ -32,7 +32,7 @@ enum TipComponent : std::size_t {
 };
 using TipState = std::array<double, components_and_changes>;
 
-constexpr int most_shot_steps = 100000;  // of the integrator in one shot
+constexpr int most_shot_steps = 100000;  // maximum number of integrator steps in a shot
 
 struct TipSection {
   Eigen::Vector2d weight;

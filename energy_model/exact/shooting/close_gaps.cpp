@@ -18,7 +18,7 @@ constexpr double least_newton_part = 1e-3;  // smallest accepted share of a Newt
 constexpr double last_newton_step = 1e-9;
 // Size of the gaps of a twisted rod below which steps along nearly zero modes are suppressed.
 constexpr double nearly_closed = 0.1;
-// Of Levenberg's method: its square root is far above rounding.
+// Smallest weight of Levenberg's method; its square root is far above rounding.
 constexpr double least_weight = 1e-12;
 
 /// Largest number of unknowns for a Levenberg step. Each of its rows for the weight stays in all

@@ -11,19 +11,20 @@ namespace dlo::energy_model {
 namespace {
 
 constexpr int most_flow_steps = 200;
-constexpr int flow_iterations = 10;  // of Newton's method, which starts near a solution
-// Of a step, in the rod's units: the rod bends in about 1 / 40.
+// Maximum number of Newton iterations; the method starts near a solution.
+constexpr int flow_iterations = 10;
+// Duration of the first step, in the rod's units: the rod bends in about 1 / 40.
 constexpr double first_duration = 0.01;
-constexpr double shortest = 1e-8;       // duration of a step
-constexpr double longest = 1e8;         // duration of a step
-constexpr double most_flow_turn = 0.4;  // rotation of a tangent in one step [rad]
+constexpr double shortest = 1e-8;       // duration of the shortest step
+constexpr double longest = 1e8;         // duration of the longest step
+constexpr double most_flow_turn = 0.4;  // largest rotation of a tangent in one step [rad]
 constexpr double small_turn = 0.1;  // rotation in a step below which the next step is longer [rad]
 // Rotation in a step of at least settled_duration at which the flow ends [rad].
 constexpr double settled_turn = 3e-3;
 constexpr double settled_duration = 0.1;  // several times the relaxation time of most modes
 constexpr double flow_departure = 0.1;    // largest change of a tangent when a saddle is left [rad]
 constexpr int most_flow_departures = 6;
-// Of constant duration: a failed step costs as much as ten others.
+// Steps of constant duration after a failed one, which costs as much as ten others.
 constexpr int steps_after_failure = 3;
 
 /// Returns the largest change of a tangent; for a rod that is not round also of d1.

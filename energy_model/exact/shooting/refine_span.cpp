@@ -13,8 +13,9 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double largest_force = 1e6;    // force over b that the first mesh resolves
-constexpr double plane_of_start = 1e-6;  // component of tangents across a plane
+constexpr double largest_force = 1e6;  // largest force over b that the first mesh resolves
+// Largest component across the plane of tangents of a planar shape.
+constexpr double plane_of_start = 1e-6;
 
 /// Returns the twist that a shape has for a span whose clamps hold frames; null if it has none.
 const TwistedPart* twist_of(const RodSpan& span, const Problem& problem, const Equilibrium& shape) {
@@ -62,7 +63,7 @@ std::vector<RodState> states_by_curvature(const RodSpan& span, const Problem& pr
 /// Returns states of a whole rod: the moment is the sum of the actions of its grips.
 std::vector<RodState> states_by_balance(const RodSpan& span, const Problem& problem,
                                         const Equilibrium& shape, const RodMesh& mesh) {
-  constexpr Eigen::Index parts = 8;  // of an interval
+  constexpr Eigen::Index parts = 8;  // parts per interval for the integration of moments
   const Eigen::Index count = parts * mesh.intervals();
   Eigen::VectorXd s(count + 1);
   for (Eigen::Index k = 0; k <= count; ++k) {

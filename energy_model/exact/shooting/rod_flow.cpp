@@ -19,7 +19,7 @@ constexpr Eigen::Index variation_size = 9;
 
 struct FlowPiece {
   const RodPiece* rod;
-  Eigen::Vector3d n;  // at its begin, without the force of a surface
+  Eigen::Vector3d n;  // inner force at the begin, without the force of a surface or of drag
   const RodVariation* variation;
 
   [[nodiscard]] bool has_impulse() const {

@@ -61,7 +61,7 @@ struct RodPiece {
 /// Derivatives of a cross-section by the arc length at the begin of a piece.
 struct RodRate {
   Eigen::Vector3d r;
-  Eigen::Vector3d spin;  ///< of R: R' = spin x R
+  Eigen::Vector3d spin;  ///< spin of R: R' = spin x R
   Eigen::Vector3d m;
   Eigen::Vector3d n;
 };

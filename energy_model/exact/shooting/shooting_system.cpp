@@ -11,7 +11,7 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double largest_turn = 0.5;  // rotation of a tangent in one Newton step [rad]
+constexpr double largest_turn = 0.5;  // largest rotation of a tangent in one Newton step [rad]
 // Largest step of a contact, divided by the distance of its neighbouring fixed nodes or contacts.
 constexpr double longest_share = 0.3;
 

@@ -16,18 +16,23 @@ namespace {
 
 using Eigen::Quaterniond;
 
-constexpr double in_plane = 1e-6;         // component of directors across the plane
-constexpr double same_directors = 1e-6;   // difference of directors of two equal equilibria
-constexpr std::size_t most_descents = 6;  // polygons to shoot from if one converges to a minimum
-constexpr std::size_t most_without_minimum = 16;  // polygons to shoot from while none does
-constexpr int most_saddles_left = 8;              // saddles to leave
-constexpr double departure = 0.3;                 // largest spin when a saddle is left [rad]
-constexpr int finer_polygons = 2;  // number of finer polygons after a shot that has failed
-constexpr Eigen::Index most_intervals = 1000;  // of a polygon on a finer mesh
-constexpr int search_iterations = 30;     // of Newton's method, which needs 6 to 12 near a minimum
+// Largest component of directors across the plane of planar frames.
+constexpr double in_plane = 1e-6;
+constexpr double same_directors = 1e-6;  // largest difference of directors of two equal equilibria
+// Maximum number of polygons to shoot from if one converges to a minimum.
+constexpr std::size_t most_descents = 6;
+// Maximum number of polygons to shoot from while none converges to a minimum.
+constexpr std::size_t most_without_minimum = 16;
+constexpr int most_saddles_left = 8;  // maximum number of saddles to leave
+constexpr double departure = 0.3;     // largest spin when a saddle is left [rad]
+constexpr int finer_polygons = 2;     // number of finer polygons after a shot that has failed
+// Maximum number of intervals of a polygon on a finer mesh.
+constexpr Eigen::Index most_intervals = 1000;
+// Maximum number of Newton iterations; 6 to 12 are usual near a minimum.
+constexpr int search_iterations = 30;
 constexpr double start_tolerance = 1e-6;  // local error of the integrator along a polygon
-constexpr double polygons_share = 0.5;    // share of the remaining time for polygons
-constexpr double most_bend = 0.3;         // rotation of a stress-free polygon at a node [rad]
+constexpr double polygons_share = 0.5;    // share of the remaining time for relaxing polygons
+constexpr double most_bend = 0.3;  // largest rotation of a stress-free polygon at a node [rad]
 
 /// Whether two equilibria are equal. The frames of a round rod without twist are arbitrary, so that
 /// only its tangents are compared.

@@ -15,13 +15,14 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double first_step = 0.5;          // of the roll [rad]
-constexpr double longest_twist_step = 3;    // [rad]
-constexpr double shortest_step = 1.0 / 64;  // [rad]
+constexpr double first_step = 0.5;          // first step of the roll [rad]
+constexpr double longest_twist_step = 3;    // largest step of the roll [rad]
+constexpr double shortest_step = 1.0 / 64;  // smallest step of the roll [rad]
 constexpr int few_shots = 12;  // shots of a fast step; Newton's method needs two per iteration
-constexpr int step_iterations = 12;       // of Newton's method: more are slower than a shorter step
-constexpr double most_turn = 0.5;         // rotation of a tangent in a step [rad]
-constexpr double most_correction = 0.15;  // error of a predicted tangent [rad]
+// Maximum number of Newton iterations; more are slower than a shorter step.
+constexpr int step_iterations = 12;
+constexpr double most_turn = 0.5;         // largest rotation of a tangent in a step [rad]
+constexpr double most_correction = 0.15;  // largest error of a predicted tangent [rad]
 
 double largest_change(const std::vector<RodState>& a, const std::vector<RodState>& b) {
   return (tangents_of(a) - tangents_of(b)).colwise().norm().maxCoeff();

@@ -16,9 +16,11 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double confirmed_depth = 1e-9;  // in l; a tenth of what a converged shape may have
-constexpr double allowed_pull = 1e-7;     // tensile contact force, divided by 1 + the largest force
-constexpr int samples = 8;                // number of parts of an interval, for pressures
+// Largest accepted depth, in l; a tenth of that of solve_energy().
+constexpr double confirmed_depth = 1e-9;
+// Largest accepted tensile contact force, divided by 1 + the largest force.
+constexpr double allowed_pull = 1e-7;
+constexpr int samples = 8;  // parts per interval at whose ends pressures are computed
 // In l: no point within a part of this width is deeper by more than this.
 constexpr double least_halved_width = 1e-9;
 constexpr const char* integration_failed =

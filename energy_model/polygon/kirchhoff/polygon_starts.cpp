@@ -25,7 +25,7 @@ Quaterniond base_frame(const RodSpan& span) {
 /// undetermined; d2 is used, so that the frame stays in the plane.
 Quaterniond turned_to(const Quaterniond& frame, const Eigen::Vector3d& tangent) {
   const Eigen::Vector3d t = frame * Eigen::Vector3d::UnitZ();
-  constexpr double opposite = 1e-9;  // of the cosine
+  constexpr double opposite = 1e-9;  // difference of the cosine from -1 for opposite tangents
   if (t.dot(tangent) < opposite - 1) return frame * Quaterniond(0, 0, 1, 0);
   return Quaterniond::FromTwoVectors(t, tangent) * frame;
 }

@@ -19,20 +19,21 @@ namespace {
 /// zero.
 using Across = Eigen::Matrix<double, 3, 2>;
 
-constexpr int most_steps = 200;    // of Newton's method, which needs about 30
-constexpr int most_shifts = 60;    // increases of the shift of a Hessian, by a factor of 4 each
-constexpr int most_halvings = 30;  // halvings of a step
-constexpr double at_rest = 1e-4;   // step of a tangent at which the iteration ends [rad]
+constexpr int most_steps = 200;  // maximum number of Newton steps; about 30 are usual
+constexpr int most_shifts = 60;  // maximum number of increases of the shift, by a factor of 4 each
+constexpr int most_halvings = 30;        // maximum number of halvings of a step
+constexpr double at_rest = 1e-4;         // step of a tangent at which the iteration ends [rad]
 constexpr double nearly_at_rest = 0.05;  // step below which multipliers are updated [rad]
-constexpr double least_shift = 1e-4;     // in units of b / l^2; keeps steps along zero modes small
-constexpr double longest_turn = 0.5;     // largest rotation of a tangent in a step [rad]
+// Smallest shift, in units of b / l^2; keeps steps along zero modes small.
+constexpr double least_shift = 1e-4;
+constexpr double longest_turn = 0.5;  // largest rotation of a tangent in a step [rad]
 // Share of the predicted decrease that a step has to reach (Armijo).
 constexpr double sufficient = 1e-4;
 constexpr double energy_rounding = 1e-13;  // relative rounding error of an energy
-// The penalty of a gap that a round does not reduce to this share grows.
+// The penalty of a gap grows unless a round reduces the gap to this share.
 constexpr double closing = 0.25;
-constexpr double penalty_growth = 4;      // factor by which a penalty grows in a round
-constexpr double largest_penalty = 1e12;  // divided by the initial penalty
+constexpr double penalty_growth = 4;      // increase of a penalty in a round, as a factor
+constexpr double largest_penalty = 1e12;  // largest penalty divided by the initial one
 
 /// Chain of the intervals' tangents between those of clamps at the ends, with its joints.
 class TangentChain {

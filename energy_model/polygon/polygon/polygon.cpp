@@ -320,8 +320,8 @@ class PolygonDescent {
   double largest_ = 0;
   Eigen::Matrix3Xd gradient_;
   Eigen::Matrix3Xd trial_gradient_;
-  HessianTerms which_ = HessianTerms::all;  // terms in hessian_
-  Eigen::MatrixXd hessian_;                 // of the free points, banded: see PolygonFactor
+  HessianTerms which_ = HessianTerms::all;  // terms that hessian_ contains
+  Eigen::MatrixXd hessian_;                 // Hessian of the free points, banded: see PolygonFactor
   Eigen::MatrixXd columns_;                 // twist_columns() of the free points
   PolygonFactor solver_;
 };

@@ -68,7 +68,8 @@ void remove_redundant_obstacles(Span& span) {
 }
 
 bool omit_similar_obstacles(Span& span, std::size_t preferred) {
-  constexpr double similar = 1e-3;  // in lengths; also the angle between similar floors [rad]
+  // Distance in lengths; also the angle between similar floors [rad].
+  constexpr double similar = 1e-3;
   std::vector<Span::Obstacle>& all = span.rigid_obstacles;
   std::stable_partition(all.begin(), all.end(), [&](const Span::Obstacle& obstacle) {
     return obstacle.index == preferred;

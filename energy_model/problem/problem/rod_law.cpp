@@ -45,7 +45,7 @@ void add_loads(const Problem& problem,
   }
   if (problem.drag) add(problem.drag->velocity, 0);
   for (const Load& load : problem.loads) {
-    if (load.follows) continue;  // its direction is given in the axes of the section
+    if (load.follows) continue;  // the direction is given in the axes of the section
     add(load.force, 0);
     if (load.torque.isZero(0)) continue;
     for (const Eigen::Vector3d& direction : plane_across(load.torque)) add(direction, 0);
@@ -66,7 +66,7 @@ bool loads_leave_plane(const Problem& problem, const Eigen::Vector3d& normal) {
   const bool drag_leaves = problem.drag && std::abs(problem.drag->velocity.dot(normal)) >
                                                noise * problem.drag->velocity.norm();
   return line_leaves || drag_leaves || std::ranges::any_of(problem.loads, [&](const Load& load) {
-           if (load.follows) return false;  // its direction is given in the axes of the section
+           if (load.follows) return false;  // the direction is given in the axes of the section
            const Eigen::Vector3d couple = load.torque / problem.length;
            return leaves(load.force) || (couple - couple.dot(normal) * normal).norm() > most;
          });

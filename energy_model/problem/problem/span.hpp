@@ -56,7 +56,7 @@ struct Span {
   /// An interval with another cross-section.
   struct Part {
     double begin = 0, end = 0;
-    Eigen::Vector3d stiffness = {1, 1, 0};  ///< as Span::stiffness
+    Eigen::Vector3d stiffness = {1, 1, 0};  ///< same order and unit as Span::stiffness
     /// Weight per length in excess of Span::weight.
     Eigen::Vector3d weight = Eigen::Vector3d::Zero();
   };

@@ -105,9 +105,9 @@ class EnergySolver {
   /// @throws std::invalid_argument if an option is out of range
   explicit EnergySolver(const EnergyOptions& options = {});
   ~EnergySolver();
-  /// Takes the buffers over.
+  /// Moves the buffers of another solver.
   EnergySolver(EnergySolver&& other) noexcept;
-  EnergySolver& operator=(EnergySolver&& other) noexcept;  ///< Takes the buffers over.
+  EnergySolver& operator=(EnergySolver&& other) noexcept;  ///< Moves the buffers of another solver.
   EnergySolver(const EnergySolver& other) = delete;
   EnergySolver& operator=(const EnergySolver& other) = delete;
 

@@ -13,9 +13,9 @@ namespace dlo::energy_model {
 
 /// Kind of contact between a rod and an obstacle.
 enum class ContactKind {
-  lying,     ///< along a part of the rod
-  touching,  ///< at a point inside the rod
-  tip,       ///< at an end of the rod
+  lying,     ///< contact along a part of the rod
+  touching,  ///< contact at a point inside the rod
+  tip,       ///< contact at an end of the rod
 };
 
 /// Returns the name of a contact kind, as files contain it.
@@ -34,7 +34,7 @@ enum class ContactKind {
 /// One contact of the rod with a rigid obstacle.
 struct ContactPart {
   std::size_t obstacle = 0;               ///< index in Problem::obstacles
-  ContactKind kind = ContactKind::lying;  ///< how it touches
+  ContactKind kind = ContactKind::lying;  ///< kind of the contact
   double begin = 0;                       ///< arc length where contact begins [m]
   /// Arc length where contact ends [m]; equal to `begin` unless the kind is `lying`.
   double end = 0;

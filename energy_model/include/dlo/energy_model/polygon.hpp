@@ -36,7 +36,7 @@ struct PolygonTwist {
   Eigen::Index last_segment = 0;   ///< index of the last segment, > first_segment
   /// First director; only its part across the segment is used.
   Eigen::Vector3d first_d1 = Eigen::Vector3d::UnitX();
-  /// First director at the last segment, as `first_d1`.
+  /// First director at the last segment; only its part across the segment is used.
   Eigen::Vector3d last_d1 = Eigen::Vector3d::UnitX();
   double compliance = 0;  ///< torsional compliance C = int ds / GJ [1/(N m)], > 0
   /// Reference angle [rad]: theta is the branch nearest to it, whole turns counted.
@@ -61,8 +61,8 @@ struct PolygonProblem {
   Eigen::Matrix3Xd node_forces;    ///< dead force on each point [N], 3 x (n+1)
   JointLaw law = JointLaw::hooke;  ///< law of every joint
   double stiffness = 0;  ///< bending stiffness: c_b [N] for law paper, else EI [N m^2]; > 0
-  Eigen::VectorXd stiffnesses = {};      ///< as ChainProblem::stiffnesses
-  Eigen::VectorXd natural_turns = {};    ///< as ChainProblem::natural_turns, positive from x to y
+  Eigen::VectorXd stiffnesses = {};      ///< see ChainProblem::stiffnesses
+  Eigen::VectorXd natural_turns = {};    ///< see ChainProblem::natural_turns; positive from x to y
   std::vector<HeldPoint> held;           ///< prescribed points, one or more, each point once
   std::vector<PointObstacle> obstacles;  ///< may be empty
   std::vector<PolygonTwist> twists;  ///< may be empty; not allowed with law paper or natural turns

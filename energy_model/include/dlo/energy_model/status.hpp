@@ -7,7 +7,7 @@ namespace dlo::energy_model {
 enum class SolveStatus {
   not_run,    ///< the solver was not called
   converged,  ///< an equilibrium; the second variation of the returned shape is positive
-  /// As `converged`, to the accuracy that double precision allows; the shape is usable.
+  /// Like `converged`, to the accuracy that double precision allows; the shape is usable.
   roundoff_limited,
   saddle,            ///< an equilibrium, but the second variation has a negative direction
   near_singular,     ///< close to a fold or bifurcation: not determined to the tolerance

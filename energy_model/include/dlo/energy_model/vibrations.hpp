@@ -24,13 +24,13 @@ struct Inertia {
   std::vector<PointMass> point_masses;  ///< may be empty
 };
 
-/// Plane of a mode's motion, relative to the plane of the shape. A straight shape has the plane
+/// Direction of a mode's motion, relative to the plane of the shape. A straight shape has the plane
 /// that its grips and forces share.
 enum class ModePlane {
-  in,       ///< in the shape's plane
-  out,      ///< across the shape's plane
-  mixed,    ///< both
-  spatial,  ///< the shape lies in no plane
+  in,       ///< motion in the shape's plane
+  out,      ///< motion across the shape's plane
+  mixed,    ///< motion in both directions
+  spatial,  ///< the shape is in no plane
 };
 
 /// Returns the name of the plane, as files contain it.
