@@ -28,6 +28,7 @@ struct TipShots {
 /// n(s) the sum of weight and loads beyond s. The solution that grows towards the clamp is the one
 /// that is integrated, and the angle is measured from the last force. The problem therefore stays
 /// well posed if that angle is exponentially small (Gamma >> 1).
+///
 /// All tip angles are scanned. Each cell of the grid is halved, at most six times, until a cubic
 /// from the residual of the clamp's angle and its derivative at both ends has an error below 2 % in
 /// the middle. A change of sign of the residual is a root. Two roots are in a cell if the residual

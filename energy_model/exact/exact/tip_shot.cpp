@@ -79,7 +79,7 @@ bool integrate(const TipFrame& frame, double start, double tolerance,
   const auto step =
       gsl_owned(gsl_odeiv2_step_alloc(gsl_odeiv2_step_rk8pd, n), gsl_odeiv2_step_free);
   const auto evolve = gsl_owned(gsl_odeiv2_evolve_alloc(n), gsl_odeiv2_evolve_free);
-  // psi may start exponentially small; its relative error is then controlled.
+  // At the tip psi may be exponentially small; its relative error is then controlled.
   const double small = std::max(std::min(std::abs(start), 1.0), 1e-300);
   const double angle_scale = frame.parallel() ? small : 1.0;
   const std::array<double, components_and_changes> scale = {angle_scale, angle_scale, 1, 1,

@@ -15,7 +15,7 @@ namespace dlo::energy_model {
 [[nodiscard]] Eigen::Vector3d strain_of(const RodSection& section, const NaturalStrain& natural,
                                         double s, const RodState& state);
 
-/// Returns the derivative of the tangent by arc length, R u x t.
+/// Returns the derivative of the tangent by arc length, (R u) x t.
 [[nodiscard]] Eigen::Vector3d curvature_of(const RodSection& section, const NaturalStrain& natural,
                                            double s, const RodState& state);
 

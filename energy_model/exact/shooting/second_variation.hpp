@@ -47,13 +47,17 @@ using SpanStates = std::function<std::vector<RodState>(const std::vector<double>
 /// is not restricted to the plane of a planar shape, so that buckling out of the plane and rotation
 /// about a line are among the modes. For a round rod that nothing twists, eta along t does not
 /// change the energy and is omitted, together with c.
+///
 /// A part that lies on a surface is constrained to it at the ends of elements only, so that no
 /// shape is classified as more stable than it is.
+///
 /// For a section that stretches by a, the strain eps is eliminated at its minimum for given eta and
 /// multipliers mu of the constraint, eps = a (n.(eta x t) - mu.t). (1 + a n.t) then multiplies the
 /// terms in n and eta x t, - a (n.(eta x t))^2 is added to Q, a (n.(eta x t)) t to the constraint,
-/// and - a (mu.t)^2 for the compliance of the stretch.
+/// and - a (mu.t)^2 is added for the compliance of the stretch.
+///
 /// If couples act on a span with a plane, eta is a rotation about its normal only.
+///
 /// Eigenvalues are relative to int |eta'|^2 + |eta|^2 ds, by finite elements of fourth order and
 /// the signs of pivots (ConstrainedPencil).
 /// @param force  force over b that bends the span over lengths of 1 / force^(1/2): determines the

@@ -87,7 +87,7 @@ bool ShootingSystem::evaluate(const ShootingPoint& point, Eigen::VectorXd& equat
   for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
     if (out_of_time() || !interval_equations(point, i, rows)) return false;
   }
-  // n and m after the last node are zero. Where a clamp holds the end, its conditions have replaced
+  // At the last node n and m are zero. Where a clamp holds the end, its conditions have replaced
   // the continuity of n and m there.
   const Eigen::Index last = mesh_.intervals() * per_node();
   const auto one = [](Eigen::Index size) { return Eigen::MatrixXd::Identity(size, size); };

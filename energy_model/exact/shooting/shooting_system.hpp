@@ -35,15 +35,18 @@ struct ShootingPoint {
 /// a free end m = n = 0. R of neighbouring nodes is compared by the logarithm of the remaining
 /// rotation. At each node the unknowns are r, a spin of R, m and n: in the plane two components of
 /// positions and forces and one of spins and moments, in space three of each.
+///
 /// Where a rod touches a body, n jumps by an unknown force along its normal. A point that may slide
 /// and the ends of a part that lies have unknown arc lengths; the other nodes keep their relative
 /// positions between them and their neighbours. At a touched point the gap is zero, and the slope
 /// too if the point may slide. Where the rod begins to lie, lying_conditions() hold. Redundant
 /// conditions, as for a clamp that holds the rod on the body on which it lies, give more equations
 /// than unknowns.
+///
 /// A round rod without a clamp has a zero mode, rotation about its own tangent. The condition that
 /// the first node's frame does not rotate replaces that of its torque, which is the torque at the
 /// other end.
+///
 /// The equations are well posed for soft rods if the intervals are not much longer than |n|^(-1/2),
 /// the length over which errors grow by a factor e.
 class ShootingSystem {

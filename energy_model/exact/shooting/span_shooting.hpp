@@ -21,6 +21,7 @@ struct SpanSearchResult {
 /// ones is left in both directions along the mode of its smallest eigenvalue, and the polygon is
 /// relaxed from there. If nothing is stable then, the gradient flow starts from the lowest
 /// equilibrium. If nothing is found, a failed result is returned.
+///
 /// Frames after the first clamp are released for this search. If clamps hold frames, those of the
 /// lowest equilibrium are then rotated to the held ones (span_twist.hpp); the result is then one
 /// equilibrium, or a failed one.

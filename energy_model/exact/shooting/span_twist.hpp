@@ -8,6 +8,7 @@ namespace dlo::energy_model {
 
 /// Rotates the frames of a span's clamps simultaneously to the held ones (Problem), starting from
 /// its equilibrium with released frames.
+///
 /// This is natural continuation in the roll. Newton's method starts from a secant, or else from the
 /// last shape. Steps grow if it needs few shots, and are halved if it does not converge or the
 /// shape jumps. If a shape has become unstable, and where the branch ends at a fold, the rod

@@ -58,7 +58,7 @@ std::vector<Eigen::Vector3d> axes_of(const RodSpan& span, const Quaterniond& alo
   const Eigen::Vector3d normal = along * Eigen::Vector3d::UnitY();
   if (motion == Motion::in_plane) return {normal, -normal};
   std::vector<Eigen::Vector3d> axes;
-  // a polygon of frames is more expensive than one of tangents.
+  // A polygon of frames is more expensive than one of tangents.
   const int count = span.round() ? 6 : 4;
   for (int i = 0; i < count; ++i) {
     // The axes avoid the plane itself, which the planar search covers.

@@ -143,7 +143,7 @@ class SoftLine {
                          .at_end = grip.at > problem_.length / 2,
                          .clamped = grip.direction.has_value()});
     }
-    constexpr int rounds = 12;  // each reduces the gap to a share of a layer's length in the rod's
+    constexpr int rounds = 12;  // each reduces the gap by about the ratio of layer and rod length
     for (int i = 0; i < rounds; ++i) {
       if (!find_catenary()) return std::nullopt;
       for (Layer& layer : layers_) bend(layer);

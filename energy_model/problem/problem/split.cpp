@@ -137,7 +137,7 @@ std::optional<HeldFrames> frames_of(const Problem& problem, const OrderedGrip& s
   // The first clamp of a rod with material directors holds them with or without a frame.
   Grip first = *start.grip;
   if (!first.frame) first.frame = FrameHold{};
-  // mean GJ: that of a uniform rod with the same torsional stiffness
+  // Mean GJ: that of a uniform rod with the same torsional stiffness.
   const double mean =
       (end.at - first.at) / torsional_compliance(rod_parts(problem), first.at, end.at);
   return HeldFrames{.stiffness = mean / bending_unit(problem),

@@ -30,8 +30,8 @@ struct MovingRod {
   /// time. An empty vector or a null entry: the obstacle does not move.
   std::vector<GripMotion> obstacle_motions;
   double material_damping = 0;  ///< relaxation time tau of Kelvin-Voigt damping [s], >= 0
-  double air_drag = 0;          ///< c, drag per length and velocity [N s/m^2], >= 0
-  /// q, drag across the rod per length and squared velocity [N s^2/m^3], >= 0.
+  double air_drag = 0;  ///< coefficient c of drag, force per length and velocity [N s/m^2], >= 0
+  /// Coefficient q of drag across the rod, force per length and squared velocity [N s^2/m^3], >= 0.
   double quadratic_drag = 0;
   std::vector<double> breaks;  ///< times at which a motion is not smooth [s]
 };

@@ -83,8 +83,8 @@ struct [[nodiscard]] Equilibrium {
   /// of the plane of a planar shape too; negative: unstable. `energy`: eigenvalue of the reduced
   /// Hessian over EI/l, in the norm of the bending energy. `exact`: relative to int |eta'|^2 +
   /// |eta|^2 ds, where eta is the change of the tangent (with material directors: the spin) and
-  /// lengths are in l. NaN: unknown. It is unknown for `exact` with contact, and for one clamp in a
-  /// plane, whose stability `energy` proves without it.
+  /// lengths are in l. NaN: unknown. It is unknown for `exact` if the loads have no potential, and
+  /// for one clamp in a plane, whose stability `energy` proves without it.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   /// `energy`, if `near_singular`: number of eigenvalues that are zero to the tolerance. Each is a
   /// direction in which a fold or a bifurcation leaves the shape undetermined. It is 0 if only the
@@ -95,7 +95,7 @@ struct [[nodiscard]] Equilibrium {
   /// each mirror image has an entry of its own [J]. Empty without a search, for example if a shape
   /// is followed.
   std::vector<double> stable_energies;
-  /// `energy`: initial guesses of the search that pass obstacles on another side.
+  /// `energy`: number of initial guesses of the search that pass obstacles on another side.
   int passing_starts = 0;
   /// Largest depth of the axis behind a rigid obstacle, between the solver's nodes too [m]; 0
   /// without such obstacles. A shape is not_verified if the depth exceeds `allowed_penetration`

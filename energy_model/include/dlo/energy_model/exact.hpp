@@ -32,6 +32,7 @@ struct ExactOptions {
 /// It uses no basis functions and no code of solve_energy(). energy_model/doc/exact.md describes
 /// the search and the contacts that it confirms. It detects no contact: if there are obstacles,
 /// ExactOptions::start has to contain the contacts.
+///
 /// If a load has no potential (has_potential()), that load and all couples are increased from zero,
 /// and the result is the equilibrium that continues the lowest one under the other loads. It is
 /// `not_verified`, because no energy determines its stability. Its energies do not include such

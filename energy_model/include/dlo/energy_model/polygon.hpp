@@ -51,8 +51,10 @@ struct PolygonTwist {
 /// with its stretch stiffness c_c, so that its energy minimum is the shape at which the force model
 /// comes to rest (energy_model/doc/polygon.md). Its energy [J], with the potentials of JointLaw for
 /// the joints and the mean L of two rest lengths:
+///
 ///     E = sum c_c (|d_i| - L_i)^2 / (2 L_i) + sum joints - sum F_i . P_i + sum c_e depth_i^2 / 2
 ///         + sum theta_k^2 / (2 C_k)
+///
 /// A polygon whose joints are bent at rest has to lie in the plane z = 0 with its grips and all
 /// forces on it; its stability across that plane is not judged.
 struct PolygonProblem {

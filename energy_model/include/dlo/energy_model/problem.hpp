@@ -32,10 +32,12 @@ struct Grip {
 };
 
 /// A force and a couple at one arc length.
+///
 /// The couple of a dead load keeps its axis. It has a potential only in a plane: minus torque times
 /// the angle of the tangent. `energy` accepts it across the plane of a rod that touches no obstacle
 /// and whose frame is not held. `exact` accepts any couple; out of the plane stability is not
 /// judged.
+///
 /// A load that follows the rod has no potential: only `exact` accepts it, and not at a clamp.
 struct Load {
   double at = 0;                                     ///< arc length [m], 0 .. length
@@ -73,7 +75,7 @@ struct Section {
   double begin = 0;                ///< arc length [m]
   double end = 0;                  ///< arc length [m], > begin
   double bending_stiffness = 0;    ///< EI [N m^2], > 0; about d1 if bending_stiffness_2 is given
-  double torsional_stiffness = 0;  ///< GJ [N m^2]; > 0 if Problem::torsional_stiffness has to be
+  double torsional_stiffness = 0;  ///< GJ [N m^2]; > 0 if that of the Problem is
   Eigen::Vector3d weight_per_length = Eigen::Vector3d::Zero();  ///< rho A g [N/m]
   /// EI about d2 [N m^2], > 0; none: the section is round, with the same EI about every axis
   /// across.
@@ -89,6 +91,7 @@ struct Section {
 /// A rod and everything that acts on it. The rod is inextensible unless axial_stiffness is given.
 /// It is round, or has two bending stiffnesses about the principal axes d1 and d2 of its section,
 /// as a ribbon or a flat cable. SI units, any right-handed axes.
+///
 /// Two neighbouring clamps with frames fix the sum of twist and writhe between them (held_turns()
 /// in turns.hpp); energy_model/doc/search.md describes how a solver gets there. A rod that
 /// has_material_directors() has d1 and d2 fixed to its material. The first clamp along the rod

@@ -24,6 +24,7 @@ inline constexpr double line_stiffness = 1e-10;
 /// its tangent and 2 lambda sin(phi_0/2) across it. One rigid half-space below may carry a part,
 /// without friction: that part ends lambda before the catenary touches the half-space, and a
 /// concentrated force w lambda acts at its end.
+///
 /// `error_estimate` estimates the neglected terms, which are of second order in lambda times the
 /// curvature. `residual` is the gap between the integral of the unit tangents from grip to grip and
 /// the position of the other grip, divided by l. The shape is stable because it is under tension

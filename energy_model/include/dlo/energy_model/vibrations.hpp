@@ -53,9 +53,9 @@ struct VibrationMode {
   /// Square of the angular frequency [1/s^2]; negative: unstable, the mode grows as
   /// exp((-omega_squared)^(1/2) t).
   double omega_squared = 0;
-  /// Estimated relative truncation error of omega: its change from fewer terms, divided by omega.
-  /// If the rod has a zero mode, whose omega_squared is below 1e-2 EI / (m l^3) with the rod's mass
-  /// m, the change is divided by the square root of that limit.
+  /// Estimated relative truncation error of omega: half the change of omega_squared from fewer
+  /// terms, divided by |omega_squared|, or by 1e-2 EI / (m l^3) with the rod's mass m if that is
+  /// larger, as for a zero mode.
   double error = std::numeric_limits<double>::infinity();
   /// Plane of the motion, relative to the plane of the shape.
   ModePlane plane = ModePlane::spatial;
