@@ -22,7 +22,8 @@ constexpr double nearly_closed = 0.1;
 constexpr double least_weight = 1e-12;
 
 /// Largest number of unknowns for a Levenberg step. Each of its rows for the weight stays in all
-/// later columns of the factors, which need 6 bytes times the square of this number, and a second.
+/// later columns of the factors, which take 6 bytes times the square of this number, and one second
+/// to compute.
 constexpr Eigen::Index most_weighted = 4000;
 
 using Solver = Eigen::SparseQR<Eigen::SparseMatrix<double>, Eigen::NaturalOrdering<int>>;
