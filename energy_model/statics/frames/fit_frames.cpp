@@ -11,7 +11,8 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Rotation vector, in body axes and across the tangent, that takes the tangent e3 to v.
+/// Returns the rotation vector, in body axes and normal to the tangent, that rotates the tangent e3
+/// to v.
 Eigen::Vector2d turn_to(const Eigen::Vector3d& v) {
   const double sine = std::hypot(v.x(), v.y());
   const double angle = std::atan2(sine, v.z());
@@ -19,7 +20,8 @@ Eigen::Vector2d turn_to(const Eigen::Vector3d& v) {
   return Eigen::Vector2d(-v.y(), v.x()) * (angle / sine);
 }
 
-/// Coefficients with int u nearest to these angles (real nodes x 2), and the turn of a free start.
+/// Returns coefficients whose integral of u comes nearest to these angles (nodes of elements x 2),
+/// and the rotation of a free start.
 Eigen::VectorXd from_angles(const RodFrames& frames, const Eigen::MatrixX2d& angles) {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(frames.size());
   const Eigen::Index first = frames.turn_nodes() > 0 ? 1 : 0;
@@ -38,7 +40,7 @@ Eigen::VectorXd from_angles(const RodFrames& frames, const Eigen::MatrixX2d& ang
   return x;
 }
 
-/// Integral from the start to the nodes, of values at the real nodes.
+/// Integrates values at the nodes of elements from the start to each node.
 Eigen::VectorXd cumulated(const RodFrames& frames, const Eigen::VectorXd& values) {
   Eigen::VectorXd integral(values.size());
   double before = 0;
@@ -54,7 +56,7 @@ Eigen::VectorXd cumulated(const RodFrames& frames, const Eigen::VectorXd& values
   return integral;
 }
 
-/// Coefficients of strains at all nodes but those of a free start's turn.
+/// Returns the coefficients of strains at all nodes; those of a free start's rotation stay zero.
 Eigen::VectorXd projected(const RodFrames& frames, const Eigen::MatrixX3d& strains) {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(frames.size());
   for (const RodFrames::Panel& panel : frames.panels()) {
@@ -86,8 +88,8 @@ Eigen::VectorXd fit(const RodFrames& frames, const Eigen::Matrix3Xd& tangents, i
   }
   Eigen::VectorXd x = from_angles(frames, angles);
   if (frames.fields() == 3) x -= projected(frames, frames.natural());
-  // Newton's steps towards the tangents: a small turn R omega of the frames, none of them about the
-  // tangent's axis at the start, comes from strains omega' + u x omega.
+  // Newton steps towards the tangents. A small rotation R omega of the frames, without a component
+  // about the tangent at the start, comes from strains omega' + u x omega.
   for (int step = 0; step < most_steps; ++step) {
     frames.evaluate(x, scratch);
     Eigen::MatrixX2d turns(nodes, 2);
@@ -106,7 +108,8 @@ Eigen::VectorXd fit(const RodFrames& frames, const Eigen::Matrix3Xd& tangents, i
     turns.col(0) += cumulated(frames, strains.col(1).cwiseProduct(twist));
     turns.col(1) -= cumulated(frames, strains.col(0).cwiseProduct(twist));
     x += from_angles(frames, turns);
-    // What is left is about its square, which is near enough for a start.
+    // The remaining error is about the square of this correction, which suffices for an initial
+    // guess.
     if (turns.cwiseAbs().maxCoeff() < 1e-3) break;
   }
   return x;
@@ -135,7 +138,7 @@ Eigen::VectorXd rolled(const RodFrames& frames, const Eigen::VectorXd& x,
   const FittedAngle twist = fit_angle(*frames.panels().back().table, turns, roll, 0.0);
   const Eigen::Index first = frames.turn_nodes() > 0 ? 1 : 0;
   result.segment(2 * frames.columns() + first, frames.columns() - first) += twist.coefficients;
-  // A free start is turned as before.
+  // The rotation of a free start is kept.
   for (Eigen::Index field = 0; field < frames.fields() && first == 1; ++field) {
     result[field * frames.columns()] = x[field * frames.columns()];
   }

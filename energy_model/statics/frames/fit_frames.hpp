@@ -6,17 +6,17 @@
 
 namespace dlo::energy_model {
 
-/// Newton's steps after which tangents are fitted as well as the coefficients can.
+/// Number of Newton steps after which more steps do not improve a fit of tangents.
 inline constexpr int most_fit_steps = 3;
 
-/// Unknowns whose tangents at the nodes are these (3 x nodes), by least squares on each piece;
-/// without twist.
-/// @param most_steps  of Newton's method towards them, an evaluation into `scratch` each
+/// Returns the unknowns whose tangents at the nodes come nearest to `tangents` (3 x nodes), by
+/// least squares on each element; without twist.
+/// @param most_steps  maximum number of Newton steps, each with one evaluation into `scratch`
 [[nodiscard]] Eigen::VectorXd fit(const RodFrames& frames, const Eigen::Matrix3Xd& tangents,
                                   int most_steps, RodFrames::State& scratch);
 
-/// Of three fields: the same shape with the rod's frame turned ahead by these angles at the nodes
-/// [rad].
+/// Returns the unknowns of the same shape with the rod's frame rotated about the tangent by the
+/// angles `roll` at the nodes [rad]; for three fields.
 [[nodiscard]] Eigen::VectorXd rolled(const RodFrames& frames, const Eigen::VectorXd& x,
                                      const Eigen::VectorXd& roll);
 

@@ -23,8 +23,8 @@ void FrameHessian::resize(const RodFrames& frames) {
   before_.resize(frames.columns(), K);
 }
 
-/// Into beyond_: what of f's second derivatives A by turns of the panel's nodes lies beyond
-/// each node, int_s^end A. @return all of it
+/// Computes beyond_: the integral int_s^end A of f's second derivatives A by rotations of the
+/// panel's nodes, from each node to the panel's end. @return the sum of A over the panel
 Eigen::Matrix3d FrameHessian::gather_curvatures(const RodFrames& frames,
                                                 const RodFrames::Panel& panel,
                                                 const FrameGradient& f,
@@ -49,9 +49,9 @@ Eigen::Matrix3d FrameHessian::gather_curvatures(const RodFrames& frames,
   return sum;
 }
 
-/// Into turns_: by what an unknown whose strain is 1 at a node turns there, per length of the
-/// panel. Into adjoints_: what a turn theta that a node has already makes of it, adjoint . theta,
-/// of state.moments M and beyond_ B: d x M / 2 + B d.
+/// Computes turns_, the rotation rate of a node by an unknown whose strain is 1 there, times the
+/// panel's length, and adjoints_, the derivative of f by that unknown after a rotation theta of the
+/// node, adjoint . theta: with M = state.moments and B = beyond_ it is d x M / 2 + B d.
 void FrameHessian::weigh_turns(const RodFrames& frames, const RodFrames::Panel& panel,
                                const RodFrames::State& state) {
   const Eigen::Index Q = panel.nodes();
@@ -72,13 +72,13 @@ void FrameHessian::weigh_turns(const RodFrames& frames, const RodFrames::Panel& 
   }
 }
 
-/// Into own_: second derivatives of f by pairs of the panel's own unknowns. With the strains
-/// p and p' of a pair, and the turn theta' = int turn' p' that the latter has made up to a node, f
-/// changes by
+/// Computes own_: second derivatives of f by pairs of the panel's own unknowns. With the strains p
+/// and p' of a pair, and the rotation theta' = int turn' p' that p' causes up to a node, f changes
+/// by
 ///     int adjoint . theta' p ds
-/// and the same with both exchanged: theta . A theta' has been integrated by parts, and the order
-/// of two turns counts half to either side. No turns of all nodes by all unknowns are worked out,
-/// but what pairs of nodes do to each other: the polynomials come last.
+/// and by the same expression with p and p' exchanged: theta . A theta' has been integrated by
+/// parts, and each order of two rotations counts half. Rotations of all nodes by all unknowns are
+/// not computed; only pairs of nodes are, and the polynomials are applied last.
 void FrameHessian::pair_unknowns(const RodFrames::Panel& panel, Eigen::Index fields) {
   const LegendreTable& table = *panel.table;
   const Eigen::Index Q = panel.nodes();
@@ -133,7 +133,7 @@ void FrameHessian::add(const RodFrames& frames, const FrameGradient& f,
     const Eigen::Matrix3d curvature = gather_curvatures(frames, *panel, f, state);
     weigh_turns(frames, *panel, state);
     pair_unknowns(*panel, frames.fields());
-    // With the turn of all that is beyond an earlier panel.
+    // Coupling of the panel's unknowns with the rotation of everything beyond an earlier panel.
     const Eigen::Index Q = panel->nodes();
     const Eigen::Index K = panel->terms;
     for (Eigen::Index field = 0; field < frames.fields() && panel->column > 0; ++field) {
@@ -151,8 +151,8 @@ void FrameHessian::add(const RodFrames& frames, const FrameGradient& f,
   }
 }
 
-/// Adds own_, with what turns all that is beyond the panel, and beside it the columns of the
-/// panels before.
+/// Adds own_, the contribution of the rotation of everything beyond the panel, and the blocks that
+/// couple the panel with earlier panels.
 void FrameHessian::add_panel(const RodFrames& frames, const RodFrames::Panel& panel,
                              const Eigen::Matrix3d& later_curvature, const RodFrames::State& state,
                              Eigen::Ref<Eigen::MatrixXd> hessian) {

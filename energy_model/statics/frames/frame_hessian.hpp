@@ -9,12 +9,13 @@
 namespace dlo::energy_model {
 
 /// Second derivatives of a function f of a rod's tangents and frames by the unknowns of RodFrames.
-/// What survives between calls are buffers: after the first one nothing allocates.
+/// The members are buffers: only the first call allocates.
 class FrameHessian {
  public:
-  /// Adds them, and leaves state.ends as RodFrames::end_rotation_jacobian() does.
-  /// @param f           with its gradient by the nodes
-  /// @param curvatures  second derivatives of f by turns of the frames at the pieces' ends
+  /// Adds the second derivatives to `hessian`, and computes state.ends as
+  /// RodFrames::end_rotation_jacobian() does.
+  /// @param f           gradient of the function, with its part by the nodes
+  /// @param curvatures  second derivatives of f by rotations of the frames at the ends of elements
   /// @param state       of the last RodFrames::evaluate()
   void add(const RodFrames& frames, const FrameGradient& f,
            std::span<const Eigen::Matrix3d> curvatures, RodFrames::State& state,
@@ -33,11 +34,12 @@ class FrameHessian {
                  const Eigen::Matrix3d& later_curvature, const RodFrames::State& state,
                  Eigen::Ref<Eigen::MatrixXd> hessian);
 
-  // Of a panel. Symmetric 3 x 3 matrices by node: xx, yy, zz, xy, xz, yz.
+  // Buffers of one panel. Rows of curvatures_ and beyond_ are symmetric 3 x 3 matrices of a node:
+  // xx, yy, zz, xy, xz, yz.
   Eigen::Matrix<double, Eigen::Dynamic, 6> curvatures_, beyond_;
   std::array<Eigen::MatrixX3d, 3> adjoints_, turns_;  // by field
   Eigen::MatrixXd pairs_, by_node_, own_;
-  // With the panels before
+  // Buffers for the coupling with earlier panels.
   Eigen::MatrixXd before_;
   Eigen::Matrix3Xd beside_, turned_;
 };

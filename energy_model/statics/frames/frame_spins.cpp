@@ -6,7 +6,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// What the strains of a panel's nodes change by, along the directors there.
+/// Returns the rates of the strains at a panel's nodes, as vectors in space.
 Eigen::MatrixX3d strains_in_space(const RodFrames& frames, const RodFrames::State& state,
                                   const RodFrames::Panel& panel, const Eigen::VectorXd& rates) {
   const Eigen::Index Q = panel.nodes();

@@ -32,7 +32,7 @@ void dot_in_plane(const Eigen::MatrixX3d& a, const Eigen::MatrixX3d& b, Eigen::V
 void PlanarFrames::reset(const std::vector<Piece>& pieces, int terms,
                          std::optional<double> start_theta, const NaturalStrains& natural) {
   const Eigen::Index free_start = start_theta ? 0 : 1;
-  // Angles by unknown depend on nothing else.
+  // The derivatives of the angles by the unknowns depend only on these values.
   const bool has_angles =
       angle_.size() > 0 && terms == terms_ && free_start == free_start_ &&
       std::equal(pieces.begin(), pieces.end(), pieces_.begin(), pieces_.end(), is_same);
@@ -63,7 +63,7 @@ void PlanarFrames::tabulate_angles() {
   for (Eigen::Index e = 0; e < count; ++e) {
     const Eigen::Index column = free_start_ + e * terms_;
     angle_.block(e * Q, column, Q, terms_) = turn_of(e) * table_->integrals.leftCols(terms_);
-    // Only p_0 turns the tangent over a whole piece.
+    // Only p_0 contributes to the rotation over a whole element.
     angle_.col(column).tail((count - e - 1) * Q).setConstant(turn_of(e));
   }
   angle_transposed_ = angle_.transpose();
@@ -114,8 +114,8 @@ void PlanarFrames::adjoint(const Eigen::Ref<const Eigen::VectorXd>& weights, Eig
   multiply(angle_transposed_, state.turning, state.by_unknown);
 }
 
-/// Beyond its own piece an unknown turns the rod as a whole, if it is the first of its piece or the
-/// start's angle, or not at all.
+/// Beyond its own element an unknown rotates the rod as a whole, if it is the first of its element
+/// or the start's angle; otherwise it has no effect there.
 void PlanarFrames::add_hessian(const Eigen::VectorXd& along, State& state,
                                Eigen::Ref<Eigen::MatrixXd> hessian) const {
   const Eigen::Index Q = table_->nodes.size();

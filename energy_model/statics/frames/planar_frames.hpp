@@ -14,71 +14,76 @@ namespace dlo::energy_model {
 /// Angle of a direction in the plane x-y, from x to y [rad].
 [[nodiscard]] double angle_of(const Eigen::Vector3d& direction);
 
-/// The angle that differs from `angle` by whole turns and is nearest to `target` [rad].
+/// Returns the angle that is nearest to `target` and differs from `angle` by a multiple of 2 pi
+/// [rad].
 [[nodiscard]] double nearest_turn(double angle, double target);
 
-/// Products, row by row, of vectors in the plane x-y. @param[out] result  one a row
+/// Computes dot products of vectors in the plane x-y, row by row. @param[out] result  one per row
 void dot_in_plane(const Eigen::MatrixX3d& a, const Eigen::MatrixX3d& b, Eigen::VectorXd& result);
 
-/// A rod's tangents in the plane x-y from its curvature: what RodFrames are in space.
+/// Tangents of a rod in the plane x-y as functions of its curvature; RodFrames is the counterpart
+/// in space.
 ///     t = (cos theta, sin theta, 0),  theta(s) = theta_0 + int_0^s (natural curvature + u) ds,
-/// u expanded in orthonormal Legendre polynomials on every piece (Piece), so that its energy is
-/// half the square of the coefficients. theta is linear in the unknowns.
+/// where u is expanded in orthonormal Legendre polynomials on every element (Piece), so that its
+/// energy is half the sum of the squares of the coefficients. theta is linear in the unknowns.
 ///
-/// Unknowns x: the coefficients piece by piece. If no clamp holds the start, its angle comes first.
+/// Unknowns x: the coefficients, element by element. If no clamp fixes the start, its angle is the
+/// first unknown.
 class PlanarFrames {
  public:
-  /// Of the last evaluate(), rows are nodes.
+  /// Results of the last evaluate(); rows are nodes.
   struct State {
     Eigen::VectorXd theta;
     Eigen::MatrixX3d t_theta;  ///< d t / d theta
 
-    // Scratch, by node, by unknown, and of a piece
+    // Scratch: per node, per unknown, and of one element.
     Eigen::VectorXd turning, by_unknown, curvature, beside;
     Eigen::MatrixXd scaled, own;
   };
 
-  /// Nodes are those of legendre_table(terms) on each piece.
-  /// @param start_theta  angle at the start [rad]; none: it is free
+  /// Sets the elements. Nodes are those of legendre_table(terms) on each element.
+  /// @param start_theta  angle at the start [rad]; std::nullopt: it is unknown
   void reset(const std::vector<Piece>& pieces, int terms, std::optional<double> start_theta,
              const NaturalStrains& natural);
-  /// Gives a state its size; nothing else allocates, but for tangent_jacobian() and fit().
+  /// Resizes a state; apart from tangent_jacobian() and fit(), nothing else allocates.
   void resize(State& state) const;
 
-  /// 0 of a free one [rad].
+  /// Angle at the start [rad]; 0 if it is unknown.
   [[nodiscard]] double start_theta() const { return start_theta_; }
   /// Derivatives of the nodes' angles by the unknowns, nodes x unknowns.
   [[nodiscard]] const Eigen::MatrixXd& by_unknown() const { return angle_; }
-  /// The same of the angle at a piece's end.
+  /// Derivatives of the angle at an element's end by the unknowns.
   [[nodiscard]] Eigen::RowVectorXd by_unknown_after(Eigen::Index piece) const;
-  /// By how much the angle at a piece's end has to exceed the start's and the stress-free shape's
-  /// for the tangent to have this direction, by the fewest turns [rad].
+  /// Returns the angle of `direction` (the multiple of 2 pi nearest to the start's angle) minus the
+  /// stress-free shape's angle at an element's end [rad].
   [[nodiscard]] double angle_towards(const Eigen::Vector3d& direction, Eigen::Index piece) const;
 
-  /// @param[out] tangents  nodes x 3; z is left as it is
+  /// Computes the tangents and the state. @param[out] tangents  nodes x 3; z is not written
   void evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::MatrixX3d& tangents,
                 State& state) const;
-  /// state.by_unknown = derivatives by x of sum nodes . t, whose gradient by the tangents, nodes x
-  /// 3, is `nodes`.
+  /// Computes state.by_unknown, the derivatives by x of the sum of nodes . t over the nodes. @param
+  /// nodes  gradient by the tangents, nodes x 3
   void adjoint(const Eigen::MatrixX3d& nodes, State& state) const;
-  /// The same of sum weights t_axis.
+  /// Computes state.by_unknown for the sum of weights t_axis over the nodes.
   void adjoint(const Eigen::Ref<const Eigen::VectorXd>& weights, Eigen::Index axis,
                State& state) const;
-  /// Adds the second derivatives of sum along theta^2 / 2 by x.
-  /// @param along  by node
+  /// Adds the second derivatives by x of the sum of along theta^2 / 2 over the nodes.
+  /// @param along  one per node
   void add_hessian(const Eigen::VectorXd& along, State& state,
                    Eigen::Ref<Eigen::MatrixXd> hessian) const;
   /// Derivatives of the tangents at the nodes by x: three matrices, one an axis, nodes x unknowns.
   [[nodiscard]] std::array<Eigen::MatrixXd, 3> tangent_jacobian(const State& state) const;
 
-  /// Subtracts from `along` weight B u^2, which bending takes off what the square of a tilt out of
-  /// the plane costs. @param weights  of the nodes
+  /// Subtracts weight B u^2 from `along`: the amount by which bending reduces the energy of a
+  /// squared tilt out of the plane. @param weights  of the nodes
   void subtract_bending(const Eigen::VectorXd& x, const Eigen::VectorXd& weights, State& state,
                         Eigen::VectorXd& along) const;
 
-  /// Angles of tangents at the nodes (3 x nodes), continuous, without the stress-free shape's.
+  /// Returns the angles of tangents at the nodes (3 x nodes), continuous along the rod, minus the
+  /// stress-free shape's [rad].
   [[nodiscard]] Eigen::VectorXd angles(const Eigen::Matrix3Xd& tangents) const;
-  /// Unknowns whose angles at the nodes are nearest to these, by least squares on each piece.
+  /// Returns the unknowns whose angles at the nodes come nearest to these, by least squares on each
+  /// element.
   [[nodiscard]] Eigen::VectorXd fit(const Eigen::VectorXd& angles) const;
 
  private:

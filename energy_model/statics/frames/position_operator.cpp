@@ -62,8 +62,9 @@ PointsReach PositionOperator::at_begin(Eigen::Index piece) const {
   return {begin(piece), 0, Eigen::MatrixXd::Zero(0, 1)};
 }
 
-/// Weights of a piece's nodes in the series in Legendre polynomials through what is given at them.
-/// @param of_terms  what the polynomials come to
+/// Returns weights of an element's nodes in linear functionals of the Legendre series that
+/// interpolates the values at the nodes.
+/// @param of_terms  value of the functional for each polynomial
 Eigen::MatrixXd PositionOperator::through(const Eigen::MatrixXd& of_terms) const {
   return table_->weights.asDiagonal() * (table_->values * of_terms);
 }

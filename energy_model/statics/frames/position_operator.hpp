@@ -11,32 +11,33 @@
 
 namespace dlo::energy_model {
 
-/// Positions of several points of one piece, as sums over the tangents at the span's nodes: those
-/// of other pieces have the same weights in all of them.
+/// Weights that give positions of several points of one element as sums over the tangents at the
+/// span's nodes. The weights of other elements' nodes are the same for all of these points.
 class PointsReach {
  public:
   PointsReach() = default;
-  /// @param begin  of where the piece begins
-  /// @param first  of its nodes
-  /// @param own    from there to the points, by its own nodes, nodes x points
+  /// @param begin  weights of all nodes for the point where the element begins
+  /// @param first  index of the element's first node
+  /// @param own    weights of the element's own nodes for the vectors from its begin to the points,
+  ///   nodes x points
   PointsReach(Eigen::VectorXd begin, Eigen::Index first, Eigen::MatrixXd own)
       : begin_(std::move(begin)), first_(first), own_(std::move(own)) {}
 
   [[nodiscard]] Eigen::Index points() const { return own_.cols(); }
-  /// Weights of all nodes in one of them.
+  /// Returns the weights of all nodes for one point.
   [[nodiscard]] Eigen::VectorXd weights(Eigen::Index point) const;
-  /// One of them, seen from where the piece begins. @param tangents  nodes x 3
+  /// Returns the vector from the element's begin to a point. @param tangents  nodes x 3
   [[nodiscard]] Eigen::Vector3d from_begin(Eigen::Index point,
                                            const Eigen::MatrixX3d& tangents) const {
     return tangents.middleRows(first_, own_.rows()).transpose() * own_.col(point);
   }
-  /// 3 x points. @param tangents  nodes x 3
+  /// Returns positions, 3 x points. @param tangents  nodes x 3
   [[nodiscard]] Eigen::Matrix3Xd positions(const Eigen::MatrixX3d& tangents) const {
     return sums(tangents).transpose();
   }
-  /// Reach^T A, points x columns of A. @param by_node  nodes x columns
+  /// Returns Reach^T A, points x columns of A. @param by_node  A, nodes x columns
   [[nodiscard]] Eigen::MatrixXd sums(const Eigen::MatrixXd& by_node) const;
-  /// Reach B, nodes x columns of B. @param by_point  points x columns
+  /// Computes Reach B, nodes x columns of B. @param by_point  B, points x columns
   /// @param[out] by_node  nodes x columns
   void spread(const Eigen::MatrixXd& by_point, Eigen::Ref<Eigen::MatrixXd> by_node) const;
 
@@ -46,11 +47,12 @@ class PointsReach {
   Eigen::MatrixXd own_;
 };
 
-/// Arc lengths and weights of a span's quadrature, that of the table on each of its pieces.
+/// Computes arc lengths and weights of a span's quadrature: the table's rule on each element.
 void tabulate_nodes(const std::vector<Piece>& pieces, const LegendreTable& table,
                     Eigen::VectorXd& nodes, Eigen::VectorXd& weights);
 
-/// Positions of a span's points, from the anchor, as sums over the tangents at its nodes.
+/// Weights that give positions of a span's points, relative to the anchor, as sums over the
+/// tangents at its nodes.
 class PositionOperator {
  public:
   PositionOperator() = default;
@@ -59,26 +61,29 @@ class PositionOperator {
   [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
   [[nodiscard]] const Eigen::VectorXd& nodes() const { return nodes_; }
   [[nodiscard]] const Eigen::VectorXd& weights() const { return weights_; }
-  /// Of the span up to an arc length at which a piece ends: 1 of a piece that it has beyond the
-  /// anchor, -1 of one that it lacks before it, 0 of others.
+  /// Returns one sign per element, for the interval from the anchor to an arc length at which an
+  /// element ends: 1 for elements between the anchor and a later s, -1 for elements between an
+  /// earlier s and the anchor, 0 for others.
   [[nodiscard]] std::vector<double> signs(double s) const;
 
-  /// Of where a piece begins; of the number of pieces: of the span's end.
+  /// Returns the weights of the point where an element begins; for the number of elements, of the
+  /// span's end.
   [[nodiscard]] Eigen::VectorXd begin(Eigen::Index piece) const;
-  /// Of points of a piece. @param shares  of its length, where they are
+  /// Returns the weights of points of an element. @param shares  positions of the points, divided
+  /// by the element's length
   [[nodiscard]] PointsReach points(Eigen::Index piece, const Eigen::VectorXd& shares) const;
-  /// Of where a piece begins, as the only point.
+  /// Returns the weights of the point where an element begins, as the only point.
   [[nodiscard]] PointsReach at_begin(Eigen::Index piece) const;
-  /// Of where a piece begins, of its nodes, and of where it ends.
+  /// Returns the weights of an element's begin, of its nodes and of its end.
   [[nodiscard]] PointsReach along(Eigen::Index piece) const;
-  /// Of a point of the span.
+  /// Returns the weights of the point at arc length s.
   [[nodiscard]] Eigen::VectorXd at(double s) const;
 
-  /// A point of a piece and its derivatives by the arc length.
+  /// Weights of a point of an element, and of its derivatives by the arc length.
   struct Point {
     Eigen::VectorXd position, tangent, curvature;
   };
-  /// @param s  of the span; somewhat beyond the piece too
+  /// @param s  arc length in the span; it may lie slightly outside the element
   [[nodiscard]] Point at(Eigen::Index piece, double s) const;
 
  private:
@@ -91,25 +96,26 @@ class PositionOperator {
   Eigen::VectorXd to_anchor_;
 };
 
-/// PositionOperator::along() of all pieces of a span, one after another.
+/// PositionOperator::along() for all elements of a span, one after another.
 class SpanReach {
  public:
   explicit SpanReach(const PositionOperator& reach);
 
   [[nodiscard]] Eigen::Index points() const { return weights_.size(); }
-  /// Of each piece.
+  /// Number of points of one element.
   [[nodiscard]] Eigen::Index piece_points() const { return pieces_.front().points(); }
-  /// The first point of a piece; of the number of pieces: the span's end.
+  /// Returns the index of the first point of an element; for the number of elements, of the span's
+  /// end.
   [[nodiscard]] Eigen::Index begin(Eigen::Index piece) const {
     return std::min(piece * piece_points(), points() - 1);
   }
-  /// Of the span's quadrature; 0 where pieces begin and end.
+  /// Weights of the span's quadrature at the points; 0 at begins and ends of elements.
   [[nodiscard]] const Eigen::VectorXd& weights() const { return weights_; }
-  /// The same times what each piece has per length.
+  /// Returns weights() times a factor of each element.
   [[nodiscard]] Eigen::VectorXd weighed(const std::vector<double>& per_length) const;
-  /// Reach^T A, points x columns of A. @param by_node  nodes x columns
+  /// Returns Reach^T A, points x columns of A. @param by_node  A, nodes x columns
   [[nodiscard]] Eigen::MatrixXd sums(const Eigen::MatrixXd& by_node) const;
-  /// Reach B, nodes x columns of B. @param by_point  points x columns
+  /// Returns Reach B, nodes x columns of B. @param by_point  B, points x columns
   [[nodiscard]] Eigen::MatrixXd spread(const Eigen::MatrixXd& by_point) const;
 
  private:

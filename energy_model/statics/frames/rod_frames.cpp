@@ -9,21 +9,22 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Terms of the turn of a free start: a constant strain over a length of 1.
+/// Number of coefficients of a free start's rotation: a constant strain over a length of 1.
 constexpr int turn_terms = 1;
 
-/// Largest defect of the collocation that is left, and corrections that it may take. From Magnus'
-/// steps two do for all strains that a rod's own nodes resolve. Of others a defect is left that
-/// none takes away, which shows in one that is above the square of the last.
+/// Largest acceptable collocation defect, and limits of its correction. After Magnus steps two
+/// corrections suffice for all strains that the nodes resolve. For other strains a defect remains
+/// that no correction removes; it is recognised by exceeding the square of the previous defect.
 constexpr double finest_defect = 2e-15;
-constexpr double largest_square = 10;  // of what a correction leaves, over the square
+constexpr double largest_square = 10;  // largest ratio of a defect to the square of the previous
+                                       // one
 constexpr int most_corrections = 6;
 
 using Rows = Eigen::Ref<Eigen::MatrixX4d, 0, Eigen::OuterStride<>>;
 using ConstRows = Eigen::Ref<const Eigen::MatrixX4d, 0, Eigen::OuterStride<>>;
 using ConstStrains = Eigen::Ref<const Eigen::MatrixX3d, 0, Eigen::OuterStride<>>;
 
-/// product = product + scale q (0, 0, 0, u3), row by row.
+/// Computes product = product + scale q (0, 0, 0, u3), row by row.
 void add_product_with_twist(const ConstRows& q, const ConstStrains& u, double scale, Rows product) {
   for (Eigen::Index r = 0; r < q.rows(); ++r) {
     const double c = scale * u(r, 2);
@@ -34,12 +35,12 @@ void add_product_with_twist(const ConstRows& q, const ConstStrains& u, double sc
   }
 }
 
-/// from_rotation_vector(), for a small angle by the series of sine and cosine.
+/// Computes from_rotation_vector(); for a small angle by the series of sine and cosine.
 Eigen::Quaterniond step_rotation(const Eigen::Vector3d& v) {
   constexpr double small = 0.04;  // square of the angle, whose fifth power is below rounding
   const double z = v.squaredNorm();
   if (!(z < small)) return from_rotation_vector(v);
-  // By the inverses of the series' quotients, as there is a step to every node.
+  // Each nested factor multiplies by the inverse of an integer: this is called once per node.
   const double cosine =
       1 -
       z * (1. / 8) *
@@ -84,7 +85,7 @@ void RodFrames::reset(const std::vector<Piece>& pieces, int terms, const Eigen::
   }
 }
 
-/// product = length / 2 q (0, u), row by row.
+/// Computes product = length / 2 q (0, u), row by row.
 void RodFrames::multiply_by_strains(
     const ConstRows& q, const Panel& panel, const State& state,
     Eigen::Ref<Eigen::MatrixX4d, 0, Eigen::OuterStride<>> product) const {
@@ -102,7 +103,8 @@ void RodFrames::integrate(const Panel& panel, Eigen::Quaterniond& at, State& sta
   auto product = state.product.topRows(Q);
   auto defect = state.defect.topRows(Q);
   auto turn = state.turn.topRows(Q);
-  // Magnus: the strain's integral, and h^2/12 of the commutator of the strains at both ends.
+  // Magnus step: the strain's integral, plus h^2/12 times the commutator of the strains at both
+  // ends.
   multiply(table.integration, u.leftCols(fields_), turn.leftCols(fields_));
   turn.leftCols(fields_) *= panel.length;
   Eigen::Quaterniond along = at;
@@ -138,7 +140,7 @@ void RodFrames::integrate(const Panel& panel, Eigen::Quaterniond& at, State& sta
     multiply(table.integration, product, turn);
     defect += turn;
     kernel.add_product(result_columns(q), columns_of(defect));
-    // What is left is its square.
+    // The remaining defect is about the square of this one.
     if (size < 3e-8) break;
   }
   multiply_by_strains(q, panel, state, product);
@@ -257,7 +259,8 @@ void RodFrames::couple_adjoint(Eigen::Index piece, const Eigen::Vector3d& couple
 
 void RodFrames::position_jacobian(const std::vector<double>& signs, State& state,
                                   Eigen::Ref<Eigen::MatrixXd> jacobian) const {
-  // The moment of a force along an axis a is v x a, v what lies beyond; d.(v x a) = a.(d x v).
+  // A force along an axis a has the moment v x a, with v the vector to the points beyond; d.(v x a)
+  // = a.(d x v).
   Eigen::Vector3d beyond = Eigen::Vector3d::Zero();
   std::size_t piece = signs.size();
   for (auto panel = panels_.rbegin(); panel != panels_.rend(); ++panel) {
@@ -285,8 +288,8 @@ void RodFrames::position_jacobian(const std::vector<double>& signs, State& state
   }
 }
 
-/// Into state.spins: spins of the panel's nodes by its own unknowns, which are the rows; columns
-/// are the nodes, axis by axis.
+/// Computes state.spins, the rotations of the panel's nodes by its own unknowns. Rows are unknowns;
+/// columns are nodes, axis by axis.
 void RodFrames::own_spins(const Panel& panel, State& state) const {
   const Eigen::Index Q = panel.nodes();
   const Eigen::Index K = panel.terms;
@@ -305,7 +308,7 @@ void RodFrames::own_spins(const Panel& panel, State& state) const {
   }
 }
 
-/// Into state.ends: spin of the panel's end by its own unknowns.
+/// Computes the panel's columns of state.ends, the rotation of the panel's end by its own unknowns.
 void RodFrames::end_spins(const Panel& panel, State& state) const {
   const Eigen::Index Q = panel.nodes();
   auto weighted = state.levers.topRows(Q);

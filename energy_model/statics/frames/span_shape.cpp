@@ -14,12 +14,12 @@
 namespace dlo::energy_model {
 namespace {
 
-/// A piece with what is needed to look at any point of it, as series in Legendre polynomials.
+/// An element with the Legendre series that give any point of it.
 struct PlacedPiece {
   Piece piece;
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();  // of its begin
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  // position of its begin
   Eigen::Matrix3Xd tangent;                         // 3 x Q
-  double theta = 0;                                 // planar: the angle at its begin
+  double theta = 0;                                 // in the plane: the angle at its begin
   Eigen::Matrix4Xd frame;                           // in space: quaternions w, x, y, z, 4 x Q
 };
 
@@ -38,7 +38,7 @@ class Sampler {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();
     for (PlacedPiece& placed : pieces_) {
       placed.point = point;
-      // Over a whole piece only p_0 adds up.
+      // Only p_0 contributes to the integral over a whole element.
       point += placed.piece.length * placed.tangent.col(0);
       if (std::abs(placed.piece.end() - shape.anchor) < closest_cuts) anchor_ = point;
     }
@@ -138,11 +138,11 @@ class Sampler {
   Eigen::Vector3d anchor_ = Eigen::Vector3d::Zero();
 };
 
-/// Lengths of a layer, (EI / force)^(1/2), at which pieces end: what is left has decayed by exp(-6)
-/// and exp(-24).
+/// Distances from a layer's origin at which elements end, divided by the layer's length (EI /
+/// force)^(1/2): the layer has decayed by exp(-6) and exp(-24) there.
 constexpr std::array<double, 2> layer_depths = {6, 24};
 
-/// Cuts where the layers at the grips and the loads of a taut segment have decayed.
+/// Adds cuts where the layers at the grips and loads of a taut segment have decayed.
 void cut_taut(const Segment& segment, const Span& span, std::vector<double>& cuts) {
   const double layer = 1 / std::sqrt(segment.tension);
   std::vector<double> kinks = {segment.begin};
@@ -159,7 +159,7 @@ void cut_taut(const Segment& segment, const Span& span, std::vector<double>& cut
   }
 }
 
-/// Cuts where the layers beside contacts have decayed.
+/// Adds cuts where the layers next to contacts have decayed.
 void cut_free_boundaries(const Span& span, double layer, std::vector<double>& cuts) {
   if (span.contacts.empty()) return;
   const std::vector<double> others = cuts;
@@ -181,7 +181,7 @@ void cut_free_boundaries(const Span& span, double layer, std::vector<double>& cu
   }
 }
 
-/// Cuts where layers are to be expected.
+/// Adds cuts where boundary layers are expected.
 void cut_layers(const Span& span, std::vector<double>& cuts) {
   const double layer = 1 / std::sqrt(std::max(1.0, span.total_load()));
   const double room = span.end_direction ? 0.4 : 0.7;

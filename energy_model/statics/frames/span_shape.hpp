@@ -11,29 +11,31 @@
 
 namespace dlo::energy_model {
 
-/// Cuts at grips, loads and sections, and where the layers at the clamps of a soft rod and at the
-/// ends of its taut segments have decayed by exp(-6) and exp(-24), so that no piece has to resolve
-/// all of a layer.
+/// Divides a span into elements: at grips, loads and section changes, and where the boundary layers
+/// at the clamps of a soft rod and at the ends of its taut segments have decayed by exp(-6) and
+/// exp(-24), so that no element has to resolve a whole layer.
 [[nodiscard]] std::vector<Piece> pieces_of(const Span& span);
 
-/// Cuts closer than this would make pieces too short for a curvature of their own.
+/// Smallest distance of two element boundaries; a shorter element could not have a curvature of its
+/// own.
 inline constexpr double closest_cuts = 1e-9;
 
-/// Points along a span, own units and frame.
+/// Samples of a span's shape, in the span's units and frame.
 struct SpanSamples {
-  Eigen::Matrix3Xd points;  ///< from the anchor
+  Eigen::Matrix3Xd points;  ///< relative to the anchor
   Eigen::Matrix3Xd tangents;
   Eigen::Matrix3Xd curvature;
-  Eigen::Matrix3Xd d1;  ///< of the frame with Span::first_d1() at the start: the rod's or Bishop's
+  Eigen::Matrix3Xd d1;  ///< d1 of the rod's own or of Bishop's frame that has Span::first_d1() at
+                        ///< the start
 };
 
-/// A shape to start from, at given arc lengths by growing s.
+/// A shape as initial guess, at given arc lengths in ascending order.
 struct StartShape {
   Eigen::Matrix3Xd tangents;
-  /// By which the rod's own frame is turned ahead of Bishop's, where it has one of its own [rad];
-  /// empty: nowhere.
+  /// Angle of the rod's own frame relative to Bishop's [rad], for rods with material directors;
+  /// empty: zero everywhere.
   Eigen::VectorXd roll;
-  /// End ahead of start, of a rod without such a frame whose ends' frames are held [rad].
+  /// Twist of a rod without material directors whose end frames are clamped [rad].
   double twist = 0;
 
   StartShape() = default;
@@ -42,15 +44,15 @@ struct StartShape {
       : tangents(std::move(along)), roll(std::move(ahead)) {}
 };
 
-/// Tangents at arc lengths of a span, as a start, 3 x M.
+/// Function that returns a shape, as initial guess, at M arc lengths of a span.
 using TangentField = std::function<StartShape(const Eigen::VectorXd&)>;
 
-/// Angle of d1 ahead of a frame that does not rotate around the tangents, from the first
-/// point on [rad]; no step may turn the tangent by pi.
+/// Returns the angle of d1 relative to a frame that does not rotate about the tangents, from the
+/// first point on [rad]. Between two points the tangent must rotate by less than pi.
 [[nodiscard]] Eigen::VectorXd roll_of(const Eigen::Matrix3Xd& tangents, const Eigen::Matrix3Xd& d1);
 
-/// A span's shape: in the plane the angle at its start and the Legendre coefficients of its
-/// derivative on every piece, in space the start's frame and the unknowns of RodFrames.
+/// Shape of a span. In the plane it is the angle at the start and the Legendre coefficients of its
+/// derivative on every element; in space it is the start's frame and the unknowns of RodFrames.
 struct SpanShape {
   int terms = 0;
   bool planar = true;

@@ -4,10 +4,11 @@
 #include "linear/kernel_frames.hpp"
 #include "linear/kernel_products.hpp"
 
-// Compiled once for each instruction set, DLO_KERNEL naming the namespace (see CMakeLists.txt).
-// Nothing inline from a library that another file might compile too may be used in here but what
-// the compiler is sure to inline: of such a function the linker keeps one copy, perhaps one with
-// instructions that the machine lacks. The headers of its parts are for this file alone.
+// This file is compiled once for each instruction set, and DLO_KERNEL names the namespace (see
+// CMakeLists.txt). It must not call inline functions of a library that another file might compile
+// too, unless the compiler certainly inlines them: the linker keeps one copy of such a function,
+// possibly one with instructions that the machine lacks. The headers of its parts are for this file
+// alone.
 
 namespace dlo::energy_model::DLO_KERNEL {
 

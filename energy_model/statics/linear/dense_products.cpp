@@ -7,7 +7,7 @@
 
 namespace dlo::energy_model {
 
-// One for each time that dense_kernel.cpp is compiled.
+// dense_kernel.cpp is compiled once for each of these namespaces.
 namespace kernel_baseline {
 const DenseKernel& dense_kernel();
 }
@@ -29,7 +29,7 @@ struct KernelOfSet {
   const DenseKernel* kernel = nullptr;  ///< null if this machine cannot run the set
 };
 
-/// The fastest last; the first is always there.
+/// Lists the instruction sets, the fastest last; the first one is always available.
 std::array<KernelOfSet, 3> kernels() {
   const DenseKernel* avx2 = nullptr;
   const DenseKernel* avx512 = nullptr;

@@ -2,11 +2,11 @@
 
 #include "linear/kernel_lanes.hpp"
 
-// A part of dense_kernel.cpp, whose rules hold here: Cholesky's factor and its solutions.
+// Cholesky factor and its solutions. A part of dense_kernel.cpp, whose rules apply here.
 namespace dlo::energy_model::DLO_KERNEL {
 
-/// `registers` of rows from row i on of `width` columns from column j on, less what the columns
-/// before have put into L L^T there.
+/// Subtracts from a tile of A the contribution of the columns before j to L L^T. The tile has
+/// `registers` registers of rows from row i and `width` columns from column j.
 template <int registers, int width>
 inline void subtract_tile(const Columns& a, std::ptrdiff_t i, std::ptrdiff_t j) {
   Lanes rest[registers][width];
@@ -31,10 +31,10 @@ inline void subtract_tile(const Columns& a, std::ptrdiff_t i, std::ptrdiff_t j) 
   }
 }
 
-/// The register that a row is in.
+/// Returns the first row of the register that contains a row.
 inline std::ptrdiff_t register_of(std::ptrdiff_t row) { return row / lane_count * lane_count; }
 
-/// `width` columns from column j on, of which those before are done.
+/// Factors `width` columns from column j on; all columns before j are factored.
 template <int width>
 inline bool factor_strip(const Columns& a, std::ptrdiff_t j) {
   const std::ptrdiff_t first = register_of(j);
@@ -72,7 +72,7 @@ inline bool factor(const Columns& a) {
   return true;
 }
 
-/// `width` unknowns from j on of L y = x, and what they take from those beyond.
+/// Solves L y = x for `width` unknowns from j on, and subtracts their contribution from later rows.
 template <int width>
 inline void solve_forward(const ConstColumns& l, double* x, std::ptrdiff_t j) {
   const double* columns[width] = {};
@@ -102,7 +102,7 @@ inline double sum_of(Lanes lanes) {
   return lanes[0];
 }
 
-/// `width` unknowns from j on of L^T y = x, where those beyond are known.
+/// Solves L^T y = x for `width` unknowns from j on; all unknowns after them are known.
 template <int width>
 inline void solve_backward(const ConstColumns& l, double* x, std::ptrdiff_t j) {
   const double* columns[width] = {};

@@ -2,7 +2,7 @@
 
 #include "linear/kernel_lanes.hpp"
 
-// A part of dense_kernel.cpp, whose rules hold here: quaternions, sines and cosines.
+// Quaternions, sines and cosines. A part of dense_kernel.cpp, whose rules apply here.
 namespace dlo::energy_model::DLO_KERNEL {
 
 template <typename Real>
@@ -87,11 +87,13 @@ inline void add_product(const Columns& q, const ConstColumns& a) {
 
 using Bits [[gnu::vector_size(lane_count * sizeof(double))]] = long long;
 
-/// (a) The angle less the nearest multiple k of pi/2, a sum of three numbers of which the first two
-///     have 33 bits: k times them is exact.
-/// (b) Taylor's series on what is left, cut where fdlibm cuts it and with its coefficients.
-/// (c) Odd k exchange sine and cosine; signs follow from k, of which `shift` has left the last bits
-///     at the end of the mantissa.
+/// Computes cosines and sines of the angles in one register.
+/// (a) Subtracts the nearest multiple k of pi/2, given as a sum of three numbers. The first two
+/// have 33 bits, so that their products with k are exact.
+/// (b) Evaluates Taylor's series of the remainder, truncated as in fdlibm and with its
+/// coefficients.
+/// (c) Exchanges sine and cosine if k is odd, and sets the signs from k, the last bits of which
+/// `shift` has left at the end of the mantissa.
 inline void turn_lanes(Lanes angle, Lanes& cosine, Lanes& sine) {
   constexpr double shift = 0x1.8p52;
   constexpr double per_quarter = 6.36619772367581382433e-01;

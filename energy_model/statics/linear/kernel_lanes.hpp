@@ -2,7 +2,7 @@
 
 #include "linear/dense_kernel.hpp"
 
-// A part of dense_kernel.cpp, whose rules hold here: registers, and loops over what is in them.
+// Registers and loops over their elements. A part of dense_kernel.cpp, whose rules apply here.
 namespace dlo::energy_model::DLO_KERNEL {
 
 #if defined(__AVX512F__)
@@ -13,7 +13,8 @@ constexpr std::ptrdiff_t lane_count = 4;
 constexpr std::ptrdiff_t lane_count = 2;
 #endif
 
-/// A register, and one as stored at any double (GCC and Clang vector extension).
+/// A vector register, and its form in memory at any address of a double (GCC and Clang vector
+/// extension).
 using Lanes [[gnu::vector_size(lane_count * sizeof(double))]] = double;
 using StoredLanes [[gnu::vector_size(lane_count * sizeof(double)), gnu::aligned(sizeof(double)),
                     gnu::may_alias]] = double;
@@ -28,7 +29,7 @@ inline double dot(const double* a, const double* b, std::ptrdiff_t size) {
   return sum;
 }
 
-/// One row after the other, or as many as a register has lanes.
+/// Overloads that process one row, or as many rows as a register has elements.
 inline void read(const double* from, double& value) { value = *from; }
 inline void read(const double* from, Lanes& value) { value = read_lanes(from); }
 inline void write(double* to, double value) { *to = value; }

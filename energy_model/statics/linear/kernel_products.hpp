@@ -2,17 +2,18 @@
 
 #include "linear/kernel_lanes.hpp"
 
-// A part of dense_kernel.cpp, whose rules hold here: products of matrices.
+// Products of matrices. A part of dense_kernel.cpp, whose rules apply here.
 namespace dlo::energy_model::DLO_KERNEL {
 
-/// Factors by which the columns of A are multiplied: element k of column j of the result is at
-/// data + k * next + j * beside.
+/// Factors of the columns of A in a product: element k of column j of the right operand is stored
+/// at data + k * next + j * beside.
 struct Factors {
   const double* data;
   std::ptrdiff_t next, beside;
 };
 
-/// `registers` of rows from row i on, and `width` columns from column j on, of A B.
+/// Computes a tile of A B: `registers` registers of rows from row i, and `width` columns from
+/// column j.
 template <int registers, int width>
 inline void multiply_tile(const ConstColumns& a, const Factors& b, const Columns& result,
                           std::ptrdiff_t i, std::ptrdiff_t j) {
@@ -33,8 +34,8 @@ inline void multiply_tile(const ConstColumns& a, const Factors& b, const Columns
   }
 }
 
-/// Rows from `first` on of `width` columns of A B from column j on. The last rows are worked out
-/// with as many before them as fill a tile.
+/// Computes `width` columns of A B from column j, rows from `first`. The last tile overlaps the one
+/// before it, so that every tile is full.
 template <int width>
 inline void multiply_strip(const ConstColumns& a, const Factors& b, const Columns& result,
                            std::ptrdiff_t first, std::ptrdiff_t j) {
@@ -61,7 +62,8 @@ inline void multiply_strip(const ConstColumns& a, const Factors& b, const Column
   }
 }
 
-/// A b of one column, with as many registers as keep sums from waiting for each other.
+/// Computes A b for a single column, with enough registers that the sums do not wait for each
+/// other.
 inline void multiply_column(const ConstColumns& a, const Factors& b, const Columns& result) {
   std::ptrdiff_t i = 0;
   for (; i + 8 * lane_count <= a.rows; i += 8 * lane_count) {
@@ -115,7 +117,8 @@ inline void reflect(const Columns& a, const double* v, double tau, double* w) {
   }
 }
 
-/// A row of A B^T times its weight, of one column of B^T.
+/// Returns an element (or a register of elements) of weights o (left right^T). @param right  row of
+/// `right` that belongs to the column
 template <typename Real>
 inline Real weighed_row(const WeighedProduct& a, const double (&right)[3], std::ptrdiff_t column,
                         std::ptrdiff_t row) {

@@ -11,12 +11,15 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Of R's diagonal over its largest element, below which constraints depend on each other.
+/// Smallest element of R's diagonal, divided by the largest one, with which constraints are
+/// independent.
 constexpr double dependent = 1e-10;
 
-/// Of a symmetric positive definite tridiagonal matrix, to 1e-9 of itself: from above by Laguerre's
-/// method, which for a polynomial with real roots goes to the largest one without passing it. The
-/// polynomial is the product of the pivots of x - T.
+/// Returns the largest eigenvalue of a symmetric positive definite tridiagonal matrix, to a
+/// relative 1e-9. Laguerre's method approaches it from above: for a polynomial with real roots it
+/// converges to the largest one without passing it. The polynomial is the product of the pivots of
+/// x - T.
+/// @param beside  off-diagonal
 double largest_eigenvalue(const Eigen::Ref<const Eigen::VectorXd>& diagonal,
                           const Eigen::Ref<const Eigen::VectorXd>& beside) {
   const Eigen::Index n = diagonal.size();
@@ -29,7 +32,8 @@ double largest_eigenvalue(const Eigen::Ref<const Eigen::VectorXd>& diagonal,
   if (n < 2) return x;
   constexpr int most_steps = 40;
   for (int step = 0; step < most_steps; ++step) {
-    // Of log p: the sum of 1 / (x - root), and that of their squares.
+    // Derivatives of log p: the sum of 1 / (x - root), and the sum of the squares of 1 / (x -
+    // root).
     double sum = 0;
     double squares = 0;
     double pivot = 1;
@@ -59,7 +63,7 @@ Eigen::Index padded(Eigen::Index rows) { return (rows + padding - 1) / padding *
 
 }  // namespace
 
-/// Householder's reflections of J^T, column by column.
+/// Factors J^T by Householder reflections, column by column.
 void ReducedHessian::reflect_constraints(const Eigen::MatrixXd& jacobian) {
   reflections_ = jacobian.topRows(constraints_).transpose();
   tau_.resize(constraints_);
@@ -108,17 +112,17 @@ void ReducedHessian::reflect(Eigen::Index i, Vector& v) const {
   v -= (tau_[i] * w.dot(v)) * w;
 }
 
-/// v to Q^T v
+/// Replaces v by Q^T v.
 void ReducedHessian::turn(Vector v) const {
   for (Eigen::Index i = 0; i < constraints_; ++i) reflect(i, v);
 }
 
-/// v to Q v
+/// Replaces v by Q v.
 void ReducedHessian::turn_back(Vector v) const {
   for (Eigen::Index i = constraints_; i-- > 0;) reflect(i, v);
 }
 
-/// mu to R^-1 mu
+/// Replaces mu by R^-1 mu.
 void ReducedHessian::solve_triangle(Vector mu) const {
   for (Eigen::Index i = constraints_; i-- > 0;) {
     mu[i] /= diagonal_[i];
@@ -126,7 +130,7 @@ void ReducedHessian::solve_triangle(Vector mu) const {
   }
 }
 
-/// z to (L L^T)^-1 z
+/// Replaces z by (L L^T)^-1 z.
 void ReducedHessian::solve_by(const Eigen::MatrixXd& lower, Vector z) const {
   dense_kernel().solve({lower.data(), free(), free(), lower.rows()}, z.data());
 }
@@ -166,7 +170,7 @@ void ReducedHessian::solve(const Eigen::VectorXd& right, Eigen::VectorXd& step) 
   z = turned_right_.tail(left);
   z.noalias() -= turned_.bottomLeftCorner(left, constraints_) * y;
   solve_by(factor_, z);
-  // R mu = (Q^T H Q) (y; z) - Q^T a, of Y
+  // R mu = (Q^T H Q) (y; z) - Q^T a, restricted to Y.
   auto mu = step.tail(constraints_);
   mu.noalias() = turned_.leftCols(constraints_).transpose() * x;
   mu -= turned_right_.head(constraints_);
@@ -174,17 +178,17 @@ void ReducedHessian::solve(const Eigen::VectorXd& right, Eigen::VectorXd& step) 
   turn_back(x);
 }
 
-/// Each vector is made orthogonal to all before. Ends where the largest eigenvalue, looked at from
-/// time to time, has changed by less than `settled` of itself.
+/// Runs Lanczos' method on the inverse with full reorthogonalisation. It ends when the largest
+/// eigenvalue, which is computed at some of the steps, has changed by at most `settled` of itself.
 ReducedHessian::Lanczos ReducedHessian::look_for_smallest(double settled, Eigen::Index most_steps) {
   const auto is_time_to_look = [](Eigen::Index k) { return k == 4 || (k >= 8 && k % 6 == 2); };
-  // A vector that has become so much shorter is not orthogonal to the others yet, and what it
-  // lacks would grow by as much with each step.
+  // A vector that orthogonalisation shortens by more than this factor is orthogonalised again: its
+  // remaining components would grow by the same factor with each step.
   constexpr double much_shorter = 0.5;
   const Eigen::Index left = free();
   const Eigen::Index most = std::min(most_steps, left);
   krylov_.resize(left, most + 1);
-  // Without a symmetry, which a direction could lack.
+  // This start vector has no symmetry, so that it has a component along every eigenvector.
   for (Eigen::Index i = 0; i < left; ++i) {
     krylov_(i, 0) = std::sin(1 + 1.7 * static_cast<double>(i));
   }
@@ -219,7 +223,8 @@ ReducedHessian::Lanczos ReducedHessian::look_for_smallest(double settled, Eigen:
 
 std::optional<double> ReducedHessian::smallest_eigenvalue_of_definite() {
   constexpr double slack = 0.01;
-  constexpr double settled = 1e-4;  // between two looks, of which the later is right to its square
+  constexpr double settled = 1e-4;  // between two checks; the later one has the square of this
+                                    // error
   constexpr Eigen::Index most_steps = 24;
   if (!definite_ || free() == 0) return std::nullopt;
   const double smallest = 1 / look_for_smallest(settled, most_steps).largest;

@@ -5,11 +5,12 @@
 
 namespace dlo::energy_model {
 
-/// A Hessian on what the constraints leave free, factored: with the reflections Q of
-/// J^T = Q (R; 0), R triangular, and Q = (Y, Z),
+/// A Hessian restricted to the null space of the constraints' Jacobian J, and its Cholesky factor.
+/// With the Householder reflections Q of J^T = Q (R; 0), R triangular, and Q = (Y, Z), the factor
+/// is
 ///     Z^T H Z = L L^T.
-/// It tells whether it is positive definite, what its smallest eigenvalue is, and Newton's step.
-/// Buffers survive from one compute() to the next.
+/// The class determines definiteness, the smallest eigenvalue and Newton's step. Buffers are kept
+/// from one compute() to the next.
 class ReducedHessian {
  public:
   /// @param hessian   n x n, symmetric
@@ -18,13 +19,14 @@ class ReducedHessian {
     constrain(jacobian);
     compute(hessian);
   }
-  /// In two steps, where the Hessian takes multipliers that the constraints tell.
+  /// Sets the constraints alone; compute(hessian) follows, for a Hessian whose multipliers depend
+  /// on the constraints (balance()).
   void constrain(const Eigen::MatrixXd& jacobian);
   void compute(const Eigen::MatrixXd& hessian) {
     turned_ = hessian;
     reflect_and_factor();
   }
-  /// The same without a copy: the matrix becomes another one.
+  /// Sets the Hessian by swapping its storage, without a copy; the content of `hessian` is lost.
   void take(Eigen::MatrixXd& hessian) {
     turned_.swap(hessian);
     reflect_and_factor();
@@ -32,49 +34,50 @@ class ReducedHessian {
 
   /// Whether the constraints are independent.
   [[nodiscard]] bool is_independent() const { return independent_; }
-  /// Multipliers mu with J^T mu nearest to a gradient, of independent constraints, and what is left
-  /// of it: Z^T g.
+  /// Least-squares multipliers mu, which minimise |J^T mu - g| for a gradient g and independent
+  /// constraints, and the remaining part Z^T g of the gradient.
   struct Balance {
     Eigen::VectorXd multipliers, left;
   };
   [[nodiscard]] Balance balance(const Eigen::VectorXd& gradient);
 
   [[nodiscard]] bool is_definite() const { return definite_; }
-  /// z to (Z^T H Z)^-1 z, if it is positive definite.
+  /// Replaces z by (Z^T H Z)^-1 z; Z^T H Z has to be positive definite.
   void solve_free(Eigen::VectorXd& z) const;
   /// Factors Z^T H Z + mu. @return whether it is positive definite, which solve_shifted() needs
   [[nodiscard]] bool factor_shifted(double mu) { return factor(mu, shifted_); }
-  /// z to (Z^T H Z + mu)^-1 z, with the mu of the last factor_shifted()
+  /// Replaces z by (Z^T H Z + mu)^-1 z, with the mu of the last factor_shifted().
   void solve_shifted(Eigen::VectorXd& z) const { solve_by(shifted_, z); }
-  /// Of Z^T H Z.
+  /// Diagonal of Z^T H Z.
   [[nodiscard]] Eigen::VectorXd diagonal() const { return turned_.diagonal().tail(free()); }
 
-  /// Whether Z^T H Z is positive definite (of no free direction it is) and the constraints are
-  /// independent: what solve() needs.
+  /// Whether Z^T H Z is positive definite (true if no direction is free) and the constraints are
+  /// independent, which solve() requires.
   [[nodiscard]] bool has_solutions() const { return definite_ && independent_; }
 
-  /// Solution (x, mu) of H x - J^T mu = a, J x = b. It refines nothing: whoever wants to know how
-  /// good it is looks at what is left.
-  /// @param right      (a, b), n + m
-  /// @param[out] step  (x, mu), another vector
+  /// Solves H x - J^T mu = a, J x = b without iterative refinement; the caller has to check the
+  /// residual.
+  /// @param right      (a, b), n + m numbers
+  /// @param[out] step  (x, mu); must not alias `right`
   void solve(const Eigen::VectorXd& right, Eigen::VectorXd& step);
 
-  /// Of Z^T H Z, if it is positive definite, below which by less than a hundredth of it lies no
-  /// other one, which a factor proves; none if it is not or the proof fails.
+  /// Returns the smallest eigenvalue of Z^T H Z, overestimated by less than 1 %, which a
+  /// factorisation of the shifted matrix proves. Returns std::nullopt if Z^T H Z is not positive
+  /// definite or the proof fails.
   [[nodiscard]] std::optional<double> smallest_eigenvalue_of_definite();
-  /// A unit vector of the free directions along that eigenvalue, to where it changes no more; none
-  /// if Z^T H Z is not positive definite.
+  /// Returns the unit eigenvector of the smallest eigenvalue in coordinates of the free directions,
+  /// converged. Returns std::nullopt if Z^T H Z is not positive definite.
   [[nodiscard]] std::optional<Eigen::VectorXd> lowest_mode_of_definite();
 
-  /// Smallest element of R's diagonal, by size: by how much a turn of the constraints' derivatives
-  /// turns the free directions more than that; infinite without constraints.
+  /// Smallest magnitude on R's diagonal; infinite without constraints. A rotation of the
+  /// constraints' gradients rotates the null space by up to its inverse times as much.
   [[nodiscard]] double least_constraint() const;
 
-  /// H, where there are no constraints.
+  /// H; only valid without constraints.
   [[nodiscard]] const Eigen::MatrixXd& unconstrained() const { return turned_; }
   /// Z^T H Z, free x free.
   [[nodiscard]] Eigen::MatrixXd matrix() const;
-  /// A vector of the free directions in the unknowns: Z v.
+  /// Returns Z v, a vector of free directions in the unknowns.
   [[nodiscard]] Eigen::VectorXd in_unknowns(const Eigen::VectorXd& v) const;
 
  private:
@@ -88,10 +91,10 @@ class ReducedHessian {
   void solve_by(const Eigen::MatrixXd& lower, Vector z) const;
   void reflect_and_factor();
   [[nodiscard]] bool factor(double mu, Eigen::MatrixXd& lower) const;
-  /// Vectors krylov_ of Lanczos' method with the inverse, and the matrix that they make of it.
+  /// Tridiagonal matrix of Lanczos' method on the inverse of Z^T H Z; its vectors are in krylov_.
   struct Lanczos {
-    Eigen::VectorXd along, beside;  // diagonal, and what is next to it
-    double largest = 0;             // eigenvalue
+    Eigen::VectorXd along, beside;  // diagonal and off-diagonal
+    double largest = 0;             // largest eigenvalue
   };
   [[nodiscard]] Lanczos look_for_smallest(double settled, Eigen::Index most_steps);
 
@@ -102,7 +105,7 @@ class ReducedHessian {
   Eigen::MatrixXd triangle_;  // R above its diagonal
   Eigen::MatrixXd turned_;    // Q^T H Q
   Eigen::MatrixXd factor_;    // L
-  Eigen::MatrixXd shifted_;   // the same of a shifted matrix
+  Eigen::MatrixXd shifted_;   // L of a shifted matrix
   Eigen::VectorXd scratch_, turned_right_;
   Eigen::MatrixXd krylov_;
 };

@@ -9,18 +9,18 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Lengths over the radius that are accepted.
+/// Largest and smallest accepted step length, divided by the radius.
 constexpr double longest_accepted = 1.01;
 constexpr double shortest_accepted = 0.75;
-/// Bounds of mu this near to each other, over the upper one, are one.
+/// Relative distance of the bounds of mu below which they count as equal.
 constexpr double closed_bounds = 1e-2;
 
-/// What mu lies between: below `low` H + mu is not positive definite or p too long, from `high` on
-/// p is too short.
+/// Bounds of mu. Up to `low`, H + mu is not positive definite or p is too long; from `high` on, p
+/// is too short.
 struct ShiftBounds {
   double low = 0;
   double high = std::numeric_limits<double>::infinity();
-  double rounding = 0;  // an eigenvalue that is zero but for it
+  double rounding = 0;  // magnitude up to which an eigenvalue may be rounding
 
   [[nodiscard]] double between(double mu) const {
     if (std::isinf(high)) return std::max(4 * mu, rounding);
@@ -31,7 +31,8 @@ struct ShiftBounds {
   }
 };
 
-/// p on along the smallest eigenvalue of what is factored, found by inverse iteration, to a length.
+/// Extends p to a length along the eigenvector of the smallest eigenvalue of the factored matrix,
+/// which is found by inverse iteration.
 void extend_along_smallest(const ReducedHessian& hessian, double length, Eigen::VectorXd& p) {
   Eigen::VectorXd along = Eigen::VectorXd::LinSpaced(p.size(), 1, 2);
   for (int i = 0; i < 3; ++i) {
@@ -44,9 +45,9 @@ void extend_along_smallest(const ReducedHessian& hessian, double length, Eigen::
   p += (part < 0 ? -part - rest : rest - part) * along;
 }
 
-/// Where Newton's step is longer than the radius or H not positive definite: Newton's method on
-/// 1 / |p(mu)|, which is all but straight.
-/// @param low  mu has to be larger
+/// Computes the step if Newton's step is longer than the radius or H is not positive definite:
+/// Newton's method on 1 / |p(mu)|, which is nearly linear in mu.
+/// @param low  lower bound of mu
 Eigen::VectorXd step_to_edge(ReducedHessian& hessian, const Eigen::VectorXd& gradient,
                              double radius, double low) {
   constexpr int most_steps = 60;
@@ -58,7 +59,7 @@ Eigen::VectorXd step_to_edge(ReducedHessian& hessian, const Eigen::VectorXd& gra
     bounds.low = std::max(low, -diagonal.minCoeff());
     mu = 1.1 * bounds.low + gradient.norm() / radius;
   }
-  // If rounding leaves nothing else.
+  // Steepest descent: returned if rounding spoils every other step.
   Eigen::VectorXd shorter = -radius * gradient.normalized();
   Eigen::VectorXd along;
   for (int step = 0; step < most_steps; ++step) {

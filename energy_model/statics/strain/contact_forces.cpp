@@ -8,9 +8,9 @@ namespace dlo::energy_model {
 namespace {
 
 constexpr Eigen::Index known_of_short = 4;  // coefficients of the force on a short part
-constexpr int pressure_samples = 32;        // at the pressure of a piece
+constexpr int pressure_samples = 32;        // number of samples of the pressure on an element
 
-/// Series in orthonormal Legendre polynomials at xi.
+/// Evaluates a series in orthonormal Legendre polynomials at xi.
 double series(const Eigen::Ref<const Eigen::VectorXd>& coefficients, double xi) {
   Eigen::VectorXd values(coefficients.size());
   Eigen::VectorXd integrals(coefficients.size());
@@ -18,8 +18,9 @@ double series(const Eigen::Ref<const Eigen::VectorXd>& coefficients, double xi) 
   return values.dot(coefficients);
 }
 
-/// The derivative of a piece's force, which the last coefficients hardly know.
-/// @param first  nothing has pressed before
+/// Updates the extreme pressures with an element's pressure, the derivative of its force; the last
+/// coefficients are inaccurate in the derivative.
+/// @param first  whether no earlier element has contributed
 void add_pressure(const Eigen::VectorXd& smooth, double length, bool first, ContactForce& force) {
   double last = series(smooth, 0);
   for (int k = 1; k <= pressure_samples; ++k) {
@@ -38,7 +39,7 @@ ContactForce force_of_series(const ContactSeries& rows, const Eigen::VectorXd& m
   ContactForce force;
   double before = rows.clearance < 0 ? 0 : multipliers[rows.clearance];
   if (rows.held_at_begin && !rows.slopes.empty()) {
-    // What is concentrated there is the grip's.
+    // The concentrated force there belongs to the grip.
     const ContactSeries::Slope& slope = rows.slopes.front();
     before = series(multipliers.segment(slope.first, slope.count) / slope.length, 0);
     force.held_begin = -before;

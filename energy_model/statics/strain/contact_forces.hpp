@@ -7,46 +7,48 @@
 
 namespace dlo::energy_model {
 
-/// Forces with which a rigid obstacle holds a contact, away from it: at the begin and the end of
-/// the part in contact, which are the same where it touches at one point, and between.
+/// Forces of a rigid obstacle on one contact, positive away from the obstacle: concentrated forces
+/// at the begin and the end of the part in contact, which coincide for a contact at one point, and
+/// a pressure between them.
 struct ContactForce {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< of all of it
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< of all rows, about the span's anchor
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< resultant
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< moment of all rows about the span's anchor
   double total = 0;                                  ///< sum of the magnitudes
-  double begin = 0, end = 0;  ///< concentrated ones; `end` is 0 where it touches at one point
-  double least_pressure = 0;  ///< per length, of what lies; 0 where it touches at one point
+  double begin = 0, end = 0;  ///< concentrated forces; `end` is 0 for a contact at one point
+  double least_pressure = 0;  ///< force per length along the part; 0 for a contact at one point
   double largest_pressure = 0;
-  /// Least concentrated one inside, at loads and sections; what the series of two pieces differ by
-  /// elsewhere is their error.
+  /// Smallest concentrated force inside the part, at loads, grips and section changes. Jumps
+  /// between the series of two elements elsewhere are truncation errors and do not count.
   double least_inner = 0;
-  /// What the multipliers exert besides, away from the obstacle, on a grip that holds the begin or
-  /// the end of the part: it is in `moment`, and the grip's force, not the obstacle's.
+  /// Force, away from the obstacle, that the multipliers also exert on a grip at the begin or the
+  /// end of the part. It is included in `moment`, and belongs to the grip, not to the obstacle.
   double held_begin = 0, held_end = 0;
 };
 
-/// Which multipliers of ContactRows are a contact's: of its begin's, or the least, clearance (-1: a
-/// grip holds it there), and of the slope on each of its pieces.
+/// Indices of the multipliers of ContactRows that belong to one contact: the multiplier of the
+/// clearance at its begin, or of the smallest clearance (-1: a grip holds the contact), and the
+/// multipliers of the slope on each of its elements.
 struct ContactSeries {
   struct Slope {
     Eigen::Index first = 0, count = 0;
-    double length = 0;          ///< of the piece
-    bool concentrates = false;  ///< a load, a section's end or a grip is where it begins
+    double length = 0;          ///< of the element
+    bool concentrates = false;  ///< whether a load, a section change or a grip is at its begin
   };
   Eigen::Index clearance = -1;
   std::vector<Slope> slopes;
-  bool held_at_begin = false, held_at_end = false;  ///< by a grip
+  bool held_at_begin = false, held_at_end = false;  ///< whether a grip is there
 };
 
-/// On a part that is shorter [lengths] a few moments of the slope say all: more would be a system
-/// whose rounding hides Newton's last step, and forces that are made of it.
+/// Length of a part, divided by the rod length, below which a few moments of the slope describe it.
+/// With more moments rounding would dominate Newton's last step and the forces derived from it.
 inline constexpr double short_part = 5e-3;
 
-/// What the multipliers' series N(s) = sum mu phi(s) of one contact says, but for the direction of
-/// its force. @param multipliers  of all contacts' rows
+/// Returns the forces of one contact from the multipliers' series N(s) = sum mu phi(s), without the
+/// direction of the resultant. @param multipliers  of the rows of all contacts
 [[nodiscard]] ContactForce force_of_series(const ContactSeries& rows,
                                            const Eigen::VectorXd& multipliers);
 
-/// Moment about the span's anchor of what one contact's multipliers exert.
+/// Returns the moment of one contact's multipliers about the span's anchor.
 /// @param tangents  nodes x 3
 [[nodiscard]] Eigen::Vector3d moment_of(const ContactSeries& rows, const ContactPlace& place,
                                         const Eigen::MatrixX3d& tangents,

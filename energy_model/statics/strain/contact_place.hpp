@@ -9,28 +9,30 @@
 
 namespace dlo::energy_model {
 
-/// What ContactRows have seen of the obstacles at a point.
+/// Values of ContactRows at a shape.
 struct ContactPlace {
-  /// Of the row of a least clearance.
+  /// Values of the row of a smallest clearance.
   struct Touch {
-    PositionOperator::Point point;  ///< where it is
-    double at = 0;                  ///< s there
+    PositionOperator::Point point;  ///< weights of the point
+    double at = 0;                  ///< arc length of the point
     obstacle::Gap gap;
     Eigen::Vector3d tangent = Eigen::Vector3d::Zero();
-    double rate = 0;  ///< second derivative by s; 0 where there is no least one
+    double rate = 0;  ///< second derivative of the clearance by s; 0 if no minimum was found
   };
   Eigen::VectorXd residual;                   ///< of all rows
-  std::array<Eigen::MatrixXd, 3> by_tangent;  ///< nodes x rows, an axis each
+  std::array<Eigen::MatrixXd, 3> by_tangent;  ///< derivatives of the rows by the tangents, one
+                                              ///< matrix per axis, nodes x rows
   std::vector<Touch> touches;
-  std::vector<std::vector<obstacle::Gap>> gaps;  ///< of points beside what is not flat
+  std::vector<std::vector<obstacle::Gap>> gaps;  ///< gaps of points from bodies that are not
+                                                 ///< half-spaces
 
-  /// What the rows change by along these vectors at the nodes, nodes x rows.
+  /// Returns the products of the rows' derivatives with the vectors at the nodes, nodes x rows.
   [[nodiscard]] Eigen::MatrixXd along(const Eigen::MatrixX3d& vectors) const;
-  /// Gradient of a row by the tangents, nodes x 3.
+  /// Returns the gradient of a row by the tangents, nodes x 3.
   [[nodiscard]] Eigen::MatrixX3d by_node(Eigen::Index row) const;
-  /// Adds the multipliers times by_node().
+  /// Adds the sum of multipliers times by_node() to `carried`.
   void add(const Eigen::Ref<const Eigen::VectorXd>& multipliers, Eigen::MatrixX3d& carried) const;
-  /// Moment about the anchor of what the multipliers stand for. @param tangents  there
+  /// Returns the moment of the multipliers' forces about the anchor. @param tangents  nodes x 3
   [[nodiscard]] Eigen::Vector3d moment(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                                        const Eigen::MatrixX3d& tangents) const;
 };

@@ -11,7 +11,7 @@ namespace {
 
 constexpr Eigen::Index most_of_short = 8;  // moments of the slope on a short part
 
-/// Whether there is something beside the obstacle from which a concentrated force could come.
+/// Whether a grip, a load or a section change is at `at`, which could cause a concentrated force.
 bool may_concentrate(const Span& span, double at) {
   const auto is_there = [at](double other) { return std::abs(at - other) < closest_cuts; };
   return span.held_within(at, at, closest_cuts) != HeldBy::nothing ||
@@ -22,7 +22,7 @@ bool may_concentrate(const Span& span, double at) {
          });
 }
 
-/// Forces on points times their gaps' second derivatives by two coordinates.
+/// Returns the forces on points times the second derivatives of their gaps by two coordinates.
 Eigen::VectorXd stiffness(const Eigen::VectorXd& forces, const std::vector<obstacle::Gap>& gaps,
                           std::size_t a, std::size_t b) {
   Eigen::VectorXd result(forces.size());
@@ -69,7 +69,7 @@ void ContactRows::add_clearance(const Span& span, std::size_t contact,
     touch.row = add_row();
     touch.at = own.begin;
     touch.before = piece - 1;
-    // Within half of the pieces beside it.
+    // The search covers half of each adjacent element.
     touch.low = own.begin - pieces[static_cast<std::size_t>(piece) - 1].length / 2;
     touch.high = own.begin + pieces[static_cast<std::size_t>(piece)].length / 2;
     touches_.push_back(std::move(touch));
@@ -159,7 +159,8 @@ void ContactRows::reset(const Span& span, const std::vector<Piece>& pieces, int 
           span.held_within(contact.end, contact.end, closest_cuts) != HeldBy::nothing;
     }
     if (!contact.lies()) continue;
-    // A slope of which nothing is known yet has one more unknown than its curvature.
+    // The slope is not prescribed unless a clamp holds the contact; it then has one more unknown
+    // than its curvature.
     const Eigen::Index degrees = held == HeldBy::clamp ? terms : terms + 1;
     add_slopes(span, i, pieces, degrees, terms, table);
   }
@@ -177,7 +178,8 @@ void ContactRows::resize(ContactPlace& place) const {
   }
 }
 
-/// The first least clearance on that side of where it is looked for to which the clearance falls.
+/// Finds the first minimum of the clearance, starting from touch.at, on the side to which the
+/// clearance decreases.
 ContactPlace::Touch ContactRows::least_clearance(const Eigen::MatrixX3d& tangents,
                                                  const Touch& touch) const {
   constexpr double closest = 1e-14;
@@ -202,7 +204,8 @@ ContactPlace::Touch ContactRows::least_clearance(const Eigen::MatrixX3d& tangent
     slope = std::min(look(++piece, touch.at), 0.0);
   }
   const double room = std::abs((sense < 0 ? touch.low : touch.high) - touch.at);
-  double low = 0;  // ways from there; it falls at `low` and rises at `high`
+  double low = 0;  // distances from touch.at; the clearance decreases at `low` and increases at
+                   // `high`
   double high = 0;
   double way = 0;
   for (int step = 0; step < most_steps; ++step) {
@@ -218,7 +221,7 @@ ContactPlace::Touch ContactRows::least_clearance(const Eigen::MatrixX3d& tangent
     slope = sense * look(piece, touch.at + sense * way);
     (slope < 0 ? low : high) = way;
   }
-  found.rate = 0;  // beyond the range that is searched
+  found.rate = 0;  // outside the range of the search
   return found;
 }
 
@@ -247,7 +250,7 @@ void ContactRows::look(const Eigen::MatrixX3d& tangents, ContactPlace& place) co
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       auto by_tangent =
           place.by_tangent[static_cast<std::size_t>(axis)].middleCols(curved.first, rows);
-      // Of a rod in the plane nothing goes across it.
+      // A rod in the plane has no component normal to it.
       if (gradients.col(axis).isZero(0)) {
         by_tangent.setZero();
       } else {
@@ -288,7 +291,7 @@ void ContactRows::subtract_hessian(const ContactPlace& place,
     }
     hessian.noalias() -= mu * (moved * touch.gap.hessian * moved.transpose());
     if (!(touch.rate > 0)) continue;
-    // The point slides along the rod by as much as the slope turns.
+    // The contact point slides along the rod when the slope of the clearance changes.
     Eigen::VectorXd turned = moved * (touch.gap.hessian * touch.tangent);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       turned.noalias() += touch.gap.gradient[static_cast<Eigen::Index>(axis)] *

@@ -14,55 +14,59 @@
 
 namespace dlo::energy_model {
 
-/// Constraints of the rod's contacts with rigid obstacles, over clearances g of its points. A
-/// contact at one point that slides is the least clearance near it, of whatever point that is. Else
-/// there is the clearance of a contact's begin and, where the rod lies, the moments int phi g' ds
-/// of its slope on each piece, over the piece's length, with the polynomials phi up to the degree
-/// to which its strains resolve it. The strains of a lying part are thereby fixed in the direction
-/// away from the obstacle and free along it. The multipliers' series N(s) = sum mu phi(s) is the
-/// force that the contacts carry there, -N' the obstacle's pressure.
+/// Constraints of the rod's contacts with rigid obstacles, as functions of clearances g of its
+/// points. A sliding contact at one point has one row: the smallest clearance near it, wherever
+/// that point is. Any other contact has a row for the clearance at its begin. Where the rod lies on
+/// the obstacle, each element also has rows for the moments int phi g' ds of its slope, divided by
+/// the element's length, with the polynomials phi up to the degree to which its strains resolve the
+/// slope. The strains of such a part are thereby fixed in the direction away from the obstacle and
+/// free along it. The multipliers' series N(s) = sum mu phi(s) is the force that the contacts carry
+/// at s, and -N' the obstacle's pressure.
 ///
-/// On a half-space g' = n.t, and the moments are linear in the tangents. On other bodies they are
-/// taken from clearances alone, int phi g' = [phi g] - int phi' g.
+/// On a half-space g' = n.t, and the moments are linear in the tangents. For other bodies they are
+/// computed from clearances alone, int phi g' = [phi g] - int phi' g.
 class ContactRows {
  public:
-  /// @param terms  of a piece's strains
+  /// @param terms  number of coefficients of an element's strain
   void reset(const Span& span, const std::vector<Piece>& pieces, int terms,
              const LegendreTable& table);
 
   [[nodiscard]] Eigen::Index count() const { return linear_.cols(); }
-  /// Gives a place its size.
+  /// Resizes a place.
   void resize(ContactPlace& place) const;
-  /// Looks where the rod is. @param tangents  nodes x 3
+  /// Evaluates the rows at a shape. @param tangents  nodes x 3
   void look(const Eigen::MatrixX3d& tangents, ContactPlace& place) const;
 
-  /// Where a contact that slides is; nothing of others.
+  /// Returns the arc length of a sliding contact; std::nullopt for other contacts.
   [[nodiscard]] std::optional<double> touches_at(const ContactPlace& place,
                                                  std::size_t contact) const;
-  /// Whether rows bend where tangents turn steadily.
+  /// Whether rows are nonlinear in the tangents.
   [[nodiscard]] bool curved() const { return !touches_.empty() || !curved_.empty(); }
-  /// Subtracts the multipliers times the rows' second derivatives, but for what bends the tangents
-  /// twice, which is in ContactPlace::add().
-  /// @param tangents  derivatives of the tangents by the unknowns, an axis each, nodes x unknowns
+  /// Subtracts the multipliers times the rows' second derivatives from `hessian`, except the part
+  /// with second derivatives of the tangents, which ContactPlace::add() covers.
+  /// @param tangents  derivatives of the tangents by the unknowns, one matrix per axis, nodes x
+  ///   unknowns
   void subtract_hessian(const ContactPlace& place,
                         const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                         const std::array<Eigen::MatrixXd, 3>& tangents,
                         Eigen::Ref<Eigen::MatrixXd> hessian) const;
-  /// The same along z alone, of a rod in the plane.
+  /// Subtracts the multipliers times the rows' second derivatives along z, for a rod in the plane.
   void subtract_tilt_hessian(const ContactPlace& place,
                              const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                              const Eigen::MatrixXd& tangents,
                              Eigen::Ref<Eigen::MatrixXd> hessian) const;
-  /// Multipliers of these rows from those of the same contacts with another number of terms.
+  /// Returns the multipliers of these rows from those of the same contacts with another number of
+  /// coefficients.
   [[nodiscard]] Eigen::VectorXd prolong(const ContactRows& other,
                                         const Eigen::VectorXd& multipliers) const;
-  /// Of each of Span::contacts. @param tangents  nodes x 3. @param multipliers  of all rows
+  /// Returns the force of each of Span::contacts. @param tangents  nodes x 3. @param multipliers
+  /// of all rows
   [[nodiscard]] std::vector<ContactForce> forces(const ContactPlace& place,
                                                  const Eigen::MatrixX3d& tangents,
                                                  const Eigen::VectorXd& multipliers) const;
 
  private:
-  /// Rows over the clearances of points from a body that is not flat.
+  /// Rows that depend on the clearances of points from a body that is not a half-space.
   struct Curved {
     std::size_t contact = 0;
     obstacle::Body body;
@@ -70,18 +74,18 @@ class ContactRows {
     Eigen::MatrixXd weights;  // rows = weights^T clearances, points x rows
     PointsReach reach;        // of the points
 
-    /// On the points, by the multipliers of all rows.
+    /// Returns the forces on the points from the multipliers of all rows.
     [[nodiscard]] Eigen::VectorXd forces(
         const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
   };
-  /// The row of a least clearance.
+  /// Row of a smallest clearance.
   struct Touch {
     std::size_t contact = 0;
     obstacle::Body body;
     Eigen::Index row = 0;
-    double at = 0;             // s where it is looked for
-    Eigen::Index before = 0;   // piece that ends there
-    double low = 0, high = 0;  // how far away it may be
+    double at = 0;             // arc length where the search for it begins
+    Eigen::Index before = 0;   // element that ends there
+    double low = 0, high = 0;  // bounds of its arc length
   };
   [[nodiscard]] Eigen::Index add_row();
   void add_clearance(const Span& span, std::size_t contact, const std::vector<Piece>& pieces);
@@ -96,7 +100,7 @@ class ContactRows {
   std::vector<Touch> touches_;
   std::vector<Eigen::Vector3d> normals_;  // of half-spaces, by contact
   PositionOperator reach_;
-  // Of rows that are linear in the tangents; zero of others.
+  // For rows that are linear in the tangents; zero for others.
   Eigen::MatrixXd linear_;   // weight times phi, nodes x rows
   Eigen::Matrix3Xd normal_;  // by row
   Eigen::VectorXd offset_;

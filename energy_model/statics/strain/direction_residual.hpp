@@ -4,11 +4,11 @@
 
 namespace dlo::energy_model {
 
-/// Residual of a director p that is held in the direction `to`, in the component along `across`,
-/// which is at right angles to it,
-///     c = 2 across.p / (1 + to.p):
-/// about the angle, and zero at p = to alone. A turn theta of p, a rotation vector, changes it by
-/// couple . theta + theta . curvature theta / 2.
+/// Residual of a director p that is prescribed as `to`, in its component along `across`, which is
+/// normal to `to`,
+///     c = 2 across.p / (1 + to.p).
+/// It is approximately the angle, and with both components zero only at p = to. A rotation vector
+/// theta of p changes it by couple . theta + theta . curvature theta / 2.
 struct DirectionResidual {
   double value = 0;
   Eigen::Vector3d couple = Eigen::Vector3d::Zero();

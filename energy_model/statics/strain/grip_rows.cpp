@@ -104,7 +104,7 @@ void GripRows::constrain(const SpatialPoint& at, Eigen::Ref<Eigen::VectorXd> res
     const DirectionResidual own = residual_of(held, at);
     residual[row] = own.value;
     at.frames.couple_adjoint(held.piece, own.couple, at.state, jacobian.row(row).head(strains));
-    // Twist turns d1 about the tangent.
+    // Twist rotates d1 about the tangent.
     if (at.twist_root > 0) {
       jacobian(row, strains) =
           held.of_d1 ? own.couple.dot(at.state.end_frame().col(2)) / at.twist_root : 0;
@@ -137,8 +137,8 @@ void GripRows::turn_derivatives(const SpatialPoint& at,
   }
 }
 
-/// psi turns d1 about the tangent t, after which the strains turn it, which is the sum of both
-/// turns and half their cross product.
+/// psi rotates d1 about the tangent t, and the strains rotate it afterwards. The composition is the
+/// sum of both rotation vectors plus half their cross product.
 void GripRows::add_twist_hessian(const SpatialPoint& at, double factor,
                                  Eigen::MatrixXd& hessian) const {
   const Eigen::Index strains = at.strains();

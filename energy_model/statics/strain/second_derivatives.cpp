@@ -18,7 +18,7 @@ SecondDerivatives second_derivatives(const SpanEnergy& model, const Eigen::Vecto
 SecondDerivatives second_derivatives_at(SpanEnergy& of, const SpanEnergy& found_in,
                                         const Eigen::VectorXd& x) {
   SpanPoint point = of.evaluated(of.prolong(found_in, x));
-  // The forces are the other one's, seen in these constraints.
+  // The forces are the same; these multipliers express them in the constraints of `of`.
   const Eigen::VectorXd multipliers =
       of.constraints() == 0
           ? Eigen::VectorXd()
@@ -37,14 +37,16 @@ SecondDerivatives second_derivatives_out_of_plane(const SpanEnergy& model, SpanP
     model.tilt_hessian(at, multipliers, result.hessian, result.jacobian);
     return result;
   }
-  // A rod that is curved, or of another stiffness out of its plane, twists as it leaves it.
+  // A rod that is intrinsically curved, or has another stiffness out of its plane, twists when it
+  // leaves it.
   Span space = model.span();
   space.planar = false;
   SpanEnergy twin(space, model.terms());
   const SecondDerivatives all = second_derivatives_at(twin, model, at.x);
   const Eigen::Index out = twin.size() - model.size();
   result.hessian = all.hessian.bottomRightCorner(out, out);
-  // Of a position its z, of a direction what is across it along z.
+  // Rows that act out of the plane: the z component of a position, and the component of a direction
+  // along z.
   std::vector<Eigen::Index> rows;
   const Eigen::Index holds = std::ssize(space.holds);
   for (Eigen::Index j = 0; j < holds; ++j) rows.push_back(3 * j + 2);

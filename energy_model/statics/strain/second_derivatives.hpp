@@ -7,7 +7,7 @@
 
 namespace dlo::energy_model {
 
-/// Second derivatives of E - mu . c, and what the constraints hold.
+/// Second derivatives of E - mu . c, and the constraints' Jacobian.
 struct SecondDerivatives {
   Eigen::MatrixXd hessian, jacobian;
 };
@@ -19,14 +19,14 @@ struct SecondDerivatives {
   return second_derivatives(*solution.model, solution.x, solution.multipliers);
 }
 
-/// The same at an equilibrium x that was found in another model, of the same span in its plane; mu
-/// are the multipliers that balance it best.
+/// Returns the second derivatives at an equilibrium x that was found in another model of the same
+/// planar span. The multipliers mu minimise the residual of the gradient.
 [[nodiscard]] SecondDerivatives second_derivatives_at(SpanEnergy& of, const SpanEnergy& found_in,
                                                       const Eigen::VectorXd& x);
 
-/// The same for bending (and twisting, with material directors) of a planar span out of its plane,
-/// at a point of the model. Unknowns of a round rod are the rates of the tangent's tilt,
-/// with material directors the last unknowns of the same span in space.
+/// Returns the second derivatives for bending (and twisting, with material directors) of a planar
+/// span out of its plane, at a point of the model. The unknowns of a round rod are the rates of the
+/// tangent's tilt; with material directors they are the last unknowns of the same span in space.
 [[nodiscard]] SecondDerivatives second_derivatives_out_of_plane(const SpanEnergy& model,
                                                                 SpanPoint& at,
                                                                 const Eigen::VectorXd& multipliers);

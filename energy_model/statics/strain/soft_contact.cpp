@@ -51,7 +51,8 @@ void SoftContact::add_hessian(const Place& place, const std::array<Eigen::Matrix
     for (Eigen::Index p = 0; p < count; ++p) {
       reach.row(p) = position_.row(place[i][static_cast<std::size_t>(p)].node);
     }
-    // Of the points that press, by axis: what the unknowns move them by, and the force of that.
+    // For points within the obstacle, by axis: their displacements by the unknowns, and the
+    // resulting forces.
     std::array<Eigen::MatrixXd, 3> moved;
     for (std::size_t axis = 0; axis < 3; ++axis) moved[axis].noalias() = reach * tangents[axis];
     std::array<Eigen::MatrixXd, 3> pushed = moved;
@@ -74,9 +75,10 @@ void SoftContact::add_hessian(const Place& place, const std::array<Eigen::Matrix
 
 namespace {
 
-/// Of a body that is symmetric about the plane, over its stiffness: what resists leaving the plane.
-/// A force out of it comes of a ridge, where the faces on both sides are equally near, and turns
-/// round there: what the energy falls by over a short way, as if it fell with the square.
+/// Returns the resistance to leaving the plane, divided by the stiffness, of a body that is
+/// symmetric about the plane. On a ridge, where faces on both sides are equally close, the force
+/// has a component out of the plane that changes its sign there: the energy decreases linearly to
+/// both sides. It is replaced by the quadratic decrease that is equal at a short distance.
 double tilt_spring(const obstacle::Gap& gap) {
   constexpr double way = 1e-3;
   if (is_on_ridge(gap)) return 1 + 2 * gap.value / way;
