@@ -10,9 +10,9 @@
 namespace dlo::energy_model {
 namespace {
 
-/// A region this small ends a minimum: the multipliers may move on.
+/// Trust-region radius that ends a minimisation; the multipliers are then updated.
 constexpr double least_penalty_radius = 1e-9;
-/// Residual of the constraints from which Newton's method takes over [l].
+/// Norm of the constraints' residual from which Newton's method takes over [l].
 constexpr double close_enough = 1e-7;
 constexpr int most_updates = 40;
 
@@ -57,8 +57,9 @@ class AugmentedLagrangian {
     value_ = here_.energy - mu_.dot(c) + kappa_ / 2 * c.squaredNorm();
   }
 
-  /// Minimum of the penalised energy for the present mu and kappa, so well that its gradient is
-  /// `precision` of its forces. @return whether it was reached
+  /// Minimises the penalised energy for the present mu and kappa until its gradient is below
+  /// `precision` * 1e-3 of the forces, or the radius reaches its limit. @return whether either was
+  /// reached
   [[nodiscard]] bool minimise(double precision) {
     evaluate();
     double radius = std::min(first_radius, radius_);

@@ -3,11 +3,11 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Steps that are made use of; later ones are as the factor gives them.
+/// Maximum number of updates; later steps are those of the factor.
 constexpr Eigen::Index most_secants = 12;
 
-/// Share of the last step along itself above which the update would make the next one much longer:
-/// it is time for another factor.
+/// Component of the next step along the last one, divided by the last one's length, above which the
+/// update would lengthen the step too much. No more updates are made until the next factorisation.
 constexpr double largest_share = 0.5;
 
 }  // namespace

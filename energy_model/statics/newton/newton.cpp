@@ -12,24 +12,24 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Relative residual at which rounding may be what is left of it.
+/// Residual, relative to the scale of forces, up to which it may consist of rounding errors.
 constexpr double last_residual = 1e-8;
 
-/// Steps that become shorter by this with a factor of another point's need no new one.
+/// Contraction rate of steps with a factor of another point up to which that factor is kept.
 constexpr double fast_contraction = 0.1;
 
-/// Steps, among obstacles that yield, and to a shape next to another one.
+/// Maximum numbers of steps: in general, with soft obstacles, and for NewtonMethod::simplified.
 constexpr int most_newton_steps = 30;
 constexpr int most_steps_among_obstacles = 60;
 constexpr int most_simplified_steps = 10;
-/// The longest of the last [rad].
+/// Longest step of NewtonMethod::simplified with a factor of its own [rad].
 constexpr double longest_simplified = 10;
-/// A neighbour's factor is left for a shape's own at this step [rad]: the next one, as large as its
-/// square, is at rounding.
+/// Step at which a factor of another shape is replaced by the shape's own [rad]: the next step,
+/// about the square of this one, is at rounding.
 constexpr double last_borrowed_step = 1e-6;
 
-/// A factor is used again for a last step as long as x has moved less than this since: the residual
-/// still falls by that much.
+/// Largest step, times 1 + load, after which the factor is reused: the residual still decreases by
+/// about this factor.
 constexpr double factor_reach = 1e-3;
 
 class NewtonIteration {
@@ -97,7 +97,7 @@ class NewtonIteration {
   [[nodiscard]] double step_length_by_energy();
 
   [[nodiscard]] double scale() const { return scale_of_forces(solution_, options_.load); }
-  /// Whether rounding may be what is left of the residual.
+  /// Whether the residual may consist of rounding errors.
   [[nodiscard]] bool is_at_rounding() const { return size_ <= last_residual * scale(); }
   SpanSolution& solution_;
   const NewtonOptions& options_;
@@ -105,8 +105,8 @@ class NewtonIteration {
   NewtonBuffers& buffers_;
   const bool among_obstacles_;
   NewtonStep step_;
-  bool step_is_next_ = false;  // it is the one from here already
-  double size_ = 0;            // of the residual
+  bool step_is_next_ = false;  // buffers_.step is already the step from the present point
+  double size_ = 0;            // norm of the residual
   std::shared_ptr<SpanPoint> trial_;
 };
 
@@ -122,7 +122,7 @@ void NewtonIteration::begin() {
   }
   if (solution_.multipliers.size() != model_.constraints()) {
     solution_.multipliers.setZero(model_.constraints());
-    // Those that balance the gradient best.
+    // Least-squares multipliers, which minimise the residual of the gradient.
     if (model_.constraints() > 0) {
       solution_.multipliers =
           buffers_.here->jacobian.transpose().householderQr().solve(buffers_.here->gradient);
@@ -139,7 +139,7 @@ void NewtonIteration::evaluate() {
   ++solution_.evaluations;
 }
 
-/// Of gradient and constraints, by the point and the multipliers.
+/// Computes the norm of the residual of gradient and constraints at the present point.
 double NewtonIteration::residual() {
   const SpanPoint& here = *buffers_.here;
   solution_.energy = here.energy;
@@ -165,7 +165,7 @@ NewtonIteration::Outcome NewtonIteration::advance() {
   if (!ends_on_own && !step_.is_borrowed() && !(moved <= longest_simplified)) {
     return Outcome::diverged;
   }
-  // Where the shape is right the forces need not be.
+  // The shape is accurate; the forces need not be.
   if (moved <= finest_step && (is_at_rounding() || among_obstacles_)) return Outcome::equilibrium;
   if (among_obstacles_) return advance_among_obstacles();
   return natural_move() ? judge_move(moved) : judge_standstill(moved);
@@ -181,11 +181,11 @@ NewtonIteration::Outcome NewtonIteration::advance_among_obstacles() {
   return Outcome::goes_on;
 }
 
-/// After a step to which no next one with the same factor is shorter, and which has not been gone.
+/// Decides what to do after a step that no shortening made acceptable and that has been undone.
 NewtonIteration::Outcome NewtonIteration::judge_standstill(double moved) {
   const bool small = is_at_rounding();
   const bool is_own = step_.factor_of() == NewtonStep::FactorOf::this_point;
-  // Rounding is all that is left; what it moves a near-null mode by means nothing.
+  // Only rounding is left; its component along a near-null mode has no meaning.
   if (small && moved > coarsest_step && !step_.is_minimum() && is_own) {
     step_.solve_by_least_squares();
     solution_.next_step = step_.size();
@@ -208,13 +208,15 @@ NewtonIteration::Outcome NewtonIteration::judge_move(double moved) {
   const double small = std::max(last_residual, options_.step_tolerance) * scale();
   if (!goes_on && size_ <= small && solution_.next_step <= options_.step_tolerance) {
     if (borrowed) {
-      // Steps with the factor's own Hessian end far below the next one; these only by a part.
+      // With the factor's own Hessian the error after the last step is far below the next step;
+      // with a borrowed factor it is only a fraction of it.
       move(1);
       size_ = evaluated_residual();
     }
     return Outcome::equilibrium;
   }
-  // Between grips the caller looks at the second variation; without, the factor has to tell it.
+  // With constraints the caller examines the second variation; without constraints the factor has
+  // to determine it.
   const bool near = moved * (1 + options_.load) <= factor_reach &&
                     !(borrowed && options_.first_hessian != nullptr);
   const bool shrinks = solution_.next_step < fast_contraction * moved && model_.constraints() > 0;
@@ -240,13 +242,13 @@ void NewtonIteration::move(double length) {
   }
 }
 
-/// Moves along the step, by a quarter as much as long as the next step with the same factor is not
-/// shorter: Deuflhard's natural monotonicity, which does not depend on how gradients and gaps are
-/// weighed against each other. That step is left in buffers_.step, the residual in size_.
-/// With constraints it is Broyden's, from all whole steps with this factor.
-/// @return whether there is such a part; the solution is where it was if not
+/// Moves along the step, shortened by factors of 4 until the next step with the same factor is
+/// shorter (Deuflhard's natural monotonicity test, which does not depend on the relative scale of
+/// gradient and constraints). The next step is left in buffers_.step, the residual in size_. With
+/// constraints the next step is Broyden's, from all whole steps with this factor.
+/// @return whether such a length was found; if not, the solution is unchanged
 bool NewtonIteration::natural_move() {
-  constexpr double longest = 2;        // of a step; angles of this size have left the path
+  constexpr double longest = 2;        // of a step; larger angles leave the path
   constexpr double least_part = 1e-5;  // of a step
   std::swap(buffers_.here, trial_);
   buffers_.trial_x = solution_.x;
@@ -255,7 +257,8 @@ bool NewtonIteration::natural_move() {
   const double length = step_.size_with_forces();
   const double moves = step_.size();
   const double first = std::min(1.0, longest / moves);
-  // So short a step is cut for nothing: if the next one is no shorter both are made of rounding.
+  // So short a step is not shortened: if the next one is no shorter, both consist of rounding
+  // errors.
   const bool short_enough = moves <= coarsest_step && is_at_rounding();
   const double least = short_enough ? first / 2 : least_part;
   const auto out_of_time = [&] {
@@ -268,7 +271,7 @@ bool NewtonIteration::natural_move() {
     if (std::isfinite(size_)) {
       step_.solve();
       if (step_.size_with_forces() < (1 - part / 4) * length) {
-        // A part of a step, and one that is deflated, says less of the factor.
+        // A shortened or deflated step is no valid secant for Broyden's update.
         if (part < 1 || options_.method == NewtonMethod::corrector) {
           buffers_.broyden.clear();
         } else if (model_.constraints() > 0) {
@@ -298,8 +301,8 @@ double NewtonIteration::step_length_by_energy() {
   return 1e-4;
 }
 
-/// Obstacles make the energy's second derivative jump: Newton's step is halved until the energy
-/// falls, or between grips the residual.
+/// Soft obstacles make the second derivative of the energy jump. The step is therefore halved until
+/// the energy decreases or, between grips, until the residual does.
 double NewtonIteration::step_length() {
   if (step_.is_minimum()) return step_length_by_energy();
   buffers_.trial_x = solution_.x;

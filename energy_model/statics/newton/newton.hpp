@@ -11,52 +11,59 @@
 
 namespace dlo::energy_model {
 
-/// Forces of grips over 1 + weight and loads beyond which nothing is taken for a shape: residuals
-/// are measured against them.
+/// Norm of the grips' forces, divided by 1 + weight and loads, above which a result is rejected:
+/// residuals are measured relative to the forces.
 inline constexpr double largest_pull = 1e10;
 
-/// Newton's next step above which a residual that does not fall any more is not
-/// taken for a solution [rad].
+/// Length of the next Newton step above which a residual that no longer decreases is not accepted
+/// as a solution [rad].
 inline constexpr double coarsest_step = 1e-8;
 
-/// Newton's next step, of which the shape's error is a part, at which it need not go on [rad].
+/// Length of the next Newton step at which the iteration ends [rad]; it is a part of the shape's
+/// error.
 inline constexpr double finest_step = 1e-11;
 
-/// Newton's next step of a shape that is given more terms anyway [rad]: its energy, of
-/// which the square is a part, is right to rounding in what tells shapes apart.
+/// Length of the next Newton step at which the iteration ends for a shape that will get more
+/// coefficients anyway [rad]. Its energy error is of the order of the square, so that energies
+/// still distinguish shapes.
 inline constexpr double rough_step = 1e-5;
 
 enum class NewtonMethod {
-  /// To an equilibrium, stable or not. What is borrowed for the first steps makes room for a factor
-  /// of its own before the last ones. Between grips, where it does not converge, once more as the
-  /// corrector.
+  /// Converges to an equilibrium, stable or not. A factor of another shape serves the first steps
+  /// only, and is replaced by the shape's own before the last ones. Between grips, if the iteration
+  /// fails, it is repeated with `corrector`.
   newton,
-  /// Between grips, for a shape next to another one, with whose factor it begins. Where there is
-  /// none within a few steps it ends as `failed`, without a second try and without least squares.
+  /// Between grips, for a shape near another one whose factor serves as the first one. If it does
+  /// not converge within a few steps it ends as `failed`, without a second attempt and without
+  /// least squares.
   simplified,
-  /// For one of many steps along a branch: near-null modes, along which rounding would make any
-  /// step, are deflated, so that steps have no part along them.
+  /// For one of many steps along a branch: near-null modes are deflated. Steps have no component
+  /// along them, where rounding would determine the length.
   corrector,
 };
 
 struct NewtonOptions {
-  double load = 0;  ///< sum of weight and loads, the scale of the residuals
+  double load = 0;  ///< weight plus loads, the scale of the residuals
   NewtonMethod method = NewtonMethod::newton;
-  /// Its next step at which it ends [rad]; the residual is at rounding, or as small as that.
+  /// Length of the next step at which the iteration ends [rad], if the residual is at rounding or
+  /// as small as this.
   double step_tolerance = finest_step;
-  /// Of another shape, for the first steps between grips, if it is of as many unknowns.
+  /// Factor of another shape for the first steps between grips; used if its number of unknowns is
+  /// the same.
   std::shared_ptr<NewtonFactor> first_factor = nullptr;
-  /// Likewise, factored with the own constraints' Jacobian.
+  /// Hessian for the first steps, factored with the shape's own constraint Jacobian; used before
+  /// first_factor.
   const Eigen::MatrixXd* first_hessian = nullptr;
-  const Deadline* deadline = nullptr;  ///< beyond, it ends as `time_limit`; null: none
+  const Deadline* deadline = nullptr;  ///< when it has passed, the status is `time_limit`; null:
+                                       ///< none
 };
 
-/// What newton_solve() works in; buffers survive from one call to the next.
+/// Buffers of newton_solve(), kept from one call to the next.
 struct NewtonBuffers {
   NewtonFactors factors;
   Pool<SpanPoint> points;
   BroydenSteps broyden;
-  std::shared_ptr<SpanPoint> here;  ///< where the solution is
+  std::shared_ptr<SpanPoint> here;  ///< point of the solution
   Eigen::VectorXd gradient;         ///< of E - mu . c there
   Eigen::VectorXd right, step, first_step;
   Eigen::VectorXd trial_x, trial_multipliers, lowest_mode;
@@ -67,13 +74,14 @@ struct NewtonBuffers {
   }
 };
 
-/// Newton's method on the gradient of E - mu . c and on the constraints: from solution.x to where
-/// the residual is at rounding and Newton's next step, evaluated there, is below 1e-8; steps are
-/// cut while the next one, with the same factor, is no shorter. Without constraints the Hessian
-/// then tells a minimum (`converged`) from a `saddle`; with them the caller has to look. Ends as
-/// `near_singular` where the residual is at rounding and the step is not, and as `failed` where the
-/// residual does not fall. The solution is left with the last factor of its own, if it has made
-/// one. Without constraints and obstacles it allocates nothing once buffers have their size.
+/// Solves for zero gradient of E - mu . c and zero constraint residuals by Newton's method from
+/// solution.x. It ends when the residual is at rounding and the next Newton step, evaluated at the
+/// result, is below 1e-8. A step is shortened while the next step, with the same factor, is not
+/// shorter. Without constraints the Hessian at the end distinguishes a minimum (`converged`) from a
+/// `saddle`; with constraints the caller has to examine the second variation. The status is
+/// `near_singular` if the residual is at rounding but the step is not, and `failed` if the residual
+/// does not decrease. The solution keeps the last factor of its own, if there is one. Without
+/// constraints and obstacles nothing is allocated once the buffers have their size.
 void newton_solve(SpanSolution& solution, const NewtonOptions& options, NewtonBuffers& buffers);
 
 }  // namespace dlo::energy_model

@@ -17,7 +17,7 @@ std::shared_ptr<NewtonFactor> NewtonFactors::factor(const Eigen::MatrixXd& hessi
   return make(jacobian, scale);
 }
 
-/// Of hessian_, in buffers that fit if there are some.
+/// Factors hessian_, in buffers of the same size if there are some.
 std::shared_ptr<NewtonFactor> NewtonFactors::make(const Eigen::MatrixXd& jacobian, double scale) {
   std::shared_ptr<NewtonFactor> result = factors_.take([&](const NewtonFactor& kept) {
     return kept.system.is_of(hessian_.rows(), jacobian.rows());

@@ -10,35 +10,34 @@
 
 namespace dlo::energy_model {
 
-/// The linear system of Newton's method, factored at a point of a span's model.
-/// SpanSolution::factor hands it on to whoever goes on from there; what is shared is not factored
-/// anew.
+/// Newton's linear system, factored at a point of a span's model. SpanSolution::factor passes it on
+/// to later steps, which need no new factorisation.
 struct NewtonFactor {
   NewtonSystem system;
   Eigen::VectorXd x, multipliers;  ///< the point
-  double scale = 1;                ///< of forces there, by which multipliers are measured
+  double scale = 1;                ///< scale of forces there, by which multipliers are divided
 
-  /// By which unknowns, and multipliers over a scale of forces, differ from those at the point.
+  /// Distance of a solution from the point: unknowns, and multipliers divided by a scale of forces.
   [[nodiscard]] double distance(const SpanSolution& solution, double forces) const {
     return (solution.x - x).norm() + (solution.multipliers - multipliers).norm() / forces;
   }
 };
 
-/// Scale of forces: grips may pull harder than weight and loads do.
+/// Scale of forces. It includes the multipliers, as grips may pull harder than weight and loads.
 [[nodiscard]] inline double scale_of_forces(const SpanSolution& solution, double load) {
   return 1 + load + solution.multipliers.norm();
 }
 
-/// Makes factors, in buffers that are used again once nobody holds a factor any more.
+/// Makes factors. Buffers are reused once nobody holds their factor any more.
 class NewtonFactors {
  public:
-  /// Of the second variation of E - mu . c and the constraints at the solution, into
-  /// solution.factor.
-  /// @param at    of the model, at solution.x
-  /// @param load  sum of weight and loads
+  /// Factors the second variation of E - mu . c with the constraints at the solution, and stores
+  /// the result in solution.factor.
+  /// @param at    point of the model at solution.x
+  /// @param load  weight plus loads
   void factor_at(SpanSolution& solution, SpanPoint& at, double load);
 
-  /// Of a Hessian that is none of the model at a point.
+  /// Factors a Hessian that does not belong to a point of the model.
   [[nodiscard]] std::shared_ptr<NewtonFactor> factor(const Eigen::MatrixXd& hessian,
                                                      const Eigen::MatrixXd& jacobian, double scale);
 
@@ -46,11 +45,12 @@ class NewtonFactors {
   [[nodiscard]] std::shared_ptr<NewtonFactor> make(const Eigen::MatrixXd& jacobian, double scale);
 
   Pool<NewtonFactor> factors_;
-  Eigen::MatrixXd hessian_;  // of the next one
+  Eigen::MatrixXd hessian_;  // of the next factor
 };
 
-/// The Hessian of a model with more terms, as that of fewer makes it: in the new terms bending
-/// outweighs what forces add, with the square of the order.
+/// Returns an approximate Hessian of a model with more coefficients: the Hessian of the model with
+/// fewer, and the identity for the new ones, where bending exceeds the effect of forces by the
+/// square of the order.
 [[nodiscard]] Eigen::MatrixXd prolonged(const Eigen::MatrixXd& hessian, const SpanEnergy& fewer,
                                         const SpanEnergy& model);
 

@@ -7,7 +7,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Near-null modes that are deflated.
+/// Maximum number of near-null modes that are deflated.
 constexpr Eigen::Index most_near_null = 3;
 
 }  // namespace
@@ -35,9 +35,9 @@ void NewtonStep::factor() {
   if (options_.method == NewtonMethod::corrector && !is_minimum()) find_near_null_modes();
 }
 
-/// Orthonormal vectors that the system makes shorter than `neutral`, by inverse iteration; a step
-/// along them would be any. Multipliers count by their own size, or a gap that grips hardly close
-/// would pass for one.
+/// Finds orthonormal vectors that the system maps to less than `neutral` of their length, by
+/// inverse iteration; the step along them is undetermined. Multipliers are divided by the scale of
+/// forces, as otherwise a constraint that grips hardly satisfy would count as such a vector.
 void NewtonStep::find_near_null_modes() {
   const Eigen::Index m = solution_.model->constraints();
   const Eigen::Index size = buffers_.gradient.size() + m;
@@ -82,7 +82,8 @@ void NewtonStep::solve() {
   right << -buffers_.gradient, -buffers_.here->residual;
   factor_->system.solve(right, buffers_.step);
   if (options_.method == NewtonMethod::corrector) deflate();
-  // A near-null mode leaves the system singular; the minimum-norm step has no part along it.
+  // With a near-null mode the system is nearly singular; the minimum-norm step has no component
+  // along that mode.
   constexpr double longest = 1e3;
   if (options_.method == NewtonMethod::simplified ||
       factor_->system.is_met(right, buffers_.step, longest)) {
@@ -96,7 +97,7 @@ void NewtonStep::solve_by_least_squares() {
   buffers_.step = factor_->system.minimum_norm_step(buffers_.right);
 }
 
-/// Multipliers count by their own size.
+/// Multipliers are divided by the scale of forces during the update.
 void NewtonStep::update() {
   auto first_multipliers = buffers_.first_step.tail(solution_.model->constraints());
   auto multipliers = buffers_.step.tail(solution_.model->constraints());

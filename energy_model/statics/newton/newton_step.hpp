@@ -6,48 +6,50 @@
 
 namespace dlo::energy_model {
 
-/// Steps of newton_solve(): a factor, its own or another shape's, and what it makes of gradient and
-/// residual. All of them are buffers.step.
+/// Steps of newton_solve(): the factor in use, the solution's own or another shape's, and the step
+/// that it gives for gradient and residual. The step is in buffers.step.
 class NewtonStep {
  public:
-  /// What the factor is of.
+  /// Point at which the factor was computed.
   enum class FactorOf { nothing, this_point, earlier_point, neighbour };
 
-  /// All of them have to outlive it.
+  /// All arguments have to outlive the object.
   NewtonStep(SpanSolution& solution, const NewtonOptions& options, NewtonBuffers& buffers)
       : solution_(solution), options_(options), buffers_(buffers) {}
 
-  /// Takes the factor that the options bring along, if they do.
+  /// Uses the factor or Hessian given in the options, if there is one.
   void borrow();
-  /// Factors where the solution is.
+  /// Factors at the present solution.
   void factor();
   [[nodiscard]] FactorOf factor_of() const { return factor_of_; }
-  /// Whether it is another shape's.
+  /// Whether the factor belongs to another shape.
   [[nodiscard]] bool is_borrowed() const { return factor_of_ == FactorOf::neighbour; }
-  /// The solution has moved on, and its factor serves one more step.
+  /// Keeps the factor for one more step after the solution has moved.
   void reuse() {
     if (!is_borrowed()) factor_of_ = FactorOf::earlier_point;
   }
-  /// The next step is to have a factor of its own point.
+  /// Discards the factor, so that the next step gets a factor of its own point.
   void give_up_factor() { factor_of_ = FactorOf::nothing; }
 
   void solve();
-  /// The minimum-norm step.
+  /// Computes the minimum-norm step.
   void solve_by_least_squares();
-  /// Broyden's, of the step that the factor gives after the whole step buffers.first_step.
+  /// Applies Broyden's update to the step that the factor gives after the whole step
+  /// buffers.first_step.
   void update();
 
-  /// Of the step, what moves the unknowns.
+  /// Norm of the part of the step that moves the unknowns.
   [[nodiscard]] double size() const { return buffers_.step.head(buffers_.gradient.size()).norm(); }
-  /// The same with multipliers, by their own size.
+  /// Norm of the step with multipliers, these divided by the scale of forces.
   [[nodiscard]] double size_with_forces() const;
 
-  /// Whether no constraints bind it, and the factor's Hessian is positive definite.
+  /// Whether there are no constraints and the factor's Hessian is positive definite.
   [[nodiscard]] bool is_minimum() const {
     return solution_.model->constraints() == 0 && factor_->system.reduced_hessian().is_definite();
   }
-  /// Of that Hessian, by inverse iteration from a vector that low modes share: not below the
-  /// smallest eigenvalue, and next to it where that is far below the others.
+  /// Estimates the smallest eigenvalue of that Hessian by inverse iteration from a vector with
+  /// components along the low modes. The estimate is not below the smallest eigenvalue, and close
+  /// to it if that is far below the others.
   [[nodiscard]] double smallest_eigenvalue();
 
  private:

@@ -9,10 +9,10 @@
 namespace dlo::energy_model {
 namespace {
 
-/// A start with a larger gap may be bent to close it; closer to the end that would lead away.
+/// Smallest residual at which a bend is added; near the solution it would lead away from it.
 constexpr double largest_bent_gap = 1e-3;
 
-/// Anything without a symmetry, in the lower coefficients of every piece.
+/// Adds a perturbation without any symmetry, mainly in the lower coefficients of every element.
 void bend(SpanSolution& solution, SpanPoint& point, int which) {
   Eigen::VectorXd x = point.x;
   for (Eigen::Index k = 0; k < x.size(); ++k) {

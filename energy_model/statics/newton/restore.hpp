@@ -8,10 +8,11 @@
 
 namespace dlo::energy_model {
 
-/// Gap at the grips from which a descent starts, and the most that it leaves on its way.
+/// Constraint residual from which a descent starts, and the largest one that it leaves between
+/// steps.
 inline constexpr double loosest_gap = 1e-5;
 
-/// What restore() works in; buffers survive from one call to the next.
+/// Buffers of restore(), kept from one call to the next.
 struct RestoreScratch {
   SpanPoint trial;
   Eigen::MatrixXd square, normal;
@@ -19,14 +20,14 @@ struct RestoreScratch {
   Eigen::VectorXd along, step;
 };
 
-/// Steps to |c| <= gap, each of which has to make it smaller: Levenberg and Marquardt's, which are
-/// Gauss-Newton's near the end,
+/// Reduces the constraint residual to |c| <= gap by steps that each have to decrease it:
+/// Levenberg-Marquardt steps, which become Gauss-Newton steps near the end,
 ///     -J^T (J J^T + mu)^-1 c.
-/// Where the Jacobian loses rank (a straight rod that has to become shorter) they stop short; a
-/// small bend in all unknowns then leads on.
+/// If the Jacobian loses rank (a straight rod that has to become shorter), the steps stagnate; a
+/// small bend in all unknowns is then added.
 /// @param[in,out] point  evaluated
-/// @param most_energy    above which nobody asks how it goes on
-/// @return whether the gap is closed
+/// @param most_energy    energy above which the search is abandoned
+/// @return whether the residual was reduced to `gap`
 [[nodiscard]] bool restore(SpanSolution& solution, SpanPoint& point, double gap,
                            RestoreScratch& scratch,
                            double most_energy = std::numeric_limits<double>::infinity());

@@ -12,7 +12,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// A region this small moves the shape by less than rounding does.
+/// Radius below which a step changes the shape by less than rounding.
 constexpr double smallest_radius = 1e-10;
 
 class TrustRegionDescent {
@@ -21,7 +21,7 @@ class TrustRegionDescent {
       : solution_(solution),
         model_(*solution.model),
         options_(options),
-        // What is kept before the first step has as many of them, too.
+        // The solution needs one multiplier per constraint even if the first step fails.
         multipliers_(Eigen::VectorXd::Zero(model_.constraints())) {}
 
   void run() {
@@ -47,12 +47,12 @@ class TrustRegionDescent {
       if (radius < smallest_radius) break;
     }
     keep(here);
-    // Newton's method may still find it.
+    // Newton's method may still converge from here.
     solution_.finish(SolveStatus::roundoff_limited);
   }
 
  private:
-  /// Multipliers, what is free, projected gradient and Hessian at a point.
+  /// Computes multipliers, free directions, projected gradient and Hessian at a point.
   void linearise(SpanPoint& here) {
     reduced_.constrain(here.jacobian);
     if (reduced_.is_independent()) {
@@ -66,7 +66,8 @@ class TrustRegionDescent {
     reduced_.compute(hessian_);
   }
 
-  /// Where constraints depend on each other, as of a straight rod: with those that do not.
+  /// Balances the gradient with an independent subset of the constraints, which depend on each
+  /// other for example for a straight rod.
   void balance_independent(const SpanPoint& here) {
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(here.jacobian.transpose());
     qr.setThreshold(1e-10);
@@ -78,7 +79,7 @@ class TrustRegionDescent {
     projected_gradient_ = std::move(balance.left);
   }
 
-  /// Step in the unknowns; nothing where the point is near a minimum already.
+  /// Returns the step in the unknowns; std::nullopt if the point is already near a minimum.
   [[nodiscard]] std::optional<Eigen::VectorXd> best_step(double radius) {
     const std::optional<Eigen::VectorXd> p =
         trust_region_step(reduced_, projected_gradient_,
@@ -91,7 +92,7 @@ class TrustRegionDescent {
     return reduced_.in_unknowns(*p);
   }
 
-  /// @return the next radius
+  /// Evaluates a step and accepts or rejects it. @return the next radius
   [[nodiscard]] double try_step(SpanPoint& here, const Eigen::VectorXd& step, double radius) {
     solution_.evaluate(here.x + step, trial_);
     const double gap = std::min(loosest_gap, std::max(1e-13, 1e-2 * length_ * length_));
@@ -121,7 +122,7 @@ class TrustRegionDescent {
   ReducedHessian reduced_;
   Eigen::VectorXd multipliers_, projected_gradient_;
   Eigen::MatrixXd hessian_;
-  double predicted_ = 0;  // fall of E - lambda.c
+  double predicted_ = 0;  // predicted decrease of E - lambda.c
   double length_ = 0;     // of the step
 };
 

@@ -7,35 +7,34 @@
 
 namespace dlo::energy_model {
 
-/// Of the region in the unknowns: where a descent begins, and the most that it grows to.
+/// Trust-region radius in the unknowns: of the first step of a descent, and the largest one.
 inline constexpr double first_radius = 1;
 inline constexpr double largest_radius = 8;
 
 struct TrustRegionOptions {
-  double load = 0;                ///< sum of weight and loads, the scale of the gradient
+  double load = 0;                ///< weight plus loads, the scale of the gradient
   double gradient_tolerance = 0;  ///< of the projected gradient, over 1 + load; > 0
-  /// Newton's step up to which a minimum is near enough for Newton's method, where the projected
-  /// Hessian is positive definite.
+  /// Length of Newton's step up to which a minimum is close enough for Newton's method; used if the
+  /// projected Hessian is positive definite.
   double nearest = 0;
   double radius = first_radius;        ///< of the first step, in the unknowns; > 0
-  int max_iterations = 100;            ///< steps, accepted or not
-  const Deadline* deadline = nullptr;  ///< asked once a step; null: none
+  int max_iterations = 100;            ///< maximum number of steps, accepted or not
+  const Deadline* deadline = nullptr;  ///< checked once per step; null: none
   double stiffness = 0;                ///< of the rod between its grips, force per length
 };
 
 /// Descends from solution.x to a point near a minimum of the energy under the constraints: Newton's
 /// method in the null space of their Jacobian J, within a trust region,
-///     min g.p + p.H p / 2,  |p| <= radius,  J p = 0,
-/// g and H of E - lambda.c with the multipliers lambda that balance the gradient best (least
-/// squares). Each step is followed by Gauss-Newton steps that restore c = 0, to min(1e-5, |p|^2 /
-/// 100): a gap that is larger spoils the comparison of the energies. A step is kept if it lowers E
-/// - lambda.c by a tenth of what was predicted. A negative eigenvalue of H is followed to the
-/// region's edge (Moré and Sorensen), so that it does not end on a saddle, however symmetric its
-/// start.
+///     min g.p + p.H p / 2,  |p| <= radius,  J p = 0.
+/// g and H belong to E - lambda.c, with the least-squares multipliers lambda. Each step is followed
+/// by Gauss-Newton steps that restore c = 0, to min(1e-5, |p|^2 / 100): a larger residual would
+/// spoil the comparison of energies. A step is accepted if it decreases E - lambda.c by at least a
+/// tenth of the prediction. A negative eigenvalue of H is followed to the region's boundary (Moré
+/// and Sorensen), so that the descent does not end on a saddle even from a symmetric start.
 ///
-/// Status `converged` says that the projected gradient is below its tolerance where H has no
-/// eigenvalue below -neutral, or that a minimum is as near as was asked for; the multipliers are
-/// left in the solution.
+/// Status `converged` means that the projected gradient is below its tolerance and H has no
+/// eigenvalue below -neutral, or that a minimum is within `nearest`. The multipliers are stored in
+/// the solution.
 void descend_in_trust_region(SpanSolution& solution, const TrustRegionOptions& options);
 
 }  // namespace dlo::energy_model

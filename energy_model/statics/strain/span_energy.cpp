@@ -13,9 +13,9 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Where a rod that nothing clamps may point at its start: what hangs there pulls it. Two
-/// components of a turn lead from there to every direction but the opposite one, where they become
-/// one.
+/// Returns a tangent for a start that no clamp fixes: opposite to the force on the part before it.
+/// The two components of the start's rotation reach every direction from there; at the opposite one
+/// they become dependent.
 Eigen::Vector3d first_tangent(const Span& span) {
   if (span.start_direction) return *span.start_direction;
   const Eigen::Vector3d before = span.force_before(span.anchor);
@@ -135,7 +135,7 @@ double SpanEnergy::twist(const Eigen::VectorXd& x) const {
 double SpanEnergy::twisting_torque(const Eigen::VectorXd& x,
                                    const Eigen::VectorXd& multipliers) const {
   if (!span_.twist) return 0;
-  // A turn of the clamp's d1 is all that its multiplier works on.
+  // The multiplier of the clamp's d1 does work only on a rotation of that d1.
   return has_psi() ? twist(x) * twist_root_ * twist_root_ : multipliers[constraints() - 1];
 }
 
@@ -144,7 +144,8 @@ Eigen::VectorXd SpanEnergy::with_twist(Eigen::VectorXd x, double angle) const {
     x[x.size() - 1] = angle * twist_root_;
     return x;
   }
-  // A torque is the same everywhere.
+  // A torque that is constant along the span changes the strains by its quotient with the
+  // stiffness.
   double compliance = 0;
   for (const Piece& piece : pieces_) compliance += piece.length / piece.stiffness[2];
   const double torque = (angle - twist(x)) / compliance;
@@ -177,7 +178,8 @@ void SpanEnergy::constrain(SpanPoint& point) const {
   }
 }
 
-/// Into at.carried: weight of the node times the force that the rod carries there with the grips'.
+/// Computes at.carried: quadrature weight of the node times the force that the rod carries there,
+/// including the forces of grips and contacts.
 void SpanEnergy::carry(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
   at.carried = at.force;
   grips_.add_forces(multipliers, at.carried);
@@ -211,8 +213,8 @@ std::array<Eigen::MatrixXd, 3> SpanEnergy::tangent_jacobian(SpanPoint& at) const
   return span_.planar ? plane_.tangent_jacobian(at.plane) : frames_.tangent_jacobian(at.frames);
 }
 
-/// Into at.along: weight of the node times n.t - B kappa^2, which is what the square of a tilt out
-/// of the plane costs there.
+/// Computes at.along: weight of the node times n.t - B kappa^2, the second variation's coefficient
+/// of a squared tilt out of the plane.
 void SpanEnergy::carry_tilts(SpanPoint& at,
                              const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
   carry(at, multipliers);
@@ -222,7 +224,7 @@ void SpanEnergy::carry_tilts(SpanPoint& at,
 
 bool SpanEnergy::resists_out_of_plane(SpanPoint& at) const {
   carry_tilts(at, Eigen::VectorXd());
-  // int beta'^2 >= (pi / 2L)^2 int beta^2 for what a clamp holds at one end.
+  // int beta'^2 >= (pi / 2L)^2 int beta^2, as a clamp fixes beta at one end.
   const double bending = std::numbers::pi * std::numbers::pi / (4 * span_.length * span_.length);
   if (((at.along.array() + bending * weights_.array()) > 0).all()) return true;
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Identity(size(), size());
@@ -249,8 +251,7 @@ SpanEnergy::Estimate SpanEnergy::estimate(const Eigen::Matrix3Xd& tangents) cons
   Estimate result;
   const Eigen::Index Q = table_->nodes.size();
   for (Eigen::Index q = 0; q + 1 < s_.size(); ++q) {
-    // A jump between pieces is one that a fit has to smooth in some way of its
-    // own.
+    // A jump between elements does not count: the fit smooths it.
     if ((q + 1) % Q == 0) continue;
     const double turned = (tangents.col(q + 1) - tangents.col(q)).squaredNorm();
     result.bending += turned / (2 * (s_[q + 1] - s_[q]));
@@ -286,7 +287,7 @@ Eigen::VectorXd SpanEnergy::prolong(const SpanEnergy& other, const Eigen::Vector
     grips_.unwrap(other.grips_);
     revise();
   }
-  // A planar shape's curvature is u1.
+  // The curvature of a planar shape is u1.
   Eigen::VectorXd prolonged = unknowns_.prolong(other.unknowns_, x);
   if (unknowns_.free_start == 1 && other.span_.planar && !span_.planar) {
     prolonged[0] = nearest_turn(x[0] - angle_of(start_frame_.col(2)), 0);

@@ -17,42 +17,45 @@ struct [[nodiscard]] SpanSolution {
   std::string message = "never ran";
   int evaluations = 0;
   int terms = 0;
-  double residual = -1;  ///< of the gradient and the constraints
-  /// Norm of Newton's step from x, which would be the next one: what x may still be wrong by.
+  double residual = -1;  ///< norm of the residual of gradient and constraints
+  /// Norm of the Newton step from x that would come next: an estimate of the error of x.
   double next_step = std::numeric_limits<double>::infinity();
-  /// Eigenvalue of the factor of Newton's last steps that is nearest to zero, or a little more: by
-  /// it rounding and what the terms leave out are divided. NaN: not looked at.
+  /// Eigenvalue of the last Newton factor that is nearest to zero, or a slight overestimate.
+  /// Rounding and truncation errors are divided by it. NaN: not computed.
   double eigenvalue_nearest_zero = std::numeric_limits<double>::quiet_NaN();
-  /// What the shape may be away from an equilibrium, of the length; NaN: not known.
+  /// Estimated distance of the shape from an equilibrium, divided by the length; NaN: unknown.
   double error = std::numeric_limits<double>::quiet_NaN();
-  double energy = 0;      ///< in EI/l
+  double energy = 0;      ///< [EI/l]
   bool resolved = false;  ///< more terms would not change the shape, or the caller chose them
-  bool followed = false;  ///< next to the known shape it came from, by Newton's method alone
-  /// Smallest eigenvalue of the reduced Hessian, out of the plane included; NaN: not looked at.
+  bool followed = false;  ///< found near the known shape that it started from, by Newton's method
+                          ///< alone
+  /// Smallest eigenvalue of the reduced Hessian, including directions out of the plane; NaN: not
+  /// computed.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
-  /// Of them, those that are zero to the tolerance and no rigid-body mode's; near_singular if any.
+  /// Number of eigenvalues that are zero to the tolerance, without rigid-body modes; near_singular
+  /// if > 0.
   int neutral_directions = 0;
-  /// turns_lost() of an intrinsically curved rod whose frames are held at both ends.
+  /// Result of turns_lost() for an intrinsically curved rod with both end frames prescribed.
   int turns_lost = 0;
-  int rigid_body_modes = 0;  ///< of a shape that certify() has seen: those that are
+  int rigid_body_modes = 0;  ///< number of rigid-body modes, if certify() has processed the shape
   std::shared_ptr<SpanEnergy> model;
   Eigen::VectorXd x;
   Eigen::VectorXd multipliers;
-  /// Of the model where x was found, which others may share; null: not known.
+  /// Point of the model where x was found, possibly shared with other solutions; null: unknown.
   std::shared_ptr<SpanPoint> point;
-  /// Of `model` at a point on the way to x, which the last steps of Newton's method were made with
-  /// or certify() has asked; null: there is none.
+  /// Newton factor of `model` at a point near x, from the last Newton steps or from certify();
+  /// null: there is none.
   std::shared_ptr<NewtonFactor> factor;
 
   /// Whether `point` is the model's at x, as both are now.
   [[nodiscard]] bool has_point() const {
     return point && point->revision == model->revision() && point->x == x;
   }
-  /// The model's point at x, evaluated now where it is not known.
+  /// Returns the model's point at x; evaluates it if it is not known.
   [[nodiscard]] std::shared_ptr<SpanPoint> at_x() const {
     return has_point() ? point : std::make_shared<SpanPoint>(model->evaluated(x));
   }
-  /// Evaluates the model, and counts it.
+  /// Evaluates the model and counts the evaluation.
   void evaluate(const Eigen::Ref<const Eigen::VectorXd>& where, SpanPoint& at) {
     model->evaluate(where, at);
     ++evaluations;
@@ -65,11 +68,12 @@ struct [[nodiscard]] SpanSolution {
     status = SolveStatus::failed;
     message = std::move(why);
   }
-  /// A shape that a fold or a bifurcation leaves open, as certify() has found.
+  /// Whether certify() has found the shape to be at a fold or bifurcation, undetermined in some
+  /// directions.
   [[nodiscard]] bool is_singular_point() const {
     return status == SolveStatus::near_singular && neutral_directions > 0;
   }
-  /// Why a shape that is not `resolved` is no result.
+  /// Returns the message for a shape that is not `resolved`.
   [[nodiscard]] std::string too_few_terms() const {
     return "the curvature is not resolved by " + std::to_string(terms) + " terms";
   }

@@ -6,30 +6,30 @@
 
 namespace dlo::energy_model {
 
-/// Where a span's unknowns stand in x: by field (strain) the rotation of a free start, then the
-/// coefficients piece by piece; last the twist psi, if it is one.
+/// Layout of a span's unknowns in x: for each field (strain) the rotation of a free start, then the
+/// coefficients element by element; last the twist psi, if it is an unknown.
 struct SpanUnknowns {
   Eigen::Index fields = 1;
   Eigen::Index pieces = 0;
-  Eigen::Index terms = 0;       ///< coefficients of a piece
-  Eigen::Index free_start = 0;  ///< unknowns of a field's start, 0 or 1
+  Eigen::Index terms = 0;       ///< number of coefficients of an element
+  Eigen::Index free_start = 0;  ///< number of unknowns for a field's start, 0 or 1
   bool has_psi = false;
 
-  /// Of one field.
+  /// Number of unknowns of one field.
   [[nodiscard]] Eigen::Index columns() const { return free_start + pieces * terms; }
   [[nodiscard]] Eigen::Index strains() const { return fields * columns(); }
   [[nodiscard]] Eigen::Index size() const { return strains() + (has_psi ? 1 : 0); }
-  /// First coefficient of a piece.
+  /// Index of the first coefficient of an element.
   [[nodiscard]] Eigen::Index first(Eigen::Index field, Eigen::Index piece) const {
     return field * columns() + free_start + piece * terms;
   }
-  /// Zeroes what stores no energy, the rotation of a free start.
+  /// Sets the rotation of a free start to zero, which stores no energy.
   template <typename Vector>
   void clear_start(Vector& x) const {
     for (Eigen::Index f = 0; f < fields && free_start == 1; ++f) x[f * columns()] = 0;
   }
 
-  /// Where the unknowns of the same span with no more terms are among these.
+  /// Returns the indices here of the unknowns of the same span with at most as many coefficients.
   [[nodiscard]] std::vector<Eigen::Index> places_of(const SpanUnknowns& coarse) const {
     std::vector<Eigen::Index> places;
     places.reserve(static_cast<std::size_t>(coarse.size()));
@@ -42,7 +42,8 @@ struct SpanUnknowns {
     if (has_psi) places.push_back(strains());
     return places;
   }
-  /// Unknowns that have the coefficients of the same span with other terms or fields; others are 0.
+  /// Returns unknowns with the coefficients of the same span with other numbers of coefficients or
+  /// fields; the others are 0.
   [[nodiscard]] Eigen::VectorXd prolong(const SpanUnknowns& from, const Eigen::VectorXd& x) const {
     const Eigen::Index shared = std::min(terms, from.terms);
     Eigen::VectorXd prolonged = Eigen::VectorXd::Zero(size());
