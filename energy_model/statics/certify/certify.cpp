@@ -19,24 +19,25 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Newton's step that a returned shape may have left; its points are then right to about as much of
-/// the rod's length.
+/// Largest Newton step that a returned shape may have left; the error of its points, divided by the
+/// rod length, is then about the same.
 constexpr double largest_next_step = 1e-8;
 
-/// No point of a held rod can be off by more, in lengths.
+/// Upper bound of the error of any point of a held rod, divided by its length.
 constexpr double largest_error = 2;
 
-/// h = |dlambda| / lambda along what the coefficients may be off by, up to which there is an
-/// equilibrium there. Kantorovich: Newton's method from a point with the step eta, the inverse
-/// 1/lambda and second derivatives below kappa has a solution if h = eta kappa / lambda <= 1/2,
-/// not further than 2 / (1 + (1 - 2h)^(1/2)) eta; half of it is kept for what is estimated in h.
+/// Limit of h = |dlambda| / lambda within the error of the coefficients, up to which an equilibrium
+/// exists there. Kantorovich: Newton's method from a point with the step eta, the inverse 1/lambda
+/// and second derivatives below kappa has a solution if h = eta kappa / lambda <= 1/2, at a
+/// distance of at most 2 / (1 + (1 - 2h)^(1/2)) eta. Half of the limit is a margin, as h is
+/// estimated.
 constexpr double largest_h = 0.25;
 
-/// Third derivatives of E - mu . c along a unit direction of strains are forces times angles of 1
-/// or less, those of positions three times counted, over the scale of forces.
+/// Bound of the third derivatives of E - mu . c along a unit direction of strains, divided by the
+/// scale of forces: forces times angles of at most 1, those of positions counted three times.
 constexpr double largest_third_derivative = 4;
 
-/// Newton's step of the coefficients from here; it has no part along near-null modes.
+/// Returns Newton's step of the coefficients; it has no component along near-null modes.
 /// @param gradient  of E - mu . c
 Eigen::VectorXd newton_step(NewtonSystem& system, const SpanPoint& point,
                             const Eigen::VectorXd& gradient) {
@@ -48,15 +49,16 @@ Eigen::VectorXd newton_step(NewtonSystem& system, const SpanPoint& point,
   return step.head(gradient.size());
 }
 
-/// Rounding of forces, whose scale is this.
+/// Returns the rounding error of forces with this scale.
 double rounding_of(double scale) { return 8 * std::numeric_limits<double>::epsilon() * scale; }
 
-/// By which the coefficients may be off along the mode nearest zero if the second variation stays
-/// what it is: what Newton's method would still move them by, and what rounding, the modes that are
-/// left out and kinks within pieces push, divided by the eigenvalue nearest to zero.
+/// Estimates the error of the coefficients along the mode nearest zero for a constant second
+/// variation: the remaining Newton step, plus rounding, truncation and kinks within elements,
+/// divided by the eigenvalue nearest to zero.
 double linear_error(const SpanSolution& solution, double load) {
   const double scale = scale_of_forces(solution, load);
-  // The angle that the last coefficient adds is a_K / (2K); forces feel it as little again.
+  // The last coefficient contributes an angle of a_K / (2K); its effect on forces is smaller by
+  // this factor again.
   const double K = solution.terms;
   const double angle = solution.model->truncation(solution.x) / (2 * K);
   const double smallest = std::min(solution.eigenvalue_nearest_zero, 1.0);
@@ -64,10 +66,10 @@ double linear_error(const SpanSolution& solution, double load) {
   return solution.next_step + (rounding_of(scale) + truncated) / smallest;
 }
 
-/// What the points of a shape may be away from those of an equilibrium, of the length. The
-/// coefficients of strains bound what positions move by; no point of a held rod can be off by more
-/// than twice its length.
-/// @param moved  by which the coefficients may be off
+/// Estimates the distance of a shape's points from those of an equilibrium, divided by the length.
+/// The coefficients of strains bound the displacement; no point of a held rod can be displaced by
+/// more than twice its length.
+/// @param moved  error of the coefficients
 double error_estimate(const SpanSolution& solution, double moved) {
   const SpanEnergy& model = *solution.model;
   // The unit is the rod's smaller bending stiffness.
@@ -79,16 +81,16 @@ double error_estimate(const SpanSolution& solution, double moved) {
   return std::min(moved / std::sqrt(least_stiffness) + angle, largest_error);
 }
 
-/// Returns the model's points at its nodes, of a rod of length 1.
+/// Returns the model's points at its nodes, in rod lengths.
 Eigen::Matrix3Xd points_at(const SpanEnergy& model, const Eigen::VectorXd& x) {
   const std::span<const double> nodes(model.nodes().data(),
                                       static_cast<std::size_t>(model.nodes().size()));
   return model.shape(x).sample(nodes).points;
 }
 
-/// Change of the coefficients, to first order, to the equilibrium with two coefficients fewer in
-/// every piece and field: these become zero, and the others follow so that their gradient and the
-/// constraints stay zero.
+/// Returns, to first order, the change of the coefficients to the equilibrium with two coefficients
+/// fewer in every element and field: these become zero, and the others change so that their
+/// gradient and the constraints stay zero.
 Eigen::VectorXd change_with_fewer_terms(const SpanSolution& solution, const SpanPoint& point) {
   const SpanUnknowns& unknowns = solution.model->unknowns();
   const Eigen::Index dropped = std::min<Eigen::Index>(unknowns.terms, 2);
@@ -110,13 +112,13 @@ Eigen::VectorXd change_with_fewer_terms(const SpanSolution& solution, const Span
   return step.head(last.size()) - last;
 }
 
-/// Error of the points as it is measured by what Newton's method and two terms fewer would move
-/// them by. error_estimate() bounds what forces could do along the direction of least resistance,
-/// which is far more where the rod is pulled taut or hangs as a line: forces are large there, and
-/// resist as much.
+/// Estimates the error of the points from their displacement by Newton's step and by two
+/// coefficients fewer. error_estimate() bounds the effect of forces along the direction of least
+/// resistance. That bound is far too large for a rod that is pulled taut or hangs as a line, where
+/// forces are large but also stiffen the rod.
 double measured_error(const SpanSolution& solution, const SpanPoint& point,
                       const Eigen::VectorXd& next_step, double load) {
-  // Of rounding as another step has it, and of terms whose size falls by a tenth for two more.
+  // Covers the rounding of another step, and coefficients that decrease by a tenth per two more.
   constexpr double safety = 10;
   const double scale = scale_of_forces(solution, load);
   const double smallest = std::min(solution.eigenvalue_nearest_zero, 1.0);
@@ -132,17 +134,19 @@ double measured_error(const SpanSolution& solution, const SpanPoint& point,
          soft;
 }
 
-/// Eigenvalues of the second variation in some directions, as far as they were looked at.
+/// Small eigenvalues of the second variation in some set of directions.
 struct SmallEigenvalues {
   double smallest = 0;      // eigenvalue
-  double nearest_zero = 0;  // size of the eigenvalue nearest to zero that is no rigid-body mode's
-  int neutral_directions = 0;  // that are no rigid-body modes
-  Eigen::Index zero = 0;       // those that are free, or zero whatever they are
+  double nearest_zero = 0;  // magnitude of the eigenvalue nearest to zero without rigid-body modes
+  int neutral_directions = 0;  // number of neutral directions that are no rigid-body modes
+  Eigen::Index zero = 0;       // number of rigid-body modes, or of zeros by rounding if larger
 };
 
-/// @param bound    size up to which an eigenvalue counts as neutral
-/// @param free     rigid-body modes, whose eigenvalues are zero
-/// @param nothing  size up to which one is zero whatever its direction is; negative: none is
+/// Classifies the small eigenvalues of a reduced Hessian.
+/// @param bound    magnitude up to which an eigenvalue counts as neutral
+/// @param free     number of rigid-body modes, whose eigenvalues are zero
+/// @param nothing  magnitude up to which an eigenvalue counts as zero for any direction; negative:
+///   none
 SmallEigenvalues small_eigenvalues(ReducedHessian& hessian, double bound, Eigen::Index free,
                                    double nothing) {
   const Eigen::VectorXd eigenvalues = smallest_eigenvalues(hessian, 2 * bound);
@@ -157,8 +161,8 @@ SmallEigenvalues small_eigenvalues(ReducedHessian& hessian, double bound, Eigen:
   return result;
 }
 
-/// The direction of the eigenvalue nearest to zero but for `free` of them, with the multipliers
-/// that go with it: a vector v = (z, nu) of the system of Newton's method with |z| = 1.
+/// Direction of the eigenvalue nearest to zero without the first `free` ones, with the multipliers
+/// that belong to it: a vector v = (z, nu) of Newton's system with |z| = 1.
 struct SoftMode {
   Eigen::VectorXd direction, multipliers;
 };
@@ -174,11 +178,12 @@ SoftMode soft_mode(NewtonSystem& system, const Eigen::MatrixXd& jacobian, Eigen:
   return mode;
 }
 
-/// First and second derivative by t of the eigenvalue of v along the curve y(t) = y + t v +
-/// t^2 w / 2, y = (x, mu), on which the gradient G of the Lagrangian keeps zero in every direction
-/// but v (Lyapunov and Schmidt): G' w = -(G'' v v) without its part along v. The first derivative
-/// is the coefficient of a fold, zero by symmetry at a bifurcation. Without w the second one would
-/// be wrong of a family of equal shapes, which is curved: a helix that slides along the rod.
+/// First and second derivative by t of the eigenvalue of v along the curve y(t) = y + t v + t^2 w /
+/// 2, y = (x, mu). On this curve the gradient G of the Lagrangian stays zero in every direction but
+/// v (Lyapunov and Schmidt): G' w = -(G'' v v) without its component along v. The first derivative
+/// is the coefficient of a fold, and zero by symmetry at a bifurcation. Without w the second
+/// derivative would be wrong for a curved family of equal shapes, such as a helix that slides along
+/// the rod.
 struct EigenvalueDerivatives {
   double first = 0, second = 0;
 };
@@ -187,7 +192,7 @@ EigenvalueDerivatives eigenvalue_derivatives(SpanSolution& solution, const SoftM
   constexpr double step = 1e-3;  // error step^2, rounding eps / step and eps / step^2
   const Eigen::VectorXd& v = mode.direction;
   const Eigen::Index m = mode.multipliers.size();
-  // Newton's matrix at y + t v, which is G' with the constraints' sign changed, times v.
+  // Newton's matrix at y + t v, which is G' with the sign of the constraints changed, times v.
   const auto image = [&](double t) {
     const SecondDerivatives at = second_derivatives(*solution.model, solution.x + t * v,
                                                     solution.multipliers + t * mode.multipliers);
@@ -217,8 +222,8 @@ EigenvalueDerivatives eigenvalue_derivatives(SpanSolution& solution, const SoftM
           product(ahead - 2 * image(0) + behind, along) / (step * step) + 3 * product(change, w)};
 }
 
-/// Whether the second variation might change so much within `eta` that h is above its limit; false
-/// where the largest forces there are could not do it. True if the eigenvalue is not known.
+/// Whether the second variation might change within `eta` so much that h exceeds its limit. False
+/// if a bound by the largest forces excludes it; true if the eigenvalue is unknown.
 bool may_be_at_fold(const SpanSolution& solution, double load, double eta) {
   return !(eta * largest_third_derivative * scale_of_forces(solution, load) <=
            largest_h * solution.eigenvalue_nearest_zero);
@@ -235,7 +240,7 @@ class Certification {
         obstacles_(model_.has_soft_obstacles() || !model_.span().contacts.empty()) {}
 
   void run() {
-    // Newton's method leaves those undetermined whose terms nobody has looked at.
+    // Newton's method has not determined this shape, and its truncation error is unknown.
     const bool undetermined = solution_.status == SolveStatus::near_singular;
     if (!evaluate()) return;
     rigid_ = rigid_body_modes(model_.span(), point_->tangents());
@@ -259,7 +264,7 @@ class Certification {
   }
 
  private:
-  /// @return whether it meets the equations of equilibrium
+  /// @return whether the shape satisfies the equations of equilibrium
   [[nodiscard]] bool evaluate() {
     solution_.point = point_ = solution_.at_x();
     ++solution_.evaluations;
@@ -276,7 +281,8 @@ class Certification {
   }
 
   [[nodiscard]] SmallEigenvalues eigenvalues_of(ReducedHessian& hessian, Eigen::Index rigid) const {
-    // Obstacles leave movements free that are not looked for: those that are zero but for rounding.
+    // Obstacles may leave rigid-body motions free that rigid_body_modes() does not count; these
+    // have zero eigenvalues up to rounding.
     return small_eigenvalues(hessian, bound_, rigid, obstacles_ ? 128 * rounding_of(scale_) : -1);
   }
 
@@ -298,12 +304,13 @@ class Certification {
   void judge_step() {
     solution_.next_step = next_step_.norm();
     small_step_ = solution_.next_step <= largest_next_step;
-    // Below it what is left of the residual makes a step that is not small.
+    // With a smaller eigenvalue the remaining residual causes a step that is not small.
     bound_ = std::max(neutral, small_step_ ? 0 : solution_.residual / largest_next_step);
   }
 
-  /// Counts a mode that shifts the shape along the rod as a rigid-body mode. The part of Newton's
-  /// step along zero modes is rounding over their eigenvalues and leaves no doubt of the shape.
+  /// Counts a mode that shifts the shape along the rod as a rigid-body mode. The component of
+  /// Newton's step along zero modes is rounding divided by their eigenvalues, and is removed: it
+  /// says nothing about the error of the shape.
   void count_sliding_mode(NewtonSystem& system) {
     const auto modes =
         sliding_modes(model_, solution_.x, system.reduced_hessian(), rigid_.in_plane);
@@ -316,8 +323,8 @@ class Certification {
     found_ = eigenvalues_of(system.reduced_hessian(), ++rigid_.in_plane);
   }
 
-  /// Takes the second variation at the ridges of boxes that yield into account, which Newton's
-  /// method does not need: it ends a piece there.
+  /// Includes the second variation at the ridges of soft boxes. Newton's method does not need it,
+  /// as an element ends there.
   void subtract_ridges() {
     const std::vector<RidgeCrossing> ridges = ridge_crossings(solution_);
     if (ridges.empty()) return;
@@ -339,11 +346,12 @@ class Certification {
     found_ = eigenvalues_of(reduced, rigid_.in_plane);
   }
 
-  /// @return whether it is next to a fold, so that there may be no equilibrium
+  /// Estimates solution_.error. @return whether the shape is so close to a fold that there may be
+  /// no equilibrium
   [[nodiscard]] bool estimate_error() {
     double moved = eta_;
     bool at_fold = false;
-    // As many terms as constraints leave no direction that a fold could be in.
+    // If there are as many coefficients as constraints, no direction is left for a fold.
     const bool can_move = found_.zero < model_.size() - model_.constraints();
     if (can_move && may_be_at_fold(solution_, load_, eta_)) {
       const SoftMode mode = soft_mode(solution_.factor->system, point_->jacobian, found_.zero);
@@ -376,14 +384,14 @@ class Certification {
   const SpanEnergy& model_;
   const double load_;
   NewtonFactors& factors_;
-  const double scale_;  // of forces
+  const double scale_;  // scale of forces
   const bool obstacles_;
   std::shared_ptr<SpanPoint> point_;
   Eigen::VectorXd gradient_;  // of E - mu . c
   Eigen::VectorXd next_step_;
   RigidBodyModes rigid_;
-  double bound_ = neutral;  // size up to which an eigenvalue counts as neutral
-  double eta_ = 0;          // by which the coefficients may be off, without a fold
+  double bound_ = neutral;  // magnitude up to which an eigenvalue counts as neutral
+  double eta_ = 0;          // error of the coefficients without a fold
   bool small_step_ = false;
   SmallEigenvalues found_;
 };
@@ -397,7 +405,8 @@ void certify(SpanSolution& solution, double load, NewtonFactors& factors) {
 
 void certify_out_of_plane(SpanSolution& solution, double load, NewtonFactors& factors) {
   const Span& span = solution.model->span();
-  // Only a rod that is pulled along its clamp turns freely, about that; few are.
+  // Only a rod that is pulled along its clamp can rotate freely, about that direction; such
+  // problems are rare.
   const auto is_along = [&](const Eigen::Vector3d& force) {
     return force.cross(*span.start_direction).norm() <= 1e-6 * force.norm();
   };
@@ -407,8 +416,8 @@ void certify_out_of_plane(SpanSolution& solution, double load, NewtonFactors& fa
         static_cast<int>(rigid_body_modes(span, solution.at_x()->tangents()).all());
   }
   const double eta = linear_error(solution, load);
-  // Newton's method knows no eigenvalue of a saddle in the plane. An eigenvalue up to `neutral` may
-  // be at a fold by rounding alone.
+  // Newton's method determines no eigenvalue of a saddle in the plane. An eigenvalue up to
+  // `neutral` may belong to a fold by rounding alone.
   if (solution.status == SolveStatus::near_singular || may_be_at_fold(solution, load, eta)) {
     return certify(solution, load, factors);
   }

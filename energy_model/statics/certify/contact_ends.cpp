@@ -8,25 +8,26 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Arc lengths at which a shape is looked at first.
+/// Number of intervals at whose ends a shape is sampled first.
 constexpr Eigen::Index first_looks = 400;
 
-/// Ends closer than this, in lengths, are one.
+/// Distance, divided by the rod length, below which two ends count as one.
 constexpr double closest_contact_ends = 1e-7;
 
-/// Parts into which a bracket is divided, until it is as short as rounding.
+/// Number of parts into which a bracket is divided repeatedly, and its final width, divided by the
+/// rod length.
 constexpr int parts = 32;
 constexpr double shortest_bracket = 1e-13;
 
-/// Smallest jump of the unit gradient of the depth that is a ridge: where a face meets a round edge
-/// the gradient is continuous.
+/// Smallest jump of the unit gradient of the depth that counts as a ridge; where a face meets a
+/// round edge the gradient is continuous.
 constexpr double least_jump = 1e-3;
 
-/// From the core of a cylinder, in lengths: nearer than that its forces turn too fast for the nodes
-/// of a whole piece.
+/// Distance from the core of a cylinder, divided by the rod length, below which its force changes
+/// its direction too fast for the nodes of a whole element.
 constexpr double beside = 0.05;
 
-/// In a bracket the rod passes from one state to another.
+/// An interval in which the contact state of the rod changes.
 struct Bracket {
   std::size_t obstacle = 0;
   double begin = 0;
@@ -35,7 +36,7 @@ struct Bracket {
 
 constexpr int apart = -1;
 
-/// The face, edge or corner that a point presses into; apart if none.
+/// Returns the face, edge or corner into which a point presses; `apart` if it is outside the body.
 int state(const obstacle::Body& body, const Eigen::Vector3d& point) {
   return body.clearance(point) < 0 ? body.feature(point) : apart;
 }
@@ -52,19 +53,21 @@ std::vector<double> evenly_spaced(double length) {
   return s;
 }
 
-/// Evenly between both, which belong to them.
+/// Appends equally spaced points from `begin` to `end`, both included.
 void append_divided(double begin, double end, std::vector<double>& s) {
   for (int i = 0; i <= parts; ++i) s.push_back(begin + (end - begin) * i / parts);
 }
 
-/// Whether a body is a cylinder, a capsule or a ball: within it forces turn round at its core.
+/// Whether a body is a cylinder, a capsule or a ball, in which the force changes its direction at
+/// the core.
 bool has_thin_core(const obstacle::Body& body) {
   return ((body.upper() - body.lower()).array() == 0).count() >= 2;
 }
 
-/// Those of all obstacles on arc lengths by growing s; also where a dip between two of them may
-/// reach into an obstacle, and, without width, where the rod comes so near to a thin core that
-/// forces turn within a short way, for which nodes have to be close.
+/// Returns the brackets of all obstacles, found on equally spaced arc lengths. It also finds dips
+/// between two of these that reach into an obstacle. It adds brackets of zero width where the rod
+/// comes so close to a thin core that forces change their direction within a short distance, which
+/// requires close nodes.
 std::vector<Bracket> brackets_of(const std::vector<Span::SoftObstacle>& obstacles,
                                  const SpanShape& shape, double length) {
   const std::vector<double> s = evenly_spaced(length);
@@ -105,7 +108,8 @@ std::vector<Bracket> brackets_of(const std::vector<Span::SoftObstacle>& obstacle
   return brackets;
 }
 
-/// Each bracket shortened to the changes in it; to the first one where others would be one with it.
+/// Narrows each bracket to the changes within it; to the first one if the others would be closer
+/// than closest_contact_ends.
 std::vector<Bracket> narrowed(const std::vector<Span::SoftObstacle>& obstacles,
                               const SpanShape& shape, const std::vector<Bracket>& brackets) {
   std::vector<double> s;
@@ -124,7 +128,7 @@ std::vector<Bracket> narrowed(const std::vector<Span::SoftObstacle>& obstacles,
       if (here != before && !all) break;
       before = here;
     }
-    // What rounding has moved out of it is at its end.
+    // A change that rounding has moved out of the bracket is taken to be at its end.
     if (result.size() == already) {
       result.push_back({bracket.obstacle, s[first + parts - 1], s[first + parts]});
     }
@@ -142,7 +146,7 @@ std::vector<Bracket> shortest_brackets(const Span& span, const SpanShape& shape)
   return brackets;
 }
 
-/// Whether a rod comes to the core of a body within a bracket, to rounding.
+/// Whether a rod meets the core of a body within a bracket, to rounding.
 bool meets_core(const obstacle::Body& body, const SpanShape& shape, Bracket bracket,
                 double length) {
   constexpr double rounding = 1e-9;
@@ -208,7 +212,8 @@ MiddlePassed middle_passed(const SpanSolution& solution) {
   MiddlePassed passed = MiddlePassed::none;
   for (const Span::SoftObstacle& obstacle : span.soft_obstacles) {
     const obstacle::Body& body = obstacle.body;
-    // Of what is thin the forces turn within the way to the middle, which nodes have to see.
+    // Near a thin core the force changes its direction within the distance from the core, which
+    // nodes have to resolve.
     const bool thin = has_thin_core(body);
     const Eigen::VectorXd clearance = body.clearances(points);
     for (Eigen::Index i = 1; i < points.cols(); ++i) {

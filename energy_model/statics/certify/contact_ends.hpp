@@ -6,41 +6,42 @@
 
 namespace dlo::energy_model {
 
-/// Where a shape begins and ends to press into an obstacle that yields, and where it passes from
-/// one face, edge or corner of it to the next while it does: there the force per length has a kink.
-/// By growing s.
+/// Returns the arc lengths, ascending, at which a shape begins and ceases to press into a soft
+/// obstacle, and at which it passes within it from one face, edge or corner to the next. The force
+/// per length has a kink at each of them.
 [[nodiscard]] std::vector<double> contact_ends(const SpanSolution& solution);
 
-/// Force that the series of a shape may miss because a kink of contact lies within a piece, in the
-/// units of the span: next to an end of contact the force per length is at most k times the way to
-/// it.
+/// Returns a bound of the force error [in the span's units] of a shape's series if a kink of the
+/// contact force lies within an element: near an end of contact the force per length is at most k
+/// times the distance from the end.
 [[nodiscard]] double misplaced_contact(const SpanSolution& solution);
 
-/// How a shape passes the middle of an obstacle that yields.
+/// Passage of a shape through the middle of a soft obstacle.
 enum class MiddlePassed {
   none,
-  through_line,  ///< the axis of a cylinder or capsule, a ball's centre
-  on_ridge,      ///< in a plane to both sides of which a box is left by as near a face
-  near,          ///< so near to such a line that the second variation is not seen
+  through_line,  ///< through the axis of a cylinder or capsule, or a ball's centre
+  on_ridge,      ///< in a plane of a box at equal distances from faces on both sides
+  near,          ///< so close to such a line that the series do not show the second variation
 };
 
-/// Second variation -(direction . dr(s))^2 of the energy at a point where a shape passes from the
-/// part of a box that one face pushes to that of another one: the depth d is the smaller one of
-/// d_1 and d_2 there, whose gradients n_1 and n_2 differ, and a displacement dr of the rod shifts
-/// the point by ds = -(n_2 - n_1) . dr / ((n_2 - n_1) . t), so that
+/// Second variation -(direction . dr(s))^2 of the energy at a point where a shape passes within a
+/// box from the region of one face to that of another. The depth d is the smaller one of d_1 and
+/// d_2, whose gradients n_1 and n_2 differ. A displacement dr of the rod shifts the point by ds =
+/// -(n_2 - n_1) . dr / ((n_2 - n_1) . t), so that
 ///     direction = (k d / |(n_2 - n_1) . t|)^(1/2) (n_2 - n_1).
 struct RidgeCrossing {
   double s = 0;
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();
 };
 
-/// Returns all of a shape, by growing s.
+/// Returns all ridge crossings of a shape, by ascending s.
 [[nodiscard]] std::vector<RidgeCrossing> ridge_crossings(const SpanSolution& solution);
 
-/// Beside the axis of a cylinder, r away, the second derivative of a contact's energy is -k R / r
-/// across it: what is integrated along a rod that crosses the axis has no lower bound, so that no
-/// such equilibrium is stable. Series see it only as far as their nodes are from the axis. On a
-/// ridge the force turns round with the side, so that no shape on it is an equilibrium.
+/// Classifies how a shape passes the middles of soft obstacles. At the distance r from the axis of
+/// a cylinder the second derivative of a contact's energy across the axis is -k R / r. Its integral
+/// along a rod that crosses the axis has no lower bound, so that no such equilibrium is stable.
+/// Series resolve this only down to the distance of their nodes from the axis. On a ridge the force
+/// changes its direction with the side, so that no shape on it is an equilibrium.
 [[nodiscard]] MiddlePassed middle_passed(const SpanSolution& solution);
 
 }  // namespace dlo::energy_model

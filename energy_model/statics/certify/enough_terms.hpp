@@ -4,19 +4,20 @@
 
 namespace dlo::energy_model {
 
-/// Coefficients of each piece that resolve a rod under this load (which a piece of length h feels
-/// as a rod of length 1 feels h^2 of it) to about 1e-10 of its length. A softer rod has the layers
-/// at its clamps in pieces of their own.
+/// Returns the number of coefficients of each element that resolve a rod under this load to about
+/// 1e-10 of its length. The load acts on an element of length h as h^2 of it would act on a rod of
+/// length 1. A softer rod has elements of their own for the layers at its clamps.
 [[nodiscard]] int first_terms(double load, double longest_piece);
 
-/// Of the coefficients of a shape, those that add more to its angle than this: the angle that the
-/// last of K adds is a_K / (2K), and positions feel it as little again.
-/// @param least  that are kept in any case, if there are as many
+/// Returns how many coefficients of a shape are needed so that the dropped ones contribute at most
+/// `tolerance`. The last of K coefficients contributes an angle of a_K / (2K), and its effect on
+/// positions is smaller by this factor again.
+/// @param least  number of coefficients kept in any case, if there are as many
 [[nodiscard]] int terms_needed(const SpanEnergy& model, const Eigen::VectorXd& x, double tolerance,
                                int least);
 
-/// Coefficients that resolve the ways in which a twisted span gives way, helices of a rate of half
-/// its torque, however simple its own shape is.
+/// Returns the number of coefficients that resolve the buckling modes of a twisted span, helices
+/// with a rate of half its torque, even if its own shape is simple.
 [[nodiscard]] int terms_under_twist(const SpanSolution& solution);
 
 }  // namespace dlo::energy_model

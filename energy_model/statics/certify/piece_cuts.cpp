@@ -8,16 +8,16 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Points at which a shape is looked at.
+/// Number of points at which a shape is sampled.
 constexpr Eigen::Index probes = 4096;
 
-/// What bends the rod within a length of its own.
+/// A cause of bending that is confined to a length of its own.
 struct Feature {
   double at = 0;
-  double length = 0;  // 0: a free end, where nothing bends it
+  double length = 0;  // 0: a free end, where the rod is not bent
 };
 
-/// Force that the rod carries at s, but for its sign.
+/// Returns the force that the rod carries at s, up to its sign.
 Eigen::Vector3d carried_at(const SpanSolution& solution, double s) {
   const Span& span = solution.model->span();
   const Eigen::Index axes = span.planar ? 2 : 3;
@@ -40,7 +40,7 @@ double stiffness_at(const Span& span, double s) {
   return span.stiffness.head<2>().minCoeff();
 }
 
-/// By growing s: ends, grips, loads, sections; each once.
+/// Returns the arc lengths of ends, grips, loads and section changes, ascending, each once.
 std::vector<double> kinks_of(const Span& span) {
   std::vector<double> kinks = {0, span.length, span.anchor};
   for (const Span::Hold& hold : span.holds) kinks.push_back(hold.at);
@@ -52,7 +52,7 @@ std::vector<double> kinks_of(const Span& span) {
   return kinks;
 }
 
-/// Of a layer beside a kink, towards a point within it: (EI / force)^(1/2).
+/// Returns the boundary layer at a kink, on one side of it, with the length (EI / force)^(1/2).
 Feature kink_at(const SpanSolution& solution, double at, double sense) {
   const Span& span = solution.model->span();
   const bool free_begin = at < closest_cuts && !span.start_direction && span.anchor > 0;
@@ -64,8 +64,8 @@ Feature kink_at(const SpanSolution& solution, double at, double sense) {
   return {at, std::sqrt(stiffness_at(span, s) / force)};
 }
 
-/// Where the curvature is largest within the length of an elastica that turns back there, 2 / it,
-/// and has jumped beyond.
+/// Returns the local maxima of the curvature that are followed on both sides, within the length of
+/// an elastica that turns back there (2 / curvature), by a decrease to at most `fallen`.
 std::vector<Feature> peaks_of(const SpanSolution& solution, double begin, double end) {
   constexpr double fallen = 0.6;
   constexpr double widths = 2;
@@ -89,7 +89,7 @@ std::vector<Feature> peaks_of(const SpanSolution& solution, double begin, double
   return peaks;
 }
 
-/// Beside a feature, as far as there is room.
+/// Adds cuts on one side of a feature where it has decayed, as far as there is room.
 void cut_beside(const Feature& feature, double sense, double room, std::vector<double>& cuts) {
   constexpr std::array<double, 2> depths = {6, 24};
   for (const double depth : depths) {

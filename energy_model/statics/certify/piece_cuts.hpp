@@ -6,11 +6,12 @@
 
 namespace dlo::energy_model {
 
-/// Where pieces of a span have to end so that few coefficients resolve a shape that is known
-/// roughly (Span::cuts): at the peaks of its curvature, as where a soft rod turns back, and to both
-/// sides of them and of grips, loads and sections, where what they do to it has decayed. A series
-/// on a piece falls with the distance of its nearest complex singularity, in half lengths of the
-/// piece, if that is beside the piece's middle, but with the root of it if that is at its end.
+/// Returns element boundaries (Span::cuts) with which few coefficients resolve a shape that is
+/// known approximately: at the peaks of its curvature, for example where a soft rod turns back, and
+/// on both sides of peaks, grips, loads and section changes, where their effect has decayed. The
+/// coefficients on an element decrease with the distance of the nearest complex singularity,
+/// measured in half lengths of the element, if it is next to the element's middle, but with the
+/// square root of that distance if it is at its end.
 [[nodiscard]] std::vector<double> piece_cuts(const SpanSolution& solution);
 
 }  // namespace dlo::energy_model

@@ -12,10 +12,11 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Sine up to which a vector is along an axis: input in decimals is right to rounding.
+/// Sine of the angle up to which a vector counts as parallel to an axis: the rounding of decimal
+/// input.
 constexpr double along = 1e-10;
 
-/// Directions that a turn has to keep, of length 1 or less.
+/// Returns the vectors, of length 1 or less, that a free rotation must not change.
 std::vector<Eigen::Vector3d> kept_vectors(const Span& span) {
   std::vector<Eigen::Vector3d> kept;
   const double load = std::max(span.total_load(), 1e-300);
@@ -40,7 +41,8 @@ std::vector<Eigen::Vector3d> kept_vectors(const Span& span) {
   return kept;
 }
 
-/// Axes, of those in the columns, about which a turn moves none of these vectors.
+/// Returns the axes, in the span of the given columns, about which a rotation moves none of the
+/// vectors.
 Eigen::MatrixXd axes_that_keep(const std::vector<Eigen::Vector3d>& vectors,
                                const Eigen::MatrixXd& axes) {
   if (axes.cols() == 0 || vectors.empty()) return axes;
@@ -56,20 +58,20 @@ Eigen::MatrixXd axes_that_keep(const std::vector<Eigen::Vector3d>& vectors,
   return axes * svd.matrixV().rightCols(axes.cols() - lost);
 }
 
-/// Of these axes' turns those that move the shape.
+/// Returns the number of rotations about these axes that move the shape.
 Eigen::Index moving(const Eigen::MatrixXd& axes, const std::vector<Eigen::Vector3d>& shape) {
   return axes.cols() - axes_that_keep(shape, axes).cols();
 }
 
-/// Whether only grips at its ends act on a span, which is uniform and intrinsically straight.
+/// Whether a span is uniform and intrinsically straight, and only grips at its ends act on it.
 bool is_held_at_ends_alone(const Span& span) {
   return span.total_load() == 0 && !span.has_couples() && span.contacts.empty() &&
          span.soft_obstacles.empty() && span.parts.empty() && !span.has_material_directors() &&
          span.anchor == 0 && span.holds.size() == 1 && span.holds.front().at == span.length;
 }
 
-/// Largest curvature at the ends of a shape that may be shifted along the rod, over its largest
-/// curvature: the shift changes its energy by about the square of this.
+/// Largest curvature at the ends of a shape that may be shifted along the rod, divided by its
+/// largest curvature: the shift changes the energy by about the square of this ratio.
 constexpr double straight_end = 1e-2;
 
 bool is_straight_at_ends(const SpanEnergy& model, const Eigen::VectorXd& x) {
@@ -81,7 +83,7 @@ bool is_straight_at_ends(const SpanEnergy& model, const Eigen::VectorXd& x) {
   return size.tail<2>().maxCoeff() < straight_end * size.maxCoeff();
 }
 
-/// Derivatives of the curvature by the arc length, as coefficients.
+/// Returns the coefficients of the derivative of the curvature by the arc length.
 Eigen::VectorXd derivative_along_rod(const SpanEnergy& model, const Eigen::VectorXd& x) {
   const SpanUnknowns& unknowns = model.unknowns();
   const LegendreTable& table = model.table();
@@ -112,14 +114,15 @@ std::optional<Eigen::MatrixXd> sliding_modes(const SpanEnergy& model, const Eige
   Eigen::VectorXd shift = derivative_along_rod(model, x);
   const SpanUnknowns& unknowns = model.unknowns();
   if (unknowns.fields == 2) {
-    // A helix that is shifted also rotates about its axis, which is another mode.
+    // A helix that is shifted also rotates about its axis, which is a separate mode.
     const Eigen::Index n = unknowns.columns();
     Eigen::VectorXd rotation = Eigen::VectorXd::Zero(x.size());
     rotation.head(n) = -x.segment(n, n);
     rotation.segment(n, n) = x.head(n);
     shift -= shift.dot(rotation) / rotation.squaredNorm() * rotation;
   }
-  // The share of its square that is in these modes; that of other modes is about zero.
+  // Smallest fraction of the shift's squared norm within these modes; for other modes it is about
+  // zero.
   constexpr double least_share = 0.99;
   Eigen::MatrixXd modes(x.size(), rigid + 1);
   for (Eigen::Index i = 0; i <= rigid; ++i) modes.col(i) = direction_by_size(hessian, i);
@@ -129,13 +132,14 @@ std::optional<Eigen::MatrixXd> sliding_modes(const SpanEnergy& model, const Eige
 }
 
 RigidBodyModes rigid_body_modes(const Span& span, const Eigen::Matrix3Xd& tangents) {
-  // A clamp holds material directors against every turn. A round rod that is twisted spins about
-  // its own axis meanwhile, which costs nothing, so that its frames stay where they are held.
+  // A clamp prevents every rotation of material directors. A twisted round rod spins about its own
+  // axis during such a rotation without a change of energy, so that its end frames stay as
+  // prescribed.
   if (span.has_material_directors() && span.start_direction) return {};
   const Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   std::vector<Eigen::Vector3d> shape;
   if (span.has_material_directors()) {
-    // A rotation about the rod's own line moves its frame.
+    // A rotation about a straight rod's own axis moves its frame.
     shape = {axes.col(0), axes.col(1), axes.col(2)};
   } else {
     for (Eigen::Index q = 0; q < tangents.cols(); ++q) shape.emplace_back(tangents.col(q));
@@ -156,7 +160,7 @@ bool is_turned_copy(const Span& span, const Eigen::Matrix3Xd& a, const Eigen::Ma
   from.rightCols(a.cols()) = a / span.length;
   Eigen::Matrix3Xd to = from;
   to.rightCols(b.cols()) = b / span.length;
-  // Kabsch's rotation: the nearest there is.
+  // Kabsch's algorithm: the best rotation in the least-squares sense.
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(to * from.transpose(),
                                               Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Vector3d signs = Eigen::Vector3d::Ones();

@@ -11,19 +11,21 @@ namespace dlo::energy_model {
 namespace {
 
 constexpr Eigen::Index grid_points = 1001;
-/// Every so many-th of them is looked at first.
+/// Spacing, in grid points, of the points that are evaluated first.
 constexpr std::size_t coarse_stride = 20;
-/// Newton's steps from the grid to a minimum; they stay between the neighbouring points.
+/// Number of Newton steps from a grid point to a minimum; they stay between the neighbouring
+/// points.
 constexpr int refinements = 6;
 
-/// Beside where a contact begins or ends it is looked at in half the way again and again: a point
-/// that begins to lie has the rod behind the obstacle beside it, nearer than the grid tells.
+/// Number of additional points on each side of a contact's ends, each at half the distance of the
+/// one before. If a point contact should become a part in contact, the rod is within the obstacle
+/// next to it, closer than the grid resolves.
 constexpr int halvings_beside_contact = 10;
 
-/// Of points that are not looked at, since nothing near them is as low.
+/// Clearance of points that are not evaluated, as no point near them is low enough.
 constexpr double not_looked_at = std::numeric_limits<double>::infinity();
 
-/// The least clearance between `low` and `high`, by Newton's method from `at`.
+/// Finds the smallest clearance between `low` and `high` by Newton's method from `at`.
 GapMinimum lowest_between(const Span::Obstacle& obstacle, const SpanShape& shape, double low,
                           double at, double high) {
   GapMinimum lowest{obstacle, at, std::numeric_limits<double>::infinity()};
@@ -37,7 +39,8 @@ GapMinimum lowest_between(const Span::Obstacle& obstacle, const SpanShape& shape
   return lowest;
 }
 
-/// Least clearances below `below` on both sides of a contact's ends, nearer than `reach`.
+/// Adds minima of the clearance below `below` on both sides of a contact's ends, closer than
+/// `reach`.
 void add_beside_contacts(const Span& span, const Span::Obstacle& obstacle, const SpanShape& shape,
                          double below, double reach, std::vector<GapMinimum>& found) {
   const auto look = [&](double end, double first_step) {
@@ -47,14 +50,14 @@ void add_beside_contacts(const Span& span, const Span::Obstacle& obstacle, const
     }
     const Eigen::VectorXd clearance = obstacle.body.clearances(shape.sample(s).points);
     for (Eigen::Index k = 1; k + 1 < clearance.size(); ++k) {
-      // Of a least value two thirds at least are seen at one of these.
+      // At least two thirds of the depth at a minimum occur at one of these points.
       const bool is_low = clearance[k] < below / 2;
       if (!is_low || clearance[k] > clearance[k - 1] || clearance[k] >= clearance[k + 1]) continue;
       const auto at = static_cast<std::size_t>(k);
       const double low = std::min(s[at - 1], s[at + 1]);
       const double high = std::max(s[at - 1], s[at + 1]);
       const GapMinimum lowest = lowest_between(obstacle, shape, low, s[at], high);
-      // The grid may have seen it.
+      // The grid may already have found it.
       const bool known = std::any_of(found.begin(), found.end(), [&](const GapMinimum& other) {
         return other.obstacle.index == obstacle.index && other.s >= low && other.s <= high;
       });
@@ -96,7 +99,7 @@ std::vector<std::size_t> near_points(
 
 std::vector<GapMinimum> gap_minima(const Span& span, const SpanShape& shape, double below) {
   const std::vector<double> s = equal_arc_lengths(span.length, grid_points);
-  // Half of a coarse interval away, and a neighbour and what it may sag by further.
+  // Half a coarse interval, plus one neighbouring point and the sag between points.
   const double most = below + (static_cast<double>(coarse_stride) / 2 + 3) * s[1];
   std::vector<std::size_t> looked_at =
       near_points(s, coarse_stride, most, [&](const std::vector<double>& coarse) {
@@ -116,7 +119,7 @@ std::vector<GapMinimum> gap_minima(const Span& span, const SpanShape& shape, dou
   const double bent = grid.curvature.colwise().norm().maxCoeff();
   std::vector<GapMinimum> found;
   for (const Span::Obstacle& obstacle : span.rigid_obstacles) {
-    // Between two points of the grid it may be lower by this.
+    // Between two grid points the clearance may be lower by this amount.
     const double sag = h * h / 8 * (bent + 1 / obstacle.body.smallest_radius());
     Eigen::VectorXd clearance = Eigen::VectorXd::Constant(grid_points, not_looked_at);
     const Eigen::VectorXd found_near = obstacle.body.clearances(grid.points);

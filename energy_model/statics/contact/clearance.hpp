@@ -13,31 +13,31 @@ namespace dlo::energy_model {
 struct Clearance {
   double value = 0;
   double slope = 0;
-  double rate = 0;  ///< of the slope
+  double rate = 0;  ///< second derivative by the arc length
 };
 [[nodiscard]] Clearance clearance_at(const obstacle::Body& body, const SpanSamples& samples,
                                      Eigen::Index i);
 
-/// Returns indices of a grid's points, growing: of every coarse interval of `stride` grid intervals
-/// an end of which has a clearance of at most `most`, all points. The clearance changes along a rod
-/// by no more than the arc length, so that the others have more than `most` less half a coarse
-/// interval.
+/// Returns indices of points of a grid in ascending order: all points of every coarse interval
+/// (`stride` grid intervals) that has a clearance of at most `most` at one of its ends. The
+/// clearance changes along a rod by no more than the arc length; all other points therefore have a
+/// clearance above `most` minus half a coarse interval.
 /// @param s           arc lengths of the grid, equally spaced
-/// @param clearances  returns the least clearance at each of some arc lengths
+/// @param clearances  returns the smallest clearance at each of the given arc lengths
 [[nodiscard]] std::vector<std::size_t> near_points(
     const std::vector<double>& s, std::size_t stride, double most,
     const std::function<Eigen::VectorXd(const std::vector<double>& s)>& clearances);
 
-/// Where a shape comes nearest to a rigid obstacle, or is deepest behind it.
+/// A point where a shape is nearest to a rigid obstacle or deepest within it.
 struct GapMinimum {
   Span::Obstacle obstacle;
   double s = 0;
   double clearance = 0;
-  int feature = 0;  ///< of the body, next to it
+  int feature = 0;  ///< feature of the body (face, edge, corner) nearest to the point
 };
 
-/// Every local minimum of the clearance over the rod that is below `below`, ends included, by
-/// growing s: those of a dense grid, each refined. Grips count.
+/// Returns every local minimum of the clearance along the rod that is below `below`, ends included,
+/// by ascending s. The minima of a dense grid are refined. Points at grips count.
 [[nodiscard]] std::vector<GapMinimum> gap_minima(const Span& span, const SpanShape& shape,
                                                  double below);
 

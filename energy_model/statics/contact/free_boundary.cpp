@@ -70,7 +70,7 @@ Eigen::VectorXd free_boundary_residual(const SpanSolution& solution,
   const std::shared_ptr<SpanPoint> point = solution.at_x();
   std::vector<double> s;
   for (const FreeBoundary& end : ends) {
-    // Of two pieces that meet there the free one.
+    // Evaluate in the free one of the two elements that meet there.
     const double at = end.at(span);
     const bool after = span.contacts[end.contact].lies() && !end.begins;
     s.push_back(after ? at + aside : at - aside);

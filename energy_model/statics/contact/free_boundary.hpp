@@ -8,28 +8,32 @@
 
 namespace dlo::energy_model {
 
-/// An arc length at which a contact begins or ends and which is not given: where a rod that
-/// touches at one point is parallel to the obstacle, and where a lying part lifts off without a
-/// moment, that is with no curvature towards the obstacle.
+/// An unknown arc length at which a contact begins or ends. A rod that touches an obstacle at one
+/// point is parallel to it there; a part in contact lifts off without a moment, that is, without
+/// curvature towards the obstacle.
 struct FreeBoundary {
-  std::size_t contact = 0;  ///< of Span::contacts
-  bool begins = true;       ///< the part that lies; or, of one that touches, where it does
+  std::size_t contact = 0;  ///< index in Span::contacts
+  bool begins = true;  ///< whether it is the begin of a part in contact; true for a contact at one
+                       ///< point
 
   [[nodiscard]] double at(const Span& span) const;
   void move(Span& span, double way) const;
 };
 
-/// All of a span's, by growing s.
+/// Returns all free boundaries of a span, by ascending s.
 [[nodiscard]] std::vector<FreeBoundary> free_boundaries(const Span& span);
 
-/// Residual there: of one that touches and slides the way to where it is nearest; of one that
-/// is held the slope of the clearance times the length of the shorter piece beside it, because the
-/// way would be slope over curvature, which is 0 / 0 where the rod begins to lie; of a lying part
-/// the second derivative of the clearance times the length of the free piece beside it.
+/// Returns the residual at each free boundary. For a sliding contact at one point it is the
+/// distance along the rod to the point of smallest clearance. For a point contact that does not
+/// slide it is the slope of the clearance times the length of the shorter adjacent element; the
+/// distance, slope divided by curvature, would be 0 / 0 where the rod begins to lie on the
+/// obstacle. For a part in contact it is the second derivative of the clearance times the length of
+/// the adjacent free part.
 [[nodiscard]] Eigen::VectorXd free_boundary_residual(const SpanSolution& solution,
                                                      const std::vector<FreeBoundary>& ends);
 
-/// How far a lift-off may be moved down and up without passing what is beside it.
+/// Distances by which a free boundary may move down and up without passing a grip, an end or
+/// another contact.
 struct Room {
   double down = 0, up = 0;
 };

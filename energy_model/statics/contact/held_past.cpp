@@ -14,11 +14,12 @@ namespace {
 /// the search among many bodies slower than everything else.
 constexpr std::size_t most_spans = 10;
 
-/// Distance from a body's middle at which a shape passes it, over half of the body's size there.
+/// Distance from a body's middle at which a shape passes it, divided by half of the body's size
+/// there.
 constexpr double beside_body = 1.1;
 
-/// Length of rod on the way past a body to a free end, over that of the way; > 1, because without
-/// slack the start would be that of a taut rod.
+/// Length of rod on the path past a body to a free end, divided by the path's length; > 1, because
+/// without slack the initial guess would be a taut rod.
 constexpr double slack_of_way = 1.01;
 
 /// Lengths below this share of the span's length are rounding.
@@ -27,8 +28,8 @@ constexpr double shortest_way = 1e-9;
 /// The part of a span between two neighbouring grips, or from the outermost grip to a free end.
 struct Reach {
   double from_s = 0;       ///< arc length of the grip that a way past a body begins at
-  double length = 0;       ///< of this part of the rod
-  double sense = 1;        ///< 1 where arc lengths grow along the way, else -1
+  double length = 0;       ///< length of this part of the rod
+  double sense = 1;        ///< 1 if arc lengths increase along the path, else -1
   Eigen::Vector3d from;    ///< position of that grip
   bool is_closed = false;  ///< whether another grip holds the other end
   Eigen::Vector3d to;      ///< position of the other grip, if there is one

@@ -10,32 +10,38 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Segments of a stiff and of a soft rod; lift-off lengths fall with the root of the load's root.
+/// Numbers of segments of a stiff and of a soft rod; lift-off lengths decrease with the fourth root
+/// of the load.
 constexpr double fewest_segments = 64;
 constexpr double most_segments = 256;
-/// What Segments::few are of them.
+/// Ratio of Segments::few to Segments::all.
 constexpr double few = 1.0 / 3;
-/// Stretch and penetration that the loads and what bends a rod may make, in lengths.
+/// Stretch and penetration under the loads and bending forces, divided by the rod length.
 constexpr double yields = 1e-4;
 constexpr double bending_forces = 40;
-/// Neighbouring segments on an obstacle from which on a part lies, rather than touches at a point.
+/// Number of neighbouring segments on an obstacle from which they count as a part in contact
+/// instead of a point.
 constexpr Eigen::Index fewest_lying = 4;
 
-/// How far above a surface a grip is that holds the rod on it, in lengths: rounding.
+/// Largest distance from the surface, divided by the rod length, at which a grip counts as on it:
+/// rounding.
 constexpr double on_surface = 1e-9;
 
-/// Newton step of a polygon at rest, in lengths: what solve_polygon() asks for as a proof.
+/// Newton step of a polygon in equilibrium, divided by the rod length: the proof from
+/// solve_polygon().
 constexpr double tolerance = 1e-7;
 
-/// Largest number of evaluations of a polygon that goes downhill in large steps: one that crumples
-/// on its obstacle takes many more, and lies higher than others. In small steps the way is longer.
+/// Maximum numbers of evaluations of a descent in large and in small steps. A polygon that crumples
+/// on its obstacle takes many more and has a higher energy than others. In small steps the path is
+/// longer.
 constexpr int most_evaluations = 300;
 constexpr int most_evaluations_near = 3000;
 
-/// Points of a polygon along a span, by growing s. A clamp at an end holds one more, beyond it.
+/// Points of a polygon along a span, by ascending s. A clamp at an end fixes one more point, beyond
+/// the end.
 struct Mesh {
   std::vector<double> s;
-  bool before = false, after = false;  // a held point beyond the start or the end
+  bool before = false, after = false;  // whether there is a fixed point beyond the start or the end
 };
 
 Mesh mesh_of(const Span& span, Segments segments) {
@@ -64,8 +70,8 @@ Mesh mesh_of(const Span& span, Segments segments) {
   return mesh;
 }
 
-/// A block whose face is on a half-space, or within it, goes on into that: pushed out of that face
-/// a polygon would be caught between the two.
+/// Returns a block extended into a half-space that its face touches or lies within: a polygon
+/// pushed out of that face would be caught between the block and the half-space.
 obstacle::Body founded(const obstacle::Body& body, const Span& span) {
   constexpr double flush = 1e-6;  // in l
   Eigen::Vector3d lower = body.lower().array() - body.radius();
@@ -78,8 +84,9 @@ obstacle::Body founded(const obstacle::Body& body, const Span& span) {
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       for (const bool up : {false, true}) {
         const double outward = (up ? 1 : -1) * ground.body.normal().dot(body.axes().col(axis));
-        if (!(outward < 0)) continue;  // it looks out of the half-space
-        double highest = -std::numeric_limits<double>::infinity();  // of the face's corners
+        if (!(outward < 0)) continue;  // the face does not point into the half-space
+        double highest = -std::numeric_limits<double>::infinity();  // clearance of the face's
+                                                                    // corners
         for (int corner = 0; corner < 8; ++corner) {
           if (((corner >> axis) % 2 == 1) != up) continue;
           Eigen::Vector3d at = lower;
@@ -123,7 +130,7 @@ class Resting {
     }
   }
 
-  /// Whether a shape has points within the core of a rigid obstacle that is no half-space.
+  /// Whether a shape has points within the core of a rigid obstacle other than a half-space.
   [[nodiscard]] bool goes_through(const TangentField& start) const {
     const Eigen::Matrix3Xd points = points_of(start);
     return std::any_of(
@@ -144,7 +151,7 @@ class Resting {
   }
 
  private:
-  /// Whether stretch is soft at first, as far from rest.
+  /// Whether stretch is soft in the first stages, for a start far from equilibrium.
   enum class Stages { yes, no };
 
   [[nodiscard]] PenaltyPolygon from(const Eigen::Matrix3Xd& start, Stages stages,
@@ -187,7 +194,7 @@ class Resting {
 
   [[nodiscard]] double s(Eigen::Index i) const { return mesh_.s[static_cast<std::size_t>(i)]; }
 
-  /// EI of a round rod that bends about as much; in the plane the same.
+  /// Returns EI of a round rod with about the same bending; in the plane EI about its normal.
   [[nodiscard]] double round(const Eigen::Vector3d& stiffness) const {
     return span_.planar ? stiffness.x() : std::sqrt(stiffness.x() * stiffness.y());
   }
@@ -255,7 +262,7 @@ class Resting {
       const Eigen::Index point = point_at(held.at);
       hold_point(point, held.offset);
       if (!held.direction || point == 0) continue;
-      // Of a clamp inside the span: the point before it.
+      // The clamp inside the span also fixes the point before it.
       hold_point(point - 1, held.offset - problem_.rest_lengths[point - 1] * *held.direction);
     }
     if (!mesh_.after) return;
@@ -280,7 +287,7 @@ class Resting {
     return points;
   }
 
-  /// Between a coarser polygon's points by cubics, which stretch segments less than chords do.
+  /// Interpolates a coarser polygon's points by cubics, which stretch segments less than chords do.
   [[nodiscard]] Eigen::Matrix3Xd points_between(const PenaltyPolygon& coarse) const {
     const auto last = static_cast<Eigen::Index>(coarse.s.size()) - 1;
     const auto at = [&](Eigen::Index i) { return coarse.s[static_cast<std::size_t>(i)]; };
@@ -303,10 +310,10 @@ class Resting {
     return points;
   }
 
-  /// Of a rigid obstacle: runs of points within it.
+  /// Adds the contacts of a rigid obstacle: runs of consecutive points within it.
   void add_contacts(const Span::Obstacle& obstacle, const Eigen::Matrix3Xd& points,
                     PenaltyPolygon& result) const {
-    // Where the polygon is looked at.
+    // The clearance is also sampled within segments.
     const int samples = samples_of(obstacle);
     const Eigen::Index count = samples * (points.cols() - 1) + 1;
     std::vector<double> at;
@@ -320,7 +327,7 @@ class Resting {
       clearance[k] = obstacle.body.clearance(point);
       feature.push_back(obstacle.body.feature(point));
     }
-    // A grip may hold the rod on the surface, where nothing pushes a held point away.
+    // A grip may hold the rod on the surface; no spring force acts on a fixed point there.
     const auto on = [&](Eigen::Index k) {
       return at[k] >= 0 && at[k] <= span_.length &&
              (clearance[k] <= 0 || (is_gripped(at[k]) && clearance[k] <= on_surface));

@@ -9,42 +9,43 @@
 
 namespace dlo::energy_model {
 
-/// A coarse polygon at rest on a span's obstacles, which tells what touches what.
+/// A coarse polygon in equilibrium on a span's obstacles, which determines the initial contacts.
 struct PenaltyPolygon {
   bool at_rest = false;
-  double energy = 0;  ///< in EI/l
+  double energy = 0;  ///< [EI/l]
   int evaluations = 0;
-  std::vector<double> s;      ///< of its points, by growing s
-  Eigen::Matrix3Xd points;    ///< 3 x s
-  Eigen::VectorXd middles;    ///< s of the segments' middles
-  Eigen::Matrix3Xd tangents;  ///< of the segments, unit, 3 x middles
+  std::vector<double> s;      ///< arc lengths of its points, ascending
+  Eigen::Matrix3Xd points;    ///< one column per point of s
+  Eigen::VectorXd middles;    ///< arc lengths of the segments' middles
+  Eigen::Matrix3Xd tangents;  ///< unit tangents of the segments, 3 x middles
   std::vector<Span::Contact> contacts;
-  double twist = 0;  ///< of a round rod whose ends' frames are held [rad]
+  double twist = 0;  ///< of a round rod with prescribed end frames [rad]
 
-  /// Its tangents, to start from.
+  /// Returns its tangents as an initial guess.
   [[nodiscard]] TangentField field() const;
 };
 
-/// How many segments a polygon has.
+/// Number of segments of a polygon.
 enum class Segments {
-  few,  ///< a third of those that contacts take, which tell for less where it leads
+  few,  ///< a third of those that contacts need; cheaper, shows which minimum is reached
   all,
 };
 
-/// How a polygon goes downhill.
+/// Descent strategy of a polygon.
 enum class Descent {
-  far,   ///< in large steps, with soft segments at first: quick, and to any minimum
-  near,  ///< in small steps with stiff segments: to the minimum next to the start
+  far,   ///< large steps, with soft segments at first: fast, may reach any minimum
+  near,  ///< small steps with stiff segments: reaches the minimum near the start
 };
 
-/// Descends from a shape with points that the obstacles push back by stiff springs, and stretch
-/// that is small: right to about the square of a segment. Where the shape goes through the inside
-/// of a block, which would push it out of several faces at once, the block grows out of a ball.
+/// Minimises from a shape the energy of a polygon whose points the obstacles push out by stiff
+/// springs and whose stretch is small. The error is about the square of a segment. If the shape
+/// passes through the core of a block, which would push it out of several faces at once, the block
+/// is replaced by a ball that changes into the block in stages.
 [[nodiscard]] PenaltyPolygon rest_on_obstacles(const Span& span, const TangentField& start,
                                                Segments segments, const Deadline& deadline,
                                                Descent descent = Descent::far);
 
-/// The same with all segments, from where one of few rests.
+/// Minimises with all segments, starting from a polygon with few segments in equilibrium.
 [[nodiscard]] PenaltyPolygon rest_refined(const Span& span, const PenaltyPolygon& coarse,
                                           const Deadline& deadline, Descent descent = Descent::far);
 

@@ -13,14 +13,14 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Points of the grid. Between two of them a shape of curvature k goes l^2 k / (8 grid^2) deeper,
-/// 3e-8 l for k = 1/l.
+/// Number of grid points. Between two of them a shape of curvature k penetrates l^2 k / (8 grid^2)
+/// deeper, 3e-8 l for k = 1/l.
 constexpr Eigen::Index penetration_grid = 2001;
 
 bool is_rigid(const Obstacle& obstacle) { return std::isinf(obstacle.stiffness); }
 
-/// Largest depth of a shape within a body [m]. Between points a body of small radius may hide:
-/// where it may be deeper there, the shape is looked at again, 16 times as closely.
+/// Returns the largest depth of a shape within a body [m]. A body of small radius may lie between
+/// grid points; where the shape may be deeper there, it is sampled again 16 times as densely.
 double depth_within(const obstacle::Body& body, const Equilibrium& shape, std::vector<double> s,
                     double h, const Samples& grid, double enough) {
   constexpr int closer = 16;
@@ -50,11 +50,12 @@ double depth_within(const obstacle::Body& body, const Equilibrium& shape, std::v
   return deepest;
 }
 
-/// Points of the grid that may be within a rigid obstacle, or hide a part that is, and the ends.
+/// Returns the grid points that may be within a rigid obstacle or adjacent to an unsampled part
+/// within one, and the ends.
 std::vector<double> near_obstacles(const Problem& problem, const Equilibrium& shape) {
   constexpr std::size_t stride = 40;
   const std::vector<double> s = equal_arc_lengths(problem.length, penetration_grid);
-  // Half of a coarse interval away, and what may hide between two points.
+  // Half a coarse interval, plus what may lie between two points.
   const double most = (static_cast<double>(stride) / 2 + 2) * s[1];
   const auto clearances = [&](const std::vector<double>& coarse) {
     const Samples samples = shape.sample(coarse);
@@ -72,7 +73,7 @@ std::vector<double> near_obstacles(const Problem& problem, const Equilibrium& sh
   return near;
 }
 
-/// Largest depth behind a rigid obstacle [m], and that obstacle.
+/// Returns the largest depth within a rigid obstacle [m], and that obstacle.
 Penetration penetration(const Problem& problem, const Equilibrium& shape) {
   const double h = problem.length / (penetration_grid - 1);
   const std::vector<double> s = near_obstacles(problem, shape);

@@ -7,16 +7,16 @@
 
 namespace dlo::energy_model {
 
-/// How far a shape is behind rigid obstacles.
+/// Depth of a shape within rigid obstacles.
 struct Penetration {
   double depth = 0;          ///< largest depth [m]
-  std::size_t obstacle = 0;  ///< index in the problem of the obstacle at which it is that deep
+  std::size_t obstacle = 0;  ///< index in the problem of the obstacle with that depth
 };
 
-/// Judges an equilibrium by what is returned, whatever search has found it: measures how far it is
-/// behind rigid obstacles on a grid much finer than the solver's nodes, and takes a success back
-/// (`not_verified`) if that is more than `allowed_penetration` lengths. Soft obstacles are entered
-/// by as much as they push: nothing to prove.
+/// Checks a returned equilibrium for penetration, independently of the search that found it.
+/// Measures the depth within rigid obstacles on a grid much finer than the solver's nodes, and
+/// changes a successful status to `not_verified` if the depth exceeds `allowed_penetration` rod
+/// lengths. Soft obstacles are penetrated in proportion to their force and are not checked.
 /// @param[in,out] equilibrium  status, message and penetration
 Penetration judge_penetration(const Problem& problem, Equilibrium& equilibrium);
 

@@ -6,8 +6,9 @@
 
 namespace dlo::energy_model {
 
-/// A polygon's tangent at s: between the middles of its segments by the weighted sum of theirs.
-/// @param middles  growing;  @param tangents  of the segments, unit, 3 x middles
+/// Returns a polygon's tangent at s: between the middles of two segments the weighted sum of their
+/// tangents, normalised.
+/// @param middles  arc lengths, ascending;  @param tangents  of the segments, unit, 3 x middles
 [[nodiscard]] inline Eigen::Vector3d tangent_between(const Eigen::VectorXd& middles,
                                                      const Eigen::Matrix3Xd& tangents, double s) {
   const Eigen::Index last = middles.size() - 1;

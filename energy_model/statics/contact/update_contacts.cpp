@@ -8,17 +8,18 @@
 namespace dlo::energy_model {
 namespace {
 
-/// How hard an obstacle may pull, over what all forces are there: rounding.
+/// Largest pull of an obstacle, divided by the scale of all forces, that counts as rounding.
 constexpr double strongest_pull = 1e-7;
-/// In lengths: a part that lies and is shorter is a point; one that begins to lie has this.
+/// Lengths, divided by the rod length: a shorter part in contact becomes a point, and a point that
+/// becomes a part starts with `first_part`.
 constexpr double shortest_part = 1e-6;
 constexpr double first_part = 0.01;
-/// Between two contacts, in lengths, and how high over its own length a free part has to rise that
-/// is that short, to be one.
+/// Length between two contacts, divided by the rod length, and rise of the free part between them,
+/// divided by its length, below which both contacts are joined.
 constexpr double short_gap = 0.02;
 constexpr double least_rise = 1e-3;
 
-/// Largest clearance between two arc lengths.
+/// Returns the largest clearance between two arc lengths.
 double highest(const SpanShape& shape, const Span::Obstacle& obstacle, double from, double to) {
   constexpr int samples = 16;
   std::vector<double> s;
@@ -56,7 +57,8 @@ class Contacts {
   }
 
  private:
-  /// Of what an obstacle would have to pull at: points, and the ends of parts.
+  /// Releases contacts at points where the obstacle would have to pull, and shortens parts that it
+  /// pulls.
   void release_tensile() {
     const std::vector<ContactForce> forces =
         solution_.model->contact_forces(*solution_.at_x(), solution_.multipliers);
@@ -72,7 +74,7 @@ class Contacts {
       const bool pulled_along =
           resolution_ == Resolution::resolved && force.least_pressure * length < pull_;
       const bool lifted = force.least_inner < pull_ || pulled_along;
-      // Nothing beyond a free end is carried there.
+      // The rod carries no force beyond a free end.
       const bool begin_pulls = contact.begin > 0 && force.begin < pull_;
       const bool end_pulls = contact.end < span_.length && force.end < pull_;
       if (begin_pulls || end_pulls || lifted || length < shortest_part * span_.length) {
@@ -80,7 +82,7 @@ class Contacts {
         double at = (contact.begin + contact.end) / 2;
         if (begin_pulls && !end_pulls) at = contact.end;
         if (end_pulls && !begin_pulls) at = contact.begin;
-        // Pushed at its ends alone the rod leaves the obstacle between them.
+        // The obstacle pushes only at the ends: the rod leaves the obstacle between them.
         const bool inside = contact.begin > 0 && contact.end < span_.length;
         if (inside && pulled_along && !begin_pulls && !end_pulls &&
             length > short_gap * span_.length) {
@@ -113,8 +115,9 @@ class Contacts {
     }
   }
 
-  /// What is behind an obstacle touches it; next to another contact both lie, and so does what is
-  /// behind it all the way from there to the tip.
+  /// Adds a contact where the rod is within an obstacle. If a contact is close, it is extended to
+  /// include the point; if the rod is within the obstacle all the way to the tip, it is extended to
+  /// the tip.
   void add(const GapMinimum& lowest) {
     const double length = span_.length;
     for (Span::Contact& contact : contacts_) {
@@ -129,9 +132,9 @@ class Contacts {
       const bool beside =
           lowest.s > contact.begin - 2 * reach && lowest.s < contact.end + 2 * reach;
       if (!beside) continue;
-      // Next to one that has just become another the shape says nothing.
+      // Near a contact that has just changed the present shape is not meaningful.
       if (unlike_) return;
-      // A point that only begins to lie has its ends nearer than where the rod is deepest.
+      // A point that becomes a part has its ends closer than the point of largest depth.
       const double away = std::max({contact.begin - lowest.s, lowest.s - contact.end, 0.0});
       const bool is_short = contact.end - contact.begin < reach;
       const double more = is_short ? std::min(away / 4, reach / 2) : reach / 2;
@@ -151,9 +154,9 @@ class Contacts {
   double pull_;
   Resolution resolution_;
   std::vector<Span::Contact> contacts_;
-  std::vector<double> split_;  // where the second points of parts are that have become two
+  std::vector<double> split_;  // second points of parts that were split into two points
   bool wrong_ = false;
-  bool unlike_ = false;  // contacts_ are no longer those of the shape
+  bool unlike_ = false;  // contacts_ differ from the contacts of the shape
 };
 
 }  // namespace
@@ -163,7 +166,7 @@ bool are_one(const Span::Contact& here, const Span::Contact& next, const Span& s
   if (here.obstacle.index != next.obstacle.index || here.feature != next.feature) return false;
   const double gap = next.begin - here.end;
   const double rise = highest(shape, here.obstacle, here.end, next.begin);
-  // Of a free part as short as that nothing could be told.
+  // A shorter free part could not be resolved.
   return rise < 0 || (gap < short_gap * span.length && rise < least_rise * gap);
 }
 

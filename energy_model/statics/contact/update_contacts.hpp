@@ -9,28 +9,31 @@
 
 namespace dlo::energy_model {
 
-/// What a shape may be behind a rigid obstacle and still be on it, in lengths: rounding.
+/// Largest depth within a rigid obstacle of a shape that counts as on it, divided by the rod
+/// length: rounding.
 inline constexpr double deepest = 1e-9;
-/// The same while terms may be missing.
+/// Largest depth, likewise, while coefficients may be missing.
 inline constexpr double deepest_coarse = 1e-6;
 
-/// Whether a shape has all the terms that it takes; before, the pressure on what lies says nothing.
+/// Whether a shape has all coefficients that it needs; before that the pressure on a part is not
+/// meaningful.
 enum class Resolution {
   coarse,
   resolved,
 };
 
-/// Looks whether contacts are those of an equilibrium: no obstacle pulls (concentrated forces and
-/// pressures are above -1e-7 of all forces) and nothing is more than `deepest` (`deepest_coarse`)
-/// lengths behind one.
-/// @return nothing if so; else the contacts to try next: without those that pull, points where they
-///         lie too short, at both ends of a part along which the rod is pulled at, one where two
-///         meet, more where the rod is behind an obstacle
+/// Checks whether the contacts are those of an equilibrium: no obstacle pulls (concentrated forces
+/// and pressures are above -1e-7 of all forces), and no point is deeper than `deepest`
+/// (`deepest_coarse`) rod lengths within one.
+/// @return std::nullopt if so; otherwise the contacts to try next: points that pull are released,
+///   parts that are too short become points, parts with tension along them become points at both
+///   ends, contacts that meet are joined, and contacts are added where the rod is within an
+///   obstacle
 [[nodiscard]] std::optional<std::vector<Span::Contact>> updated_contacts(
     const SpanSolution& solution, double load, Resolution resolution);
 
-/// Whether a contact and the next one are one: with the same obstacle, and the rod hardly leaves it
-/// between them or is behind it.
+/// Whether a contact and the next one should be joined: they are with the same feature of the same
+/// obstacle, and between them the rod hardly leaves it or is within it.
 [[nodiscard]] bool are_one(const Span::Contact& here, const Span::Contact& next, const Span& span,
                            const SpanShape& shape);
 

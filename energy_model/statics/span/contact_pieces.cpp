@@ -12,14 +12,16 @@ namespace {
 
 constexpr int most_contact_rounds = 16;
 
-/// Terms of the rounds before the ends are nearly right, at most; each piece is short.
+/// Largest number of coefficients in rounds before the ends are nearly accurate; each element is
+/// short.
 constexpr int first_round_terms = 16;
 
-/// By which ends may still move, in lengths, before terms are raised, and in the end.
+/// Movement of the ends, divided by the rod length, below which coefficients are added, and below
+/// which the iteration ends.
 constexpr double ends_nearly_settled = 1e-4;
 constexpr double ends_settled = 1e-9;
 
-/// By which ends have moved; infinite where there are more or fewer.
+/// Returns the largest movement of an end; infinity if the number of ends has changed.
 double moved_by(const std::vector<double>& before, const std::vector<double>& now) {
   if (before.size() != now.size()) return std::numeric_limits<double>::infinity();
   double moved = 0;

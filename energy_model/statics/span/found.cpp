@@ -82,7 +82,7 @@ std::vector<SpanSolution> list_of(SpanSolution solution) {
 bool is_same_shape(const SpanSolution& a, const SpanSolution& b, double tolerance) {
   const Span& span = a.model->span();
   if (std::abs(a.energy - b.energy) > 1e-2 * tolerance * (1 + span.total_load())) return false;
-  // Without softer parts points differ by less than strains do.
+  // Without softer parts, points differ by less than strains.
   if (a.model->size() == b.model->size() && a.terms == b.terms && span.parts.empty() &&
       span.planar == b.model->span().planar && span.cuts == b.model->span().cuts &&
       (a.x - b.x).norm() < tolerance * span.length) {
@@ -107,7 +107,7 @@ bool Found::add(SpanSolution solution) {
     return is_same_shape(solution, other);
   });
   if (known) return false;
-  // Of many equilibria it would take much memory, and nothing goes on from most of them.
+  // Keeping the factors of many equilibria would take much memory, and most are not used again.
   if (options_.wants_all()) solution.factor.reset();
   found_.push_back(std::move(solution));
   return true;

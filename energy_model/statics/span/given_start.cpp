@@ -13,14 +13,14 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Tangents of a shape at arc lengths that are the same for all.
+/// Returns tangents of a shape at 65 arc lengths that are the same for every shape.
 Eigen::Matrix3Xd looked_at(const SpanSolution& solution) {
   constexpr Eigen::Index samples = 65;
   const Eigen::VectorXd s = Eigen::VectorXd::LinSpaced(samples, 0, solution.model->span().length);
   return solution.model->shape(solution.x).sample({s.data(), s.data() + samples}).tangents;
 }
 
-/// Whether a shape is next to the known one that it was followed from by Newton's method.
+/// Whether a shape was reached by Newton's method and is near the known one that it started from.
 bool is_followed(const SpanSolution& solution, const SpanStart& start) {
   if (!start.known.model || start.approach == Approach::descend || !solution.is_equilibrium()) {
     return false;
@@ -29,8 +29,8 @@ bool is_followed(const SpanSolution& solution, const SpanStart& start) {
   return (solution.at_x()->tangents() - from).cwiseAbs().maxCoeff() < followed_tangents;
 }
 
-/// From a start next to which Newton's method has found nothing, with pieces for the start's own
-/// shape, downhill if need be.
+/// Solves again from a start near which Newton's method has found nothing, on an adapted mesh for
+/// the start's own shape, and by descent if necessary.
 std::optional<SpanSolution> start_on_adapted_mesh(const LocalSolver& on) {
   const SpanStart& start = on.options().start;
   if (start.known.model || on.span().holds.empty()) return std::nullopt;
@@ -54,8 +54,8 @@ std::optional<SpanSolution> start_on_adapted_mesh(const LocalSolver& on) {
   return solution;
 }
 
-/// With few terms or all that the load takes. `followed` says whether Newton's method alone has led
-/// there.
+/// Solves with few coefficients or all that the load needs. `followed` is set if Newton's method
+/// alone has converged near the known shape.
 SpanSolution from_given_start(LocalSolver& on) {
   const SpanStart& start = on.options().start;
   const bool descends = on.options().descends();
@@ -82,7 +82,7 @@ SpanSolution solve_from_given_start(const Span& span, const SpanOptions& options
   LocalSolver on(span, options, workspace);
   SpanSolution solution = from_given_start(on);
   const bool came_by_newton = solution.followed;
-  // What gives way to contact that is found on the way may fall elsewhere.
+  // A shape on soft obstacles may jump to another one when contact is found during refinement.
   const bool may_fall = came_by_newton && !span.soft_obstacles.empty();
   const Eigen::Matrix3Xd near = may_fall ? looked_at(solution) : Eigen::Matrix3Xd();
   solution = finish(std::move(solution), options, workspace);

@@ -6,9 +6,9 @@
 
 namespace dlo::energy_model {
 
-/// The equilibrium next to SpanOptions::start, certified: by Newton's method, or downhill, as it
-/// says, and the other way where that leads to none. A shape that is followed is gone on with to
-/// where a descent from a saddle ends.
+/// Solves for the equilibrium near SpanOptions::start and certifies it, by Newton's method or by
+/// descent as the start requests, and by the other method if that fails. A followed shape that has
+/// become a saddle is replaced by the minimum below it.
 [[nodiscard]] SpanSolution solve_from_given_start(const Span& span, const SpanOptions& options,
                                                   SpanWorkspace& workspace);
 

@@ -14,16 +14,16 @@
 namespace dlo::energy_model {
 namespace {
 
-/// The fewest coefficients of a coarser start.
+/// Smallest number of coefficients of a coarse solution.
 constexpr int least_terms = 7;
 
-/// Unknowns with which a minimum between grips is looked for.
+/// Number of unknowns with which a minimum between grips is searched for.
 constexpr int coarse_unknowns = 100;
 
-/// Coefficients that resolve a layer over six of its lengths.
+/// Number of coefficients that resolve a boundary layer over six of its lengths.
 constexpr int layer_terms = 20;
 
-/// Those of a ranked start.
+/// Returns the unknowns of a ranked start in another model.
 Eigen::VectorXd unknowns_of(const Start& start, SpanEnergy& model) {
   Eigen::VectorXd x = model.prolong(*start.model, start.x);
   model.unwrap(x);
@@ -68,7 +68,7 @@ SpanSolution LocalSolver::from_start(const Start& from) {
     solution.x = from.model ? unknowns_of(from, *solution.model)
                             : solution.model->fit(from.field(solution.model->nodes()));
     const Eigen::VectorXd start = solution.x;
-    // Where the rod is taut such a start is near to the shape already.
+    // For a taut rod such a start is already close to the shape.
     const bool is_near = traits_.taut && !solution.model->has_soft_obstacles();
     if (is_near) newton(solution);
     if (reaches_minimum_by_newton(solution)) return solution;
@@ -92,10 +92,10 @@ SpanSolution LocalSolver::from_start(const Start& from) {
   }
 }
 
-/// Newton's method at once, of a rod that one clamp holds. @return whether it has led from
-/// solution.x down to a minimum nearby
+/// Tries Newton's method at once for a rod that one clamp holds. @return whether it has converged
+/// to a nearby minimum with at most the energy of solution.x
 bool LocalSolver::reaches_minimum_by_newton(SpanSolution& solution) {
-  constexpr double far = 2;  // of strains, as much as Newton's method goes in one step
+  constexpr double far = 2;  // difference of strains that Newton's method may cover in one step
   SpanEnergy& model = *solution.model;
   if (options_.wants_all() || !span_.start_direction || span_.has_material_directors() ||
       span_.is_plain_cantilever() || model.constraints() > 0 || model.has_soft_obstacles()) {
@@ -137,9 +137,9 @@ SpanSolution LocalSolver::newton_from(const TangentField& field) {
   return solution;
 }
 
-/// In space a rod that is intrinsically straight has next to the same strains where its grips have
-/// hardly moved, unless the frame of its start has turned about it. @return whether they give the
-/// tangents that are wanted
+/// Prolongs the known shape's unknowns to this model: for an intrinsically straight rod in space
+/// these are nearly the same if its grips have hardly moved, unless its start frame has rotated
+/// about the tangent. @return whether the result has nearly the wanted tangents
 bool LocalSolver::prolong_known(const StartShape& wanted, SpanSolution& solution) const {
   constexpr double near = 0.2;  // of tangents
   const KnownShape& known = options_.start.known;
@@ -157,7 +157,7 @@ void LocalSolver::descend(SpanSolution& solution) {
   minimise(solution);
   if (!succeeded(solution.status)) return;
   const bool gets_more = solution.terms < terms();
-  // Newton's method follows once a cantilever has all its terms.
+  // For a cantilever, Newton's method follows once it has all its coefficients.
   if (gets_more && span_.is_plain_cantilever()) return;
   const bool is_rough = gets_more && !options_.wants_all() && options_.terms == 0 &&
                         solution.model->constraints() > 0;
@@ -186,7 +186,7 @@ void LocalSolver::minimise(SpanSolution& solution) const {
                       .max_evaluations = options_.max_evaluations,
                       .deadline = options_.deadline});
   solution.evaluations += result.evaluations;
-  // Newton's method has to prove the shape anyway.
+  // Newton's method has to verify the shape anyway.
   solution.status = result.is_a_start() ? SolveStatus::roundoff_limited : result.status;
   solution.message = result.message;
 }

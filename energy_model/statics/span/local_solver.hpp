@@ -9,23 +9,25 @@
 
 namespace dlo::energy_model {
 
-/// Gradient norm at which a descent hands over: two Newton steps square it to below rounding, while
-/// a line search, which compares energies, would stall near the root of the rounding error.
+/// Gradient norm at which a descent ends and Newton's method takes over: two Newton steps square it
+/// to below rounding, while a line search, which compares energies, would stall near the root of
+/// the rounding error.
 inline constexpr double handover_gradient = 1e-5;
 
-/// Its step [rad] below which Newton's method goes on alone.
+/// Length of Newton's step [rad] below which Newton's method takes over.
 inline constexpr double handover_step = 0.1;
 
-/// Coefficients up to which a coarser start is not worth its set-up.
+/// Number of coefficients up to which a coarser initial solution does not save time.
 inline constexpr int few_terms = 10;
 
-/// A step of the trust region works with the cube of the unknowns.
+/// Largest number of unknowns of a trust-region descent; a step costs its cube.
 inline constexpr Eigen::Index most_descended = 160;
 
-/// From starts to equilibria of a span, with few terms or all that its load takes.
+/// Converges from initial guesses to equilibria of a span, with few coefficients or all that its
+/// load needs.
 class LocalSolver {
  public:
-  /// All of them have to outlive it.
+  /// All arguments have to outlive the object.
   LocalSolver(const Span& span, const SpanOptions& options, SpanWorkspace& workspace);
 
   [[nodiscard]] const Span& span() const { return span_; }
@@ -34,24 +36,26 @@ class LocalSolver {
   [[nodiscard]] const SpanTraits& traits() const { return traits_; }
   [[nodiscard]] bool out_of_time() const { return options_.deadline.passed(); }
 
-  /// That the load takes, or the caller wants.
+  /// Returns the number of coefficients that the load needs or the caller has chosen.
   [[nodiscard]] int terms() const;
-  /// NLopt comes near with few terms; Newton's method adds the others.
+  /// Returns the number of coefficients for a descent; Newton's method follows with all of them.
   [[nodiscard]] int coarse_terms() const;
-  /// With a model but no unknowns yet.
+  /// Returns a solution with a model but without unknowns.
   [[nodiscard]] SpanSolution empty_solution(int terms) const {
     return workspace_.empty_solution(span_, terms);
   }
 
-  /// Newton's method with the span's load, to the search's deadline.
+  /// Runs Newton's method with the span's load and the search's deadline.
   void newton(SpanSolution& solution, NewtonOptions how = {}) const;
-  /// From a field to an equilibrium, with as many terms as it takes to meet the grips.
+  /// Solves from an initial guess, with as many coefficients as are needed to satisfy the
+  /// constraints.
   [[nodiscard]] SpanSolution from_start(const Start& from);
-  /// By Newton's method from next to a field.
+  /// Solves by Newton's method from an initial guess near an equilibrium.
   [[nodiscard]] SpanSolution newton_from(const TangentField& field);
-  /// Downhill from solution.x, by NLopt or between grips in a trust region, then Newton's method.
+  /// Descends from solution.x by NLopt or, between grips, in a trust region; then runs Newton's
+  /// method.
   void descend(SpanSolution& solution);
-  /// By springs at the grips that become stiffer, then Newton's method.
+  /// Minimises by the augmented Lagrangian from solution.x; then runs Newton's method.
   void by_augmented_lagrangian(SpanSolution& solution);
 
  private:

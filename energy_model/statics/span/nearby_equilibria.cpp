@@ -19,15 +19,15 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Equilibria between each two of which others are looked for.
+/// Number of equilibria whose pairs look_between() uses.
 constexpr std::size_t most_joined = 6;
-/// The same beside which.
+/// Number of equilibria next to which look_beside() searches.
 constexpr std::size_t most_left_aside = 8;
 
 constexpr const char* between_found = "between two of those found, by Newton's method";
 constexpr const char* beside_found = "beside what was found, by Newton's method";
 
-/// Each shape has its own ends of contact with obstacles that yield.
+/// Returns the solution without its own contact ends, so that it can be combined with another one.
 SpanSolution on_shared_pieces(const SpanSolution& solution, const SpanOptions& options,
                               SpanWorkspace& workspace) {
   Span span = solution.model->span();
@@ -49,7 +49,7 @@ std::optional<NegativeCurvature> negative_curvature(const SpanSolution& solution
   }
   if (!model.span().planar || model.span().stays_in_plane()) return std::nullopt;
   // Out of the plane u2 is not the rate of the tangent's tilt where the rod is bent: its frame
-  // rolls.
+  // rolls. A model in space is therefore used.
   NegativeCurvature out{model.span(), {}};
   out.span.planar = false;
   SpanEnergy in_space(out.span, solution.terms);
@@ -59,8 +59,8 @@ std::optional<NegativeCurvature> negative_curvature(const SpanSolution& solution
     out.direction = std::move(*way);
     return out;
   }
-  // Deep within a box, in the middle between two faces, the energy has a ridge: the span in space
-  // has one of its slopes there, and only the planar one's tilts see both.
+  // Deep within a box, midway between two faces, the energy has a ridge: the model in space has one
+  // of its slopes there, and only the tilts of the planar model include both.
   at = second_derivatives_out_of_plane(model, *solution.at_x(), solution.multipliers);
   reduced.compute(at.hessian, at.jacobian);
   const std::optional<Eigen::VectorXd> tilts = negative_curvature_direction(reduced);
@@ -94,7 +94,7 @@ std::optional<SpanSolution> leave_saddle(const SpanSolution& solution, const Spa
   };
   const std::optional<NegativeCurvature> way = negative_curvature(solution);
   if (way) return descended(way->span, push * way->direction);
-  // Through an obstacle's middle it gives way in a mode that its series does not see as unstable.
+  // A rod through an obstacle's middle is unstable in a mode in which its series does not show it.
   const std::optional<Eigen::VectorXd> mode = mode_nearest_zero(solution);
   if (!mode || solution.model->span().soft_obstacles.empty()) return std::nullopt;
   return descended(solution.model->span(), push * *mode);
@@ -109,7 +109,8 @@ void look_between(const SpanOptions& options, SpanWorkspace& workspace, Found& f
       const Span& span = a.model->span();
       if (span.planar != b.model->span().planar || span.cuts != b.model->span().cuts) continue;
       LocalSolver own(span, options, workspace);
-      // In space steps with all terms are most of a search; few lead to the same equilibria.
+      // In space steps with all coefficients would dominate the cost of a search; fewer converge to
+      // the same equilibria.
       const int all_terms = std::max(a.terms, b.terms);
       const int terms = span.planar ? all_terms : std::min(all_terms, own.coarse_terms());
       for (const double share : shares) {

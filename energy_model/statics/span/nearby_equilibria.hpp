@@ -10,32 +10,36 @@
 
 namespace dlo::energy_model {
 
-/// A direction of negative curvature of an unstable equilibrium.
+/// Direction of negative curvature of an unstable equilibrium.
 struct NegativeCurvature {
-  Span span;                  ///< the solution's; in space where a planar one leaves its plane
-  Eigen::VectorXd direction;  ///< unit, of the unknowns of a model of `span` with as many terms
+  Span span;                  ///< the solution's; in space if a planar one leaves its plane
+  Eigen::VectorXd direction;  ///< unit vector in the unknowns of a model of `span` with as many
+                              ///< coefficients
 };
 
-/// That of the smallest eigenvalue: in its plane if there is one there. None if it is stable.
+/// Returns the eigenvector of the smallest eigenvalue: in the span's plane if it is negative there,
+/// otherwise out of the plane. Returns std::nullopt if the equilibrium is stable.
 [[nodiscard]] std::optional<NegativeCurvature> negative_curvature(const SpanSolution& solution);
 
-/// Unit vector along the eigenvalue of the projected second variation that is nearest to zero,
-/// rigid-body modes left aside; none if the constraints leave no other.
+/// Returns the unit eigenvector of the eigenvalue of the reduced second variation that is nearest
+/// to zero, without rigid-body modes. Returns std::nullopt if the constraints leave no other
+/// direction.
 [[nodiscard]] std::optional<Eigen::VectorXd> mode_nearest_zero(const SpanSolution& solution);
 
-/// Downhill from an unstable equilibrium, along its direction of negative curvature, to the minimum
-/// below; out of its plane if that is the only way in which it gives way. None where no such
-/// direction is seen. Not certified.
+/// Descends from an unstable equilibrium along its direction of negative curvature to a minimum
+/// below, out of its plane if it is unstable only there. Returns std::nullopt if no such direction
+/// is found. The result is not certified.
 [[nodiscard]] std::optional<SpanSolution> leave_saddle(const SpanSolution& solution,
                                                        const SpanOptions& options,
                                                        SpanWorkspace& workspace);
 
-/// Between two minima there is a pass, and a saddle on it: by Newton's method from where the
-/// unknowns of two of the equilibria found are joined.
+/// Searches for saddles between pairs of equilibria found, by Newton's method from points on the
+/// line between their unknowns: between two minima there is a pass, and a saddle on it.
 void look_between(const SpanOptions& options, SpanWorkspace& workspace, Found& found);
 
-/// At a fold two equilibria come from one, and lie on both sides of it along its soft mode: by
-/// Newton's method from beside those found, also those found that way.
+/// Searches for equilibria next to those found, including the new ones, by Newton's method from
+/// points along the eigenvector nearest zero: at a fold two equilibria coincide, and near it they
+/// lie on both sides along this direction.
 void look_beside(const SpanOptions& options, SpanWorkspace& workspace, Found& found);
 
 }  // namespace dlo::energy_model

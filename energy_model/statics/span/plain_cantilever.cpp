@@ -10,20 +10,21 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Above this sum of weight and loads (in EI/l^2) a rod is nearer to its soft limit than to
-/// straight.
+/// Sum of weight and loads [EI/l^2] above which a rod is closer to its soft limit than to the
+/// straight rod.
 constexpr double soft_load = 12;
 
-/// Whether all tangents lie between the clamp's direction and the load's, on the shorter way, of a
-/// plain cantilever that is pulled one way. Then an equilibrium is the lowest one. With the angle
-/// chi from the load's opposite and the force n(s) of what hangs beyond s,
+/// Whether all tangents of a plain cantilever that is pulled in one direction lie between the
+/// clamp's direction and the load's, on the shorter way. An equilibrium with this property is the
+/// lowest one. With the angle chi from the load's opposite and the force n(s) of everything beyond
+/// s,
 ///     chi'' = -n sin(chi),  chi(0) given,  chi'(length) = 0,
-/// and the energy's minimum has chi in [0, pi]: what is beyond may be mirrored, which costs no
-/// more. There is but one such solution, because sin(chi) / chi falls (Brezis and Oswald, 1986); a
-/// second one, chi = 0, only where the clamp points against the load, and that is unstable if it is
-/// not the only one.
+/// the energy's minimum has chi in [0, pi], as reflecting values outside does not raise the energy.
+/// There is only one such solution, because sin(chi) / chi decreases (Brezis and Oswald, 1986). A
+/// second one, chi = 0, exists only if the clamp points against the load; it is unstable unless it
+/// is the only one.
 bool turns_to_load(const Span& span, const Eigen::Matrix3Xd& tangents) {
-  constexpr double rounding = 1e-9;  // sine of an angle that the terms leave
+  constexpr double rounding = 1e-9;  // sine of the angle error by truncation
   Eigen::Vector3d force = span.weight_between(0, span.length);
   for (const Span::Load& load : span.loads) force += load.force;
   const Eigen::Vector3d across(-force.y(), force.x(), 0);
@@ -34,7 +35,8 @@ bool turns_to_load(const Span& span, const Eigen::Matrix3Xd& tangents) {
   return true;
 }
 
-/// As the load on the straight rod bends it, if that lowers its energy; else straight.
+/// Bends the straight rod in proportion to the load's gradient if that lowers its energy; otherwise
+/// leaves it straight.
 void bend_slightly(SpanSolution& solution, NewtonBuffers& buffers) {
   const SpanEnergy& model = *solution.model;
   const std::shared_ptr<SpanPoint> straight = buffers.new_point(model);

@@ -4,9 +4,10 @@
 
 namespace dlo::energy_model {
 
-/// The lowest shape of a plain cantilever that is pulled one way, not certified out of the plane:
-/// by Newton's method at once; where that leads elsewhere, downhill from the straight rod for a
-/// stiff one, from the soft limit for a soft one or where straight is a saddle.
+/// Solves for the lowest shape of a plain cantilever that is pulled in one direction; it is not
+/// certified out of the plane. Newton's method is tried first. If it converges to another shape, a
+/// descent follows: from the straight rod for a stiff one, from the soft limit for a soft one or if
+/// the straight rod leads to a saddle.
 [[nodiscard]] SpanSolution plain_cantilever(LocalSolver& on);
 
 }  // namespace dlo::energy_model

@@ -16,20 +16,20 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Unknowns that a shape may have whose pieces end where it wants it.
+/// Largest number of unknowns of a shape on an adapted mesh.
 constexpr int most_adapted_unknowns = 2 * most_unknowns;
 
-/// Error over the length above which a shape is asked about with more terms than it takes to look
-/// right.
+/// Error, divided by the length, above which a shape is certified again with more coefficients than
+/// seem necessary.
 constexpr double largest_told_error = 1e-5;
 
-/// Gradient over the load that a shape may have in more terms than its own.
+/// Largest gradient, divided by 1 + load, that a shape may have in a model with more coefficients.
 constexpr double largest_residual = 1e-5;
 
-/// Gap over the tolerance that it may have there.
+/// Largest constraint residual there, divided by the tolerance.
 constexpr double largest_gap = 10;
 
-/// Last coefficients of a shape with so many terms.
+/// Truncation indicator of a shape and its number of coefficients.
 struct Tail {
   int terms = 0;
   double size = 0;
@@ -43,12 +43,12 @@ class Refinement {
   [[nodiscard]] SpanSolution run(SpanSolution solution) {
     const int unknowns = traits_.adapted ? most_adapted_unknowns : most_unknowns;
     const bool touches = !span_.contacts.empty();
-    // Contacts cut the rod into short pieces; it still may take the terms of its load.
+    // Contacts divide the rod into short elements; it may still need the coefficients of its load.
     const int least = touches ? std::max(32, on_.terms()) : 32;
     const int affordable =
         std::min(std::max(least, unknowns / (traits_.fields * solution.model->pieces())),
                  std::max(solution.terms, affordable_terms(solution.model->span())));
-    // What is not smooth between the ends of contact has gone through a body's middle.
+    // A shape that is not smooth between the ends of contact has passed through a body's middle.
     constexpr int most_between_contact_ends = 40;
     const int most_terms =
         std::min(affordable, span_.contact_ends.empty() ? max_terms : most_between_contact_ends);
@@ -74,7 +74,7 @@ class Refinement {
       }
       const bool too_few = solution.terms < on_.terms() && !touches;
       int more = too_few ? on_.terms() : terms_by_decay(solution, before);
-      // Grips may pull harder than weight and loads do.
+      // Grips may pull harder than weight and loads.
       if (solution.multipliers.size() > 0 && !traits_.taut && !traits_.adapted) {
         more = std::max(
             more, first_terms(solution.multipliers.cwiseAbs().maxCoeff(), traits_.longest_piece));
@@ -87,8 +87,8 @@ class Refinement {
   }
 
  private:
-  /// Where the terms that can be afforded do not resolve a shape, its pieces may end in the wrong
-  /// places.
+  /// Continues on an adapted mesh if the affordable coefficients do not resolve a shape: its
+  /// elements may end at the wrong places.
   [[nodiscard]] std::optional<SpanSolution> on_adapted_mesh(const SpanSolution& solution) {
     const std::optional<Span> span = adapted_mesh(on_, solution);
     if (!span) return std::nullopt;
@@ -100,9 +100,9 @@ class Refinement {
     return finer;
   }
 
-  /// Terms with which the last ones of a first shape will be small enough, if they go on falling
-  /// exponentially as its second half does, which is a little too few; as many as it has where they
-  /// do not fall.
+  /// Predicts the number of coefficients with which the last ones of a first shape will be small
+  /// enough, if they continue to decrease exponentially as in its second half, which slightly
+  /// underestimates it. Returns the present number if they do not decrease.
   [[nodiscard]] int terms_by_own_decay(const SpanSolution& solution) const {
     constexpr double reserve = 1.15;
     constexpr double falls = 0.5;
@@ -113,7 +113,7 @@ class Refinement {
     if (options_.terms > 0 || half < 2 || !(now > 0 && now < falls * before)) return K;
     const double rate = std::log(before / now) / (K - half);
     double all = K;
-    // What is small enough grows with the terms.
+    // The size that counts as small enough grows with the number of coefficients.
     for (int i = 0; i < 2; ++i) {
       all = K + std::log(now / (options_.tolerance * 4 * all * all)) / rate;
       if (!(all > K)) return K;
@@ -121,8 +121,8 @@ class Refinement {
     return static_cast<int>(std::ceil(std::min(reserve * all, 1.0 * max_terms)));
   }
 
-  /// Terms with which the last ones will be small enough, if they go on falling
-  /// exponentially as from those before; a quarter more where nothing is known.
+  /// Predicts the number of coefficients with which the last ones will be small enough, if they
+  /// continue to decrease exponentially as since `before`; a quarter more if that is unknown.
   [[nodiscard]] int terms_by_decay(const SpanSolution& solution, const Tail& before) const {
     const int K = solution.terms;
     const double now = solution.model->truncation(solution.x);
@@ -135,7 +135,7 @@ class Refinement {
     return K + more;
   }
 
-  /// @param solution  whose factor is used up
+  /// Solves with more coefficients. @param solution  its factor is used up
   [[nodiscard]] SpanSolution with_terms(SpanSolution& solution, int terms) {
     SpanSolution finer = on_.workspace().with_terms(solution, terms);
     const Eigen::VectorXd x = finer.x;
@@ -164,15 +164,16 @@ class Refinement {
     if (span_.is_plain_cantilever() && solution.terms < on_.terms()) return false;
     if (span_.twist && solution.terms < terms_under_twist(solution)) return false;
     const double K = solution.terms;
-    // The angle that the last coefficient adds is a_K / (2K); positions feel it as little again.
+    // The last coefficient contributes an angle of a_K / (2K); its effect on positions is smaller
+    // by this factor again.
     if (solution.model->truncation(solution.x) > options_.tolerance * 4 * K * K) return false;
     if (span_.is_plain_cantilever()) return true;
     return holds_with_more_terms(solution);
   }
 
-  /// Whether gradient and gaps of the shape are as small in half as many terms more, with the
-  /// quadrature of these: frames in space are integrated the better the more terms there are, and a
-  /// gap moves the shape by as much.
+  /// Whether gradient and constraint residuals of the shape remain small in a model with half as
+  /// many coefficients more, with its quadrature: frames in space are integrated more accurately
+  /// with more coefficients, and the residual is an estimate of the displacement.
   [[nodiscard]] bool holds_with_more_terms(const SpanSolution& solution) {
     const std::shared_ptr<SpanEnergy> model =
         on_.workspace().model(span_, std::min(max_terms, 3 * solution.terms / 2));
@@ -225,18 +226,18 @@ SpanSolution judged(SpanSolution solution, const SpanOptions& options, SpanWorks
           most_unknowns) {
     return solution;
   }
-  // The shape may have left the plane, or have pieces of its own.
+  // The shape may have left the plane, or have elements of its own.
   const Span own = solution.model->span();
   LocalSolver on(own, options, workspace);
   SpanSolution finer = workspace.with_terms(solution, more);
   on.newton(finer);
-  // Of a singular point that Newton's method found before nobody has asked whether its terms
-  // resolve it.
+  // For a singular point that Newton's method has reported, it was not checked whether the
+  // coefficients resolve it.
   if (!solution.resolved) finer = refined(on, std::move(finer));
   finer.resolved = finer.resolved || solution.resolved;
   certify(finer, load, workspace.factors());
   const int evaluations = solution.evaluations + finer.evaluations;
-  // More terms may determine a shape that has a zero mode, along which rounding moves it.
+  // More coefficients may determine a shape that has a zero mode, along which rounding moves it.
   const bool determined = finer.is_equilibrium() && !solution.is_equilibrium();
   if (determined || finer.error < solution.error) solution = std::move(finer);
   solution.evaluations = evaluations;

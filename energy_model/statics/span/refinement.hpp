@@ -7,21 +7,21 @@
 
 namespace dlo::energy_model {
 
-/// Raises the number of terms of an equilibrium until the last ones do not matter any more; where
-/// those that can be afforded do not do, with pieces that end where the shape wants it.
-/// @param solution  on the span of `on`, its own pieces included
+/// Raises the number of coefficients of an equilibrium until the last ones are negligible; if the
+/// affordable number is not enough, continues on an adapted mesh.
+/// @param solution  on the span of `on`, with its own elements
 [[nodiscard]] SpanSolution refined(LocalSolver& on, SpanSolution solution);
 
-/// The span with pieces that end where a shape wants it, unless they do so already.
+/// Returns the span with a mesh adapted to a shape, unless its mesh is already adapted.
 [[nodiscard]] std::optional<Span> adapted_mesh(const LocalSolver& on, const SpanSolution& shape);
 
-/// Certified; of evaluations those on the way to a shape count, not its certificate's. Next to a
-/// fold what the terms left out push decides whether there is a shape, and elsewhere it may be most
-/// of the error that is told: then it is asked once more, with half as many terms more.
+/// Certifies a solution. Evaluations of the certificate do not count. Near a fold truncation
+/// decides whether the shape exists, and elsewhere it may dominate the error estimate; in these
+/// cases the solution is certified once more with half as many coefficients more.
 [[nodiscard]] SpanSolution judged(SpanSolution solution, const SpanOptions& options,
                                   SpanWorkspace& workspace);
 
-/// From an equilibrium with too few terms to one with enough, on its own span, and certified.
+/// Refines an equilibrium with too few coefficients, on its own span, and certifies it.
 [[nodiscard]] SpanSolution finish(SpanSolution solution, const SpanOptions& options,
                                   SpanWorkspace& workspace);
 

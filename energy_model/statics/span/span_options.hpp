@@ -11,40 +11,38 @@ namespace dlo::energy_model {
 
 class SearchLog;
 
-/// Newton's method factors a dense matrix of this size at most.
+/// Largest number of unknowns of Newton's method, which factors a dense matrix of this size.
 inline constexpr int most_unknowns = 480;
 
-/// How a given start is left.
+/// Method by which an equilibrium is sought from a given start.
 enum class Approach {
-  follow,        ///< by Newton's method, to the equilibrium next to it, stable or not
-  follow_only,   ///< the same from a known shape; where that does not lead on, no
-                 ///< other way is tried
-  descend,       ///< downhill, to a minimum
-  descend_only,  ///< the same; where that leads to no equilibrium, no search follows
+  follow,        ///< Newton's method, to the equilibrium near it, stable or not
+  follow_only,   ///< Newton's method from a known shape; nothing else is tried if it fails
+  descend,       ///< descent to a minimum
+  descend_only,  ///< descent; no search follows if it finds no equilibrium
 };
 
-/// Unknowns of a shape that is known, of the same span with its grips elsewhere.
+/// Unknowns of a known shape of the same span with its grips in other positions.
 struct KnownShape {
-  std::shared_ptr<const SpanEnergy> model;  ///< none: nothing is known
+  std::shared_ptr<const SpanEnergy> model;  ///< null: nothing is known
   Eigen::VectorXd x;
   Eigen::VectorXd multipliers;
-  std::shared_ptr<NewtonFactor> factor = nullptr;  ///< there; null: none is known
+  std::shared_ptr<NewtonFactor> factor = nullptr;  ///< at that shape; null: none is known
 
-  /// That resolve it.
+  /// Number of coefficients that resolve the shape.
   [[nodiscard]] int terms() const { return model ? model->terms() : 0; }
 };
 
-/// Tangents by which a shape may differ from the known one that it follows [-]: beyond, Newton's
-/// method has gone somewhere else.
+/// Largest difference of tangents [-] between a shape and the known one from which it was followed;
+/// beyond it, Newton's method has converged to another shape.
 inline constexpr double followed_tangents = 0.3;
 
-/// A shape to begin with instead of a search.
+/// A shape to start from, instead of a search.
 struct SpanStart {
-  TangentField field;  ///< none: there is no such shape
+  TangentField field;  ///< empty: there is no such shape
   Approach approach = Approach::follow;
-  KnownShape known;   ///< what `field` shows, if it is a span's solution that is
-                      ///< followed
-  KnownShape before;  ///< the shape known before that one, on the same way
+  KnownShape known;   ///< the shape of `field`, if it is a span's solution that is followed
+  KnownShape before;  ///< the shape known before `known`, on the same path
 };
 
 struct SpanOptions {
@@ -53,16 +51,16 @@ struct SpanOptions {
   int max_evaluations = 2000;
   Deadline deadline;  ///< of the whole solve
   SpanStart start;
-  /// Of a search for every equilibrium that the starts lead to; null: the lowest one is wanted.
+  /// Log of a search for all equilibria; null: only the lowest one is wanted.
   SearchLog* log = nullptr;
-  /// Counts the starts that pass obstacles on another side; null: nobody asks.
+  /// Counts the starts that pass obstacles on another side; null: not counted.
   int* passing_starts = nullptr;
 
   [[nodiscard]] bool wants_all() const { return log != nullptr; }
   [[nodiscard]] bool only_follows() const { return start.approach == Approach::follow_only; }
-  /// Whether the search ends where a descent from the start does.
+  /// Whether the search ends at the result of a descent from the start.
   [[nodiscard]] bool only_descends() const { return start.approach == Approach::descend_only; }
-  /// Whether a start is left downhill before Newton's method is tried.
+  /// Whether a descent from the start precedes Newton's method.
   [[nodiscard]] bool descends() const {
     return start.approach == Approach::descend || only_descends();
   }

@@ -24,28 +24,29 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-/// Starts, in the order of their energy, that the search for the lowest minimum follows.
+/// Number of initial guesses, in the order of their energy, that the search for the lowest minimum
+/// follows.
 constexpr std::size_t followed_starts = 2;
-/// The same of a rod with material directors, whose lowest shape is harder to guess.
+/// Number for a rod with material directors, whose lowest shape is harder to predict.
 constexpr std::size_t followed_natural_starts = 6;
-/// The same beside obstacles that yield, which a rod may pass on either side.
+/// Number if there are soft obstacles, which a rod may pass on either side.
 constexpr std::size_t followed_starts_beside_obstacles = 6;
 
-/// Cost over that of the last start that is followed anyway, of what starts fall by, up to which
-/// another one is followed too.
+/// Difference between the cost of a start and that of the last start that is followed in any case,
+/// divided by the energy decrease from starts to equilibria, up to which it is followed too.
 constexpr double near_tie = 0.1;
 
-/// Difference of points over the length up to which what Newton's method has only come near to is
-/// one shape.
+/// Largest difference of points, divided by the length, up to which loosely converged shapes count
+/// as one.
 constexpr double same_coarse_points = 10 * rough_step;
 
-/// Unstable equilibria that are left for what lies below them.
+/// Maximum number of unstable equilibria from which a descent is started.
 constexpr std::size_t most_saddles = 8;
 
 constexpr const char* left_downhill = "unstable equilibria, left downhill";
 constexpr const char* out_of_plane = "the same and others, out of the plane";
 
-/// What start_fields() and natural_fields() are, in words.
+/// Describes start_fields() and natural_fields() in words.
 std::string starts_of(const Span& span) {
   const std::string plain = span.holds.empty() && span.start_direction
                                 ? "shapes of a soft rod below its clamp"
@@ -85,8 +86,8 @@ class Search {
   }
 
  private:
-  /// Downhill from each start; descending leaves unstable equilibria, and Newton's method alone
-  /// stays near them.
+  /// Starts from each initial guess, by descent and by Newton's method alone: a descent leaves
+  /// unstable equilibria, and Newton's method stays near them.
   void descend_from_all_starts() {
     const std::string kind = starts_of(span_);
     for (const Start& start : starts()) {
@@ -97,15 +98,15 @@ class Search {
     }
   }
 
-  /// From the starts of least cost, with few terms; with all of them from what may be the lowest.
-  /// The other starts only where the first ones and what they lead to do not hold.
+  /// Descends with few coefficients from the starts of least cost, then refines those that may be
+  /// the lowest. Other starts are used only if the first ones lead to no stable lowest shape.
   void descend_from_lowest_starts() {
     const std::vector<Start> starts = ranked_starts();
     std::size_t first = std::min(followed(), starts.size());
     std::vector<SpanSolution> coarse;
     for (std::size_t i = 0; i < starts.size() && !on_.out_of_time(); ++i) {
       if (i >= first && found_.has_stable_lowest()) return;
-      // Refined later, it would keep a factor's memory in use and gain nothing by it.
+      // A factor is not needed for later refinement and would occupy memory.
       if (!coarse.empty()) coarse.back().factor.reset();
       SpanSolution solution = on_.from_start(starts[i]);
       found_.spend(std::exchange(solution.evaluations, 0));
@@ -120,9 +121,9 @@ class Search {
     }
   }
 
-  /// Adds those of the coarse equilibria that may be the lowest one, with all of their terms,
-  /// lowest first. More terms lower the energy, of one shape about as much as of another; of a
-  /// mirror image by as much.
+  /// Refines those of the coarse equilibria that may be the lowest one, lowest first, and adds
+  /// them. More coefficients lower the energy of different shapes by about the same amount, and
+  /// that of a mirror image by exactly the same.
   void refine_lowest(std::vector<SpanSolution> coarse) {
     std::stable_sort(coarse.begin(), coarse.end(), [](const auto& a, const auto& b) {
       return a.is_equilibrium() != b.is_equilibrium() ? a.is_equilibrium() : a.energy < b.energy;
@@ -149,8 +150,8 @@ class Search {
                             std::to_string(most_saddles) + " found, which were not left downhill");
   }
 
-  /// Whether the first of the starts that need not be followed costs about as much as the last of
-  /// those: next to what these have fallen by, that is no difference.
+  /// Whether the first of the other starts costs about as much as the last of those followed in any
+  /// case, compared with the energy decrease from the latter to their equilibria.
   [[nodiscard]] bool may_lead_lower(const std::vector<Start>& starts, std::size_t next,
                                     const std::vector<SpanSolution>& coarse) const {
     if (traits_.taut || next >= starts.size() || !starts.front().model) return false;
@@ -162,7 +163,7 @@ class Search {
     return starts[next].cost - last <= near_tie * (last - lowest);
   }
 
-  /// Starts that are descended from in any case.
+  /// Number of starts that are followed in any case.
   [[nodiscard]] std::size_t followed() const {
     if (span_.has_material_directors()) return followed_natural_starts;
     return span_.soft_obstacles.empty() ? followed_starts : followed_starts_beside_obstacles;
@@ -180,7 +181,7 @@ class Search {
   [[nodiscard]] std::vector<Start> ranked_starts() {
     std::vector<Start> ranked = starts();
     const int coarse = on_.coarse_terms();
-    // What is looked at with the terms that it is left with need not be fitted twice.
+    // If the ranking uses the number of coefficients of the descent, its fits are reused.
     const bool keeps = coarse <= few_terms && span_.holds.empty() && span_.contacts.empty();
     const std::shared_ptr<SpanEnergy> model = workspace_.model(
         span_, keeps ? coarse : std::max(8, std::min(traits_.natural_terms, coarse)));
@@ -196,8 +197,8 @@ class Search {
     return ranked;
   }
 
-  /// A curved rod, or a strip, that gives way out of its plane twists far: it has shapes of its own
-  /// there.
+  /// Searches in space if a planar equilibrium of a curved rod or a strip is unstable: out of its
+  /// plane it twists far and has other shapes.
   void look_in_space() {
     const auto is_saddle = [](const auto& solution) {
       return solution.status == SolveStatus::saddle;
@@ -230,14 +231,15 @@ class Search {
     return found_.add(judged(std::move(solution), options_, workspace_), strategy);
   }
 
-  /// is_of_class(); counts the evaluations of what is not.
+  /// Whether the solution belongs to the homotopy class of the clamps (is_of_class()); counts the
+  /// evaluations of others.
   [[nodiscard]] bool is_of_span_class(SpanSolution& solution) {
     if (!span_.twist || is_of_class(solution, span_.twist->turns)) return true;
     found_.spend(std::exchange(solution.evaluations, 0));
     return false;
   }
 
-  /// Descends from the unstable equilibria, once more from those that it leads to.
+  /// Descends from the unstable equilibria, including those that such a descent finds.
   void leave_saddles() {
     for (; left_ < found_.size() && left_ < most_saddles && !on_.out_of_time(); ++left_) {
       if (!options_.wants_all() && found_.has_stable_lowest()) return;
@@ -248,7 +250,7 @@ class Search {
     }
   }
 
-  /// Nothing was found in time, or of the class that the clamps hold.
+  /// Returns the solution to report if nothing was found in time, or nothing of the clamps' class.
   [[nodiscard]] SpanSolution none() {
     SpanSolution none = on_.empty_solution(on_.terms());
     none.x.setZero(none.model->size());
@@ -264,10 +266,10 @@ class Search {
   LocalSolver on_;
   const SpanTraits& traits_;
   Found found_;
-  // Of the last equilibrium that was refined, and by how much its energy fell.
+  // Coarse energy of the last equilibrium that was refined, and its decrease by refinement.
   double lowest_coarse_ = infinite;
   double fall_ = 0;
-  std::size_t left_ = 0;  // how many of the equilibria found have been looked at for a way down
+  std::size_t left_ = 0;  // number of equilibria found from which a descent was tried or not needed
 };
 
 }  // namespace

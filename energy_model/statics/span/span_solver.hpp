@@ -8,8 +8,9 @@
 
 namespace dlo::energy_model {
 
-/// Equilibria of a span, lowest energy first: the search's best one, or all of them. Never empty; a
-/// failure is a single solution that says so.
+/// Solves a span: returns the best solution of the search and the other stable ones, or all
+/// equilibria, best first. The list is never empty; a failure is a single solution whose message
+/// gives the reason.
 [[nodiscard]] std::vector<SpanSolution> solve_span(const Span& span, const SpanOptions& options,
                                                    SpanWorkspace& workspace);
 

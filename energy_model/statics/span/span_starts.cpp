@@ -25,21 +25,21 @@ Eigen::Vector3d total_force(const Span& span, double beyond) {
   return n;
 }
 
-/// A unit vector across `direction`, in the plane of a planar span.
+/// Returns a unit vector normal to `direction`, in the plane of a planar span.
 Eigen::Vector3d across(const Span& span, const Eigen::Vector3d& direction) {
   if (span.planar) return Eigen::Vector3d(-direction.y(), direction.x(), 0).normalized();
   return direction.unitOrthogonal();
 }
 
-/// Turns from `from` to the force as a soft rod does; `turns` whole turns more than the shorter
-/// way.
+/// Returns the tangent, at a distance from a clamp or grip with tangent `from`, of a soft rod that
+/// bends towards the force. @param turns  additional whole turns beyond the shorter way
 Eigen::Vector3d pendulum(const Span& span, const Eigen::Vector3d& from,
                          const Eigen::Vector3d& force, double distance, int turns) {
   const double size = force.norm();
   if (!(size > 0)) return from;
   const Eigen::Vector3d axis = force / size;
   Eigen::Vector3d side = from - from.dot(axis) * axis;
-  // Against the force both ways are as short; in a plane the rod falls towards its +y.
+  // Opposite to the force both ways are equally long; in a plane the rod falls towards its +y.
   if (side.norm() < 1e-9) side = -across(span, axis);
   side.normalize();
   const double turn = std::atan2(from.dot(side), from.dot(axis)) - 2 * pi * turns;
@@ -47,11 +47,13 @@ Eigen::Vector3d pendulum(const Span& span, const Eigen::Vector3d& from,
   return std::cos(psi) * axis + std::sin(psi) * side;
 }
 
-/// A with J_0(A) = chord over arc length: the amplitude of a sine in angle that has this slack.
+/// Returns A with J_0(A) = ratio, the quotient of chord and arc length: the amplitude of a
+/// sinusoidal tangent angle that has this slack.
 double slack_amplitude(double ratio) {
   constexpr double first_zero = 2.404825557695773;
   constexpr int most_steps = 10;
-  // Of small slack J_0 = 1 - A^2 / 4; Newton's method passes the amplitude once, then comes back.
+  // For small slack J_0 = 1 - A^2 / 4. Newton's method overshoots once and then converges from
+  // above.
   double amplitude = 2 * std::sqrt(std::max(0.0, 1 - ratio));
   for (int i = 0; i < most_steps && amplitude > 0; ++i) {
     const double by = (std::cyl_bessel_j(0, amplitude) - ratio) / std::cyl_bessel_j(1, amplitude);
@@ -61,7 +63,7 @@ double slack_amplitude(double ratio) {
   return amplitude;
 }
 
-/// Terms by which the stress-free shape is sampled.
+/// Number of coefficients with which the stress-free shape is sampled.
 constexpr int natural_shape_terms = 32;
 
 struct Pattern {
@@ -71,7 +73,7 @@ struct Pattern {
   bool out_of_plane = false;
 };
 
-/// Tangents between grips: chords with arches on them, bent into the clamps.
+/// Tangents between grips: chords with arches on them, bent at the clamps to their directions.
 class GrippedField {
  public:
   GrippedField(const Span& span, const Pattern& pattern)
@@ -110,15 +112,16 @@ class GrippedField {
 
   [[nodiscard]] Eigen::Vector3d arch(std::size_t i, double u) const {
     const Chord& chord = chords_[i];
-    // An arch leaves the chord's line towards `down` and comes back; an S crosses it.
+    // An arch leaves the chord's line towards `down` and returns; an S-shape crosses it.
     const double wave = pattern_.s_shape ? std::cos(2 * pi * u) : std::sin(2 * pi * u);
     double angle = pattern_.sign * chord.amplitude * wave;
     angle += 2 * pi * pattern_.loops * u;
     return std::cos(angle) * chord.along + std::sin(angle) * chord.down;
   }
 
-  /// What acts on a taut segment beyond s bends it aside from the chord: across the pull, less its
-  /// mean, so that it ends where the chord does. At a load it changes over the length of a layer.
+  /// Returns the force normal to the pull, on a taut segment beyond s, which deflects it from the
+  /// chord; its mean is subtracted, so that the segment ends at the chord's end. At a load it
+  /// changes over the length of a layer.
   [[nodiscard]] Eigen::Vector3d across_pull(const Segment& segment, double s) const {
     Eigen::Vector3d force = span_.weight_between(s, (segment.begin + segment.end) / 2);
     const double layer = 1 / std::sqrt(segment.tension);
@@ -131,8 +134,8 @@ class GrippedField {
     return force - force.dot(segment.pull) * segment.pull;
   }
 
-  /// Along the force in a rod under this tension, but for the layers at its ends in which it turns
-  /// to it.
+  /// Returns the tangent of a rod under this tension: along the force, except in the layers at its
+  /// ends.
   [[nodiscard]] Eigen::Vector3d stretched(std::size_t i, double u) const {
     const Segment& segment = segments_[i];
     const auto pull_at = [&](double s) {
@@ -150,7 +153,7 @@ class GrippedField {
         .normalized();
   }
 
-  /// Whether a clamp or a taut neighbour says what tangent an end of a segment has.
+  /// Whether a clamp or a taut neighbour determines the tangent at an end of a segment.
   [[nodiscard]] bool is_held(bool outermost, bool clamped, std::size_t i, int neighbour) const {
     if (outermost) return clamped;
     return segments_[neighbour < 0 ? i - 1 : i + 1].taut();
@@ -169,7 +172,7 @@ class GrippedField {
         t += std::pow(u, 4) * (segments_[i].end_tangent - arch(i, 1));
       }
     }
-    // Through zero the direction would jump.
+    // A vector near zero would make the direction jump.
     if (t.norm() < 0.2) t += 0.4 * chords_[i].down;
     return t.normalized();
   }
@@ -196,8 +199,9 @@ TangentField field(Tangent tangent) {
   };
 }
 
-/// From a clamp down onto an obstacle and along it: over (72 EI h / w)^(1/4), as a rod of small
-/// slopes under its weight w comes to lie from the height h. Nothing where it does not come to lie.
+/// Returns a shape from a clamp down onto an obstacle and along it. It reaches the obstacle over
+/// (72 EI h / w)^(1/4), as a rod of small slopes does under its weight w from the height h. Returns
+/// std::nullopt if the rod does not reach the obstacle.
 std::optional<TangentField> lying_field(const Span& span, const Span::Obstacle& obstacle) {
   if (!obstacle.body.is_half_space()) return {};
   const Eigen::Vector3d normal = obstacle.body.normal();
@@ -209,7 +213,7 @@ std::optional<TangentField> lying_field(const Span& span, const Span::Obstacle& 
   const double reach = std::max(2 * height, std::pow(72 * height / pressed, 0.25));
   if (!(reach < span.length)) return {};
   return field([start, flat = along.normalized(), normal, height, reach](double s) {
-    // Also where it begins on the obstacle, and reach is zero.
+    // Also handles a start on the obstacle, where reach is zero.
     if (!(s < reach)) return flat;
     const double u = s / reach;
     const double slope = -6 * height / reach * u * (1 - u);
@@ -218,7 +222,7 @@ std::optional<TangentField> lying_field(const Span& span, const Span::Obstacle& 
   });
 }
 
-/// Half of what a body takes up along a unit direction.
+/// Returns half of a body's extent along a unit direction.
 double half_extent(const obstacle::Body& body, const Eigen::Vector3d& direction) {
   const Eigen::Vector3d half = (body.upper() - body.lower()) / 2;
   double extent = body.radius();
@@ -229,8 +233,8 @@ double half_extent(const obstacle::Body& body, const Eigen::Vector3d& direction)
   return extent;
 }
 
-/// From a clamp to a side of a body, past it, and then as a soft rod; nothing of bodies that are
-/// endless there or out of reach.
+/// Returns a shape from a clamp past one side of a body, then as a soft rod; std::nullopt for
+/// bodies that are endless or out of reach.
 std::optional<TangentField> passing_field(const Span& span, const obstacle::Body& body,
                                           double sense) {
   constexpr double room = 1.1;
@@ -260,7 +264,7 @@ std::optional<TangentField> passing_field(const Span& span, const obstacle::Body
   });
 }
 
-/// Past the bodies that are nearest to the clamp, on either side.
+/// Returns shapes past the bodies nearest to the clamp, on either side.
 std::vector<TangentField> passing_fields(const Span& span) {
   constexpr std::size_t most_bodies = 4;
   std::vector<obstacle::Body> bodies;
@@ -279,26 +283,28 @@ std::vector<TangentField> passing_fields(const Span& span) {
   return fields;
 }
 
-/// Arc lengths at which a start is compared with the frame that the end holds.
+/// Arc lengths at which a start is compared with the prescribed frame at the end.
 Eigen::VectorXd compared_at(const Span& span) {
   constexpr Eigen::Index points = 257;
   return Eigen::VectorXd::LinSpaced(points, 0, span.length);
 }
 
-/// The angle in a class modulo 4 pi that is nearest to zero, and the next one on the other side.
+/// Returns the angle equal to `angle` modulo 4 pi that is nearest to zero, and the next one on the
+/// other side.
 std::array<double, 2> angles_of_class(double angle) {
   const double nearest = std::remainder(angle, 4 * pi);
   return {nearest, nearest - std::copysign(4 * pi, nearest)};
 }
 
-/// The stress-free shape with its frames rotated on evenly, in their own axes, to the end's frame.
+/// Returns the stress-free shape with its frames rotated evenly, about an axis fixed in them, so
+/// that they meet the end's frame.
 std::vector<TangentField> bent_to_end(const Span& span, const SpanShape& free) {
   const auto frames_at = [free](const Eigen::VectorXd& s) {
     const SpanSamples at = free.sample({s.data(), static_cast<std::size_t>(s.size())});
     std::vector<Eigen::Quaterniond> frames;
     for (Eigen::Index q = 0; q < s.size(); ++q) {
       frames.emplace_back(frame_along(at.tangents.col(q), at.d1.col(q)));
-      // The lift to unit quaternions is continuous.
+      // Consecutive unit quaternions have to be continuous.
       if (q > 0 && frames.back().dot(frames[frames.size() - 2]) < 0) frames.back().coeffs() *= -1;
     }
     return frames;
@@ -335,7 +341,7 @@ std::vector<TangentField> bent_to_end(const Span& span, const SpanShape& free) {
   return fields;
 }
 
-/// natural_fields() where the frame at the end is held.
+/// natural_fields() with a prescribed frame at the end.
 std::vector<TangentField> held_fields(const Span& span) {
   SpanEnergy model(span, natural_shape_terms);
   const SpanShape free = model.shape(Eigen::VectorXd::Zero(model.size()));

@@ -7,26 +7,28 @@
 
 namespace dlo::energy_model {
 
-/// Shapes that a span's equilibria are searched from, physically chosen: without further grips the
-/// pendulum's profile that turns from the clamp to the load, either way round, down onto an
-/// obstacle and along it, and past bodies on either side; between grips arches and S-shapes of the
-/// right slack to either side, and loops. Of each pair the one that the load favours comes first.
+/// Returns initial guesses for a span's equilibria, chosen by physical limits. With one clamp they
+/// are the pendulum's profile from the clamp's direction to the load's, by the shorter and the
+/// longer way, shapes that come down onto an obstacle and lie along it, and shapes that pass bodies
+/// on either side. Between grips they are arches and S-shapes of the right slack to both sides, and
+/// loops. Of each pair the one that the load favours comes first.
 [[nodiscard]] std::vector<TangentField> start_fields(const Span& span);
 
-/// The pendulum's profile 4 atan(tan(psi/4) exp(-sqrt(n) s)) from a clamp towards the sum n of
-/// weight and loads by the shorter way: the limit shape of a soft rod.
+/// Returns the pendulum's profile 4 atan(tan(psi/4) exp(-sqrt(n) s)) from a clamp towards the sum n
+/// of weight and loads by the shorter way: the limit shape of a soft rod.
 [[nodiscard]] TangentField soft_field(const Span& span);
 
-/// A shape through a span's grips, one or more beside the anchor: arches of the right slack that
-/// hang as the load pulls, and beyond the outermost grips the pendulum's profile.
-/// @param span  has to outlive it
+/// Returns a shape through the anchor and the other grips of a span: arches of the right slack that
+/// hang in the direction of the load, and beyond the outermost grips the pendulum's profile.
+/// @param span  has to outlive the result
 [[nodiscard]] TangentField arch_field(const Span& span);
 
-/// Of a rod with material directors: the stress-free shape, and in the plane bent evenly to the
-/// directions of its end's clamp next to where it points; and the shapes of start_fields(), in
-/// space each with the rod's frame turned on evenly from the start to several angles. Where the
-/// frame at the end is held too, these shapes with frames that are rotated on evenly until they
-/// meet it, by the two angles of the class of Span::Twist::turns that are nearest to zero.
+/// Returns initial guesses for a rod with material directors: the stress-free shape; in the plane
+/// also that shape bent evenly so that it ends in the direction of the end's clamp; and the shapes
+/// of start_fields(), in space each with the rod's frame rotated evenly along the rod, to several
+/// angles. If the frame at the end is prescribed too, these shapes get frames that are rotated
+/// evenly until they meet it, by the two angles of the class of Span::Twist::turns that are nearest
+/// to zero.
 [[nodiscard]] std::vector<TangentField> natural_fields(const Span& span);
 
 }  // namespace dlo::energy_model

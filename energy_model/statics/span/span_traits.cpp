@@ -13,7 +13,7 @@ namespace dlo::energy_model {
 
 namespace {
 
-/// Of the parts between the ends and the loads of a span.
+/// Returns the longest interval between the ends and the loads of a span.
 double longest_without_load(const Span& span) {
   double longest = 0;
   double begin = 0;
@@ -24,7 +24,7 @@ double longest_without_load(const Span& span) {
   return std::max(longest, span.length - begin);
 }
 
-/// A bound on the curvature.
+/// Returns an upper bound of the curvature by couples.
 double bent_by_couples(const Span& span) {
   double couples = 0;
   for (const Span::Load& load : span.loads) couples += std::abs(load.couple);
@@ -48,7 +48,7 @@ SpanTraits::SpanTraits(const Span& span)
     taut = true;
     stiffness = std::max(stiffness, segment.tension / std::max(1e-12, segment.slack()));
   }
-  // Where contact begins inside a piece it takes more terms than the piece's length tells.
+  // If contact begins inside an element, it needs more coefficients than its length suggests.
   if (!span.soft_obstacles.empty() && span.contact_ends.empty()) {
     longest_piece = span.length;
     return;
@@ -61,7 +61,7 @@ SpanTraits::SpanTraits(const Span& span)
     longest_piece = std::max(longest_piece, piece.length);
   }
   if (!span.has_material_directors() && !span.has_couples()) return;
-  // The rotation of the stress-free shape, and by couples, has to be resolved as well.
+  // The rotation of the stress-free shape, and the one by couples, have to be resolved as well.
   const double curvature = span.natural.largest() + bent_by_couples(span);
   natural_terms = first_terms(curvature * curvature, longest_piece);
 }

@@ -6,37 +6,39 @@
 
 namespace dlo::energy_model {
 
-/// What a span is to those who look for its equilibria.
+/// Properties of a span that determine how its equilibria are searched for.
 struct SpanTraits {
   explicit SpanTraits(const Span& span);
 
-  /// Of unknowns: strains that bend or twist it.
+  /// Number of strains that are unknowns.
   [[nodiscard]] static int fields_of(const Span& span) {
     return span.planar ? 1 : span.has_material_directors() ? 3 : 2;
   }
 
   double load;  ///< weight and loads [EI/l^2]
   int fields;
-  bool adapted;  ///< pieces end where a shape that is known wants it
+  bool adapted;  ///< the mesh is adapted to a known shape
   double longest_piece = 0;
-  int natural_terms = 0;  ///< that natural strains take, and couples
-  bool taut = false;      ///< pieces end where the layers at taut segments' ends have decayed
+  int natural_terms = 0;  ///< number of coefficients needed for natural strains and couples
+  bool taut = false;      ///< whether a segment is taut; elements end where layers at its ends have
+                          ///< decayed
   double stiffness = 0;   ///< of the tautest segment along its chord
 };
 
-/// Unknowns that a span's model may have before its shape is refined: its dense matrices then take
-/// about half a gigabyte and a step of Newton's method about a second.
+/// Largest number of unknowns of a span's model before its shape is refined: its dense matrices
+/// then occupy about half a gigabyte, and a step of Newton's method takes about a second.
 inline constexpr int most_model_unknowns = 2400;
 
-/// Coefficients of a piece, in each of its strains, with which a model is made at least.
+/// Smallest number of coefficients of an element, per strain, with which a model is made.
 inline constexpr int least_model_terms = 9;
 
-/// Coefficients that the span's model may have in each of its strains on each piece, at least one.
+/// Returns the largest affordable number of coefficients per strain and element, at least one.
 [[nodiscard]] int affordable_terms(const Span& span);
 
-/// Pieces end at loads, grips and other sections, and each takes unknowns of its own.
-/// @param terms  that each piece is to have; 0: the fewest
-/// @throws std::invalid_argument if that makes more unknowns than a model may have
+/// Checks the size of a span's model. Elements end at loads, grips and section changes, and each
+/// has unknowns of its own.
+/// @param terms  number of coefficients that each element is to have; 0: the fewest
+/// @throws std::invalid_argument if the model would have more unknowns than affordable
 void require_affordable(const Span& span, int terms, std::string_view function);
 
 }  // namespace dlo::energy_model

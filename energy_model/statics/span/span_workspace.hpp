@@ -9,13 +9,14 @@
 
 namespace dlo::energy_model {
 
-/// Buffers that survive a solve: models that no solution holds any more are used again.
+/// Buffers that are kept from one solve to the next: models that no solution holds any more are
+/// reused.
 class SpanWorkspace {
  public:
   [[nodiscard]] std::shared_ptr<SpanEnergy> model(const Span& span, int terms);
-  /// With a model but no unknowns yet.
+  /// Returns a solution with a model but without unknowns.
   [[nodiscard]] SpanSolution empty_solution(const Span& span, int terms);
-  /// A solution's unknowns in other terms, not an equilibrium yet.
+  /// Returns a solution's unknowns with another number of coefficients; not an equilibrium yet.
   [[nodiscard]] SpanSolution with_terms(const SpanSolution& solution, int terms);
   [[nodiscard]] NewtonBuffers& newton() { return newton_; }
   [[nodiscard]] NewtonFactors& factors() { return newton_.factors; }

@@ -8,7 +8,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Of a fit whose gap is closed anyway.
+/// Maximum number of Newton steps of a fit if the constraints are restored afterwards.
 constexpr int no_corrections = 0;
 
 bool is_cheaper(const Start& a, const Start& b) { return a.cost < b.cost; }
@@ -26,21 +26,23 @@ void weigh_with_springs(SpanSolution& looked, const StartRanking& ranking,
   }
 }
 
-/// A gap that is left makes a shape cheaper than any that closes it: starts are ranked by what they
-/// cost once it is closed, as far as they can still be among those that are followed anyway.
+/// Ranks starts by their energy once the constraints are satisfied, for those starts that may still
+/// be among the ones followed in any case. With a remaining constraint residual a shape would seem
+/// cheaper than any that satisfies the constraints.
 void meet_grips(SpanSolution& looked, const StartRanking& ranking, std::vector<Start>& starts) {
-  // Springs at the grips: as a descent by penalty begins with, and what a gap costs at least.
+  // Springs at the grips, as at the begin of a penalty method: a lower bound of the cost of the
+  // residual.
   const double kappa = 100 * (1 + ranking.load);
   SpanEnergy& model = *looked.model;
   for (Start& start : starts) {
     start.shape = start.field(model.nodes());
     const SpanEnergy::Estimate seen = model.estimate(start.shape.tangents);
     start.cost = seen.energy + kappa / 2 * seen.gap * seen.gap;
-    // A fit in few terms is smoother, and closing a gap may straighten it.
+    // A fit with few coefficients is smoother, and satisfying the constraints may straighten it.
     start.least = seen.energy - seen.bending / 2;
   }
   std::stable_sort(starts.begin(), starts.end(), is_cheaper);
-  std::vector<double> energies;  // of those that meet the grips, the lowest ones
+  std::vector<double> energies;  // lowest energies of starts that satisfy the constraints
   SpanPoint point;
   RestoreScratch scratch;
   for (Start& start : starts) {

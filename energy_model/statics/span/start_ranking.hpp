@@ -10,34 +10,35 @@
 
 namespace dlo::energy_model {
 
-/// A shape to start from and, where starts were ranked, its unknowns in the model of the ranking.
+/// An initial guess and, if starts were ranked, its unknowns in the model of the ranking.
 struct Start {
   TangentField field;
   std::shared_ptr<const SpanEnergy> model;
   Eigen::VectorXd x;
-  /// Energy and that of springs at the grips, or without a gap.
+  /// Cost: energy plus that of springs at the grips, or energy alone once the constraints are
+  /// satisfied.
   double cost = 0;
-  /// At the nodes of the ranking, before a fit.
+  /// Shape at the nodes of the ranking, before a fit.
   StartShape shape = {};
-  /// The least that it may cost without a gap.
+  /// Lower bound of the cost once the constraints are satisfied.
   double least = 0;
 };
 
-/// What starts are weighed by.
+/// Parameters of a ranking of starts.
 struct StartRanking {
-  std::shared_ptr<SpanEnergy> model;  ///< few terms
-  double load = 0;                    ///< weight and loads [EI/l^2]
-  std::size_t followed = 0;           ///< so many are descended from in any case
-  bool keeps_unknowns = false;        ///< descents begin with as many terms as the model has
-  /// Of springs at the grips where a start does not have to meet them: where the rod is taut, as
-  /// stiff as it is between them.
+  std::shared_ptr<SpanEnergy> model;  ///< with few coefficients
+  double load = 0;                    ///< weight plus loads [EI/l^2]
+  std::size_t followed = 0;           ///< number of starts that are followed in any case
+  bool keeps_unknowns = false;        ///< descents use as many coefficients as the model has
+  /// Stiffness of springs at the grips, for starts that need not satisfy the constraints; that of
+  /// the tautest segment.
   double stiffness = 0;
-  bool meets_grips = false;  ///< starts are weighed once they are bent to meet the grips
+  bool meets_grips = false;  ///< starts are first bent to satisfy the constraints
   const Deadline* deadline = nullptr;
 };
 
-/// Sorts starts by what they cost, cheapest first.
-/// @return evaluations that it took
+/// Sorts starts by cost, cheapest first.
+/// @return number of energy evaluations
 int rank_starts(std::vector<Start>& starts, const StartRanking& ranking);
 
 }  // namespace dlo::energy_model
