@@ -16,19 +16,19 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Times that the contacts are updated.
+/// Maximum number of contact updates.
 constexpr int most_contact_updates = 16;
-/// Unknowns from which on half of the terms that a load takes are tried first.
+/// Number of unknowns above which half of the coefficients for the load are tried first.
 constexpr int many_unknowns = 300;
-/// First radius of a descent from beside obstacles that yield: a longer step, in rad about, would
+/// First trust-region radius of a descent near soft obstacles: a longer step (roughly in rad) would
 /// take the rod to their other side.
 constexpr double careful_radius = 0.05;
-/// A part that lies and is shorter, in lengths, may be a point instead: it is asked again whether
-/// that is behind the obstacle.
+/// Length, divided by the rod length, below which a part in contact becomes a point; the next
+/// update checks whether the rod is within the obstacle next to it.
 constexpr double shortest_told = 1e-3;
 
-/// Whether the contacts end where an obstacle without friction lets them, which is what makes the
-/// shape an equilibrium: a slope or a moment that is left there would take more than pressure.
+/// Whether the contacts end where an obstacle without friction requires, which makes the shape an
+/// equilibrium: a remaining slope or moment there would need more than pressure.
 bool meets_free_boundaries(const SpanSolution& solution) {
   constexpr double settled = 1e-6;
   const Span& span = solution.model->span();
@@ -36,7 +36,7 @@ bool meets_free_boundaries(const SpanSolution& solution) {
   if (ends.empty()) return true;
   const Eigen::VectorXd residual = free_boundary_residual(solution, ends);
   if (!(residual.cwiseAbs().maxCoeff() <= settled)) return false;
-  // Two points share a force by where they are.
+  // The positions of two points determine how they share a force, and need a stricter tolerance.
   constexpr double share = 1e-7;
   for (std::size_t i = 0; i < ends.size(); ++i) {
     if (span.contacts[ends[i].contact].lies()) continue;
@@ -69,7 +69,8 @@ SpanSolution ActiveSet::update(Span span, TangentField near, int terms) {
   return counted(run(std::move(span), std::move(near), {}, Resolution::coarse));
 }
 
-/// @param solution  with the span's contacts, if it is an equilibrium; else from `near`
+/// @param solution  used as the first iterate, with its contacts, if it is an equilibrium;
+///   otherwise `near` is used
 SpanSolution ActiveSet::run(Span span, TangentField near, SpanSolution solution,
                             Resolution resolution) {
   spent_ += std::exchange(solution.evaluations, 0);
@@ -107,7 +108,7 @@ SpanSolution ActiveSet::newton_from(const Span& span, const TangentField& near) 
   solution.x = solution.model->fit(near(solution.model->nodes()));
   const Eigen::VectorXd start = solution.x;
   const NewtonOptions newton = {.load = load_, .deadline = &options_.deadline};
-  // Newton's method would go back to the saddle, or into the plane, that a shape has left.
+  // Newton's method would return to the saddle, or to the plane, that a shape has left.
   const bool has_left =
       options_.start.approach == Approach::descend || span.planar != searched_.planar;
   if (!has_left) newton_solve(solution, newton, workspace_.newton());
@@ -125,19 +126,19 @@ SpanSolution ActiveSet::newton_from(const Span& span, const TangentField& near) 
 }
 
 int ActiveSet::terms_of_load(const Span& span) const {
-  constexpr int fewest = 12;  // beside a kink
+  constexpr int fewest = 12;  // next to a kink
   double longest = 0;
   const std::vector<Piece> pieces = pieces_of(span);
   for (const Piece& piece : pieces) longest = std::max(longest, piece.length);
   const int count = std::max(fewest, first_terms(load_, longest));
-  // Many pieces are short, and what they do not take need not be borne while contacts change.
+  // Many elements are short and need fewer coefficients while contacts change.
   const int unknowns = count * static_cast<int>(pieces.size()) * (span.planar ? 1 : 2);
   return unknowns > many_unknowns ? std::max(fewest, count / 2) : count;
 }
 
-/// Resolves an equilibrium with all terms. Where two contact points are about to become a part that
-/// lies, neither slides with a least gap: they are held where they are.
-/// @param span  that of the result
+/// Resolves an equilibrium with all coefficients. If two contact points are about to become a part,
+/// neither slides with a minimum of the gap; they are then fixed at their positions.
+/// @param span  on return that of the result
 SpanSolution ActiveSet::resolved(SpanSolution solution, Span& span) {
   const TangentField here = solution.model->field(solution.x);
   span = solution.model->span();
@@ -147,7 +148,8 @@ SpanSolution ActiveSet::resolved(SpanSolution solution, Span& span) {
   return solution.is_equilibrium() ? with_all_terms(std::move(solution)) : solution;
 }
 
-/// As many terms as the shape takes, and as what lies takes to be on its obstacle; certified.
+/// Adds coefficients until the shape is resolved and parts in contact are on their obstacles;
+/// certifies the result.
 SpanSolution ActiveSet::with_all_terms(SpanSolution solution) {
   for (;;) {
     const int before = solution.terms;
@@ -167,7 +169,7 @@ SpanSolution ActiveSet::with_all_terms(SpanSolution solution) {
   }
 }
 
-/// Behind an obstacle by no more than missing terms may make it.
+/// Whether the rod is within an obstacle, by no more than truncation explains.
 bool ActiveSet::hardly_behind(const SpanSolution& solution) const {
   if (!solution.is_equilibrium()) return false;
   const std::vector<GapMinimum> behind =

@@ -7,14 +7,16 @@
 
 namespace dlo::energy_model {
 
-/// The contacts of an equilibrium, by an active-set method: Newton's method with contacts that are
-/// given, whose ends move to where the rod lifts off (free_boundary_newton()), then contacts that
-/// pull are released and others are added where the rod is behind an obstacle (updated_contacts()),
-/// until there are none of either. Of all rods, also of those that clamps twist.
+/// Finds the contacts of an equilibrium by an active-set method. Each round runs Newton's method
+/// with given contacts, moves their ends to where the rod lifts off (free_boundary_newton()),
+/// releases contacts that pull, and adds contacts where the rod is within an obstacle
+/// (updated_contacts()). It ends when nothing is released or added. It applies to all rods,
+/// including those that clamps twist.
 class ActiveSet {
  public:
-  /// All of them have to outlive it.
-  /// @param searched  without contacts; a guess in space of one in the plane has left that
+  /// All arguments have to outlive the object.
+  /// @param searched  the span without contacts; if it is planar and an initial guess is in space,
+  ///   the shape has left its plane
   ActiveSet(const Span& searched, const SpanOptions& options, SpanWorkspace& workspace)
       : searched_(searched),
         options_(options),
@@ -22,19 +24,20 @@ class ActiveSet {
         load_(searched.total_load()),
         least_terms_(options.start.known.terms()) {}
 
-  /// From a guess of contacts and shape. Certified; not_verified where contacts do not converge.
+  /// Solves from a guess of contacts and shape. The result is certified, and not_verified if the
+  /// contacts do not converge.
   [[nodiscard]] SpanSolution solve(Span span, TangentField near);
-  /// The same from an equilibrium with its contacts.
+  /// Solves from an equilibrium with its contacts; certified likewise.
   [[nodiscard]] SpanSolution solve(SpanSolution equilibrium);
-  /// The same with about the terms that it has and without a certificate, as steps of a
-  /// continuation take it; no equilibrium where contacts do not converge.
+  /// Updates contacts with about the present number of coefficients and without a certificate, for
+  /// steps of a continuation. The result is no equilibrium if the contacts do not converge.
   [[nodiscard]] SpanSolution update(SpanSolution equilibrium);
   [[nodiscard]] SpanSolution update(Span span, TangentField near, int terms);
 
-  /// By Newton's method from a guess, or downhill, with contacts that stay.
+  /// Solves by Newton's method from a guess, or by descent, with fixed contacts.
   [[nodiscard]] SpanSolution newton_from(const Span& span, const TangentField& near);
-  /// Terms of each piece that resolve a shape under the span's load, or half of them where pieces
-  /// are many.
+  /// Returns the number of coefficients of each element that resolves a shape under the span's
+  /// load, or half of it if there are many elements.
   [[nodiscard]] int terms_of_load(const Span& span) const;
 
  private:
@@ -54,9 +57,9 @@ class ActiveSet {
   int spent_ = 0;
 };
 
-/// Contacts held at points: where an obstacle would have to pull there may be no shape that slides,
-/// but one that is held; and a part so short that a point is hardly behind the obstacle beside it
-/// is one.
+/// Fixes contacts at points: where an obstacle would have to pull, there may be no equilibrium with
+/// a sliding contact but one with a fixed contact. A very short part in contact becomes a point.
+/// @return whether any sliding contact at a point has been fixed
 /// @return whether any contact has changed
 [[nodiscard]] bool hold_points(Span& span);
 

@@ -17,7 +17,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// What the multipliers of a contact exert on the grip that holds its begin or its end.
+/// Force of a contact's multipliers on a grip at the contact's begin or end.
 struct HeldEnd {
   std::size_t contact = 0;
   double s = 0;
@@ -44,7 +44,8 @@ std::vector<HeldEnd> held_ends_of(const SpanSolution& solution,
   return held;
 }
 
-/// With arc lengths in m, forces and moments in the span's units.
+/// Returns the contacts of a span, with arc lengths in m, and forces and moments in the span's
+/// units.
 std::vector<ContactPart> contacts_of(const PlacedSpan& place, const SpanSolution& solution,
                                      const std::vector<ContactForce>& forces, double length) {
   std::vector<ContactPart> parts;
@@ -62,7 +63,7 @@ std::vector<ContactPart> contacts_of(const PlacedSpan& place, const SpanSolution
     part.kind = contact.lies()                 ? ContactKind::lying
                 : at_tip || contact.begin == 0 ? ContactKind::tip
                                                : ContactKind::touching;
-    // A point that slides is where the rod is nearest.
+    // A sliding contact point is at the smallest clearance.
     const std::optional<double> touch = solution.model->touches_at(*at, i);
     part.begin = place.start + sense * touch.value_or(contact.begin);
     part.end = place.start + sense * touch.value_or(contact.end);
@@ -97,8 +98,8 @@ ContactPart in_newtons(ContactPart part, double force_unit, double length) {
   return part;
 }
 
-/// Whether less is claimed of a shape by one status than by another: that it is no equilibrium at
-/// all outweighs what kind of one it is.
+/// Whether one status claims less than another. The distinction between equilibria and other shapes
+/// precedes that between kinds of equilibria.
 bool is_worse(SolveStatus status, SolveStatus than) {
   const auto rank = [](SolveStatus s) {
     if (s == SolveStatus::converged) return 0;
@@ -108,7 +109,7 @@ bool is_worse(SolveStatus status, SolveStatus than) {
   return rank(status) > rank(than);
 }
 
-/// What a result is made of, span after span.
+/// Accumulates an equilibrium span by span.
 class Assembly {
  public:
   explicit Assembly(const Problem& problem)
@@ -150,20 +151,20 @@ class Assembly {
   }
 
  private:
-  /// The least that is claimed of any span.
+  /// Combines the claims of the spans: the weakest claim holds for the whole rod.
   void add_claims(const SpanSolution& solution) {
     result_.evaluations += solution.evaluations;
     result_.terms = std::max(result_.terms, solution.terms);
-    // -1, where one is not known, stays.
+    // -1 (unknown) is kept.
     const bool known = solution.residual >= 0 && result_.residual >= 0;
     result_.residual = known ? std::max(result_.residual, solution.residual) : -1;
     result_.neutral_directions += solution.neutral_directions;
     rigid_body_modes_ += solution.rigid_body_modes;
-    // NaN, where one is not known, stays.
+    // NaN (unknown) is kept.
     if (std::isnan(solution.error) || solution.error > result_.error_estimate) {
       result_.error_estimate = solution.error;
     }
-    // NaN, where one was not looked at, stays.
+    // NaN (not computed) is kept.
     if (std::isnan(solution.smallest_eigenvalue) ||
         solution.smallest_eigenvalue < result_.smallest_eigenvalue) {
       result_.smallest_eigenvalue = solution.smallest_eigenvalue;
@@ -184,7 +185,7 @@ class Assembly {
           {place.start, place.start + place.span.length * l_, solution.model->twist(solution.x),
            energy_unit_ * solution.model->twisting_torque(solution.x, solution.multipliers)});
     }
-    // A span's potential counts from its anchor.
+    // A span's potential is relative to its anchor.
     const Eigen::Vector3d lift = place.anchor_position - problem_.grips.front().position;
     const Eigen::Vector3d weight = to_newtons(place, weight_of(place));
     sum.gravity += own.gravity * energy_unit_ - weight.dot(lift);
@@ -198,7 +199,7 @@ class Assembly {
   void add_reactions(const PlacedSpan& place, const SpanSolution& solution) {
     const SpanEnergy& model = *solution.model;
     const std::shared_ptr<SpanPoint> at = solution.at_x();
-    // What the anchor carries, as nothing else does.
+    // Everything that no other grip carries acts on the anchor.
     Eigen::Vector3d carried = weight_of(place);
     for (const Span::Load& load : place.span.loads) carried += load.force;
     const std::vector<Eigen::Vector3d> obstacles = model.soft_obstacle_forces(*at);
@@ -233,7 +234,7 @@ class Assembly {
     anchor.force -= to_newtons(place, carried);
   }
 
-  /// Adds a force to the hold at s. @return the force; zero if no hold is there but the anchor
+  /// Adds a force to the grip at s. @return the force; zero if only the anchor is there
   [[nodiscard]] Eigen::Vector3d give_to_hold(const PlacedSpan& place, double s,
                                              const Eigen::Vector3d& force) {
     for (std::size_t j = 0; j < place.hold_grips.size(); ++j) {
@@ -264,7 +265,7 @@ class Assembly {
     if (is_whole) separate_line_loads(problem_, result_);
   }
 
-  /// From the span's units and axes.
+  /// Converts from the span's units and axes.
   [[nodiscard]] Eigen::Vector3d to_newtons(const PlacedSpan& place,
                                            const Eigen::Vector3d& force) const {
     return force_unit_ * (place.frame.transpose() * force);

@@ -8,7 +8,7 @@
 
 namespace dlo::energy_model {
 
-/// One solution of each span, put together in space and SI units.
+/// Assembles one solution of each span into an equilibrium of the rod, in space and SI units.
 [[nodiscard]] Equilibrium assemble(const Problem& problem, const std::vector<PlacedSpan>& placed,
                                    const std::vector<const SpanSolution*>& solutions);
 

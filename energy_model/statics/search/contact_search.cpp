@@ -22,21 +22,21 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Shapes from which polygons come to rest: of one clamp, among them those past two bodies on
-/// either side.
+/// Numbers of initial guesses for polygons, between grips and with one clamp. The latter includes
+/// shapes past two bodies on either side.
 constexpr std::size_t most_starts = 3;
 constexpr std::size_t most_starts_of_one_clamp = 6;
-/// Times that a shape is left which cannot hold itself.
+/// Maximum number of descents from an unstable shape.
 constexpr int most_departures = 4;
-/// Out of its plane a polygon has tangents with more than this across it.
+/// Largest component of a polygon's tangents out of the plane that counts as planar.
 constexpr double flat = 1e-6;
-/// Of polygons with few segments those next to the lowest, over 1 + energy: their energies are off
-/// by about this, since they cut the corners of bodies.
+/// Energy above the lowest, divided by 1 + energy, up to which a polygon with few segments is
+/// refined first: its energy has about this error, since segments cut the corners of bodies.
 constexpr double near_lowest = 0.5;
-/// Of polygons with all segments too, whose energies are off by up to 0.03 where they touch: both
-/// are asked for the rod's own energy.
+/// Energy difference, divided by 1 + energy, below which two polygons with all segments count as
+/// tied: with contact their energies have errors of up to 0.03, and the rod's own energies decide.
 constexpr double near_tie_of_polygons = 0.06;
-/// Polygons whose energies are this close, over 1 + energy, are the same.
+/// Energy difference of equal polygons, divided by 1 + energy.
 constexpr double same_energy_of_polygons = 1e-6;
 
 constexpr const char* clear_of_obstacles = "shapes without obstacles that stay clear of them";
@@ -44,8 +44,9 @@ constexpr const char* polygons_at_rest = "polygons at rest on the obstacles";
 
 constexpr const char* past_obstacles = "shapes that pass one or two obstacles on either side";
 
-/// Largest distance between points of two coarse polygons that are the same equilibrium, divided by
-/// the span's length. Polygons at rest are determined to 1e-7; different ones are further apart.
+/// Largest distance between points of two coarse polygons that count as the same equilibrium,
+/// divided by the span's length. Polygons in equilibrium are determined to 1e-7; different ones are
+/// further apart.
 constexpr double same_coarse_polygon = 1e-3;
 
 bool is_same_coarse_polygon(const PenaltyPolygon& a, const PenaltyPolygon& b, double length) {
@@ -53,7 +54,8 @@ bool is_same_coarse_polygon(const PenaltyPolygon& a, const PenaltyPolygon& b, do
          (a.points - b.points).colwise().norm().maxCoeff() < same_coarse_polygon * length;
 }
 
-/// @param found what this and other searches of the span have come to
+/// Search for equilibria with contacts. @param found  results of this and other searches of the
+/// span
 class ContactSearch {
  public:
   ContactSearch(const Span& span, const SpanOptions& options, SpanWorkspace& workspace,
@@ -81,9 +83,9 @@ class ContactSearch {
     }
   }
 
-  /// Searches from shapes that pass obstacles. Each comes to rest as a coarse polygon and is
-  /// dropped if a known equilibrium leads to the same polygon or, unless all equilibria are wanted,
-  /// if the energy of the polygon is higher than that of the lowest known one's.
+  /// Searches from shapes that pass obstacles. Each is relaxed as a coarse polygon. It is dropped
+  /// if a known equilibrium relaxes to the same polygon or, unless all equilibria are wanted, if
+  /// the polygon's energy exceeds that of the lowest known equilibrium's polygon.
   void look_past() {
     const std::vector<Span> starts = held_past_obstacles(span_);
     if (starts.empty()) return;
@@ -131,8 +133,8 @@ class ContactSearch {
     return polygon;
   }
 
-  /// From the rod without obstacles, which may stay clear of them, and from the starts of all
-  /// searches.
+  /// Searches from the equilibria without obstacles, which may be clear of them, and from
+  /// start_fields().
   void search() {
     SpanOptions without_start = options_;
     without_start.start = {};
@@ -160,17 +162,18 @@ class ContactSearch {
     if (options_.wants_all()) {
       options_.log->add_starts(without_obstacles, ", as if there were no obstacles");
     }
-    // What touches beside a shape that obstacles forbid costs more than that, but may cost less
-    // than what stays clear elsewhere.
+    // A shape with contact next to one that obstacles exclude has a higher energy than that one,
+    // but possibly a lower one than shapes clear of obstacles elsewhere.
     if (found_.suffices() && found_.best().energy <= lowest_within) return;
     for (TangentField& start : start_fields(span_)) starts.push_back(std::move(start));
     look_from(starts);
     if (found_.empty() && failure) (void)found_.add(std::move(*failure));
   }
 
-  /// What polygons lead to that come to rest from these shapes, the lowest first. Of several starts
-  /// coarse polygons tell which are worth a finer one: those that come to rest next to the lowest;
-  /// the others, and at last the starts themselves, where these lead nowhere.
+  /// Relaxes polygons from these shapes and adds the rod's equilibria found from them, lowest
+  /// first. With several starts coarse polygons are relaxed first: those near the lowest energy are
+  /// refined, then the others if these yield no result, and at last polygons with all segments from
+  /// the starts.
   void look_from(const std::vector<TangentField>& starts) {
     const auto whole = [&](Segments segments) {
       const std::size_t most = span_.holds.empty() ? most_starts_of_one_clamp : most_starts;
@@ -203,8 +206,8 @@ class ContactSearch {
     refine(whole(Segments::all));
   }
 
-  /// The rod's own shapes with the contacts of polygons, lowest first: up to the first one that
-  /// suffices and what ties with it.
+  /// Solves for the rod's equilibria with the contacts of the polygons, lowest first, up to the
+  /// first one that suffices and those tied with it.
   void refine(const std::vector<PenaltyPolygon>& polygons) {
     for (std::size_t i = 0; i < polygons.size(); ++i) {
       const PenaltyPolygon& polygon = polygons[i];
@@ -220,7 +223,8 @@ class ContactSearch {
     }
   }
 
-  /// Those that do not come to rest only where none does.
+  /// Relaxes polygons and sorts them by energy, without duplicates. Those that are not in
+  /// equilibrium are kept only if none is.
   [[nodiscard]] std::vector<PenaltyPolygon> polygons_from(
       std::size_t count, const std::function<PenaltyPolygon(std::size_t)>& rest) {
     std::vector<PenaltyPolygon> polygons;
@@ -247,7 +251,7 @@ class ContactSearch {
     return polygons;
   }
 
-  /// Downhill from the best shape along its direction of negative curvature, out of its plane too.
+  /// Descends from the best shape along its direction of negative curvature, also out of its plane.
   void leave_saddle() {
     constexpr double push = 0.5;
     const SpanSolution& saddle = found_.best();
@@ -262,13 +266,14 @@ class ContactSearch {
     ContactSearch(span, options, workspace_, found_).look_from({pushed.field(x)});
   }
 
-  /// The rod's own shape with a polygon's contacts, updated until they are right.
+  /// Solves for the rod's equilibrium with a polygon's contacts, which are updated until they
+  /// converge.
   [[nodiscard]] SpanSolution from_polygon(const PenaltyPolygon& polygon) {
     Span span = span_;
     span.contacts = polygon.contacts;
     if (polygon.tangents.row(2).cwiseAbs().maxCoeff() > flat) span.planar = false;
     SpanOptions options = options_;
-    // Newton's method steps over obstacles that yield, which no constraint holds the rod on.
+    // Newton's method may step over soft obstacles, at which no constraint keeps the rod.
     if (!span_.soft_obstacles.empty()) options.start.approach = Approach::descend;
     return ActiveSet(span_, options, workspace_).solve(std::move(span), polygon.field());
   }

@@ -24,7 +24,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Most combinations of the spans' equilibria that are put together.
+/// Maximum number of combinations of the spans' equilibria that are assembled.
 constexpr std::size_t most_combinations = 64;
 
 void check(const EnergyOptions& options) {
@@ -36,7 +36,7 @@ void check(const EnergyOptions& options) {
           ">= 1");
 }
 
-/// The spans' equilibria put together, stable ones first, by energy.
+/// Assembles combinations of the spans' equilibria, stable ones first, by energy.
 std::vector<Equilibrium> combine(const Problem& problem, const std::vector<PlacedSpan>& placed,
                                  const std::vector<std::vector<SpanSolution>>& solutions,
                                  SearchLog& log) {
@@ -73,7 +73,7 @@ std::vector<Equilibrium> combine(const Problem& problem, const std::vector<Place
   return result;
 }
 
-/// Returns the first equilibrium of each span alone.
+/// Returns only the first equilibrium of each span.
 std::vector<std::vector<SpanSolution>> firsts_of(
     const std::vector<std::vector<SpanSolution>>& solutions) {
   std::vector<std::vector<SpanSolution>> firsts;
@@ -105,8 +105,9 @@ std::vector<double> stable_energies(const Problem& problem, const Equilibrium& l
   return sums;
 }
 
-/// Notes in each equilibrium what its search has found.
-/// @param solutions  of the spans; all of their combinations are in `result` where it has several
+/// Stores in each equilibrium what its search has found.
+/// @param solutions  of the spans; `result` contains all of their combinations if it has several
+///   elements
 void note_search(const Problem& problem, const std::vector<std::vector<SpanSolution>>& solutions,
                  int passing_starts, std::vector<Equilibrium>& result) {
   std::vector<double> energies;
@@ -130,10 +131,11 @@ class EnergySolver::State {
   explicit State(const EnergyOptions& options) : options_(options) { check(options); }
 
   enum class Wanted { lowest, all };
-  /// What is made of the shape of the last call.
+  /// How the previous solution is used: not at all, as the initial guess, or as the only initial
+  /// guess. `points`: the initial guess is a given shape, from which the solver only descends.
   enum class From { nothing, last_shape, last_shape_only, points };
 
-  /// @return none where the last shape only does not lead on
+  /// @return empty if From::last_shape_only does not lead to an equilibrium
   std::vector<Equilibrium> solve(const Problem& problem, Wanted wanted, From from) {
     const auto begin = std::chrono::steady_clock::now();
     const Deadline deadline(options_.time_limit);
@@ -171,7 +173,7 @@ class EnergySolver::State {
     twists_ = former_twists_;
   }
 
-  /// Downhill from a shape, and nowhere else.
+  /// Descends from a shape, without a further search.
   Equilibrium near(const Problem& problem, const Equilibrium& shape) {
     const Equilibrium* const given = std::exchange(options_.start, &shape);
     remembered_ = {};
@@ -180,20 +182,21 @@ class EnergySolver::State {
     return result;
   }
 
-  /// Of the last solve().
+  /// Log of the last solve().
   [[nodiscard]] const SearchLog& log() const { return log_; }
-  /// Whether the last solve() has followed every span's last shape.
+  /// Whether the last solve() followed the last shape of every span.
   [[nodiscard]] bool followed() const { return followed_; }
 
  private:
-  /// Adds the time limit to why a search has found no shape, unless it is the reason already.
+  /// Adds the time limit to the message of an unsuccessful search, unless the message already names
+  /// it.
   static void add_time_limit(Equilibrium& result) {
     if (succeeded(result.status) || result.message.find("time limit") != std::string::npos) return;
     result.message += "; the search ended at its time limit";
   }
 
-  /// Solves with one of each set of similar obstacles. If the rod enters one that was omitted, that
-  /// one takes the place of those that are similar to it.
+  /// Solves with one obstacle of each set of similar ones. If the rod enters an omitted obstacle,
+  /// that one replaces the obstacles similar to it in the next attempt.
   /// @return empty if no obstacle was omitted, or if the result is not certified with all obstacles
   std::vector<Equilibrium> solve_without_similar_obstacles(const Problem& problem,
                                                            const std::vector<PlacedSpan>& placed,
@@ -225,7 +228,7 @@ class EnergySolver::State {
     return {};
   }
 
-  /// @return none where the last shape only does not lead on
+  /// @return empty if From::last_shape_only does not lead to an equilibrium
   std::vector<Equilibrium> solve_placed(const Problem& problem, std::vector<PlacedSpan>& placed,
                                         Wanted wanted, From from, const Deadline& deadline) {
     const bool warm = from != From::nothing && remembered_.size() == placed.size();
@@ -268,7 +271,7 @@ class EnergySolver::State {
     return {};
   }
 
-  /// A span's equilibria, best first, the best of which is remembered.
+  /// Returns a span's equilibria, best first, and remembers the best one.
   [[nodiscard]] std::vector<SpanSolution> solve_span_at(std::size_t index, const PlacedSpan& placed,
                                                         const Problem& problem,
                                                         const SpanOptions& options, bool warm) {
@@ -295,8 +298,8 @@ class EnergySolver::State {
   bool followed_ = false;
   SpanWorkspace workspace_;
   std::vector<Remembered> remembered_,
-      former_;                                           // after the last call, and before it
-  std::vector<RememberedTwist> twists_, former_twists_;  // the same
+      former_;                                           // after the last call and before it
+  std::vector<RememberedTwist> twists_, former_twists_;  // after the last call and before it
 };
 
 EnergySolver::EnergySolver(const EnergyOptions& options)

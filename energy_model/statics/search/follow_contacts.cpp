@@ -12,8 +12,8 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Whether the last two shapes have the same unknowns and contacts, so that a third may be looked
-/// for where they lead.
+/// Whether the last two shapes have the same unknowns and contacts, so that they can be
+/// extrapolated.
 bool goes_on_like_before(const SpanStart& start) {
   const KnownShape& known = start.known;
   const KnownShape& before = start.before;
@@ -29,10 +29,10 @@ bool goes_on_like_before(const SpanStart& start) {
   });
 }
 
-/// Fewer than the known shape has, where the last ones are for nothing: a contact that has just
-/// begun takes many for a while. Of rods in the plane.
+/// Returns a number of coefficients that suffices for the known shape, which may have more than
+/// needed: a contact that has just begun needs many for a while. For rods in the plane.
 int enough_terms_of_known(const SpanOptions& options, const ActiveSet& active_set) {
-  // As refined() has it, with a margin.
+  // The criterion of refined(), with a margin.
   constexpr double margin = 0.1;
   const SpanEnergy& model = *options.start.known.model;
   const int many = model.terms();
@@ -41,8 +41,9 @@ int enough_terms_of_known(const SpanOptions& options, const ActiveSet& active_se
   return terms_needed(model, options.start.known.x, margin * options.tolerance, least);
 }
 
-/// An equilibrium with the known contacts, by Newton's method from where the last two shapes lead.
-/// @param share of the way from the one before to the known one that is gone on
+/// Solves for the equilibrium with the known contacts, by Newton's method from the extrapolation of
+/// the last two shapes.
+/// @param share  step of the extrapolation, divided by the last change; 0: start at the known shape
 SpanSolution next_to_known(Span span, double share, const SpanOptions& options,
                            SpanWorkspace& workspace, const ActiveSet& active_set) {
   const KnownShape& known = options.start.known;
@@ -50,7 +51,7 @@ SpanSolution next_to_known(Span span, double share, const SpanOptions& options,
   for (std::size_t i = 0; share > 0 && i < span.contacts.size(); ++i) {
     const Span::Contact& last = before.model->span().contacts[i];
     const Span::Contact at = span.contacts[i];
-    // The ends of the rod are no places from where a contact comes.
+    // Contacts at the ends of the rod do not move along it.
     const bool inside = at.begin > 0 && at.end < span.length;
     const double begin = at.begin + share * (at.begin - last.begin);
     const double end = at.end + share * (at.end - last.end);
@@ -65,10 +66,10 @@ SpanSolution next_to_known(Span span, double share, const SpanOptions& options,
   SpanEnergy& model = *solution.model;
   if (model.pieces() != known.model->pieces()) return {};
   const bool fits = span.planar || span.has_material_directors();
-  // The fit also says how often the clamps are wound.
+  // The fit also determines the winding of the clamps.
   solution.x =
       fits ? model.fit(options.start.field(model.nodes())) : model.prolong(*known.model, known.x);
-  // A part that comes to be short has fewer of them.
+  // A part that becomes short has fewer multipliers.
   const bool as_held = known.multipliers.size() == model.constraints();
   if (as_held) solution.multipliers = known.multipliers;
   const bool as_many = solution.terms == known.model->terms();
@@ -98,7 +99,8 @@ SpanSolution follow_contacts(const Span& searched, const SpanOptions& options,
   if (share > 0 && !solution.is_equilibrium()) {
     solution = next_to_known(span, 0, options, workspace, active_set);
   }
-  // Where a point begins to lie it slides with no least gap, and a part is too short to be told.
+  // At a point that becomes a part the gap has no minimum, and the part is still too short to
+  // resolve.
   if (!solution.is_equilibrium() && hold_points(span)) {
     solution = active_set.newton_from(span, start.field);
   }

@@ -6,9 +6,10 @@
 
 namespace dlo::energy_model {
 
-/// The equilibrium next to a known one (SpanOptions::start) of a span whose grips or obstacles have
-/// moved a little: Newton's method with its contacts from where the last two shapes lead, then as
-/// ActiveSet mends them. No search; `followed` where it is stable or a singular point.
+/// Solves for the equilibrium near a known one (SpanOptions::start) of a span whose grips or
+/// obstacles have moved a little: Newton's method with its contacts from the extrapolation of the
+/// last two shapes, then updates by ActiveSet. There is no search. The result is `followed` if it
+/// is stable or a singular point.
 [[nodiscard]] SpanSolution follow_contacts(const Span& searched, const SpanOptions& options,
                                            SpanWorkspace& workspace);
 

@@ -14,22 +14,23 @@ namespace dlo::energy_model {
 namespace {
 
 constexpr int most_boundary_steps = 25;
-/// Broyden's updates until the derivatives are made anew.
+/// Number of Broyden updates between two evaluations of the derivatives.
 constexpr int updates_a_derivative = 8;
-/// Times that a step is cut to a quarter which leads to no equilibrium.
+/// Maximum number of times that a step without an equilibrium is divided by 4.
 constexpr int most_cuts = 3;
-/// Step at which an end is found, in lengths.
+/// Step of the ends, divided by the rod length, below which they have converged.
 constexpr double converged_step = 1e-10;
-/// Residual at which there is nothing to mend: free_boundary.hpp's measures, which are steps or
-/// more. A curvature that is left at a lift-off is a moment there. What the contact carries has to
-/// make up for it next to that end, and its series of K terms ends with a force K^2 times as large.
+/// Largest residual (in the measures of free_boundary.hpp, which are at least the step) that counts
+/// as zero. A remaining curvature at a lift-off is a moment there. The contact has to balance it
+/// next to that end, and its series of K coefficients has a force K^2 times as large at the end.
 constexpr double zero_residual = 1e-12;
-/// Below, steps that no longer halve the residual are rounding.
+/// Residual below which steps that do not halve it count as rounding.
 constexpr double small_residual = 1e-10;
-/// Longest step, in lengths: the polygon has told where the ends are; and over the room beside one.
+/// Longest step, divided by the rod length (the polygon has already located the ends), and divided
+/// by the free distance on that side.
 constexpr double longest_step = 0.02;
 constexpr double largest_room_share = 0.45;
-/// Of a difference, over the room.
+/// Step of the finite differences, divided by the free distance.
 constexpr double difference = 1e-6;
 
 class FreeBoundaryNewton {
@@ -67,7 +68,7 @@ class FreeBoundaryNewton {
     return free_boundary_residual(solution, ends_);
   }
 
-  /// Between each contact and the next.
+  /// Returns the lengths between consecutive contacts.
   [[nodiscard]] static std::vector<double> gaps_of(const SpanSolution& solution) {
     const std::vector<Span::Contact>& contacts = solution.model->span().contacts;
     std::vector<double> gaps;
@@ -77,10 +78,10 @@ class FreeBoundaryNewton {
     return gaps;
   }
 
-  /// Whether two contacts have come so near to each other that they are one: apart they would take
+  /// Whether two contacts are so close that they should be joined; separate contacts would take
   /// many steps to meet.
   [[nodiscard]] bool meet() const {
-    constexpr double near = 0.5;  // of the gap at first
+    constexpr double near = 0.5;  // of the initial gap
     const Span& span = solution_.model->span();
     const std::vector<double> gaps = gaps_of(solution_);
     for (std::size_t i = 0; i < gaps.size(); ++i) {
@@ -107,7 +108,7 @@ class FreeBoundaryNewton {
     return way;
   }
 
-  /// The equilibrium with ends that are moved, from where the derivatives by them lead.
+  /// Solves for the equilibrium with moved ends, from a first-order prediction.
   [[nodiscard]] SpanSolution with_moved(const Eigen::VectorXd& way, NewtonMethod method) {
     Span span = solution_.model->span();
     for (std::size_t i = 0; i < ends_.size(); ++i) {
@@ -131,8 +132,9 @@ class FreeBoundaryNewton {
     return result;
   }
 
-  /// @param[in,out] way  cut where it leads to no equilibrium
-  /// @return whether it has been gone
+  /// Moves the ends.
+  /// @param[in,out] way  shortened if it leads to no equilibrium
+  /// @return whether an equilibrium was found
   [[nodiscard]] bool move(Eigen::VectorXd& way) {
     const Eigen::VectorXd whole = way;
     SpanSolution trial;
@@ -162,7 +164,8 @@ class FreeBoundaryNewton {
     return true;
   }
 
-  /// Whether it has the same unknowns as the solution: pieces come and go with their lengths.
+  /// Whether a solution has the same unknowns; the number of elements may change with their
+  /// lengths.
   [[nodiscard]] bool is_alike(const SpanSolution& other) const {
     return other.x.size() == solution_.x.size() &&
            other.multipliers.size() == solution_.multipliers.size();
@@ -176,7 +179,7 @@ class FreeBoundaryNewton {
       const FreeBoundary& end = ends_[static_cast<std::size_t>(i)];
       const Span::Contact& contact = solution_.model->span().contacts[end.contact];
       if (!contact.lies() && contact.slides) {
-        // Where a rod touches does not depend on where it is looked for.
+        // A sliding contact point does not depend on where its search begins.
         jacobian_.col(i) = Eigen::VectorXd::Unit(residual_.size(), i);
         continue;
       }
@@ -198,12 +201,12 @@ class FreeBoundaryNewton {
   SpanSolution& solution_;
   const Deadline& deadline_;
   SpanWorkspace& workspace_;
-  std::shared_ptr<NewtonFactor> factor_;  // the last one, of ends that were hardly elsewhere
+  std::shared_ptr<NewtonFactor> factor_;  // the last one, for nearly the same ends
   std::vector<FreeBoundary> ends_;
   Eigen::VectorXd residual_;
   // Derivatives by the ends: of the residual, and of an equilibrium's unknowns and multipliers.
   Eigen::MatrixXd jacobian_, x_by_ends_, multipliers_by_ends_;
-  std::vector<double> gaps_;  // at first
+  std::vector<double> gaps_;  // at the begin
   int spent_ = 0;
 };
 

@@ -4,12 +4,13 @@
 
 namespace dlo::energy_model {
 
-/// The free-boundary problem of where a rod lifts off: Newton's method moves the ends of its
-/// contacts until the free-boundary residual (FreeBoundary) is zero, with differences for
-/// derivatives, each an equilibrium of its own, then Broyden's. The shape's energy is stationary in
-/// them, so that its error is the square of theirs. Ends that do not converge are left where they
-/// came to.
+/// Solves the free-boundary problem of lift-off: moves the ends of a solution's contacts until the
+/// free-boundary residual (FreeBoundary) is zero, by Newton's method with finite differences, each
+/// of which needs an equilibrium of its own, followed by Broyden updates. The energy is stationary
+/// in the ends, so that the error of the shape is the square of theirs. Ends that do not converge
+/// stay at their last positions.
 /// @param[in,out] solution  an equilibrium with its contacts
+/// @return number of energy evaluations
 /// @return evaluations of the energy
 int free_boundary_newton(SpanSolution& solution, const Deadline& deadline,
                          SpanWorkspace& workspace);

@@ -9,38 +9,39 @@
 
 namespace dlo::energy_model {
 
-/// An equilibrium of a span, and the frame that it is found in.
+/// An equilibrium of a span, and the frame in which it was found.
 struct PlacedSolution {
   PlacedSpan placed;
   SpanSolution solution;
 };
 
-/// A shape along points, to start from: its tangents are those of chords between points that are no
-/// closer than a sixty-fourth of the rod, so that scatter across the rod tilts them little; beyond
-/// the first and the last point it is straight.
-/// @param arc_lengths  of the points [m], growing, two or more;  @param points  [m], 3 x M
+/// Returns a shape along points as an initial guess. Its tangents are those of chords between
+/// points at least a sixty-fourth of the rod apart, so that scatter across the rod tilts them
+/// little. Beyond the first and the last point it is straight.
+/// @param arc_lengths  of the points [m], ascending, two or more;  @param points  [m], 3 x M
 /// @param length  of the rod [m]
-/// @throws std::invalid_argument if these are out of range, or if two points that follow each other
-/// coincide
+/// @throws std::invalid_argument if a value is out of range, or if all points coincide
 [[nodiscard]] Equilibrium shape_through(const std::vector<double>& arc_lengths,
                                         const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                                         double length);
 
-/// Tangents of an equilibrium as a span sees them; both have to outlive it.
+/// Returns the tangents of an equilibrium in a span's frame; both arguments have to outlive the
+/// result.
 [[nodiscard]] TangentField field_of(const Equilibrium& start, const PlacedSpan& placed,
                                     double length);
 
-/// What an equilibrium says of the twist of a span; null: nothing.
+/// Returns an equilibrium's twist of a span; null if it has none.
 [[nodiscard]] const TwistedPart* known_twist(const Equilibrium& known, const PlacedSpan& placed,
                                              double length);
 
-/// What touches a span in an equilibrium, by growing s; obstacles have their index alone.
+/// Returns the contacts of a span in an equilibrium, by ascending s; of each obstacle only the
+/// index is set.
 [[nodiscard]] std::vector<Span::Contact> known_contacts(const Equilibrium& known,
                                                         const PlacedSpan& placed, double length);
 
-/// The spans of a problem at a known equilibrium, all as ones in space that bend out of their plane
-/// too, each by Newton's method from its shape.
-/// @param terms  of each piece
+/// Returns the spans of a problem at a known equilibrium, all in space, so that they bend out of
+/// their plane too. Each is solved by Newton's method from its shape.
+/// @param terms  number of coefficients of each element
 [[nodiscard]] std::vector<PlacedSolution> spans_in_space(const Problem& problem,
                                                          const Equilibrium& known, int terms,
                                                          const Deadline& deadline,

@@ -13,11 +13,11 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Arc lengths of a grip and of the end of its span, over the length, that are equal but for
-/// rounding.
+/// Largest difference of the arc lengths of a grip and of the end of its span, divided by the rod
+/// length, by rounding.
 constexpr double same_hold = 1e-9;
 
-/// Tangent and the material's d1 at an arc length within a shape, in space.
+/// Tangent and material d1 of a shape at an arc length, in space.
 struct MaterialAt {
   Eigen::Vector3d tangent, d1;
 };
@@ -28,7 +28,7 @@ MaterialAt material_at(const PlacedShape& shape, double length, double arc_lengt
   return {samples.tangents.col(0), samples.d1.col(0)};
 }
 
-/// Turns the material of a shape so that it has this d1 there.
+/// Rotates the material of a shape so that it has this d1 at an arc length.
 void turn_to(PlacedShape& shape, double length, double arc_length, const Eigen::Vector3d& d1) {
   const MaterialAt here = material_at(shape, length, arc_length);
   const double sense = shape.reversed ? -1 : 1;
@@ -36,7 +36,7 @@ void turn_to(PlacedShape& shape, double length, double arc_length, const Eigen::
   shape.ahead = [by, before = std::move(shape.ahead)](double s) { return by + before(s); };
 }
 
-/// Where the first of the grips that twist holds d1.
+/// Returns d1 of the frame that the first twisting grip prescribes.
 Eigen::Vector3d first_d1(const Problem& problem, double arc_length) {
   const auto grip = std::ranges::find_if(problem.grips, [&](const Grip& each) {
     return each.frame && std::abs(each.at - arc_length) <= same_hold * problem.length;

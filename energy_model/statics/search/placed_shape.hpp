@@ -10,26 +10,27 @@
 
 namespace dlo::energy_model {
 
-/// A span's shape and where it lies.
+/// A span's shape and its position in space.
 struct PlacedShape {
   SpanShape shape;
   bool reversed;
   double start, end;         ///< arc lengths of s = 0 and of the last point in the rod's order [m]
   Eigen::Matrix3d to_space;  ///< from the span's frame
   Eigen::Vector3d anchor;    ///< [m]
-  /// Of s: the angle about the span's tangent by which the material's d1 is turned on from that of
-  /// SpanShape [rad]; none: the rod has no material directors to tell.
+  /// Function of s: angle about the span's tangent from SpanShape's d1 to the material's d1 [rad];
+  /// empty: the rod has no material directors.
   std::function<double(double)> ahead;
 };
 
-/// Where a span lies, without `ahead`.
+/// Returns the placed shape of a solution, without `ahead`.
 [[nodiscard]] PlacedShape placed_shape(const PlacedSpan& placed, const SpanSolution& solution,
                                        double length);
 
-/// Gives the shapes of a round straight rod their `ahead`, where clamps twist it: a torque that is
-/// the same all along a twisted span turns the material by its share of the compliance 1 / GJ; what
-/// lies beside it is not twisted, and goes on from it. Nothing where no span is twisted.
-/// @param shapes, solutions  of all spans, by growing arc length
+/// Sets `ahead` for the shapes of a round straight rod that clamps twist. The torque is constant
+/// along a twisted span and rotates the material in proportion to the compliance 1 / GJ. Adjacent
+/// spans are not twisted, and their material continues that of the twisted span. Does nothing if no
+/// span is twisted.
+/// @param shapes, solutions  of all spans, by ascending arc length
 void place_twisted_material(const Problem& problem,
                             const std::vector<const SpanSolution*>& solutions,
                             std::vector<PlacedShape>& shapes);

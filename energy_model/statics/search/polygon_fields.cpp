@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t most_fields = 12;
 
-/// Of a polygon that is relaxed once more.
+/// Maximum number of intervals of a polygon that is relaxed again.
 constexpr double most_field_intervals = 600;
 
 Eigen::VectorXd middles_of(const RodMesh& mesh) {
@@ -34,7 +34,7 @@ PolygonFields::PolygonFields(const Problem& problem, const PlacedSpan& placed,
   span_ = *std::min_element(spans.begin(), spans.end(), [&](const auto& a, const auto& b) {
     return std::abs(a.begin - begin) < std::abs(b.begin - begin);
   });
-  // Boundary layers of the loads, and no more than a coarse polygon needs.
+  // Resolves boundary layers of the loads, but no more than a coarse polygon needs.
   const double load = std::min(total_load(*span_), 1e4);
   longest_ = std::min(span_->length / 16, 1 / std::sqrt(std::max(load, 1.0)));
   const RodMesh mesh = make_mesh(*span_, longest_);

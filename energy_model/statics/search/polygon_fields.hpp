@@ -12,16 +12,16 @@
 
 namespace dlo::energy_model {
 
-/// The lowest minima of a coarse polygon, lowest first: those that solve_exact() shoots from. For a
-/// planar span those in its plane and those out of it. None where clamps pass a torque on, of which
-/// the polygon knows nothing.
+/// The lowest minima of a coarse polygon, lowest first: the initial guesses of solve_exact(). For a
+/// planar span they include minima in its plane and out of it. There are none if clamps transmit a
+/// torque, which the polygon does not model.
 class PolygonFields {
  public:
   PolygonFields(const Problem& problem, const PlacedSpan& placed, const Deadline& deadline);
 
   [[nodiscard]] std::size_t size() const { return minima_.size(); }
-  /// Tangents of one of them, in the span's frame. Where what the grips do to it bends it within
-  /// less than its segments, it is first relaxed with shorter ones, from where it is.
+  /// Returns the tangents of one minimum, in the span's frame. If the grips' forces bend it within
+  /// less than a segment, it is first relaxed with shorter segments.
   [[nodiscard]] TangentField field(std::size_t index) const;
 
  private:
@@ -29,7 +29,7 @@ class PolygonFields {
   bool reversed_;
   Eigen::Matrix3d frame_;
   std::optional<RodSpan> span_;
-  double longest_ = 0;  // interval
+  double longest_ = 0;  // longest interval of the mesh
   std::vector<RelaxedPolygon> minima_;
 };
 

@@ -9,27 +9,27 @@
 
 namespace dlo::energy_model {
 
-/// A span's last solution, to go on from; nothing after a failure.
+/// A span's last solution, from which the next one may start; empty after a failure.
 struct Remembered {
   KnownShape last;
   KnownShape before;                                    ///< the one before it, without a factor
-  std::shared_ptr<const SpanPoint> point;               ///< of `last`
+  std::shared_ptr<const SpanPoint> point;               ///< point of `last`
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< PlacedSpan::frame
 
   [[nodiscard]] bool is_known() const { return last.model != nullptr; }
   [[nodiscard]] bool planar() const { return !is_known() || last.model->span().planar; }
 
   void remember(const SpanSolution& found, const PlacedSpan& placed);
-  /// Its shape as a span sees it whose frame may be another one. At the nodes where they were,
-  /// unless grips or loads have moved along the rod.
+  /// Returns the remembered shape in the frame of a span, which may differ. Exact at the remembered
+  /// nodes; other arc lengths get the value of the nearest node.
   [[nodiscard]] TangentField field(const PlacedSpan& placed) const;
 };
 
-/// The same of a span that clamps twist, which is followed without twist too.
+/// Memory of a span that clamps twist, for its solution without twist too.
 struct RememberedTwist {
   Remembered untwisted, twisted;
   double twist = 0;   ///< of `twisted` [rad]
-  double turned = 0;  ///< of the end's frame from where the untwisted rod has it [rad]
+  double turned = 0;  ///< rotation of the end's frame relative to the untwisted rod's [rad]
 };
 
 }  // namespace dlo::energy_model

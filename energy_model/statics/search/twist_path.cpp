@@ -25,61 +25,61 @@ namespace {
 
 using std::numbers::pi;
 
-/// Turns of the end in one step [rad].
+/// Size of the first, the longest and the shortest continuation step: rotation of the end [rad].
 constexpr double first_turn = 1.6;
 constexpr double longest_turn_step = 1.6;
 constexpr double least_turn = 1e-4;
-/// A shape that has lost its stability is left from this near to where it did.
+/// Largest step after which a shape that has become unstable is accepted, to start a descent from
+/// it [rad].
 constexpr double turn_at_loss = 0.02;
 
-/// By how much, of a rod's own twisting energy over such a turn, a step's energy may differ from
-/// the torque's work on the same branch.
+/// Largest difference between the change of energy in a step and the torque's work, divided by the
+/// energy of a straight rod twisted by the step, on the same branch.
 constexpr double branch_share = 0.05;
-/// The same for a step after which the next one may be longer.
+/// Largest such difference after which the next step may be longer.
 constexpr double smooth_share = 0.005;
 
-/// Curvature over the forces below which rounding alone would move a shape visibly.
+/// Eigenvalue, divided by the forces, below which rounding alone would move a shape visibly.
 constexpr double rounded_curvature = 1e-9;
 
-/// Distance of unknowns up to which a factor tells the stability of a stiff shape, and curvature
-/// from which it is one.
+/// Distance of unknowns up to which a factor determines the stability of a stiff shape, and
+/// smallest eigenvalue of a stiff shape.
 constexpr double nearest_factor = 1e-3;
 constexpr double least_stiff_eigenvalue = 1e-2;
 
-/// Branch jumps, which would go on without an end where each leads to the next.
+/// Maximum number of branch jumps; without a limit each could lead to the next.
 constexpr int most_branch_jumps = 60;
 
-/// Of them those that a polygon has to be asked for; each may take a second.
+/// Maximum number of polygons relaxed after branch jumps; each may take a second.
 constexpr int most_polygons = 6;
 
-/// Push along the direction in which a shape gives way, and how often it is made larger.
+/// Displacement along the unstable direction, and number of times that it is increased.
 constexpr double first_push = 0.1;
 constexpr int most_pushes = 4;
 
-/// Coefficients up to this of the angle that they turn are left for the end of
-/// the path, and where that leads to nothing.
+/// Truncation tolerances of a path: coefficients that contribute a smaller angle [rad] are added
+/// only at the end. The second value is used if the path with the first one fails.
 constexpr double coarse_tolerance = 1e-5;
 constexpr double fine_tolerance = 1e-6;
 
-/// The fewest coefficients of a path.
+/// Smallest number of coefficients of a path.
 constexpr int least_path_terms = 8;
 
-/// Coefficients that a twisted shape of which nothing else is known is first given.
+/// First number of coefficients of a twisted shape of which nothing else is known.
 constexpr int unknown_terms = 24;
 
-/// Angle about `axis` from a to the part of b across it, in (-pi, pi].
+/// Returns the angle about `axis` from a to the component of b normal to it, in (-pi, pi].
 double angle_about(const Eigen::Vector3d& axis, const Eigen::Vector3d& a,
                    const Eigen::Vector3d& b) {
   const double angle = std::atan2(axis.dot(a.cross(b)), a.dot(b) - axis.dot(a) * axis.dot(b));
-  // Half a turn is half a turn, whatever rounding says.
+  // An angle of -pi by rounding is returned as pi.
   constexpr double rounding = 1e-9;
   return angle < -pi + rounding ? pi : angle;
 }
 
 class TwistPath {
  public:
-  /// @param tolerance  coefficients up to this of the angle that they turn are
-  /// left out
+  /// @param tolerance  coefficients that contribute a smaller angle [rad] are left out
   TwistPath(const Span& span, double stiffness, const UntwistedShape& untwisted,
             const SpanOptions& options, double tolerance, SpanWorkspace& workspace)
       : span_(in_space(span)),
@@ -118,7 +118,7 @@ class TwistPath {
       } else if (std::abs(turn) > least_turn) {
         turn /= 3;
       } else {
-        // The branch ends.
+        // The branch ends here.
         angle_ += turn;
         turn_clamp(here_, angle_);
         leave();
@@ -139,26 +139,27 @@ class TwistPath {
     return span;
   }
 
-  /// Of the coefficients of a shape those that are not left out.
+  /// Returns the number of a shape's coefficients that are kept.
   [[nodiscard]] int terms_of(const SpanSolution& solution) const {
     if (options_.terms > 0) return solution.terms;
     return terms_needed(*solution.model, solution.x, tolerance_, least_path_terms);
   }
 
-  /// The angle that the last of K coefficients adds is a_K / (2K); positions
-  /// feel it as little again.
+  /// Returns the truncation indicator that is acceptable. The last of K coefficients contributes an
+  /// angle of a_K / (2K); its effect on positions is smaller by this factor again.
   [[nodiscard]] double tail_left(int terms) const {
     const double K = terms;
     return tolerance_ * 4 * K * K;
   }
 
-  /// Turns the end's clamp from where the untwisted rod has it.
+  /// Rotates the end's clamp by an angle relative to the untwisted rod's end frame.
   void turn_clamp(SpanSolution& solution, double angle) const {
     const Eigen::AngleAxisd about(angle, *span_.end_direction);
     solution.model->turn_end_clamp(about * first_d1_);
   }
 
-  /// The equilibrium next to where the last two point at.
+  /// Solves for the equilibrium near the extrapolation of the last two; std::nullopt if it is not
+  /// on the same branch.
   [[nodiscard]] std::optional<SpanSolution> stepped(double turn) {
     SpanSolution next = here_;
     turn_clamp(next, angle_ + turn);
@@ -170,14 +171,14 @@ class TwistPath {
       next.x = next.model->with_twist(next.x, next.model->twist(next.x) + turn);
     }
     const Eigen::VectorXd predicted = next.x;
-    // Where nothing is neutral the factor that has told the stability of the last shape serves.
+    // If no eigenvalue is near zero, the factor from the last stability test is reused.
     newton(next, stiff_ ? NewtonMethod::simplified : NewtonMethod::corrector);
     next = on_obstacles(std::move(next));
     spent_ += next.evaluations;
     next.evaluations = 0;
     if (!next.is_equilibrium()) return std::nullopt;
-    // On the same branch the energy has risen by the torque's work. The shape tells less: it may
-    // rotate around a line at no energy.
+    // On the same branch the energy changes by the torque's work. The shape is no criterion: it may
+    // rotate about a line without a change of energy.
     const double work = (torque(here_) + torque(next)) / 2 * turn;
     const double unit = here_.model->span().twist->stiffness / span_.length * turn * turn;
     const double rounding = 1e-9 * (1 + load_ + std::abs(next.energy));
@@ -189,13 +190,14 @@ class TwistPath {
     return next;
   }
 
-  /// With its contacts, of an equilibrium that may be behind rigid obstacles or be pulled by them.
+  /// Updates the contacts of an equilibrium that may be within rigid obstacles or be pulled by
+  /// them.
   [[nodiscard]] SpanSolution on_obstacles(SpanSolution solution) {
     if (span_.rigid_obstacles.empty() || !solution.is_equilibrium()) return solution;
     return active_set_.update(std::move(solution));
   }
 
-  /// @param how  simplified: with the solution's own factor
+  /// @param how  simplified: uses the solution's own factor
   void newton(SpanSolution& solution, NewtonMethod how) {
     newton_solve(solution,
                  {.load = load_,
@@ -222,7 +224,7 @@ class TwistPath {
     angle_ = angle;
   }
 
-  /// More terms, where the shape needs them. @return whether it has got some
+  /// Adds coefficients if the shape needs them. @return whether any were added
   bool resolve() {
     const bool affordable = here_.terms < max_terms && here_.model->size() * 5 / 4 < most_unknowns;
     const bool resolved = here_.model->truncation(here_.x) < tail_left(here_.terms) &&
@@ -249,12 +251,12 @@ class TwistPath {
     }
     if (distance_of_factor(solution) > 0) factor_at(solution);
     Eigen::MatrixXd projected = solution.factor->system.reduced_hessian().matrix();
-    // Under large forces what is next to neutral is lost in rounding, whichever sign it has.
+    // Under large forces the sign of an eigenvalue near zero is lost in rounding.
     projected.diagonal().array() += rounded_curvature * solution.multipliers.norm();
     return is_minimum(projected);
   }
 
-  /// Infinite where there is none.
+  /// Infinity if there is no factor.
   [[nodiscard]] double distance_of_factor(const SpanSolution& solution) const {
     if (!solution.factor) return std::numeric_limits<double>::infinity();
     return solution.factor->distance(solution, scale_of_forces(solution, load_));
@@ -264,7 +266,7 @@ class TwistPath {
     workspace_.factors().factor_at(solution, *solution.at_x(), load_);
   }
 
-  /// Downhill to what is stable, from beside here.
+  /// Descends from a displaced shape to a stable one.
   void leave() {
     if (++branch_jumps_ > most_branch_jumps)
       return here_.fail("the rod jumps from branch to branch");
@@ -272,7 +274,7 @@ class TwistPath {
     ReducedHessian reduced;
     reduced.compute(at.hessian, at.jacobian);
     std::optional<Eigen::VectorXd> way = negative_curvature_direction(reduced);
-    // Next to a fold the branch goes where the rod gives way.
+    // Near a fold the shape moves along the unstable direction, as in the last step.
     if (!way && last_step_.norm() > 0) way = last_step_.normalized();
     if (!way) way = direction_by_size(reduced, 0);
     slope_x_.resize(0);
@@ -306,7 +308,7 @@ class TwistPath {
     here_.fail("nothing stable was found below a twist of " + std::to_string(angle_) + " rad");
   }
 
-  /// What touches elsewhere a polygon tells that descends from the same place.
+  /// Relaxes a polygon from the same shape to find contacts elsewhere.
   [[nodiscard]] std::optional<SpanSolution> from_polygon(
       const std::optional<Eigen::VectorXd>& way) {
     Span span = here_.model->span();
@@ -329,20 +331,20 @@ class TwistPath {
   ActiveSet active_set_;
   double tolerance_;
   double load_;
-  Eigen::Vector3d first_d1_;  // of the end, untwisted
+  Eigen::Vector3d first_d1_;  // d1 of the untwisted end
   SpanSolution here_;
   double angle_ = 0;
   int spent_ = 0;
   int branch_jumps_ = 0;
   int polygons_ = 0;
-  bool smooth_ = false;  // the last step was shorter than it need be
-  bool aside_ = false;   // the last step has gone aside from where it pointed at
+  bool smooth_ = false;  // the last step was shorter than necessary
+  bool aside_ = false;   // the last step has deviated from its prediction
   Eigen::VectorXd last_step_;
-  Eigen::VectorXd slope_x_, slope_multipliers_;  // by angle; none after a jump
-  bool stiff_ = false;  // nothing is next to neutral at the shape that was last asked about
+  Eigen::VectorXd slope_x_, slope_multipliers_;  // derivatives by the angle; empty after a jump
+  bool stiff_ = false;  // no eigenvalue of the last tested shape is near zero
 };
 
-/// With all terms, and with contacts that are right where there are rigid obstacles.
+/// Refines with all coefficients and, with rigid obstacles, with converged contacts; certified.
 SpanSolution certified(SpanSolution solution, const SpanOptions& options,
                        SpanWorkspace& workspace) {
   Span span = solution.model->span();
@@ -396,7 +398,7 @@ SpanSolution twist_from(const TangentField& field, const EndFrame& frame, const 
   twisted.planar = false;
   twisted.twist = Span::Twist{stiffness, frame.d1};
   SpanSolution solution;
-  // The shape does not say how many terms it takes.
+  // The shape does not determine how many coefficients it needs.
   for (int terms = unknown_terms;; terms = std::min(max_terms, 3 * terms / 2)) {
     solution = workspace.empty_solution(twisted, terms);
     SpanEnergy& model = *solution.model;

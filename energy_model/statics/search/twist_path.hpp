@@ -7,13 +7,13 @@
 
 namespace dlo::energy_model {
 
-/// The end frame that holds a span's twist.
+/// The end frame that prescribes a span's twist.
 struct EndFrame {
   Eigen::Vector3d d1;  ///< Span::Twist::end_d1
-  double twist;        ///< of the rod that has been twisted from the untwisted shape [rad]
+  double twist;        ///< twist of the rod relative to the untwisted shape [rad]
 };
 
-/// A shape of a span, planar or not.
+/// A shape of a span without prescribed twist, planar or not.
 struct UntwistedShape {
   const SpanSolution& solution;
   Eigen::Vector3d end_d1;  ///< transported from Span::first_d1() at its start
@@ -24,23 +24,24 @@ struct UntwistedShape {
 [[nodiscard]] UntwistedShape untwisted_shape(const SpanSolution& solution,
                                              SpanWorkspace& workspace);
 
-/// Span::Twist::end_d1 of a span whose frames are held so.
+/// Returns Span::Twist::end_d1 of a span with these prescribed frames.
 [[nodiscard]] Eigen::Vector3d held_end_d1(const HeldFrames& held, const Span& span);
 
-/// Where the later clamp holds d1, and how far that twists this shape, whole turns counted.
+/// Returns d1 of the later clamp, and the angle by which it twists this shape, with whole turns.
 [[nodiscard]] EndFrame end_frame(const HeldFrames& held, const UntwistedShape& untwisted);
 
-/// Turns the end of a stable shape until it meets the frame, by the angle nearest to `frame.twist`,
-/// little by little, as a gripper would: each step by Newton's method from where the last two point
-/// at, and where the shape has lost its stability or the branch has ended, downhill to the next
-/// one. Certified, or `failed` or `time_limit` with the angle that it came to.
+/// Rotates the end of a stable shape in small steps until it meets the frame, by the angle nearest
+/// to `frame.twist`, as a gripper would. Each step is solved by Newton's method from the
+/// extrapolation of the last two shapes. If the shape has become unstable or the branch has ended,
+/// a descent leads to the next stable one. The result is certified, or `failed` or `time_limit`
+/// with the angle that was reached.
 /// @param span       without twist
 /// @param stiffness  GJ / EI
 [[nodiscard]] SpanSolution twist_to(const EndFrame& frame, const Span& span, double stiffness,
                                     const UntwistedShape& untwisted, const SpanOptions& options,
                                     SpanWorkspace& workspace);
 
-/// The equilibrium next to a twisted shape that is known, by its tangents and its twist.
+/// Solves for the equilibrium near a known twisted shape, given by its tangents and its twist.
 [[nodiscard]] SpanSolution twist_from(const TangentField& field, const EndFrame& frame,
                                       const Span& span, double stiffness,
                                       const SpanOptions& options, SpanWorkspace& workspace);

@@ -16,16 +16,16 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Turn of a clamp at once that may be followed on the same branch [rad].
+/// Largest rotation of a clamp at once that may stay on the same branch [rad].
 constexpr double largest_followed_turn = 1;
 
-/// Terms by which the writhe of a shape is told that is only a guess.
+/// Number of coefficients for the writhe of a shape that is only a guess.
 constexpr int terms_of_guess = 24;
 
 constexpr const char* turned_little_by_little =
     "stable shapes without twist, turned little by little";
 
-/// A shape that is followed may be one that a bifurcation leaves open.
+/// Whether a shape may be followed: an equilibrium, or a singular point.
 bool is_known(const SpanSolution& solution) {
   return solution.is_equilibrium() || solution.is_singular_point();
 }
@@ -40,7 +40,8 @@ class TwistedSpan {
         workspace_(workspace),
         held_(*placed.frames) {}
 
-  /// Nothing where a known shape has other turns than are asked for, or leads to none.
+  /// Returns std::nullopt if the known shape has a different number of turns, or if no equilibrium
+  /// is found from it.
   [[nodiscard]] std::optional<SpanSolution> from_known(const Equilibrium& start) const {
     const double l = problem_.length;
     const TwistedPart* part = known_twist(start, placed_, l);
@@ -55,8 +56,8 @@ class TwistedSpan {
     return solution;
   }
 
-  /// Where a polygon with the turns that are held comes to rest from a shape without a known twist,
-  /// and Newton's method from there.
+  /// Solves from a shape without a known twist: relaxes a polygon with the prescribed turns from
+  /// it, then runs Newton's method.
   [[nodiscard]] SpanSolution downhill_of(const Equilibrium& shape) const {
     const TangentField field = field_of(shape, placed_, problem_.length);
     Span span = placed_.span;
@@ -85,7 +86,7 @@ class TwistedSpan {
 
   [[nodiscard]] std::vector<SpanSolution> without_twist(const Remembered* last) const {
     SpanOptions options = options_;
-    // What is found without twist is no result.
+    // Solutions without twist are no results.
     SearchLog log;
     if (options_.wants_all()) options.log = &log;
     std::vector<SpanSolution> found =
@@ -98,7 +99,7 @@ class TwistedSpan {
     return end_frame(held_, untwisted_shape(untwisted, workspace_));
   }
 
-  /// The last twisted shape, turned on.
+  /// Solves from the last twisted shape, rotated further.
   [[nodiscard]] SpanSolution followed(const RememberedTwist& memory, double turned,
                                       const EndFrame& frame) const {
     SpanSolution solution =
@@ -108,8 +109,8 @@ class TwistedSpan {
     return solution;
   }
 
-  /// Each stable shape without twist, turned until it meets the frame; of a rod with material
-  /// directors also those that a search with the held frame finds.
+  /// Rotates each stable shape without twist until it meets the frame. For a rod with material
+  /// directors, also adds results of a search with the prescribed frame.
   [[nodiscard]] std::vector<SpanSolution> turned(const std::vector<SpanSolution>& untwisted) const {
     Found found(options_);
     const HeldFrames held = counted_from(untwisted.front());
@@ -132,7 +133,8 @@ class TwistedSpan {
   }
 
  private:
-  /// The held frames, whose turns count from the best shape without twist where they say nothing.
+  /// Returns the prescribed frames. If their turns are unknown, they are counted from the best
+  /// shape without twist.
   [[nodiscard]] HeldFrames counted_from(const SpanSolution& best) const {
     HeldFrames held = held_;
     if (held.turns.turns) return held;
@@ -143,7 +145,7 @@ class TwistedSpan {
     return held;
   }
 
-  /// Adds equilibria that are found from starts whose frames meet the held one.
+  /// Adds equilibria found from initial guesses whose frames meet the prescribed one.
   void search_with_frame(const HeldFrames& held, Found& found) const {
     Span span = placed_.span;
     span.planar = false;
@@ -153,7 +155,7 @@ class TwistedSpan {
     }
   }
 
-  /// The equilibrium next to a twisted shape that is known.
+  /// Solves for the equilibrium near a known twisted shape.
   [[nodiscard]] SpanSolution next_to(const TangentField& field, const EndFrame& frame,
                                      std::vector<Span::Contact> contacts) const {
     Span span = placed_.span;

@@ -12,12 +12,12 @@
 
 namespace dlo::energy_model {
 
-/// A span between clamps that hold frames: from a shape whose twist is known, if there is one. Else
-/// it is solved without twist, and the clamp is turned from what is stable there. Never empty, best
-/// first.
-/// @param start null: none is known
-/// @param memory of the last call, empty where nothing is to follow it; the shape without twist is
-///               renewed
+/// Solves a span between clamps that prescribe frames: from a shape whose twist is known, if there
+/// is one; otherwise without twist, after which the clamp is rotated from each stable shape found.
+/// The list is never empty, best first.
+/// @param start  null: none is known
+/// @param memory  of the last call, empty if nothing is to be followed; the shape without twist is
+///   updated
 [[nodiscard]] std::vector<SpanSolution> solve_twisted(
     const PlacedSpan& placed, const Problem& problem, const SpanOptions& options,
     const Equilibrium* start, RememberedTwist& memory, SpanWorkspace& workspace);

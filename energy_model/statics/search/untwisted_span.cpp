@@ -17,20 +17,20 @@ constexpr const char* from_polygons = "lowest minima of coarse polygons, by Newt
 std::vector<SpanSolution> search_untwisted(const Span& span, const SpanOptions& options,
                                            SpanWorkspace& workspace) {
   // A polygon stays on the side of an obstacle on which a given shape is; a descent may step over
-  // it.
+  // the obstacle.
   const bool by_polygon = options.only_descends() && !span.soft_obstacles.empty();
   const auto solver =
       span.rigid_obstacles.empty() && !by_polygon ? solve_span : solve_touching_span;
   return solver(span, options, workspace);
 }
 
-/// Largest part of a tangent across the plane [-] of an equilibrium that lies in a plane, and of
-/// points of a rod in a plane, which scatter: the certificate finds out whether the equilibrium
-/// near them is unstable out of the plane, and then it is left in space.
+/// Largest component of a tangent out of the plane [-] for an equilibrium in a plane, and for
+/// scattered points of a rod in a plane. The certificate shows whether the equilibrium near such
+/// points is unstable out of the plane; it is then left in space.
 constexpr double tilt_of_equilibrium = 1e-6;
 constexpr double tilt_of_points = 0.1;
 
-/// Whether a shape leaves a plane that its span could lie in.
+/// Whether a shape leaves the plane of its span.
 bool is_out_of_plane(const Span& span, const TangentField& shape, double largest_tilt) {
   const Eigen::VectorXd s = Eigen::VectorXd::LinSpaced(17, 0, span.length);
   return !(shape(s).tangents.row(2).cwiseAbs().maxCoeff() < largest_tilt);
@@ -45,13 +45,13 @@ bool has_bodies(const Span& span) {
          std::any_of(span.soft_obstacles.begin(), span.soft_obstacles.end(), is_body);
 }
 
-/// The one equilibrium next to SpanOptions::start.
+/// Solves for the single equilibrium near SpanOptions::start.
 SpanSolution from_start(const Span& span, SpanOptions options, SpanWorkspace& workspace) {
   options.log = nullptr;
   return std::move(search_untwisted(span, options, workspace).front());
 }
 
-/// What the minima of a coarse polygon lead to, in the plane and out of it.
+/// Adds the equilibria found from minima of a coarse polygon, in the plane and out of it.
 void add_polygon_minima(const PlacedSpan& placed, const Problem& problem, SpanOptions options,
                         SpanWorkspace& workspace, Found& found) {
   if (!problem.obstacles.empty()) {
@@ -64,8 +64,8 @@ void add_polygon_minima(const PlacedSpan& placed, const Problem& problem, SpanOp
       note_not_tried(options.log, "starts after the time limit");
       return;
     }
-    // A minimum of the polygon is next to one of the rod; fewer terms than resolve it would lead
-    // away.
+    // A minimum of the polygon is near one of the rod; with too few coefficients the solver could
+    // converge elsewhere.
     options.start = {fields.field(i)};
     Span span = placed.span;
     const bool is_out =
@@ -84,7 +84,7 @@ std::vector<SpanSolution> solve_untwisted(const PlacedSpan& placed, const Proble
                                           const Remembered* last, SpanWorkspace& workspace) {
   const bool is_known = shape == nullptr && last != nullptr && last->is_known();
   Found found(options);
-  // Nothing is known after a failure.
+  // After a failure no shape is known.
   if (options.only_follows() && !is_known) {
     (void)found.add({});
     return std::move(found).take();
@@ -105,7 +105,7 @@ std::vector<SpanSolution> solve_untwisted(const PlacedSpan& placed, const Proble
     span.planar = span.planar && !(may_leave && is_out_of_plane(span, options.start.field, tilt));
     SpanSolution followed = from_start(span, options, workspace);
     const bool ends = !followed.is_equilibrium() && !followed.is_singular_point();
-    // Else the branch has ended, or the step was too large for it.
+    // A failure means that the branch has ended or that the step was too large for it.
     found.spend(ends ? std::exchange(followed.evaluations, 0) : 0);
     if (!ends || options.only_follows() || options.only_descends()) {
       (void)found.add(std::move(followed));

@@ -12,10 +12,10 @@
 
 namespace dlo::energy_model {
 
-/// A span of a problem without the twist that clamps put into it: followed from a shape that is
-/// known, where there is one; else searched, and from minima of coarse polygons where that leads to
-/// no stable shape, or all are wanted. Never empty, best first.
-/// @param shape, last to start from, the first of them that is there, or neither
+/// Solves a span of a problem without the twist from clamps: from a known shape, if there is one;
+/// otherwise by a search, and from minima of coarse polygons if the search finds no stable shape,
+/// or all are wanted. The list is never empty, best first.
+/// @param shape, last  initial guesses, each may be null; `shape` is used if both are given
 [[nodiscard]] std::vector<SpanSolution> solve_untwisted(const PlacedSpan& placed,
                                                         const Problem& problem, SpanOptions options,
                                                         const Equilibrium* shape,
