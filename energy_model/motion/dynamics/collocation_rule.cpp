@@ -9,7 +9,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Matrix whose eigenvalues are the roots of Legendre's polynomial (Golub and Welsch).
+/// Returns the matrix whose eigenvalues are the roots of Legendre's polynomial (Golub and Welsch).
 Eigen::MatrixXd jacobi_matrix(int stages) {
   Eigen::MatrixXd result = Eigen::MatrixXd::Zero(stages, stages);
   for (int i = 1; i < stages; ++i) {
@@ -19,7 +19,7 @@ Eigen::MatrixXd jacobi_matrix(int stages) {
   return result;
 }
 
-/// @param nodes  on [-1, 1]
+/// Returns the collocation rule of given nodes. @param nodes  on [-1, 1]
 CollocationRule rule_at(const Eigen::VectorXd& nodes) {
   const Eigen::Index stages = nodes.size();
   CollocationRule rule;
@@ -64,8 +64,9 @@ CollocationRule gauss_rule(int stages) {
 }
 
 CollocationRule radau_rule(int stages) {
-  // The last entry makes 1 an eigenvalue (Golub): 1 - b^2 p_(n-1)(1) / p_n(1) with n = stages - 1,
-  // monic polynomials p, b the last entry beside it; of Legendre's that is (n + 1) / (2 n + 1).
+  // The last diagonal entry makes 1 an eigenvalue (Golub). It is 1 - b^2 p_(n-1)(1) / p_n(1) with n
+  // = stages - 1, monic polynomials p and the last off-diagonal entry b; for Legendre's polynomials
+  // that is (n + 1) / (2 n + 1).
   Eigen::MatrixXd jacobi = jacobi_matrix(stages);
   jacobi(stages - 1, stages - 1) = stages / (2.0 * stages - 1);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(jacobi);

@@ -4,26 +4,29 @@
 
 namespace dlo::energy_model {
 
-/// A Runge-Kutta method by collocation.
+/// A collocation Runge-Kutta method.
 struct CollocationRule {
   Eigen::VectorXd nodes;    ///< c, in (0, 1]
   Eigen::VectorXd weights;  ///< b
-  Eigen::MatrixXd inner;    ///< a_ij: from stages to int_0^c_i
-  Eigen::MatrixXd twice;    ///< a a
-  Eigen::MatrixXd through;  ///< from stages to coefficients of Legendre's polynomials
-  Eigen::RowVectorXd last;  ///< b a: from stages to the double integral over the step
+  Eigen::MatrixXd inner;    ///< a_ij: integrals of the stages to c_i
+  Eigen::MatrixXd twice;    ///< a a: double integrals of the stages to c_i
+  Eigen::MatrixXd through;  ///< stages to coefficients of Legendre's polynomials
+  Eigen::RowVectorXd last;  ///< b a: stages to the double integral over the step
 
-  /// From the stages to a time within the step, as a share of it, by the polynomial through them.
+  /// Returns the weights of the stages in their interpolating polynomial at a time within the step,
+  /// given as a fraction of the step.
   [[nodiscard]] Eigen::RowVectorXd interpolation(double at) const;
-  /// From the stages of a step to those of the next one, `ratio` times as long.
+  /// Returns the matrix that extrapolates the stages of a step to those of the next one, which is
+  /// `ratio` times as long.
   [[nodiscard]] Eigen::MatrixXd extrapolation(double ratio) const;
 };
 
-/// Gauss' with so many stages: order twice as high, symmetric, keeps what vibrates.
+/// Returns Gauss's rule. Its order is twice the number of stages; it is symmetric and does not damp
+/// vibrations.
 [[nodiscard]] CollocationRule gauss_rule(int stages);
 
-/// Radau's IIA with so many stages: order twice as high less one; what decays fast is gone after
-/// a step.
+/// Returns the Radau IIA rule. Its order is twice the number of stages minus one; it damps fast
+/// decaying components within a step.
 [[nodiscard]] CollocationRule radau_rule(int stages);
 
 }  // namespace dlo::energy_model

@@ -20,7 +20,8 @@ namespace {
 
 constexpr const char* simulate_name = "simulate";
 
-/// Each grip with a motion, and the problem as it is at the begin, cut at point masses too.
+/// Returns the rod with a motion for each grip, with the problem at the begin, and with cuts at
+/// point masses.
 MovingRod completed(MovingRod rod, double begin) {
   const Problem given = rod.problem;
   Problem& problem = rod.problem;
@@ -58,8 +59,8 @@ void check_rod(const MovingRod& rod) {
           "no more than obstacles");
 }
 
-/// What clamps that hold frames do at the end of a span, and material directors of a rod that has
-/// none of its own: strains of twist are then among the unknowns.
+/// Prescribes the frame at the end of a span between clamps with frames. A rod without material
+/// directors gets them, so that strains of twist are among the unknowns.
 void hold_last_frame(const Problem& problem, PlacedSpan& placed) {
   if (!placed.frames) return;
   Span& span = placed.span;
@@ -86,7 +87,8 @@ void check_options(std::span<const double> times, const DynamicsOptions& options
   }
 }
 
-/// The point masses of each span; one at a clamp between two is in the first of them.
+/// Returns the point masses of each span; one at a clamp between two spans belongs to the first of
+/// them.
 std::vector<std::vector<PointMass>> masses_by_span(const MovingRod& rod,
                                                    const std::vector<PlacedSpan>& spans) {
   std::vector<std::vector<PointMass>> result(spans.size());
@@ -102,7 +104,7 @@ std::vector<std::vector<PointMass>> masses_by_span(const MovingRod& rod,
   return result;
 }
 
-/// What the spans have together at one of the times that they came to.
+/// Combines the spans' results at one of the times that all have reached.
 MovingFrame frame_of_all(const MovingRod& rod, const std::vector<SpanRun>& runs, std::size_t k) {
   MovingFrame frame;
   frame.grips.resize(rod.problem.grips.size());
@@ -124,7 +126,7 @@ MovingFrame frame_of_all(const MovingRod& rod, const std::vector<SpanRun>& runs,
   return frame;
 }
 
-/// Spans count gravity and loads from their own anchors.
+/// Changes the zero of gravity and load energies from the spans' own anchors to the first anchor.
 void move_zero(const MovingRod& rod, const std::vector<PlacedSpan>& spans, EnergyBalance& energy) {
   const double l = rod.problem.length;
   const double force = bending_unit(rod.problem) / (l * l);
@@ -136,7 +138,7 @@ void move_zero(const MovingRod& rod, const std::vector<PlacedSpan>& spans, Energ
   }
 }
 
-/// What hangs on a clamp itself is carried by nothing else.
+/// A load on a clamp is carried by that clamp alone.
 void add_loads_on_clamps(const MovingRod& rod, double begin, MovingFrame& frame) {
   for (const Load& load : rod.problem.loads) {
     const std::optional<std::size_t> clamp = clamp_under(rod.problem, load);
@@ -172,8 +174,8 @@ StartingShape straight_rod(const Eigen::Vector3d& direction) {
 
 namespace {
 
-/// The rod's frames as far as all spans came, the first one but for its energy, by which they
-/// balance.
+/// Adds the rod's frames at the times that all spans have reached. The first frame, at the begin,
+/// is used only for the energy balance.
 void add_frames(const MovingRod& rod, const std::vector<PlacedSpan>& spans,
                 const std::vector<SpanRun>& runs, std::span<const double> times, Dynamics& result) {
   const double begin = times.empty() ? 0 : std::min(0.0, times.front());

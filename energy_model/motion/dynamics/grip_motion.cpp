@@ -10,12 +10,13 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Second derivatives of the cubic spline at its rows, at whose ends it stands.
+/// Returns the second derivatives of a cubic spline at its knots; its first derivative is zero at
+/// both ends.
 Eigen::MatrixX3d spline_curvatures(const std::vector<TimedPose>& poses) {
   const auto n = static_cast<Eigen::Index>(poses.size());
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
   Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(n, 3);
-  // What each interval has of the slopes at its two rows, which are the same from either side.
+  // Contributions of each interval to the slopes at its knots, which are equal from both sides.
   for (Eigen::Index i = 0; i + 1 < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
     const double h = poses[k + 1].time - poses[k].time;
@@ -27,7 +28,7 @@ Eigen::MatrixX3d spline_curvatures(const std::vector<TimedPose>& poses) {
   return matrix.partialPivLu().solve(right);
 }
 
-/// 10 x^3 - 15 x^4 + 6 x^5 with its derivatives by x.
+/// Returns 10 x^3 - 15 x^4 + 6 x^5 and its derivatives by x.
 MotionValue quintic(double x) {
   return {x * x * x * (10 + x * (6 * x - 15)), 30 * x * x * (1 - x) * (1 - x),
           60 * x * (1 - x) * (1 - 2 * x)};

@@ -14,15 +14,15 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Components across its plane that a planar span may be given, over its own units.
+/// Largest component out of its plane of a planar span's motion, in the span's own units.
 constexpr double motion_plane_rounding = 1e-10;
 
-/// A run is repeated with obstacles that are so much stiffer where they let the rod in too deep;
-/// what strikes then goes half as deep.
+/// Factor by which rigid obstacles are stiffened for another run if the rod enters them too deeply,
+/// which halves the depth of an impact; and maximum number of runs.
 constexpr double stiffer = 8;
 constexpr int most_repeats = 20;
 
-/// Whether it moves a planar span out of its plane.
+/// Whether the drive moves a planar span out of its plane.
 bool leaves_plane(const SpanDrive& drive) {
   const auto out = [](const Eigen::Vector3d& along) {
     return std::abs(along.z()) > motion_plane_rounding * std::max(1.0, along.norm());
@@ -40,7 +40,7 @@ bool leaves_plane(const SpanDrive& drive) {
          std::any_of(drive.obstacles.begin(), drive.obstacles.end(), carries_out);
 }
 
-/// Where it is, standing still.
+/// Returns the drive at the same positions with zero velocities.
 SpanDrive at_rest(SpanDrive drive) {
   drive.spin = drive.spin_rate = drive.end_spin = Eigen::Vector3d::Zero();
   for (Moving& grip : drive.grips) grip = {grip.value};
@@ -51,9 +51,10 @@ SpanDrive at_rest(SpanDrive drive) {
   return drive;
 }
 
-/// At the nodes; angles of frames are counted from the start, in steps that are small.
+/// Evaluates a start shape at the nodes. Angles of frames are accumulated from the start in small
+/// steps.
 StartShape start_at(const TangentField& field, const Eigen::VectorXd& nodes) {
-  constexpr Eigen::Index steps = 16;  // from node to node
+  constexpr Eigen::Index steps = 16;  // between neighbouring nodes
   Eigen::VectorXd s(steps * nodes.size() + 1);
   s[0] = 0;
   for (Eigen::Index q = 0; q < nodes.size(); ++q) {
@@ -90,13 +91,13 @@ GripPose MovingSpan::pose(std::size_t grip, double time) const {
   return result;
 }
 
-/// From space to the axes of the clamp at the start.
+/// Returns the rotation from space to the axes of the clamp at the start.
 Eigen::Matrix3d MovingSpan::to_axes(double time) const {
   if (!placed_.span.start_direction) return placed_.frame;
   return placed_.frame * pose(placed_.anchor_grip, time).turn.conjugate().toRotationMatrix();
 }
 
-/// Where an obstacle is: a point x of its first place is at p + T (x - p0).
+/// Returns an obstacle's place: its point x at the begin has moved to p + T (x - p0).
 BodyPlace MovingSpan::place(std::size_t obstacle, double seconds,
                             const Eigen::Matrix3d& axes) const {
   BodyPlace result;
@@ -144,7 +145,7 @@ SpanDrive MovingSpan::drive(double time) const {
     };
     const Eigen::Vector3d& along = *placed_.span.end_direction;
     const Eigen::Matrix3d held = frame_along(along, Span::d1(along));
-    // d1 of a planar span is across its plane.
+    // d1 of a planar span is normal to its plane.
     if (!placed_.span.planar) add_across(held.col(0), false);
     add_across(held.col(1), false);
     if (placed_.span.twist) add_across(along.cross(placed_.span.twist->end_d1), true);
@@ -169,7 +170,7 @@ SpanInertia MovingSpan::inertia(const std::vector<PointMass>& masses) const {
   return result;
 }
 
-/// By growing time, own units. Grips that share one strike the span once.
+/// Returns the breaks in the span's units, ascending. Breaks at the same instant cause one impulse.
 std::vector<double> MovingSpan::own_breaks() const {
   std::vector<double> breaks = rod_.breaks;
   for (double& time : breaks) time /= time_;
@@ -179,7 +180,7 @@ std::vector<double> MovingSpan::own_breaks() const {
   return breaks;
 }
 
-/// Where no clamp says what d1 at the begin is.
+/// Returns d1 at the begin of the span, for a span where no clamp prescribes it.
 std::optional<Eigen::Vector3d> MovingSpan::first_d1(const StartingShape& start) const {
   const Samples at = start(std::vector<double>{placed_.start});
   if (at.d1.cols() == 0) return std::nullopt;
@@ -188,10 +189,11 @@ std::optional<Eigen::Vector3d> MovingSpan::first_d1(const StartingShape& start) 
          (placed_.frame * at.d1.col(0));
 }
 
-/// At which the unknowns of a shape in equilibrium follow what moves: of K x' - J^T mu' + R' = 0,
-/// J x' + c' = 0, the solution of least norm, because rods on pins turn freely.
+/// Returns the rates at which the unknowns of a shape in equilibrium follow the motion of grips and
+/// obstacles: the minimum-norm solution of K x' - J^T mu' + R' = 0, J x' + c' = 0, as rods on pins
+/// can rotate freely.
 Eigen::VectorXd MovingSpan::equilibrium_rates(SpanDynamics& model, const SpanInstant& at) const {
-  constexpr double step = 1e-5;  // of time, whose square is the error
+  constexpr double step = 1e-5;  // time step, whose square is the error
   const Eigen::Index n = model.size();
   const Eigen::Index m = model.constraints();
   const Eigen::VectorXd still = Eigen::VectorXd::Zero(n);
@@ -217,8 +219,8 @@ Eigen::VectorXd MovingSpan::equilibrium_rates(SpanDynamics& model, const SpanIns
   return -solver.compute(matrix).solve(change).head(n);
 }
 
-/// Returns velocities at the points of SpanDynamics, own units: those where pieces begin and end
-/// and at the nodes between.
+/// Returns velocities at the points of SpanDynamics in the span's units: begins and ends of
+/// elements and the nodes between.
 Eigen::MatrixX3d MovingSpan::point_velocities(const StartingVelocities& velocities,
                                               const SpanDynamics& model) const {
   const std::vector<Piece> pieces = pieces_of(placed_.span);
@@ -274,8 +276,8 @@ SpanRun MovingSpan::run(const StartingShape& start, const std::vector<PointMass>
                         const Deadline& deadline) const {
   ContactLaw contact;
   contact.depth = options.contact_depth;
-  // What falls by the rod's length or moves as its slowest vibration, and strikes with all of its
-  // length: int k d^2 (1 + v / u) dd takes v^2 / 2.
+  // Stiffness for an impact at the speed that the rod gains over its length or that its slowest
+  // vibration has, of the whole rod at once: int k d^2 (1 + v / u) dd absorbs v^2 / 2.
   const double speed = 1 + std::sqrt(2 * placed_.span.total_load());
   contact.stiffness =
       1.5 * speed * speed / (std::pow(contact.depth, 3) * (1 + speed / contact.rebound));
@@ -292,7 +294,7 @@ SpanRun MovingSpan::run(const StartingShape& start, const std::vector<PointMass>
   return result;
 }
 
-/// What an integrator has come to.
+/// Copies the integrator's statistics.
 void MovingSpan::take(const SpanIntegrator& integrator, SpanRun& run) const {
   run.steps = integrator.steps();
   run.smallest_step = integrator.smallest_step() * time_;
@@ -300,7 +302,8 @@ void MovingSpan::take(const SpanIntegrator& integrator, SpanRun& run) const {
   run.depth = integrator.depth() * length_;
 }
 
-/// Meets the grips and begins to move, if it is in motion. @return why it can't; empty: it can
+/// Satisfies the constraints, and sets initial velocities if the rod is in motion. @return the
+/// reason of a failure; empty on success
 std::string MovingSpan::settle(SpanIntegrator& integrator, SpanDynamics& model,
                                const DynamicsOptions& options, SpanInstant& at) const {
   at.v = Eigen::VectorXd::Zero(model.size());

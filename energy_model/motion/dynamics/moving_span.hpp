@@ -14,7 +14,7 @@
 
 namespace dlo::energy_model {
 
-/// What one span does at one time, SI units.
+/// Results of one span at one time, in SI units.
 struct SpanFrame {
   EnergyBalance energy;
   std::vector<std::pair<std::size_t, Reaction>> grips;             ///< by index of the grip
@@ -22,32 +22,33 @@ struct SpanFrame {
   PlacedShape shape;
 };
 
-/// How it went with one span.
+/// Results of one run of a span.
 struct SpanRun {
-  std::vector<SpanFrame> frames;  ///< at the begin, and at the times that were reached
+  std::vector<SpanFrame> frames;  ///< at the begin and at the times that were reached
   SolveStatus status = SolveStatus::failed;
   std::string message;
-  bool left_plane = false;  ///< a planar span has been asked to leave its plane
+  bool left_plane = false;  ///< whether the motion would move a planar span out of its plane
   long steps = 0;
   double smallest_step = std::numeric_limits<double>::infinity();  ///< [s]
-  double error = 0;                                                ///< of the length
-  double depth = 0;                                                ///< within rigid obstacles [m]
+  double error = 0;                                                ///< divided by the rod length
+  double depth = 0;  ///< largest depth within rigid obstacles [m]
 };
 
-/// A span between clamps that move.
+/// A span between moving clamps.
 class MovingSpan {
  public:
-  /// @param rod    of which Problem::grips are where they are at the begin, and each has a motion
-  /// @param begin  [s]
+  /// @param rod    Problem::grips are at their positions at the begin, and each has a motion
+  /// @param begin  time of the begin [s]
   MovingSpan(const MovingRod& rod, PlacedSpan placed, double begin);
 
-  /// @param masses  point masses that no other span carries
+  /// Simulates the span. @param masses  point masses that no other span carries
   [[nodiscard]] SpanRun run(const StartingShape& start, const std::vector<PointMass>& masses,
                             std::span<const double> times, const DynamicsOptions& options,
                             const Deadline& deadline) const;
 
  private:
-  /// With one law of contact; ends where it lets the rod in too deep.
+  /// settle() prepares the initial state. run_with() simulates with one contact law and ends when
+  /// the rod enters a rigid obstacle too deeply.
   [[nodiscard]] std::string settle(SpanIntegrator& integrator, SpanDynamics& model,
                                    const DynamicsOptions& options, SpanInstant& at) const;
   [[nodiscard]] SpanRun run_with(const ContactLaw& contact, const StartingShape& start,
@@ -71,7 +72,7 @@ class MovingSpan {
 
   const MovingRod& rod_;
   PlacedSpan placed_;
-  std::vector<std::size_t> grips_;  // that hold it, the anchor first
+  std::vector<std::size_t> grips_;  // grips of the span, the anchor first
   double begin_;
   double length_, force_, time_, mass_;  // units
   std::vector<Eigen::Quaterniond> first_turns_;

@@ -1,4 +1,4 @@
-// What of a moving span is neither motion nor force within: energies, what grips exert, power.
+// Energies, reactions and powers of a moving span.
 
 #include <Eigen/Geometry>
 
@@ -49,7 +49,7 @@ std::vector<Reaction> SpanDynamics::reactions(
     result[k + 1].force = multiplier_force(multipliers, k);
     add(position_.row(held_[k]).transpose(), -result[k + 1].force);
   }
-  // Of a clamp at the end, which is the last grip.
+  // The clamp at the end is the last grip.
   const Eigen::Vector3d end_torque = -couples(multipliers).back();
   result.back().torque += end_torque;
   anchor.torque -= end_torque;

@@ -1,4 +1,4 @@
-// Rigid obstacles: points that are held against them, and the law of what they resist with.
+// Rigid obstacles in motion: contact points and the contact law.
 
 #include "dynamics/span_contact.hpp"
 
@@ -46,7 +46,8 @@ void ContactGrid::find(std::size_t piece, const Span::Obstacle& obstacle, const 
       found.back().piece = piece;
       found.back().point = j;
     }
-    // The rod cannot come to the body within as much of its length; less, as polynomials do.
+    // The rod cannot reach the body within a length equal to the clearance; the factor accounts for
+    // the polynomials, which are not exactly inextensible.
     constexpr double sure = 0.9;
     j += std::max<Eigen::Index>(
         1, static_cast<Eigen::Index>(std::min(sure * clearance / spacings_[piece], 1e6)));
@@ -54,7 +55,7 @@ void ContactGrid::find(std::size_t piece, const Span::Obstacle& obstacle, const 
 }
 
 void ContactGrid::resist(double rate, Touch& touch) const {
-  // Ends have half of the length that others stand for.
+  // End points represent half the length of inner points.
   const bool inside = touch.point > 0 && touch.point + 1 < pieces_[touch.piece].points();
   const double stiffness = law_.stiffness * spacings_[touch.piece] * (inside ? 1 : 0.5);
   const double d = touch.depth;

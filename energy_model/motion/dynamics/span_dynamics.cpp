@@ -11,9 +11,10 @@
 namespace dlo::energy_model {
 namespace {
 
-/// In which twist follows what turns the ends, over the time m^(1/2) (l / EI)^(1/2) l of bending.
-/// Torsional waves of a round rod cross it in about 2 d / l of that time: this is quicker than
-/// those of any rod, so that twist is in equilibrium, and its error goes with the square.
+/// Time in which twist follows the rotation of the ends, divided by the bending time m^(1/2) (l /
+/// EI)^(1/2) l. Torsional waves of a round rod cross it in about 2 d / l of that time. This value
+/// is smaller than for any real rod, so that twist is in equilibrium with an error of the order of
+/// its square.
 constexpr double twist_time = 1e-4;
 
 Moving turning(const Eigen::Vector3d& director, const FrameSpins& spins) {
@@ -32,7 +33,7 @@ SpanDynamics::SpanDynamics(Span span, int terms, const Eigen::Vector3d& first, S
       points_(nodes_),
       grid_(span_.rigid_obstacles, nodes_, contact),
       axes_(span_.planar ? 2 : 3) {
-  // In the plane d1 is across it, so that the first strain bends the rod within it.
+  // In the plane d1 is normal to it, so that the first strain bends the rod within the plane.
   const Eigen::Vector3d tangent = span_.start_direction.value_or(first).normalized();
   start_frame_ = frame_along(tangent, span_.first_d1(tangent));
   const bool free_start = !span_.start_direction;
@@ -64,7 +65,7 @@ SpanDynamics::SpanDynamics(Span span, int terms, const Eigen::Vector3d& first, S
     const Piece& piece = pieces[e];
     const double middle = piece.begin + piece.length / 2;
     const Eigen::Vector3d mean = span_.weight_between(piece.begin, piece.end()) / piece.length;
-    // Line loads begin and end where pieces do, so that they are linear along a piece.
+    // Line loads begin and end at element boundaries, and are linear on each element.
     Eigen::Vector3d slope = Eigen::Vector3d::Zero();
     for (const LineLoad& load : span_.line_loads) {
       if (load.begin < middle && middle < load.end) slope += load.slope();
@@ -72,7 +73,7 @@ SpanDynamics::SpanDynamics(Span span, int terms, const Eigen::Vector3d& first, S
     const Eigen::Index begin = points_.begin(static_cast<Eigen::Index>(e));
     for (Eigen::Index point = begin; point < begin + points_.piece_points(); ++point) {
       const double weight = points_.weights()[point];
-      // Points at which pieces begin and end are no nodes.
+      // Begins and ends of elements are not quadrature nodes.
       if (!(weight > 0)) continue;
       gravity_.row(point) = weight * (mean + (nodes()[node++] - middle) * slope).transpose();
     }
@@ -120,7 +121,7 @@ void SpanDynamics::move(const SpanDrive& drive, const Eigen::Ref<const Eigen::Ve
   collect_touches();
 }
 
-/// Adds quadratic drag to the forces. Points at which pieces begin and end have no length.
+/// Adds quadratic drag to the forces. Begins and ends of elements have zero weight.
 void SpanDynamics::drag_across() {
   mean_drag_ = inertia_.drag;
   if (!(inertia_.quadratic_drag > 0)) return;
@@ -147,15 +148,15 @@ Eigen::Vector3d SpanDynamics::multiplier_force(const Eigen::Ref<const Eigen::Vec
   return force;
 }
 
-/// Derivatives by the unknowns.
+/// Returns the derivatives of f by the unknowns.
 Eigen::VectorXd SpanDynamics::pulled(const FrameGradient& f) {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(all_unknowns());
   frames_.add_adjoint(f, 1, state_, result);
   return result.head(size());
 }
 
-/// Of all that acts on the rod, with these multipliers, by the tangents: the internal force that it
-/// asks for.
+/// Returns the derivatives by the tangents of the work of all forces on the rod with these
+/// multipliers: the internal force required by them.
 Eigen::MatrixX3d SpanDynamics::all_by_tangents(
     const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
   Eigen::MatrixX3d forces = forces_;
@@ -167,7 +168,7 @@ Eigen::MatrixX3d SpanDynamics::all_by_tangents(
   return result;
 }
 
-/// The clamp's at the end, by piece.
+/// Returns the couples of the clamp at the end, per element.
 std::vector<Eigen::Vector3d> SpanDynamics::couples(
     const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
   std::vector<Eigen::Vector3d> result(nodes_.pieces().size(), Eigen::Vector3d::Zero());
@@ -186,9 +187,9 @@ Eigen::VectorXd SpanDynamics::residual(const Eigen::Ref<const Eigen::VectorXd>& 
   return result;
 }
 
-/// Of bending, of touches, and of the internal force, which keeps its direction as the tangents
-/// turn: nearly all of the stiffness of a thread under tension T, where bending has a share of
-/// EI / (T l^2).
+/// Sums the stiffness of bending, of contacts, and of the internal force, which keeps its direction
+/// when the tangents rotate. The latter is nearly all of the stiffness of a thread under tension T,
+/// where bending has the fraction EI / (T l^2).
 Eigen::MatrixXd SpanDynamics::stiffness(const Eigen::Ref<const Eigen::VectorXd>& multipliers) {
   const Eigen::MatrixX3d tangents = all_by_tangents(multipliers);
   std::vector<Eigen::Matrix3d> curvatures(nodes_.pieces().size(), Eigen::Matrix3d::Zero());
@@ -206,7 +207,7 @@ Eigen::MatrixXd SpanDynamics::stiffness(const Eigen::Ref<const Eigen::VectorXd>&
 }
 
 Eigen::MatrixXd SpanDynamics::damping(const Eigen::MatrixXd& mass) {
-  // Drag acts as masses do, where those are the same all along.
+  // Drag is proportional to the mass matrix if the mass per length is constant.
   const double rod = points_.weighed(inertia_.per_length).sum();
   Eigen::MatrixXd result = (rod > 0 ? mean_drag_ * span_.length / rod : 0) * mass;
   result.diagonal() += inertia_.material_damping * elastic_;

@@ -15,114 +15,117 @@
 
 namespace dlo::energy_model {
 
-/// A vector and its first two derivatives by time, as components along axes at one time.
+/// A vector and its first two time derivatives, as components along axes at one time.
 struct Moving {
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();
   Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();
 };
 
-/// A direction that turns with the clamp at the end, and the director that stays across it.
+/// A direction that rotates with the clamp at the end, and the director that stays normal to it.
 struct AcrossDirector {
   Moving direction;
-  bool of_d1 = false;  ///< not of the tangent
+  bool of_d1 = false;  ///< the director is d1 instead of the tangent
 };
 
-/// What grips do with a span at one time. Own units; components along the axes that turn with the
-/// clamp at the start (the span's frame where there is none).
+/// Motion that grips and obstacles prescribe for a span at one time. Own units; components along
+/// axes that rotate with the clamp at the start (the span's frame if there is none).
 struct SpanDrive {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();   ///< from the span's frame to these axes
   Eigen::Vector3d spin = Eigen::Vector3d::Zero();       ///< angular velocity of the axes
-  Eigen::Vector3d spin_rate = Eigen::Vector3d::Zero();  ///< and its derivative
-  /// Positions, seen from where the anchor was at first: of the anchor and of Span::holds.
+  Eigen::Vector3d spin_rate = Eigen::Vector3d::Zero();  ///< angular acceleration of the axes
+  /// Positions of the anchor and of Span::holds relative to the anchor's initial position.
   std::vector<Moving> grips;
-  /// What directors of the last cross-section have no component along, where a clamp holds it.
+  /// Directions to which directors of the last cross-section stay normal, if a clamp holds it.
   std::vector<AcrossDirector> across_end;
-  Eigen::Vector3d end_spin = Eigen::Vector3d::Zero();  ///< of that clamp
-  std::vector<BodyPlace> obstacles;                    ///< of the problem's
+  Eigen::Vector3d end_spin = Eigen::Vector3d::Zero();  ///< angular velocity of that clamp
+  std::vector<BodyPlace> obstacles;                    ///< of the problem, by index
 };
 
-/// What a span has besides its shape; own units.
+/// Mass and damping of a span, in its own units.
 struct SpanInertia {
-  std::vector<double> per_length;  ///< mass, by piece
-  std::vector<PointMass> points;   ///< each where a piece begins or ends
-  double material_damping = 0;     ///< tau
-  double drag = 0;                 ///< per length
-  double quadratic_drag = 0;       ///< per length, across the rod, by the squared velocity
+  std::vector<double> per_length;  ///< mass per length, by element
+  std::vector<PointMass> points;   ///< each at the begin or end of an element
+  double material_damping = 0;     ///< relaxation time tau
+  double drag = 0;                 ///< drag coefficient per length
+  double quadratic_drag = 0;       ///< of drag normal to the rod, by length and squared velocity
 };
 
-/// Adds so many times each entry.
+/// Adds `times` times each entry of `of` to `to`.
 void add(const EnergyBalance& of, double times, EnergyBalance& to);
 
 /// Equations of motion of a span in its strains x,
 ///     int (rho A r'' + c r' + q |v| v).dr ds + x.dx + tau x'.dx = int w.dr ds + loads + grips +
 ///     obstacles,
-/// for all dx that move r, with r' and r'' from x', x'' by the spins of cross-sections
-/// (frame_spins()),
+/// for all dx that move r. r' and r'' follow from x', x'' by the angular velocities of
+/// cross-sections (frame_spins()),
 ///     t' = omega x t,  t'' = alpha x t + omega x t'.
-/// Rates of vectors are those in space. What has mass are the points of a SpanReach.
+/// Rates of vectors are relative to space. The points of a SpanReach carry the mass.
 ///
-/// With material directors x has the strains of twist as well. Points alone would leave those
-/// without inertia where they move nothing; theirs is T^2 per strain energy, T = twist_time.
+/// With material directors x includes the strains of twist. Point masses alone would give no
+/// inertia to twist that moves no point; twist therefore gets the inertia T^2 per strain energy, T
+/// = twist_time.
 class SpanDynamics {
  public:
-  /// @param span   whose Span::twist holds the last cross-section's d1, of one with material
-  ///               directors; a planar one keeps to its plane
-  /// @param first  tangent at the start, of a span that no clamp holds there
+  /// @param span   with material directors: Span::twist prescribes the last cross-section's d1; a
+  ///   planar span stays in its plane
+  /// @param first  tangent at the start, for a span without a clamp there
   SpanDynamics(Span span, int terms, const Eigen::Vector3d& first, SpanInertia inertia,
                const ContactLaw& contact);
 
   [[nodiscard]] Eigen::Index size() const { return elastic_.size(); }
   [[nodiscard]] Eigen::Index constraints() const { return constraints_; }
   [[nodiscard]] const Eigen::VectorXd& nodes() const { return nodes_.nodes(); }
-  /// Unknowns of a shape that has nearly these tangents, and frames, at the nodes, along the axes
-  /// of a drive.
+  /// Returns the unknowns of a shape that has nearly these tangents, and frames, at the nodes,
+  /// along the axes of a drive.
   [[nodiscard]] Eigen::VectorXd fit(const StartShape& shape) const;
 
-  /// Takes in positions, velocities and accelerations; all below is at the last one.
+  /// Sets positions, velocities and accelerations; all functions below refer to the last call.
   void move(const SpanDrive& drive, const Eigen::Ref<const Eigen::VectorXd>& x,
             const Eigen::Ref<const Eigen::VectorXd>& v, const Eigen::Ref<const Eigen::VectorXd>& a);
 
-  /// Of the equations of motion, with the grips' multipliers; zero if they hold.
+  /// Returns the residual of the equations of motion with the grips' multipliers; zero if they
+  /// hold.
   [[nodiscard]] Eigen::VectorXd residual(const Eigen::Ref<const Eigen::VectorXd>& multipliers);
-  /// Of the points.
+  /// Velocities of the points.
   [[nodiscard]] const Eigen::MatrixX3d& velocities() const { return velocity_; }
-  /// What the change of the points' momentum from these velocities does along the unknowns; zero
-  /// where only grips strike.
+  /// Returns the component along the unknowns of the points' change of momentum from these
+  /// velocities; zero if only grips exert impulses.
   [[nodiscard]] Eigen::VectorXd impulse(const Eigen::MatrixX3d& before);
-  /// Residuals of the constraints: positions, velocities and accelerations, a column
-  /// each.
+  /// Residuals of the constraints: of positions, velocities and accelerations, one column each.
   [[nodiscard]] Eigen::MatrixX3d constraint_residuals() const;
   /// Derivatives of the constraints by x.
   [[nodiscard]] Eigen::MatrixXd jacobian();
   [[nodiscard]] Eigen::MatrixXd mass_matrix();
-  /// Derivatives of the residual by x, at these accelerations and multipliers, but for those of
-  /// the accelerations in space; and by v, but for those of gyroscopic terms.
+  /// Derivatives of the residual at these accelerations and multipliers: stiffness() by x, without
+  /// the derivatives of accelerations in space; damping() by v, without gyroscopic terms.
   [[nodiscard]] Eigen::MatrixXd stiffness(const Eigen::Ref<const Eigen::VectorXd>& multipliers);
   [[nodiscard]] Eigen::MatrixXd damping(const Eigen::MatrixXd& mass);
 
-  /// What is dissipated, lost and done aside.
+  /// Returns the energies; dissipated, lost and done work are not included.
   [[nodiscard]] EnergyBalance energies() const;
-  /// Of SpanDrive::grips on the span, with these multipliers; torques about each.
+  /// Returns forces and torques of SpanDrive::grips on the span with these multipliers; each torque
+  /// is about its grip.
   [[nodiscard]] std::vector<Reaction> reactions(
       const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
-  /// What is dissipated, lost and done, by time.
+  /// Returns dissipated power, lost power and the power of grips and obstacles.
   [[nodiscard]] EnergyBalance power(const std::vector<Reaction>& reactions) const;
-  /// On the span, at each point within one, by the obstacle's index in the problem.
+  /// Returns the obstacle's force on the span at each point within one, with the obstacle's index
+  /// in the problem.
   [[nodiscard]] std::vector<std::pair<std::size_t, Eigen::Vector3d>> obstacle_forces() const;
   [[nodiscard]] bool may_touch() const { return !grid_.empty(); }
-  /// Whether strains of twist are among the unknowns, which vibrate much faster than all else.
+  /// Whether strains of twist are among the unknowns; they vibrate much faster than the others.
   [[nodiscard]] bool has_twist() const { return twist_inertia_.size() > 0; }
-  /// By which it is within a rigid obstacle where it is most; 0: nowhere.
+  /// Largest depth within a rigid obstacle; 0 without contact.
   [[nodiscard]] double depth() const;
 
-  /// The shape along the span's own frame.
+  /// Returns the shape in the span's own frame.
   [[nodiscard]] SpanShape shape(const Eigen::VectorXd& x) const;
 
  private:
   [[nodiscard]] Eigen::Index all_unknowns() const { return frames_.fields() * frames_.columns(); }
   [[nodiscard]] Eigen::VectorXd full(const Eigen::Ref<const Eigen::VectorXd>& part) const;
-  /// That an AcrossDirector speaks of.
+  /// Returns the director that an AcrossDirector refers to.
   [[nodiscard]] const Moving& director(const AcrossDirector& across) const {
     return across.of_d1 ? end_d1_ : end_tangent_;
   }
@@ -151,25 +154,25 @@ class SpanDynamics {
   SpanReach points_;
   ContactGrid grid_;
   Eigen::Index constraints_ = 0, axes_ = 3;
-  Eigen::VectorXd elastic_;                 // by unknown; 0 of a free start's turn
-  Eigen::VectorXd twist_inertia_;           // the same; 0 but of twist; empty: none
+  Eigen::VectorXd elastic_;                 // by unknown; 0 for a free start's rotation, else 1
+  Eigen::VectorXd twist_inertia_;           // by unknown; 0 except for twist; empty without twist
   std::vector<Eigen::Index> held_;          // point of each hold
   std::vector<std::vector<double>> signs_;  // PositionOperator::signs() of each hold
-  // Of the points; forces along the span's frame.
+  // Quantities of the points; forces along the span's frame.
   Eigen::VectorXd masses_;
   Eigen::MatrixX3d gravity_, loads_;
 
-  // At the last move()
+  // State of the last move()
   SpanDrive drive_;
   Eigen::VectorXd x_, v_, a_;
-  Eigen::MatrixX3d t_, t_rate_;                          // of the nodes
+  Eigen::MatrixX3d t_, t_rate_;                          // at the nodes
   Eigen::MatrixX3d position_, velocity_, acceleration_;  // of the points, in space
   Moving end_tangent_, end_d1_;
-  Eigen::MatrixX3d quadratic_drag_;  // of the points; empty: none
-  double mean_drag_ = 0;             // drag and the change of quadratic drag, per length
-  Eigen::MatrixX3d forces_;          // of the points: inertia and drag less what pulls and yields
-  std::vector<Touch> soft_touches_;  // of points, which are in forces_
-  std::vector<Touch> touches_;       // of the grid's points
+  Eigen::MatrixX3d quadratic_drag_;  // of the points; empty if there is none
+  double mean_drag_ = 0;             // drag plus the derivative of quadratic drag, per length
+  Eigen::MatrixX3d forces_;  // of the points: inertia and drag minus loads and soft obstacles
+  std::vector<Touch> soft_touches_;  // at the points; included in forces_
+  std::vector<Touch> touches_;       // at the grid's points
 };
 
 }  // namespace dlo::energy_model

@@ -9,27 +9,27 @@ namespace dlo::energy_model {
 namespace {
 
 constexpr int stage_count = 4;
-/// Newton's method ends where what a correction moves is below this share of the tolerance of a
-/// step, and of the length in any case: energy may not drift by it.
+/// Newton's method ends when a correction is below this fraction of the step's tolerance, within
+/// absolute limits in rod lengths: its error must not cause a drift of energy.
 constexpr double newton_share = 1e-4;
 constexpr double newton_most = 1e-11;
 constexpr double newton_least = 1e-14;
 constexpr int most_newton_corrections = 40;
-/// Corrections above which the next one is made with a matrix of its own.
+/// Number of corrections above which the matrix is renewed for the next step.
 constexpr int slow = 8;
-/// A step is as good as impossible below this share of the time in which the rod's slowest
-/// vibration changes.
+/// Shortest step, as a fraction of the time scale of the rod's slowest vibration; shorter ones
+/// count as a failure.
 constexpr double least_step = 1e-9;
 
-/// At a break a motion has two velocities: that of a step's end is the one before, that of its
-/// begin the one after.
+/// At a break the velocity jumps: the end of a step uses the velocity before the break, the begin
+/// of the next one the velocity after it.
 double instant(double time) { return 1e-12 * std::max(1.0, std::abs(time)); }
 double just_before(double time) { return time - instant(time); }
 double just_after(double time) { return time + instant(time); }
 
-/// By which a sum of energies may be off, over the sum of their magnitudes: some hundred terms are
-/// added, whose rounding errors add up like a random walk. A heavy load on a soft rod has a
-/// potential of 1e6 bending energies, and no step makes this error smaller.
+/// Rounding error of a sum of energies, divided by the sum of their magnitudes: the errors of some
+/// hundred terms add up like a random walk. A heavy load on a soft rod has a potential of 1e6
+/// bending energies, and a smaller step does not reduce this error.
 constexpr double relative_energy_rounding = 32 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
@@ -52,7 +52,7 @@ void SpanIntegrator::take_mass(double time, const SpanInstant& at) {
   jacobian_ = span_.jacobian();
 }
 
-/// The rows that one point of the rule has in Newton's matrix.
+/// Sets the rows of Newton's matrix that belong to one stage.
 void SpanIntegrator::place_point(Eigen::Index i, double step, const PointMatrices& at,
                                  Eigen::MatrixXd& matrix) const {
   const Eigen::Index n = at.mass.rows();
@@ -67,7 +67,7 @@ void SpanIntegrator::place_point(Eigen::Index i, double step, const PointMatrice
 }
 
 SpanIntegrator::Factor& SpanIntegrator::factor(const SpanInstant& at, double step, bool renew) {
-  // Steps that differ by rounding of the times are one.
+  // Steps that differ only by rounding of the times share a factor.
   constexpr double same = 1e-9;
   auto found = std::find_if(factors_.begin(), factors_.end(), [&](const Factor& known) {
     return std::abs(known.step - step) <= same * step;
@@ -93,9 +93,9 @@ SpanIntegrator::Factor& SpanIntegrator::factor(const SpanInstant& at, double ste
   return *found;
 }
 
-/// Newton's matrix with those of each point of the step where it is guessed: a roll of the frame
-/// that leaves the points where they are has next to no mass, and mass matrices of other places
-/// give it some.
+/// Factors Newton's matrix with the mass, damping and stiffness matrices at each predicted stage. A
+/// roll of the frame that leaves the points in place has almost no mass, and mass matrices of other
+/// states would give it some.
 SpanIntegrator::Factor& SpanIntegrator::factor_of_points(const SpanInstant& at, double step,
                                                          const std::vector<SpanDrive>& drives,
                                                          const Eigen::MatrixXd& guess) {
@@ -117,7 +117,7 @@ SpanIntegrator::Factor& SpanIntegrator::factor_of_points(const SpanInstant& at, 
   return of_points_;
 }
 
-/// Of a step after the last one: by its polynomials.
+/// Predicts the stages of a step by the polynomials of the previous one.
 Eigen::MatrixXd SpanIntegrator::predicted(const SpanInstant& at, double step,
                                           const Stages& known) const {
   if (!(known.step > 0) || known.end != at.time) {
@@ -126,7 +126,7 @@ Eigen::MatrixXd SpanIntegrator::predicted(const SpanInstant& at, double step,
   return known.values * rule_.extrapolation(step / known.step).transpose();
 }
 
-/// At the points of one step, by those of two that halve it.
+/// Interpolates the stages of one step from those of its two halves.
 Eigen::MatrixXd SpanIntegrator::joined(const Stages& first, const Stages& second) const {
   Eigen::MatrixXd result(first.values.rows(), stage_count);
   for (Eigen::Index i = 0; i < stage_count; ++i) {
@@ -144,7 +144,7 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
   ++steps_;
   std::vector<SpanDrive> drives;
   for (Eigen::Index i = 0; i < stage_count; ++i) {
-    // Radau's last point is the step's end, which may be a break.
+    // Radau's last stage is at the step's end, which may be a break.
     drives.push_back(
         drive_(std::min(at.time + rule_.nodes[i] * step, just_before(at.time + step))));
   }
@@ -172,7 +172,7 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
       }
       const Eigen::VectorXd corrected = newton.lu.solve(residual);
       const Eigen::Map<const Eigen::MatrixXd> change(corrected.data(), n + m, stage_count);
-      // Of velocities, root mean square, and of strains.
+      // Correction of velocities (root mean square) and of strains.
       const Eigen::MatrixXd moved = change.topRows(n);
       const double size =
           step * std::sqrt(std::max(0.0, (mass_ * moved).cwiseProduct(moved).sum())) +
@@ -202,7 +202,7 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
 std::string SpanIntegrator::project(SpanInstant& at) {
   if (span_.constraints() == 0) return {};
   if (mass_.size() == 0) take_mass(at.time, at);
-  // What has next to no mass is not to be moved far for nothing.
+  // The identity limits displacements of unknowns with almost no mass.
   Eigen::MatrixXd weight = mass_;
   if (span_.has_twist()) weight.diagonal().array() += 1;
   const Eigen::LLT<Eigen::MatrixXd> mass(weight);
@@ -234,7 +234,7 @@ std::string SpanIntegrator::project(SpanInstant& at) {
 }
 
 std::string SpanIntegrator::settle_twist(SpanInstant& at) {
-  // A step of Euler's implicit rule from rest: what has mass moves by its acceleration times this.
+  // Implicit Euler step from rest: unknowns with mass move by their acceleration times this.
   constexpr double squared_step = 1e-8;
   constexpr int most_settling = 50;
   const Eigen::Index n = span_.size();
@@ -269,8 +269,8 @@ std::string SpanIntegrator::advance(SpanInstant& at, double until,
   const bool fixed = options_.step > 0;
   while (at.time < until) {
     if (expired()) return "time limit";
-    // A frame and a break that differ by the rounding of their times: a step between them would ask
-    // the motion for what is before the break.
+    // The times of a frame and a break may differ by rounding; a step between them would evaluate
+    // the motion before the break.
     if (same_instant(at.time, until)) {
       at.time = until;
       last_.end = until;
@@ -305,8 +305,9 @@ bool SpanIntegrator::take_step(SpanInstant& at, double step) {
   return true;
 }
 
-/// One step against two of half the size, which say where it begins and by much less than its own
-/// error what it comes to. @return whether they differ by less than the tolerance
+/// Takes one step and two steps of half the size. The halves provide the initial guess of the full
+/// step, and a result with a much smaller error. @return whether both results differ by less than
+/// the tolerance
 bool SpanIntegrator::take_two_halves(SpanInstant& at, double step) {
   if (!std::isfinite(energy_)) energy_ = take_energy(just_after(at.time), at);
   SpanInstant once = at;
@@ -342,8 +343,8 @@ bool SpanIntegrator::take_two_halves(SpanInstant& at, double step) {
   return true;
 }
 
-/// Energy at an instant with what has gone so far, which stays the same; the largest energy is
-/// kept.
+/// Returns the energy at an instant plus the energy dissipated so far minus the work done, which is
+/// constant; updates the largest energies.
 double SpanIntegrator::take_energy(double time, const SpanInstant& at) {
   span_.move(drive_(time), at.x, at.v, Eigen::VectorXd::Zero(span_.size()));
   const EnergyBalance energies = span_.energies();
@@ -374,8 +375,8 @@ void SpanIntegrator::set_velocities(const Eigen::MatrixX3d& given, SpanInstant& 
   at.v = accelerated(just_after(at.time), at, &given).head(span_.size());
 }
 
-/// Accelerations and multipliers that obey the equations of motion; from velocities before a
-/// strike, what v changes by and the impulses of the grips.
+/// Returns accelerations and multipliers that satisfy the equations of motion; with the velocities
+/// before an impact, the change of v and the impulses of the grips.
 Eigen::VectorXd SpanIntegrator::accelerated(double time, const SpanInstant& at,
                                             const Eigen::MatrixX3d* before) {
   const Eigen::Index n = span_.size();

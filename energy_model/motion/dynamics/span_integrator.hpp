@@ -13,77 +13,80 @@
 
 namespace dlo::energy_model {
 
-/// A span at one time, with what has been done to it since the begin. Own units.
+/// State of a span at one time, with the work done and the energy dissipated since the begin. Own
+/// units.
 struct SpanInstant {
   double time = 0;
   Eigen::VectorXd x, v;  ///< unknowns and their rates
-  EnergyBalance done;    ///< what has been dissipated, lost and done, without energies
+  EnergyBalance done;    ///< dissipated energy, lost energy and work; energies are not included
 };
 
 struct IntegratorOptions {
-  double tolerance = 1e-7;  ///< of a step, as DynamicsOptions::tolerance
-  double step = 0;          ///< fixed; 0: by the tolerance
-  bool damped = false;      ///< what decays fast
+  double tolerance = 1e-7;  ///< of a step, like DynamicsOptions::tolerance
+  double step = 0;          ///< fixed step; 0: adapted to the tolerance
+  bool damped = false;      ///< damps fast decaying components (Radau IIA instead of Gauss)
 };
 
-/// Collocation by Gauss' rule of four points of
-///     x' = v,  M(x) v' = f(t, x, v) + G^T mu,  d^2 c / dt^2 = 0,
-/// by accelerations at the rule's points, so that of M only products are needed: Newton's method
-/// has M of an earlier step in its matrix. Where a span has constraints c, x and v are moved to
-/// them after each step by the least kinetic energy; with twist, by the least of that and of strain
-/// energy.
+/// Integrates by collocation with four stages (Gauss's rule, or Radau's if damped)
+///     x' = v,  M(x) v' = f(t, x, v) + G^T mu,  d^2 c / dt^2 = 0.
+/// The unknowns are accelerations at the stages, so that only products with M are needed: Newton's
+/// method may use M of an earlier step in its matrix. If a span has constraints c, x and v are
+/// projected onto them after each step, with the smallest kinetic energy of the displacement; with
+/// twist, with the smallest sum of that and strain energy.
 class SpanIntegrator {
  public:
   SpanIntegrator(SpanDynamics& span, std::function<SpanDrive(double)> drive,
                  const IntegratorOptions& options);
 
-  /// Moves positions and velocities to the constraints. @return why not; empty: done
+  /// Projects positions and velocities onto the constraints. @return the reason of a failure; empty
+  /// on success
   [[nodiscard]] std::string project(SpanInstant& at);
-  /// Brings what has no mass, the roll of frames about points that stay, to its equilibrium at the
-  /// begin. @return why not; empty: done
+  /// Brings the roll of frames about points at rest, which has no mass, to its equilibrium at the
+  /// begin. @return the reason of a failure; empty on success
   [[nodiscard]] std::string settle_twist(SpanInstant& at);
-  /// Goes on to a time. @param expired  asked after each step. @return why not; empty: done
+  /// Integrates to a time. @param expired  called after each step. @return the reason of a failure;
+  /// empty on success
   [[nodiscard]] std::string advance(SpanInstant& at, double until,
                                     const std::function<bool()>& expired);
 
-  /// Whether two times differ by rounding only: a break between them is asked for on either side of
-  /// both.
+  /// Whether two times differ only by rounding. The motion is then evaluated before or after both,
+  /// as a break may lie between them.
   [[nodiscard]] static bool same_instant(double a, double b);
 
-  /// Brings SpanDynamics to an instant, with its accelerations. @return the grips' multipliers
+  /// Sets SpanDynamics to an instant with consistent accelerations. @return the grips' multipliers
   [[nodiscard]] Eigen::VectorXd consistent_accelerations(const SpanInstant& at);
 
-  /// What comes is not smooth after what was: grips may have other velocities, which strikes the
-  /// span. Its points keep their momentum but for the grips' impulses, whose work is what the
-  /// kinetic energy changes by.
+  /// Applies the impulse of a break of the motion, where grips may change their velocities. The
+  /// points keep their momentum except for the grips' impulses, whose work is the change of kinetic
+  /// energy.
   void apply_impulse(SpanInstant& at);
 
-  /// Sets the rates to those whose velocities differ from the given ones of the points
-  /// (SpanDynamics::velocities()) by the least kinetic energy among those that the grips allow.
+  /// Sets the rates that the constraints allow and whose velocities differ from the given ones of
+  /// the points (SpanDynamics::velocities()) by the smallest kinetic energy.
   void set_velocities(const Eigen::MatrixX3d& given, SpanInstant& at);
 
   [[nodiscard]] long steps() const { return steps_; }
   [[nodiscard]] double smallest_step() const { return smallest_step_; }
   [[nodiscard]] double error() const { return error_; }
-  /// SpanDynamics::depth() at the ends of steps, where it has been largest.
+  /// Largest SpanDynamics::depth() at the ends of steps.
   [[nodiscard]] double depth() const { return depth_; }
 
  private:
-  /// Where nothing is known yet.
+  /// Size of the first step.
   static constexpr double first_step = 1e-3;
-  /// Newton's matrix for one size of step.
+  /// Factor of Newton's matrix for one step size.
   struct Factor {
     double step = 0;
     Eigen::PartialPivLU<Eigen::MatrixXd> lu;
   };
-  /// What Newton's matrix is made of; references, as long as a call.
+  /// Matrices from which Newton's matrix is made, by reference.
   struct PointMatrices {
     const Eigen::MatrixXd& mass;
     const Eigen::MatrixXd& damping;
     const Eigen::MatrixXd& stiffness;
     const Eigen::MatrixXd& jacobian;
   };
-  /// Accelerations and multipliers at the rule's points of a step.
+  /// Accelerations and multipliers at the stages of a step.
   struct Stages {
     double step = 0;
     double end = 0;  // time
@@ -115,11 +118,11 @@ class SpanIntegrator {
   Eigen::MatrixXd mass_;
   Eigen::MatrixXd jacobian_;
   std::vector<Factor> factors_;
-  Factor of_points_;  // of the last step with matrices of its own
+  Factor of_points_;  // of the last step with its own matrices
   Stages last_;
-  double newton_enough_;      // what a correction of a step may still move
-  double next_ = first_step;  // its size
-  double energy_ = std::numeric_limits<double>::quiet_NaN();  // where the last step ended
+  double newton_enough_;      // Newton correction at which a step counts as solved
+  double next_ = first_step;  // size of the next step
+  double energy_ = std::numeric_limits<double>::quiet_NaN();  // at the end of the last step
   double largest_energy_ = 0;
   double energy_magnitude_ = 0;  // largest sum of the magnitudes of all energies
   long steps_ = 0;

@@ -1,4 +1,4 @@
-// What obstacles do to a moving span: those that yield at its nodes, rigid ones at the grid's
+// Forces of obstacles on a moving span: of soft ones at its nodes, of rigid ones at the grid's
 // points.
 
 #include <algorithm>
@@ -41,12 +41,12 @@ void SpanDynamics::collect_touches() {
   }
 }
 
-/// A force at a point of the grid, by the tangents.
+/// Returns the derivatives by the tangents of the work of a force at a point of the grid.
 Eigen::MatrixX3d SpanDynamics::at_tangents(const Touch& touch, const Eigen::Vector3d& force) const {
   return grid_.points(touch.piece).weights(touch.point) * force.transpose();
 }
 
-/// What the pushes change by, by the unknowns.
+/// Adds the derivatives of the contact forces by the unknowns.
 /// @param derivative  Touch::by_depth or Touch::by_rate
 void SpanDynamics::add_touches(double Touch::*derivative, Eigen::MatrixXd& matrix) {
   for (const Touch& touch : touches_) {

@@ -10,21 +10,24 @@
 
 namespace dlo::energy_model {
 
-/// @throws std::invalid_argument naming what of it is out of range, and the function
+/// Checks masses. @throws std::invalid_argument naming the value that is out of range, and the
+/// function
 void check(const Problem& problem, const Inertia& inertia, std::string_view function);
 
-/// Of the rod and what hangs on it [kg].
+/// Returns the mass of the rod and its point masses [kg].
 [[nodiscard]] double total_mass(const Problem& problem, const Inertia& inertia);
 
-/// Of each of a span's pieces over its length in the span's own unit [kg].
+/// Returns the mass per length of each of a span's elements, times the length unit of the span
+/// [kg].
 [[nodiscard]] std::vector<double> masses_per_length(const Problem& problem, const Inertia& inertia,
                                                     const PlacedSpan& placed,
                                                     const std::vector<Piece>& pieces);
 
-/// Of a movement along one axis, M: with the unknowns' velocities v its kinetic energy is half of
-/// v^T M v.
+/// Returns the mass matrix M of the movement along one axis: the kinetic energy is v^T M v / 2 with
+/// the unknowns' velocities v.
 /// @param masses    of the points of a span
-/// @param tangents  derivatives of the tangents' component by the unknowns, nodes x unknowns
+/// @param tangents  derivatives of the tangents' component along the axis by the unknowns, nodes x
+///   unknowns
 [[nodiscard]] Eigen::MatrixXd mass_matrix(const SpanReach& reach, const Eigen::VectorXd& masses,
                                           const Eigen::MatrixXd& tangents);
 

@@ -20,20 +20,21 @@
 namespace dlo::energy_model {
 namespace {
 
-/// What a mode has of its kinetic energy elsewhere may be rounding.
+/// Fraction of a mode's kinetic energy out of (or in) the plane up to which it counts as rounding.
 constexpr double rounding_share = 1e-9;
-/// Components of tangents across its plane that a planar shape may have.
+/// Largest component of tangents out of its plane for a planar shape.
 constexpr double plane_rounding = 1e-9;
 
-/// By which tangents of one equilibrium that was solved twice may differ.
+/// Largest difference of tangents between two solutions of the same equilibrium.
 constexpr double found_again = 1e-6;
-/// Of omega_squared, over EI / (m l^3): what is less is a rod with a rigid-body mode, and rounding.
+/// Value of omega_squared, divided by EI / (m l^3), below which errors are no longer relative:
+/// smaller values belong to rigid-body modes and rounding.
 constexpr double neutral_share = 1e-2;
 
-/// Axes of which the last one is across the plane of a shape.
+/// Axes of a shape; the last one is normal to its plane.
 struct ShapeAxes {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
-  bool flat = false;  ///< there is such a plane
+  bool flat = false;  ///< whether the shape is planar
 };
 
 /// @param tangents  3 x nodes
@@ -47,16 +48,16 @@ ShapeAxes shape_axes(const Eigen::Matrix3Xd& tangents) {
   return result;
 }
 
-/// One span with its modes.
+/// One span and its modes.
 struct VibratingSpan {
   PlacedSpan placed;
   PositionOperator reach;
-  std::array<Eigen::MatrixXd, 3> tangents;  ///< by the unknowns, an axis each
+  std::array<Eigen::MatrixXd, 3> tangents;  ///< derivatives by the unknowns, by axis
   SpanModes modes;
-  bool flat = false;  ///< its shape
+  bool flat = false;  ///< whether its shape is planar
 
-  /// Where a mode (by the tangents, nodes x 3) moves the point at an arc length, along the span's
-  /// axes.
+  /// Returns the displacement by a mode (derivatives of the tangents, nodes x 3) of the point at an
+  /// arc length, along the span's axes.
   [[nodiscard]] Eigen::Vector3d moved(double at, double length,
                                       const Eigen::MatrixX3d& mode) const {
     const double s = std::clamp(placed.s_of(at, length), 0.0, placed.span.length);
@@ -73,7 +74,7 @@ struct VibratingSpan {
 
 class RodVibrations {
  public:
-  /// @param known  shape that `spans` has to find again; null: there is no other one
+  /// @param known  shape that `spans` has to reproduce; null: no comparison
   RodVibrations(const Problem& problem, const Inertia& inertia, SpansAtRest spans,
                 const Equilibrium* known, const VibrationOptions& options)
       : problem_(problem),
@@ -82,7 +83,7 @@ class RodVibrations {
         known_(known),
         count_(options.count) {}
 
-  /// @return why there are none; empty: there are
+  /// @return the reason of a failure; empty on success
   [[nodiscard]] std::string find(int terms) {
     spans_.clear();
     farthest_ = 0;
@@ -96,7 +97,7 @@ class RodVibrations {
     return {};
   }
 
-  /// Modes of all spans together, the slowest first.
+  /// Returns the modes of all spans, the slowest first.
   [[nodiscard]] std::vector<VibrationMode> modes() const {
     std::vector<VibrationMode> result;
     for (const std::shared_ptr<const VibratingSpan>& span : spans_) {
@@ -113,11 +114,11 @@ class RodVibrations {
     return result;
   }
 
-  /// Whether the shape that vibrates is the known one: Newton's method may have gone to another,
-  /// and few terms do not resolve it.
+  /// Whether the vibrating shape is the known one: Newton's method may have converged to another
+  /// one, and few coefficients do not resolve it.
   [[nodiscard]] bool is_known() const { return farthest_ <= found_again; }
 
-  /// Unknowns of the largest span.
+  /// Number of unknowns of the largest span.
   [[nodiscard]] Eigen::Index unknowns() const {
     Eigen::Index most = 0;
     for (const auto& span : spans_) most = std::max(most, span->tangents[0].cols());
@@ -156,7 +157,7 @@ class RodVibrations {
       Eigen::MatrixXd result = mass_matrix(points, masses, tangents);
       for (const PointMass& point : inertia_.point_masses) {
         const double s = placed.s_of(point.at, problem_.length);
-        // One at a clamp between two spans stands, in whichever it is counted.
+        // A point mass at a clamp between two spans does not move, whichever span it is counted in.
         if (!(s >= 0 && s <= placed.span.length)) continue;
         const Eigen::VectorXd moved = tangents.transpose() * span->reach.at(s);
         result += point.mass * moved * moved.transpose();
@@ -168,7 +169,7 @@ class RodVibrations {
     const Eigen::MatrixXd across = axes.rows(2, 0) * span->tangents[0] +
                                    axes.rows(2, 1) * span->tangents[1] +
                                    axes.rows(2, 2) * span->tangents[2];
-    // Two of one frequency are told apart together.
+    // One mode more than requested, so that two modes of equal frequency are separated together.
     span->modes = span_modes(hessian, at->jacobian, mass, mass_along(across), count_ + 1);
     spans_.push_back(std::move(span));
   }
@@ -191,7 +192,7 @@ class RodVibrations {
       shape.col(static_cast<Eigen::Index>(axis)) = span->tangents[axis] * span->modes.shapes.col(k);
     }
     shape *= span->placed.frame;
-    // Of the farthest of so many points.
+    // Normalises by the farthest displacement among these points.
     constexpr int samples = 400;
     Eigen::Vector3d farthest = Eigen::Vector3d::Zero();
     for (int i = 0; i <= samples; ++i) {
@@ -222,7 +223,7 @@ class RodVibrations {
   Eigen::Index count_;
   SpanWorkspace workspace_;
   std::vector<std::shared_ptr<const VibratingSpan>> spans_;
-  double farthest_ = 0;  // component by which tangents are not the known shape's
+  double farthest_ = 0;  // largest difference of a tangent's component from the known shape
 };
 
 }  // namespace
@@ -249,7 +250,7 @@ Vibrations resolved_vibrations(const Problem& problem, const Inertia& inertia,
     double largest = 0;
     for (std::size_t i = 0; i < result.modes.size() && i < last.size(); ++i) {
       const double square = result.modes[i].omega_squared;
-      // d omega / omega is half of that of the square.
+      // The relative error of omega is half of that of its square.
       result.modes[i].error =
           std::abs(square - last[i]) / (2 * std::max(std::abs(square), neutral_square));
       largest = std::max(largest, result.modes[i].error);

@@ -9,11 +9,12 @@
 
 namespace dlo::energy_model {
 
-/// The spans of a rod at rest with so many terms, bent out of their planes too.
+/// Function that returns the spans of a rod in equilibrium with a number of coefficients, all in
+/// space.
 using SpansAtRest = std::function<std::vector<PlacedSolution>(int terms, SpanWorkspace&)>;
 
-/// Modes with more and more terms, until they do not change.
-/// @param known  shape that `spans` has to find again; null: there is no other one
+/// Computes modes with an increasing number of coefficients until they do not change.
+/// @param known  shape that `spans` has to reproduce; null: no comparison
 Vibrations resolved_vibrations(const Problem& problem, const Inertia& inertia,
                                const SpansAtRest& spans, const Equilibrium* known,
                                const VibrationOptions& options);

@@ -9,8 +9,8 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Orthonormal basis of what the constraints leave free, of which some may be no constraints to
-/// first order: the end of a straight rod cannot move along it.
+/// Returns an orthonormal basis of the null space of the constraints' Jacobian. Some constraints
+/// may vanish to first order: the end of a straight rod cannot move along it.
 Eigen::MatrixXd directions_left(const Eigen::MatrixXd& jacobian) {
   if (jacobian.rows() == 0) return Eigen::MatrixXd::Identity(jacobian.cols(), jacobian.cols());
   constexpr double of_first_order = 1e-9;
@@ -21,7 +21,8 @@ Eigen::MatrixXd directions_left(const Eigen::MatrixXd& jacobian) {
   return Q.rightCols(jacobian.cols() - qr.rank());
 }
 
-/// Modes of one frequency are any two that span them; these are told apart by where they move.
+/// Separates modes of equal frequency, which are determined only up to a rotation, by their
+/// movement along the axis.
 void separate(SpanModes& modes, const Eigen::MatrixXd& outside) {
   constexpr double same = 1e-7;
   const Eigen::Index count = modes.lambdas.size();
@@ -49,8 +50,9 @@ SpanModes span_modes(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jaco
   const Eigen::MatrixXd free = directions_left(jacobian);
   const Eigen::MatrixXd stiffness = free.transpose() * hessian * free;
   const Eigen::MatrixXd free_mass = free.transpose() * mass * free;
-  // 1 / (lambda + shift) are eigenvalues of M against H + shift M, which has to be definite: of an
-  // unstable shape, or one with a rigid-body mode, only with a shift. So the lowest come out best.
+  // 1 / (lambda + shift) are the eigenvalues of M with respect to H + shift M, which has to be
+  // positive definite; unstable shapes and rigid-body modes need a shift. The lowest modes are
+  // computed most accurately.
   double shift = 1 / free_mass.trace();
   Eigen::LLT<Eigen::MatrixXd> factor;
   constexpr int most_shifts = 40;
@@ -63,8 +65,8 @@ SpanModes span_modes(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jaco
   Eigen::MatrixXd inverse = factor.matrixL().solve(free_mass);
   inverse = factor.matrixL().solve(inverse.transpose()).eval();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(inverse);
-  const Eigen::VectorXd& values = solver.eigenvalues();  // growing
-  // What has no inertia follows at once.
+  const Eigen::VectorXd& values = solver.eigenvalues();  // ascending
+  // Directions without inertia follow instantaneously and have no mode.
   constexpr double without_inertia = 1e-13;
   Eigen::Index found = 0;
   const Eigen::Index size = values.size();

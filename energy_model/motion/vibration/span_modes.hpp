@@ -4,17 +4,18 @@
 
 namespace dlo::energy_model {
 
-/// Solutions of H v = lambda M v on the free directions, by growing lambda.
+/// Solutions of H v = lambda M v on the free directions, by ascending lambda.
 struct SpanModes {
   Eigen::VectorXd lambdas;
   Eigen::MatrixXd shapes;   ///< v, by column, v^T M v = 1
-  Eigen::VectorXd outside;  ///< share of the kinetic energy of the movement outside [-]
+  Eigen::VectorXd outside;  ///< fraction of the kinetic energy in the movement `outside` [-]
 };
 
+/// Computes the modes of a span. Modes of equal frequency are chosen so that their movement
+/// `outside` is largest and smallest.
 /// @param mass     M
-/// @param outside  of it, that of the movement along an axis
-/// @param count    of modes, fewer if there are not as many that have inertia
-/// Modes of one frequency are those that move outside most and least.
+/// @param outside  mass matrix of the movement along one axis
+/// @param count    number of modes; fewer are returned if fewer have inertia
 [[nodiscard]] SpanModes span_modes(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian,
                                    const Eigen::MatrixXd& mass, const Eigen::MatrixXd& outside,
                                    Eigen::Index count);

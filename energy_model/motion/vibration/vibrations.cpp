@@ -26,11 +26,11 @@ void check_options(const VibrationOptions& options) {
   require(options.time_limit > 0, where, "time_limit", options.time_limit, "> 0");
 }
 
-/// Rounding of what holds a rod straight.
+/// Largest deviation of a straight rod's grips, by rounding.
 constexpr double straight_rounding = 1e-9;
 
-/// The same problem with a little slack between its grips, which problems have to have. Of a rod
-/// that is straight nothing depends on it.
+/// Returns the problem with a small slack between its grips, which is required of problems. A
+/// straight rod does not depend on it.
 Problem with_slack(const Problem& problem) {
   constexpr double slack = 1e-8;
   Problem result = problem;
@@ -48,7 +48,7 @@ void require_energy_in_space(const Problem& problem) {
           "0: out of the plane of the rod a couple has no potential");
 }
 
-/// @throws std::invalid_argument if anything could bend or twist it
+/// Checks that nothing bends or twists the rod. @throws std::invalid_argument otherwise
 void require_nothing_bends(const Problem& problem) {
   const char* where = "taut_vibrations";
   double weight = problem.weight_per_length.norm();

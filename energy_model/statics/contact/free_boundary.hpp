@@ -13,8 +13,7 @@ namespace dlo::energy_model {
 /// curvature towards the obstacle.
 struct FreeBoundary {
   std::size_t contact = 0;  ///< index in Span::contacts
-  bool begins = true;  ///< whether it is the begin of a part in contact; true for a contact at one
-                       ///< point
+  bool begins = true;       ///< begin of a part in contact; true for a contact at a point
 
   [[nodiscard]] double at(const Span& span) const;
   void move(Span& span, double way) const;

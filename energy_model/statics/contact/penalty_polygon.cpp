@@ -85,8 +85,7 @@ obstacle::Body founded(const obstacle::Body& body, const Span& span) {
       for (const bool up : {false, true}) {
         const double outward = (up ? 1 : -1) * ground.body.normal().dot(body.axes().col(axis));
         if (!(outward < 0)) continue;  // the face does not point into the half-space
-        double highest = -std::numeric_limits<double>::infinity();  // clearance of the face's
-                                                                    // corners
+        double highest = -std::numeric_limits<double>::infinity();  // of the face's corners
         for (int corner = 0; corner < 8; ++corner) {
           if (((corner >> axis) % 2 == 1) != up) continue;
           Eigen::Vector3d at = lower;

@@ -44,8 +44,7 @@ class RodFrames {
     double length;
     std::array<double, 3> strain;  ///< strain for a coefficient of 1 of p_0 = 1, by field
     const LegendreTable* table;
-    Eigen::Index terms, column, node;  ///< number of coefficients, index of the first one within a
-                                       ///< field, index of the first node
+    Eigen::Index terms, column, node;  ///< coefficients, first unknown in a field, first node
 
     [[nodiscard]] Eigen::Index nodes() const { return table->nodes.size(); }
   };
@@ -57,8 +56,7 @@ class RodFrames {
     Eigen::MatrixX3d d1, d2, t;  ///< directors
     /// Quadrature weight times int_s^end t over the rest of the element, divided by its length.
     Eigen::MatrixX3d tails;
-    std::vector<Eigen::Quaterniond> panel_ends;  ///< frames at panel ends; that of a free start's
-                                                 ///< rotation first
+    std::vector<Eigen::Quaterniond> panel_ends;  ///< at panel ends; of a free start first
     /// Derivatives by x of the rotation of the end's frame, 3 x unknowns, from the last
     /// end_rotation_jacobian().
     Eigen::Matrix3Xd ends;

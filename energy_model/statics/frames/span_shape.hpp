@@ -25,8 +25,7 @@ struct SpanSamples {
   Eigen::Matrix3Xd points;  ///< relative to the anchor
   Eigen::Matrix3Xd tangents;
   Eigen::Matrix3Xd curvature;
-  Eigen::Matrix3Xd d1;  ///< d1 of the rod's own or of Bishop's frame that has Span::first_d1() at
-                        ///< the start
+  Eigen::Matrix3Xd d1;  ///< of the frame, own or Bishop's, with Span::first_d1() at the start
 };
 
 /// A shape as initial guess, at given arc lengths in ascending order.

@@ -34,10 +34,8 @@ struct DenseKernel {
   /// Computes scale q (0, u1, u2, 0).
   void (*multiply_by_two_strains)(const ConstColumns& q, const ConstColumns& u, double scale,
                                   const Columns& result);
-  void (*multiply_by_conjugate)(const Columns& a, const ConstColumns& b);  ///< Computes a conj(b),
-                                                                           ///< in place.
-  void (*add_product)(const Columns& q, const ConstColumns& a);  ///< Replaces q by q + a q,
-                                                                 ///< normalised.
+  void (*multiply_by_conjugate)(const Columns& a, const ConstColumns& b);  ///< a = a conj(b)
+  void (*add_product)(const Columns& q, const ConstColumns& a);  ///< q = q + a q, normalised
   /// Factors a symmetric A = L L^T in place. Reads the lower half of A and writes L, with the
   /// inverse of each diagonal element in its place. The stride has to be a multiple of `padding`;
   /// elements above the diagonal and between the last row and the stride are overwritten.

@@ -223,8 +223,7 @@ ReducedHessian::Lanczos ReducedHessian::look_for_smallest(double settled, Eigen:
 
 std::optional<double> ReducedHessian::smallest_eigenvalue_of_definite() {
   constexpr double slack = 0.01;
-  constexpr double settled = 1e-4;  // between two checks; the later one has the square of this
-                                    // error
+  constexpr double settled = 1e-4;  // between two checks; the later is accurate to its square
   constexpr Eigen::Index most_steps = 24;
   if (!definite_ || free() == 0) return std::nullopt;
   const double smallest = 1 / look_for_smallest(settled, most_steps).largest;

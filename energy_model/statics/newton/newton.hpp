@@ -54,8 +54,7 @@ struct NewtonOptions {
   /// Hessian for the first steps, factored with the shape's own constraint Jacobian; used before
   /// first_factor.
   const Eigen::MatrixXd* first_hessian = nullptr;
-  const Deadline* deadline = nullptr;  ///< when it has passed, the status is `time_limit`; null:
-                                       ///< none
+  const Deadline* deadline = nullptr;  ///< ends the iteration as `time_limit`; null: none
 };
 
 /// Buffers of newton_solve(), kept from one call to the next.

@@ -63,7 +63,8 @@ class ActiveSet {
 /// @return whether any contact has changed
 [[nodiscard]] bool hold_points(Span& span);
 
-/// Known contacts with obstacles that may have moved; nothing where one has gone.
+/// Returns known contacts with the present positions of their obstacles; std::nullopt if an
+/// obstacle has disappeared.
 [[nodiscard]] std::optional<std::vector<Span::Contact>> moved_contacts(
     const Span& span, std::vector<Span::Contact> known);
 

@@ -35,7 +35,7 @@ void place_twisted_material(const Problem& problem,
                             const std::vector<const SpanSolution*>& solutions,
                             std::vector<PlacedShape>& shapes);
 
-/// The rod at arc lengths of it; d1 where all of its shapes have `ahead`.
+/// Samples the rod at arc lengths; with d1 if all of its shapes have `ahead`.
 [[nodiscard]] Samples sample(const std::vector<PlacedShape>& shapes, double length,
                              std::span<const double> arc_lengths);
 

@@ -13,8 +13,7 @@ namespace dlo::energy_model {
 /// Direction of negative curvature of an unstable equilibrium.
 struct NegativeCurvature {
   Span span;                  ///< the solution's; in space if a planar one leaves its plane
-  Eigen::VectorXd direction;  ///< unit vector in the unknowns of a model of `span` with as many
-                              ///< coefficients
+  Eigen::VectorXd direction;  ///< unit vector, in a model of `span` with as many coefficients
 };
 
 /// Returns the eigenvector of the smallest eigenvalue: in the span's plane if it is negative there,

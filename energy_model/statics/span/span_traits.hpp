@@ -20,8 +20,7 @@ struct SpanTraits {
   bool adapted;  ///< the mesh is adapted to a known shape
   double longest_piece = 0;
   int natural_terms = 0;  ///< number of coefficients needed for natural strains and couples
-  bool taut = false;      ///< whether a segment is taut; elements end where layers at its ends have
-                          ///< decayed
+  bool taut = false;      ///< elements end where layers at taut segments' ends have decayed
   double stiffness = 0;   ///< of the tautest segment along its chord
 };
 

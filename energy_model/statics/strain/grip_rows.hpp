@@ -75,7 +75,7 @@ class GripRows {
   /// at the nodes or by its unknowns; in the plane.
   void unwrap(const Eigen::VectorXd& angles, Eigen::Index nodes_of_piece);
   void unwrap(const Eigen::Ref<const Eigen::VectorXd>& x, double start_theta);
-  /// Takes on the winding of the same span's rows.
+  /// Copies the winding of another model's rows for the same span.
   void unwrap(const GripRows& other);
   /// Sets the direction and d1 of the clamp at the end.
   void turn_end_clamp(const Eigen::Vector3d& direction, const Eigen::Vector3d& d1);
@@ -104,8 +104,7 @@ class GripRows {
   Eigen::Index axes_ = 2;  // position components that are constrained, 2 or 3
   std::vector<Span::Hold> holds_;
   Eigen::MatrixXd reach_;  // per grip: quadrature weight of the node times -1, 0, 1
-  std::vector<std::vector<double>> reach_signs_;  // factors -1, 0, 1 by grip and element, without
-                                                  // weights
+  std::vector<std::vector<double>> reach_signs_;  // -1, 0, 1 by grip and element
   std::vector<DirectionRow> directions_;
   Eigen::MatrixXd held_angle_;  // in the plane: derivatives of the direction rows by the unknowns
 };

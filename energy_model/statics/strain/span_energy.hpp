@@ -50,7 +50,8 @@ class SpanEnergy {
   [[nodiscard]] int pieces() const { return static_cast<int>(pieces_.size()); }
   [[nodiscard]] double longest_piece() const;
 
-  /// Of what the model's values are: another one after reset(), and whatever turns a clamp.
+  /// Identifier of the model's present values. It changes with reset() and when a clamp's angle
+  /// changes.
   [[nodiscard]] long revision() const { return revision_; }
   /// Computes energy, gradient and constraints at x.
   void evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, SpanPoint& point) const;

@@ -27,8 +27,7 @@ struct [[nodiscard]] SpanSolution {
   double error = std::numeric_limits<double>::quiet_NaN();
   double energy = 0;      ///< [EI/l]
   bool resolved = false;  ///< more terms would not change the shape, or the caller chose them
-  bool followed = false;  ///< found near the known shape that it started from, by Newton's method
-                          ///< alone
+  bool followed = false;  ///< found near the known shape by Newton's method alone
   /// Smallest eigenvalue of the reduced Hessian, including directions out of the plane; NaN: not
   /// computed.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
