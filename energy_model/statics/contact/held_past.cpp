@@ -10,8 +10,8 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Largest number of spans. Each costs the relaxation of a coarse polygon; more of them would make
-/// the search among many bodies slower than everything else.
+/// Largest number of copies of the span. Each costs the relaxation of a coarse polygon; more of
+/// them would dominate the cost of a search among many bodies.
 constexpr std::size_t most_spans = 10;
 
 /// Distance from a body's middle at which a shape passes it, divided by half of the body's size
@@ -22,20 +22,20 @@ constexpr double beside_body = 1.1;
 /// without slack the initial guess would be a taut rod.
 constexpr double slack_of_way = 1.01;
 
-/// Lengths below this share of the span's length are rounding.
+/// Length, divided by the span's length, below which a length counts as rounding.
 constexpr double shortest_way = 1e-9;
 
-/// The part of a span between two neighbouring grips, or from the outermost grip to a free end.
+/// An interval of a span between two neighbouring grips, or from the outermost grip to a free end.
 struct Reach {
-  double from_s = 0;       ///< arc length of the grip that a way past a body begins at
+  double from_s = 0;       ///< arc length of the grip at which a path past a body begins
   double length = 0;       ///< length of this part of the rod
   double sense = 1;        ///< 1 if arc lengths increase along the path, else -1
   Eigen::Vector3d from;    ///< position of that grip
-  bool is_closed = false;  ///< whether another grip holds the other end
+  bool is_closed = false;  ///< whether another grip is at the other end
   Eigen::Vector3d to;      ///< position of the other grip, if there is one
 };
 
-/// Points that the rod passes, by their order from Reach::from.
+/// Points that the rod passes, in order from Reach::from.
 using Way = std::vector<Eigen::Vector3d>;
 
 std::vector<Reach> reaches_of(const Span& span) {
@@ -60,7 +60,8 @@ std::vector<Reach> reaches_of(const Span& span) {
   return reaches;
 }
 
-/// Returns the middle of a body; along an axis on which the body is endless that of a nearby point.
+/// Returns the middle of a body; along an axis on which the body is endless, that of a nearby
+/// point.
 Eigen::Vector3d middle_of(const obstacle::Body& body, const Eigen::Vector3d& near) {
   Eigen::Vector3d local = body.axes().transpose() * (near - body.centre());
   const Eigen::Vector3d middle = (body.lower() + body.upper()) / 2;
@@ -70,7 +71,7 @@ Eigen::Vector3d middle_of(const obstacle::Body& body, const Eigen::Vector3d& nea
   return body.centre() + body.axes() * local;
 }
 
-/// Returns half of the size of a body along a unit direction, without an axis on which it is
+/// Returns half of the size of a body along a unit direction, ignoring an axis on which it is
 /// endless.
 double half_size(const obstacle::Body& body, const Eigen::Vector3d& direction) {
   double size = body.radius();
@@ -82,10 +83,10 @@ double half_size(const obstacle::Body& body, const Eigen::Vector3d& direction) {
   return size;
 }
 
-/// Returns a unit direction across the way; the body may be passed in that direction and in the
-/// opposite one. It lies in the plane of a planar span, is across the axis of a body that is
-/// endless, and else lies in the plane of the loads. None if the body is endless along the way or
-/// on two axes.
+/// Returns a unit direction normal to the path; the body may be passed on that side and on the
+/// opposite one. The direction lies in the plane of a planar span, is normal to the axis of an
+/// endless body, and otherwise lies in the plane of the loads. Returns std::nullopt if the body is
+/// endless along the path or on two axes.
 std::optional<Eigen::Vector3d> side_of_way(const Span& span, const obstacle::Body& body,
                                            const Eigen::Vector3d& along) {
   std::vector<Eigen::Vector3d> endless;
@@ -105,9 +106,9 @@ std::optional<Eigen::Vector3d> side_of_way(const Span& span, const obstacle::Bod
   return side.normalized();
 }
 
-/// Returns the points of a way past a body: one beside its middle and, to a free end, one at its
+/// Returns the points of a path past a body: one next to its middle and, for a free end, one at its
 /// far corner, from where the rod hangs clear of the body.
-/// @param from  where the way has come to;  @param sense  1 or -1: to which side
+/// @param from  last point of the path so far;  @param sense  1 or -1: the side
 std::optional<Way> past(const Span& span, const obstacle::Body& body, const Reach& reach,
                         const Eigen::Vector3d& from, double sense) {
   const Eigen::Vector3d near = reach.is_closed ? (reach.from + reach.to) / 2 : reach.from;
@@ -123,7 +124,7 @@ std::optional<Way> past(const Span& span, const obstacle::Body& body, const Reac
   return Way{beside, beside + half_size(body, along) * along};
 }
 
-/// Returns the span with pins at the points of a way; none if the rod is too short for the way.
+/// Returns the span with pins at the points of a path; std::nullopt if the rod is too short for it.
 std::optional<Span> held_on_way(const Span& span, const Reach& reach, const Way& way) {
   std::vector<double> at;
   Eigen::Vector3d last = reach.from;
@@ -145,7 +146,7 @@ std::optional<Span> held_on_way(const Span& span, const Reach& reach, const Way&
   return held;
 }
 
-/// Collects the spans held past single bodies, then past pairs, up to most_spans.
+/// Collects the copies with pins past single bodies, then past pairs, up to most_spans.
 class SpansHeldPast {
  public:
   explicit SpansHeldPast(const Span& span) : span_(span) {
@@ -174,7 +175,7 @@ class SpansHeldPast {
     if (!body.is_half_space()) bodies_.push_back(body);
   }
 
-  /// Adds a span for each choice of sides.
+  /// Adds a copy for each choice of sides.
   void add_past(std::vector<const obstacle::Body*> row, const Reach& reach) {
     const auto distance = [&](const obstacle::Body* body) {
       return (middle_of(*body, reach.from) - reach.from).norm();
@@ -198,7 +199,7 @@ class SpansHeldPast {
     }
   }
 
-  /// Whether all points of a way are outside the rigid obstacles.
+  /// Whether all points of a path are outside the rigid obstacles.
   [[nodiscard]] bool is_clear(const Way& way) const {
     const auto is_inside = [&](const Span::Obstacle& obstacle) {
       return std::any_of(way.begin(), way.end(), [&](const Eigen::Vector3d& point) {

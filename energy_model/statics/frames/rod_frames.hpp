@@ -49,7 +49,7 @@ class RodFrames {
     [[nodiscard]] Eigen::Index nodes() const { return table->nodes.size(); }
   };
 
-  /// Of the last evaluate(), rows are nodes, those of a free start's turn first.
+  /// Results of the last evaluate(). Rows are nodes; those of a free start's rotation come first.
   struct State {
     Eigen::MatrixX4d q;          ///< unit quaternions w, x, y, z
     Eigen::MatrixX3d u;          ///< strains

@@ -60,7 +60,6 @@ class ActiveSet {
 /// Fixes contacts at points: where an obstacle would have to pull, there may be no equilibrium with
 /// a sliding contact but one with a fixed contact. A very short part in contact becomes a point.
 /// @return whether any sliding contact at a point has been fixed
-/// @return whether any contact has changed
 [[nodiscard]] bool hold_points(Span& span);
 
 /// Returns known contacts with the present positions of their obstacles; std::nullopt if an

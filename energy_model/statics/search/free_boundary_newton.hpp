@@ -11,7 +11,6 @@ namespace dlo::energy_model {
 /// stay at their last positions.
 /// @param[in,out] solution  an equilibrium with its contacts
 /// @return number of energy evaluations
-/// @return evaluations of the energy
 int free_boundary_newton(SpanSolution& solution, const Deadline& deadline,
                          SpanWorkspace& workspace);
 

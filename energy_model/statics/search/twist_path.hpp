@@ -9,7 +9,7 @@ namespace dlo::energy_model {
 
 /// The end frame that prescribes a span's twist.
 struct EndFrame {
-  Eigen::Vector3d d1;  ///< Span::Twist::end_d1
+  Eigen::Vector3d d1;  ///< see Span::Twist::end_d1
   double twist;        ///< twist of the rod relative to the untwisted shape [rad]
 };
 

@@ -19,9 +19,8 @@ struct ContactPlace {
     Eigen::Vector3d tangent = Eigen::Vector3d::Zero();
     double rate = 0;  ///< second derivative of the clearance by s; 0 if no minimum was found
   };
-  Eigen::VectorXd residual;  ///< of all rows
-  std::array<Eigen::MatrixXd, 3>
-      by_tangent;  ///< derivatives by the tangents, by axis, nodes x rows
+  Eigen::VectorXd residual;                   ///< of all rows
+  std::array<Eigen::MatrixXd, 3> by_tangent;  ///< by axis, nodes x rows
   std::vector<Touch> touches;
   std::vector<std::vector<obstacle::Gap>> gaps;  ///< of points from bodies other than half-spaces
 

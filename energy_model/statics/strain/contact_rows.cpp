@@ -195,7 +195,7 @@ ContactPlace::Touch ContactRows::least_clearance(const Eigen::MatrixX3d& tangent
                  found.tangent.dot(found.gap.hessian * found.tangent);
     return found.gap.gradient.dot(found.tangent);
   };
-  // Slopes in the direction in which it falls.
+  // Search in the direction in which the clearance decreases.
   double sense = -1;
   double slope = -look(touch.before, touch.at);
   Eigen::Index piece = touch.before;

@@ -46,7 +46,7 @@ struct [[nodiscard]] SpanSolution {
   /// null: there is none.
   std::shared_ptr<NewtonFactor> factor;
 
-  /// Whether `point` is the model's at x, as both are now.
+  /// Whether `point` is the model's point at the present x and revision.
   [[nodiscard]] bool has_point() const {
     return point && point->revision == model->revision() && point->x == x;
   }
