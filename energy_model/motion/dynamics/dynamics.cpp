@@ -138,7 +138,7 @@ void move_zero(const MovingRod& rod, const std::vector<PlacedSpan>& spans, Energ
   }
 }
 
-/// A load on a clamp is carried by that clamp alone.
+/// Adds the loads on clamps to the reactions and the work of these clamps, which alone carry them.
 void add_loads_on_clamps(const MovingRod& rod, double begin, MovingFrame& frame) {
   for (const Load& load : rod.problem.loads) {
     const std::optional<std::size_t> clamp = clamp_under(rod.problem, load);

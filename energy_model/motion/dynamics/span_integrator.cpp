@@ -343,8 +343,8 @@ bool SpanIntegrator::take_two_halves(SpanInstant& at, double step) {
   return true;
 }
 
-/// Returns the energy at an instant plus the energy dissipated so far minus the work done, which is
-/// constant; updates the largest energies.
+/// Returns the energy at an instant plus the energy dissipated and lost so far minus the work done,
+/// which is constant; updates the largest energies.
 double SpanIntegrator::take_energy(double time, const SpanInstant& at) {
   span_.move(drive_(time), at.x, at.v, Eigen::VectorXd::Zero(span_.size()));
   const EnergyBalance energies = span_.energies();

@@ -24,10 +24,10 @@ struct FreeBoundary {
 
 /// Returns the residual at each free boundary. For a sliding contact at one point it is the
 /// distance along the rod to the point of smallest clearance. For a point contact that does not
-/// slide it is the slope of the clearance times the length of the shorter adjacent element; the
-/// distance, slope divided by curvature, would be 0 / 0 where the rod begins to lie on the
-/// obstacle. For a part in contact it is the second derivative of the clearance times the length of
-/// the adjacent free part.
+/// slide it is the slope of the clearance times the shorter distance to the next grip, contact or
+/// end of the rod; the slope divided by the curvature would be 0 / 0 where the rod begins to lie on
+/// the obstacle. For a part in contact it is the second derivative of the clearance times the
+/// length of the adjacent free interval.
 [[nodiscard]] Eigen::VectorXd free_boundary_residual(const SpanSolution& solution,
                                                      const std::vector<FreeBoundary>& ends);
 

@@ -57,8 +57,8 @@ class Contacts {
   }
 
  private:
-  /// Releases contacts at points where the obstacle would have to pull, and shortens parts that it
-  /// pulls.
+  /// Removes contact points at which the obstacle would have to pull, and replaces parts that it
+  /// would have to pull, or that are too short, by one or two points.
   void release_tensile() {
     const std::vector<ContactForce> forces =
         solution_.model->contact_forces(*solution_.at_x(), solution_.multipliers);

@@ -26,9 +26,9 @@ enum class Resolution {
 /// and pressures are above -1e-7 of all forces), and no point is deeper than `deepest`
 /// (`deepest_coarse`) rod lengths within one.
 /// @return std::nullopt if so; otherwise the contacts to try next: points that pull are released,
-///   parts that are too short become points, parts with tension along them become points at both
-///   ends, contacts that meet are joined, and contacts are added where the rod is within an
-///   obstacle
+///   parts that pull at an end or are too short become a point, parts that pull between their ends
+///   become two points, contacts that meet are joined, and contacts are added where the rod is
+///   within an obstacle
 [[nodiscard]] std::optional<std::vector<Span::Contact>> updated_contacts(
     const SpanSolution& solution, double load, Resolution resolution);
 

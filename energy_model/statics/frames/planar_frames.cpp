@@ -114,8 +114,8 @@ void PlanarFrames::adjoint(const Eigen::Ref<const Eigen::VectorXd>& weights, Eig
   multiply(angle_transposed_, state.turning, state.by_unknown);
 }
 
-/// Beyond its own element an unknown rotates the rod as a whole, if it is the first of its element
-/// or the start's angle; otherwise it has no effect there.
+/// Uses that an unknown beyond its own element rotates the rod as a whole, if it is the first of
+/// its element or the start's angle, and otherwise has no effect there.
 void PlanarFrames::add_hessian(const Eigen::VectorXd& along, State& state,
                                Eigen::Ref<Eigen::MatrixXd> hessian) const {
   const Eigen::Index Q = table_->nodes.size();

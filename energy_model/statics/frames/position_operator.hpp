@@ -111,7 +111,7 @@ class SpanReach {
   }
   /// Weights of the span's quadrature at the points; 0 at begins and ends of elements.
   [[nodiscard]] const Eigen::VectorXd& weights() const { return weights_; }
-  /// Returns weights() times a factor of each element.
+  /// Returns weights() times a quantity per length that is constant on each element.
   [[nodiscard]] Eigen::VectorXd weighed(const std::vector<double>& per_length) const;
   /// Returns Reach^T A, points x columns of A. @param by_node  A, nodes x columns
   [[nodiscard]] Eigen::MatrixXd sums(const Eigen::MatrixXd& by_node) const;

@@ -301,8 +301,9 @@ double NewtonIteration::step_length_by_energy() {
   return 1e-4;
 }
 
-/// Soft obstacles make the second derivative of the energy jump. The step is therefore halved until
-/// the energy decreases or, between grips, until the residual does.
+/// Returns the length of the step among soft obstacles, which make the second derivative of the
+/// energy jump: Newton's step is halved until the energy decreases or, between grips, until the
+/// residual does.
 double NewtonIteration::step_length() {
   if (step_.is_minimum()) return step_length_by_energy();
   buffers_.trial_x = solution_.x;

@@ -30,15 +30,15 @@ inline constexpr double rough_step = 1e-5;
 
 enum class NewtonMethod {
   /// Converges to an equilibrium, stable or not. A factor of another shape serves the first steps
-  /// only, and is replaced by the shape's own before the last ones. Between grips, if the iteration
-  /// fails, it is repeated with `corrector`.
+  /// only, and is replaced by the shape's own before the last ones. Between grips and without soft
+  /// obstacles, an iteration that fails is repeated with `corrector`.
   newton,
-  /// Between grips, for a shape near another one whose factor serves as the first one. If it does
-  /// not converge within a few steps it ends as `failed`, without a second attempt and without
-  /// least squares.
+  /// Converges to an equilibrium near another shape, whose factor serves as the first one; between
+  /// grips. If it does not converge within a few steps it ends as `failed`, without a second
+  /// attempt and without least squares.
   simplified,
-  /// For one of many steps along a branch: near-null modes are deflated. Steps have no component
-  /// along them, where rounding would determine the length.
+  /// Corrects one of many steps along a branch, with near-null modes deflated: steps have no
+  /// component along them, where rounding would determine the length.
   corrector,
 };
 
@@ -48,8 +48,8 @@ struct NewtonOptions {
   /// Length of the next step at which the iteration ends [rad], if the residual is at rounding or
   /// as small as this.
   double step_tolerance = finest_step;
-  /// Factor of another shape for the first steps between grips; used if its number of unknowns is
-  /// the same.
+  /// Factor of another shape for the first steps between grips; used if its numbers of unknowns and
+  /// constraints are the same.
   std::shared_ptr<NewtonFactor> first_factor = nullptr;
   /// Hessian for the first steps, factored with the shape's own constraint Jacobian; used before
   /// first_factor.

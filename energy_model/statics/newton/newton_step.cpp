@@ -97,7 +97,7 @@ void NewtonStep::solve_by_least_squares() {
   buffers_.step = factor_->system.minimum_norm_step(buffers_.right);
 }
 
-/// Multipliers are divided by the scale of forces during the update.
+/// Applies Broyden's update with multipliers divided by the scale of forces.
 void NewtonStep::update() {
   auto first_multipliers = buffers_.first_step.tail(solution_.model->constraints());
   auto multipliers = buffers_.step.tail(solution_.model->constraints());

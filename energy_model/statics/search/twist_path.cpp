@@ -33,8 +33,8 @@ constexpr double least_turn = 1e-4;
 /// it [rad].
 constexpr double turn_at_loss = 0.02;
 
-/// Largest difference between the change of energy in a step and the torque's work, divided by the
-/// energy of a straight rod twisted by the step, on the same branch.
+/// Largest difference between the change of energy in a step and the torque's work on the same
+/// branch, divided by twice the twist energy of a straight rod rotated by the step.
 constexpr double branch_share = 0.05;
 /// Largest such difference after which the next step may be longer.
 constexpr double smooth_share = 0.005;
@@ -256,7 +256,8 @@ class TwistPath {
     return is_minimum(projected);
   }
 
-  /// Infinity if there is no factor.
+  /// Returns the distance of the solution from the point of its factor; infinity if there is no
+  /// factor.
   [[nodiscard]] double distance_of_factor(const SpanSolution& solution) const {
     if (!solution.factor) return std::numeric_limits<double>::infinity();
     return solution.factor->distance(solution, scale_of_forces(solution, load_));

@@ -40,7 +40,8 @@ class TwistedSpan {
         workspace_(workspace),
         held_(*placed.frames) {}
 
-  /// Returns std::nullopt if the known shape has a different number of turns, or if no equilibrium
+  /// Returns std::nullopt if the known shape has other turns than are prescribed, or if no
+  /// equilibrium is found from it.
   /// is found from it.
   [[nodiscard]] std::optional<SpanSolution> from_known(const Equilibrium& start) const {
     const double l = problem_.length;

@@ -17,7 +17,7 @@ namespace dlo::energy_model {
 
 /// Certifies a solution. Evaluations of the certificate do not count. Near a fold truncation
 /// decides whether the shape exists, and elsewhere it may dominate the error estimate; in these
-/// cases the solution is certified once more with half as many coefficients more.
+/// cases the shape is solved and certified once more with half as many coefficients more.
 [[nodiscard]] SpanSolution judged(SpanSolution solution, const SpanOptions& options,
                                   SpanWorkspace& workspace);
 

@@ -197,8 +197,8 @@ class Search {
     return ranked;
   }
 
-  /// Searches in space if a planar equilibrium of a curved rod or a strip is unstable: out of its
-  /// plane it twists far and has other shapes.
+  /// Searches in space for a curved rod or a strip in a plane, if an equilibrium found is a saddle
+  /// or all equilibria are wanted: out of its plane such a rod twists far and has other shapes.
   void look_in_space() {
     const auto is_saddle = [](const auto& solution) {
       return solution.status == SolveStatus::saddle;

@@ -137,8 +137,8 @@ void GripRows::turn_derivatives(const SpatialPoint& at,
   }
 }
 
-/// psi rotates d1 about the tangent t, and the strains rotate it afterwards. The composition is the
-/// sum of both rotation vectors plus half their cross product.
+/// Uses that psi rotates d1 about the tangent t before the strains rotate it: the composition is
+/// the sum of both rotation vectors plus half their cross product.
 void GripRows::add_twist_hessian(const SpatialPoint& at, double factor,
                                  Eigen::MatrixXd& hessian) const {
   const Eigen::Index strains = at.strains();

@@ -126,7 +126,7 @@ class SpanEnergy {
   [[nodiscard]] const Piece& piece(Eigen::Index index) const {
     return pieces_[static_cast<std::size_t>(index)];
   }
-  /// Legendre table of the nodes of each element.
+  /// Legendre table that defines the nodes of each element.
   [[nodiscard]] const LegendreTable& table() const { return *table_; }
   /// Returns the derivatives of the tangents at the nodes by the unknowns except the twist psi:
   /// components x, y and z, nodes x unknowns.
