@@ -57,8 +57,8 @@ struct Touch {
 class ContactGrid {
  public:
   /// Places points at most 1/128 apart. For bodies other than half-spaces the spacing is at most 2
-  /// law.depth, if that is less, so that a contact is located to law.depth, and an edge enters the
-  /// rod between two points by no more than that.
+  /// law.depth if that is less, but not below 1/4096, so that a contact is located to law.depth,
+  /// and an edge enters the rod between two points by no more than that.
   ContactGrid(const std::vector<Span::Obstacle>& obstacles, const PositionOperator& reach,
               const ContactLaw& law);
 

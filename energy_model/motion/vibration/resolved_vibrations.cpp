@@ -37,7 +37,7 @@ struct ShapeAxes {
   bool flat = false;  ///< whether the shape is planar
 };
 
-/// @param tangents  3 x nodes
+/// Finds the axes of a shape. @param tangents  3 x nodes
 ShapeAxes shape_axes(const Eigen::Matrix3Xd& tangents) {
   ShapeAxes result;
   result.flat = tangents.row(2).cwiseAbs().maxCoeff() < plane_rounding;
@@ -83,7 +83,7 @@ class RodVibrations {
         known_(known),
         count_(options.count) {}
 
-  /// @return the reason of a failure; empty on success
+  /// Solves for the spans and their modes. @return the reason of a failure; empty on success
   [[nodiscard]] std::string find(int terms) {
     spans_.clear();
     farthest_ = 0;

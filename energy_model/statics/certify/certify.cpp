@@ -264,7 +264,8 @@ class Certification {
   }
 
  private:
-  /// @return whether the shape satisfies the equations of equilibrium
+  /// Evaluates the residual of the solution. @return whether the shape satisfies the equations of
+  /// equilibrium
   [[nodiscard]] bool evaluate() {
     solution_.point = point_ = solution_.at_x();
     ++solution_.evaluations;

@@ -20,7 +20,7 @@ void certify(SpanSolution& solution, double load, NewtonFactors& factors);
 
 /// Certifies a plain cantilever that Newton's method has just found, which has checked its step and
 /// its second variation in the plane. Only the sign of the second variation out of the plane is
-/// determined.
+/// determined. A singular point, or a shape that may be at a fold, is passed to certify().
 void certify_out_of_plane(SpanSolution& solution, double load, NewtonFactors& factors);
 
 }  // namespace dlo::energy_model

@@ -83,7 +83,8 @@ class PositionOperator {
   struct Point {
     Eigen::VectorXd position, tangent, curvature;
   };
-  /// @param s  arc length in the span; it may lie slightly outside the element
+  /// Returns the weights of a point of an element. @param s  arc length in the span; it may lie
+  /// slightly outside the element
   [[nodiscard]] Point at(Eigen::Index piece, double s) const;
 
  private:

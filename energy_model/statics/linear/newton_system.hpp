@@ -16,7 +16,8 @@ namespace dlo::energy_model {
 /// one compute() to the next.
 class NewtonSystem {
  public:
-  /// @param[in,out] hessian  n x n, symmetric; its storage is swapped out, and its content is lost
+  /// Factors the system. @param[in,out] hessian  n x n, symmetric; its storage is swapped out, and
+  /// its content is lost
   /// @param jacobian         m x n
   void compute(Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian);
 

@@ -13,6 +13,7 @@ namespace dlo::energy_model {
 /// from one compute() to the next.
 class ReducedHessian {
  public:
+  /// Restricts the Hessian to the null space of the Jacobian and factors it.
   /// @param hessian   n x n, symmetric
   /// @param jacobian  of the constraints, m x n; m may be 0 or exceed n
   void compute(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian) {

@@ -69,8 +69,8 @@ SpanSolution ActiveSet::update(Span span, TangentField near, int terms) {
   return counted(run(std::move(span), std::move(near), {}, Resolution::coarse));
 }
 
-/// @param solution  used as the first iterate, with its contacts, if it is an equilibrium;
-///   otherwise `near` is used
+/// Runs the rounds of the active-set method. @param solution  first iterate, with its contacts, if
+/// it is an equilibrium; otherwise `near` is used
 SpanSolution ActiveSet::run(Span span, TangentField near, SpanSolution solution,
                             Resolution resolution) {
   spent_ += std::exchange(solution.evaluations, 0);

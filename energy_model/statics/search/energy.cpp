@@ -135,7 +135,7 @@ class EnergySolver::State {
   /// guess. `points`: the initial guess is a given shape, from which the solver only descends.
   enum class From { nothing, last_shape, last_shape_only, points };
 
-  /// @return empty if From::last_shape_only does not lead to an equilibrium
+  /// Solves a problem. @return equilibria; empty if From::last_shape_only does not lead to one
   std::vector<Equilibrium> solve(const Problem& problem, Wanted wanted, From from) {
     const auto begin = std::chrono::steady_clock::now();
     const Deadline deadline(options_.time_limit);
@@ -228,7 +228,8 @@ class EnergySolver::State {
     return {};
   }
 
-  /// @return empty if From::last_shape_only does not lead to an equilibrium
+  /// Solves the spans and assembles them. @return equilibria; empty if From::last_shape_only does
+  /// not lead to one
   std::vector<Equilibrium> solve_placed(const Problem& problem, std::vector<PlacedSpan>& placed,
                                         Wanted wanted, From from, const Deadline& deadline) {
     const bool warm = from != From::nothing && remembered_.size() == placed.size();

@@ -197,7 +197,7 @@ class TwistPath {
     return active_set_.update(std::move(solution));
   }
 
-  /// @param how  simplified: uses the solution's own factor
+  /// Runs Newton's method. @param how  simplified: uses the solution's own factor
   void newton(SpanSolution& solution, NewtonMethod how) {
     newton_solve(solution,
                  {.load = load_,

@@ -42,7 +42,6 @@ class TwistedSpan {
 
   /// Returns std::nullopt if the known shape has other turns than are prescribed, or if no
   /// equilibrium is found from it.
-  /// is found from it.
   [[nodiscard]] std::optional<SpanSolution> from_known(const Equilibrium& start) const {
     const double l = problem_.length;
     const TwistedPart* part = known_twist(start, placed_, l);

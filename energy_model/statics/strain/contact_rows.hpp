@@ -27,7 +27,7 @@ namespace dlo::energy_model {
 /// computed from clearances alone, int phi g' = [phi g] - int phi' g.
 class ContactRows {
  public:
-  /// @param terms  number of coefficients of an element's strain
+  /// Sets up the rows of a span. @param terms  number of coefficients of an element's strain
   void reset(const Span& span, const std::vector<Piece>& pieces, int terms,
              const LegendreTable& table);
 

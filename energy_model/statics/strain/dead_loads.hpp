@@ -14,7 +14,7 @@ namespace dlo::energy_model {
 ///     E = -sum_q force_q . t_q - couples . x   [EI/l].
 class DeadLoads {
  public:
-  /// @param nodes    arc lengths of the quadrature nodes
+  /// Sets up the loads of a span. @param nodes  arc lengths of the quadrature nodes
   /// @param weights  quadrature weights
   void reset(const Span& span, const Eigen::VectorXd& nodes, const Eigen::VectorXd& weights);
   /// Computes the couples' coefficients; for a span in its plane.
