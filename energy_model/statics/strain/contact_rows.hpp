@@ -16,12 +16,12 @@ namespace dlo::energy_model {
 
 /// Constraints of the rod's contacts with rigid obstacles, as functions of clearances g of its
 /// points. A sliding contact at one point has one row: the smallest clearance near it, wherever
-/// that point is. Any other contact has a row for the clearance at its begin. Where the rod lies on
-/// the obstacle, each element also has rows for the moments int phi g' ds of its slope, divided by
-/// the element's length, with the polynomials phi up to the degree to which its strains resolve the
-/// slope. The strains of such a part are thereby fixed in the direction away from the obstacle and
-/// free along it. The multipliers' series N(s) = sum mu phi(s) is the force that the contacts carry
-/// at s, and -N' the obstacle's pressure.
+/// that point is. Any other contact has a row for the clearance at its begin, unless a grip holds
+/// the rod within the contact. Where the rod lies on the obstacle, each element also has rows for
+/// the moments int phi g' ds of its slope, divided by the element's length, with the polynomials
+/// phi up to the degree to which its strains resolve the slope. The strains of such a part are
+/// thereby fixed in the direction away from the obstacle and free along it. The multipliers' series
+/// N(s) = sum mu phi(s) is the force that the contacts carry at s, and -N' the obstacle's pressure.
 ///
 /// On a half-space g' = n.t, and the moments are linear in the tangents. For other bodies they are
 /// computed from clearances alone, int phi g' = [phi g] - int phi' g.
