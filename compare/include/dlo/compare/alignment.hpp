@@ -11,30 +11,34 @@
 
 namespace dlo::compare {
 
-/// What of a shape file's frame is unknown.
+/// The unknown part of a shape file's frame.
 enum class PoseFreedom {
-  known,        ///< nothing: it is the scene's frame
-  translation,  ///< where its origin is
-  upright,      ///< and how it is turned about the vertical (the direction of gravity)
-  rigid,        ///< any proper rigid motion. A planar shape and its mirror image in the plane are
-                ///< then the same: up and down is lost with the frame.
+  known,        ///< nothing is unknown: the file has the scene's frame
+  translation,  ///< the origin is unknown
+  /// The origin and the rotation about the vertical (the direction of gravity) are unknown
+  upright,
+  /// Any proper rigid motion is possible. A planar shape and its mirror image in the plane are then
+  /// identical, so that up and down cannot be distinguished.
+  rigid,
 };
 
-/// Where the points' arc lengths come from.
+/// Source of the points' arc lengths.
 enum class ArcLengths {
   automatic,  ///< the file's, if it has them; else `nearest`
   file,       ///< the file's column s
-  chord,      ///< the points are the whole rod: lengths along the polyline, with a correction for
-              ///< the bow over each chord, scaled to the rod's; a dozen points know them to 1e-4 l
-  nearest,    ///< each the curve's nearest point, in order: parts may be missing. Differences along
-              ///< the curve are invisible. With PointWeights::by_length the ends of a file as long
-              ///< as the rod are the rod's.
+  /// The points are the whole rod: lengths along the polyline, with a correction for the bow over
+  /// each chord, scaled to the rod's length; accurate to 1e-4 l for a dozen points
+  chord,
+  /// Arc length of the nearest point of the curve for each point, in order; parts may be missing.
+  /// Differences along the curve are invisible. With PointWeights::by_length the ends of a file as
+  /// long as the rod are the rod's ends.
+  nearest,
 };
 
-/// Of the frame.
+/// Names of the values in files and options.
 template <>
 struct Choices<PoseFreedom> {
-  /// In the enumeration's order.
+  /// All values, in the order of the enumeration.
   static constexpr Choice<PoseFreedom> all[] = {
       {PoseFreedom::known, "known", "the scene's frame"},
       {PoseFreedom::translation, "translation", "all directions are known"},
@@ -42,10 +46,10 @@ struct Choices<PoseFreedom> {
       {PoseFreedom::rigid, "rigid", "nothing is known"}};
 };
 
-/// Of the arc lengths.
+/// Names of the values in files and options.
 template <>
 struct Choices<ArcLengths> {
-  /// In the enumeration's order.
+  /// All values, in the order of the enumeration.
   static constexpr Choice<ArcLengths> all[] = {
       {ArcLengths::automatic, "auto", "file if there is a column s, else nearest"},
       {ArcLengths::file, "file", "its column s"},
@@ -53,7 +57,7 @@ struct Choices<ArcLengths> {
       {ArcLengths::nearest, "nearest", "nearest points of the rod"}};
 };
 
-/// Direction of "up" for PoseFreedom::upright.
+/// Returns the upward direction for PoseFreedom::upright.
 /// @throws InputError if the pose is `upright` and the scene has no gravity
 [[nodiscard]] Eigen::Vector3d up_of(const Scene& scene, PoseFreedom pose);
 
@@ -62,59 +66,62 @@ struct RigidMotion {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< proper [-]
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();   ///< [m]
 
-  /// Points [m], 3 x M, in the scene's frame.
+  /// Returns points of the file [m], 3 x M, in the scene's frame [m].
   [[nodiscard]] Eigen::Matrix3Xd applied(const Eigen::Matrix3Xd& points) const {
     return (rotation * points).colwise() + translation;
   }
 };
 
-/// How much a point counts.
+/// Weight of a point in the fit.
 enum class PointWeights {
-  equal,      ///< all the same: measured points with the same noise
-  by_length,  ///< by the length up to its neighbours' middles, so that sums are integrals: the
-              ///< longer of the rod's arc length and the polyline's own, so that no point is left
-              ///< out
+  equal,  ///< equal weights: measured points with the same noise
+  /// The length between the middles to its neighbours, so that sums are integrals: the arc length
+  /// of the rod or the polyline's own length, whichever is longer, so that no point is ignored
+  by_length,
 };
 
-/// How a shape is to be laid on a reference.
+/// How a shape is aligned with a reference.
 struct AlignOptions {
-  PoseFreedom pose = PoseFreedom::known;           ///< what is unknown of its frame
-  ArcLengths arc_lengths = ArcLengths::automatic;  ///< where its arc lengths come from
-  PointWeights weights = PointWeights::by_length;  ///< how much each point counts
-  Eigen::Vector3d up = Eigen::Vector3d::UnitY();   ///< unit, for `upright`
+  PoseFreedom pose = PoseFreedom::known;           ///< unknown part of the file's frame
+  ArcLengths arc_lengths = ArcLengths::automatic;  ///< source of the arc lengths
+  PointWeights weights = PointWeights::by_length;  ///< weight of each point
+  Eigen::Vector3d up = Eigen::Vector3d::UnitY();   ///< upward unit vector, for `upright`
 };
 
-/// A measured shape laid on a reference.
+/// A measured shape aligned with a reference.
 struct Alignment {
   RigidMotion pose;       ///< from the file's frame to the scene's
-  bool reversed = false;  ///< the file runs (its s counts) from arc length l to 0
-  ArcLengths arc_lengths = ArcLengths::nearest;  ///< which rule was used; of a whole file whose
-                                                 ///< frame is found `nearest` may become `chord`
-  Shape shape;             ///< the points in the scene's frame, by growing arc length
-  double rms_m = 0;        ///< distance with the given weights
-  double other_rms_m = 0;  ///< the same the other way round
-  double mean_square = 0;  ///< of all distances, unweighted [m^2]
+  bool reversed = false;  ///< whether the file's points (its s) run from arc length l to 0
+  /// Rule that was used; `nearest` may become `chord` for a whole file whose frame is fitted
+  ArcLengths arc_lengths = ArcLengths::nearest;
+  Shape shape;             ///< points in the scene's frame, by increasing arc length
+  double rms_m = 0;        ///< RMS distance with the given weights
+  double other_rms_m = 0;  ///< RMS distance in the other direction of the file
+  double mean_square = 0;  ///< mean of all squared distances, unweighted [m^2]
 };
 
-/// A part of the rod between two neighbouring points.
+/// An interval of the rod between two adjacent points.
 struct RodPart {
-  double from_m = 0;    ///< arc length
-  double to_m = 0;      ///< arc length
-  double untold_m = 0;  ///< how far a smooth curve through the reference at the points is from the
-                        ///< reference in the middle: what is nearer cannot be told apart there
+  double from_m = 0;  ///< start [m]
+  double to_m = 0;    ///< end [m]
+  /// Interpolation error: distance in the middle between the reference and a smooth curve through
+  /// the reference at the points; smaller deviations cannot be detected there
+  double untold_m = 0;
 };
 
-/// Lays a shape on a reference curve of arc length 0 to `length`: the direction, the motion within
-/// its freedom and, for `nearest`, the arc lengths at which the sum of squared distances is least.
+/// Aligns a shape with a reference curve of arc length 0 to `length`: finds the direction of the
+/// file, the motion within its freedom and, for `nearest`, the arc lengths that minimise the sum of
+/// squared distances.
 ///
-/// Given arc lengths: in closed form (Kabsch for a rigid motion). `nearest`: starts from lengths
-/// along the polyline, at several places along the rod and in both directions; the points are
-/// assigned in order (dynamic programming), the motion then follows by Gauss-Newton steps on the
-/// distances across the curve (along it too where a point is past an end). With weights by length
-/// and a frame to be found, the frame is then the one in which the distances that ShapeCheck tells
-/// are least, and a file as long as the rod (to 3 %) is laid by `chord` where that is nearer.
-/// @throws InputError if the options ask for a column s that the file lacks, if the arc lengths in
-/// the file are not on the rod, or if a motion is asked of too few points (3)
+/// Given arc lengths: solution in closed form (Kabsch for a rigid motion). `nearest`: the search
+/// starts from lengths along the polyline, at several positions along the rod and in both
+/// directions. The points are assigned in order (dynamic programming); the motion then follows by
+/// Gauss-Newton steps on the distances perpendicular to the curve (also along it if a point is past
+/// an end). With weights by length and a frame to be fitted, the frame is then the one that
+/// minimises the distances that ShapeCheck reports, and a file as long as the rod (within 3 %) is
+/// aligned by `chord` if that is nearer.
+/// @throws InputError if the options need a column s that the file lacks, if arc lengths of the
+/// file are not on the rod, or if a motion is to be fitted to too few points (fewer than 3)
 [[nodiscard]] Alignment align(const MeasuredShape& shape, const Reference& reference, double length,
                               const AlignOptions& options = {});
 

@@ -4,22 +4,22 @@
 
 namespace dlo::compare {
 
-/// How c_b of the paper's law follows from the material.
+/// Rule by which c_b of the paper's law follows from the material.
 enum class BendingRule {
   formula_21,      ///< the paper's: EI k^2 / ((1 - cos a) sin(a/2)), a = L k
   moment_matched,  ///< the physical moment at curvature k: Formula 21 divided by a
 };
 
-/// Of the rule for c_b.
+/// Names of the rules.
 template <>
 struct Choices<BendingRule> {
-  /// In the enumeration's order.
+  /// All values, in the order of the enumeration.
   static constexpr Choice<BendingRule> all[] = {
       {BendingRule::formula_21, "formula_21", "the paper's"},
       {BendingRule::moment_matched, "moment_matched", "the rod's moment at design_curvature"}};
 };
 
-/// c_b [N] of the paper's law for a material.
+/// Returns c_b [N] of the paper's law for a material.
 ///     formula_21:      EI k^2 / ((1 - cos a) sin(a/2)),  a = L k (Formula 21 with L = l/(N-1))
 ///     moment_matched:  the same over a, so that the joint's moment at curvature k is EI k
 /// @param bending_stiffness  EI [N m^2], > 0;  @param curvature  k [1/m], > 0

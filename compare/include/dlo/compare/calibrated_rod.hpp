@@ -10,41 +10,46 @@
 
 namespace dlo::compare {
 
-/// How a gripper of all scenes is held beside what they say.
+/// Correction of a gripper's direction and position, the same in all scenes.
 struct ClampCorrection {
-  std::size_t gripper = 0;                                 ///< in the scene's order
-  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();      ///< of its direction, a vector [rad]
-  Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< of its position [m]
+  std::size_t gripper = 0;                             ///< index in the scene's order
+  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();  ///< rotation vector of its direction [rad]
+  Eigen::Vector3d displacement = Eigen::Vector3d::Zero();  ///< displacement of its position [m]
 };
 
-/// What was found of a rod and of the fixture that holds it: what `dlo calibrate -o FILE.toml`
-/// writes and `--calibrated FILE.toml` puts into scenes of the same rod in the same fixture.
+/// Results of a calibration of a rod and of the fixture that holds it: `dlo calibrate -o FILE.toml`
+/// writes them, and `--calibrated FILE.toml` applies them to scenes of the same rod in the same
+/// fixture.
 struct CalibratedRod {
-  /// As Scene::stiffness: E [Pa], or EI [N m^2] with `by_stiffness`.
+  /// E [Pa], or EI [N m^2] with `by_stiffness`, as in Scene::stiffness.
   std::optional<double> stiffness;
-  /// As Scene::heaviness: density [kg/m^3], or mass per length [kg/m] with `by_stiffness`.
+  /// Density [kg/m^3], or mass per length [kg/m] with `by_stiffness`, as in Scene::heaviness.
   std::optional<double> heaviness;
-  bool by_stiffness = false;                  ///< which of the two
+  bool by_stiffness = false;  ///< whether the rod is given by EI and mass per length
   std::optional<double> torsional_stiffness;  ///< GJ [N m^2]
-  /// Coefficients of P_0, P_1, .. about d1 and d2 [1/m]; empty: the scene's.
+  /// Natural curvature: coefficients of P_0, P_1, .. about d1 and d2 [1/m]; empty: the scene's.
   std::vector<Eigen::Vector2d> natural_curvature;
-  std::vector<ClampCorrection> clamps;  ///< of those that are held otherwise than scenes say
+  /// Grippers whose direction or position differs from the scenes'
+  std::vector<ClampCorrection> clamps;
   /// Damping of the rod in motion: Kelvin-Voigt time of the material [s], drag of the air per
   /// length and velocity [N s/m^2], and drag across the rod per length and squared velocity [N
   /// s^2/m^3].
   std::optional<double> damping, drag, quadratic_drag;
-  /// By what shapes are turned in the coordinates in which they were measured, about the first
-  /// gripper, gravity with them: a rotation vector [rad].
+  /// Rotation vector of the camera [rad]: shapes, and gravity with them, are rotated by it about
+  /// the first gripper in the coordinates in which they were measured.
   Eigen::Vector3d camera_tilt = Eigen::Vector3d::Zero();
 };
 
-/// A scene with that in the place of its own.
-/// @throws InputError if the scene is given by E and that by EI or the reverse, or has not as many
-/// grippers, or with `camera_tilt` if more than weight acts on its rod or something moves
+/// Returns a scene with the calibrated quantities in place of its own.
+/// @throws InputError if the scene is given by E and the calibration by EI or the reverse, if it
+/// has not as many grippers, or with `camera_tilt` if more than weight acts on its rod or something
+/// moves
 [[nodiscard]] Scene calibrated_scene(Scene scene, const CalibratedRod& rod);
 
-/// @throws InputError naming file, line, key and what is allowed
+/// Reads a calibrated rod from TOML.
+/// @throws InputError that names file, line, key and what is allowed
 [[nodiscard]] CalibratedRod parse_calibrated_rod(const std::string& text, const std::string& file);
+/// Reads a file of a calibrated rod.
 /// @throws InputError as parse_calibrated_rod(), or if the file cannot be read
 [[nodiscard]] CalibratedRod load_calibrated_rod(const std::string& path);
 

@@ -14,51 +14,54 @@
 
 namespace dlo::compare {
 
-/// Whether it is looked for what is wrong with a shape that fails.
+/// Whether causes of a failed comparison are searched.
 enum class Explaining { yes, no };
 
-/// What is asked of a shape.
+/// Options of a check.
 struct CheckRequest {
-  std::optional<ShapeTolerance> tolerance;  ///< none: default_tolerance()
-  Explaining explaining = Explaining::yes;  ///< pass and fail do not depend on it
-  ShapeCheckOptions shape;                  ///< how it is compared
+  std::optional<ShapeTolerance> tolerance;  ///< empty: default_tolerance()
+  Explaining explaining = Explaining::yes;  ///< does not affect the verdict
+  ShapeCheckOptions shape;                  ///< options of the comparison
 };
 
-/// A shape against its scene's energy model, judged: what `dlo check` says, and Python and
-/// GoogleTest with it.
+/// Comparison of a shape with its scene's energy model, with the verdict: the result of `dlo
+/// check`, and of the checks of Python and GoogleTest.
 struct CheckResult {
-  Scene scene;                                    ///< that it was held against
-  ShapeCheck check;                               ///< how far it is away
-  ShapeTolerance tolerance;                       ///< that it was judged by
-  ShapeJudgement judgement;                       ///< pass or fail, with its reason
-  std::vector<Explanation> explanations;          ///< of a shape that is not near, the best first
-  std::optional<Explanation> supersedes_modulus;  ///< what explains it better than any stiffness
-  PoseFreedom pose = PoseFreedom::known;          ///< what was unknown of the shape's frame
-  std::vector<std::string> notes;                 ///< what of the shape was taken for what
-  /// TrivialShape::deflection_m; NaN unless the shape passes or the tolerance is a share of it.
+  Scene scene;                            ///< scene that the shape was compared with
+  ShapeCheck check;                       ///< deviation of the shape
+  ShapeTolerance tolerance;               ///< tolerance that was applied
+  ShapeJudgement judgement;               ///< verdict with its reason
+  std::vector<Explanation> explanations;  ///< causes of a shape that is not near, best first
+  /// Cause that explains the shape better than any stiffness
+  std::optional<Explanation> supersedes_modulus;
+  PoseFreedom pose = PoseFreedom::known;  ///< unknown part of the shape's frame
+  std::vector<std::string> notes;         ///< how the shape file was interpreted
+  /// TrivialShape::deflection_m; NaN unless the shape passes or the tolerance is a share of the
+  /// deflection.
   double deflection_m = std::numeric_limits<double>::quiet_NaN();
 
-  /// Within the tolerance.
+  /// Whether the verdict is `pass`.
   [[nodiscard]] bool passes() const { return judgement.passes(); }
 };
 
-/// Of a shape that passes though another stiffness would come nearer by far: why both hold. Empty
-/// where that is not so.
+/// Explains why a shape passes although another stiffness would be much nearer; empty if this is
+/// not the case.
 [[nodiscard]] std::string other_stiffness_within(const CheckResult& result);
 
-/// Compares, judges and, where the shape is not within the tolerance, explains.
+/// Compares, judges and, if the shape is not within the tolerance, searches for causes.
 /// @throws InputError, ConvergenceError
 [[nodiscard]] CheckResult check(const Scene& scene, const MeasuredShape& shape,
                                 const CheckRequest& request = {});
 
 /// Tolerance of a test: a share of the rod's length or of its deflection.
 struct ToleranceShare {
-  double share = 0;            ///< [-], > 0
-  bool of_deflection = false;  ///< of TrivialShape::deflection_m, not of the length
+  double share = 0;  ///< [-], > 0
+  /// Whether `share` is of TrivialShape::deflection_m, not of the length
+  bool of_deflection = false;
 
-  /// A share of the length [-]. Implicit, so that tests may pass a number.
+  /// Takes a share of the length [-]. Implicit, so that tests may pass a number.
   ToleranceShare(double of_length) : share(of_length) {}  // NOLINT(google-explicit-constructor)
-  /// A share of the length or of the deflection [-].
+  /// Takes a share of the length or of the deflection [-].
   ToleranceShare(double value, bool is_of_deflection)
       : share(value), of_deflection(is_of_deflection) {}
 };
@@ -67,21 +70,22 @@ struct ToleranceShare {
 /// of_deflection(0.05)).
 [[nodiscard]] inline ToleranceShare of_deflection(double share) { return {share, true}; }
 
-/// Whether a shape is a scene's, for a test.
+/// Outcome of a comparison in a test.
 struct ShapeNear {
-  bool near = false;        ///< check() passes
-  std::string explanation;  ///< its reason; then, on a line of its own, where it is worst
+  bool near = false;  ///< whether check() passes
+  /// Reason; then, on a separate line, the position of the largest deviation
+  std::string explanation;
 };
 
-/// check() by its RMS, at the shape's arc lengths. One that is undefined (other numbers of points
-/// and arc lengths, fewer than two, not finite, arc lengths that do not grow or leave the rod by
-/// more than 1e-6 l) is not near, and the explanation says why.
+/// Checks a shape by its RMS deviation, at its own arc lengths. A malformed shape (different
+/// numbers of points and arc lengths, fewer than two, not finite, arc lengths that do not increase
+/// or leave the rod by more than 1e-6 l) is not near, and the explanation says why.
 /// @param tolerance  share of the rod's length or of_deflection() [-], > 0
-/// @throws std::invalid_argument for such a tolerance, InputError, ConvergenceError
+/// @throws std::invalid_argument for a tolerance that is not > 0, InputError, ConvergenceError
 [[nodiscard]] ShapeNear shape_near(const Shape& shape, const Scene& scene,
                                    ToleranceShare tolerance);
 
-/// The same by the largest distance of a point.
+/// Checks a shape by its largest deviation of a point, else as shape_near().
 [[nodiscard]] ShapeNear shape_within(const Shape& shape, const Scene& scene,
                                      ToleranceShare tolerance);
 

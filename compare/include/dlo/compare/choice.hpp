@@ -6,33 +6,33 @@
 
 namespace dlo::compare {
 
-/// A value of an enumeration as files and options spell it, and in a few words what it means.
+/// A value of an enumeration, its name in files and options, and its meaning in a few words.
 template <typename Value>
 struct Choice {
-  Value value;          ///< of the enumeration
-  const char* name;     ///< as it is spelt
+  Value value;          ///< value of the enumeration
+  const char* name;     ///< name in files and options
   const char* meaning;  ///< for help; may be empty
 };
 
-/// The one table of an enumeration that files, options, help and output share. Specialised beside
-/// the enumeration (those of force_model in force_model_settings.hpp), with a constexpr array `all`
-/// of a Choice for each value.
+/// The only table of an enumeration's values, shared by files, options, help and output. It is
+/// specialised next to the enumeration (those of force_model in force_model_settings.hpp), with a
+/// constexpr array `all` of a Choice for each value.
 template <typename Value>
 struct Choices;
 
-/// An enumeration that has such a table.
+/// An enumeration for which Choices is specialised.
 template <typename Value>
 concept Chosen = requires {
   Choices<Value>::all;
 };
 
-/// @throws InputError that names what is allowed
+/// Throws an InputError that names the allowed values.
 [[noreturn]] void refuse_choice(const std::string& name, const std::vector<std::string>& allowed);
 
-/// "a, b or c", for help.
+/// Returns "a, b or c", for help.
 [[nodiscard]] std::string one_of(const std::vector<std::string>& names);
 
-/// As files and options spell it.
+/// Returns the name of a value in files and options.
 template <Chosen Value>
 [[nodiscard]] constexpr const char* to_string(Value value) {
   for (const auto& choice : Choices<Value>::all) {
@@ -41,7 +41,7 @@ template <Chosen Value>
   return "";
 }
 
-/// All names, in the table's order.
+/// Returns all names, in the order of the table.
 template <Chosen Value>
 [[nodiscard]] std::vector<std::string> names() {
   std::vector<std::string> result;
@@ -49,7 +49,7 @@ template <Chosen Value>
   return result;
 }
 
-/// All values, in the table's order.
+/// Returns all values, in the order of the table.
 template <Chosen Value>
 [[nodiscard]] std::vector<Value> values() {
   std::vector<Value> result;
@@ -57,13 +57,13 @@ template <Chosen Value>
   return result;
 }
 
-/// "a, b or c" of all names.
+/// Returns "a, b or c" of all names.
 template <Chosen Value>
 [[nodiscard]] std::string one_of() {
   return one_of(names<Value>());
 }
 
-/// All names with what they mean, if more than themselves: "a, b (second) or c (third)".
+/// Returns all names with their meanings, if those differ: "a, b (second) or c (third)".
 template <Chosen Value>
 [[nodiscard]] std::string meanings() {
   std::vector<std::string> result;
@@ -74,7 +74,7 @@ template <Chosen Value>
   return one_of(result);
 }
 
-/// The value of a name. @throws InputError if there is no such name
+/// Returns the value with a name. @throws InputError if there is no such name
 template <Chosen Value>
 [[nodiscard]] Value from_name(const std::string& name) {
   for (const auto& choice : Choices<Value>::all) {

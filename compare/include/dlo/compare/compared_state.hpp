@@ -6,26 +6,26 @@
 
 namespace dlo::compare {
 
-/// An equilibrium of the energy model beside the one that was compared.
+/// Another equilibrium of the energy model than the compared one.
 struct OtherState {
-  bool stable = false;             ///< its second variation is positive
-  double energy_difference_J = 0;  ///< its energy minus that of the one compared
-  double rms_from_compared_m = 0;  ///< RMS along the rod from the one compared [m]
-  double rms_from_shape_m = 0;     ///< from the shape that was compared
+  bool stable = false;             ///< whether its second variation is positive
+  double energy_difference_J = 0;  ///< its energy minus that of the compared equilibrium
+  double rms_from_compared_m = 0;  ///< RMS distance along the rod from the compared equilibrium [m]
+  double rms_from_shape_m = 0;     ///< RMS distance from the shape [m]
 };
 
-/// Which of a scene's equilibria a shape was compared with.
+/// The equilibrium that a shape was compared with, and the others of the scene.
 struct ComparedState {
-  double energy_J = 0;             ///< Solution::energy, of all
-  double rms_from_shape_m = 0;     ///< of it from the shape that was compared
-  int rank = 1;                    ///< among the stable ones by energy, 1: the lowest
-  int stable = 1;                  ///< how many stable ones were found
-  int unstable = 0;                ///< how many unstable ones were found
-  bool searched = true;            ///< whether a search looked for other equilibria
+  double energy_J = 0;             ///< total of Solution::energy
+  double rms_from_shape_m = 0;     ///< RMS distance from the shape [m]
+  int rank = 1;                    ///< position among the stable ones by energy, 1: the lowest
+  int stable = 1;                  ///< number of stable equilibria that were found
+  int unstable = 0;                ///< number of unstable equilibria that were found
+  bool searched = true;            ///< whether other equilibria were searched
   std::vector<OtherState> others;  ///< stable ones first, by energy
 
-  /// Energy of the one compared minus that of the lowest stable one that is known; 0 of the lowest,
-  /// and of a mirror image whose energy differs by rounding.
+  /// Returns the energy of the compared equilibrium minus that of the lowest known stable one [J];
+  /// 0 for the lowest, and for a mirror image whose energy differs by rounding.
   [[nodiscard]] double energy_above_lowest_J() const {
     constexpr double rounding = 1e-9;
     double above = 0;
@@ -34,7 +34,7 @@ struct ComparedState {
     }
     return above > rounding * std::abs(energy_J) ? above : 0;
   }
-  /// No other stable one is as low, as a mirror image is.
+  /// Whether the compared equilibrium is the only known stable one; a mirror image is a second one.
   [[nodiscard]] bool only_lowest() const { return rank == 1 && stable == 1; }
 };
 

@@ -16,92 +16,96 @@ enum class ChainClamp {
   middle,  ///< the clamp is in the middle of a segment, of which half is the rod's
 };
 
-/// In words, for files and options.
+/// Names of the clamps in files and options.
 template <>
 struct Choices<ChainClamp> {
-  /// In the enumeration's order.
+  /// All values, in the order of the enumeration.
   static constexpr Choice<ChainClamp> all[] = {
       {ChainClamp::hinge, "hinge", "a hinge where the clamp is"},
       {ChainClamp::welded, "welded", "the segment at the clamp does not rotate"},
       {ChainClamp::middle, "middle", "the clamp is in the middle of a segment"}};
 };
 
-/// Parameters of the force model as they follow from a scene.
+/// Parameters of the force model that follow from a scene.
 struct Parameters {
-  double segment_length = 0;    ///< L, nominal where segments differ [m]
+  double segment_length = 0;    ///< L [m]; the nominal value if segments differ
   double c_b = 0;               ///< [N]; 0 for hooke
   double c_c = 0;               ///< [N]
   double design_curvature = 0;  ///< k of Formula 21 [1/m]; 0 for hooke or a given c_b
-  double point_weight = 0;      ///< of an inner point [N]
+  double point_weight = 0;      ///< weight of an inner point [N]
 };
 
-/// A scene as points and segments.
+/// A scene discretised into points and segments.
 struct Discretisation {
   force_model::Rod rod;             ///< polygon, forces and grips of the force model
-  std::vector<std::size_t> walls;   ///< obstacles of the scene that rod.walls are
-  std::vector<std::size_t> solids;  ///< obstacles of the scene that rod.solids are
-  Eigen::Matrix3Xd weights;         ///< the part of rod.loads that is gravity [N]
-  /// Where a simulation may start [m]: straight from a single gripper; two shapes for several
-  /// grippers, whose slack hangs along or against the load.
+  std::vector<std::size_t> walls;   ///< index in the scene of each obstacle in rod.walls
+  std::vector<std::size_t> solids;  ///< index in the scene of each obstacle in rod.solids
+  Eigen::Matrix3Xd weights;         ///< part of rod.loads that is gravity [N]
+  /// Start shapes of a simulation [m]: a straight one for a single gripper; two for several
+  /// grippers, with the slack along and against the load.
   std::vector<Eigen::Matrix3Xd> starts;
-  std::vector<double> arc_length;  ///< of the points; a point inside an end gripper is negative, or
-                                   ///< beyond the rod's length [m]
-  double length = 0;               ///< l, the rod's own part [m]
-  Parameters parameters;           ///< c_b, c_c and what else follows from the scene
+  /// Arc lengths of the points [m]. Points inside a gripper at an end have negative values or
+  /// values beyond the rod's length.
+  std::vector<double> arc_length;
+  double length = 0;      ///< l, the rod's own part [m]
+  Parameters parameters;  ///< c_b, c_c and what else follows from the scene
 
-  /// The rod's own part, arc length 0 to l: points inside end grippers give way to the point where
-  /// the gripper holds the rod.
+  /// Returns the rod's own part, arc length 0 to l: a point inside an end gripper is replaced by
+  /// the point where the gripper holds the rod.
   [[nodiscard]] Shape shape(const Eigen::Matrix3Xd& points) const;
 };
 
 /// Derives the force model of a scene.
 ///
-/// A clamp holds two points, a pin one. `consistent`: the middle of the held segment is the clamp's
-/// arc length, a segment held at the rod's end reaches L/2 beyond it, and a point weighs what the
-/// halves of its segments do, of which the parts inside end grippers weigh nothing. `paper`: a
-/// clamp holds the point at its arc length and the next one (at the rod's end the one before), and
-/// every point weighs m g / N (of a rod with sections: what its N-th of the rod weighs). Loads
-/// between two points go to both by the lever rule, which keeps their force and moment: the rod's
-/// own moment differs by no more than F L/4 over one segment, which is second order like everything
-/// else.
+/// A clamp holds two points, a pin one. `consistent`: the clamp's arc length is the middle of the
+/// held segment, a segment held at the rod's end extends L/2 beyond it, and the weight of a point
+/// is that of the adjacent halves of its segments; the parts inside end grippers have no weight.
+/// `paper`: a clamp holds the point at its arc length and the following one (at the rod's end the
+/// preceding one), and every point has the weight m g / N (of a rod with sections: that of the
+/// corresponding N-th of the rod). Loads between two points are distributed to both by the lever
+/// rule, which preserves their force and moment: the rod's own moment differs by at most F L/4 over
+/// one segment, which is second order like all other errors.
 ///
-/// With c clamps of which e are at ends, L = l/(N - 1 - e/2) (`paper`: l/(N-1)). Held segments are
-/// L long. The rod between two of them, or to a pin or a free end, has a whole number of equal
-/// segments: one, and then one more wherever they are longest until all N - 1 - c are given away.
-/// So they differ from L by a share of about one over their number, and only where the grips do not
-/// fit a grid of N points. No such part may be shorter than L/2.
+/// With c clamps of which e are at ends, L = l/(N - 1 - e/2) (`paper`: l/(N-1)). Held segments have
+/// the length L. The rod between two of them, or to a pin or a free end, is divided into equal
+/// segments: first one in each interval, then one more where the segments are longest, until all N
+/// - 1 - c are assigned. The relative difference from L is therefore about one over the number of
+/// segments, and zero if the grips fit a grid of N points. No such interval may be shorter than
+/// L/2.
 ///
-/// Forces and torques of both laws balance where neighbouring segments a and b differ. The paper's
-/// joints are weaker there by (a - b)^2/(a + b)^2 than their mean length says, and have no
-/// potential; with several grippers or one inside the rod, say so with every number.
+/// Forces and torques of both laws balance if adjacent segments a and b differ. The paper's joints
+/// are weaker there, by the relative amount (a - b)^2/(a + b)^2 of the stiffness at their mean
+/// length, and have no potential; results with several grippers or one inside the rod should state
+/// this.
 ///
-/// A joint stands for the rod between its segments' middles: its EI, over an end of a section too,
-/// is that of the mean 1/EI (of the law `paper` c_b goes with it), and its turn at rest the natural
-/// curvature times its length. The law `paper`, and a rod that does not lie in its plane, leave the
-/// natural curvature out. GJ goes with EI where the clamps twist the rod and the law is hooke;
-/// their frames are no part of this, as whole turns are counted from where the rod rests without
-/// twist.
+/// A joint represents the rod between the middles of its segments. Its EI is that of the mean 1/EI,
+/// also across an end of a section (c_b of the law `paper` is proportional to it), and its angle at
+/// rest is the natural curvature times its length. The natural curvature is neglected by the law
+/// `paper`, and if the rod is not in its plane. GJ is proportional to EI if the clamps twist the
+/// rod and the law is hooke. The clamps' frames are not set here, because whole turns are counted
+/// from the untwisted equilibrium.
 ///
-/// A half-space is a wall of the force model, which acts on points, each with L times the
-/// obstacle's stiffness, as walls have one stiffness for all points (the last point of a free end
-/// has twice its share); other bodies are solids, which act all along the segments. A rigid
-/// obstacle gets c_c / L: as stiff as the rod's own segments, so that points enter it by the weight
-/// of a segment over c_c / L; stiffer ones would only slow the steps down. Obstacles out of the
-/// rod's reach are left out; who moves grips afterwards takes set_obstacles().
+/// A half-space becomes a wall of the force model, which acts on points. Each point has the
+/// stiffness L times the obstacle's, since walls have one stiffness for all points (the last point
+/// of a free end has twice its share). Other bodies become solids, which act along the segments. A
+/// rigid obstacle has the stiffness c_c / L, that of the rod's own segments: points penetrate it by
+/// the weight of a segment divided by c_c / L, and a stiffer one would only require smaller steps.
+/// Obstacles out of the rod's reach are omitted; callers that move grips afterwards call
+/// set_obstacles().
 /// @throws InputError if there are too few points for the grippers (with the number needed), two
 /// grippers hold the same arc length, grippers, or the segments that they hold, are further apart
 /// than the rod between them, or a single segment between two held points does not fit (with the
 /// number of points that do), or a joint would rotate by 3 rad or more at rest
 [[nodiscard]] Discretisation discretise(const Scene& scene, const ForceModelSettings& settings);
 
-/// Gives a discretisation the walls and solids of these obstacles of a scene, and no others.
+/// Replaces the walls and solids of a discretisation by the given obstacles of a scene.
 void set_obstacles(const Scene& scene, const std::vector<std::size_t>& obstacles,
                    Discretisation& discretisation);
 
-/// Largest share by which a segment's length may differ from its rest length in a result [-]: a
-/// hundredth, so that a rod that is stretched or crushed because its polygon is too coarse, or its
-/// solver lost, is not taken for a shape. Who gives a c_c of A E or less asks for the stretch: a
-/// half, beyond which a segment is crushed or torn.
+/// Returns the largest relative change of a segment's length in a result [-]: a hundredth, so that
+/// a rod that is stretched or compressed because its polygon is too coarse, or because the solver
+/// diverged, is not accepted as a shape. If the settings give c_c <= EA, stretch is intended and
+/// the limit is a half, beyond which a segment is crushed or torn.
 [[nodiscard]] double largest_strain(const Scene& scene, const ForceModelSettings& settings);
 
 }  // namespace dlo::compare

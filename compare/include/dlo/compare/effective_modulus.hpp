@@ -13,23 +13,25 @@
 
 namespace dlo::compare {
 
-/// What the optimum of an effective modulus is worth.
+/// Significance of an effective modulus E*.
 enum class Optimum {
-  none,       ///< there is no E*, see EffectiveModulus::why_none
-  clear,      ///< E* is identified, and it explains the deviation
-  partial,    ///< E* is identified, but it explains less than `clear_share` of the mean square
-              ///< deviation, or leaves more than the rod's own way from straight
-              ///< (without_small_movement)
-  flat,       ///< a modulus twice or half as large fits less than 10 % worse, or no worse than the
-              ///< energy model's own error
-  one_sided,  ///< the fit still improves where the search ended: at the end of the range, or where
-              ///< the equilibrium that was followed ends or bifurcates
+  none,   ///< there is no E*, see EffectiveModulus::why_none
+  clear,  ///< E* is identified, and it explains the deviation
+  /// E* is identified, but it explains less than `clear_share` of the mean square deviation, or
+  /// leaves more than the RMS displacement of the rod from straight (without_small_movement)
+  partial,
+  /// A modulus twice or half as large fits less than 10 % worse, or not worse than the energy
+  /// model's own error
+  flat,
+  /// The fit still improves where the search ended: at the end of the range, or where the followed
+  /// equilibrium ends or bifurcates
+  one_sided,
 };
 
-/// In words, for messages.
+/// Names of the values in messages.
 template <>
 struct Choices<Optimum> {
-  /// In the enumeration's order.
+  /// All values, in the order of the enumeration.
   static constexpr Choice<Optimum> all[] = {{Optimum::none, "none", ""},
                                             {Optimum::clear, "clear", ""},
                                             {Optimum::partial, "partial", ""},
@@ -37,71 +39,73 @@ struct Choices<Optimum> {
                                             {Optimum::one_sided, "one-sided", ""}};
 };
 
-/// E* itself is identified, whether or not it explains the deviation.
+/// Whether E* is identified, even if it does not explain the deviation.
 [[nodiscard]] constexpr bool is_identified(Optimum optimum) {
   return optimum == Optimum::clear || optimum == Optimum::partial;
 }
 
-/// Whether E*/E is looked for.
+/// Whether E*/E is searched.
 enum class ModulusSearch { yes, no };
 
-/// The modulus E* at which the energy model comes nearest to a shape.
+/// The modulus E* whose equilibrium is nearest to a shape.
 struct EffectiveModulus {
   double ratio = std::numeric_limits<double>::quiet_NaN();  ///< E*/E; NaN without one
-  double rms_m = std::numeric_limits<double>::quiet_NaN();  ///< what even E* does not explain
-  /// Of the mean square distance at E, the share that E* takes away: 1 - (rms_m / rms at E)^2;
-  /// NaN where the distance at E is no more than the energy model's own error.
+  double rms_m = std::numeric_limits<double>::quiet_NaN();  ///< RMS distance that remains at E*
+  /// Share of the mean square distance at E that E* removes: 1 - (rms_m / rms at E)^2; NaN if the
+  /// distance at E is at most the energy model's own error.
   double explained_share = std::numeric_limits<double>::quiet_NaN();
-  Optimum optimum = Optimum::none;   ///< what `ratio` is worth
+  Optimum optimum = Optimum::none;   ///< significance of `ratio`
   std::string why_none = "skipped";  ///< why there is no E*; empty if there is one
-  /// At E* the equilibrium that is followed ends or bifurcates: beyond it the rod is in another
-  /// state, so E* is where that begins and no measure of the material.
+  /// Whether the followed equilibrium ends or bifurcates at E*: beyond it the rod is on another
+  /// branch, so that E* is the limit of the branch and not a measure of the material.
   bool at_bifurcation = false;
-  int solves = 0;  ///< of the energy model
+  int solves = 0;  ///< number of solves of the energy model
 };
 
-/// What an optimum is worth beside the RMS way of the rod from straight [m] (NaN: it has no
-/// straight shape): one that is `clear` but leaves more than that is `partial`, since a rod that
-/// does not bend at all is then as near. fit_effective_modulus() has applied it.
+/// Returns the significance of E* in view of the RMS displacement of the rod from straight [m]
+/// (NaN: there is no straight shape). An optimum that is `clear` but leaves more than that
+/// displacement becomes `partial`, since a straight rod would then be as near.
+/// fit_effective_modulus() has applied it.
 [[nodiscard]] Optimum without_small_movement(const EffectiveModulus& modulus, double movement_m);
 
-/// Range of E*/E that is searched.
+/// Smallest E*/E that is searched.
 inline constexpr double smallest_modulus_ratio = 1e-4;
-/// The other end of the range.
+/// Largest E*/E that is searched.
 inline constexpr double largest_modulus_ratio = 1e4;
-/// Share of the mean square distance that a clear optimum explains: E* leaves half of the RMS or
-/// less, so that what it explains (sqrt(3)/2 of the RMS, as a field orthogonal to the rest) is at
-/// least 1.7 times what it leaves.
+/// Share of the mean square distance that a clear optimum explains: E* leaves at most half of the
+/// RMS distance, so that the explained part (sqrt(3)/2 of the RMS, as a field orthogonal to the
+/// rest) is at least 1.7 times the remainder.
 inline constexpr double clear_share = 0.75;
-/// RMS distance below which nothing is identified, share of the length: the energy model's own
+/// RMS distance below which no E* is identified, divided by the length: the energy model's own
 /// error.
 inline constexpr double modulus_resolution = 1e-8;
 
-/// Minimises the RMS distance at equal arc length over E*, everything else as in the scene.
+/// Minimises the RMS distance at equal arc length over E*; all other properties are the scene's.
 ///
-/// The scene's equilibrium is followed from E*/E = 1 to both sides in steps of a quarter of a
-/// decade, each until the distance has not got less for half a decade; then GSL's Brent minimiser
-/// of the mean square. Every modulus is solved from the nearest one that is known, and a shape
+/// The scene's equilibrium is followed from E*/E = 1 in both directions, in steps of a quarter of a
+/// decade, until the distance has not decreased for half a decade. GSL's Brent minimiser then
+/// minimises the mean square. Every modulus is solved from the nearest one that is known. A shape
 /// counts as the same equilibrium if it is stable and moves by less than a tenth of the length, in
-/// smaller steps if need be; else the equilibrium ends there. The time limit is for the whole
-/// search. Beyond it, and where the distance changes by no more than the energy model's own error,
-/// there is no E*, and the result says why.
+/// smaller steps if necessary; else the equilibrium ends there. The time limit is for the whole
+/// search. If it is exceeded, or if the distance changes by at most the energy model's own error,
+/// there is no E*, and the result states why.
 /// @throws InputError, ConvergenceError as solve_reference for the scene's own modulus
 [[nodiscard]] EffectiveModulus fit_effective_modulus(const Scene& scene, const Shape& shape,
                                                      const SolveOptions& options = {});
 
-/// Distance of a shape from the energy model's [m].
+/// Distance of a shape from an equilibrium of the energy model [m].
 using ShapeDistance = std::function<double(const energy_model::Equilibrium&)>;
 
-/// The same for any distance.
-/// @param scene  the scene;  @param distance  what is minimised
-/// @param state  the equilibrium of the scene that is followed
+/// Minimises any distance over E*, as fit_effective_modulus() of a shape does.
+/// @param scene  the scene;  @param distance  distance that is minimised
+/// @param state  equilibrium of the scene that is followed
 [[nodiscard]] EffectiveModulus fit_effective_modulus(const Scene& scene,
                                                      const ShapeDistance& distance,
                                                      const energy_model::Equilibrium& state,
                                                      const SolveOptions& options = {});
 
-/// RMS distance at equal arc length.
+/// Returns a function that computes the RMS distance of a shape from an equilibrium at equal arc
+/// length.
 [[nodiscard]] ShapeDistance distance_from(const Shape& shape);
 
 }  // namespace dlo::compare

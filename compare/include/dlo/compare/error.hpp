@@ -5,27 +5,28 @@
 
 namespace dlo::compare {
 
-/// There is no result: an InputError or a ConvergenceError. The message is one line.
+/// Base class of the errors that leave no result: InputError and ConvergenceError. The message is
+/// one line.
 class ResultError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Bad input by the user: a file, a key, a value. The message is one line that names all of them
-/// and what is allowed.
+/// Invalid input by the user. The message is one line that names file, key, value and what is
+/// allowed.
 class InputError : public ResultError {
  public:
-  /// @param message  a piece of the input that it quotes may hold control characters; each becomes
-  /// a "?", so that a malformed file neither breaks the line nor steers a terminal
+  /// @param message  quoted input may contain control characters; each becomes a "?", so that a
+  /// malformed file neither breaks the line nor controls a terminal
   explicit InputError(const std::string& message);
 
-  /// Of a key in a file: the message is "where: key" and the problem.
-  /// @param key  its full name, such as rod.length
-  /// @param problem  what follows the key: ": missing ..." or " = 3 mm: out of range ..."
+  /// Constructs the error of a key in a file: the message is "where: key" and the problem.
+  /// @param key  full name, such as rod.length
+  /// @param problem  text after the key: ": missing ..." or " = 3 mm: out of range ..."
   InputError(const std::string& where, const std::string& key, const std::string& problem);
 
-  /// The key at fault; empty where it is none of a file's.
+  /// Returns the invalid key; empty if the error is not about a key of a file.
   [[nodiscard]] const std::string& key() const { return key_; }
-  /// What follows the key in the message.
+  /// Returns the text after the key in the message.
   [[nodiscard]] const std::string& problem() const { return problem_; }
 
  private:
@@ -33,7 +34,7 @@ class InputError : public ResultError {
   std::string problem_;
 };
 
-/// A solver did not converge; the message says which one and why.
+/// A solver did not converge; the message names the solver and the reason.
 class ConvergenceError : public ResultError {
   using ResultError::ResultError;
 };

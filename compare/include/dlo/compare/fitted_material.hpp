@@ -15,112 +15,122 @@
 
 namespace dlo::compare {
 
-/// What is fitted, and from what.
+/// Options of a fit: the fitted quantities and the assumptions about the shapes.
 struct MaterialFitOptions {
-  PoseFreedom pose = PoseFreedom::known;  ///< what is unknown of the shapes' frames
-  /// `automatic` is the file's own, else nearest points: chord lengths are not exact enough.
+  PoseFreedom pose = PoseFreedom::known;  ///< unknown part of the shapes' frames
+  /// `automatic` uses the file's arc lengths, else nearest points: chord lengths are not exact
+  /// enough.
   ArcLengths arc_lengths = ArcLengths::automatic;
-  bool density = false;  ///< fitted as well
-  /// GJ is fitted as well, of scenes that twist the rod.
+  bool density = false;  ///< whether the density is fitted as well
+  /// Whether GJ is fitted as well, in scenes that twist the rod.
   bool torsional_stiffness = false;
-  /// Terms of the natural curvature that are fitted as well, as Legendre's P_0, P_1, .. of
-  /// 2 s/l - 1: 0 to 24. In a plane about its normal, else about d1 and d2.
+  /// Number of terms of the natural curvature that are fitted as well, 0 to 24: coefficients of
+  /// Legendre's P_0, P_1, .. of 2 s/l - 1, in a plane about its normal, else about d1 and d2.
   int natural_curvature_terms = 0;
-  /// How well the clamps' directions are known: standard deviation about each axis across [rad]. If
-  /// it is > 0 each shape's own are fitted; in the plane of a planar scene.
+  /// Standard deviation of the clamps' directions about each perpendicular axis [rad]. If > 0, the
+  /// directions of each shape's clamps are fitted as well, in a planar scene within its plane.
   double direction_tolerance = 0;
-  /// The same of the grippers' positions along each axis [m].
+  /// Standard deviation of the grippers' positions along each axis [m]. If > 0, the positions are
+  /// fitted as well.
   double position_tolerance = 0;
-  /// How well it is known how clamps hold the rod about its tangent: standard deviation [rad]. If
-  /// it is > 0 each shape's own rolls are fitted, in space: of clamps that hold the rod's frame,
-  /// but for the first one of a rod whose own frame is in no shape, where only the twist between
-  /// clamps is; and with natural curvature also of the first clamp of scenes that do not say its
-  /// d1. It is then in the scene's plane at roll 0, and level where there is none.
+  /// Standard deviation of the roll with which clamps hold the rod about its tangent [rad]. If > 0,
+  /// the rolls of each shape are fitted as well, in space, for clamps that hold the rod's frame.
+  /// The first clamp is excluded if the shape does not depend on the rod's own frame, because then
+  /// only the twist between clamps is visible. With natural curvature the roll of the first clamp
+  /// is also fitted in scenes that do not give its d1; at roll 0 that d1 is in the scene's plane,
+  /// or level if there is no plane.
   double roll_tolerance = 0;
-  /// Clamps are misaligned alike in all shapes, as in one fixture: the numbers of their directions
-  /// and positions are shared (MaterialFit::clamps). Else each shape has its own.
+  /// Whether clamps are misaligned alike in all shapes, as in one fixture: one set of directions
+  /// and positions is fitted for all shapes (MaterialFit::clamps). Else each shape has its own set.
   bool shared_clamps = false;
-  /// With `shared_clamps`: how far each shape's own directions are from the shared ones: standard
-  /// deviation about each axis across [rad]. If it is > 0 they are fitted as well.
+  /// With `shared_clamps`: standard deviation of the difference between a shape's own directions
+  /// and the shared ones, about each perpendicular axis [rad]. If > 0, these differences are fitted
+  /// as well.
   double direction_scatter = 0;
-  /// How level the camera is: standard deviation of its tilt about the normal of the shapes' plane,
-  /// in space about each level axis [rad]. If it is > 0 one tilt of all shapes is fitted, of scenes
-  /// where weight alone bends the rod (MaterialFit::camera_tilt).
+  /// Standard deviation of the camera's tilt about the normal of the shapes' plane, in space about
+  /// each level axis [rad]. If > 0, one tilt of all shapes is fitted (MaterialFit::camera_tilt), in
+  /// scenes where weight alone bends the rod.
   double camera_tilt = 0;
-  /// Each shape in turn is left out of the fit, and predicted (MaterialFit::prediction).
+  /// Whether each shape in turn is predicted by the fit to the others (MaterialFit::prediction).
   bool predict = false;
-  /// Terms of natural curvature, and clamps as said, misaligned alike in all shapes or each on its
-  /// own, are fitted as they predict shapes best that are left out
-  /// (MaterialFit::tried); nothing is tried where the fit without them leaves nothing systematic.
-  /// The numbers above say up to how many terms (three at least) and how well clamps are known (if
-  /// they do not, 20 degrees of those that are alike, with a scatter of 5 and a camera that is
-  /// level to 2; 5 of each shape's own). The interval of E holds that of the most terms that
-  /// predict nearly as well. Three shapes or more. None: calibrate() does so if there are as many
-  /// and none of these numbers is given, fit_material() does not.
+  /// Whether terms of natural curvature and clamp misalignments, shared or of each shape, are
+  /// chosen by cross-validation: those are fitted that best predict the shapes that are left out
+  /// (MaterialFit::tried). Nothing is tried if the fit without them leaves nothing systematic. The
+  /// options above then limit the number of terms (at least three are tried) and give the accuracy
+  /// of the clamps. If they are 0, the accuracy is assumed: 20 degrees for shared clamps, with a
+  /// scatter of 5 degrees and a camera that is level to 2 degrees; 5 degrees for clamps of each
+  /// shape. The interval of E is extended to that of the largest number of terms that predicts
+  /// nearly as well. At least three shapes are needed. Empty: calibrate() chooses if there are
+  /// three shapes and none of these options is given; fit_material() does not.
   std::optional<bool> choose_options;
-  /// Where residuals are systematic, and none of the above is fitted, it is tried what would remove
-  /// them (MaterialFit::alternatives).
+  /// Whether, if residuals are systematic and none of the above is fitted, the fit tests which of
+  /// them would remove the residuals (MaterialFit::alternatives).
   bool alternatives = false;
-  int chain_segments = 0;  ///< of a chain of hinges that is to be as stiff; 0: of none
-  /// Lengths of such a chain's segments where they are unequal, 4 to 200 [m]; empty: of none.
+  /// Number of segments of a chain of hinges that is to be as stiff; 0: no chain
+  int chain_segments = 0;
+  /// Lengths of the segments of such a chain if they are unequal, 4 to 200 [m]; empty: no chain.
   std::vector<double> chain_segment_lengths = {};
-  int profile_points = 0;       ///< of MaterialFit::profile; 0: of none
-  std::optional<double> noise;  ///< standard deviation of one coordinate [m]; else estimated
-  /// Of the modulus to the scene's, where it is looked for. With what makes a wire another one than
-  /// a straight rod in right clamps it is looked for up to w l^3 / (EI) = 1e5, or to 100 times the
-  /// scene's if that is more.
+  int profile_points = 0;  ///< number of points of MaterialFit::profile; 0: no profile
+  /// Standard deviation of one coordinate [m]; empty: it is estimated
+  std::optional<double> noise;
+  /// Smallest modulus that is searched, divided by that of the scene [-]. If natural curvature or
+  /// clamp misalignments are fitted, the search ends at w l^3 / (EI) = 1e5, or at 100 times the
+  /// scene's value if that is larger.
   double smallest_ratio = 1e-4;
-  double largest_ratio = 1e4;  ///< the upper end of that range
-  /// A number counts as identified only if its interval's ends are within this factor of each
-  /// other.
+  /// Largest modulus that is searched, divided by that of the scene [-]
+  double largest_ratio = 1e4;
+  /// A number counts as identified only if the ratio of its interval's ends is at most this factor.
   double identified_within = 4;
   SolveOptions solve;  ///< limits of the solvers
 };
 
-/// A fitted quantity and its 95 % interval; a side without a number is open as far as was searched.
+/// A fitted quantity and its 95 % interval; an empty end of the interval is open as far as was
+/// searched.
 struct FittedValue {
-  /// Only if the interval is closed and no wider than MaterialFitOptions::identified_within.
+  /// Given only if the interval is closed and no wider than MaterialFitOptions::identified_within.
   std::optional<double> value;
-  std::optional<double> estimate;  ///< the best one, identified or not; none: not looked for
+  std::optional<double> estimate;  ///< best value, identified or not; empty: not searched
   std::optional<double> low;       ///< lower end of the interval
   std::optional<double> high;      ///< upper end of the interval
 };
 
-/// A number that was fitted beside E and the density.
+/// A number that was fitted in addition to E and the density.
 struct FittedNumber {
   std::string name;         ///< "natural curvature about d2, P_1", "direction of gripper 2"
   std::string unit;         ///< SI: "1/m", "rad" or "m"
-  double value = 0;         ///< added to the scene's; the most likely one
-  double deviation = 0;     ///< its standard deviation, with what was known before
-  double known_before = 0;  ///< standard deviation without the shapes
-  std::optional<std::size_t> shape;  ///< whose own it is; none: it is the wire's
+  double value = 0;         ///< correction of the scene's value; the most likely one
+  double deviation = 0;     ///< standard deviation, prior knowledge included
+  double known_before = 0;  ///< prior standard deviation, without the shapes
+  /// Index of the shape that it belongs to; empty: it belongs to the wire
+  std::optional<std::size_t> shape;
 
-  /// Whether the shapes tell it, rather than what was known before: of its variance half or more.
+  /// Whether the shapes, rather than the prior, determine the number: the variance is at most half
+  /// of the prior variance.
   [[nodiscard]] bool is_seen() const {
     return 2 * deviation * deviation <= known_before * known_before;
   }
 };
 
-/// Of what single shapes say of E, where it differs by more than their errors explain in less than
-/// one case of twenty (Cochran's Q): shapes of one wire, hung several times, seldom repeat.
+/// Scatter of E between shapes. It is given if single shapes differ in E by more than their errors
+/// explain, at a significance of 5 % (Cochran's Q): repeated mountings of a wire scatter.
 struct ScatterBetweenShapes {
-  double relative_deviation = 0;  ///< of E between shapes, standard deviation [-]
-  double chance = 1;              ///< of as much without a scatter [-]
-  /// Width of the interval of E over that without it.
+  double relative_deviation = 0;  ///< standard deviation of E between shapes, divided by E [-]
+  double chance = 1;  ///< probability of differences as large as these without scatter [-]
+  /// Width of the interval of E, divided by its width without scatter [-].
   double widening = 1;
 };
 
-/// What was not fitted, and what it would leave if it were.
+/// Quantities that were not fitted, and the result of a fit that includes them.
 struct FitAlternative {
   int natural_curvature_terms = 0;  ///< as in MaterialFitOptions
   double direction_tolerance = 0;   ///< as in MaterialFitOptions [rad]
-  double rms_m = 0;                 ///< of the distances between points and rod
+  double rms_m = 0;                 ///< RMS distance between points and rod
   FittedValue youngs_modulus;       ///< as MaterialFit::youngs_modulus
   double position_tolerance = 0;    ///< as in MaterialFitOptions [m]
   bool shared_clamps = false;       ///< as in MaterialFitOptions
   double direction_scatter = 0;     ///< as in MaterialFitOptions [rad]
   double camera_tilt = 0;           ///< as in MaterialFitOptions [rad]
-  /// Prediction::rms_m, if it was looked at [m].
+  /// Prediction::rms_m [m], if it was computed.
   std::optional<double> prediction_m = std::nullopt;
 };
 
@@ -128,35 +138,39 @@ struct FitAlternative {
 struct ChainJoint {
   double at = 0;         ///< arc length [m]
   double stiffness = 0;  ///< its moment over its angle [N m/rad]
-  /// The same with the energy of discrete elastic rods, as ChainSprings::binormal_stiffness.
+  /// Stiffness k of the joint with the energy of discrete elastic rods [N m/rad], as
+  /// ChainSprings::binormal_stiffness.
   double binormal_stiffness = 0;
 };
 
-/// The springs with which a chain comes nearest to the fitted rod in a scene. Between unequal
-/// segments each joint has its own, EI over half of both segments times `over_rod`.
+/// Springs with which a chain of hinges comes nearest to the fitted rod in a scene. Between unequal
+/// segments each joint has its own stiffness, EI divided by the mean length of both segments, times
+/// `over_rod`.
 struct ChainSprings {
-  std::string scene;                     ///< its name
-  ChainClamp clamp = ChainClamp::hinge;  ///< how clamps hold it
-  int segments = 0;                      ///< those at clamps held in their middle counted whole
-  double segment_length = 0;             ///< h [m]; of unequal ones the mean
-  /// Of one joint between segments of that length [N m/rad], its moment over its angle.
+  std::string scene;                     ///< name of the scene
+  ChainClamp clamp = ChainClamp::hinge;  ///< how clamps hold the chain
+  /// Number of segments; those that clamps hold in the middle count as whole ones
+  int segments = 0;
+  double segment_length = 0;  ///< h [m]; the mean if segments are unequal
+  /// Moment of a joint between segments of that length, divided by its angle [N m/rad].
   double stiffness = 0;
-  double over_rod = 1;  ///< that over EI / h
-  double rms_m = 0;     ///< of its points from the rod
-  /// The same of a chain whose joints have the energy of discrete elastic rods,
-  /// k (2 tan(angle/2))^2 / 2: their k [N m/rad].
+  double over_rod = 1;  ///< `stiffness` divided by EI / h [-]
+  double rms_m = 0;     ///< RMS distance of the chain's points from the rod
+  /// Stiffness k of such a joint with the energy of discrete elastic rods, k (2 tan(angle/2))^2 / 2
+  /// [N m/rad].
   double binormal_stiffness = 0;
-  /// Of unequal segments, scaled to the rod's length [m]; empty: all are equal.
+  /// Unequal segment lengths, scaled to the rod's length [m]; empty: all are equal.
   std::vector<double> segment_lengths;
-  std::vector<ChainJoint> joints;  ///< of unequal segments, along the rod; else empty
+  std::vector<ChainJoint> joints;  ///< joints between unequal segments, along the rod; else empty
 };
 
-/// How far shapes are from the rod that was fitted without them (RMS) [m].
+/// RMS distances between shapes and the rod that was fitted without them [m].
 struct Prediction {
-  std::vector<double> shapes_m;  ///< of each shape, by the best fit to the others
-  double rms_m = 0;              ///< of all points
-  /// Of each shape from the mean of the others, measured as from a rod, as near as any rod could
-  /// predict it; none of scenes whose grippers differ by more than 2 % of the length.
+  std::vector<double> shapes_m;  ///< distance of each shape from the best fit to the others
+  double rms_m = 0;              ///< RMS over all points
+  /// RMS distance of each shape from the mean of the others, measured as from a rod: no rod could
+  /// predict the shapes better. Empty if the scenes' grippers differ by more than 2 % of the
+  /// length.
   std::optional<double> repeatability_m;
 
   /// Prediction error divided by the repeatability [-]; empty if the latter is unknown or 0.
@@ -171,91 +185,95 @@ struct Prediction {
 /// tenth.
 inline constexpr double worse_than_repeatability = 1.2;
 
-/// How one shape was laid on the rod of the fitted modulus.
+/// Alignment of one shape with the fitted rod.
 struct FittedShape {
-  std::string scene;    ///< its name
-  Alignment alignment;  ///< of the shape on the fitted rod
+  std::string scene;    ///< name of the scene
+  Alignment alignment;  ///< alignment of the shape with the fitted rod
   Shape rod;  ///< the fitted rod at 201 equal arc lengths; empty unless there is a profile
 };
 
 /// A point of the profile likelihood.
 struct ProfilePoint {
-  double stiffness = 0;  ///< as MaterialFit::youngs_modulus
-  /// The sum of squares over that of the best fit, minimised over all else, as a share of what it
-  /// may be at the ends of the interval: 0 at the best fit, 1 at the ends [-]. Infinite where the
-  /// energy model has no shape.
+  double stiffness = 0;  ///< E or EI, as MaterialFit::youngs_modulus
+  /// Increase of the sum of squares above that of the best fit, minimised over all other numbers,
+  /// divided by the increase at the ends of the interval: 0 at the best fit, 1 at the ends [-].
+  /// Infinite if the energy model has no shape.
   double excess_over_limit = 0;
 };
 
-/// Errors of neighbouring points that belong together.
+/// Correlation of the errors of neighbouring points.
 struct CorrelatedErrors {
-  double length_m = 0;  ///< arc length over which they do (to 1 / e) [m]
-  double share = 0;     ///< of their variance; the rest is each point's own [-]
-  /// Width of the interval of E over that for independent errors, to first order.
+  /// Correlation length: arc length over which the correlation decreases to 1 / e [m]
+  double length_m = 0;
+  double share = 0;  ///< correlated share of the errors' variance; the rest is independent [-]
+  /// Width of the interval of E, divided by that for independent errors, to first order [-].
   double widening = 1;
-  /// Of the residuals, as independent ones would have them.
+  /// Effective degrees of freedom of the residuals: the number that independent ones would have.
   double degrees_of_freedom = 0;
 };
 
-/// A material that fits measured shapes.
+/// Result of a fit of a material to measured shapes.
 struct MaterialFit {
-  /// [Pa]; of a rod that is given by EI that [N m^2] (Scene::stiffness of the first scene).
+  /// E [Pa], or EI [N m^2] of a rod that is given by EI (Scene::stiffness of the first scene).
   FittedValue youngs_modulus;
-  /// [kg/m^3], if it was asked for and could be fitted; of a rod that is given by its mass per
-  /// length that [kg/m] (Scene::heaviness).
+  /// Density [kg/m^3], or mass per length [kg/m] of a rod that is given by it (Scene::heaviness);
+  /// empty if it was not requested or could not be fitted.
   std::optional<FittedValue> density;
-  /// GJ of the first scene [N m^2], if it was asked for.
+  /// GJ of the first scene [N m^2], if it was requested.
   std::optional<FittedValue> torsional_stiffness;
-  /// GJ / EI of the first scene [-], if GJ was asked for: may be identifiable where weight is too
-  /// little to identify either; EI the mean of two.
+  /// GJ / EI of the first scene [-], if GJ was requested; EI is the mean of EI about d1 and d2. The
+  /// ratio may be identifiable where weight is too small to identify either.
   std::optional<FittedValue> torsion_over_bending;
-  /// What is not identifiable from the shapes, and why; empty if all is identified.
+  /// Quantities that are not identifiable from the shapes, and why; empty if all are identified.
   std::string not_identified;
-  /// Given quantities whose errors may leave no residual, so that the interval of E holds only if
-  /// they are right, such as "length", "weight", "natural curvature". Empty without an interval.
+  /// Given quantities whose errors may leave no residual, such as "length", "weight", "natural
+  /// curvature": the interval of E holds only if they are right. Empty without an interval.
   std::vector<std::string> assumed;
-  /// Why the fit is not to be believed: residuals far above the given noise (chance 1e-3), or above
-  /// a twentieth of the length, or half of which something would remove that is not fitted; else
+  /// Reason to distrust the fit: residuals far above the given noise (probability 1e-3), or above a
+  /// twentieth of the length, or of which a quantity that is not fitted would remove half; else
   /// empty.
   std::string warning;
-  /// Standard deviation of one coordinate, given, or estimated and then no less than 1e-8 l, the
-  /// energy model's own error.
+  /// Standard deviation of one coordinate: given, or estimated and then at least 1e-8 l, the energy
+  /// model's own error.
   double noise_m = 0;
-  /// The residuals were asked whether they are correlated: there are enough of them (5 degrees of
-  /// freedom), and they are above the energy model's own error.
+  /// Whether the residuals were tested for correlation: they have at least 5 degrees of freedom and
+  /// are above the energy model's own error.
   bool correlation_was_tested = false;
-  /// If independent errors would look as correlated in less than one case of twenty.
+  /// Given if independent errors would look as correlated with a probability below 5 %.
   std::optional<CorrelatedErrors> correlation;
-  /// Share of the residuals' mean square across the rod that all shapes have in common at equal arc
-  /// length; of independent ones 1 over their number. None of a single shape, or without a plane.
+  /// Share of the residuals' mean square, perpendicular to the rod, that all shapes have in common
+  /// at equal arc length; for independent residuals 1 divided by the number of shapes. Empty for a
+  /// single shape, or without a plane.
   std::optional<double> common_share;
-  /// Of systematic residuals (correlated along the rod, or common to all shapes): what would leave
-  /// 0.7 of them or less, the least first. The interval of E holds if nothing else is wrong.
+  /// Alternatives for systematic residuals (correlated along the rod, or common to all shapes):
+  /// quantities whose fit would leave at most 0.7 of the residuals, the smallest residual first.
+  /// The interval of E holds only if there is no other error.
   std::vector<FitAlternative> alternatives;
-  /// With `choose_options`: what was tried, first what was chosen: the fewest numbers among those
-  /// that predict as well as any (2 %). The interval of E is widened to what those say that predict
-  /// nearly as well (10 %). The only one, without a prediction, if nothing systematic was left.
+  /// With `choose_options`: the options that were tried, the chosen one first. It has the fewest
+  /// numbers among those that predict as well as the best (within 2 %). The interval of E is
+  /// extended to the values from options that predict nearly as well (within 10 %). If nothing
+  /// systematic was left, it is the only one and has no prediction.
   std::vector<FitAlternative> tried;
-  std::vector<FittedNumber> others;  ///< those that were asked for, the wire's first
-  /// Of the first scene with what was fitted of it: coefficients of P_0, P_1, .. about d1 and d2
-  /// [1/m]; empty if it was not asked for.
+  std::vector<FittedNumber> others;  ///< numbers that were requested, those of the wire first
+  /// Natural curvature of the first scene with the fitted corrections: coefficients of P_0, P_1, ..
+  /// about d1 and d2 [1/m]; empty if it was not requested.
   std::vector<Eigen::Vector2d> natural_curvature;
   std::vector<ClampCorrection> clamps;                    ///< with `shared_clamps`
   Eigen::Vector3d camera_tilt = Eigen::Vector3d::Zero();  ///< as in CalibratedRod [rad]
-  std::optional<Prediction> prediction;                   ///< if it was asked for
-  std::optional<ScatterBetweenShapes> scatter;            ///< if there is one
-  /// Of chains with as many segments as were asked for, in each different scene; none where E is
-  /// not identified, or the scene has what a plain chain has not (twist, sections, natural
-  /// curvature, a gripper between its joints).
+  std::optional<Prediction> prediction;                   ///< if it was requested
+  std::optional<ScatterBetweenShapes> scatter;            ///< if there is a significant one
+  /// Chains with the requested segments, one for each different scene. Empty if E is not
+  /// identified, or if the scene has what a plain chain lacks (twist, sections, natural curvature,
+  /// a gripper between its joints).
   std::vector<ChainSprings> chains;
   bool noise_is_estimated = true;   ///< else it was given
-  int degrees_of_freedom = 0;       ///< numbers measured less numbers fitted
-  double rms_m = 0;                 ///< of the distances between points and rod at the fit
-  long equilibria = 0;              ///< of the energy model that were solved
-  long evaluations = 0;             ///< of its objective for these
+  int degrees_of_freedom = 0;       ///< number of measured numbers minus number of fitted numbers
+  double rms_m = 0;                 ///< RMS distance between points and rod at the best fit
+  long equilibria = 0;              ///< number of equilibria that the energy model solved
+  long evaluations = 0;             ///< evaluations of the energy model's objective for them
   std::vector<FittedShape> shapes;  ///< in the order given
-  /// Of Young's modulus, from half an interval's width below it to as far above, equally spaced in
-  /// its logarithm.
+  /// Profile of E, from half the interval's width below the interval to as far above, equally
+  /// spaced in log E.
   std::vector<ProfilePoint> profile;
 };
 

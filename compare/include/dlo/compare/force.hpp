@@ -5,10 +5,12 @@
 
 namespace dlo::compare {
 
-/// The force model at rest. Between several grippers it starts where the chain's lowest shape came
-/// from, and from near that shape where it ends in another state, so that both are in the same one;
-/// where it still does not, the message says so. Drag grows on the rest without it, frozen on a
-/// shape that is sought to be its own rest; nothing is said of stability then.
+/// Steps the force model to rest. Between several grippers it starts where the search for the
+/// chain's lowest shape started. If it converges to another equilibrium, it starts again near the
+/// chain's shape, so that both are on the same branch; if it still differs, the message states it.
+/// Drag is increased from zero, from the equilibrium without drag; the drag is that of a fixed
+/// shape, which is iterated until it equals the resulting shape at rest. Stability is then not
+/// tested.
 /// @throws InputError, ConvergenceError as solve_chain
 [[nodiscard]] Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
                                    const SolveOptions& options = {});

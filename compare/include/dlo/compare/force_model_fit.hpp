@@ -18,14 +18,14 @@ enum class StiffnessRule {
   physical,        ///< law hooke: EI, nothing to choose
   formula_21,      ///< law paper: each scene's own c_b by Formula 21
   moment_matched,  ///< law paper: each scene's own c_b, the physical moment at the design curvature
-  fitted,          ///< law paper: the one c_b that is nearest to all scenes (RMS)
-  fitted_alone,    ///< law paper: for each scene the c_b that is nearest to it: no c_b does better
+  fitted,          ///< law paper: the one c_b that minimises the RMS deviation over all scenes
+  fitted_alone,    ///< law paper: the c_b of least deviation of each scene; no c_b does better
 };
 
-/// In words, for tables.
+/// Names of the rules in tables.
 template <>
 struct Choices<StiffnessRule> {
-  /// In the enumeration's order.
+  /// All values, in the order of the enumeration.
   static constexpr Choice<StiffnessRule> all[] = {
       {StiffnessRule::physical, "physical", ""},
       {StiffnessRule::formula_21, "formula_21", ""},
@@ -34,71 +34,74 @@ struct Choices<StiffnessRule> {
       {StiffnessRule::fitted_alone, "fitted_alone", ""}};
 };
 
-/// What parameters are wanted.
+/// Options of the fit.
 struct ForceModelFitOptions {
-  /// N; without it the target decides (law hooke), or the scene (law paper, whose error does not
-  /// fall with N).
+  /// N; empty: chosen for the target (law hooke), or the scene's (law paper, whose error does not
+  /// decrease with N).
   std::optional<int> points;
-  double target = 1e-3;  ///< RMS deviation over the rod's length, > 0
+  double target = 1e-3;  ///< RMS deviation divided by the rod's length, > 0
   SolveOptions solve;    ///< limits of the solvers
-  Progress progress;     ///< over fits and runs to rest; may be empty
+  Progress progress;     ///< called during fits and runs to rest; may be empty
 };
 
-/// One rule on all scenes; values in their order, hold-out scenes last.
+/// Deviations of all scenes with one rule, in the order of the scenes, hold-out scenes last.
 struct RuleDeviations {
   StiffnessRule rule = StiffnessRule::physical;  ///< how c_b was chosen
-  std::vector<double> c_b;                       ///< [N]; law hooke: none
-  std::vector<double> rms_over_length;           ///< of the chain; NaN where the rule gives no c_b
+  std::vector<double> c_b;                       ///< [N]; empty for law hooke
+  std::vector<double> rms_over_length;           ///< of the chain; NaN if the rule gives no c_b
 };
 
-/// Parameters of the force model for one material, and what they give.
+/// Parameters of the force model for one material, and the resulting deviations.
 struct ForceModelFit {
-  /// To be used: N, law, bookkeeping, c_b (law paper), c_c, and stepper dynamic with its c_F, c_h
-  /// and l_s; or the first scene's verlet or implicit, which have none of these.
+  /// Recommended settings: N, law, bookkeeping, c_b (law paper), c_c, and stepper dynamic with its
+  /// c_F, c_h and l_s; or the first scene's stepper verlet or implicit, which do not have these
+  /// parameters.
   ForceModelSettings settings;
-  bool c_b_was_given = false;  ///< `fitted` is then the given one
-  bool c_c_was_given = false;  ///< by the scene or an option
-  /// The target asked for a stiffer rod than the material makes, or nothing pulls at it: c_c is AE,
-  /// and the rod's own stretch, which the energy model neglects, is part of the deviation.
+  bool c_b_was_given = false;  ///< whether `fitted` is a given c_b
+  bool c_c_was_given = false;  ///< whether c_c was given by the scene or an option
+  /// Whether c_c is AE, because the target requires a larger c_c than the material has, or because
+  /// no force stretches the rod. The rod's own stretch, which the energy model neglects, is then
+  /// part of the deviation.
   bool c_c_is_physical = false;
-  bool points_were_given = false;     ///< N was not chosen
-  double target = 0;                  ///< RMS deviation over the length that was asked for [-]
+  bool points_were_given = false;     ///< whether N was given
+  double target = 0;                  ///< requested RMS deviation, divided by the length [-]
   std::vector<std::string> scenes;    ///< names, hold-out scenes last
   std::vector<double> gammas;         ///< w l^3 / (EI) of each scene [-]
-  std::size_t holdouts = 0;           ///< how many of them were held out
-  std::vector<RuleDeviations> rules;  ///< every rule that was tried
-  /// The force model itself, stepped to rest with `settings`.
+  std::size_t holdouts = 0;           ///< number of hold-out scenes
+  std::vector<RuleDeviations> rules;  ///< all rules that were tried
+  /// RMS deviation of the force model, stepped to rest with `settings`, divided by the length [-].
   std::vector<double> stepped_rms_over_length;
-  /// RMS distance of that shape from the rigid segments' at the same N, over the length: what the
-  /// stretch makes. It hardly depends on N.
+  /// RMS distance of that shape from the one with rigid segments at the same N, divided by the
+  /// length [-]: the effect of stretch. It hardly depends on N.
   std::vector<double> stretch_rms_over_length;
-  std::vector<long> steps;       ///< that it took, of each scene
-  double order = 0;              ///< of convergence in the segment length, as measured; 0: not used
-  double segment_length = 0;     ///< L of the first scene [m]
+  std::vector<long> steps;    ///< number of steps to rest, of each scene
+  double order = 0;           ///< measured order of convergence in the segment length; 0: not used
+  double segment_length = 0;  ///< L of the first scene [m]
   double bending_stiffness = 0;  ///< EI of the first scene [N m^2]
 
-  /// Largest stepped deviation of the scenes (of the hold-out scenes).
+  /// Returns the largest stepped deviation of the fitted scenes [-].
   [[nodiscard]] double worst() const;
-  /// The same of the hold-out scenes; 0 without any.
+  /// Returns the largest stepped deviation of the hold-out scenes [-]; 0 without any.
   [[nodiscard]] double worst_holdout() const;
-  /// No scene's stepped deviation is above the target.
+  /// Whether no scene's stepped deviation is above the target.
   [[nodiscard]] bool reached() const;
-  /// Sentences on what keeps the target from being reached; empty if it is.
+  /// Returns sentences that explain why the target is not reached; empty if it is.
   [[nodiscard]] std::vector<std::string> why_missed() const;
 };
 
 /// Derives the force model's parameters from physics.
 ///
-/// N: the deviation of the chain at rest, worst of the scenes, is measured at N = 16 and 32; from
-/// this order of convergence follows the N that brings it below 0.9 of the target, which is then
-/// tried and raised until it does. c_b of the paper's law: Formula 21, moment-matched, and by
-/// GSL's Brent minimiser over log c_b, on the chain, whose rest shape is the force model's.
-/// c_c: as low as a stretch of a tenth of the target allows, for steps grow with its root; no more
-/// than AE. Steppers verlet and implicit are kept, for any other c_F and c_h: Polyak's heavy ball
-/// for the stiffest and slowest modes at the start and at rest in any of the scenes; l_s: a quarter
-/// of a segment. Given numbers in the first scene's settings (c_b, c_c) are kept. The stepped force
-/// model then has the last word.
-/// @param holdouts  scenes that only judge
+/// N: the largest deviation of the scenes' chains at rest is measured at N = 16 and 32. The order
+/// of convergence predicts the N that brings it below 0.9 of the target; N is then increased until
+/// it does. c_b of the paper's law: by Formula 21, moment-matched, and by GSL's Brent minimiser
+/// over log c_b. The deviation is that of the chain, whose rest shape is the force model's. c_c: as
+/// small as a stretch of a tenth of the target allows, since the number of steps grows with its
+/// square root; at most AE. Steppers verlet and implicit are kept. For the others c_F and c_h are
+/// those of Polyak's heavy ball for the stiffest and slowest modes at the start and at rest in any
+/// of the scenes, and l_s is a quarter of a segment. Given values in the first scene's settings
+/// (c_b, c_c) are kept. Finally the force model is stepped to rest with these settings, and its
+/// deviation is reported.
+/// @param holdouts  scenes that are compared, but not fitted
 /// @throws InputError if scenes differ in law or bookkeeping; ConvergenceError
 [[nodiscard]] ForceModelFit fit_force_model(const std::vector<Scene>& scenes,
                                             const std::vector<Scene>& holdouts,

@@ -35,14 +35,14 @@
 
 namespace dlo::compare {
 
-/// What a matcher asks of a shape: shape_near or shape_within.
+/// Comparison that a matcher makes: shape_near or shape_within.
 using ShapeTest = ShapeNear (*)(const Shape& shape, const Scene& scene, ToleranceShare tolerance);
 
-/// What EXPECT_SHAPE_NEAR and EXPECT_SHAPE_WITHIN call.
+/// Predicate of EXPECT_SHAPE_NEAR and EXPECT_SHAPE_WITHIN.
 struct ShapeAssertion {
   ShapeTest test;  ///< shape_near or shape_within
 
-  /// The outcome of a test, with the arguments as written.
+  /// Returns the outcome of the comparison, with the arguments as written in the test.
   testing::AssertionResult operator()(const char* shape_text, const char* scene_text,
                                       const char* tolerance_text, const Shape& shape,
                                       const Scene& scene, ToleranceShare tolerance) const {
@@ -54,25 +54,25 @@ struct ShapeAssertion {
   }
 };
 
-/// What IsShapeOf and IsShapeWithin give.
+/// Matcher that IsShapeOf and IsShapeWithin return.
 class ShapeMatcher {
  public:
-  /// for GoogleTest
+  /// Declares the class a matcher to GoogleTest.
   using is_gtest_matcher = void;
 
   /// @param tolerance  share of the length or of_deflection() [-], > 0
   ShapeMatcher(ShapeTest test, Scene scene, ToleranceShare tolerance)
       : test_(test), scene_(std::move(scene)), tolerance_(tolerance) {}
 
-  /// Whether the shape is the scene's; streams why, or why not.
+  /// Whether the shape is the scene's; streams the reason.
   bool MatchAndExplain(const Shape& shape, std::ostream* explanation) const {
     const ShapeNear result = test_(shape, scene_, tolerance_);
     if (explanation != nullptr) *explanation << result.explanation;
     return result.near;
   }
-  /// What is expected.
+  /// Describes what is expected.
   void DescribeTo(std::ostream* out) const { *out << "is" << what(); }
-  /// What is not expected.
+  /// Describes what is not expected.
   void DescribeNegationTo(std::ostream* out) const { *out << "is not" << what(); }
 
  private:
@@ -100,7 +100,7 @@ inline ShapeMatcher IsShapeWithin(Scene scene, ToleranceShare tolerance) {
   return {shape_within, std::move(scene), tolerance};
 }
 
-/// How GoogleTest prints a shape: its size, not its bytes.
+/// Prints a shape in GoogleTest's messages: its number of points instead of its bytes.
 // NOLINTNEXTLINE(readability-identifier-naming)
 inline void PrintTo(const Shape& shape, std::ostream* out) {
   *out << "a shape of " << shape.points.cols() << " points";
