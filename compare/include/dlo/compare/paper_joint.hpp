@@ -30,18 +30,18 @@ namespace dlo::compare {
 /// with h = (x - (1 - (1-x)^4)/4) / 3 and g = 3/5 (x - 3/8 (1 - (1-x)^(8/3))), the two deflections
 /// for M_0 = EI = l = 1 and <,> the integral over x = s/l from 0 to 1.
 
-/// M(alpha), (1) [N m].
+/// Returns the moment M(alpha), (1) [N m].
 /// @param c_b     bending stiffness of the paper's law [N], > 0
 /// @param length  L of the segments [m], > 0
 /// @param angle   alpha [rad], 0 to pi
 /// @throws std::invalid_argument if a number is out of range; so do the other functions
 [[nodiscard]] double paper_joint_moment(double c_b, double length, double angle);
 
-/// The angle at which a joint has this moment [rad].
+/// Returns the angle at which a joint has this moment [rad].
 /// @param moment  [N m], 0 to 2 c_b L
 [[nodiscard]] double paper_joint_angle(double c_b, double length, double moment);
 
-/// E_equiv I, (2) [N m^2]; 0 at angle 0.
+/// Returns E_equiv I, (2) [N m^2]; 0 at angle 0.
 [[nodiscard]] double equivalent_bending_stiffness(double c_b, double length, double angle);
 
 }  // namespace dlo::compare

@@ -14,36 +14,37 @@ namespace dlo::compare {
 
 /// Solves a scene by one of the two continuous models.
 /// @param model  `energy` or `exact`
-/// @throws InputError, ConvergenceError; that too where a shape is not verified or next to
-/// a fold, unless `accept_unverified` is set
+/// @throws InputError; ConvergenceError, also if the shape is not verified or near a fold, unless
+/// `accept_unverified` is set
 [[nodiscard]] energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
                                                         const SolveOptions& options = {});
 /// Solves a scene by its reference_model().
-/// @throws InputError, ConvergenceError as above
+/// @throws InputError, ConvergenceError as solve_reference() with a model
 [[nodiscard]] energy_model::Equilibrium solve_reference(const Scene& scene,
                                                         const SolveOptions& options = {});
 
-/// Every equilibrium that the energy model finds, as it is, and where it has looked; those that
-/// `options` do not accept are left out, `saddle` is accepted. @throws InputError,
-/// ConvergenceError
+/// Finds all equilibria of the energy model that a search can find, whatever their status, and
+/// lists the searches. Results that `options` do not accept are removed; `saddle` is accepted.
+/// @throws InputError, ConvergenceError
 [[nodiscard]] energy_model::EnergySearch search_states(const Scene& scene,
                                                        const SolveOptions& options = {});
 
-/// Every equilibrium that the scene's reference_model() finds, as it is: stable ones first, by
-/// energy; never empty. Of a rod that stretches it is the lowest one alone. @throws InputError,
-/// ConvergenceError
+/// Finds all equilibria of the scene's reference_model() that a search can find, whatever their
+/// status: stable ones first, by energy; never empty. For a rod that stretches only the lowest is
+/// found.
+/// @throws InputError, ConvergenceError
 [[nodiscard]] std::vector<energy_model::Equilibrium> reference_states(
     const Scene& scene, const SolveOptions& options = {});
 
-/// Finds the equilibrium of the energy model that a local search from a shape's points leads to
-/// (energy_model::energy_near), whatever its status.
+/// Finds the equilibrium of the energy model to which a local search from a shape's points
+/// converges (energy_model::energy_near), whatever its status.
 /// @param shape  in the scene's frame, two points or more
 /// @throws InputError
 [[nodiscard]] energy_model::Equilibrium reference_near(const Scene& scene, const Shape& shape,
                                                        const SolveOptions& options = {});
 
-/// What touches rigid obstacles in such an equilibrium; its `obstacle` is that of the scene's
-/// obstacles.
+/// Returns the contacts with rigid obstacles in an equilibrium; `obstacle` is the index in the
+/// scene.
 [[nodiscard]] std::vector<energy_model::ContactPart> contacts_of(
     const Scene& scene, const energy_model::Equilibrium& equilibrium);
 

@@ -11,26 +11,28 @@
 
 namespace dlo::compare {
 
-/// A result as `dlo` shows it: of `dlo check`.
+/// Returns the text that `dlo check` prints.
 [[nodiscard]] std::string to_text(const CheckResult& result);
-/// Of `dlo calibrate --shape`.
+/// Returns the text that `dlo calibrate --shape` prints.
 [[nodiscard]] std::string to_text(const Calibration& result);
-/// Of `dlo calibrate` of scenes alone, whose target counts as asked for.
+/// Returns the text that `dlo calibrate` of scenes alone prints; the target counts as given by the
+/// user.
 [[nodiscard]] std::string to_text(const ForceModelFit& result);
-/// Of `dlo compare`.
+/// Returns the text that `dlo compare` prints.
 [[nodiscard]] std::string to_text(const Comparison& result);
-/// Of `dlo solve`. @param scene  that was solved
+/// Returns the text that `dlo solve` prints. @param scene  scene that was solved
 [[nodiscard]] std::string to_text(const Solution& result, const Scene& scene);
 
-/// A result as the document of the same command with `--format json`.
+/// Returns the document that `dlo check --format json` prints.
 [[nodiscard]] std::string to_json(const CheckResult& result);
-/// The same of a calibration.
+/// Returns the document that `dlo calibrate --shape` prints with `--format json`.
 [[nodiscard]] std::string to_json(const Calibration& result);
-/// The same of the force model's.
+/// Returns the document that `dlo calibrate` of scenes alone prints with `--format json`.
 [[nodiscard]] std::string to_json(const ForceModelFit& result);
-/// The same of a comparison.
+/// Returns the document that `dlo compare --format json` prints.
 [[nodiscard]] std::string to_json(const Comparison& result);
-/// The same of a shape, with the scene's plan, which costs as much as some ten solves.
+/// Returns the document that `dlo solve --format json` prints, with the scene's plan, which costs
+/// as much as about ten solves.
 [[nodiscard]] std::string to_json(const Solution& result, const Scene& scene);
 
 }  // namespace dlo::compare

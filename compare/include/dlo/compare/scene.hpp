@@ -17,301 +17,323 @@
 
 namespace dlo::compare {
 
-/// Whether a rod stretches by N / EA.
+/// Whether the axial strain N / EA of a rod is modelled.
 enum class Stretch {
-  none,       ///< it keeps its length
-  counted,    ///< it does; EA is then known
-  automatic,  ///< counted where the estimate of StretchEffect says that it matters; EA is known
+  none,       ///< the rod keeps its length
+  counted,    ///< axial strain is modelled; EA is then known
+  automatic,  ///< modelled if the estimate of StretchEffect is above the target; EA is then known
 };
 
 /// Keeps a clamped cross-section from rotating about its direction.
 struct FrameHold {
-  /// First director of the rod's frame, unit and across the direction; none: that of the first
-  /// clamp that holds the frame, carried here by the shortest rotation of its direction.
+  /// First director of the rod's frame, unit vector perpendicular to the direction of the clamp.
+  /// Empty: d1 of the first clamp that holds the frame, carried here by the shortest rotation of
+  /// its direction.
   std::optional<Eigen::Vector3d> d1;
-  double roll = 0;  ///< turned on from there about the direction, whole turns counted [rad]
+  double roll = 0;  ///< rotation of that d1 about the direction [rad]; whole turns count
 
-  /// In every field.
+  /// Compares all fields.
   bool operator==(const FrameHold&) const = default;
 };
 
-/// What holds a point of the rod.
+/// A clamp or a pin, which holds one point of the rod.
 struct Gripper {
   double at = 0;                                       ///< arc length [m]
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
-  std::optional<Eigen::Vector3d> direction;            ///< unit; a clamp has one, a pin has none
-  std::optional<FrameHold> frame;                      ///< of a clamp that does not let it turn
-  /// How it moves (scene_at()); of a clamp whose poses have no directions its own stays. Empty: it
-  /// stands. All that takes a scene as it is has it at the first pose.
+  std::optional<Eigen::Vector3d> direction;            ///< unit vector of a clamp; empty for a pin
+  std::optional<FrameHold> frame;  ///< given if the clamp prevents rotation about its direction
+  /// Motion of the gripper (scene_at()). If its poses have no directions, a clamp keeps its own
+  /// direction. Empty: the gripper does not move. Functions that solve one static scene use the
+  /// gripper as it is at the first pose.
   Trajectory trajectory = {};
   std::string where;  ///< "file:line", for messages
 
-  /// In every field.
+  /// Compares all fields.
   bool operator==(const Gripper&) const = default;
 };
 
-/// A force that keeps its direction and a couple that keeps its axis, or such that turn with the
-/// rod.
+/// A point force and a couple. Both keep their directions in space, or rotate with the rod
+/// (`follows`).
 struct PointLoad {
-  double at = 0;                                     ///< arc length [m]
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N]; of a mass in the file, its weight
-  double mass = 0;                                   ///< [kg], of what hangs there and would move
+  double at = 0;                                    ///< arc length [m]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N]; the weight, if the file gives a mass
+  double mass = 0;  ///< mass of the attached body [kg], which would move with the rod
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
-  /// Force and torque are along d1, d2 and the tangent of the section, as energy_model::Load's.
+  /// Whether the components of force and torque are along d1, d2 and the tangent of the
+  /// cross-section, as in energy_model::Load.
   bool follows = false;
 
-  /// In every field.
+  /// Compares all fields.
   bool operator==(const PointLoad&) const = default;
 };
 
-/// A dead force per length besides the weight.
+/// A dead force per length in addition to the weight.
 struct DistributedLoad {
   double from = 0;  ///< arc length [m]
   double to = 0;    ///< arc length [m], > from
-  /// At equal distances from `from` to `to`, linear between [N/m]; one: the same all along.
+  /// Values at equal distances from `from` to `to`, linear between them [N/m]. A single value is
+  /// constant along the interval.
   std::vector<Eigen::Vector3d> force_per_length;
 
-  /// Of the rod between two arc lengths [N].
+  /// Returns the force on the rod between two arc lengths [N].
   [[nodiscard]] Eigen::Vector3d between(double begin, double end) const;
-  /// Sum of its sizes [N]; no less than that of its forces.
+  /// Returns the integral of the absolute value of the load [N]; it is not smaller than the
+  /// absolute value of the resultant.
   [[nodiscard]] double size() const;
 
-  /// In every field.
+  /// Compares all fields.
   bool operator==(const DistributedLoad&) const = default;
 };
 
-/// A body that the rod's axis stays out of: one that its surface must not enter, as a scene file
-/// has it, is larger by half the diameter.
+/// A body that the rod's axis must not enter. It is larger by half the rod's diameter than the body
+/// in a scene file, which the rod's surface must not enter.
 struct Obstacle {
   obstacle::Body body;  ///< [m]
   /// Force per depth and per length of rod [N/m^2]; infinite: rigid.
   double stiffness = std::numeric_limits<double>::infinity();
-  /// Coulomb's coefficient [-], >= 0. No model has friction: a shape that touches such an
-  /// obstacle says so (Solution::neglected).
+  /// Coulomb's coefficient of friction [-], >= 0. No model has friction: Solution::neglected lists
+  /// it if the rod touches such an obstacle.
   double friction = 0;
-  /// How it moves without turning, its poses being where the file's `point` is. Empty: it stands;
-  /// the body is that at the first pose.
+  /// Motion without rotation: positions of the file's `point`. Empty: the obstacle does not move.
+  /// `body` is the obstacle at the first pose.
   Trajectory trajectory = {};
 
-  /// In every field.
+  /// Compares all fields.
   bool operator==(const Obstacle&) const = default;
 };
 
-/// A part of the rod that is another one: a connector, a splice, a sleeve.
+/// An interval of the rod with other properties: a connector, a splice, a sleeve.
 struct Section {
   double from = 0;               ///< arc length [m]
   double to = 0;                 ///< arc length [m], > from
   double bending_stiffness = 0;  ///< EI [N m^2], > 0; about d1 where bending_stiffness_2 is given
   double mass_per_length = 0;    ///< rho A [kg/m], >= 0
-  /// GJ [N m^2]; none: its share of EI is the rod's own.
+  /// GJ [N m^2]; empty: GJ / EI (EI the harmonic mean) is that of the rest of the rod.
   std::optional<double> torsional_stiffness;
-  /// EI about d2 [N m^2], > 0; none: the section is round.
+  /// EI about d2 [N m^2], > 0; empty: the section is round.
   std::optional<double> bending_stiffness_2 = std::nullopt;
-  /// Curvature of the stress-free shape about d1 and d2 of the rod's frame, the same all along
-  /// [1/m]; none: the rod's own there.
+  /// Constant curvature of the stress-free shape about d1 and d2 of the rod's frame [1/m]; empty:
+  /// that of the rod (Scene::natural_strain and natural_variation).
   std::optional<Eigen::Vector2d> natural_curvature = std::nullopt;
-  /// The same of its twist [rad/m].
+  /// Constant twist of the stress-free shape [rad/m]; empty: that of the rod.
   std::optional<double> natural_twist = std::nullopt;
 
-  /// As Scene's.
+  /// Returns the harmonic mean of EI about d1 and d2 [N m^2]; EI of a round section.
   [[nodiscard]] double mean_bending_stiffness() const;
 
-  /// In every field.
+  /// Compares all fields.
   bool operator==(const Section&) const = default;
 };
 
-/// As what a rod's stiffness or mass is told: Young's modulus and density, or EI and mass per
-/// length of a rod that is given by these.
+/// The quantity by which a scene gives a rod's stiffness or mass: Young's modulus and density, or
+/// EI and mass per length.
 struct NamedValue {
   const char* name = "";  ///< "E", "EI" or "EI about d1"; "density" or "mass per length"
   const char* unit = "";  ///< "Pa" or "N m^2"; "kg/m^3" or "kg/m"
   double value = 0;       ///< in that unit
 };
 
-/// Poisson's ratio of a rod whose torsional stiffness is needed and not given: GJ = EI / (1 + nu),
-/// EI the harmonic mean of those about d1 and d2. So it is for a round section, solid or hollow,
-/// and every elliptic one (Saint-Venant), and for a rectangular one in the limit of a thin strip.
-/// Of one whose width and thickness are given GJ is Saint-Venant's.
+/// Poisson's ratio nu of a rod whose torsional stiffness is needed and not given: GJ = EI / (1 +
+/// nu), EI the harmonic mean of those about d1 and d2. This formula is exact for round sections,
+/// solid or hollow, for elliptic ones (Saint-Venant), and for a rectangular one in the limit of a
+/// thin strip. GJ of a section with given width and thickness is Saint-Venant's.
 inline constexpr double assumed_poisson_ratio = 0.3;
 
-/// How a scene that moves is looked at.
+/// Sampling rates of a moving scene.
 struct TrackRates {
-  double frames = 1000;  ///< frames a second [Hz], > 0: how often grippers move
-  /// How often obstacles move [Hz], > 0; none: with every frame.
+  double frames = 1000;  ///< rate at which grippers are moved [Hz], > 0
+  /// Rate at which obstacles are moved [Hz], > 0; empty: in every frame.
   std::optional<double> obstacles;
-  /// Steps of the force model a second [Hz], > 0.
+  /// Steps of the force model per second [Hz], > 0.
   double steps = 30000;
 
-  /// In every field.
+  /// Compares all fields.
   bool operator==(const TrackRates&) const = default;
 };
 
-/// A physical scene in SI units. A rod is of one material and round, a tube or a flat strip, or is
-/// given by its EI (about d1 and d2, if they differ) and its mass per length; where both are given,
-/// these count for bending and weight, and material and section for the axial stiffness only.
+/// A physical scene in SI units. The rod has one material and is round, a tube or a flat strip, or
+/// it is given by its EI (about d1 and d2, if they differ) and its mass per length. If both are
+/// given, EI and mass per length determine bending and weight, and material and section only the
+/// axial stiffness.
 struct Scene {
-  std::string name;                         ///< for people; regression tests know the scene by it
-  std::string file;                         ///< where it was read from, for messages
+  std::string name;  ///< title for people; regression tests identify the scene by it
+  std::string file;  ///< name of the file that the scene was read from, for messages
   Eigen::Vector3d gravity = {0, -9.81, 0};  ///< [m/s^2]
   double length = 0;                        ///< l [m]
-  /// d [m]; 0: not known, then there is no material but that of a rectangular section.
+  /// d [m]; 0: unknown. A material then requires a rectangular section.
   double diameter = 0;
-  double inner_diameter = 0;  ///< of a tube [m], < diameter; 0: solid
-  double width = 0;           ///< of a rectangular section, along d1 [m]; 0: it is none
+  double inner_diameter = 0;  ///< inner diameter of a tube [m], < diameter; 0: solid
+  double width = 0;           ///< of a rectangular section, along d1 [m]; 0: not rectangular
   double thickness = 0;       ///< of a rectangular section, along d2 [m]
-  Material material;          ///< youngs_modulus 0: not known; of layers the mean of the section
-  /// Bounds of a rod of layers, of which given_bending_stiffness and torsional_stiffness are one.
+  Material material;          ///< youngs_modulus 0: unknown; for layers the mean over the section
+  /// Bounds of the stiffnesses of a rod of layers; given_bending_stiffness and torsional_stiffness
+  /// are set to one of the two bounds.
   std::optional<LayeredSection> layers;
-  std::optional<double> given_bending_stiffness;  ///< EI [N m^2], > 0; none: of the material
-  std::optional<double> given_mass_per_length;    ///< rho A [kg/m], >= 0; none: of the material
-  /// EI about d2 [N m^2], > 0, beside given_bending_stiffness, which then is about d1; none: round.
+  std::optional<double> given_bending_stiffness;  ///< EI [N m^2], > 0; empty: from the material
+  std::optional<double> given_mass_per_length;    ///< rho A [kg/m], >= 0; empty: from the material
+  /// EI about d2 [N m^2], > 0, in addition to given_bending_stiffness, which then is EI about d1;
+  /// empty: round.
   std::optional<double> given_bending_stiffness_2;
-  std::optional<double> given_axial_stiffness;  ///< EA [N], > 0; none: axial_stiffness()
-  Stretch stretch = Stretch::none;              ///< of models that have it
-  /// GJ [N m^2], > 0; needed where two clamps hold frames or the rod has material directors, of no
-  /// effect elsewhere.
+  std::optional<double> given_axial_stiffness;  ///< EA [N], > 0; empty: see axial_stiffness()
+  Stretch stretch = Stretch::none;              ///< whether models with axial strain include it
+  /// GJ [N m^2], > 0; needed if two clamps hold frames or if the rod has material directors,
+  /// without effect otherwise.
   std::optional<double> torsional_stiffness;
-  std::vector<Section> sections;  ///< where the rod is another one, by arc length, none overlap
-  /// Curvature of the stress-free shape about d1 and d2 of its frame and its twist, in the mean
-  /// along it [1/m]; the first clamp along the rod holds that frame (energy_model::first_frame).
+  /// Intervals with other properties, by arc length, without overlap
+  std::vector<Section> sections;
+  /// Means along the rod of the natural curvature about d1 and d2 and of the natural twist, that
+  /// is, of the stress-free shape [1/m]. The first clamp along the rod holds that frame
+  /// (energy_model::first_frame).
   Eigen::Vector3d natural_strain = Eigen::Vector3d::Zero();
-  /// What the curvature varies by: coefficients of Legendre's P_1, P_2, .. of 2 s/l - 1 [1/m].
+  /// Variation of the natural curvature along the rod: coefficients of Legendre's P_1, P_2, .. of 2
+  /// s/l - 1 [1/m].
   std::vector<Eigen::Vector2d> natural_variation;
-  /// What points in space say of the stress-free shape, where they say it: its arcs are the natural
-  /// curvature and twist of `sections`, or natural_strain where there is one arc.
+  /// Fit to points in space, if the stress-free shape is given by points. Its arcs are also the
+  /// natural curvature and twist of `sections`, or natural_strain if there is one arc.
   std::optional<RestShape> rest_shape;
   std::vector<Gripper> grippers;                   ///< one or more, in the file's order
   std::vector<PointLoad> loads;                    ///< may be empty
-  std::vector<DistributedLoad> distributed_loads;  ///< may be empty; they add up
-  std::optional<energy_model::Drag> drag;          ///< of a steady stream on all of the rod
+  std::vector<DistributedLoad> distributed_loads;  ///< may be empty; overlapping ones are added
+  std::optional<energy_model::Drag> drag;          ///< drag of a steady stream on the whole rod
   std::vector<Obstacle> obstacles;                 ///< may be empty
-  ForceModelSettings force_model;                  ///< as the file has it
-  TrackRates track;                                ///< as the file has it
-  /// Points of the rod from which a rod with inertia starts ([track] start): at one time those of a
-  /// shape that is released from rest, at more a recording, whose velocities it has; null: the rod
-  /// starts from its equilibrium.
+  ForceModelSettings force_model;                  ///< as given in the file
+  TrackRates track;                                ///< as given in the file
+  /// Points of the rod from which a rod with inertia starts ([track] start). Points at one time are
+  /// a shape that is released from rest; points at several times are a recording, whose velocities
+  /// are used too. Null: the rod starts from its equilibrium.
   std::shared_ptr<const MarkerMotion> start;
-  std::optional<ModelChain> model;  ///< that the scene was made from
+  std::optional<ModelChain> model;  ///< simulator's model that the scene was made from, if any
 
-  [[nodiscard]] double cross_section() const;  ///< A [m^2]; 0 if its sizes are not known
-  /// I / A of it about d1 and d2 [m^2]; 0 likewise.
+  [[nodiscard]] double cross_section() const;  ///< A [m^2]; 0 if the dimensions are unknown
+  /// Returns I / A of the cross-section about d1 and d2 [m^2]; 0 if the dimensions are unknown.
   [[nodiscard]] Eigen::Vector2d squared_gyration() const;
-  [[nodiscard]] double bending_stiffness() const;  ///< EI [N m^2], outside sections; about d1
-  /// EI about d2 [N m^2], outside sections, where it is another one than that about d1: given, or
-  /// of the material and a rectangular section that is not square.
+  [[nodiscard]] double bending_stiffness() const;  ///< EI about d1 [N m^2], outside sections
+  /// Returns EI about d2 [N m^2], outside sections, if it differs from EI about d1: the given
+  /// value, or that of the material and a rectangular section that is not square.
   [[nodiscard]] std::optional<double> bending_stiffness_2() const;
-  /// The smaller EI of those about d1 and d2 [N m^2], outside sections.
+  /// Returns the smaller of EI about d1 and about d2 [N m^2], outside sections.
   [[nodiscard]] double softer_bending_stiffness() const;
-  /// Their harmonic mean [N m^2], which GJ of one material goes with; EI of a round rod.
+  /// Returns the harmonic mean of EI about d1 and d2 [N m^2], outside sections, to which GJ of a
+  /// rod of one material is proportional; EI of a round rod.
   [[nodiscard]] double mean_bending_stiffness() const;
   [[nodiscard]] double mass_per_length() const;  ///< rho A [kg/m], outside sections
-  /// GJ [N m^2], outside sections: as given, of a rod with material directors
-  /// assumed_torsional_stiffness() if not given; else 0.
+  /// Returns GJ [N m^2], outside sections: the given value; else assumed_torsional_stiffness() of a
+  /// rod with material directors, and 0 of any other.
   [[nodiscard]] double twisting_stiffness() const;
-  /// GJ [N m^2] of one material with assumed_poisson_ratio, outside sections: of a rectangular
-  /// section E / (2 (1 + nu)) times its torsion constant, else mean_bending_stiffness() / (1 + nu).
+  /// Returns GJ [N m^2] of one material with assumed_poisson_ratio, outside sections: for a
+  /// rectangular section E / (2 (1 + nu)) times its torsion constant, else mean_bending_stiffness()
+  /// / (1 + nu).
   [[nodiscard]] double assumed_torsional_stiffness() const;
-  /// Whether that GJ is an assumption.
+  /// Whether twisting_stiffness() is an assumption: the rod has material directors and GJ is not
+  /// given.
   [[nodiscard]] bool assumes_torsion() const;
-  /// EA [N], one for all of the rod: as given, or of the material; without one of a rod of one
-  /// material with this EI and section (solid and round: 16 EI / d^2); without a section 1e6 EI /
-  /// l^2, a rod 250 times as long as thick.
+  /// Returns EA [N], one value for the whole rod: the given one, or that of the material; else EA
+  /// of a rod of one material with this EI and section (solid and round: 16 EI / d^2); without a
+  /// section 1e6 EI / l^2, as of a rod 250 times as long as thick.
   [[nodiscard]] double axial_stiffness() const;
-  /// The same where the scene says it; none where it is only assumed: of the EI and the diameter of
-  /// a cable whose strands slip EA is far more than a solid rod's.
+  /// Returns EA [N] if it is given or follows from material and section; empty if it would be an
+  /// assumption, since EA of a cable whose strands slip is far larger than that of a solid rod with
+  /// its EI and diameter.
   [[nodiscard]] std::optional<double> known_axial_stiffness() const;
-  /// The stiffness that a fit multiplies.
+  /// Returns the stiffness that a fit multiplies: E or EI.
   [[nodiscard]] NamedValue stiffness() const;
-  /// The same of the mass.
+  /// Returns the mass parameter that a fit multiplies: density or mass per length.
   [[nodiscard]] NamedValue heaviness() const;
-  [[nodiscard]] double mass() const;  ///< [kg], with sections
-  /// Mean over the rod [N/m]: its mass with sections times gravity over its length.
+  [[nodiscard]] double mass() const;  ///< total mass of the rod [kg], with sections
+  /// Returns the mean weight per length [N/m]: mass() times gravity, divided by the length.
   [[nodiscard]] Eigen::Vector3d weight_per_length() const;
-  /// Of the rod between two arc lengths [N], 0 <= begin <= end <= length.
+  /// Returns the weight of the rod between two arc lengths [N], 0 <= begin <= end <= length.
   [[nodiscard]] Eigen::Vector3d weight_between(double begin, double end) const;
-  /// Of distributed loads, as above [N].
+  /// Returns the sum of all distributed loads between two arc lengths [N], 0 <= begin <= end <=
+  /// length.
   [[nodiscard]] Eigen::Vector3d distributed_between(double begin, double end) const;
-  /// Sum of the sizes of all loads, weight not counted; of couples over the length [N].
+  /// Returns the sum of the absolute values of all loads [N], without weight; couples are divided
+  /// by the length.
   [[nodiscard]] double total_of_loads() const;
   /// Whether a load has a couple.
   [[nodiscard]] bool has_couples() const;
-  /// @param who  needs a potential, as "the energy model does"
-  /// @throws InputError if a load has none (energy_model::has_potential), which names it
+  /// @param who  subject and verb for the message, such as "the energy model does"
+  /// @throws InputError that names the first load without a potential (energy_model::has_potential)
   void require_potential(const char* who) const;
-  /// @param who  does not take couples, nor what has no potential, as "the polygons of models force
-  /// and chain do"
-  /// @throws InputError if there are some
+  /// @param who  subject and verb for the message, such as "the polygons of models force and chain
+  /// do"
+  /// @throws InputError if there is a couple or a load without a potential
   void require_no_couples(const char* who) const;
-  /// int 1/GJ ds between two arc lengths [1/(N m)], as above; of a rod with a GJ.
+  /// Returns int 1/GJ ds between two arc lengths [1/(N m)], with sections, for a rod that has a GJ.
   [[nodiscard]] double twisting_compliance(double begin, double end) const;
-  /// int 1/EI ds between two arc lengths [1/(N m)], as above.
+  /// Returns int 1/EI ds between two arc lengths [1/(N m)], EI about d1, with sections.
   [[nodiscard]] double bending_compliance(double begin, double end) const;
-  /// w l^3 / (EI) [-], w the mean weight per length and EI the smaller one outside sections.
+  /// Returns w l^3 / (EI) [-], w the mean weight per length and EI the smaller one outside
+  /// sections.
   [[nodiscard]] double gamma() const;
   /// Whether the stress-free shape is curved or twisted.
   [[nodiscard]] bool naturally_bent() const { return naturally_curved() || naturally_twisted(); }
-  /// The same of the curvature alone.
+  /// Whether the stress-free shape is curved.
   [[nodiscard]] bool naturally_curved() const;
-  /// The same of the twist alone.
+  /// Whether the stress-free shape is twisted.
   [[nodiscard]] bool naturally_twisted() const;
-  /// Whether the rod, or a section of it, has one EI about d1 and another about d2.
+  /// Whether EI about d1 and about d2 differ in the rod or in one of its sections.
   [[nodiscard]] bool has_two_stiffnesses() const;
   /// Whether d1 and d2 are fixed to the rod's material (energy_model::has_material_directors).
   [[nodiscard]] bool has_material_directors() const {
     return naturally_bent() || has_two_stiffnesses();
   }
-  /// Frame (columns d1, d2, t) in which the first clamp holds a rod with material directors.
-  /// @throws InputError if no clamp, or no plane, says where it is
+  /// Returns the frame (columns d1, d2, t) in which the first clamp holds a rod with material
+  /// directors.
+  /// @throws InputError if neither a clamp nor a plane determines it
   [[nodiscard]] Eigen::Matrix3d first_frame() const;
   /// Returns the normal of the plane in which an intrinsically curved rod is assumed to be bent,
   /// because its first clamp gives no d1: that of the scene without loads
   /// (energy_model::natural_normal). Empty: the clamp gives d1, or the rod is straight.
   [[nodiscard]] std::optional<Eigen::Vector3d> assumed_normal() const;
-  /// The same rod, intrinsically straight.
+  /// Returns the scene with an intrinsically straight and untwisted rod.
   [[nodiscard]] Scene without_natural_strain() const;
-  /// Mean curvature of the stress-free shape in the axes that the first clamp holds, as a vector
-  /// about which its tangent turns [1/m]; zero for a rod that is intrinsically straight. @throws
-  /// InputError if no clamp, or no plane, says where its frame is
+  /// Returns the mean curvature of the stress-free shape in the axes of the frame that the first
+  /// clamp holds, as a vector about which the tangent rotates [1/m]; zero for an intrinsically
+  /// straight rod.
+  /// @throws InputError if neither a clamp nor a plane determines the frame
   [[nodiscard]] Eigen::Vector3d natural_curvature() const;
-  /// The same of the rod between two arc lengths, begin < end.
+  /// Returns the mean of the natural curvature between two arc lengths, begin < end, as
+  /// natural_curvature() does of the whole rod.
   [[nodiscard]] Eigen::Vector3d natural_curvature(double begin, double end) const;
-  /// Whether two clamps or more hold the rod's frame, which twists it or keeps it from twisting. Of
-  /// a rod with material directors the first clamp always does.
+  /// Whether two clamps or more hold the rod's frame, which twists the rod or prevents twist. The
+  /// first clamp of a rod with material directors always holds it.
   [[nodiscard]] bool holds_twist() const;
-  /// The same with clamps that let the rod rotate about their directions, but for the first clamp
-  /// of a rod with material directors.
+  /// Returns the scene with clamps that let the rod rotate about their directions, except for the
+  /// first clamp of a rod with material directors.
   [[nodiscard]] Scene without_twist() const;
-  /// Unit normal of the plane that grips, forces and obstacles in reach share, if they do, no twist
-  /// is held, which bends a rod out of its plane, and the rod is not curved about another axis by
-  /// nature and not oblique to its principal axes; of several planes any one.
+  /// Returns the unit normal of the plane that contains grips, forces and obstacles in reach; any
+  /// one of several. Empty if there is none, if clamps hold twist, which bends the rod out of its
+  /// plane, or if the natural curvature is about another axis or the plane is oblique to the
+  /// principal axes of the cross-section.
   [[nodiscard]] std::optional<Eigen::Vector3d> plane_normal() const;
-  /// Whether there is one.
+  /// Whether plane_normal() exists.
   [[nodiscard]] bool planar() const { return plane_normal().has_value(); }
-  [[nodiscard]] int spans() const;  ///< parts that the clamps cut the rod into
+  [[nodiscard]] int spans() const;  ///< number of intervals between clamps and ends
 
-  /// Makes a shape the stress-free one, in place of any natural curvature and twist before. Of
-  /// several arcs each is a section, or cuts one.
+  /// Replaces the natural curvature and twist by those of a shape. If the shape has several arcs,
+  /// each becomes a section or divides existing ones.
   /// @param shape  of a rod of this length
   void set_rest_shape(const RestShape& shape);
 
-  /// Multiplies E, and EI and GJ with it, those of sections too: their ratios are those of
-  /// Poisson's ratio and of the sections' shapes.
+  /// Multiplies E and with it EI, EA and GJ, also of sections: their ratios depend only on
+  /// Poisson's ratio and on the shapes of the sections.
   void scale_modulus(double factor);
-  /// Multiplies GJ, that of sections too; an assumed one is then given.
+  /// Multiplies GJ, also of sections; an assumed GJ becomes a given one.
   void scale_torsion(double factor);
-  /// Multiplies the density, and all given masses per length with it.
+  /// Multiplies the density and all given masses per length.
   void scale_density(double factor);
 
-  /// In every field.
+  /// Compares all fields.
   bool operator==(const Scene&) const = default;
 };
 
-/// What a sum of arc lengths may leave the rod by, as a share of its length: single precision
-/// rounds each of some segments by 6e-8.
+/// Largest distance of a given arc length from the rod that counts as rounding, divided by the rod
+/// length: in single precision each of the summed segments is rounded by 6e-8.
 inline constexpr double arc_rounding = 1e-6;
 
-/// An arc length that somebody gives, on the rod: one beyond an end by rounding is that end [m].
-/// None of one that is farther away.
+/// Returns an arc length given by a user, moved to the end of the rod if it is beyond that end by
+/// rounding [m]; empty if it is farther away.
 [[nodiscard]] std::optional<double> on_rod(double s, double length);
 
 /// First and last time of all poses of a scene [s].
@@ -320,14 +342,15 @@ struct TimeSpan {
   double end = 0;    ///< [s], >= begin
 };
 
-/// When a scene moves; nothing of one that stands.
+/// Returns the time span of a moving scene; empty if nothing moves.
 [[nodiscard]] std::optional<TimeSpan> motion_of(const Scene& scene);
 
-/// The scene as it is at a time, standing: grippers and obstacles at their poses, none of which it
-/// has any more.
-/// @param obstacle_time  the same for obstacles, which a loop may move less often [s]
+/// Returns the static scene at a time: grippers and obstacles are at their poses and have no
+/// trajectories.
+/// @param obstacle_time  time of the obstacles' poses [s]; a control loop may update them less
+/// often
 [[nodiscard]] Scene scene_at(const Scene& scene, double time, double obstacle_time);
-/// At one time.
+/// Returns the static scene at one time of grippers and obstacles [s].
 [[nodiscard]] Scene scene_at(const Scene& scene, double time);
 
 }  // namespace dlo::compare

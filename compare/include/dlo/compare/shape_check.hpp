@@ -15,11 +15,11 @@
 
 namespace dlo::compare {
 
-/// How a shape is compared.
+/// Options of a comparison.
 struct ShapeCheckOptions {
-  PoseFreedom pose = PoseFreedom::known;           ///< what is unknown of its frame
-  ArcLengths arc_lengths = ArcLengths::automatic;  ///< where its arc lengths come from
-  ModulusSearch modulus = ModulusSearch::yes;      ///< whether E*/E is looked for
+  PoseFreedom pose = PoseFreedom::known;           ///< unknown part of the shape's frame
+  ArcLengths arc_lengths = ArcLengths::automatic;  ///< source of the shape's arc lengths
+  ModulusSearch modulus = ModulusSearch::yes;      ///< whether E*/E is searched
   SolveOptions solve;                              ///< limits of the solvers
 };
 
@@ -28,54 +28,61 @@ struct ShapeCheckOptions {
 struct UnverifiedState {
   double rms_m = 0;     ///< RMS deviation of the file from it, as ShapeCheck::whole_rms_m
   double max_m = 0;     ///< largest deviation, as ShapeCheck::whole_max_m
-  std::string message;  ///< of the solver
+  std::string message;  ///< message of the solver
 };
 
-/// A measured shape against the energy model of its scene.
+/// Comparison of a measured shape with the energy model of its scene.
 struct ShapeCheck {
-  std::string scene;              ///< its name
-  std::string file;               ///< the shape's name
-  double gamma = 0;               ///< w l^3 / (EI) [-]
-  double length_m = 0;            ///< l of the rod
-  double stretched_length_m = 0;  ///< length of the reference: l but for a rod that stretches
-  Alignment alignment;            ///< the shape as laid on the reference
-  ComparedState state;            ///< the stable one that the shape comes nearest to
+  std::string scene;    ///< name of the scene
+  std::string file;     ///< name of the shape's file
+  double gamma = 0;     ///< w l^3 / (EI) [-]
+  double length_m = 0;  ///< l of the rod
+  /// Length of the reference; differs from l only if the rod stretches
+  double stretched_length_m = 0;
+  Alignment alignment;            ///< the shape as aligned with the reference
+  ComparedState state;            ///< the stable equilibrium nearest to the shape
   Shape reference;                ///< the energy model at the alignment's arc lengths
-  energy_model::Equilibrium rod;  ///< all of it
+  energy_model::Equilibrium rod;  ///< the whole compared equilibrium
   std::vector<energy_model::Equilibrium> other_rods;  ///< the other stable equilibria
   /// Empty if the search from the file's points found a verified equilibrium or was not needed.
   std::optional<UnverifiedState> unverified;
-  /// Of all points from the reference, each with the longer of the rod's arc length and the
-  /// polyline's own between its neighbours; parts of the rod that are missing at the ends do not
-  /// count. RMS over length is of the whole rod. For `nearest` distances are from the nearest
-  /// points in order, but where points go on past an end the file is longer than the rod, and the
-  /// excess is spread along it. Tangent and curvature only for given arc lengths: NaN.
+  /// Deviation of all points from the reference. The weight of a point is the arc length between
+  /// its neighbours' middles, of the rod or of the polyline, whichever is longer. Missing ends of
+  /// the rod do not count. RMS over length refers to the whole rod. For `nearest`, distances are
+  /// from the nearest points in order; if points extend past an end, the file is longer than the
+  /// rod, and the excess is distributed along it. Tangent and curvature need given arc lengths;
+  /// else NaN.
   Deviation deviation;
-  double excess_m = 0;  ///< `nearest`: by which the file is longer than the rod, past its ends
-  /// RMS and largest deviation of the file as the whole rod: what is missing of the rod at an end
-  /// counts with its distance from the outermost point.
+  double excess_m = 0;  ///< `nearest`: length of the file beyond the rod's ends [m]
+  /// RMS deviation of the file as the whole rod: a missing end counts with its distance from the
+  /// outermost point.
   double whole_rms_m = 0;
-  double whole_max_m = 0;        ///< the largest of those
+  double whole_max_m = 0;        ///< largest deviation of the file as the whole rod
   std::vector<RodPart> between;  ///< parts longer than 1e-3 l between neighbouring points
-  std::string hint;              ///< what looks wrong: a clause, or empty
-  long worst_point = 0;          ///< of the largest deviation, counted from 1 as in the file
+  std::string hint;              ///< what looks wrong, as a clause; may be empty
+  long worst_point = 0;          ///< point of the largest deviation, counted from 1 as in the file
   Eigen::Vector3d worst_position = Eigen::Vector3d::Zero();  ///< in the scene's frame [m]
-  double movement_m = 0;         ///< RMS way of the reference from straight, same stretch; or NaN
-  double polyline_length_m = 0;  ///< of the points as they are
+  /// RMS displacement of the reference from straight, over the same interval; or NaN
+  double movement_m = 0;
+  double polyline_length_m = 0;  ///< length of the polyline through the points
   double seen_share = 0;         ///< arc length from the first point to the last, over l [-]
   double largest_gap_m = 0;      ///< largest arc length between neighbours
   double largest_gap_at_m = 0;   ///< where it begins
-  long measured_points = 0;  ///< of the file's, those that are not where a gripper holds the rod
+  /// Number of the file's points that are not where a gripper holds the rod
+  long measured_points = 0;
   bool direction_is_clear = false;  ///< the other direction fits at least 5 % worse
-  /// The points lie so nearly on a line that nothing tells how the shape is turned about it.
+  /// Whether the points determine the rotation about the line that fits them best; false if they
+  /// lie nearly on it.
   bool turn_is_clear = true;
-  EffectiveModulus effective_modulus;  ///< aligned anew for each modulus, in the same state
-  NamedValue stiffness;                ///< Scene::stiffness
-  /// E* [Pa], of a rod that is given by EI that [N m^2]; NaN without one.
+  /// E*/E; for each modulus the shape is aligned again, and the equilibrium followed
+  EffectiveModulus effective_modulus;
+  NamedValue stiffness;  ///< Scene::stiffness
+  /// E* [Pa], or E*I [N m^2] of a rod that is given by EI; NaN without one.
   double modulus = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// Solves the scene with the energy model and compares the shape with the nearest stable state.
+/// Solves the scene with the energy model and compares the shape with the nearest stable
+/// equilibrium.
 /// @throws InputError, ConvergenceError
 [[nodiscard]] ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
                                      const ShapeCheckOptions& options = {});

@@ -6,18 +6,20 @@
 
 namespace dlo::compare {
 
-/// A shape as somebody else's program or camera gives it: points along a rod, in any frame, at any
-/// spacing, from either end, with stretches missing.
+/// A shape from another program or a camera: points along a rod, in any frame, at any spacing, from
+/// either end; parts of the rod may be missing.
 struct MeasuredShape {
-  std::string file;                ///< its name, for messages
-  Eigen::Matrix3Xd points;         ///< in the file's order [m], 3 x M, neighbours distinct
-  std::vector<double> arc_length;  ///< the file's own, growing or falling [m], M; empty without
-  Eigen::Matrix3Xd d1 = {};        ///< of the rod's frames there, of norm 1, 3 x M; empty without
-  std::vector<std::string> notes = {};  ///< what was taken for what, for people
-  double unit = 1;                      ///< in which the file's numbers were read [m]
+  std::string file;         ///< name of the file, for messages
+  Eigen::Matrix3Xd points;  ///< in the file's order [m], 3 x M, neighbours distinct
+  /// Arc lengths in the file, increasing or decreasing [m], M; empty if not given
+  std::vector<double> arc_length;
+  /// Unit first directors of the rod's frames at the points, 3 x M; empty if not given
+  Eigen::Matrix3Xd d1 = {};
+  std::vector<std::string> notes = {};  ///< how the file was interpreted, for people
+  double unit = 1;                      ///< unit of the file's numbers [m]
 };
 
-/// Most points that a shape file may have.
+/// Largest number of points of a shape file.
 inline constexpr long most_shape_points = 100'000;
 
 /// Reads a shape; the content says which format it is.
@@ -46,15 +48,15 @@ inline constexpr long most_shape_points = 100'000;
 [[nodiscard]] MeasuredShape parse_shape(const std::string& text, const std::string& file,
                                         double unit = 1);
 
-/// A shape from a program's own numbers, held to the same as those of a file.
-/// @param points  [m], 3 x M;  @param arc_length  growing or falling [m], M; empty without
-/// @param name  what messages call it;  @param d1  3 x M; empty without
+/// Checks a shape from a program's own numbers by the rules for files, and returns it.
+/// @param points  [m], 3 x M;  @param arc_length  increasing or decreasing [m], M; or empty
+/// @param name  name of the shape in messages;  @param d1  3 x M; or empty
 /// @throws InputError as parse_shape
 [[nodiscard]] MeasuredShape shape_of(
     const Eigen::Ref<const Eigen::Matrix3Xd>& points, const std::vector<double>& arc_length,
     const std::string& name, const Eigen::Ref<const Eigen::Matrix3Xd>& d1 = Eigen::Matrix3Xd());
 
-/// Returns the file of a shape's name: without :INDEX, unless a file has that name.
+/// Returns the file of a shape's name: the name without :INDEX, unless a file has the whole name.
 [[nodiscard]] std::string file_of_shape(const std::string& name);
 
 /// Reads a shape file. @param path  a file, or an array of it as above @throws InputError as

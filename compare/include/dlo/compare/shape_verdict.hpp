@@ -10,20 +10,20 @@
 
 namespace dlo::compare {
 
-/// What a deviation is held against.
+/// Tolerance of a comparison.
 struct ShapeTolerance {
   double allowed_m = 0;           ///< largest deviation that passes [m], > 0
-  bool largest = false;           ///< the largest deviation is held against it, not the RMS
-  double least_seen_share = 0.5;  ///< of the rod that the points have to tell [-], 0 to 1
-  /// The file is said to be a part of the rod: only what it has is judged. Else it is the whole
-  /// rod, and what is missing counts.
+  bool largest = false;           ///< whether the largest deviation is judged, not the RMS
+  double least_seen_share = 0.5;  ///< share of the rod that the points have to show [-], 0 to 1
+  /// Whether the file is declared to be a part of the rod, and only that part is judged. Else it is
+  /// the whole rod, and missing parts count.
   bool part = false;
-  bool by_default = false;  ///< nobody has asked for it: default_tolerance()
+  bool by_default = false;  ///< whether it is default_tolerance(), not one that the user gave
   /// If > 0, check() sets allowed_m to this share of the deflection (TrivialShape) [-].
   double deflection_share = 0;
 };
 
-/// What a shape is judged by where no tolerance is given: 1 % of the length, RMS.
+/// Returns the tolerance that is used if none is given: 1 % of the length, RMS.
 /// @param length  of the rod [m]
 [[nodiscard]] ShapeTolerance default_tolerance(double length);
 
@@ -34,21 +34,22 @@ enum class ShapeVerdict {
   undetermined,  ///< within the tolerance, but the points do not determine the rod
 };
 
-/// As JSON spells them.
+/// Names of the verdicts in JSON.
 template <>
 struct Choices<ShapeVerdict> {
-  /// In the enumeration's order.
+  /// All values, in the order of the enumeration.
   static constexpr Choice<ShapeVerdict> all[] = {
       {ShapeVerdict::pass, "pass", "within the tolerance"},
       {ShapeVerdict::fail, "fail", "beyond the tolerance"},
       {ShapeVerdict::undetermined, "undetermined", "the points do not determine the rod"}};
 };
 
-/// Whether a shape is right.
+/// Verdict on a shape.
 struct ShapeJudgement {
-  double judged_m = 0;  ///< the deviation that was held against the tolerance [m]
-  ShapeVerdict verdict = ShapeVerdict::fail;  ///< on that deviation and on what the points show
-  std::string reason;  ///< one clause: of all that made it fail, or why it passes
+  double judged_m = 0;  ///< deviation that was compared with the tolerance [m]
+  /// Verdict on that deviation and on the part of the rod that the points show.
+  ShapeVerdict verdict = ShapeVerdict::fail;
+  std::string reason;  ///< one clause: every cause of a failure, or why the shape passes
   /// Whether the trivial shape (TrivialShape) would not pass as well. Empty: the shape does not
   /// pass, neither weight nor loads act, or no trivial shape was found.
   std::optional<bool> significant;
@@ -57,14 +58,14 @@ struct ShapeJudgement {
   [[nodiscard]] bool passes() const { return verdict == ShapeVerdict::pass; }
 };
 
-/// Holds a compared shape against a tolerance: every point and every part of the rod. Parts missing
-/// at the ends count with their distance from the outermost point unless the file is said to be a
-/// part; a part between neighbouring points is seen if a smooth curve through points there tells it
-/// within the tolerance, and the whole rod has to be. Points that cover next to nothing of the rod
-/// lie near it whatever its shape is, so less than `least_seen_share` is never a pass. A shape
-/// within the tolerance that does not show enough of the rod is `undetermined`. Of a file with one
-/// measured point (ShapeCheck::measured_points) that point's distance is judged. The reason names
-/// what the file lacks.
+/// Compares a shape's deviation with a tolerance, at every point and for every part of the rod.
+/// Parts missing at the ends count with their distance from the outermost point unless the file is
+/// declared to be a part. A part between adjacent points is observed if a smooth curve through the
+/// points determines it within the tolerance; the whole rod has to be observed. A few points on a
+/// short part of the rod lie near it whatever its shape is, so a file that shows less than
+/// `least_seen_share` never passes. A shape within the tolerance that does not show enough of the
+/// rod is `undetermined`. If a file has one measured point (ShapeCheck::measured_points), that
+/// point's distance is judged. The reason names what the file lacks.
 [[nodiscard]] ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance);
 
 }  // namespace dlo::compare

@@ -19,10 +19,10 @@ enum class Model {
   force,   ///< the paper's model, stepped to rest
 };
 
-/// As options and files spell them.
+/// Names of the models in options and files.
 template <>
 struct Choices<Model> {
-  /// In the enumeration's order.
+  /// All values, in the order of the enumeration.
   static constexpr Choice<Model> all[] = {
       {Model::energy, "energy", "the rod's lowest energy"},
       {Model::chain, "chain", "the lowest energy of the force model's polygon"},
@@ -30,64 +30,70 @@ struct Choices<Model> {
       {Model::force, "force", "the paper's model, stepped to rest"}};
 };
 
-/// Limits of the solvers.
+/// Limits and options of the solvers.
 struct SolveOptions {
-  int terms = 0;                 ///< of the energy model, 0: as many as needed
-  int max_evaluations = 20000;   ///< of the minimisers
-  long max_steps = 20'000'000;   ///< of the force model
-  double time_limit = 20;        ///< of each solve of a model [s], > 0
-  double rest_tolerance = 1e-7;  ///< of the force model, share of the rod's length
-  /// Take a shape whose status is `not_verified` or `near_singular`, to show it with that status;
-  /// nothing may be concluded from it.
+  int terms = 0;  ///< curvature coefficients of the energy model, 0: as many as needed
+  int max_evaluations = 20000;  ///< largest number of evaluations of a minimiser
+  long max_steps = 20'000'000;  ///< largest number of steps of the force model
+  double time_limit = 20;       ///< limit of each solve of a model [s], > 0
+  /// the force model is at rest below it [-], divided by the rod length
+  double rest_tolerance = 1e-7;
+  /// Whether solvers return a shape whose status is `not_verified` or `near_singular`, to show it
+  /// with that status. No conclusion may be drawn from such a shape.
   bool accept_unverified = false;
-  /// Of the energy model, and of exact for a rod that stretches: an equilibrium of a similar scene
-  /// to follow, instead of the lowest.
+  /// Equilibrium of a similar scene that is followed, instead of a search for the lowest; for the
+  /// energy model, and for exact if the rod stretches.
   const energy_model::Equilibrium* start = nullptr;
-  /// What is neglected is told from here on, of the length and of the largest tension [-], > 0.
+  /// Neglected effects are reported if they change the shape by more than this share of the length,
+  /// or the largest tension by more than this share of it [-], > 0.
   double target = 1e-3;
 };
 
-/// Energies [J]; gravity and loads are zero at the first gripper.
+/// Energies [J]; the potentials of gravity and loads are zero at the first gripper.
 struct SceneEnergies {
-  double bending = 0;   ///< of the joints or the curvature
-  double twisting = 0;  ///< where the scene holds twist, but for Solution::neglected
-  double gravity = 0;   ///< of the rod's weight
-  double load = 0;      ///< of loads, at points and per length
-  double stretch = 0;   ///< of elastic segments
-  double contact = 0;   ///< of obstacles that yield
+  double bending = 0;  ///< bending energy of the joints or of the curvature
+  /// twisting energy if the scene holds twist and the model does not neglect it
+  double twisting = 0;
+  double gravity = 0;  ///< potential of the rod's weight
+  double load = 0;     ///< potential of point loads and distributed loads
+  double stretch = 0;  ///< energy of axial strain
+  double contact = 0;  ///< energy of compliant obstacles
 
-  /// Of all [J].
+  /// Returns the sum of all energies [J].
   [[nodiscard]] double total() const {
     return bending + twisting + gravity + load + stretch + contact;
   }
 };
 
-/// What a gripper exerts on the rod, torque about its position.
+/// Force and torque of a gripper on the rod; the torque is about the gripper's position.
 struct GripperLoad {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N]
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
 };
 
-/// What axial stretch would change of a shape whose model has none, to first order in N/EA. NaN:
-/// not known, or EA is not, or the strain is too small to matter.
+/// Estimated effect of axial stretch on a shape of a model without stretch, to first order in N/EA.
+/// NaN: the effect or EA is unknown, or the strain is too small to matter.
 struct StretchEffect {
-  double strain = std::numeric_limits<double>::quiet_NaN();   ///< the largest |N| / EA [-]
-  double moved_m = std::numeric_limits<double>::quiet_NaN();  ///< the points, RMS [m]
-  double tension = std::numeric_limits<double>::quiet_NaN();  ///< by its largest value's share [-]
+  double strain = std::numeric_limits<double>::quiet_NaN();  ///< largest |N| / EA [-]
+  /// RMS displacement of the points [m]
+  double moved_m = std::numeric_limits<double>::quiet_NaN();
+  /// change of the tension, divided by the largest tension [-]
+  double tension = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// What became of the stretch of a scene that leaves it to an estimate (Stretch::automatic).
+/// Outcome of the estimate of stretch in a scene with Stretch::automatic.
 enum class StretchDecision {
-  given,         ///< it does not leave it, or the model is chain or force, whose segments stretch
-  counted,       ///< it matters
-  below_target,  ///< it does not, and is neglected
-  not_modelled,  ///< it matters, and the model has none, or not of this scene
+  /// no estimate decides: the scene has another Stretch, or segments stretch (chain, force)
+  given,
+  counted,       ///< stretch matters and is included
+  below_target,  ///< stretch does not matter and is neglected
+  not_modelled,  ///< stretch matters, but the model has none, or none for such a scene
 };
 
-/// As JSON spells them.
+/// Names of the decisions in JSON.
 template <>
 struct Choices<StretchDecision> {
-  /// In the enumeration's order.
+  /// All values, in the order of the enumeration.
   static constexpr Choice<StretchDecision> all[] = {
       {StretchDecision::given, "given", "the scene says it"},
       {StretchDecision::counted, "counted", "it matters"},
@@ -95,70 +101,72 @@ struct Choices<StretchDecision> {
       {StretchDecision::not_modelled, "not_modelled", "it matters, the model has none"}};
 };
 
-/// Turns of a part of the rod whose ends hold frames, in turns; the writhe is of that part with its
-/// ends going on straight.
+/// Twist and writhe of an interval of the rod between clamps that hold frames, in turns. The writhe
+/// is that of the interval, continued by straight lines at its ends.
 struct Linking {
   double begin = 0;         ///< arc length [m]
   double end = 0;           ///< arc length [m]
-  double held = 0;          ///< by the grips, whole turns counted
-  double twist = 0;         ///< of the shape: TwistedPart::angle
-  double writhe = 0;        ///< of its axis
-  double writhe_error = 0;  ///< estimate of the error of the writhe
+  double held = 0;          ///< link that the grips prescribe, whole turns counted
+  double twist = 0;         ///< twist of the shape, from TwistedPart::angle
+  double writhe = 0;        ///< writhe of the axis
+  double writhe_error = 0;  ///< estimated error of the writhe
 };
 
-/// A shape and what it cost. Only converged shapes are returned, and those that are not verified or
-/// near singular to whoever accepts them (SolveOptions::accept_unverified).
+/// A shape and the cost of its solution. Solvers return converged shapes only, unless
+/// SolveOptions::accept_unverified admits shapes that are not verified or near singular.
 struct Solution {
-  Model model = Model::energy;  ///< that solved it
-  /// `converged`, `roundoff_limited`, `not_verified` or `near_singular`; of solve_all() `saddle`
-  /// too.
+  Model model = Model::energy;  ///< model that solved the scene
+  /// `converged`, `roundoff_limited`, `not_verified` or `near_singular`; solve_all() also returns
+  /// `saddle`.
   energy_model::SolveStatus status = energy_model::SolveStatus::converged;
-  std::string message;     ///< how the solver ended
-  double penetration = 0;  ///< of energy: Equilibrium::penetration [m]
-  Shape shape;             ///< of the rod
-  /// From solve() and solve_all(), at the shape's points: curvature [1/m], a polygon's that of its
-  /// joints.
+  std::string message;     ///< how the solver terminated
+  double penetration = 0;  ///< Equilibrium::penetration of the energy model [m]
+  Shape shape;             ///< points of the rod
+  /// Curvature at the shape's points [1/m], from solve() and solve_all(); for a polygon the
+  /// curvature of its joints.
   std::vector<double> curvature;
-  /// Of energy and exact: tension [N] there, positive where the rod is pulled; at a gripper or load
-  /// inside the rod that of the side towards l. None where a yielding obstacle is touched.
+  /// Tension at the shape's points [N], of energy and exact, positive if the rod is pulled. At a
+  /// gripper or load inside the rod it is the value of the side towards l. Empty if a compliant
+  /// obstacle is touched.
   std::vector<double> tension;
-  Eigen::Matrix3Xd d1;                     ///< there, of energy and exact: Samples::d1
-  SceneEnergies energy;                    ///< of that shape
-  std::vector<GripperLoad> grippers;       ///< in the scene's order
-  std::vector<Eigen::Vector3d> obstacles;  ///< force of each on the rod [N]
-  /// Of energy and exact: where it touches rigid ones, `obstacle` being the obstacle's index in the
-  /// scene.
+  Eigen::Matrix3Xd d1;                ///< Samples::d1 at the shape's points, of energy and exact
+  SceneEnergies energy;               ///< energies of the shape
+  std::vector<GripperLoad> grippers;  ///< loads of the grippers, in the scene's order
+  std::vector<Eigen::Vector3d> obstacles;  ///< force of each obstacle on the rod [N]
+  /// Contacts with rigid obstacles, of energy and exact; `obstacle` is the index in the scene.
   std::vector<energy_model::ContactPart> contacts;
   std::vector<energy_model::TwistedPart> twists;  ///< as Equilibrium::twists
-  /// Of energy and exact, of the same parts; but where an end's line passes through the rod.
+  /// Twist and writhe of the same intervals, of energy and exact; without those where the straight
+  /// continuation of an end passes through the rod.
   std::vector<Linking> linking;
-  /// What the scene has and the model neglects: "twist", "natural curvature", "friction"
-  /// (where it touches an obstacle that has it; of Comparison, where either model does), "stretch"
-  /// (of energy and exact, where solve() finds that it matters).
+  /// Effects that the scene has and the model neglects: "twist", "natural curvature", "friction"
+  /// (if the rod touches an obstacle with friction; in Comparison if either model does), "stretch"
+  /// (of energy and exact, if solve() finds that it matters).
   std::vector<std::string> neglected;
-  /// Of energy and exact, from solve() and solve_all(): of the shape without stretch, also where
-  /// that estimate made stretch count.
+  /// Estimated effect of stretch, of energy and exact, from solve() and solve_all(). It refers to
+  /// the shape without stretch, also if the estimate led to a solution with stretch.
   StretchEffect stretch;
-  StretchDecision stretch_decision = StretchDecision::given;  ///< likewise
-  /// Smallest eigenvalue of the reduced Hessian over EI/l, where a search looked; else NaN.
+  /// decision on stretch, from solve() and solve_all()
+  StretchDecision stretch_decision = StretchDecision::given;
+  /// Smallest eigenvalue of the reduced Hessian divided by EI/l, if a search computed it; else NaN.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
-  /// Of energy, from solve() and solve_all(): as Equilibrium::stable_energies [J].
+  /// Equilibrium::stable_energies of the energy model [J], from solve() and solve_all().
   std::vector<double> stable_energies;
-  int passing_starts = 0;  ///< of energy: as Equilibrium::passing_starts
-  /// Of a `near_singular` one of energy: directions in which it is singular, at a fold or
-  /// bifurcation.
+  int passing_starts = 0;  ///< Equilibrium::passing_starts of the energy model
+  /// Number of directions in which a `near_singular` equilibrium of the energy model is singular,
+  /// at a fold or bifurcation.
   int neutral_directions = 0;
-  long evaluations = 0;   ///< of minimisers; shots of exact
-  long steps = 0;         ///< of force
-  int terms = 0;          ///< curvature coefficients of energy
+  long evaluations = 0;   ///< evaluations of a minimiser, or shots of exact
+  long steps = 0;         ///< steps of the force model
+  int terms = 0;          ///< curvature coefficients of the energy model
   double seconds = 0;     ///< wall time of the solver
-  Parameters parameters;  ///< of chain and force
-  double c_F = 0;         ///< of force, at its last step
-  double c_h = 0;         ///< of force, at its last step [-]
-  /// What the points may be away from those of an equilibrium of the model [m]: of energy the
-  /// estimate of Equilibrium, of force that to rest. NaN: not known.
+  Parameters parameters;  ///< parameters of chain and force
+  double c_F = 0;         ///< c_F of the force model at its last step [m/N]
+  double c_h = 0;         ///< c_h of the force model at its last step [-]
+  /// Estimated largest distance of a point from an equilibrium of the model [m]: of energy
+  /// Equilibrium's estimate, of force the distance to rest. NaN: unknown.
   double error_estimate = std::numeric_limits<double>::quiet_NaN();
-  Eigen::Matrix3Xd to_rest;  ///< of force: Newton's step to rest from each point [m]
+  Eigen::Matrix3Xd to_rest;  ///< Newton's step to rest from each point of the force model [m]
 };
 
 }  // namespace dlo::compare
