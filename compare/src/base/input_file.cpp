@@ -36,7 +36,7 @@ void require_regular(const struct stat& status, const std::string& name) {
   throw InputError(fmt::format("{}: {} (allowed: a regular file)", name, kind_of(status.st_mode)));
 }
 
-/// People leave the extension out.
+/// Returns a hint if the file exists with the extension .toml, which users often omit; else "".
 std::string nearby(const std::string& path, int error) {
   std::error_code unknown;
   const bool there = error == ENOENT && std::filesystem::is_regular_file(path + ".toml", unknown);
@@ -49,13 +49,13 @@ std::string nearby(const std::string& path, int error) {
                                output == input ? "" : fmt::format(", as {}", input)));
 }
 
-/// Files of one command. Paths are compared when they are used: numbers of files that were removed
-/// are given to new files.
+/// Files of one command. Paths are compared when they are used, because the numbers (inodes) of
+/// removed files are given to new files.
 struct KnownFiles {
   std::mutex guard;
-  int commands = 0;  // that InputsKept protects
+  int commands = 0;  // commands that InputsKept protects
   std::vector<std::string> inputs;
-  std::vector<std::pair<std::string, std::string>> outputs;  // and how a message names each
+  std::vector<std::pair<std::string, std::string>> outputs;  // file, and its name in messages
 };
 
 KnownFiles& known_files() {
@@ -147,7 +147,7 @@ std::string read_file(const std::string& path) { return InputFile(path).read_all
 
 std::string read_regular_file(const std::string& path, const std::string& name) {
   struct stat status {};
-  // Before it is opened too, which some devices take for an order.
+  // The status is read before the file is opened, too, because opening alone triggers some devices.
   if (::stat(path.c_str(), &status) != 0) refuse_file(name, errno, "");
   require_regular(status, name);
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);

@@ -6,15 +6,15 @@
 
 namespace dlo::compare {
 
-/// A file that is read from its beginning to its end. Nothing but the end of the file is taken for
-/// it: whatever else stops the reading is an error with the system's reason, and so is a file that
-/// is larger than its reader has a use for. Pipes and devices are read as they are.
+/// A file that is read from beginning to end. Only the end of the file ends the reading: any other
+/// interruption is an error with the system's reason, and so is a file that is larger than its
+/// reader can use. Pipes and devices are read like files.
 class InputFile {
  public:
-  /// No scene, shape or baseline of a user comes near it [bytes].
+  /// Largest file that is read [bytes]. Scenes, shapes and baselines of users are far smaller.
   static constexpr std::size_t largest_file = std::size_t{1} << 26;
 
-  /// @throws InputError naming the file and why it cannot be opened
+  /// @throws InputError that names the file and the reason if it cannot be opened
   explicit InputFile(std::string path);
   /// Takes over an open file. @param name  for messages
   InputFile(int descriptor, std::string name);
@@ -22,11 +22,12 @@ class InputFile {
   InputFile& operator=(const InputFile&) = delete;
   ~InputFile();
 
-  /// Appends the next bytes, at most `most`, to `text`; false at the end of the file.
-  /// @throws InputError naming the file, why it cannot be read, and where
+  /// Appends the next bytes, at most `most`, to `text`. Returns false at the end of the file.
+  /// @throws InputError that names the file, the reason and the position if it cannot be read
   bool read_some(std::string& text, std::size_t most);
 
-  /// All that is left. @throws InputError as read_some, or if it is more than `largest` bytes
+  /// Returns the rest of the file. @throws InputError as read_some, or if it is more than `largest`
+  /// bytes
   [[nodiscard]] std::string read_all(std::size_t largest = largest_file);
 
  private:
@@ -35,9 +36,9 @@ class InputFile {
   std::size_t bytes_ = 0;  // read so far
 };
 
-/// While one exists, no file that was read during its lifetime is replaced: output files that are
-/// declared are not read, and files that were read are not written (OutputFile). Only regular files
-/// count. Meant for a command, whose inputs a library cannot know.
+/// Guard of the input files of a command. While a guard exists, files that were read are not
+/// written (OutputFile), and output files that are declared are not read. Only regular files are
+/// guarded. A command creates it, because a library cannot know which files are inputs.
 class InputsKept {
  public:
   InputsKept();
@@ -46,22 +47,22 @@ class InputsKept {
   InputsKept& operator=(const InputsKept&) = delete;
 };
 
-/// Declares a file that will be written, so that reading it is an error before anything is
-/// computed.
-/// @param name  begin of the message, such as "--output shape.csv"
+/// Declares a file that will be written, so that reading it fails before anything is computed.
+/// @param name  beginning of the message, such as "--output shape.csv"
 void declare_output(const std::string& file, const std::string& name);
 
+/// Checks that a file may be written.
 /// @throws InputError that begins with `name` if InputsKept exists and the file was read
 void require_not_read(const std::string& file, const std::string& name);
 
-/// A whole file. @throws InputError as InputFile
+/// Returns the content of a file. @throws InputError as InputFile
 [[nodiscard]] std::string read_file(const std::string& path);
 
-/// A whole file that others have written, which may be anything: only a regular file is read, also
-/// through a link; nothing is waited for. @param name  for messages @throws InputError as InputFile
+/// Returns the content of a file of unknown origin: only a regular file is read, also through a
+/// link, so that reading never blocks. @param name  for messages @throws InputError as InputFile
 [[nodiscard]] std::string read_regular_file(const std::string& path, const std::string& name);
 
-/// A text without the mark by which some programs begin UTF-8.
+/// Returns a text without the byte order mark with which some programs begin UTF-8.
 [[nodiscard]] std::string_view after_byte_order_mark(std::string_view text);
 
 }  // namespace dlo::compare

@@ -8,8 +8,8 @@
 namespace dlo::compare {
 namespace {
 
-/// Power of ten of a number's first digit that is not zero, of plain digits with at most one point
-/// and an exponent.
+/// Returns the power of ten of a number's first nonzero digit. The number has plain digits with at
+/// most one point, and an exponent.
 long decimal_exponent(std::string_view number) {
   const std::size_t mark = std::min(number.find_first_of("eE"), number.size());
   const std::string_view digits = number.substr(0, mark);
@@ -24,7 +24,7 @@ long decimal_exponent(std::string_view number) {
   return std::clamp(value, -beyond, beyond) + place;
 }
 
-/// A number of a message, which may have thousands of digits.
+/// Shortens a number for a message, because it may have thousands of digits.
 std::string shortened(std::string_view number) {
   constexpr std::size_t longest = 40;
   return fmt::format("{}{}", number.substr(0, longest), number.size() > longest ? "..." : "");

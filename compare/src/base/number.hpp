@@ -9,15 +9,16 @@
 
 namespace dlo::compare {
 
-/// The number that a text begins with.
+/// Number at the beginning of a text.
 template <typename Number>
 struct LeadingNumber {
   Number value = 0;
-  std::size_t length = 0;                         ///< of its digits; 0: none
-  std::errc error = std::errc::invalid_argument;  ///< none if it is a number
+  std::size_t length = 0;                         ///< number of its characters; 0: no number
+  std::errc error = std::errc::invalid_argument;  ///< no error if it is a number
 };
 
-/// The one reader of numbers: a point whatever the locale, no "+" and no blanks before it.
+/// Reads a number at the beginning of a text. All numbers are read here: the decimal separator is a
+/// point in every locale, and neither "+" nor blanks may precede it.
 template <typename Number>
 [[nodiscard]] LeadingNumber<Number> leading_number(std::string_view text) {
   LeadingNumber<Number> result;
@@ -27,7 +28,7 @@ template <typename Number>
   return result;
 }
 
-/// The whole of a text as a number; nothing if it is none, or out of range.
+/// Converts a whole text to a number; empty if the text is not a number, or out of range.
 template <typename Number>
 [[nodiscard]] std::optional<Number> as_number(std::string_view text) {
   const LeadingNumber<Number> number = leading_number<Number>(text);
@@ -35,19 +36,19 @@ template <typename Number>
   return number.value;
 }
 
-/// A number as text shows it: 0, never -0, where it is below 1e-9 of what its kind can be in a
-/// scene. That is the energy model's own error, so that nothing but rounding is left of it. JSON
-/// and CSV keep it as it is.
+/// Returns a number for output as text: 0, never -0, if it is below 1e-9 of the magnitude of such
+/// quantities in the scene. That is the energy model's own error, so that the number is rounding
+/// only. JSON and CSV contain the unchanged number.
 [[nodiscard]] double shown(double value, double magnitude);
 
-/// Of a number that leading_number() finds out of range: whether it is too small for a double, not
-/// too large. @param number  digits with at most one point, and an exponent
+/// Whether a number that leading_number() finds out of range is too small for a double, not too
+/// large. @param number  digits with at most one point, and an exponent
 [[nodiscard]] bool underflows(std::string_view number);
 
-/// What is wrong with such a number, and what is allowed.
+/// Returns the error and the allowed range of a number that a double cannot represent.
 [[nodiscard]] std::string beyond_double(std::string_view number);
 
-/// The whole of a field as a number, which may be infinite or NaN; nothing if it is none.
+/// Converts a whole field to a number, which may be infinite or NaN; empty if it is not a number.
 [[nodiscard]] std::optional<double> shape_number(std::string_view field);
 
 }  // namespace dlo::compare

@@ -41,7 +41,8 @@ bool same(const struct stat& a, const struct stat& b) {
   return a.st_dev == b.st_dev && a.st_ino == b.st_ino;
 }
 
-/// N if a folder without links is this process's list of descriptors and the name in it is N.
+/// Returns N if a folder without links is this process's list of descriptors and the name in it is
+/// N.
 std::optional<int> descriptor_named(const fs::path& folder, const std::string& name) {
   if (folder != fmt::format("/proc/{}/fd", ::getpid())) return std::nullopt;
   const std::optional<int> number = as_number<int>(name);
@@ -86,7 +87,7 @@ OutputTarget output_target(const std::string& file) {
   if (file.ends_with('/')) refuse_output(file, "it is the name of a folder");
   fs::path path = file;
   std::error_code error;
-  constexpr int most_links = 40;  // as the kernel's own
+  constexpr int most_links = 40;  // limit of the kernel
   for (int links = 0; links <= most_links; ++links) {
     const fs::path folder = folder_of(path, file);
     const std::string name = path.filename().string();
@@ -98,7 +99,7 @@ OutputTarget output_target(const std::string& file) {
     path = folder / name;
     if (!fs::is_symlink(fs::symlink_status(path, error))) {
       const std::optional<struct stat> existing = status_of(path.string());
-      // Only a name that is free may lead nowhere; one may also be too long.
+      // Only a name that does not exist yet may refer to nothing; the name may also be too long.
       if (!existing && errno != ENOENT) refuse_output(file, std::strerror(errno));
       if (existing && S_ISDIR(existing->st_mode)) refuse_output(file, "it is a folder");
       if (!existing || S_ISREG(existing->st_mode)) return regular_target(path, file);
@@ -107,7 +108,7 @@ OutputTarget output_target(const std::string& file) {
     }
     const fs::path link = fs::read_symlink(path, error);
     if (error) refuse_output(file, error.message());
-    path = folder / link;  // which is the link itself if it is absolute
+    path = folder / link;  // `link` itself if it is absolute
   }
   refuse_output(file, std::strerror(ELOOP));
 }
@@ -137,10 +138,11 @@ void write_all(int descriptor, std::string_view text, const std::string& name) {
 }
 
 struct OutputFile::State {
-  std::string file;  ///< as the user wrote it
+  std::string file;  ///< name as the user wrote it
   OutputTarget target;
   int descriptor = -1;
-  std::optional<TemporaryFile> temporary;  ///< beside the target, whose name it gets in the end
+  /// Next to the target, whose name it gets when it is complete.
+  std::optional<TemporaryFile> temporary;
 
   explicit State(const std::string& name) : file(name), target(output_target(name)) {
     switch (target.kind) {
@@ -160,7 +162,7 @@ struct OutputFile::State {
     if (target.kind != OutputTarget::Kind::descriptor && descriptor >= 0) ::close(descriptor);
   }
 
-  /// Owner and permissions of what is replaced, as far as this user may give them.
+  /// Copies owner and permissions of the replaced file, as far as this user may set them.
   void take_over_permissions() const {
     const std::optional<struct stat> existing = status_of(target.path);
     if (!existing) return;
@@ -181,7 +183,7 @@ struct OutputFile::State {
     if (target.kind == OutputTarget::Kind::descriptor) return;
     if (target.kind == OutputTarget::Kind::device) return close_checked();
     take_over_permissions();
-    // Network file systems tell of a full disk here or when it is closed; some know no sync.
+    // Network file systems report a full disk here or on close; some do not support fsync.
     if (::fsync(descriptor) != 0 && errno != EINVAL && errno != ENOSYS) {
       fail_to_write_output(file, errno);
     }

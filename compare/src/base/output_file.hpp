@@ -7,49 +7,52 @@
 
 namespace dlo::compare {
 
-/// An output could not be written: a full disk, a closed standard output. The message names it.
+/// An output could not be written, for example to a full disk or a closed standard output. The
+/// message names it.
 class OutputError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Nobody reads a pipe any more; what a program does not complain about.
+/// The reader of a pipe has closed it. Programs end without a message then.
 class BrokenPipe : public OutputError {
   using OutputError::OutputError;
 };
 
-/// What the name of an output stands for.
+/// Target of an output's name.
 struct OutputTarget {
-  /// How it is written.
+  /// How the target is written.
   enum class Kind {
-    file,        ///< a regular file, or a name that is free: replaced at once when it is whole
-    device,      ///< a device, a pipe or a socket: written to as it is
-    descriptor,  ///< of this process, as /dev/stdout is: written to where it stands
+    file,    ///< a regular file, or a name that is free: replaced at once when it is whole
+    device,  ///< a device, a pipe or a socket: written in place
+    /// A descriptor of this process, as /dev/stdout is: written at its current position.
+    descriptor,
   };
-  Kind kind = Kind::file;  ///< how
-  std::string path;        ///< without links where it leads
-  int descriptor = -1;     ///< of Kind::descriptor
+  Kind kind = Kind::file;  ///< how it is written
+  std::string path;        ///< path with all links resolved
+  int descriptor = -1;     ///< number of the descriptor, for Kind::descriptor
 };
 
-/// Follows links. A file that standard output or standard error goes to already is that descriptor.
+/// Resolves the links of an output's name. A file to which standard output or standard error is
+/// already redirected is that descriptor.
 /// @param file  as the user wrote it
-/// @throws InputError that names it and why: nothing, a folder, in a folder that is not there or
-/// may not be written, a link to itself, a file that may not be written
+/// @throws InputError that names it and the reason: an empty name, a folder, a folder that does not
+/// exist or is not writable, a link to itself, a file that is not writable
 [[nodiscard]] OutputTarget output_target(const std::string& file);
 
-/// Whether two names are the same file: by links of either kind, or by spelling. Files that are not
-/// there are no file.
+/// Whether two names refer to the same file, by links of either kind or by spelling. A file that
+/// does not exist equals no other.
 [[nodiscard]] bool same_file(const std::string& a, const std::string& b);
 
 /// Whether an output may replace a file that the command has read.
 enum class Replaces {
-  no_input,    ///< it may not
-  own_format,  ///< it may, because dlo has read its own earlier output to write it anew
+  no_input,    ///< no
+  own_format,  ///< yes, because dlo has read its own earlier output to write it again
 };
 
-/// An output that is being written. A regular file is written under a new name beside it, on the
-/// disk when finish() returns, and gets its own name then: no reader ever sees half a file, and
-/// without finish() nothing has happened. Links stay links. A file that is replaced keeps its
-/// permissions.
+/// An output that is being written. A regular file is written under a temporary name next to its
+/// target and is renamed when finish() returns, after it is on the disk: no reader ever sees an
+/// incomplete file, and without finish() the target is unchanged. Links are kept. A replaced file
+/// keeps its permissions.
 class OutputFile {
  public:
   /// @throws InputError as output_target(), or if the command has read the file (InputsKept);
@@ -59,9 +62,10 @@ class OutputFile {
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  /// @throws OutputError naming the output, BrokenPipe if it is a pipe that nobody reads
+  /// Appends a text. @throws OutputError that names the output, BrokenPipe if it is a pipe without
+  /// a reader
   void append(std::string_view text);
-  /// @throws OutputError naming the output
+  /// Completes the output. @throws OutputError that names the output
   void finish();
 
  private:
@@ -69,13 +73,13 @@ class OutputFile {
   std::unique_ptr<State> state_;
 };
 
-/// Writes a whole OutputFile. @throws as that does
+/// Writes a text to an output. @throws InputError, OutputError as OutputFile does
 void write_file(const std::string& file, std::string_view text,
                 Replaces replaces = Replaces::no_input);
 
-/// Writes all of a text to a descriptor, however many calls that takes.
+/// Writes a whole text to a descriptor, in as many calls as needed.
 /// @param name  of the output, for messages
-/// @throws OutputError naming the output, BrokenPipe if it is a pipe that nobody reads
+/// @throws OutputError that names the output, BrokenPipe if it is a pipe without a reader
 void write_all(int descriptor, std::string_view text, const std::string& name);
 
 }  // namespace dlo::compare

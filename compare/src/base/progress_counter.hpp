@@ -7,7 +7,7 @@
 
 namespace dlo::compare {
 
-/// Counts what several threads have done.
+/// Counts the work that several threads have completed.
 class ProgressCounter {
  public:
   ProgressCounter(Progress progress, std::int64_t total)

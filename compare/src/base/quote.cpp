@@ -10,7 +10,7 @@
 namespace dlo::compare {
 namespace {
 
-/// A word of any bytes as bash takes it, printable.
+/// Quotes a word of arbitrary bytes for bash, in printable characters.
 std::string bash_word(const std::string& word) {
   std::string quoted = "$'";
   for (const char c : word) {
@@ -67,7 +67,8 @@ std::string escape_markup(const std::string& text) {
 }
 
 std::string csv_field(const std::string& text) {
-  // Quotes keep a line break within its field; nothing keeps a terminal from what steers it.
+  // Quotes protect a line break within a field, but they do not protect a terminal from control
+  // characters.
   std::string field;
   bool quoted = false;
   for (std::size_t begin = 0; begin <= text.size();) {
@@ -87,7 +88,7 @@ std::string csv_number(double value, int digits) {
 }
 
 std::string toml_string(const std::string& text) {
-  // JSON's escapes are TOML's; of the control characters JSON leaves those above 0x7e as they are.
+  // JSON's escapes are also TOML's; JSON does not escape the control characters above 0x7e.
   const std::string json = json_string(text);
   std::string result;
   for (std::size_t i = 0; i < json.size(); ++i) {

@@ -10,35 +10,36 @@
 
 namespace dlo::compare {
 
-/// A text of characters that XML 1.0 has: control characters become blanks, and what is no UTF-8,
-/// U+FFFE and U+FFFF become U+FFFD.
+/// Returns a text of characters that XML 1.0 allows: control characters become blanks, and invalid
+/// UTF-8, U+FFFE and U+FFFF become U+FFFD.
 [[nodiscard]] std::string xml_text(const std::string& text);
 
-/// xml_text() as HTML and XML show it, in elements and in attributes.
+/// Returns xml_text() escaped for elements and attributes of HTML and XML.
 [[nodiscard]] std::string escape_markup(const std::string& text);
 
-/// A field of a CSV line, quoted where it has to be; but for tabs and line breaks as display().
+/// Returns a field of a CSV line, quoted if necessary; as display(), but with tabs and line breaks
+/// kept.
 [[nodiscard]] std::string csv_field(const std::string& text);
 
-/// A number as every CSV that dlo writes has it, never -0; nothing for NaN and infinity.
+/// Returns a number as in all CSV output, never -0; an empty text for NaN and infinity.
 /// @param digits  significant ones, 1 to 17
 [[nodiscard]] std::string csv_number(double value, int digits = 10);
 
-/// A text as a TOML basic string, in quotes; control characters (U+0000 to U+001F, U+007F to
-/// U+009F) are escaped.
+/// Returns a text as a TOML basic string, in quotes; control characters (U+0000 to U+001F, U+007F
+/// to U+009F) are escaped.
 [[nodiscard]] std::string toml_string(const std::string& text);
 
-/// A word as a shell takes it, in quotes where it needs them, those of bash for one that holds
-/// control characters or no UTF-8.
+/// Returns a word for a shell, quoted if necessary; with bash's quotes if it contains control
+/// characters or invalid UTF-8.
 [[nodiscard]] std::string shell_word(const std::string& word);
 
-/// A piece of a file for a message: short, printable.
+/// Returns a short, printable part of a file for a message.
 [[nodiscard]] std::string printable_piece(std::string_view piece);
 
-/// The same in quotes.
+/// Returns a short, printable part of a file for a message, in quotes.
 [[nodiscard]] std::string quoted_piece(std::string_view piece);
 
-/// A number as append() and formatted() print it: without a minus sign where all its printed digits
+/// A number as append() and formatted() print it: without a minus sign if all its printed digits
 /// are zero.
 template <typename Number>
 struct UnsignedZero {
@@ -49,7 +50,8 @@ template <typename Argument>
 using Printed = std::conditional_t<std::is_floating_point_v<std::remove_cvref_t<Argument>>,
                                    UnsignedZero<std::remove_cvref_t<Argument>>, Argument>;
 
-/// Formats onto the end of a text; every number of a text goes through here, so that none is -0.
+/// Appends formatted text. Every number of a text is formatted here or by formatted(), so that none
+/// is printed as -0.
 template <typename... Arguments>
 void append(std::string& text, fmt::format_string<Printed<Arguments>...> format,
             Arguments&&... arguments) {
@@ -60,7 +62,7 @@ void append(std::string& text, fmt::format_string<Printed<Arguments>...> format,
   print(Printed<Arguments>{std::forward<Arguments>(arguments)}...);
 }
 
-/// Formats a text of its own like append().
+/// Returns formatted text, with numbers as append() prints them.
 template <typename... Arguments>
 [[nodiscard]] std::string formatted(fmt::format_string<Printed<Arguments>...> format,
                                     Arguments&&... arguments) {

@@ -21,10 +21,10 @@
 namespace dlo::compare {
 namespace {
 
-/// Groups at a time, more than suite --jobs allows.
+/// Largest number of groups at a time, larger than suite --jobs allows.
 constexpr std::size_t most_groups = 2048;
 std::array<std::atomic<int>, most_groups> temporary_groups{};  // 0: none
-std::atomic<int> starts = 0;                                   // GroupStart that exist
+std::atomic<int> starts = 0;  // number of existing GroupStart objects
 std::atomic<bool> ending = false;
 
 /// Sleeps for a millisecond. A signal handler may call it.
@@ -53,7 +53,7 @@ std::string made_in(const std::filesystem::path& folder, const Make& make) {
   for (;;) {
     std::uint64_t random = 0;
     if (::getrandom(&random, sizeof random, 0) != sizeof random) return {};
-    // Not made of another file's name, which may be as long as a name can be.
+    // The name is not derived from another file's name, which may already have the maximum length.
     std::string path = folder / fmt::format(".dlo-{:016x}.tmp", random);
     if (make(path.c_str())) return path;
     if (errno != EEXIST) return {};
@@ -107,7 +107,8 @@ void end_groups_at_signals() {
   for (int number = 1; number <= last; ++number) {
     if (!ends_process(number)) continue;
     struct sigaction before = {};
-    // What the caller ignores stays ignored, as nohup wants it; the C library's own are refused.
+    // A signal that the caller ignores stays ignored, as nohup expects; sigaction refuses those
+    // that the C library uses.
     if (::sigaction(number, nullptr, &before) == 0 && before.sa_handler == SIG_DFL) {
       ::sigaction(number, &action, nullptr);
     }

@@ -111,8 +111,8 @@ namespace {
 constexpr std::string_view three_quotes = "\"\"\"";
 constexpr std::string_view three_apostrophes = "'''";
 
-/// Length of the string literal that `rest` begins with; what is not closed ends with its line, or
-/// with the file, and is for the parser to refuse.
+/// Returns the length of the string literal with which `rest` begins. An unterminated literal ends
+/// with its line, or with the file; the parser then reports it.
 std::size_t toml_string_length(std::string_view rest) {
   const char quote = rest.front();
   const std::string_view three = quote == '"' ? three_quotes : three_apostrophes;
@@ -124,7 +124,7 @@ std::size_t toml_string_length(std::string_view rest) {
     at += quote == '"' && rest[at] == '\\' ? 2 : 1;
   }
   at += end.size();
-  // Up to two quotes before the three that close it belong to it.
+  // Up to two quotes before the three closing ones belong to the string.
   for (int more = 0; many_lines && more < 2 && at < rest.size() && rest[at] == quote; ++more) ++at;
   return std::min(at, rest.size());
 }
@@ -135,7 +135,7 @@ std::size_t json_string_length(std::string_view rest) {
   return std::min(at + 1, rest.size());
 }
 
-/// Counts levels, and names the line where they are too many.
+/// Counts nesting levels, and names the line where there are too many.
 class NestingCounter {
  public:
   explicit NestingCounter(const std::string& file) : file_(file) {}
@@ -164,7 +164,8 @@ class NestingCounter {
   int depth_ = 0;
 };
 
-/// A number without quotes that no double can hold, for which a parser takes zero or says little.
+/// Rejects an unquoted number that no double can represent, which a parser would read as zero or
+/// report unclearly.
 void require_double(std::string_view rest, const NestingCounter& counter) {
   if (std::string_view("0123456789+-.").find(rest.front()) == std::string_view::npos) return;
   std::string number(rest.substr(0, rest.find_first_of(" \t\r\n,]}#=")));

@@ -4,7 +4,7 @@
 
 namespace dlo::compare {
 
-/// Wall time since it was made.
+/// Wall time since construction.
 class Timer {
  public:
   [[nodiscard]] double seconds() const {
@@ -15,7 +15,7 @@ class Timer {
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-/// A limit of wall time, from when it was made.
+/// A limit of wall time, measured from construction.
 class TimeLimit {
  public:
   explicit TimeLimit(double seconds) : seconds_(seconds) {}

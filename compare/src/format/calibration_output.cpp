@@ -101,7 +101,7 @@ std::string stiffness_text(const compare::ChainSprings& chain) {
   return spring_range_text(low->stiffness, high->stiffness, "");
 }
 
-/// Of unequal segments each joint.
+/// Returns the stiffness of each joint of a chain of unequal segments.
 std::string joints_text(const compare::ChainSprings& chain) {
   if (chain.joints.empty()) return "";
   std::string out = fmt::format("              {:>11} {:>15} {:>24}\n", "s [m]", "k [N m/rad]",
@@ -163,12 +163,12 @@ namespace {
 using compare::append;
 using compare::FittedValue;
 
-/// As a scene file has it.
+/// Returns a vector as in a scene file.
 std::string vector_text(const Eigen::Vector3d& v) {
   return compare::formatted("[{:.6e}, {:.6e}, {:.6e}]", v.x(), v.y(), v.z());
 }
 
-/// As a scene file has it [1/m].
+/// Returns the natural curvature as in a scene file [1/m].
 std::string natural_curvature_text(const compare::MaterialFit& fit) {
   std::string out;
   for (const Eigen::Vector2d& term : fit.natural_curvature) {
@@ -177,7 +177,7 @@ std::string natural_curvature_text(const compare::MaterialFit& fit) {
   return "[" + out + "]";
 }
 
-/// What the fit says of the rod beside its material, and of the camera.
+/// Adds the fitted quantities of the rod other than its material, and the camera's tilt.
 void add_shape_lines(std::string& out, const compare::MaterialFit& fit) {
   if (fit.torsional_stiffness && fit.torsional_stiffness->value) {
     append(out, "torsional_stiffness = {:.8e}  # N m^2, {}\n", *fit.torsional_stiffness->value,
@@ -221,7 +221,7 @@ void add_rod_lines(std::string& out, const compare::Scene& scene, const WrittenV
   if (!given) out += "[[material]]\nname = \"calibrated\"\n";
   std::string value = fmt::format("{:.8e}", stiffness.value);
   if (scene.given_bending_stiffness_2) {
-    // A fit leaves the ratio of the two as it is.
+    // A fit does not change the ratio of EI about d2 to EI about d1.
     const double ratio = *scene.given_bending_stiffness_2 / *scene.given_bending_stiffness;
     value = fmt::format("[{}, {:.8e}]", value, ratio * stiffness.value);
   }
@@ -236,7 +236,7 @@ std::string material_toml(const compare::Calibration& report) {
   const compare::MaterialFit& fit = report.fit;
   const FittedValue& E = fit.youngs_modulus;
   const bool identified = E.value && (!fit.density || fit.density->value);
-  // Numbers that are no material may still predict shapes, all together.
+  // Values that are not identified may still predict shapes together.
   const bool predicts = fit.prediction && E.estimate && (!fit.density || fit.density->estimate);
   if (!identified && !predicts) {
     throw compare::InputError("calibrate: no material to write, " + fit.not_identified);

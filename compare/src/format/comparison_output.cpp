@@ -17,8 +17,8 @@ namespace dlo::cli {
 namespace {
 
 void add_budget(std::string& out, const compare::Comparison& comparison) {
-  // A share is a part's projection on the total, so that the shares add up; a part across the total
-  // has millimetres but no share.
+  // A share is the projection of a part on the total, so that the shares add up to 1; a part
+  // orthogonal to the total has a length in mm, but no share.
   append(out, "  error budget    RMS, and share of the total {:.4g} mm with sign\n",
          comparison.budget.total_m * 1e3);
   for (const auto& [name, part] : compare::shown_parts(comparison)) {
@@ -62,7 +62,7 @@ void add_state(std::string& out, const compare::ComparedState& state, double len
            state.energy_J,
            state.others.empty() ? "no other equilibrium found" : "besides " + unstable);
   }
-  // Symmetric ones are the same to the digit.
+  // Symmetric equilibria have identical lines and are combined.
   std::vector<std::pair<std::string, int>> lines;
   for (const compare::OtherState& other : state.others) {
     if (!other.stable && other.rms_from_shape_m >= state.rms_from_shape_m) continue;
@@ -93,7 +93,7 @@ void add_modulus(std::string& out, const compare::EffectiveModulus& modulus, dou
   }
   append(out, " ({} optimum", compare::to_string(modulus.optimum));
   if (std::isfinite(modulus.explained_share)) {
-    // Not 100 % where something is left.
+    // Rounded down, so that 100 % is not printed if anything remains.
     append(out, ": {}* explains {:.4g} % of the mean square", of.name,
            std::floor(modulus.explained_share * 1e4) / 100);
   }

@@ -20,7 +20,7 @@ std::string json_text(const Json& document) {
 
 Json modulus_json(const compare::EffectiveModulus& modulus) {
   const bool none = modulus.optimum == compare::Optimum::none;
-  // NaN is null.
+  // JSON represents NaN as null.
   return {{"effective_modulus_ratio", modulus.ratio},
           {"rms_at_effective_modulus_m", modulus.rms_m},
           {"effective_modulus_explains_share", modulus.explained_share},
@@ -72,7 +72,7 @@ Json parameters_json(const compare::Solution& force, const compare::ForceModelSe
   }
   if (force.steps > 0) {
     result["stepper"] = compare::to_string(settings.stepper);
-    // Steps in time and Newton's have neither.
+    // Time steppers and Newton's method have neither c_F nor c_h.
     if (force.c_F > 0) {
       result["c_F"] = force.c_F;
       result["c_h"] = force.c_h;

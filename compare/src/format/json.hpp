@@ -20,14 +20,14 @@ using compare::points_json;
 using compare::text_or_null;
 using compare::to_json;
 
-/// A document as every command writes it: NaN and infinity are null, and what is no UTF-8 in the
-/// name of a file becomes U+FFFD.
+/// Returns a document as every command writes it: NaN and infinity become null, and invalid UTF-8
+/// in a file name becomes U+FFFD.
 [[nodiscard]] std::string json_text(const Json& document);
 
 [[nodiscard]] Json modulus_json(const compare::EffectiveModulus& modulus);
-/// An object each with `force_N` and `torque_Nm`.
+/// Returns an object with `force_N` and `torque_Nm` for each gripper.
 [[nodiscard]] Json loads_json(const std::vector<compare::GripperLoad>& loads);
-/// An object each with `force_N`. @param forces  of obstacles on the rod [N]
+/// Returns an object with `force_N` for each obstacle. @param forces  of obstacles on the rod [N]
 [[nodiscard]] Json obstacles_json(const std::vector<Eigen::Vector3d>& forces);
 [[nodiscard]] Json parameters_json(const compare::Solution& force,
                                    const compare::ForceModelSettings& settings);

@@ -22,7 +22,7 @@ std::string value_text(const FittedValue& value, const char* unit) {
   return fmt::format("{:.5g}{}{}, {}", *value.value, blank, unit, interval);
 }
 
-/// What makes the interval wider than that of independent errors.
+/// Explains why the interval is wider than that of independent errors.
 std::string correlation_text(const compare::Calibration& report) {
   const compare::CorrelatedErrors& errors = *report.fit.correlation;
   const FittedValue& E = report.fit.youngs_modulus;
@@ -38,7 +38,7 @@ std::string correlation_text(const compare::Calibration& report) {
       errors.degrees_of_freedom);
 }
 
-/// A number beside E, in the units that people read.
+/// Returns a number that was fitted in addition to E, in units for people.
 std::string text_of(const compare::FittedNumber& number) {
   struct Shown {
     double factor;
@@ -56,7 +56,7 @@ std::string text_of(const compare::FittedNumber& number) {
                      shown.unit);
 }
 
-/// The wire's own numbers, or those of one shape, indented.
+/// Returns the numbers of the wire, or those of one shape, indented.
 std::string numbers_text(const compare::MaterialFit& fit, const std::optional<std::size_t>& shape) {
   std::string out;
   for (const compare::FittedNumber& number : fit.others) {
@@ -65,7 +65,7 @@ std::string numbers_text(const compare::MaterialFit& fit, const std::optional<st
   return out;
 }
 
-/// The options that were chosen, and what the others predict.
+/// Returns the chosen options, and the predictions with the others.
 std::string tried_text(const std::vector<compare::FitAlternative>& tried) {
   std::string out;
   for (std::size_t i = 0; i < tried.size(); ++i) {
@@ -109,7 +109,7 @@ std::string prediction_text(const compare::Prediction& prediction) {
   return out;
 }
 
-/// "length, scale and vertical are"
+/// Returns a text such as "length, scale and vertical are".
 std::string assumed_text(std::vector<std::string> assumed) {
   if (assumed.size() == 1) return assumed.front() + " is";
   const std::string last = assumed.back();
@@ -117,7 +117,7 @@ std::string assumed_text(std::vector<std::string> assumed) {
   return fmt::format("{} and {} are", fmt::join(assumed, ", "), last);
 }
 
-/// Noise, correlation along the rod, scatter between shapes.
+/// Returns the lines about noise, correlation along the rod and scatter between shapes.
 std::string errors_text(const compare::Calibration& report) {
   const compare::MaterialFit& fit = report.fit;
   std::string out;
@@ -161,7 +161,8 @@ std::string shapes_text(const compare::Calibration& report) {
   return out;
 }
 
-/// Of the two sides the larger; none if the interval is open.
+/// Returns the larger distance of an end of the interval from the value; empty if there is no
+/// value.
 std::optional<double> half_width(const FittedValue& value) {
   if (!value.value) return std::nullopt;
   return std::max(*value.high - *value.value, *value.value - *value.low);
@@ -185,7 +186,7 @@ Json scatter_json(const compare::ScatterBetweenShapes& scatter) {
           {"interval_widened_by", scatter.widening}};
 }
 
-/// @param prefix  of the keys of its uncertainty and its interval
+/// @param prefix  prefix of the keys of the uncertainty and the interval
 void add_value(Json& result, const Key& key, const std::string& prefix, const FittedValue& value) {
   result[key.text()] = json_or_null(value.value);
   result[prefix + "uncertainty" + key.unit] = json_or_null(half_width(value));

@@ -14,13 +14,13 @@ std::string span_text(const compare::PlannedSpan& span) {
   return out;
 }
 
-/// Only where a gripper holds the rod's frame.
+/// Returns the lines about twist; empty if no gripper holds the rod's frame.
 std::string twist_text(const compare::Plan& plan) {
   if (!plan.frame_held) return "";
   if (plan.twist.empty()) {
     return "  twist           no: one gripper alone holds the frame, and the rod turns with it\n";
   }
-  constexpr double rounding = 1e-9;  // of an angle between directors [rad]
+  constexpr double rounding = 1e-9;  // limit of an angle between directors [rad]
   constexpr double degrees = 180 / std::numbers::pi;
   std::string out;
   for (const compare::PlannedTwist& part : plan.twist) {
@@ -72,7 +72,7 @@ std::string neglected_text(const compare::Neglected& item, double length) {
   return out;
 }
 
-/// Why no N is known to meet the target.
+/// Explains why no N is known that meets the target.
 std::string why_no_points(const compare::Plan& plan) {
   for (const compare::Neglected& item : plan.neglected) {
     if (item.what == "polygon" && !std::isfinite(item.bound_m)) return item.why;
@@ -170,7 +170,7 @@ Json plan_json(const compare::Plan& plan) {
   Json obstacles = json_list(plan.obstacles, [&](const compare::PlannedObstacle& obstacle) -> Json {
     return {{"in_reach", obstacle.in_reach}, {"clearance_m", obstacle.clearance}};
   });
-  // No bound, which is infinity, is null in JSON.
+  // A missing bound, which is infinity, is null in JSON.
   Json neglected = json_list(plan.neglected, [&](const compare::Neglected& item) -> Json {
     return {{"what", item.what},
             {"by_models", item.models},
@@ -190,7 +190,7 @@ Json plan_json(const compare::Plan& plan) {
                  {"neglected", std::move(neglected)}};
   if (plan.frame_held) {
     result["twist"] = json_list(plan.twist, [&](const compare::PlannedTwist& part) -> Json {
-      // What is not known is null.
+      // Unknown values are null.
       return {{"from_m", part.begin},
               {"to_m", part.end},
               {"turn_rad", part.turn},

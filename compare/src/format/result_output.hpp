@@ -13,50 +13,51 @@
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/solution.hpp"
 #include "dlo/compare/solve.hpp"
-#include "format/calibration_output.hpp"  // what is written of a fit too
+#include "format/calibration_output.hpp"  // also needed for the output of fits
 #include "format/json.hpp"
 
 namespace dlo::cli {
 
-/// From which arc length to which a shape runs on its reference, in a few words.
+/// Describes the interval of arc length that a shape covers on its reference, in a few words.
 [[nodiscard]] std::string range_text(const compare::Alignment& alignment, double length);
 
 [[nodiscard]] std::string pose_text(const compare::RigidMotion& pose, double length);
 
 [[nodiscard]] Json to_json(const compare::Alignment& alignment);
 
-/// What is assumed of a scene's rod, as a sentence; empty if nothing is.
+/// Returns a sentence about what is assumed of a scene's rod; empty if nothing is assumed.
 [[nodiscard]] std::string assumption_text(const compare::Scene& scene);
 
-/// Bounds of a rod of layers, and which it is; empty of another.
+/// Returns the stiffness bounds of a rod of layers, and which of them is used; empty for another
+/// rod.
 [[nodiscard]] std::string layers_text(const compare::Scene& scene);
 
-/// What a rest shape leaves of its points; empty of a scene without one.
+/// Returns the residuals of a rest shape's points; empty for a scene without a rest shape.
 [[nodiscard]] std::string rest_shape_text(const compare::Scene& scene);
 
-/// A plan as a person reads it, with a blank line after it.
+/// Returns a plan for people, with a blank line after it.
 [[nodiscard]] std::string plan_text(const compare::Plan& plan, const compare::Scene& scene);
 
 [[nodiscard]] Json plan_json(const compare::Plan& plan);
 
-/// compare::shown() of each component, beside the vector's own norm.
+/// Returns compare::shown() of each component, in comparison with `magnitude` and the vector's own
+/// norm.
 [[nodiscard]] Eigen::Vector3d shown(const Eigen::Vector3d& vector, double magnitude);
 
-/// What touches an obstacle, where and with what force, as a person reads it; obstacles count from
-/// one.
+/// Describes a contact with an obstacle for people: interval and force; obstacles count from 1.
 [[nodiscard]] std::string contact_text(const energy_model::ContactPart& contact);
 
-/// The same of all, by arc length; obstacles count from zero.
+/// Returns all contacts, by arc length; obstacles count from 0.
 [[nodiscard]] Json contacts_json(const std::vector<energy_model::ContactPart>& contacts);
 
-/// A shape as a person reads it.
+/// Describes a solution for people.
 [[nodiscard]] std::string solution_text(const compare::Solution& solution,
                                         const compare::Scene& scene);
 
 [[nodiscard]] Json solution_json(const compare::Solution& solution, const compare::Scene& scene,
                                  const compare::Plan& plan);
 
-/// The points, as `dlo check` reads them.
+/// Returns the points in the format that `dlo check` reads.
 [[nodiscard]] std::string solution_csv(const compare::Solution& solution);
 
 /// Returns one of several equilibria, with its forces and contacts.
@@ -65,52 +66,52 @@ namespace dlo::cli {
 [[nodiscard]] compare::Solution numbered_equilibrium(const compare::AllSolutions& all, int number,
                                                      const compare::Scene& scene);
 
-/// What tells several equilibria apart, and where they were looked for.
+/// Describes how several equilibria differ, and which start shapes were used.
 [[nodiscard]] std::string equilibria_text(const compare::AllSolutions& all,
                                           const compare::Scene& scene);
 
-/// The first of several equilibria in full, then what tells them apart.
+/// Returns the first of several equilibria in full, then the differences of the others.
 [[nodiscard]] Json equilibria_json(const compare::AllSolutions& all, const compare::Scene& scene,
                                    const compare::Plan& plan);
 
-/// A comparison as a person reads it, with a blank line after it.
+/// Describes a comparison for people, with a blank line after it.
 [[nodiscard]] std::string comparison_text(const compare::Comparison& comparison);
 
 [[nodiscard]] Json comparison_json(const compare::Comparison& comparison);
 
-/// The document of several.
+/// Returns the document of several comparisons.
 [[nodiscard]] Json comparisons_json(const std::vector<compare::Comparison>& comparisons);
 
-/// One line a comparison.
+/// Returns one line per comparison.
 [[nodiscard]] std::string comparisons_csv(const std::vector<compare::Comparison>& comparisons);
 
-/// Rows of a shape's distance from another one: RMS and largest, up to where that is; the angles.
+/// Adds rows about the distance of a shape from another: RMS, largest and its position; the angles.
 void add_largest_and_rms(std::string& out, const compare::Deviation& d);
 void add_angle_and_curvature(std::string& out, const compare::Deviation& d);
 
-/// Which equilibrium was compared and which others there are.
-/// @param length  of the rod [m];  @param shape  what the shape that was compared is called
+/// Adds the compared equilibrium and the others.
+/// @param length  of the rod [m];  @param shape  name of the compared shape in the text
 void add_state(std::string& out, const compare::ComparedState& state, double length,
                const char* shape);
 
-/// The lines about E*/E.
-/// @param movement_m  RMS way of the rod from straight [m], NaN without
-/// @param of  what E stands for;  @param value  its E*, to be printed; NaN if not
+/// Adds the lines about E*/E.
+/// @param movement_m  RMS displacement of the rod from straight [m], NaN without
+/// @param of  quantity that E stands for;  @param value  its E*, to be printed; NaN: not printed
 void add_modulus(std::string& out, const compare::EffectiveModulus& modulus, double movement_m,
                  const compare::NamedValue& of, double value);
 
-/// A judged shape for the page.
+/// A verdict on a shape for a page.
 struct CheckPage {
   const compare::CheckResult& result;
-  std::string unit_hint = {};  ///< where the check itself has none
-  std::string verdict = {};    ///< its word where that is shown otherwise, as in colour
+  std::string unit_hint = {};  ///< used if the check itself has no hint
+  std::string verdict = {};    ///< word for the verdict, if it is shown otherwise, as in colour
 };
 
 [[nodiscard]] std::string shape_check_text(const CheckPage& page);
 
 [[nodiscard]] Json shape_check_json(const compare::CheckResult& report);
 
-/// A summary for a page of Markdown, such as that of a job of continuous integration.
+/// Returns a summary in Markdown, such as for a job of continuous integration.
 [[nodiscard]] std::string shape_check_markdown(const compare::CheckResult& report);
 
 [[nodiscard]] std::string shape_check_csv(const compare::CheckResult& report);
@@ -119,7 +120,7 @@ struct CheckPage {
                                            bool target_was_given);
 [[nodiscard]] std::string force_model_csv(const compare::ForceModelFit& fit);
 [[nodiscard]] Json force_model_json(const compare::ForceModelFit& fit);
-/// A parameters file for --parameters and for programs of the user's own.
+/// Returns a parameters file for --parameters and for other programs.
 [[nodiscard]] std::string force_model_toml(const compare::ForceModelFit& fit);
 
 [[nodiscard]] std::string material_text(const compare::Calibration& report);

@@ -29,7 +29,8 @@ Document columns_document(const Eigen::Matrix3Xd& columns) {
   return result;
 }
 
-/// Zero stands for a quantity that is not known, or that the rod has no use for.
+/// Returns null for zero, which represents a quantity that is unknown, or that the rod does not
+/// need.
 Document known(double value) { return value > 0 ? Document(value) : Document(); }
 
 Document stiffnesses_document(double first, const std::optional<double>& second) {
@@ -105,7 +106,7 @@ Document gripper_document(const Gripper& gripper) {
           {"frame", std::move(frame)}};
 }
 
-/// A body by the words of a scene file, from its core.
+/// Describes a body with the words of a scene file, from its core.
 Document body_document(const obstacle::Body& body) {
   if (body.is_half_space()) {
     return {{"shape", "plane"},
@@ -141,7 +142,8 @@ Document obstacle_document(const Obstacle& obstacle) {
   return result;
 }
 
-/// dM/d alpha of each joint where it is straight: EI/h, which the paper's law has not.
+/// Returns dM/d alpha of each joint at zero angle: EI/h; null for the paper's law, which has no
+/// such stiffness.
 Document joints_document(const force_model::Rod& rod) {
   if (rod.bending.law == BendingLaw::paper) return nullptr;
   Document result = Document::array();

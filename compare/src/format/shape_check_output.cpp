@@ -25,7 +25,7 @@ const char* rule_text(compare::ArcLengths rule) {
   return "nearest points, so differences along the rod do not show";
 }
 
-/// What was derived of a simulator's model.
+/// Adds what was derived from a simulator's model.
 void add_model(std::string& out, const compare::Scene& scene) {
   const compare::ModelChain& model = *scene.model;
   const Eigen::Vector3d& g = scene.gravity;
@@ -46,7 +46,7 @@ void add_model(std::string& out, const compare::Scene& scene) {
   }
 }
 
-/// The same for other programs.
+/// Returns what was derived from a simulator's model, for other programs.
 Json model_json(const compare::Scene& scene) {
   return {{"made_from", scene.model->words},
           {"segments", scene.model->segments},
@@ -58,7 +58,7 @@ Json model_json(const compare::Scene& scene) {
           {"notes", scene.model->notes}};
 }
 
-/// A text as one cell of a table of Markdown, none of its characters a mark.
+/// Returns a text as one cell of a Markdown table, with all markup escaped.
 std::string markdown(const std::string& text) {
   std::string out;
   for (const char c : compare::display(text)) {
@@ -68,7 +68,7 @@ std::string markdown(const std::string& text) {
   return out;
 }
 
-/// What of the rod the file shows.
+/// Adds the part of the rod that the file shows.
 void add_seen(std::string& out, const compare::CheckResult& report, const std::string& unit_hint) {
   const compare::ShapeCheck& c = report.check;
   const std::vector<double>& s = c.reference.arc_length;

@@ -67,7 +67,7 @@ std::string contact_text(const energy_model::ContactPart& contact) {
   }
   append(out, ": force [{:.6g}, {:.6g}, {:.6g}] N", force.x(), force.y(), force.z());
   if (contact.kind == energy_model::ContactKind::lying) {
-    // Both are differences of what the rod carries beside them.
+    // Both forces are differences of much larger forces in the rod, so that small ones are rounding.
     constexpr double cancelled = 100;
     const double large = cancelled * force.norm();
     append(out, ", of it {:.4g} N and {:.4g} N where it begins and ends",
@@ -95,7 +95,7 @@ Json contacts_json(const std::vector<energy_model::ContactPart>& contacts) {
   return result;
 }
 
-/// What became of stretch = "auto".
+/// Describes the decision on stretch = "auto".
 std::string stretch_decision_text(const compare::Solution& solution) {
   switch (solution.stretch_decision) {
     case compare::StretchDecision::given:
@@ -127,7 +127,7 @@ namespace {
 void add_work(std::string& out, const compare::Solution& solution) {
   if (solution.steps > 0) {
     append(out, "steps      {}", solution.steps);
-    // Steps in time and Newton's have neither.
+    // Time steppers and Newton's method have neither c_F nor c_h.
     if (solution.c_F > 0) append(out, "   c_F {:.4g} m/N, c_h {:.6f}", solution.c_F, solution.c_h);
     append(out, "\n");
   } else {
@@ -137,7 +137,7 @@ void add_work(std::string& out, const compare::Solution& solution) {
   }
 }
 
-/// What of the scene the model has not.
+/// Adds the effects of the scene that the model neglects.
 void add_neglected(std::string& out, const compare::Solution& solution) {
   if (!solution.neglected.empty()) {
     append(out, "neglected  {}: the scene has it, model {} has not\n",
@@ -172,7 +172,7 @@ void add_energies(std::string& out, const compare::Solution& solution,
   out += e.contact > 0 ? fmt::format(", contact {:.9g} J\n", e.contact) : "\n";
 }
 
-/// Whether the search followed one branch while it put twist into the rod.
+/// Whether the search followed one branch while it increased the twist of the rod.
 bool follows_twist(const compare::Solution& solution) {
   return solution.model == compare::Model::energy && !solution.twists.empty();
 }
@@ -188,7 +188,7 @@ void add_twists(std::string& out, const compare::Solution& solution,
     const double turns = part.twist + part.writhe;
     append(out, "turns      {:.3f} = twist {:.3f} + writhe {:.3f} from s = {:.4g} to {:.4g} m",
            turns, part.twist, part.writhe, part.begin, part.end);
-    constexpr double tolerance = 5e-4;  // of the digits that are printed
+    constexpr double tolerance = 5e-4;  // of the printed digits
     if (std::abs(turns - part.held) > tolerance) {
       append(out, ", by the grips alone {:.3f}", part.held);
     }
@@ -196,7 +196,7 @@ void add_twists(std::string& out, const compare::Solution& solution,
   }
 }
 
-/// What the search has found besides the shape, and what it has not tried.
+/// Adds the other results of the search, and what it has not tried.
 void add_search(std::string& out, const compare::Solution& solution,
                 const compare::Magnitudes& large) {
   const std::vector<double>& stable = solution.stable_energies;
@@ -219,7 +219,7 @@ void add_search(std::string& out, const compare::Solution& solution,
   }
 }
 
-/// On the rod, of obstacles and grippers.
+/// Adds the forces of obstacles and grippers on the rod.
 void add_forces(std::string& out, const compare::Solution& solution, const compare::Scene& scene,
                 const compare::Magnitudes& large) {
   for (std::size_t i = 0; i < solution.obstacles.size(); ++i) {

@@ -8,21 +8,21 @@
 
 namespace dlo::compare {
 
-/// A table of CSV made of documents, one a row, so that JSON and CSV say the same.
+/// A CSV table of JSON documents, one per row, so that JSON and CSV have the same content.
 class CsvTable {
  public:
-  /// @param columns  "rms_m=deviation/rms_m,scene,wall_s=solver/wall_s:4": a name, where that is
-  /// not its path in a document the path, and the digits unless they are ten
+  /// @param columns  such as "rms_m=deviation/rms_m,scene,wall_s=solver/wall_s:4": the name, the
+  /// path in the document if it differs from the name, and the number of digits if it is not ten
   explicit CsvTable(std::string_view columns);
 
-  /// More of them.
+  /// Adds columns.
   void add(std::string_view columns);
 
-  /// The header, as a line.
+  /// Returns the header as a line.
   [[nodiscard]] std::string header() const;
-  /// A line; what the document does not have leaves its field empty.
+  /// Returns a row as a line; values that the document lacks leave their field empty.
   [[nodiscard]] std::string row(const Json& document) const;
-  /// The header, and a line of each.
+  /// Returns the header, and a row for each document.
   [[nodiscard]] std::string text(const Json& documents) const;
 
  private:

@@ -16,10 +16,10 @@ namespace dlo::compare {
 
 using Json = nlohmann::ordered_json;
 
-/// Numbers by their names, in order.
+/// Numbers with their names, in order.
 using Numbers = std::vector<std::pair<std::string, double>>;
 
-/// Where a field is shown; several are put together by |.
+/// Outputs that show a field; combined by |.
 enum FieldPlace : unsigned {
   in_text = 1,    ///< in a row of its own, with six digits and its unit
   in_json = 2,    ///< by its path
@@ -28,37 +28,38 @@ enum FieldPlace : unsigned {
   everywhere = in_text | in_json | in_csv | in_python
 };
 
-/// One thing that a result T says, described once: its row of text, its key in JSON, its column in
-/// CSV, its attribute in Python with the line of the stub, and its row in a page's table of keys
-/// are made of this.
+/// Description of one quantity of a result T. Its row of text, its key in JSON, its column in CSV,
+/// its attribute in Python with the line of the stub, and its row in a page's table of keys are
+/// generated from it.
 template <typename T>
 struct Field {
-  /// What it is worth; NaN is none.
+  /// Function that returns the value; NaN means that there is none.
   using Get =
       std::variant<double (*)(const T&), long (*)(const T&), bool (*)(const T&),
                    std::string (*)(const T&), std::vector<std::string> (*)(const T&),
                    std::vector<double> (*)(const T&), Numbers (*)(const T&), Json (*)(const T&)>;
 
   std::string_view name = {};   ///< words joined by "_"
-  std::string_view unit = {};   ///< as keys end with; empty: a pure number, or none at all
-  std::string_view words = {};  ///< what it is, for people
+  std::string_view unit = {};   ///< as at the end of keys; empty: a pure number, or no number
+  std::string_view words = {};  ///< description for people
   Get get = {};
-  unsigned places = everywhere;          ///< of FieldPlace
-  std::string_view path = {};            ///< in JSON, such as "solver/wall_s"; empty: key()
-  bool (*when)(const Scene&) = nullptr;  ///< of which scenes; null: of all
+  unsigned places = everywhere;  ///< combination of FieldPlace
+  std::string_view path = {};    ///< in JSON, such as "solver/wall_s"; empty: key()
+  /// Whether a scene has the field; null: all scenes have it.
+  bool (*when)(const Scene&) = nullptr;
 
-  /// Name and unit, as a column is called.
+  /// Returns name and unit, as in the title of a column.
   [[nodiscard]] std::string key() const {
     return std::string(name) + (unit.empty() ? "" : "_") + std::string(unit);
   }
   [[nodiscard]] std::string json_path() const { return path.empty() ? key() : std::string(path); }
-  /// What it is, with its unit.
+  /// Returns the description with its unit.
   [[nodiscard]] std::string python_words() const {
     return std::string(words) + (unit.empty() ? "." : " [" + std::string(unit) + "].");
   }
 };
 
-/// As JSON has a value of a field's type.
+/// Converts a field's value to JSON.
 [[nodiscard]] Json json_of(const Numbers& numbers);
 template <typename Value>
 [[nodiscard]] Json json_of(const Value& value) {
@@ -70,7 +71,7 @@ template <typename T>
   return std::visit([&](auto get) { return json_of(get(result)); }, field.get);
 }
 
-/// The numbers among the fields, by their keys.
+/// Returns the numbers among the fields, by their keys.
 template <typename T>
 [[nodiscard]] Numbers numbers_of(std::span<const Field<T>> fields, const T& result) {
   Numbers numbers;
@@ -82,7 +83,7 @@ template <typename T>
   return numbers;
 }
 
-/// Puts the fields that JSON has into a document, at their paths.
+/// Adds the fields of JSON to a document, at their paths.
 template <typename T>
 void add_json(Json& document, std::span<const Field<T>> fields, const T& result,
               const Scene& scene) {
@@ -91,10 +92,10 @@ void add_json(Json& document, std::span<const Field<T>> fields, const T& result,
   }
 }
 
-/// A value as CSV has it; what is none leaves its field empty.
+/// Returns a value for CSV; a missing value leaves its field empty.
 [[nodiscard]] std::string csv_value(const Json& value, int digits = 10);
 
-/// The fields that a place has, of a scene.
+/// Returns the fields that an output shows for a scene.
 template <typename T>
 [[nodiscard]] std::vector<Field<T>> fields_in(FieldPlace place, std::span<const Field<T>> fields,
                                               const Scene& scene) {
@@ -106,24 +107,24 @@ template <typename T>
   return chosen;
 }
 
-/// How large a scene's results are: what is far below is rounding (shown()).
+/// Magnitudes of a scene's results: values far below them are rounding (shown()).
 struct Magnitudes {
   double length = 0;  ///< l [m]
-  double force = 0;   ///< its weight, its loads and EI/l^2 [N]
-  double torque = 0;  ///< that force times l [N m]
-  double energy = 0;  ///< likewise [J]
+  double force = 0;   ///< sum of the weight, the loads and EI/l^2 [N]
+  double torque = 0;  ///< `force` times l [N m]
+  double energy = 0;  ///< `force` times l [J]
 
-  /// Of what has that unit.
+  /// Returns the magnitude of quantities with a unit.
   [[nodiscard]] double of(std::string_view unit) const;
 };
 
 [[nodiscard]] Magnitudes magnitudes(const Scene& scene);
 
-/// A row of text, as people read it. @param name  of a field
+/// Returns a row of text for people. @param name  name of the field
 [[nodiscard]] std::string text_row(std::string_view name, std::string_view unit, const Json& value,
                                    const Magnitudes& large);
 
-/// Rows of the fields that text has and that are known.
+/// Returns the rows of all fields of text that have a value.
 template <typename T>
 [[nodiscard]] std::string text_rows(std::span<const Field<T>> fields, const T& result,
                                     const Scene& scene) {
@@ -135,7 +136,7 @@ template <typename T>
   return rows;
 }
 
-/// A list, of each element what `make` makes of it.
+/// Returns a list of the results of `make` for each element.
 template <typename List, typename Make>
 [[nodiscard]] Json json_list(const List& list, const Make& make) {
   Json result = Json::array();
@@ -143,7 +144,7 @@ template <typename List, typename Make>
   return result;
 }
 
-/// What `make` makes of it; null where there is none.
+/// Returns the result of `make`; null without a value.
 template <typename Value, typename Make>
 [[nodiscard]] Json json_or_null(const std::optional<Value>& value, const Make& make) {
   return value ? Json(make(*value)) : Json();
@@ -153,7 +154,7 @@ template <typename Value>
 [[nodiscard]] Json json_or_null(const std::optional<Value>& value) {
   return value ? Json(*value) : Json();
 }
-/// Null of an empty one.
+/// Returns the text; null if it is empty.
 [[nodiscard]] inline Json text_or_null(const std::string& text) {
   return text.empty() ? Json() : Json(text);
 }

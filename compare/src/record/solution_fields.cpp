@@ -24,7 +24,8 @@ Json grippers_json(const SolvedShape& shape) {
   return grippers;
 }
 
-/// Of all parts between clamps that hold frames; NaN where there is none, or not known.
+/// Returns the sum over all intervals between clamps that hold frames; NaN if there is none, or if
+/// it is unknown.
 double turns(const SolvedShape& shape, double Linking::*of_part) {
   if (shape.solution.linking.empty()) return std::numeric_limits<double>::quiet_NaN();
   double sum = 0;
@@ -96,7 +97,7 @@ std::span<const Field<SolvedShape>> solution_fields() {
 
 std::span<const Field<SolvedShape>> shape_numbers() {
   using S = const SolvedShape&;
-  // Text has them of each part.
+  // Text shows these numbers for each interval.
   constexpr unsigned but_text = in_json | in_csv | in_python;
   static const Field<SolvedShape> fields[] = {
       {"link", "turns", "Turns of the rod's frames: twist and writhe",

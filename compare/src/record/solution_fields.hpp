@@ -15,30 +15,31 @@ struct SolvedShape {
   const Solution& solution;
 };
 
-/// What `solve` says: of how it was solved, and of its energies.
+/// Returns the fields of `solve` about the solver and the energies.
 [[nodiscard]] std::span<const Field<SolvedShape>> solution_fields();
 
-/// Numbers of a shape at rest: of `solve`, of each row of `sweep` and of each frame of `track`.
+/// Returns the fields of an equilibrium shape that `solve`, each row of `sweep` and each frame of
+/// `track` have.
 [[nodiscard]] std::span<const Field<SolvedShape>> shape_numbers();
 
-/// Of a shape, in J.
+/// Returns the fields of the energies of a shape [J].
 [[nodiscard]] std::span<const Field<SceneEnergies>> energy_fields();
 
-/// What is said of a shape's distance from another one.
+/// Returns the fields of a shape's deviation from another one.
 [[nodiscard]] std::span<const Field<Deviation>> deviation_fields();
 
-/// A status as documents spell it.
+/// Returns the name of a status in documents.
 [[nodiscard]] const char* status_name(energy_model::SolveStatus status);
 
-/// As far as it is known: of a shape that is not verified its eigenvalue says it, and a fold or
-/// bifurcation is a singular point.
+/// Whether a solution is stable, as far as this is known. If a shape is not verified, its smallest
+/// eigenvalue decides; a fold or bifurcation is a singular point and does not count as stable.
 [[nodiscard]] bool is_stable(const Solution& solution);
 
-/// Whether it is an equilibrium of loads without a potential, `not_verified` because no more than
-/// its balance can be checked.
+/// Whether a solution is an equilibrium of loads without a potential, which is `not_verified`
+/// because only its balance can be checked.
 [[nodiscard]] bool is_balance_alone(const Scene& scene, const Solution& solution);
 
-/// Whether it is among Solution::neglected.
+/// Whether Solution::neglected contains an effect.
 [[nodiscard]] bool neglects(const Solution& solution, std::string_view what);
 
 }  // namespace dlo::compare
