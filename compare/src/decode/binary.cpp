@@ -11,7 +11,7 @@ double number_of(std::uint64_t bits, const NumberFormat& format) {
       if (format.bytes == sizeof(double)) return std::bit_cast<double>(bits);
       return std::bit_cast<float>(static_cast<std::uint32_t>(bits));
     case NumberFormat::Kind::integer: {
-      // The sign bit of a shorter one is moved to that of 64 bits and back.
+      // The sign bit of a shorter number is moved to that of 64 bits and back.
       const auto shift = static_cast<int>(64 - 8 * format.bytes);
       return static_cast<double>(static_cast<std::int64_t>(bits << shift) >> shift);
     }

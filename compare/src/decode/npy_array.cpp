@@ -14,15 +14,16 @@
 namespace dlo::compare {
 namespace {
 
-/// Of a header; numpy's own are below 200 bytes, but for structured arrays.
+/// Largest size of a header [bytes]; those of numpy are below 200 bytes, except for structured
+/// arrays.
 constexpr std::size_t longest_header = 10'000;
 
-/// An array's header.
+/// Header of an array.
 struct Header {
   std::string type;  ///< as numpy writes it, such as <f8
   bool by_columns = false;
   std::vector<std::size_t> shape;
-  std::size_t begin = 0;  ///< of the numbers
+  std::size_t begin = 0;  ///< start of the numbers
 };
 
 /// Reads the header of an array, a Python dictionary of three keys.
@@ -58,7 +59,7 @@ class HeaderReader {
     throw InputError(fmt::format("{}: {}", name_, problem));
   }
 
-  /// What is behind a key and its colon.
+  /// Returns the text behind a key and its colon.
   [[nodiscard]] std::string_view after(const std::string& key) const {
     const std::size_t at = text_.find("'" + key + "'");
     const std::size_t colon = at == std::string_view::npos ? at : text_.find(':', at);
@@ -97,7 +98,7 @@ class HeaderReader {
   Header header_;
 };
 
-/// Of the types that are read; none of another.
+/// Returns the number format of a type; empty if it is not supported.
 std::optional<NumberFormat> format_of(std::string_view type) {
   NumberFormat format;
   if (type.size() != 3 || std::string_view("<>|=").find(type[0]) == std::string_view::npos) {
@@ -149,7 +150,7 @@ void NpyArray::require_numbers() const {
                     "32 and 64 bits, such as <f8)",
                     quoted_piece(type_)));
   }
-  // No dimension and no product of them can overflow where each is held against the file's size.
+  // No dimension and no product can overflow, because each is compared with the file's size.
   std::size_t bytes = format_->bytes;
   for (const std::size_t size : shape_) {
     if (size > InputFile::largest_file) fail(too_large(*this));

@@ -11,28 +11,28 @@
 
 namespace dlo::compare {
 
-/// First bytes of a file of one array that NumPy saves (numpy.lib.format).
+/// First bytes of a file with one array that NumPy saves (numpy.lib.format).
 inline constexpr std::string_view npy_magic = "\x93NUMPY";
 
-/// An array as NumPy saves it, of any integers or of 32 or 64 bit floating-point numbers, in any
-/// order of bytes and axes.
+/// An array saved by NumPy, of any integers or of 32 or 64 bit floating-point numbers, in any order
+/// of bytes and axes.
 class NpyArray {
  public:
-  /// Reads its header. @param bytes  outlive it;  @param where  for messages
-  /// @throws InputError naming `where` if the header is damaged
+  /// Reads the header. @param bytes  must outlive the array;  @param where  for messages
+  /// @throws InputError that names `where` if the header is damaged
   NpyArray(std::string_view bytes, std::string where);
 
-  /// Of its dimensions.
+  /// Returns the size of each dimension.
   [[nodiscard]] const std::vector<std::size_t>& shape() const { return shape_; }
-  /// The same in words, such as "3 x 2".
+  /// Returns the dimensions as text, such as "3 x 2".
   [[nodiscard]] std::string shape_text() const;
-  /// Whether its numbers are of a type that is read.
+  /// Whether the numbers have a supported type.
   [[nodiscard]] bool has_numbers() const { return format_.has_value(); }
-  /// @throws InputError unless has_numbers(), and the bytes hold so many
+  /// Checks the numbers. @throws InputError unless has_numbers() and the bytes contain all of them
   void require_numbers() const;
-  /// One of them, after require_numbers(). @param index  one a dimension, below its size
+  /// Returns one number, after require_numbers(). @param index  one per dimension, below its size
   [[nodiscard]] double at(std::initializer_list<std::size_t> index) const;
-  /// @throws InputError naming the array
+  /// Throws an InputError that names the array.
   [[noreturn]] void fail(const std::string& problem) const;
   [[nodiscard]] const std::string& where() const { return where_; }  ///< for messages
 
@@ -43,7 +43,7 @@ class NpyArray {
   std::optional<NumberFormat> format_;
   bool by_columns_ = false;
   std::vector<std::size_t> shape_;
-  std::size_t begin_ = 0;  // of the numbers
+  std::size_t begin_ = 0;  // start of the numbers
 };
 
 }  // namespace dlo::compare

@@ -11,11 +11,11 @@
 namespace dlo::compare {
 namespace {
 
-/// Bodies of a chain are nested, so that it is a chain of as many; those who follow elements by
-/// recursion need it.
+/// Largest nesting depth, which is the longest chain, since bodies of a chain are nested. The limit
+/// protects functions that visit elements by recursion.
 constexpr int deepest_xml = 1000;
 
-/// A document type, or elements too deep; nothing if there are none.
+/// Finds a document type, or an element that is nested too deep.
 struct Inspector : pugi::xml_tree_walker {
   bool for_each(pugi::xml_node& node) override {
     const bool deep = depth() > deepest_xml;
@@ -28,7 +28,7 @@ struct Inspector : pugi::xml_tree_walker {
   bool too_deep = false;
 };
 
-/// Its name as a message may have it.
+/// Returns the element's name for a message.
 std::string tag_of(const pugi::xml_node& node) {
   return fmt::format("<{}>", printable_piece(node.name()));
 }

@@ -9,21 +9,21 @@
 
 namespace dlo::compare {
 
-/// A parsed XML file, which knows the lines of its elements. It has no document type, so that no
-/// entity is defined or read from elsewhere, and no element is nested deeper than deepest_xml.
+/// A parsed XML file with the line of each element. A document type is rejected, so that no entity
+/// is defined or read from another file, and no element is nested deeper than deepest_xml.
 class XmlFile {
  public:
-  /// @param text  UTF-8, also with a byte order mark;  @param file  its name, for messages
-  /// @throws InputError naming file and line if it is not well-formed, or has a document type
+  /// @param text  UTF-8, also with a byte order mark;  @param file  name of the file, for messages
+  /// @throws InputError that names file and line if it is not well-formed, or has a document type
   XmlFile(std::string_view text, std::string file);
 
-  /// The outermost element.
+  /// Returns the root element.
   [[nodiscard]] pugi::xml_node root() const { return document_.document_element(); }
-  /// "file:line" of an element.
+  /// Returns "file:line" of an element.
   [[nodiscard]] std::string where(const pugi::xml_node& node) const;
-  /// @throws InputError with where(node), its name, and the problem
+  /// Throws an InputError with where(node), the element's name, and the problem.
   [[noreturn]] void fail(const pugi::xml_node& node, const std::string& problem) const;
-  /// The same of an attribute: "file:line: element attribute = "value": problem".
+  /// Throws an InputError about an attribute: "file:line: element attribute = "value": problem".
   [[noreturn]] void fail(const pugi::xml_node& node, const char* attribute,
                          const std::string& problem) const;
 
@@ -47,20 +47,22 @@ class XmlRefusals {
       add(error.what());
     }
   }
-  /// @throws InputError with all messages on one line, if there is any
+  /// Throws all messages on one line.
+  /// @throws InputError if there is any
   void throw_if_any() const;
 
  private:
   void add(const std::string& message);
 
-  std::vector<std::string> messages_;  // each once
+  std::vector<std::string> messages_;  // without repetitions
 };
 
-/// Whether a text, but for blanks, begins as XML does.
+/// Whether a text, ignoring blanks, begins like XML.
 [[nodiscard]] bool looks_like_xml(std::string_view text);
 
-/// @throws InputError with the page that shows how to read them if a file of points or markers is
-/// a NumPy archive (NPZ) or XML, as VTK's VTU and VTP are
+/// Refuses a file of points or markers that is a NumPy archive (NPZ) or XML, such as VTK's VTU and
+/// VTP.
+/// @throws InputError with the page that shows how to read such files
 void refuse_archives(std::string_view bytes, const std::string& file);
 
 }  // namespace dlo::compare

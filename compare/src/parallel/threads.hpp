@@ -9,16 +9,16 @@
 
 namespace dlo::compare {
 
-/// Threads of a task arena: at most `threads`, or as many as the machine has for 0. oneTBB takes
-/// more as well, with a warning on standard error.
+/// Returns the number of threads of a task arena: at most `threads`, or as many as the machine has
+/// for 0. oneTBB accepts larger numbers too, but prints a warning to standard error.
 inline int arena_threads(int threads) {
   const int available = tbb::this_task_arena::max_concurrency();
   return threads > 0 ? std::min(threads, available) : available;
 }
 
-/// Runs a function in an arena. That the system gives no more threads oneTBB says with a bare
-/// std::runtime_error, which is no type that anything else throws here.
-/// @throws std::system_error then
+/// Runs a function in an arena. If the system provides no more threads, oneTBB throws a plain
+/// std::runtime_error, a type that no other code here throws.
+/// @throws std::system_error in that case
 template <typename Function>
 void execute(tbb::task_arena& arena, const Function& function) {
   try {

@@ -2,7 +2,7 @@
 
 #include "reading/read_scene.hpp"
 
-#define XXH_INLINE_ALL  // headers only, nothing to link
+#define XXH_INLINE_ALL  // header-only, nothing to link
 #include <xxhash.h>
 
 namespace dlo::compare {

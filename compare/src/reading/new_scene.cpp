@@ -14,7 +14,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Numbers and vectors as they are, all else as a TOML string.
+/// Returns numbers and vectors as they are, everything else as a TOML string.
 std::string toml_value(const std::string& value) {
   if (value.starts_with('[')) return value;
   try {
@@ -27,13 +27,14 @@ std::string toml_value(const std::string& value) {
 
 bool is_z_up(const SceneChoices& choices) { return choices.up == "z"; }
 
-/// A vector of this length upwards.
+/// Returns an upward vector of this length.
 std::string upwards(const SceneChoices& choices, double length) {
   const std::string text = fmt::format("{:.4g}", length);
   return is_z_up(choices) ? "[0, 0, " + text + "]" : "[0, " + text + ", 0]";
 }
 
-/// In a scene file angles are in the x-y plane, which is level if z is up.
+/// Returns the direction as a vector if z is up, because angles in a scene file are in the x-y
+/// plane, which is then horizontal.
 std::string direction_value(const SceneChoices& choices) {
   if (!is_z_up(choices) || choices.direction.starts_with('[')) {
     return toml_value(choices.direction);
@@ -43,7 +44,7 @@ std::string direction_value(const SceneChoices& choices) {
     const auto rounded = [](double value) { return std::abs(value) < 1e-15 ? 0 : value; };
     return fmt::format("[{}, 0, {}]", rounded(std::cos(angle)), rounded(std::sin(angle)));
   } catch (const InputError&) {
-    return toml_value(choices.direction);  // reading the scene tells what is wrong
+    return toml_value(choices.direction);  // errors are reported when the scene is read
   }
 }
 
@@ -89,7 +90,7 @@ std::string required_part(const SceneChoices& choices, const std::vector<Materia
 
 enum class Meaning { said, omitted };
 
-/// Names as TOML has them, with what they mean if `meaning` is asked for.
+/// Returns the names as in TOML, with their meanings if `meaning` requests it.
 template <Chosen Value>
 std::string toml_choices(Meaning meaning) {
   std::vector<std::string> choices;
@@ -100,7 +101,7 @@ std::string toml_choices(Meaning meaning) {
   return one_of(choices);
 }
 
-/// Examples that fit the rod: a pin at its end, a small force, a floor in its reach.
+/// Returns examples that fit the rod: a pin at its end, a small force, a floor in its reach.
 std::string optional_part(const SceneChoices& choices, const Scene& scene) {
   const double l = scene.length;
   const Eigen::Vector3d pin = 0.7 * l * scene.grippers.front().direction.value();

@@ -7,25 +7,24 @@
 
 namespace dlo::compare {
 
-/// What a new scene file is to say; values as a scene file spells them, without quotes: "2 m", 0.5,
-/// "[0, 0, 1]".
+/// Content of a new scene file; values as in a scene file, without quotes: "2 m", 0.5, "[0, 0, 1]".
 struct SceneChoices {
   std::string name = "rod";           ///< of the scene
   std::string length = "1 m";         ///< of the rod
   std::string diameter = "6 mm";      ///< of the rod, round and solid
-  std::string material = "silicone";  ///< a name; not looked at if a modulus is given
-  std::string youngs_modulus;         ///< with density: a material of one's own
+  std::string material = "silicone";  ///< name of a material; ignored if a modulus is given
+  std::string youngs_modulus;         ///< with density: an unnamed material
   std::string density;                ///< with youngs_modulus
-  /// Of the clamp at arc length 0; an angle is one from +x to the upward axis.
+  /// Direction of the clamp at arc length 0; an angle is measured from +x to the upward axis.
   std::string direction = "0 deg";
-  std::string up = "y";  ///< the axis against gravity, or "z"
+  std::string up = "y";  ///< upward axis, opposite to gravity: "y" or "z"
 };
 
-/// A scene file of one clamp at the origin, with comments that explain every key, its unit and what
-/// is allowed. Lines that begin with # and no blank are optional parts; the file is valid with any
-/// of these paragraphs, and with all of them, uncommented.
-/// @throws InputError naming rod.length and the like, as reading the file does, also for a rod that
-/// is thicker than long
+/// Returns a scene file of one clamp at the origin, with comments that explain every key, its unit
+/// and what is allowed. Lines that begin with # and no blank are optional parts; the file is valid
+/// with any of these paragraphs, and with all of them, uncommented.
+/// @throws InputError that names rod.length and the like, as reading the file does, also for a rod
+/// that is thicker than long
 [[nodiscard]] std::string scene_text(const SceneChoices& choices,
                                      const std::vector<Material>& known_materials = materials());
 

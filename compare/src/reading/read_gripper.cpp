@@ -18,19 +18,19 @@ namespace {
 
 Eigen::Vector3d read_direction(StrictTable& table) {
   if (table.is_array("direction")) return unit_vector(table, "direction");
-  // A bare number is in radians; -175 is a forgotten unit.
+  // A bare number is in radians; -175 would be degrees without the unit.
   const Range turn{-2 * std::numbers::pi, 2 * std::numbers::pi, false,
                    "-2 pi to 2 pi rad, or a string such as \"-175 deg\", or a vector"};
   const double angle = table.number("direction", Dimension::angle, turn);
   return {std::cos(angle), std::sin(angle), 0};
 }
 
-/// What six decimals leave of a rotation matrix or a quaternion.
+/// Rounding error of a rotation matrix or a quaternion that is given with six decimals.
 constexpr double rotation_tolerance = 2e-6;
 constexpr int most_turns = 1000;
 constexpr const char* frame_keys[] = {"roll", "frame", "quaternion", "turns"};
 
-/// Columns d1, d2, d3 of a clamp that has them in the file.
+/// Reads the columns d1, d2, d3 of a clamp, if the file gives them.
 std::optional<Eigen::Matrix3d> read_directors(StrictTable& table) {
   const std::optional<Eigen::Matrix3d> rows = table.optional_rows("frame");
   const std::optional<Eigen::Quaterniond> quaternion = table.optional_quaternion("quaternion");
@@ -52,8 +52,8 @@ std::optional<Eigen::Matrix3d> read_directors(StrictTable& table) {
   return rows->transpose();
 }
 
-/// Direction and frame of a clamp: the frame is a roll, or three directors, and there may be none.
-/// The first of its poses has a direction and a roll where they have some.
+/// Reads direction and frame of a clamp. The frame is a roll, or three directors, and may be
+/// missing. If the clamp's poses have directions and rolls, those of the first pose are used.
 void read_clamp(StrictTable& table, Gripper& gripper) {
   const Pose first = gripper.trajectory.empty() ? Pose() : gripper.trajectory.poses().front();
   const std::optional<Eigen::Vector3d>& moving_direction = first.direction;
@@ -101,7 +101,7 @@ void read_clamp(StrictTable& table, Gripper& gripper) {
                 .roll = 2 * std::numbers::pi * turns.value_or(0) + first.roll.value_or(0)};
 }
 
-/// That it is on the free side of every obstacle.
+/// Checks that a gripper is outside every obstacle.
 void require_clear(const Gripper& gripper, const Scene& scene, const StrictTable& entry) {
   for (const Obstacle& obstacle : scene.obstacles) {
     const double height = obstacle.body.clearance(gripper.position);

@@ -13,14 +13,14 @@ namespace {
 
 constexpr std::size_t most_forces_per_length = 100;
 
-/// Area of a section that the rod displaces [m^2]: of a tube, which is closed at its ends, with its
-/// bore; 0 if the section is not given.
+/// Returns the cross-section that displaces the medium [m^2]; a tube is closed at its ends, so that
+/// its bore is included; 0 if the section is not given.
 double displaced_area(const Scene& scene) {
   if (scene.width > 0) return scene.width * scene.thickness;
   return std::numbers::pi * scene.diameter * scene.diameter / 4;
 }
 
-/// What drags the rod, by Morison's law on its diameter.
+/// Reads the drag on the rod, by Morison's law with the rod's diameter.
 std::optional<energy_model::Drag> read_drag(StrictTable& table, double density, double diameter) {
   if (!table.has("velocity")) {
     for (const char* key : {"normal_drag", "tangential_drag"}) {
@@ -94,7 +94,7 @@ DistributedLoad read_distributed_load(StrictTable& table, const Scene& scene) {
   return load;
 }
 
-/// What the rod displaces bears it: a load against gravity, of a mass that does not move.
+/// Adds the buoyancy of the rod: a load against gravity without inertia.
 void read_medium(StrictTable& table, Scene& scene) {
   table.only(scene_keys("medium"));
   const double density = table.number("density", Dimension::density, Range::positive());
@@ -116,7 +116,7 @@ void read_medium(StrictTable& table, Scene& scene) {
 }
 
 void check_turning_loads(const Scene& scene, const std::vector<StrictTable>& entries) {
-  constexpr double at_clamp = 1e-9;  // of the length, as energy_model has it
+  constexpr double at_clamp = 1e-9;  // divided by the length; as in energy_model
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const PointLoad& load = scene.loads[i];
     if (load.torque.isZero(0) && !load.follows) continue;

@@ -11,7 +11,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Edges of a box: `size` along `axis`, along `normal` and across both.
+/// Reads a box with the edges `size` along `axis`, along `normal` and perpendicular to both.
 obstacle::Body read_box(StrictTable& table, const Eigen::Vector3d& centre) {
   const Eigen::Vector3d size = table.vector("size", Dimension::length);
   if (!(size.minCoeff() > 0)) table.fail("size", "has to be three lengths > 0");

@@ -14,10 +14,11 @@
 namespace dlo::compare {
 namespace {
 
-/// Of Legendre's polynomials; beyond it a curvature has more waves than a smooth rod.
+/// Largest number of Legendre polynomials of the natural curvature; with more, a curvature has more
+/// waves than a smooth rod.
 constexpr std::size_t most_natural_terms = 24;
 
-/// That the stress-free shape is said in one way.
+/// Checks that the stress-free shape is given in one way only.
 void require_one_rest_shape(const StrictTable& rod) {
   for (const char* key : {"helix", "rest_shape"}) {
     for (const char* other : {"natural_curvature", "natural_twist", "helix"}) {
@@ -29,7 +30,7 @@ void require_one_rest_shape(const StrictTable& rod) {
   }
 }
 
-/// A file's points, or rows of three.
+/// Reads the points of a file, or rows of three numbers.
 MeasuredShape read_rest_points(StrictTable& rod, const std::string& scene_file) {
   constexpr const char* key = "rest_shape";
   constexpr const char* allowed =
@@ -81,7 +82,7 @@ void read_rest_shape(StrictTable& rod, const std::vector<StrictTable>& sections,
   try {
     scene.set_rest_shape(fit_rest_shape(read_rest_points(rod, scene.file), scene.length));
   } catch (const InputError& error) {
-    // One that the table has made says where it is already.
+    // The table's own errors name the position already.
     if (!error.key().empty()) throw;
     rod.fail("rest_shape", error.what());
   }

@@ -10,12 +10,13 @@
 namespace dlo::compare {
 namespace {
 
-/// Beyond it no solver resolves the layer at a clamp, and no rod looks any different.
+/// Largest w l^3 / (EI): beyond it no solver resolves the boundary layer at a clamp, and the shape
+/// of the rod no longer changes visibly.
 constexpr double largest_gamma = 1e12;
-/// Arc lengths of two sections that meet may differ by what rounding of units makes [-].
+/// Arc lengths of adjacent sections may differ by the rounding of units, divided by the length [-].
 constexpr double same_place_share = 1e-12;
 
-/// EI about every axis across the rod, or about d1 and d2.
+/// EI about every axis of the cross-section, or about d1 and d2.
 struct GivenBending {
   double about_d1;
   std::optional<double> about_d2;
@@ -37,7 +38,7 @@ std::optional<GivenBending> read_bending_stiffness(StrictTable& table) {
   return GivenBending{pair.x(), pair.y()};
 }
 
-/// EI of a chain's rod, or of one that is given by its own.
+/// Reads EI of a rod that is given by its EI, or by the joints of a chain.
 std::optional<GivenBending> read_bending(StrictTable& rod, double length) {
   const std::optional<double> joint =
       rod.optional_number("joint_stiffness", Dimension::joint_stiffness, Range::positive());
@@ -59,7 +60,7 @@ std::optional<GivenBending> read_bending(StrictTable& rod, double length) {
 
 constexpr const char* section_keys[] = {"diameter", "inner_diameter", "width", "thickness"};
 
-/// A circle, a ring, or a rectangle.
+/// Reads a circle, a ring, or a rectangle.
 void read_cross_section(StrictTable& rod, Scene& scene) {
   const Range size = Range::between(1e-9, 1e3, " m");
   if (!rod.has("width") && !rod.has("thickness")) {
@@ -88,7 +89,7 @@ void read_cross_section(StrictTable& rod, Scene& scene) {
   scene.thickness = rod.number("thickness", Dimension::length, size);
 }
 
-/// Bending stiffness and mass, given as they are or by material and section.
+/// Reads bending stiffness and mass: given values, or material and section.
 void read_stiffness(StrictTable& rod, const std::vector<Material>& known_materials, Scene& scene) {
   if (const std::optional<GivenBending> given = read_bending(rod, scene.length)) {
     scene.given_bending_stiffness = given->about_d1;
@@ -124,7 +125,7 @@ std::string section_text(const Scene& scene) {
   return fmt::format("diameter = {:g} m", scene.diameter);
 }
 
-/// Of numbers that are in range each on its own.
+/// Checks that stiffnesses derived from numbers in range are positive and finite.
 void require_finite_rod(const Scene& scene, const StrictTable& rod) {
   const auto usable = [](double stiffness) { return stiffness > 0 && std::isfinite(stiffness); };
   if (!usable(scene.bending_stiffness()) || !usable(scene.axial_stiffness())) {
@@ -212,7 +213,7 @@ void read_sections(std::vector<StrictTable>& tables, Scene& scene) {
   }
 }
 
-/// @param scene  its EA has been read
+/// @param scene  scene whose EA has been read
 void read_stretch(StrictTable& rod, Scene& scene) {
   if (rod.is_text("stretch") && rod.text("stretch") == "auto") {
     scene.stretch = Stretch::automatic;

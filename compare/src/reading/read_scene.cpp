@@ -19,8 +19,8 @@
 namespace dlo::compare {
 namespace {
 
-/// Returns the points of a whole rod's shape as rows at time 0. Without arc lengths of its own they
-/// are those along the polyline, scaled to the rod.
+/// Returns the points of a whole rod's shape as rows at time 0. If the shape has no arc lengths,
+/// those along the polyline are scaled to the rod.
 /// @param length  of the rod [m]
 std::vector<MarkerPosition> rows_of_shape(const MeasuredShape& shape, double length) {
   std::vector<double> s = shape.arc_length;
@@ -40,8 +40,8 @@ std::vector<MarkerPosition> rows_of_shape(const MeasuredShape& shape, double len
   return rows;
 }
 
-/// Solvers of several spans take memory with the square of the number of grippers, some 250 MB for
-/// the most; of the others no scene has any use for more.
+/// Limits of a scene. Solvers of several spans need memory that grows with the square of the number
+/// of grippers, about 250 MB for the largest number; scenes need no larger numbers of loads.
 constexpr std::size_t most_grippers = 500;
 constexpr std::size_t most_loads = 10'000;
 constexpr std::size_t most_distributed_loads = 100;
@@ -56,7 +56,7 @@ std::vector<StrictTable> bounded_tables(StrictTable& table, const char* key, std
   return tables;
 }
 
-/// Rows of a recording, or of a shape, whose points then have time 0.
+/// Reads the rows of a recording, or of a shape, whose points then have time 0.
 std::shared_ptr<const MarkerMotion> read_start(StrictTable& rates, const Scene& scene) {
   const std::optional<std::string> name = rates.optional_text("start");
   if (!name) return nullptr;

@@ -21,7 +21,8 @@
 namespace dlo::compare {
 namespace {
 
-/// Puts a value where `place(node)` wants it, with the type that a file would give it.
+/// Puts a value into the node that `place(node)` selects, with the type that it would have in a
+/// file.
 template <typename Place>
 void place_value(const SceneField& field, const std::string& file, const Place& place) {
   const std::string& text = field.value.text();
@@ -37,7 +38,7 @@ void place_value(const SceneField& field, const std::string& file, const Place& 
   place(*array);
 }
 
-/// What people write for a field, and its path.
+/// Short names of fields, and their paths.
 constexpr std::pair<std::string_view, std::string_view> short_field_names[] = {
     {"E", "rod.material.youngs_modulus"},
     {"youngs_modulus", "rod.material.youngs_modulus"},
@@ -104,7 +105,8 @@ class Overrider {
     return *index;
   }
 
-  /// What is below `parent`: an array where a number follows, whose next element is a table.
+  /// Appends a table to an array if `step` is its next index, or inserts an array if a number
+  /// follows in the path.
   static void make(toml::node& parent, std::string_view step, std::string_view rest) {
     toml::array* array = parent.as_array();
     if (array != nullptr && as_number<std::size_t>(step) == array->size()) {
@@ -114,7 +116,7 @@ class Overrider {
     }
   }
 
-  /// The table or array below `parent`; a table that the file lacks is as good as empty.
+  /// Returns the table or array below `parent`; a table that is missing in the file is made empty.
   toml::node& enter(toml::node& parent, std::string_view step, const std::string& path) const {
     toml::node* child = nullptr;
     if (toml::table* table = parent.as_table()) {
@@ -150,8 +152,8 @@ class Overrider {
   MissingElements missing_;
 };
 
-/// EI, or the mean that GJ goes with, of a scene whose GJ is given; none if the file is no scene
-/// without other values.
+/// Returns EI, or the mean to which GJ is proportional, of a scene whose GJ is given; empty if the
+/// file is not a valid scene without other values.
 std::optional<double> bending_stiffness_with_torsion(const toml::table& root,
                                                      const std::string& name,
                                                      const std::vector<Material>& materials) {
@@ -163,7 +165,7 @@ std::optional<double> bending_stiffness_with_torsion(const toml::table& root,
   }
 }
 
-/// Gravity that gives the scene this Gamma.
+/// Returns the gravity with which the scene has this gamma.
 toml::array scaled_gravity(const Scene& scene, const std::string& gamma) {
   const auto value = as_number<double>(gamma);
   if (!value || !(*value >= 0) || !std::isfinite(*value)) {
@@ -185,7 +187,7 @@ struct SceneTemplate::Parsed {
   toml::table root;
   std::string name;
   std::vector<Material> materials;
-  std::optional<double> bending_stiffness;  // with the file's own values, if it has a GJ
+  std::optional<double> bending_stiffness;  // with the values of the file, if GJ is given
   MissingElements missing;
 };
 
@@ -225,7 +227,7 @@ Scene SceneTemplate::with(const std::vector<SceneField>& values) const {
     return value.field == "rod.torsional_stiffness";
   });
   if (scene.torsional_stiffness && parsed_->bending_stiffness && !gives_torsion) {
-    // Dividing first leaves GJ as it is where EI is.
+    // The ratio is computed first, so that GJ is unchanged if EI is.
     *scene.torsional_stiffness *= scene.mean_bending_stiffness() / *parsed_->bending_stiffness;
   }
   return scene;

@@ -10,14 +10,14 @@
 
 namespace dlo::compare {
 
-/// What a field may be of that the scene file lacks.
+/// How a field is treated that is missing in the scene file.
 enum class MissingElements {
   refused,  ///< no element of an array
   made,     ///< the next element of an array
 };
 
-/// A scene file whose fields can be given other values. They go into its parsed TOML, and that goes
-/// through the ordinary reader: what a scene file may say is what a field may say.
+/// A scene file whose fields can be given other values. The values are set in the parsed TOML,
+/// which the ordinary reader then reads: a field may have any value that is valid in a scene file.
 ///
 /// A material that is given by name can be varied in parts, as rod.material.youngs_modulus. The
 /// derived field `gamma` scales gravity so that w l^3 / (EI) is its value, whatever else is varied.
@@ -27,23 +27,24 @@ enum class MissingElements {
 /// Safe to use from several threads at once.
 class SceneTemplate {
  public:
-  /// @param name  of the file, for messages and Scene::file
-  /// @param folder  that rod.rest_shape is relative to, where it is not that of the name
+  /// @param name  name of the file, for messages and Scene::file
+  /// @param folder  folder for relative paths of rod.rest_shape, if it is not that of `name`
   /// @throws InputError if the text is no TOML
   SceneTemplate(const std::string& text, std::string name,
                 std::vector<Material> known_materials = materials(),
                 MissingElements missing = MissingElements::refused, const std::string& folder = "");
 
-  /// The scene with other values. @throws InputError as parse_scene, and if a path leads nowhere
+  /// Returns the scene with other values. @throws InputError as parse_scene, and for a path that
+  /// does not exist
   [[nodiscard]] Scene with(const std::vector<SceneField>& values) const;
 
  private:
-  struct Parsed;  // keeps TOML out of this header
+  struct Parsed;  // declared here, so that this header does not include TOML
   std::shared_ptr<const Parsed> parsed_;
 };
 
-/// A scene file as a template. Its name goes without its folder, so that messages, and what is
-/// derived from them, are the same wherever the file lies. @throws InputError
+/// Loads a scene file as a template. Its name is stored without the folder, so that messages, and
+/// results derived from them, do not depend on the folder. @throws InputError
 [[nodiscard]] SceneTemplate load_scene_template(
     const std::string& path, const std::vector<Material>& known_materials = materials());
 

@@ -11,11 +11,11 @@ extern const std::string_view tables_toml;
 extern const std::string_view spring_steel_135_toml;
 extern const std::string_view spring_steel_175_toml;
 extern const std::string_view spring_steel_215_toml;
-// Text of `dlo init`, for fmt: what a scene needs, then examples of what it may have.
+// Text of `dlo init`, for fmt: the required parts of a scene, then examples of optional ones.
 extern const std::string_view new_scene_toml;
 extern const std::string_view new_scene_optional_toml;
-/// Style sheet of the pages of --report. gnuplot draws for a light page; on a dark one pictures are
-/// inverted and their hues rotated back.
+/// Style sheet of the pages of --report. gnuplot draws for a light page; on a dark page pictures
+/// are inverted and their hues rotated back.
 extern const std::string_view page_css;
 
 }  // namespace dlo::compare::builtin

@@ -16,7 +16,7 @@ namespace dlo::compare {
 std::vector<Material> read_materials(const std::string& text, const std::string& file) {
   const toml::table root = parse_toml(text, file);
   StrictTable table(root, "", file);
-  // The others are of what calibrate writes, for --calibrated.
+  // The other keys are written by calibrate, for --calibrated.
   table.only({"gripper", "material", "natural_curvature", "torsional_stiffness"});
   std::vector<Material> result;
   for (StrictTable& entry : table.tables("material")) {

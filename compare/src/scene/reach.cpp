@@ -35,7 +35,8 @@ std::vector<double> obstacle_clearances(const Scene& scene) {
     for (std::size_t k = 0; k + 1 < along.size(); ++k) {
       const Eigen::Vector3d apart = along[k + 1]->position - along[k]->position;
       const double rod = along[k + 1]->at - along[k]->at;
-      // Half axes of the ellipsoid: rod/2 along `apart`, sqrt(rod^2 - apart^2)/2 across.
+      // Semi-axes of the ellipsoid: rod/2 along `apart`, sqrt(rod^2 - apart^2)/2 perpendicular to
+      // it.
       const double along_normal = body.is_half_space() ? body.normal().dot(apart) : apart.norm();
       const double support =
           std::sqrt(std::max(0.0, rod * rod - apart.squaredNorm() + along_normal * along_normal)) /

@@ -5,8 +5,9 @@
 
 namespace dlo::compare {
 
-/// Reads the table [force_model]. @throws InputError naming file, line, key, value and what is
-/// allowed; settings that contradict each other are check()'s to refuse
+/// Reads the table [force_model].
+/// @throws InputError that names file, line, key, value and what is allowed; check() rejects
+/// settings that contradict each other
 [[nodiscard]] ForceModelSettings read_force_model(StrictTable& table);
 
 }  // namespace dlo::compare

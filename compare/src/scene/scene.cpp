@@ -10,8 +10,8 @@
 namespace dlo::compare {
 namespace {
 
-/// What a section has more than the rod has elsewhere, of some quantity per length, between two arc
-/// lengths.
+/// Returns the integral, between two arc lengths, of the difference between the sections' values of
+/// a quantity per length and the rod's value elsewhere.
 template <typename Density>
 double excess_between(const Scene& scene, double begin, double end, const Density& density,
                       double elsewhere) {
@@ -23,7 +23,7 @@ double excess_between(const Scene& scene, double begin, double end, const Densit
   return sum;
 }
 
-/// Of two numbers; of two equal ones to the last digit that number.
+/// Returns the harmonic mean of two numbers; if they are equal, exactly that number.
 double harmonic_mean(double a, double b) { return a / ((1 + a / b) / 2); }
 
 }  // namespace

@@ -10,12 +10,13 @@
 #include "dlo/energy_model/natural_frame.hpp"
 #include "scene/scene_problem.hpp"
 
-// How a scene's rod is curved and twisted without stress, how clamps hold that, and in which plane
-// it stays.
+// Stress-free curvature and twist of a scene's rod, the frames in which clamps hold it, and the
+// plane in which it stays.
 namespace dlo::compare {
 namespace {
 
-/// Unit normal of the plane that grips, forces and obstacles in reach share.
+/// Returns the unit normal of the plane that contains grips, forces and obstacles in reach, if
+/// there is one.
 std::optional<Eigen::Vector3d> scene_normal(const Scene& scene) {
   std::vector<Eigen::Vector3d> vectors = {scene.gravity};
   for (const Gripper& gripper : scene.grippers) {
@@ -43,7 +44,8 @@ std::optional<Eigen::Vector3d> scene_normal(const Scene& scene) {
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(moments);
   const Eigen::Vector3d normal = axes.eigenvectors().col(0);
-  // Not of the eigenvalue, which is their squares' sum but for a rounding of 1e-16.
+  // The test uses each vector rather than the eigenvalue, which is the sum of their squares up to a
+  // rounding of 1e-16.
   constexpr double noise = 1e-9;
   const bool share_it = std::all_of(vectors.begin(), vectors.end(), [&](const auto& v) {
     return std::abs(v.dot(normal)) <= noise * v.norm();
@@ -56,7 +58,7 @@ std::optional<Eigen::Vector3d> scene_normal(const Scene& scene) {
   return normal;
 }
 
-/// Mean of the rod's own natural curvature between two arc lengths, as if there were no sections.
+/// Returns the mean of the rod's own natural curvature between two arc lengths, ignoring sections.
 Eigen::Vector2d series_curvature(const Scene& scene, double begin, double end) {
   Eigen::Vector2d mean = scene.natural_strain.head<2>();
   const double from = 2 * begin / scene.length - 1;
@@ -74,7 +76,7 @@ Eigen::Vector2d series_curvature(const Scene& scene, double begin, double end) {
   return mean;
 }
 
-/// Index of the first clamp along the rod.
+/// Returns the index of the first clamp along the rod.
 std::optional<std::size_t> first_clamp_of(const Scene& scene) {
   std::optional<std::size_t> first;
   for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
@@ -127,7 +129,7 @@ void Scene::set_rest_shape(const RestShape& shape) {
     for (const RestShape::Arc& arc : shape.arcs) {
       if (arc.end <= section.from) continue;
       Section part = section;
-      // A boundary of the two that differs by rounding is one.
+      // Boundaries of a section and an arc that differ by rounding are the same.
       constexpr double rounding = 1e-12;
       part.to = arc.end < section.to - rounding * length ? arc.end : section.to;
       part.natural_curvature = arc.strain.head<2>();

@@ -7,7 +7,7 @@
 #include "dlo/energy_model/problem.hpp"
 #include "scene/scene_problem.hpp"
 
-// What acts on a scene's rod beside its weight.
+// Loads on a scene's rod other than its weight.
 namespace dlo::compare {
 
 Eigen::Vector3d DistributedLoad::between(double begin, double end) const {

@@ -31,7 +31,7 @@ energy_model::Problem scene_problem(const Scene& scene) {
   if (scene.stretch == Stretch::counted) problem.axial_stiffness = scene.axial_stiffness();
   problem.weight_per_length = scene.mass_per_length() * scene.gravity;
   for (const Section& section : scene.sections) {
-    // Dividing first leaves GJ as it is where EI is.
+    // The ratio is computed first, so that GJ is unchanged if EI is.
     const double like_the_rod = section.mean_bending_stiffness() / scene.mean_bending_stiffness();
     problem.sections.push_back({.begin = section.from,
                                 .end = section.to,
@@ -86,8 +86,8 @@ double rectangle_torsion_constant(double width, double thickness) {
   using std::numbers::pi;
   const double a = std::max(width, thickness);
   const double b = std::min(width, thickness);
-  // tanh x = 1 - 2 / (exp(2x) + 1); of the ones the sum is 31/32 zeta(5), and what is left falls
-  // with exp(-n pi a / b): beyond n = 11 it is below 1e-17 of it.
+  // tanh x = 1 - 2 / (exp(2x) + 1). The ones sum to 31/32 zeta(5); the remaining terms decrease
+  // with exp(-n pi a / b) and are below 1e-17 of the sum beyond n = 11.
   double sum = 31.0 / 32 * std::riemann_zeta(5.0);
   for (int n = 1; n <= 11; n += 2) sum -= 2 / (std::exp(n * pi * a / b) + 1) / std::pow(n, 5);
   return a * b * b * b / 3 * (1 - 192 * b / (std::pow(pi, 5) * a) * sum);

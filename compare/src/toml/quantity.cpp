@@ -87,7 +87,8 @@ std::span<const Unit> units(Dimension dimension) {
   return {};
 }
 
-/// As units are spelled here: "N*m" and one with a dot have a blank between, powers a "^".
+/// Returns a unit in the spelling of this table: "N*m", and one with a dot, have a blank between,
+/// powers a "^".
 std::string plain_spelling(std::string_view written) {
   constexpr std::pair<std::string_view, std::string_view> spellings[] = {
       {"*", " "},         {"\xc2\xb7", " "}, {"\xe2\x8b\x85", " "}, {"\xc2\xb2", "^2"},
@@ -108,8 +109,8 @@ std::string plain_spelling(std::string_view written) {
   return plain;
 }
 
-/// Whether it is the unit's name, or that without its blank: "Nm". A blank too many, as in "m m",
-/// would be another unit.
+/// Whether a text is the unit's name, or the name without its blank: "Nm". A name with an
+/// additional blank, as in "m m", would be another unit.
 bool names(std::string_view plain, std::string_view unit) {
   if (plain == unit) return true;
   std::string joined(unit);
@@ -134,10 +135,10 @@ namespace {
 double largest_magnitude(Dimension dimension) {
   switch (dimension) {
     case Dimension::length:
-      return 1e6;  // m, as coordinates of shape files
+      return 1e6;  // m, as for coordinates of shape files
     case Dimension::curvature:
     case Dimension::twist:
-      return 1e9;  // 1/m, of the smallest radius of a helix
+      return 1e9;  // 1/m, the reciprocal of the smallest radius of a helix
     case Dimension::time:
       return 1e12;  // s; clocks count 1.8e9 s since 1970
     case Dimension::pressure:

@@ -6,7 +6,7 @@
 
 namespace dlo::compare {
 
-/// What a number in a scene file measures; it decides which units may follow.
+/// Physical dimension of a number in a scene file; it determines which units may follow.
 enum class Dimension {
   number,
   length,
@@ -29,18 +29,18 @@ enum class Dimension {
   frequency,
 };
 
-/// The names of the units that `dimension` knows, SI first.
+/// Returns the names of the units of a dimension, SI first.
 [[nodiscard]] std::vector<std::string> unit_names(Dimension dimension);
 
-/// The same as a list for messages.
+/// Returns the names of the units of a dimension as a list for messages.
 [[nodiscard]] std::string known_units(Dimension dimension);
 
-/// Value in SI units of "210 GPa", "2 mm" or "-175 deg".
-/// @throws InputError without a file's name: what is wrong and what is allowed
+/// Returns the value in SI units of "210 GPa", "2 mm" or "-175 deg".
+/// @throws InputError without the file's name: the error and what is allowed
 [[nodiscard]] double parse_quantity(std::string_view text, Dimension dimension);
 
-/// Returns what is wrong with a number of a file [SI] that is larger than its dimension allows, or
-/// an empty text. Larger numbers have no physical meaning and overflow in sums of squares. Pressure
+/// Returns the error of a number of a file [SI] that is larger than its dimension allows, or an
+/// empty text. Larger numbers have no physical meaning and overflow in sums of squares. Pressure
 /// and section_stiffness have no limit here: the reader checks E I and E A of the rod.
 [[nodiscard]] std::string magnitude_problem(double value, Dimension dimension);
 

@@ -20,7 +20,7 @@ std::string joined(const std::vector<std::string>& words) {
 }
 
 std::string shown(const toml::node& node) {
-  // fmt writes the shortest digits that read back the same, as the user wrote them.
+  // fmt prints the fewest digits that identify the double, which are those that the user wrote.
   if (const auto number = node.value_exact<double>()) return fmt::format("{}", *number);
   std::ostringstream text;
   node.visit([&](const auto& value) { text << value; });

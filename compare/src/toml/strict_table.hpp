@@ -16,7 +16,7 @@
 
 namespace dlo::compare {
 
-/// What a number may be, with the words for a message.
+/// Allowed range of a number, with its description for a message.
 struct Range {
   double low;
   double high;
@@ -30,28 +30,28 @@ struct Range {
   [[nodiscard]] bool holds(double value) const;
 };
 
-/// A TOML table that is read strictly: every key has to be asked for before finish(), every value
-/// has to be of its kind and in its range. All errors are InputErrors of the form
-/// "file:line: key = value: what is wrong (allowed: ...)".
+/// A TOML table that is read strictly: every key has to be read before finish(), and every value
+/// must have the right type and range. All errors are InputErrors of the form "file:line: key =
+/// value: what is wrong (allowed: ...)".
 class StrictTable {
  public:
   StrictTable(const toml::table& table, std::string path, std::string file);
 
   [[nodiscard]] bool has(std::string_view key) const { return table_.contains(key); }
 
-  /// A number in SI units, or a string with a unit. @throws InputError if missing or wrong
+  /// Reads a number in SI units, or a string with a unit. @throws InputError if missing or invalid
   double number(std::string_view key, Dimension dimension, const Range& range);
   std::optional<double> optional_number(std::string_view key, Dimension dimension,
                                         const Range& range);
   std::optional<int> optional_integer(std::string_view key, int low, int high);
-  /// true or false; false where there is no such key.
+  /// Reads true or false; false if the key is missing.
   bool flag(std::string_view key);
   std::string text(std::string_view key);
   std::optional<std::string> optional_text(std::string_view key);
   int integer(std::string_view key, int low, int high);
-  /// One of `allowed`.
+  /// Reads one of `allowed`.
   std::string choice(std::string_view key, const std::vector<std::string>& allowed);
-  /// Of an enumeration with a table of names.
+  /// Reads a value of an enumeration by its name in Choices.
   template <Chosen Value>
   Value choice(std::string_view key) {
     return from_name<Value>(choice(key, names<Value>()));
@@ -63,22 +63,23 @@ class StrictTable {
   }
   Eigen::Vector3d vector(std::string_view key, Dimension dimension);
   std::optional<Eigen::Vector3d> optional_vector(std::string_view key, Dimension dimension);
-  /// One number y, which is [0, y], or [x, y].
+  /// Reads one number y, which means [0, y], or a pair [x, y].
   std::optional<Eigen::Vector2d> optional_pair(std::string_view key, Dimension dimension);
-  /// The same, or rows of two numbers each, one to `most` of them: [[x, y], ..]. None: no key.
+  /// Reads one number, a pair, or one to `most` rows of two numbers each: [[x, y], ..]. Empty
+  /// without the key.
   std::vector<Eigen::Vector2d> pairs(std::string_view key, Dimension dimension, std::size_t most);
-  /// Three numbers, or rows of three, two to `most` of them.
+  /// Reads three numbers, or two to `most` rows of three.
   std::vector<Eigen::Vector3d> vectors(std::string_view key, Dimension dimension, std::size_t most);
-  /// Columns of two to `most` rows of three lengths; or of six numbers in every row, a vector
-  /// beside each point.
+  /// Reads two to `most` rows of three lengths, which become columns; or of six numbers in every
+  /// row, a point and a vector at it.
   Eigen::MatrixXd points(std::string_view key, std::size_t most);
-  /// Rows of three numbers each.
+  /// Reads three rows of three numbers each.
   std::optional<Eigen::Matrix3d> optional_rows(std::string_view key);
-  /// As it is written, of any norm.
+  /// Reads a quaternion as it is written, of any norm.
   std::optional<Eigen::Quaterniond> optional_quaternion(std::string_view key);
   std::optional<StrictTable> optional_table(std::string_view key);
   StrictTable table(std::string_view key);
-  /// The tables of [[key]], in order.
+  /// Returns the tables of [[key]], in order.
   std::vector<StrictTable> tables(std::string_view key);
   [[nodiscard]] bool is_table(std::string_view key) const;
   [[nodiscard]] bool is_text(std::string_view key) const;
@@ -86,18 +87,20 @@ class StrictTable {
   [[nodiscard]] bool is_array(std::string_view key) const;
   [[nodiscard]] std::vector<std::string> keys() const;
 
-  /// All that the table may have, in any of its forms. Called before a key is read, so that a wrong
-  /// key is named rather than the one that is missing because of it.
-  /// @throws InputError naming the first key that is not among them
+  /// Checks that the table has only allowed keys, in any form of its values. It is called before a
+  /// key is read, so that a message names a misspelt key rather than the key that is missing
+  /// because of it.
+  /// @throws InputError that names the first key that is not allowed
   void only(const std::vector<std::string>& allowed) const;
 
-  /// @throws InputError naming the first key that nobody asked for and the keys that exist
+  /// Checks that every key was read.
+  /// @throws InputError that names the first key that was not read, and the existing keys
   void finish() const;
 
-  /// "file:line" of this table
+  /// Returns "file:line" of this table.
   [[nodiscard]] std::string where() const { return where(nullptr); }
 
-  /// "file:line: key = value: problem"
+  /// Throws an InputError "file:line: key = value: problem".
   [[noreturn]] void fail(std::string_view key, const std::string& problem) const;
 
  private:
@@ -107,7 +110,7 @@ class StrictTable {
   [[nodiscard]] std::string name(std::string_view key) const;
   [[nodiscard]] double read_number(std::string_view key, const toml::node& node,
                                    Dimension dimension) const;
-  /// An array of `Size` numbers. @param form  what a message says it must be
+  /// Reads an array of `Size` numbers. @param form  required form in a message
   template <int Size>
   [[nodiscard]] Eigen::Vector<double, Size> read_numbers(std::string_view key,
                                                          const toml::node& node,
@@ -120,23 +123,25 @@ class StrictTable {
   std::set<std::string, std::less<>> known_;
 };
 
-/// A scene of ten thousand loads has a tenth of it; parsed it takes some fifty times its size.
+/// Largest size of a TOML text [bytes]. A scene of ten thousand loads has a tenth of it; the parsed
+/// text takes about fifty times its size.
 inline constexpr std::size_t largest_toml = std::size_t{1} << 22;
 
-/// Parses a file's text. @throws InputError with file, line and what the parser says, or if the
-/// text is larger than largest_toml or nested deeper than deepest_nesting
+/// Parses a file's text.
+/// @throws InputError with file, line and the parser's message, or if the text is larger than
+/// largest_toml or nested deeper than deepest_nesting
 [[nodiscard]] toml::table parse_toml(const std::string& text, const std::string& file);
 
-/// A table of a scene file and what it may have.
+/// A table of a scene file and its possible keys.
 struct SceneTable {
   std::string name;  ///< "rod", "gripper"; "" of the file itself, "material" of a rod's own
-  std::vector<std::string> keys;  ///< by the alphabet
+  std::vector<std::string> keys;  ///< in alphabetical order
 };
 
-/// All tables of a scene file but those of poses.
+/// Returns all tables of a scene file except those of poses.
 [[nodiscard]] const std::vector<SceneTable>& scene_tables();
 
-/// What one of them may have. @throws std::out_of_range for another name
+/// Returns the possible keys of a table. @throws std::out_of_range for an unknown name
 [[nodiscard]] const std::vector<std::string>& scene_keys(std::string_view table);
 
 }  // namespace dlo::compare

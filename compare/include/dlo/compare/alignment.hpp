@@ -15,7 +15,7 @@ namespace dlo::compare {
 enum class PoseFreedom {
   known,        ///< nothing is unknown: the file has the scene's frame
   translation,  ///< the origin is unknown
-  /// The origin and the rotation about the vertical (the direction of gravity) are unknown
+  /// The origin and the rotation about the vertical (the direction of gravity) are unknown.
   upright,
   /// Any proper rigid motion is possible. A planar shape and its mirror image in the plane are then
   /// identical, so that up and down cannot be distinguished.
@@ -27,7 +27,7 @@ enum class ArcLengths {
   automatic,  ///< the file's, if it has them; else `nearest`
   file,       ///< the file's column s
   /// The points are the whole rod: lengths along the polyline, with a correction for the bow over
-  /// each chord, scaled to the rod's length; accurate to 1e-4 l for a dozen points
+  /// each chord, scaled to the rod's length; accurate to 1e-4 l for a dozen points.
   chord,
   /// Arc length of the nearest point of the curve for each point, in order; parts may be missing.
   /// Differences along the curve are invisible. With PointWeights::by_length the ends of a file as
@@ -76,7 +76,7 @@ struct RigidMotion {
 enum class PointWeights {
   equal,  ///< equal weights: measured points with the same noise
   /// The length between the middles to its neighbours, so that sums are integrals: the arc length
-  /// of the rod or the polyline's own length, whichever is longer, so that no point is ignored
+  /// of the rod or the polyline's own length, whichever is longer, so that no point is ignored.
   by_length,
 };
 
@@ -92,7 +92,7 @@ struct AlignOptions {
 struct Alignment {
   RigidMotion pose;       ///< from the file's frame to the scene's
   bool reversed = false;  ///< whether the file's points (its s) run from arc length l to 0
-  /// Rule that was used; `nearest` may become `chord` for a whole file whose frame is fitted
+  /// Rule that was used; `nearest` may become `chord` for a whole file whose frame is fitted.
   ArcLengths arc_lengths = ArcLengths::nearest;
   Shape shape;             ///< points in the scene's frame, by increasing arc length
   double rms_m = 0;        ///< RMS distance with the given weights
@@ -105,7 +105,7 @@ struct RodPart {
   double from_m = 0;  ///< start [m]
   double to_m = 0;    ///< end [m]
   /// Interpolation error: distance in the middle between the reference and a smooth curve through
-  /// the reference at the points; smaller deviations cannot be detected there
+  /// the reference at the points; smaller deviations cannot be detected there.
   double untold_m = 0;
 };
 

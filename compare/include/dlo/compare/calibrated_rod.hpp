@@ -29,7 +29,7 @@ struct CalibratedRod {
   std::optional<double> torsional_stiffness;  ///< GJ [N m^2]
   /// Natural curvature: coefficients of P_0, P_1, .. about d1 and d2 [1/m]; empty: the scene's.
   std::vector<Eigen::Vector2d> natural_curvature;
-  /// Grippers whose direction or position differs from the scenes'
+  /// Grippers whose direction or position differs from the scenes'.
   std::vector<ClampCorrection> clamps;
   /// Damping of the rod in motion: Kelvin-Voigt time of the material [s], drag of the air per
   /// length and velocity [N s/m^2], and drag across the rod per length and squared velocity [N

@@ -32,7 +32,7 @@ struct CheckResult {
   ShapeTolerance tolerance;               ///< tolerance that was applied
   ShapeJudgement judgement;               ///< verdict with its reason
   std::vector<Explanation> explanations;  ///< causes of a shape that is not near, best first
-  /// Cause that explains the shape better than any stiffness
+  /// Cause that explains the shape better than any stiffness.
   std::optional<Explanation> supersedes_modulus;
   PoseFreedom pose = PoseFreedom::known;  ///< unknown part of the shape's frame
   std::vector<std::string> notes;         ///< how the shape file was interpreted
@@ -56,7 +56,7 @@ struct CheckResult {
 /// Tolerance of a test: a share of the rod's length or of its deflection.
 struct ToleranceShare {
   double share = 0;  ///< [-], > 0
-  /// Whether `share` is of TrivialShape::deflection_m, not of the length
+  /// Whether `share` is of TrivialShape::deflection_m, not of the length.
   bool of_deflection = false;
 
   /// Takes a share of the length [-]. Implicit, so that tests may pass a number.
@@ -73,7 +73,7 @@ struct ToleranceShare {
 /// Outcome of a comparison in a test.
 struct ShapeNear {
   bool near = false;  ///< whether check() passes
-  /// Reason; then, on a separate line, the position of the largest deviation
+  /// Reason; then, on a separate line, the position of the largest deviation.
   std::string explanation;
 };
 

@@ -25,7 +25,7 @@ struct Comparison {
   Solution force;               ///< the force model at rest
   Shape reference;              ///< the energy model at the force model's arc lengths
   Reference reference_rod;      ///< the energy model at any arc length from 0 to l
-  /// Contacts of the reference, as Solution::contacts
+  /// Contacts of the reference, as Solution::contacts.
   std::vector<energy_model::ContactPart> contacts;
   /// Reason why no conclusion may be drawn from the reference; empty if it is verified. Given only
   /// if SolveOptions::accept_unverified is set.

@@ -21,10 +21,10 @@ enum class Optimum {
   /// leaves more than the RMS displacement of the rod from straight (without_small_movement)
   partial,
   /// A modulus twice or half as large fits less than 10 % worse, or not worse than the energy
-  /// model's own error
+  /// model's own error.
   flat,
   /// The fit still improves where the search ended: at the end of the range, or where the followed
-  /// equilibrium ends or bifurcates
+  /// equilibrium ends or bifurcates.
   one_sided,
 };
 

@@ -65,7 +65,7 @@ inline constexpr double right_chain = 0.25;
 /// Verdict on a file that may be a chain of hinges.
 struct ChainJudgement {
   ShapeJudgement judgement;  ///< its verdict
-  /// Chain as which the file was judged; empty: judged as the rod
+  /// Chain as which the file was judged; empty: judged as the rod.
   std::optional<Explanation> chain;
 };
 

@@ -66,18 +66,18 @@ struct MaterialFitOptions {
   /// Whether, if residuals are systematic and none of the above is fitted, the fit tests which of
   /// them would remove the residuals (MaterialFit::alternatives).
   bool alternatives = false;
-  /// Number of segments of a chain of hinges that is to be as stiff; 0: no chain
+  /// Number of segments of a chain of hinges that is to be as stiff; 0: no chain.
   int chain_segments = 0;
   /// Lengths of the segments of such a chain if they are unequal, 4 to 200 [m]; empty: no chain.
   std::vector<double> chain_segment_lengths = {};
   int profile_points = 0;  ///< number of points of MaterialFit::profile; 0: no profile
-  /// Standard deviation of one coordinate [m]; empty: it is estimated
+  /// Standard deviation of one coordinate [m]; empty: it is estimated.
   std::optional<double> noise;
   /// Smallest modulus that is searched, divided by that of the scene [-]. If natural curvature or
   /// clamp misalignments are fitted, the search ends at w l^3 / (EI) = 1e5, or at 100 times the
   /// scene's value if that is larger.
   double smallest_ratio = 1e-4;
-  /// Largest modulus that is searched, divided by that of the scene [-]
+  /// Largest modulus that is searched, divided by that of the scene [-].
   double largest_ratio = 1e4;
   /// A number counts as identified only if the ratio of its interval's ends is at most this factor.
   double identified_within = 4;
@@ -101,7 +101,7 @@ struct FittedNumber {
   double value = 0;         ///< correction of the scene's value; the most likely one
   double deviation = 0;     ///< standard deviation, prior knowledge included
   double known_before = 0;  ///< prior standard deviation, without the shapes
-  /// Index of the shape that it belongs to; empty: it belongs to the wire
+  /// Index of the shape that it belongs to; empty: it belongs to the wire.
   std::optional<std::size_t> shape;
 
   /// Whether the shapes, rather than the prior, determine the number: the variance is at most half
@@ -149,7 +149,7 @@ struct ChainJoint {
 struct ChainSprings {
   std::string scene;                     ///< name of the scene
   ChainClamp clamp = ChainClamp::hinge;  ///< how clamps hold the chain
-  /// Number of segments; those that clamps hold in the middle count as whole ones
+  /// Number of segments; those that clamps hold in the middle count as whole ones.
   int segments = 0;
   double segment_length = 0;  ///< h [m]; the mean if segments are unequal
   /// Moment of a joint between segments of that length, divided by its angle [N m/rad].
@@ -203,7 +203,7 @@ struct ProfilePoint {
 
 /// Correlation of the errors of neighbouring points.
 struct CorrelatedErrors {
-  /// Correlation length: arc length over which the correlation decreases to 1 / e [m]
+  /// Correlation length: arc length over which the correlation decreases to 1 / e [m].
   double length_m = 0;
   double share = 0;  ///< correlated share of the errors' variance; the rest is independent [-]
   /// Width of the interval of E, divided by that for independent errors, to first order [-].

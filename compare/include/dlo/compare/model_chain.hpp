@@ -10,9 +10,9 @@ namespace dlo::compare {
 struct ModelChain {
   std::string words;               ///< kind of model: "MJCF, a composite cable"
   std::vector<std::string> notes;  ///< assumptions, for people
-  /// Number of segments, one body each; a body's position is the start of its segment
+  /// Number of segments, one body each; a body's position is the start of its segment.
   Eigen::Index segments = 0;
-  /// Index of the chain's first body among all bodies of the model; the world has 0
+  /// Index of the chain's first body among all bodies of the model; the world has 0.
   Eigen::Index first_body = 1;
   Eigen::Index bodies = 0;  ///< number of bodies of the model, with the world
 

@@ -30,7 +30,7 @@ struct PlannedSpan {
 /// Reach of the rod towards an obstacle.
 struct PlannedObstacle {
   /// Smallest distance that all points of the rod keep from the obstacle in any shape [m];
-  /// negative: some point could enter it
+  /// negative: some point could enter it.
   double clearance = 0;
   bool in_reach = true;  ///< whether some point of the rod could touch it
 };
@@ -66,7 +66,7 @@ struct Plan {
   std::vector<PlannedSpan> spans;          ///< by increasing arc length
   std::vector<PlannedObstacle> obstacles;  ///< as in the scene
   bool frame_held = false;                 ///< whether a gripper holds the rod's frame
-  /// By increasing arc length; a single held frame causes no twist
+  /// By increasing arc length; a single held frame causes no twist.
   std::vector<PlannedTwist> twist;
   /// N at which the polygon of law hooke, with the scene's bookkeeping, meets the target; 0: none
   /// up to `most_planned_points`, or unknown.

@@ -179,7 +179,7 @@ struct Scene {
   /// GJ [N m^2], > 0; needed if two clamps hold frames or if the rod has material directors,
   /// without effect otherwise.
   std::optional<double> torsional_stiffness;
-  /// Intervals with other properties, by arc length, without overlap
+  /// Intervals with other properties, by arc length, without overlap.
   std::vector<Section> sections;
   /// Means along the rod of the natural curvature about d1 and d2 and of the natural twist, that
   /// is, of the stress-free shape [1/m]. The first clamp along the rod holds that frame

@@ -51,7 +51,7 @@ class SceneValue {
 
 /// A field of a scene and the value it gets.
 struct SceneField {
-  /// Dotted path; elements of a list by number from 0, as in gripper.0.direction
+  /// Dotted path; elements of a list by number from 0, as in gripper.0.direction.
   std::string field;
   SceneValue value;  ///< value as in a scene file
 };

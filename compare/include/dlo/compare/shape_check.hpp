@@ -37,7 +37,7 @@ struct ShapeCheck {
   std::string file;     ///< name of the shape's file
   double gamma = 0;     ///< w l^3 / (EI) [-]
   double length_m = 0;  ///< l of the rod
-  /// Length of the reference; differs from l only if the rod stretches
+  /// Length of the reference; differs from l only if the rod stretches.
   double stretched_length_m = 0;
   Alignment alignment;            ///< the shape as aligned with the reference
   ComparedState state;            ///< the stable equilibrium nearest to the shape
@@ -62,19 +62,19 @@ struct ShapeCheck {
   std::string hint;              ///< what looks wrong, as a clause; may be empty
   long worst_point = 0;          ///< point of the largest deviation, counted from 1 as in the file
   Eigen::Vector3d worst_position = Eigen::Vector3d::Zero();  ///< in the scene's frame [m]
-  /// RMS displacement of the reference from straight, over the same interval; or NaN
+  /// RMS displacement of the reference from straight, over the same interval; or NaN.
   double movement_m = 0;
   double polyline_length_m = 0;  ///< length of the polyline through the points
   double seen_share = 0;         ///< arc length from the first point to the last, over l [-]
   double largest_gap_m = 0;      ///< largest arc length between neighbours
   double largest_gap_at_m = 0;   ///< where it begins
-  /// Number of the file's points that are not where a gripper holds the rod
+  /// Number of the file's points that are not where a gripper holds the rod.
   long measured_points = 0;
   bool direction_is_clear = false;  ///< the other direction fits at least 5 % worse
   /// Whether the points determine the rotation about the line that fits them best; false if they
   /// lie nearly on it.
   bool turn_is_clear = true;
-  /// E*/E; for each modulus the shape is aligned again, and the equilibrium followed
+  /// E*/E; for each modulus the shape is aligned again, and the equilibrium followed.
   EffectiveModulus effective_modulus;
   NamedValue stiffness;  ///< Scene::stiffness
   /// E* [Pa], or E*I [N m^2] of a rod that is given by EI; NaN without one.

@@ -11,9 +11,9 @@ namespace dlo::compare {
 struct MeasuredShape {
   std::string file;         ///< name of the file, for messages
   Eigen::Matrix3Xd points;  ///< in the file's order [m], 3 x M, neighbours distinct
-  /// Arc lengths in the file, increasing or decreasing [m], M; empty if not given
+  /// Arc lengths in the file, increasing or decreasing [m], M; empty if not given.
   std::vector<double> arc_length;
-  /// Unit first directors of the rod's frames at the points, 3 x M; empty if not given
+  /// Unit first directors of the rod's frames at the points, 3 x M; empty if not given.
   Eigen::Matrix3Xd d1 = {};
   std::vector<std::string> notes = {};  ///< how the file was interpreted, for people
   double unit = 1;                      ///< unit of the file's numbers [m]

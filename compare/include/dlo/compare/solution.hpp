@@ -75,7 +75,7 @@ struct GripperLoad {
 /// NaN: the effect or EA is unknown, or the strain is too small to matter.
 struct StretchEffect {
   double strain = std::numeric_limits<double>::quiet_NaN();  ///< largest |N| / EA [-]
-  /// RMS displacement of the points [m]
+  /// RMS displacement of the points [m].
   double moved_m = std::numeric_limits<double>::quiet_NaN();
   /// change of the tension, divided by the largest tension [-]
   double tension = std::numeric_limits<double>::quiet_NaN();

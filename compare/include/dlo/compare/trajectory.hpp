@@ -11,7 +11,7 @@ namespace dlo::compare {
 struct Pose {
   double time = 0;                                     ///< [s]
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
-  /// Unit vector; empty for an object without a direction
+  /// Unit vector; empty for an object without a direction.
   std::optional<Eigen::Vector3d> direction;
   std::optional<double> roll;  ///< about the direction [rad]; only of a clamp with a roll
 
