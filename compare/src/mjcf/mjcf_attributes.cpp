@@ -17,7 +17,7 @@ namespace dlo::compare {
 namespace {
 
 constexpr double one_degree = std::numbers::pi / 180;
-/// No model has larger numbers, and no product of two of them overflows.
+/// Largest number that is accepted. Models have smaller ones, and products of two do not overflow.
 constexpr double largest_number = 1e12;
 
 std::vector<std::string> words_of(std::string_view text) {
@@ -41,7 +41,7 @@ MjcfAttributes::MjcfAttributes(const XmlFile& xml, XmlRefusals& refusals)
   for (const pugi::xml_node& part : root.children()) {
     const std::string_view name = part.name();
     if (part.type() != pugi::node_element || mjcf_without_effect(name)) continue;
-    if (name == "contact") continue;  // read with the obstacles
+    if (name == "contact") continue;  // read together with the obstacles
     refusals_.attempt([&] {
       if (name == "include") {
         xml_.fail(part, "is not followed (allowed: one file, as mj_saveLastXML writes it)");
@@ -129,7 +129,7 @@ std::optional<std::vector<double>> MjcfAttributes::numbers(const pugi::xml_node&
     if (rest.empty()) break;
     const std::string_view word = rest.substr(0, rest.find_first_of(blanks));
     const std::optional<double> value = shape_number(word);
-    // The negation makes a NaN out of range.
+    // The negated condition also rejects NaN.
     if (!value || !(std::abs(*value) <= largest_number)) {
       fail(fmt::format("{} is not a number, or out of range", quoted_piece(word)));
     }

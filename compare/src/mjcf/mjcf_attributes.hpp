@@ -12,14 +12,15 @@
 
 namespace dlo::compare {
 
-/// Where something is, and how it is turned.
+/// Position and orientation.
 using MjcfPose = Eigen::Isometry3d;
 
-/// A vector as TOML has it, to the last digit.
+/// Returns a vector as in TOML, with all digits.
 [[nodiscard]] std::string toml_vector(const Eigen::Vector3d& v);
 
-/// An MJCF file's elements with the attributes of their default classes, and its units of angles.
-/// All that reads throws InputErrors of the form "file:line: <element> attribute = "value": ...".
+/// Elements of an MJCF file with the attributes of their default classes, and the file's units of
+/// angles. All readers throw InputErrors of the form "file:line: <element> attribute = "value":
+/// ...".
 class MjcfAttributes {
  public:
   /// Reads units and default classes.
@@ -28,16 +29,18 @@ class MjcfAttributes {
   MjcfAttributes(const XmlFile& xml, XmlRefusals& refusals);
 
   [[nodiscard]] const XmlFile& xml() const { return xml_; }
-  /// Refusals of the whole file, added to by all readers of it.
+  /// Refusals of the whole file, to which all its readers add.
   [[nodiscard]] XmlRefusals& refusals() const { return refusals_; }
-  /// What the file's own defaults say of elements below one that has a childclass.
+  /// Returns the default class that an element's attribute names, for elements below one with a
+  /// childclass.
   [[nodiscard]] const std::string& known_class(const pugi::xml_node& node, const char* attribute,
                                                const std::string& outside) const;
 
-  /// Text of an attribute, its own or its class's. @param childclass  around the element
+  /// Returns the text of an attribute, from the element or its class. @param childclass  class that
+  /// surrounding elements set
   [[nodiscard]] std::optional<std::string> text(const pugi::xml_node& node, const char* attribute,
                                                 const std::string& childclass) const;
-  /// `least` to `most` numbers, finite and within 1e12.
+  /// Reads `least` to `most` numbers, finite and within 1e12.
   [[nodiscard]] std::optional<std::vector<double>> numbers(const pugi::xml_node& node,
                                                            const char* attribute, std::size_t least,
                                                            std::size_t most,
@@ -47,16 +50,18 @@ class MjcfAttributes {
   [[nodiscard]] std::optional<Eigen::Vector3d> vector(const pugi::xml_node& node,
                                                       const char* attribute,
                                                       const std::string& childclass) const;
-  /// One of some words. @return its place among them, 0 if not given
+  /// Reads one of several words. @return its index, 0 if not given
   [[nodiscard]] std::size_t choice(const pugi::xml_node& node, const char* attribute,
                                    const std::vector<std::string_view>& allowed,
                                    const std::string& childclass) const;
-  /// pos and one of quat, axisangle, euler, xyaxes, zaxis.
+  /// Reads pos and one of quat, axisangle, euler, xyaxes, zaxis.
   [[nodiscard]] MjcfPose pose(const pugi::xml_node& node, const std::string& childclass) const;
 
-  /// @throws InputError for an attribute that nobody reads, or an element that has no place
+  /// Checks that all attributes are read, and that the element may occur at its position.
+  /// @throws InputError for an unknown attribute, or a misplaced element
   void require_known(const pugi::xml_node& node) const;
-  /// The same for an attribute that a rod cannot say, unless it has a value of no effect.
+  /// Checks that an attribute that a rod's scene cannot represent has no effect.
+  /// @throws InputError with `why` if it has one
   void require_zero(const pugi::xml_node& node, const char* attribute, const std::string& why,
                     const std::string& childclass) const;
 
@@ -79,18 +84,18 @@ class MjcfAttributes {
   std::string euler_order_ = "xyz";
 };
 
-/// What may be said of an element: attributes that are read, and such as have no effect on the
-/// shape at rest of a chain of segments.
+/// Known attributes of an element: those that are read, and those without effect on the equilibrium
+/// of a chain of segments.
 struct MjcfElement {
   std::string_view name;
-  std::string_view read;  ///< with blanks between
+  std::string_view read;  ///< separated by blanks
   std::string_view without_effect;
 };
 
-/// Nothing of an element that has no place in a rod's scene.
+/// Returns an element by its name; null if a rod's scene has no such element.
 [[nodiscard]] const MjcfElement* mjcf_element(std::string_view name);
 
-/// Parts of the file beside the bodies that have no effect on a shape at rest.
+/// Whether a part of the file other than the bodies has no effect on an equilibrium.
 [[nodiscard]] bool mjcf_without_effect(std::string_view name);
 
 }  // namespace dlo::compare

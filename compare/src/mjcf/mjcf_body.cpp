@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view cable_plugin = "mujoco.elasticity.cable";
 
-/// The values of a <plugin> or <instance>.
+/// Reads the values of a <plugin> or <instance>.
 void read_config(const MjcfAttributes& attributes, const pugi::xml_node& node, MjcfPlugin& plugin) {
   const XmlFile& xml = attributes.xml();
   for (const pugi::xml_node& config : node.children()) {
@@ -26,7 +26,7 @@ void read_config(const MjcfAttributes& attributes, const pugi::xml_node& node, M
       if (!plugin.flat && value != "false") xml.fail(config, "value", "(allowed: true, false)");
     } else if (key == "twist" || key == "bend") {
       const std::optional<double> modulus = shape_number(value);
-      // The negation makes a NaN out of range.
+      // The negated condition also rejects NaN.
       if (!modulus || !(*modulus >= 0 && *modulus <= 1e15)) {
         xml.fail(config, "value", fmt::format("of {} (allowed: a modulus in Pa, 0 to 1e15)", key));
       }
@@ -39,7 +39,7 @@ void read_config(const MjcfAttributes& attributes, const pugi::xml_node& node, M
   }
 }
 
-/// The <instance> of that name. @throws InputError if there is none
+/// Returns the <instance> with that name. @throws InputError if there is none
 pugi::xml_node instance_of(const XmlFile& xml, const pugi::xml_node& node) {
   const char* name = node.attribute("instance").value();
   for (const pugi::xml_node& extension : xml.root().children("extension")) {

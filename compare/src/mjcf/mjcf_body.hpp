@@ -14,68 +14,70 @@ namespace dlo::compare {
 struct MjcfJoint {
   enum class Type { hinge, ball, free, slide };
   Type type = Type::hinge;
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< in the body [m]
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< of a hinge, unit, in the body
+  Eigen::Vector3d place = Eigen::Vector3d::Zero();  ///< position in the body [m]
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< axis of a hinge in the body, unit vector
   double stiffness = 0;                             ///< [N m/rad]
-  bool is_limited = false;                          ///< it has a range
+  bool is_limited = false;                          ///< whether it has a range
   pugi::xml_node node;                              ///< for messages
 
-  /// Whether it lets two segments rotate against each other.
+  /// Whether two segments can rotate relative to each other at the joint.
   [[nodiscard]] bool rotates() const { return type == Type::hinge || type == Type::ball; }
 };
 
-/// The plugin mujoco.elasticity.cable of a body.
+/// Plugin mujoco.elasticity.cable of a body.
 struct MjcfPlugin {
   double bend = 0;    ///< E [Pa]
   double twist = 0;   ///< G [Pa]
-  bool flat = false;  ///< whether the cable is straight where it is free of stress
+  bool flat = false;  ///< whether the stress-free cable is straight
 
-  /// In every field.
+  /// Compares all fields.
   bool operator==(const MjcfPlugin&) const = default;
 };
 
-/// A body, in the model's reference pose.
+/// A body in the model's reference pose.
 struct MjcfBody {
   std::string name;
   std::size_t parent = 0;
   MjcfPose pose = MjcfPose::Identity();  ///< in the world
-  bool moves = false;                    ///< it, or one that it is in, has a joint
+  bool moves = false;                    ///< whether it, or a body that contains it, has a joint
   std::vector<MjcfJoint> joints;
   std::vector<MjcfGeom> geoms;
   std::optional<MjcfPlugin> plugin;
-  double mass = 0;                                   ///< of its inertial or its geoms [kg]
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< of that mass, in the body [m]
+  double mass = 0;                                   ///< mass of its inertial or its geoms [kg]
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< centre of that mass, in the body [m]
   pugi::xml_node node;                               ///< for messages
 };
 
-/// Reads a joint. @param at  of the frames around it, in the body
+/// Reads a joint. @param at  pose of the surrounding frames, in the body
 [[nodiscard]] MjcfJoint read_mjcf_joint(const MjcfAttributes& attributes,
                                         const pugi::xml_node& node, const MjcfPose& at,
                                         const std::string& childclass);
 
-/// Reads a body's <plugin>, or a composite's.
+/// Reads the <plugin> of a body or of a composite.
 [[nodiscard]] MjcfPlugin read_mjcf_plugin(const MjcfAttributes& attributes,
                                           const pugi::xml_node& node);
 
-/// Sets mass and centre from the geoms. @param inertial  the element, if there is one
+/// Sets mass and centre of a body from its geoms. @param inertial  the element, if there is one
 void set_mjcf_mass(const MjcfAttributes& attributes, const pugi::xml_node& inertial,
                    MjcfBody& body);
 
-/// What the joint between two segments makes of a rod like them.
+/// Stiffnesses of a rod that correspond to the joint between two segments.
 struct MjcfSpring {
   double bending = 0;   ///< EI [N m^2]
-  double twisting = 0;  ///< GJ [N m^2]; 0: it holds no twist, or does not let it be
-  /// Axis of a single hinge across the segment, in the world, unit; zero: it bends everywhere.
+  double twisting = 0;  ///< GJ [N m^2]; 0: the joint transmits no torque, or does not allow twist
+  /// Axis of a single hinge perpendicular to the segment, in the world, unit vector; zero: bending
+  /// about every axis is possible.
   Eigen::Vector3d hinge = Eigen::Vector3d::Zero();
 };
 
-/// Lengths, masses and springs of one rod are alike to a thousandth: what files are rounded to.
+/// Whether two lengths, masses or stiffnesses of a rod are equal within 0.1 %, the rounding of
+/// files.
 [[nodiscard]] bool are_alike(double a, double b);
 
-/// Of a body's joints and its cable plugin.
-/// @param direction  of its segment, in the body, unit
-/// @param h  length that the joint stands for, half of both its segments [m]
-/// @throws InputError naming file, line, element and attribute of what no rod is like
+/// Computes the stiffnesses that correspond to a body's joints and its cable plugin.
+/// @param direction  direction of its segment in the body, unit vector
+/// @param h  length that the joint represents, half of both adjacent segments [m]
+/// @throws InputError that names file, line, element and attribute of what no rod can represent
 [[nodiscard]] MjcfSpring mjcf_spring(const XmlFile& xml, const MjcfBody& body,
                                      const Eigen::Vector3d& direction, double h);
 

@@ -15,9 +15,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// A place is on the axis if it is no farther away than this share of a segment.
+/// Largest distance of a point from the axis, divided by the length of a segment, at which it
+/// counts as on the axis [-].
 constexpr double on_axis = 1e-3;
-/// Angle between segments that are one line [rad].
+/// Largest angle between segments that count as collinear [rad].
 constexpr double straight = 1e-6;
 
 /// Finds the chain, segment by segment.
@@ -61,7 +62,7 @@ class ChainFinder {
     refusals_.attempt([&] { fail(segment, problem); });
   }
 
-  /// Where a body's segment begins, in the body.
+  /// Returns the start of a body's segment, in the body [m].
   [[nodiscard]] Vector3d begin_of(std::size_t body) const {
     const std::vector<MjcfJoint>& joints = world_.bodies[body].joints;
     for (const MjcfJoint& joint : joints) {
@@ -72,8 +73,8 @@ class ChainFinder {
     return jointed ? joints.front().place : Vector3d::Zero();
   }
 
-  /// Those that move, from one end to the other, behind the body that holds the first if that is a
-  /// segment itself.
+  /// Returns the moving bodies from one end to the other, preceded by the body that holds the first
+  /// one if that body is a segment itself.
   [[nodiscard]] std::vector<std::size_t> bodies_along() {
     std::vector<std::size_t> along;
     for (std::size_t i = 1; i < world_.bodies.size(); ++i) {
@@ -115,7 +116,7 @@ class ChainFinder {
     return along;
   }
 
-  /// Whether a body is only a name for a place.
+  /// Whether a body only names a position: it has no joint, geom, mass or nested body.
   [[nodiscard]] bool is_empty(std::size_t i) const {
     const MjcfBody& body = world_.bodies[i];
     const auto is_inside = [i](const MjcfBody& other) { return other.parent == i; };
@@ -123,8 +124,8 @@ class ChainFinder {
            std::none_of(world_.bodies.begin() + 1, world_.bodies.end(), is_inside);
   }
 
-  /// Whether a body that does not move is the first segment: as long as the next one, with a geom
-  /// that ends at that one's joint.
+  /// Whether a fixed body is the first segment: it is as long as the next one and has a geom that
+  /// ends at the joint of the next one.
   [[nodiscard]] bool is_segment(std::size_t holder, const std::vector<std::size_t>& along) const {
     const MjcfBody& body = world_.bodies[holder];
     if (world_.composite && body.node == world_.composite) return true;
@@ -138,7 +139,7 @@ class ChainFinder {
            });
   }
 
-  /// Where a body's segment begins, in another body.
+  /// Returns the start of a body's segment, in another body [m].
   [[nodiscard]] Vector3d place_in(std::size_t body, std::size_t other) const {
     return world_.bodies[other].pose.inverse() * (world_.bodies[body].pose * begin_of(body));
   }
@@ -157,7 +158,7 @@ class ChainFinder {
     chain_.segments.push_back(segment);
   }
 
-  /// The end of a geom that is farthest from the last joint.
+  /// Returns the end of the last segment: the end of a geom that is farthest from the last joint.
   [[nodiscard]] Vector3d last_end(const MjcfSegment& segment) const {
     Vector3d farthest = segment.begin;
     for (const MjcfGeom& geom : body_of(segment).geoms) {
@@ -243,11 +244,13 @@ class ChainFinder {
   XmlRefusals& refusals_;
   const MjcfWorld& world_;
   MjcfChain chain_;
-  double off_middle_ = 0;            // of the masses, in segments
-  std::vector<MjcfSpring> springs_;  // of the joints between segments, in their order
+  // Largest distance of a centre of mass from the middle of its segment, in segments.
+  double off_middle_ = 0;
+  std::vector<MjcfSpring> springs_;  // between segments, in the order of the chain
 };
 
-/// EI is a spring times the length that it stands for, half of both its segments.
+/// Computes EI from the springs: each is multiplied by the length that it represents, half of both
+/// adjacent segments.
 void ChainFinder::set_joints() {
   for (std::size_t i = 1; i < chain_.segments.size(); ++i) {
     const MjcfSegment& segment = chain_.segments[i];
@@ -287,12 +290,13 @@ void ChainFinder::require_axis(const MjcfSegment& segment, const MjcfSpring& spr
             "differs from the axis of the first joint (allowed: one axis for all bodies)");
 }
 
-/// Stiffnesses and mass between two neighbouring ends or middles of segments.
+/// Returns stiffnesses and mass between two adjacent ends or middles of segments.
 MjcfSection ChainFinder::section(double from, double to) const {
   const double h = chain_.length / static_cast<double>(chain_.segments.size());
   const double middle = (from + to) / 2;
   const auto segment = static_cast<std::size_t>(middle / h);
-  // The spring of joint i, between segments i and i + 1, stands for what is nearest to it.
+  // The spring of joint i, between segments i and i + 1, represents the part of the rod that is
+  // nearest to it.
   const double joint =
       std::clamp(std::round(middle / h) - 1, 0.0, static_cast<double>(springs_.size()) - 1);
   const MjcfSpring& spring = springs_[static_cast<std::size_t>(joint)];

@@ -13,10 +13,10 @@ namespace {
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-/// Vertices of a composite; as many bodies as elements may be nested.
+/// Largest number of vertices of a composite; equals the largest nesting depth of bodies.
 constexpr std::size_t most_vertices = 1000;
 
-/// Vertices that are written out.
+/// Reads vertices that are given by their coordinates.
 std::vector<Vector3d> given_vertices(const MjcfAttributes& attributes, const pugi::xml_node& node) {
   const XmlFile& xml = attributes.xml();
   const std::vector<double> v = *attributes.numbers(node, "vertex", 6, 3 * most_vertices, "");
@@ -29,7 +29,7 @@ std::vector<Vector3d> given_vertices(const MjcfAttributes& attributes, const pug
   return points;
 }
 
-/// Which function of s each coordinate is: s, cos(s), sin(s) or 0.
+/// Returns the function of s for each coordinate: s, cos(s), sin(s) or 0.
 std::vector<std::string> curve_of(const XmlFile& xml, const pugi::xml_node& node) {
   std::istringstream words(node.attribute("curve").as_string("s 0 0"));
   std::vector<std::string> curve;
@@ -46,7 +46,8 @@ std::vector<std::string> curve_of(const XmlFile& xml, const pugi::xml_node& node
   return curve;
 }
 
-/// Vertices on a curve: s grows to size[0], arguments to pi size[2], and the radius is size[1].
+/// Returns vertices on a curve: s increases to size[0], the arguments of sin and cos to pi size[2],
+/// and the radius is size[1].
 std::vector<Vector3d> curve_vertices(const MjcfAttributes& attributes, const pugi::xml_node& node) {
   const XmlFile& xml = attributes.xml();
   const auto counts = attributes.numbers(node, "count", 1, 3, "");
@@ -78,12 +79,13 @@ std::vector<Vector3d> curve_vertices(const MjcfAttributes& attributes, const pug
   return points;
 }
 
-/// x along a segment, carried on from the frame before by the least rotation.
+/// Returns the next frame, with x along its segment: the previous frame, rotated by the smallest
+/// rotation.
 Quaterniond next_frame(const Quaterniond& before, const Vector3d& edge) {
   return Quaterniond::FromTwoVectors(before * Vector3d::UnitX(), edge) * before;
 }
 
-/// What its children say of all bodies.
+/// Elements of a composite that apply to all its bodies.
 struct Parts {
   pugi::xml_node geom, joint, plugin;
 };

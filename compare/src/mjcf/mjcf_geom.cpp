@@ -14,7 +14,7 @@ using Type = MjcfGeom::Type;
 using Eigen::Vector3d;
 
 constexpr double pi = std::numbers::pi;
-/// Of water, as MuJoCo has it where nothing else is said [kg/m^3].
+/// Density of water, MuJoCo's default [kg/m^3].
 constexpr double default_density = 1000;
 
 Type type_of(const MjcfAttributes& attributes, const pugi::xml_node& node,
@@ -44,7 +44,7 @@ std::size_t sizes_of(Type type) {
   return 0;
 }
 
-/// Half-sizes, of which `given` may be said by fromto instead.
+/// Reads half-sizes; the last `given` of them are optional, because fromto determines them.
 Vector3d read_size(const MjcfAttributes& attributes, const pugi::xml_node& node, Type type,
                    std::size_t given, const std::string& childclass) {
   Vector3d size = Vector3d::Zero();
@@ -76,7 +76,7 @@ void span(const MjcfAttributes& attributes, const pugi::xml_node& node, const Ve
   geom.pose.linear() =
       Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), way).toRotationMatrix();
   geom.pose.translation() = (from + to) / 2;
-  // A box along z has its first two sizes across, as MuJoCo has it.
+  // A box along z has its first two sizes perpendicular to z, as in MuJoCo.
   geom.size[geom.is_round() ? 1 : 2] = way.norm() / 2;
 }
 

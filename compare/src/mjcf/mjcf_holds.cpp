@@ -12,13 +12,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Of a constraint: a body and a place on it.
+/// Body of a constraint and the point of attachment.
 struct Attached {
   std::size_t body = 0;
   MjcfPose frame = MjcfPose::Identity();  ///< in the body
 };
 
-/// Finds what holds a chain.
+/// Finds the grippers of a chain.
 class HoldFinder {
  public:
   HoldFinder(const MjcfAttributes& attributes, const MjcfWorld& world, const MjcfChain& chain)
@@ -41,7 +41,7 @@ class HoldFinder {
                 "begins a cable that nothing holds (allowed: a first body without a free joint, or "
                 "weld and connect in <equality>)");
     }
-    // In their reference poses clamps do not twist the cable against each other.
+    // Clamps in their reference poses do not twist the cable.
     for (MjcfHold& hold : holds_) {
       if (!is_turned_) hold.d1.reset();
     }
@@ -53,7 +53,7 @@ class HoldFinder {
     return world_.bodies[chain_.segments[segment].body];
   }
 
-  /// Tangent that the rod has where a segment is clamped in its reference pose.
+  /// Returns the tangent of a rod that is clamped at a segment in its reference pose.
   [[nodiscard]] Vector3d tangent(std::size_t segment) const {
     return body_of(segment).pose.linear() * chain_.segments[segment].direction();
   }
@@ -84,7 +84,7 @@ class HoldFinder {
     holds_.push_back(std::move(hold));
   }
 
-  /// @return whether it holds the chain
+  /// Adds the gripper of a constraint. @return whether it holds the chain
   bool add(const pugi::xml_node& constraint) {
     const std::string_view kind = constraint.name();
     if (kind != "weld" && kind != "connect") {
@@ -124,7 +124,7 @@ class HoldFinder {
               name.empty() ? "missing (allowed: a site's name)" : "no such site");
   }
 
-  /// Segment of the one that is the chain's, while the other one does not move.
+  /// Returns the segment that a constraint holds; the other body must not move.
   [[nodiscard]] std::size_t held_segment(const pugi::xml_node& constraint, Attached& first,
                                          Attached& second) const {
     const auto a = chain_.segment_of(first.body);
@@ -148,7 +148,7 @@ class HoldFinder {
     if (by_sites) {
       pose = world_.bodies[second.body].pose * second.frame * first.frame.inverse();
     } else if (moved) {
-      // Of the second body in the first one's frame.
+      // Pose of the second body in the frame of the first one.
       const MjcfPose way = pose_of(*relative);
       const MjcfPose other = world_.bodies[second.body].pose;
       pose = swapped ? other * way : other * way.inverse();
@@ -159,7 +159,7 @@ class HoldFinder {
     hold.at = last ? chain_.length : segment.at + share * segment.length();
     hold.position = pose * (segment.begin + share * (segment.end - segment.begin));
     hold.direction = pose.linear() * segment.direction();
-    // What is the rod's d1 in the reference pose goes with the body.
+    // The rod's d1 in the reference pose rotates with the body.
     hold.d1 = pose.linear() * body_of(k).pose.linear().transpose() * reference_d1(k);
     is_turned_ = is_turned_ || moved;
     hold.words = fmt::format("<weld> holds {}", quoted_piece(body_of(k).name));
@@ -213,7 +213,8 @@ class HoldFinder {
                     Eigen::Quaterniond(v[3], v[4], v[5], v[6]).normalized());
   }
 
-  /// Across the rod, carried along its reference pose without twist.
+  /// Returns a unit vector perpendicular to the rod, transported without twist along its reference
+  /// pose.
   [[nodiscard]] Vector3d reference_d1(std::size_t segment) const {
     const Vector3d first = tangent(0);
     Vector3d d1 = first.unitOrthogonal();
@@ -239,7 +240,7 @@ class HoldFinder {
   const MjcfWorld& world_;
   const MjcfChain& chain_;
   std::vector<MjcfHold> holds_;
-  bool is_turned_ = false;  // a clamp, from its reference pose
+  bool is_turned_ = false;  // whether a clamp is rotated from its reference pose
 };
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 using Type = MjcfGeom::Type;
 
-/// Names of bodies that do not touch the cable by <contact><exclude>.
+/// Returns the names of bodies whose contact with the cable is disabled by <contact><exclude>.
 std::set<std::string> excluded(const XmlFile& xml, const MjcfWorld& world, const MjcfChain& chain) {
   std::set<std::string> names;
   const auto is_cable = [&](const std::string& name) {
@@ -35,7 +35,7 @@ std::set<std::string> excluded(const XmlFile& xml, const MjcfWorld& world, const
   return names;
 }
 
-/// How far a place is from the middle of a geom's surface, at most: a sphere around all of it.
+/// Returns the radius of a sphere that contains the geom [m].
 double reach_of(const MjcfGeom& geom) {
   switch (geom.type) {
     case Type::sphere:
@@ -53,7 +53,7 @@ double reach_of(const MjcfGeom& geom) {
   return geom.size.norm();
 }
 
-/// The shape of a geom; empty of one that no obstacle has.
+/// Returns the shape of a geom for a table [[obstacle]]; empty if no obstacle has such a shape.
 std::string shape_text(const MjcfGeom& geom, const MjcfPose& pose) {
   const std::string point = toml_vector(pose.translation());
   const Vector3d axis = pose.linear().col(2);

@@ -17,7 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// What <option> says.
+/// Values of <option>.
 struct Options {
   Vector3d gravity = {0, 0, -9.81};
   bool equality = true, contact = true;
@@ -48,7 +48,7 @@ Options read_options(const MjcfAttributes& attributes) {
   return options;
 }
 
-/// The stress-free shape in rows of points.
+/// Returns the stress-free shape as rows of points.
 std::string rest_points(const MjcfWorld& world, const MjcfChain& chain) {
   std::string rows;
   for (const MjcfSegment& segment : chain.segments) {
@@ -58,7 +58,8 @@ std::string rest_points(const MjcfWorld& world, const MjcfChain& chain) {
   return "[" + rows + toml_vector(world.bodies[last.body].pose * last.end) + "]";
 }
 
-/// Hinges with one axis carry what is across their plane, a rod does not.
+/// Checks that gravity is in the plane of hinges with one axis. The hinges would carry the
+/// component perpendicular to it, a rod does not.
 void require_in_plane(const XmlFile& xml, const MjcfWorld& world, const MjcfChain& chain,
                       const Vector3d& gravity) {
   constexpr double aligned = 1e-6;
@@ -111,7 +112,7 @@ std::string sections_text(const MjcfChain& chain) {
   return text;
 }
 
-/// What has been derived and taken for what.
+/// Returns the chain with the assumptions that were made.
 ModelChain told(const MjcfWorld& world, const MjcfChain& chain,
                 const std::vector<std::string>& notes) {
   ModelChain result;

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Sine, or cosine, of two axes that are at a right angle, or one.
+/// Largest sine or cosine of the angle between axes that count as parallel or perpendicular.
 constexpr double aligned = 1e-6;
 
 MjcfSpring of_ball(const XmlFile& xml, const MjcfBody& body, double h) {
@@ -27,7 +27,7 @@ MjcfSpring of_ball(const XmlFile& xml, const MjcfBody& body, double h) {
              "has a cable plugin and a section that is not round (allowed: a capsule or cylinder "
              "as its first geom)");
   }
-  // Second moment of area of a circle; the polar one is twice as large.
+  // Second moment of area of a circle; the polar moment is twice as large.
   const double I = std::numbers::pi / 4 * std::pow(body.geoms.front().size[0], 4);
   result.bending += body.plugin->bend * I;
   result.twisting += body.plugin->twist * 2 * I;

@@ -6,7 +6,7 @@
 namespace dlo::compare {
 namespace {
 
-// The names are those of MuJoCo's XML reference.
+// Names are those of MuJoCo's XML reference.
 constexpr MjcfElement elements[] = {
     {"mujoco", "model", ""},
     {"compiler", "angle eulerseq coordinate inertiafromgeom autolimits",

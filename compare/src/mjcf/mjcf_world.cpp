@@ -13,7 +13,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Reads bodies within bodies.
+/// Reads nested bodies.
 class WorldReader {
  public:
   explicit WorldReader(const MjcfAttributes& attributes)
@@ -36,15 +36,15 @@ class WorldReader {
   }
 
  private:
-  /// Around an element.
+  /// Surroundings of an element.
   struct Around {
     std::size_t body;
-    MjcfPose at;  ///< of frames, in the body
+    MjcfPose at;  ///< pose of the surrounding frames, in the body
     std::string childclass;
   };
 
   void read_children(const pugi::xml_node& parent, const Around& around) {
-    // Bodies come behind all else of the body that they are in.
+    // Nested bodies are read after all other elements of a body.
     const auto attempt = [&](const pugi::xml_node& node, const auto& read) {
       attributes_.refusals().attempt([&] { read(node); });
     };
@@ -108,20 +108,21 @@ class WorldReader {
     const std::size_t index = world_.bodies.size();
     world_.bodies.push_back(std::move(body));
     const std::string childclass = attributes_.known_class(node, "childclass", around.childclass);
-    // What a body has is known before its mass is, and that before the bodies in it.
+    // The body's other elements are read first, then its mass is known, then nested bodies are
+    // read.
     const Around inside{index, MjcfPose::Identity(), childclass};
     read_children(node, inside);
     set_mjcf_mass(attributes_, node.child("inertial"), world_.bodies[index]);
   }
 
-  /// Removes joints that only carry the whole cable about, and finds the bodies that move.
+  /// Removes joints that only move the cable as a whole, and finds the bodies that move.
   void fix_base() {
     using Type = MjcfJoint::Type;
     const bool held = !xml_.root().select_node("equality/*[not(@active='false')]").node().empty();
     const auto carries = [&](const MjcfJoint& joint) {
       return joint.type == Type::slide || (joint.type == Type::free && !held);
     };
-    std::size_t last = 0;  // body that can bend the cable
+    std::size_t last = 0;  // last body that can bend the cable
     for (std::size_t i = 1; i < world_.bodies.size(); ++i) {
       if (std::ranges::any_of(world_.bodies[i].joints, &MjcfJoint::rotates)) last = i;
     }

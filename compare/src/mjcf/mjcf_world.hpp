@@ -15,19 +15,21 @@ struct MjcfSite {
   MjcfPose pose = MjcfPose::Identity();  ///< in the body
 };
 
-/// All bodies of a model in MuJoCo's order, the world first, composites made bodies.
+/// All bodies of a model in MuJoCo's order, the world first; composites are expanded to bodies.
 struct MjcfWorld {
   std::vector<MjcfBody> bodies;
   std::vector<MjcfSite> sites;
-  pugi::xml_node composite;        ///< of the cable; none if its bodies are written out
+  pugi::xml_node composite;        ///< composite of the cable; empty if its bodies are written out
   std::vector<std::string> notes;  ///< on ignored parts of the model
 };
 
-/// @throws InputError naming file, line, element and attribute that a rod's scene cannot say
+/// Reads the bodies of a model.
+/// @throws InputError that names file, line, element and attribute that a rod's scene cannot
+/// represent
 [[nodiscard]] MjcfWorld read_mjcf_world(const MjcfAttributes& attributes);
 
 /// Adds the bodies, joints and sites of a <composite type="cable"> to a world.
-/// @param at  of the frames around it, in the world;  @param parent  body that it is in
+/// @param at  pose of the surrounding frames, in the world;  @param parent  body that contains it
 void add_mjcf_composite(const MjcfAttributes& attributes, const pugi::xml_node& node,
                         const MjcfPose& at, std::size_t parent, MjcfWorld& world);
 

@@ -11,17 +11,17 @@
 namespace dlo::compare {
 namespace {
 
-/// What two markers' mean distance may be off: more than they are misplaced by, less than a wrong
-/// unit or a wrong pair of markers.
+/// Largest relative error of the mean distance of two markers: larger than errors of their
+/// placement, smaller than a wrong unit or a wrong pair of markers.
 constexpr double distance_share = 0.2;
 
-/// Of a marker, and where it is along the rod [m].
+/// Trajectory of a marker, and its arc length on the rod [m].
 struct MarkerWay {
   double arc_length = 0;
   Trajectory way;
 };
 
-/// By arc length.
+/// Returns the trajectories of all markers, by arc length.
 std::vector<MarkerWay> ways_of(const MarkerMotion& markers, std::optional<double> cutoff) {
   std::map<double, std::vector<Pose>> seen;
   for (const MarkerPosition& at : markers.positions) {
@@ -41,7 +41,7 @@ std::vector<MarkerWay> ways_of(const MarkerMotion& markers, std::optional<double
   return ways;
 }
 
-/// Times while both are seen, of that with more of them.
+/// Returns the times at which both are observed, those of the trajectory with more of them.
 std::vector<double> common_times(const Trajectory& a, const Trajectory& b) {
   const double begin = std::max(a.begin(), b.begin());
   const double end = std::min(a.end(), b.end());

@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, 5> marker_columns = {"time", "s", "x", "y
 constexpr const char* marker_columns_allowed = "(allowed: a header of time,s,x,y,z in any order)";
 constexpr std::size_t most_positions = 1'000'000;
 
-/// Where each of marker_columns is among a file's.
+/// Returns the position of each of marker_columns among a file's columns.
 std::array<std::size_t, 5> marker_columns_of(const std::vector<std::string_view>& header,
                                              const std::string& where) {
   std::array<std::size_t, 5> columns{};

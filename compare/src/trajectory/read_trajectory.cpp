@@ -23,12 +23,12 @@
 namespace dlo::compare {
 namespace {
 
-/// No robot's program comes near it; the memory for a pose is a hundred bytes.
+/// Largest number of poses, more than a robot's program has; a pose takes about a hundred bytes.
 constexpr std::size_t most_poses = 1'000'000;
 
 constexpr std::array<const char*, 8> pose_columns = {"time", "x",  "y",  "z",
                                                      "dx",   "dy", "dz", "roll"};
-constexpr std::size_t direction_columns = 4, roll_column = 7;  // where they begin
+constexpr std::size_t direction_columns = 4, roll_column = 7;  // index of the first column
 constexpr const char* pose_columns_allowed =
     "(allowed: a header of time,x,y,z with or without dx,dy,dz and roll, in any order)";
 constexpr const char* file_allowed =
@@ -36,14 +36,14 @@ constexpr const char* file_allowed =
     "two "
     "markers on a gripper, time,s,x,y,z)";
 
-/// What Trajectory says of a pose, without its own name.
+/// Returns the problem of a pose in Trajectory's message, without the name of the class.
 std::string problem_in(const std::invalid_argument& error) {
   const std::string_view message = error.what();
   const std::size_t name = message.find(": ");
   return std::string(message.substr(name == std::string_view::npos ? 0 : name + 2));
 }
 
-/// Where each of pose_columns is among a file's.
+/// Position of each of pose_columns among a file's columns.
 struct PoseColumns {
   std::size_t count = 0;
   std::array<std::optional<std::size_t>, pose_columns.size()> of;
@@ -138,7 +138,7 @@ Trajectory read_rows(StrictTable& table, std::vector<StrictTable>& rows, const P
   }
 }
 
-/// Whether a file's rows are of markers, which have arc lengths.
+/// Whether a file's rows are those of markers, which have arc lengths.
 bool is_of_markers(std::string_view text, const std::string& file) {
   bool found = false;
   for_each_csv_row(text, file, {.most_rows = 1}, [&found](const CsvRow& row) {
@@ -147,7 +147,7 @@ bool is_of_markers(std::string_view text, const std::string& file) {
   return found;
 }
 
-/// Poses of a file. @throws std::invalid_argument as smooth_poses()
+/// Reads the poses of a file. @throws std::invalid_argument as smooth_poses()
 std::vector<Pose> file_poses(const std::string& text, const std::string& file, const PoseKeys& keys,
                              std::optional<double> cutoff) {
   if (keys.at && is_of_markers(text, file)) {
@@ -215,7 +215,7 @@ Trajectory read_trajectory(StrictTable& table, const PoseKeys& keys,
     const std::string text = read_beside(table, "trajectory", *name, scene_file, file_allowed);
     trajectory = Trajectory(file_poses(text, *name, keys, cutoff));
   } catch (const InputError& error) {
-    // One that the table has made says where it is already.
+    // The table's own errors name the position already.
     if (std::string_view(error.what()).starts_with(scene_file)) throw;
     table.fail("trajectory", error.what());
   } catch (const std::invalid_argument& error) {

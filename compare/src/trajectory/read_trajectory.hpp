@@ -13,86 +13,93 @@
 
 namespace dlo::compare {
 
-/// The way from a pose of a Trajectory to the next, cubic in time.
+/// The path from a pose of a Trajectory to the next, cubic in time.
 struct TrajectoryLeg {
   Pose from, to;
-  Eigen::Vector3d velocity_from, velocity_to;  ///< at both [m/s]
-  double angle = 0;                            ///< between the directions, of what has some [rad]
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< of that turn, unit; zero without one
-  double rate_from = 0, rate_to = 0;               ///< of rotating about it, at both [rad/s]
-  double roll_rate_from = 0, roll_rate_to = 0;     ///< of the roll, of what has one [rad/s]
+  Eigen::Vector3d velocity_from, velocity_to;  ///< velocities at both poses [m/s]
+  double angle = 0;  ///< angle between the directions [rad], if there are any
+  /// Axis of that rotation, unit vector; zero without a rotation.
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+  double rate_from = 0, rate_to = 0;  ///< rates of the rotation at both poses [rad/s]
+  /// Rates of the roll at both poses [rad/s], if there is one.
+  double roll_rate_from = 0, roll_rate_to = 0;
 
-  /// At a time from `from` to `to` [m], or a derivative of it by time: 0 to 2.
+  /// Returns the position at a time from `from` to `to` [m], or its time derivative of order 1 or
+  /// 2.
   [[nodiscard]] Eigen::Vector3d position(double time, int derivative = 0) const;
-  /// The angle turned since `from` [rad], or a derivative.
+  /// Returns the angle of the rotation since `from` [rad], or its time derivative.
   [[nodiscard]] double turned(double time, int derivative = 0) const;
-  /// The roll, of what has one [rad], or a derivative.
+  /// Returns the roll [rad], if there is one, or its time derivative.
   [[nodiscard]] double rolled(double time, int derivative = 0) const;
 };
 
-/// @param poses  as a Trajectory has them;  @param first  of the leg, not the last pose
+/// Computes the leg from one pose to the next.
+/// @param poses  as those of a Trajectory;  @param first  index of the leg's first pose, not the
+/// last
 [[nodiscard]] TrajectoryLeg leg_after(const std::vector<Pose>& poses, std::size_t first);
 
-/// What the poses of a table's moving thing have.
+/// Keys of a moving object's poses in its table.
 struct PoseKeys {
-  const char* position = "position";  ///< key of where it is
-  /// Reads a pose's direction; none: it has no direction, and no roll.
+  const char* position = "position";  ///< key of the position
+  /// Reads a pose's direction; empty: the object has neither direction nor roll.
   std::function<Eigen::Vector3d(StrictTable&)> direction;
-  /// Arc length at which it holds the rod [m], whose file may be of markers; none: it is no
-  /// gripper.
+  /// Arc length at which a gripper holds the rod [m]; its file may then contain markers. Empty: the
+  /// object is not a gripper.
   std::optional<double> at = std::nullopt;
 };
 
-/// The poses of a table, as [[..pose]] rows of time, position, direction and roll, or as the file
-/// that its key `trajectory` names (relative to the scene's folder), of poses or of two markers on
-/// a gripper (poses_of_markers()): none of the two is no poses.
-/// Rows may all leave the direction out, and the roll. @throws InputError naming file, line, key
-/// and what is allowed
+/// Reads the poses of a table: [[..pose]] rows of time, position, direction and roll, or the file
+/// that the key `trajectory` names (relative to the scene's folder), with poses or with two markers
+/// on a gripper (poses_of_markers()). Without either there are no poses. Either all rows have a
+/// direction or none has, likewise the roll.
+/// @throws InputError that names file, line, key and what is allowed
 [[nodiscard]] Trajectory read_trajectory(StrictTable& table, const PoseKeys& keys,
                                          const std::string& scene_file);
 
-/// Text of the file that a table's key names, relative to the folder of the scene; a pipe or a
-/// device could keep a scene from ever being read.
-/// @param allowed  "(allowed: ..)";  @throws InputError naming the key if there is no such file
+/// Reads the text of the file that a table's key names, relative to the folder of the scene. Only a
+/// regular file is read, because a pipe or a device could block the reader.
+/// @param allowed  "(allowed: ..)";  @throws InputError that names the key if there is no such file
 [[nodiscard]] std::string read_beside(const StrictTable& table, std::string_view key,
                                       const std::string& name, const std::string& scene_file,
                                       const char* allowed);
 
-/// Poses of a CSV file: a header with time, x, y, z, (all or none) dx, dy, dz and perhaps roll, in
-/// any order, then a row a pose, in s, m and rad; empty lines and those that begin with # are
-/// passed over.
-/// @throws InputError naming the file, the line, and what is allowed
+/// Reads poses from a CSV file: a header with time, x, y, z, (all or none) dx, dy, dz and
+/// optionally roll, in any order, then a row per pose, in s, m and rad; empty lines and lines that
+/// begin with # are skipped.
+/// @throws InputError that names the file, the line, and what is allowed
 [[nodiscard]] Trajectory parse_trajectory(std::string_view text, const std::string& file);
 
-/// Poses of a gripper that two markers on it show, the rod straight between and beyond them: of
-/// those at arc lengths s_1 < s_2 seen at a and b it is
+/// Computes the poses of a gripper from two markers on it; the rod is straight between and beyond
+/// them. From the positions a and b of the markers at arc lengths s_1 < s_2 follows
 ///     direction = (b - a) / |b - a|,   position = (a + b) / 2 + (at - (s_1 + s_2) / 2) direction,
-/// which comes nearest to both (least squares). Each marker has its own times: where one was not
-/// seen it is on its Trajectory. Poses are at the times of that with more rows, while both are
-/// seen.
-/// @param at      where the gripper holds the rod [m]
-/// @param cutoff  each marker is smoothed by itself, as by smooth_poses() [Hz]; none: not
-/// @throws InputError naming the file unless there are two markers, seen at the same time, and on
-/// average as far apart as their arc lengths, to a fifth; std::invalid_argument as smooth_poses()
+/// which is the least-squares fit to both. Each marker has its own times: between them its position
+/// is that of its Trajectory. Poses are at the times of the marker with more rows, while both are
+/// observed.
+/// @param at      arc length at which the gripper holds the rod [m]
+/// @param cutoff  each marker is smoothed separately, as by smooth_poses() [Hz]; empty: not
+/// smoothed
+/// @throws InputError that names the file unless there are two markers, observed at the same time,
+/// whose mean distance differs from that of their arc lengths by at most a fifth;
+/// std::invalid_argument as smooth_poses()
 [[nodiscard]] std::vector<Pose> poses_of_markers(const MarkerMotion& markers, double at,
                                                  std::optional<double> cutoff);
 
-/// Poses that were measured, without what is faster than a cut-off: positions, directions (of norm
-/// 1 again) and rolls each by the least sum
+/// Smooths measured poses with a low-pass filter. Positions, directions (normalised again) and
+/// rolls each minimise
 ///     sum w_k (x_k - y_k)^2 + lambda sum v_k (x''_k)^2,
-/// x'' the second divided difference, w and v the time that a pose stands for (Whittaker's
-/// smoothing). It has no lag, keeps what moves evenly, and at equal steps h its gain is that of a
-/// Butterworth filter of second order run forward and backward,
+/// x'' the second divided difference, w and v the time that a pose represents (Whittaker's
+/// smoothing). The filter has no lag and does not change uniform motion. At equal steps h its gain
+/// is that of a Butterworth filter of second order run forward and backward,
 ///     1 / (1 + (sqrt(2) - 1) (sin(pi f h) / sin(pi f_c h))^4):
 /// 1/sqrt(2), or -3 dB, at the cut-off f_c.
-/// @param poses   as Trajectory's, three or more
+/// @param poses   as those of a Trajectory, three or more
 /// @param cutoff  [Hz], > 0, below half of their mean rate
-/// @throws std::invalid_argument if that is not so, or smoothing leaves no direction
+/// @throws std::invalid_argument if these conditions do not hold, or smoothing leaves no direction
 [[nodiscard]] std::vector<Pose> smooth_poses(std::vector<Pose> poses, double cutoff);
 
-/// A recording as CSV: a header with time, s, x, y, z in any order, then a row for each marker that
-/// was seen at a time, in s and m; a marker that was not seen has none. Rows may come in any order.
-/// @throws InputError naming the file, the line, and what is allowed
+/// Reads a recording from CSV: a header with time, s, x, y, z in any order, then a row for each
+/// marker that was observed at a time, in s and m. Rows may be in any order.
+/// @throws InputError that names the file, the line, and what is allowed
 [[nodiscard]] MarkerMotion parse_markers(std::string_view text, const std::string& file);
 
 /// Whether the first row of a CSV text is the header of a recording.

@@ -13,7 +13,7 @@ namespace {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-/// Time that each pose stands for [s].
+/// Returns the time that each pose represents [s].
 Eigen::VectorXd time_shares(const std::vector<Pose>& poses) {
   const auto count = static_cast<Eigen::Index>(poses.size());
   Eigen::VectorXd shares = Eigen::VectorXd::Zero(count);
@@ -26,7 +26,7 @@ Eigen::VectorXd time_shares(const std::vector<Pose>& poses) {
   return shares;
 }
 
-/// Second derivatives at all poses but the first and the last.
+/// Returns the operator of second derivatives at all poses except the first and the last.
 SparseMatrix second_differences(const std::vector<Pose>& poses) {
   const auto count = static_cast<Eigen::Index>(poses.size());
   std::vector<Eigen::Triplet<double>> entries;
@@ -45,7 +45,7 @@ SparseMatrix second_differences(const std::vector<Pose>& poses) {
   return result;
 }
 
-/// Positions, directions and rolls, by row.
+/// Returns positions, directions and rolls, one pose per row.
 Eigen::MatrixXd values_of(const std::vector<Pose>& poses) {
   Eigen::MatrixXd values = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(poses.size()), 7);
   for (Eigen::Index k = 0; k < values.rows(); ++k) {

@@ -13,7 +13,8 @@
 namespace dlo::compare {
 namespace {
 
-/// Directions within this of opposite have no great circle between them [-].
+/// Tolerance within which directions count as opposite, so that no great circle between them is
+/// defined [-].
 constexpr double opposite = 1e-9;
 
 void require(bool holds, std::size_t pose, const char* what) {

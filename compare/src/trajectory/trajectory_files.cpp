@@ -16,7 +16,7 @@ namespace {
 
 std::optional<toml::table> document_of(const std::string& file) {
   std::error_code unknown;
-  // A pipe can be read once only.
+  // A pipe can be read only once.
   if (!std::filesystem::is_regular_file(file, unknown)) return std::nullopt;
   try {
     return parse_toml(read_file(file), file);
@@ -83,7 +83,8 @@ bool is_frame_of_series(const std::string& file, const std::string& series) {
   const std::string stem = series_stem(series);
   std::error_code unknown;
   const fs::path folder = fs::weakly_canonical(fs::absolute(series).parent_path(), unknown);
-  // By its own name too: where a link is a frame, the file that it leads to is written.
+  // The path is compared under its own name too: if a link is named like a frame, its target is
+  // written.
   for (const fs::path& path : {fs::weakly_canonical(fs::absolute(file), unknown),
                                fs::weakly_canonical(fs::absolute(file).parent_path(), unknown) /
                                    fs::path(file).filename()}) {

@@ -9,16 +9,17 @@
 namespace dlo::compare {
 namespace {
 
-/// Great circles whose tangents differ by less go on as one [-].
+/// Largest difference between the tangents of great circles that count as one [-].
 constexpr double same_circle = 1e-6;
 
 /// Weights of Hermite's cubic at a share u of the time between two poses.
 struct Hermite {
-  double to;                    ///< of the change of the value
-  double slope_from, slope_to;  ///< of the rates, per time between
+  double to;                    ///< weight of the change of the value
+  double slope_from, slope_to;  ///< weights of the rates, multiplied by the time between
 };
 
-/// @param derivative  by u
+/// Returns the weights, or their derivatives.
+/// @param derivative  order of the derivative with respect to u
 Hermite hermite(double u, int derivative) {
   const double v = 1 - u;
   if (derivative == 0) return {u * u * (1 + 2 * v), u * v * v, -u * u * v};
@@ -26,16 +27,17 @@ Hermite hermite(double u, int derivative) {
   return {6 * (v - u), 6 * u - 4, 6 * u - 2};
 }
 
-/// No faster than three times the slower side.
+/// Returns the factor that limits a speed to three times that of the slower side [-].
 double speed_share(double speed, double before, double after) {
   const double most = 3 * std::min(before, after);
   return speed > most ? most / speed : 1;
 }
 
-/// The great circle from one direction to the next.
+/// Great circle from one direction to the next.
 struct GreatCircle {
-  double angle = 0;                                ///< [rad]
-  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< unit; zero where the two are the same
+  double angle = 0;  ///< [rad]
+  /// Unit vector; zero if both directions are equal.
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();
 };
 
 GreatCircle circle_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
@@ -45,7 +47,7 @@ GreatCircle circle_between(const Eigen::Vector3d& from, const Eigen::Vector3d& t
   return {std::atan2(sine, from.dot(to)), across / sine};
 }
 
-/// Rate of turning at a pose between two great circles [rad/s].
+/// Returns the angular velocity at a pose between two great circles [rad/s].
 double turning_rate(const GreatCircle& before, const GreatCircle& after, double h_before,
                     double h_after) {
   if (!((before.axis - after.axis).norm() < same_circle)) return 0;
@@ -55,7 +57,7 @@ double turning_rate(const GreatCircle& before, const GreatCircle& after, double 
   return rate * speed_share(rate, s_before, s_after);
 }
 
-/// At b, of a vector that each pose has.
+/// Returns the rate of change at pose b of a vector that each pose has.
 template <class Value>
 Eigen::Vector3d velocity_between(const Pose& a, const Pose& b, const Pose& c, const Value& value) {
   const double h_before = b.time - a.time;
