@@ -1,8 +1,8 @@
 #pragma once
 
-// What a program needs to judge shapes of rods: a scene made in code (make_scene) or read
-// (load_scene), check(), calibrate(), solve(), compare(), and any result as text or JSON (to_text,
-// to_json). GoogleTest's matchers are in dlo/compare/gtest.hpp.
+// Includes all that a program needs to judge shapes of rods: a scene made in code (make_scene) or
+// read (load_scene), check(), calibrate(), solve(), compare(), and results as text or JSON
+// (to_text, to_json). GoogleTest's matchers are in dlo/compare/gtest.hpp.
 
 #include "dlo/compare/check.hpp"
 #include "dlo/compare/comparison.hpp"

@@ -13,10 +13,11 @@ namespace dlo::compare {
 /// `refused` the reason why there is none.
 [[nodiscard]] nlohmann::ordered_json scene_document(const Scene& scene);
 
-/// Returns the part of the document about the rod's layers, or the points of its rest shape; null
+/// Returns the part of the document about the rod's layers; null without layers.
 /// without.
 [[nodiscard]] nlohmann::ordered_json layers_document(const Scene& scene);
-[[nodiscard]] nlohmann::ordered_json rest_shape_document(const Scene& scene);  ///< as above
+/// Points of the rest shape; null without.
+[[nodiscard]] nlohmann::ordered_json rest_shape_document(const Scene& scene);
 
 /// Returns that document as text: invalid UTF-8 in a name becomes U+FFFD.
 [[nodiscard]] std::string scene_document_text(const Scene& scene);

@@ -60,7 +60,7 @@ struct MjcfHold {
   double at = 0;                                       ///< arc length [m]
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
   std::optional<Eigen::Vector3d> direction;            ///< unit vector of a clamp
-  std::optional<Eigen::Vector3d> d1;  ///< of a clamp that is rotated from its reference pose
+  std::optional<Eigen::Vector3d> d1;  ///< d1 of a clamp that is rotated from its reference pose
   std::string words;                  ///< "the first body is fixed"
 };
 

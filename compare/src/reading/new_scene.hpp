@@ -9,12 +9,12 @@ namespace dlo::compare {
 
 /// Content of a new scene file; values as in a scene file, without quotes: "2 m", 0.5, "[0, 0, 1]".
 struct SceneChoices {
-  std::string name = "rod";           ///< of the scene
-  std::string length = "1 m";         ///< of the rod
-  std::string diameter = "6 mm";      ///< of the rod, round and solid
+  std::string name = "rod";           ///< name of the scene
+  std::string length = "1 m";         ///< length of the rod
+  std::string diameter = "6 mm";      ///< diameter of the rod, round and solid
   std::string material = "silicone";  ///< name of a material; ignored if a modulus is given
-  std::string youngs_modulus;         ///< with density: an unnamed material
-  std::string density;                ///< with youngs_modulus
+  std::string youngs_modulus;         ///< with density: E of an unnamed material
+  std::string density;                ///< with youngs_modulus: density of that material
   /// Direction of the clamp at arc length 0; an angle is measured from +x to the upward axis.
   std::string direction = "0 deg";
   std::string up = "y";  ///< upward axis, opposite to gravity: "y" or "z"

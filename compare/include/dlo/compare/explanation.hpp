@@ -64,7 +64,7 @@ inline constexpr double right_chain = 0.25;
 
 /// Verdict on a file that may be a chain of hinges.
 struct ChainJudgement {
-  ShapeJudgement judgement;  ///< its verdict
+  ShapeJudgement judgement;  ///< verdict on the file
   /// Chain as which the file was judged; empty: judged as the rod.
   std::optional<Explanation> chain;
 };

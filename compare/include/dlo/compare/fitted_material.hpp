@@ -137,7 +137,7 @@ struct FitAlternative {
 /// A joint of a chain of unequal segments.
 struct ChainJoint {
   double at = 0;         ///< arc length [m]
-  double stiffness = 0;  ///< its moment over its angle [N m/rad]
+  double stiffness = 0;  ///< moment divided by angle [N m/rad]
   /// Stiffness k of the joint with the energy of discrete elastic rods [N m/rad], as
   /// ChainSprings::binormal_stiffness.
   double binormal_stiffness = 0;

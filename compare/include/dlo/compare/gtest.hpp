@@ -88,7 +88,7 @@ class ShapeMatcher {
   ToleranceShare tolerance_;
 };
 
-// GoogleTest's names for what GoogleTest calls and for what stands beside its matchers.
+// Names and interfaces that GoogleTest requires, or that match its own matchers.
 /// EXPECT_THAT(shape, IsShapeOf(scene, 1e-3)): see shape_near.
 // NOLINTNEXTLINE(readability-identifier-naming)
 inline ShapeMatcher IsShapeOf(Scene scene, ToleranceShare tolerance) {
