@@ -53,7 +53,7 @@ std::string nearby(const std::string& path, int error) {
 /// removed files are given to new files.
 struct KnownFiles {
   std::mutex guard;
-  int commands = 0;  // commands that InputsKept protects
+  int commands = 0;  // number of InputsKept
   std::vector<std::string> inputs;
   std::vector<std::pair<std::string, std::string>> outputs;  // file, and its name in messages
 };

@@ -33,7 +33,7 @@ void wait_shortly() {
   (void)::nanosleep(&pause, nullptr);
 }
 
-/// Whether a signal that is not handled ends a process, as all do but these (signal(7)).
+/// Whether a signal without a handler ends a process, as all do except these (signal(7)).
 bool ends_process(int number) {
   constexpr std::array others = {SIGCHLD, SIGCONT, SIGURG,  SIGWINCH,
                                  SIGSTOP, SIGTSTP, SIGTTIN, SIGTTOU};

@@ -18,7 +18,7 @@ namespace {
 std::string toml_value(const std::string& value) {
   if (value.starts_with('[')) return value;
   try {
-    // TOML knows neither ".5" nor "5.".
+    // TOML allows neither ".5" nor "5.".
     return fmt::format("{}", parse_quantity(value, Dimension::number));
   } catch (const InputError&) {
     return toml_string(value);

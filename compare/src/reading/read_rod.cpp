@@ -141,7 +141,7 @@ void require_finite_rod(const Scene& scene, const StrictTable& rod) {
                          "{} and length = {:g} m",
                          scene.axial_stiffness(), section_text(scene), scene.length));
   }
-  // The negation makes a NaN out of range.
+  // The negated condition also rejects NaN.
   if (!(scene.gamma() <= largest_gamma)) {
     rod.fail("length",
              fmt::format("Gamma = w l^3 / (EI) = {:.4g} (allowed: 0 to {:g}), with w = {:.4g} N/m "

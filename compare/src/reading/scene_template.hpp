@@ -12,24 +12,24 @@ namespace dlo::compare {
 
 /// How a field is treated that is missing in the scene file.
 enum class MissingElements {
-  refused,  ///< no element of an array
-  made,     ///< the next element of an array
+  refused,  ///< no element is added to an array
+  made,     ///< the next element of an array is added
 };
 
 /// A scene file whose fields can be given other values. The values are set in the parsed TOML,
 /// which the ordinary reader then reads: a field may have any value that is valid in a scene file.
 ///
 /// A material that is given by name can be varied in parts, as rod.material.youngs_modulus. The
-/// derived field `gamma` scales gravity so that w l^3 / (EI) is its value, whatever else is varied.
-/// Where fields change EI, a torsional stiffness that is not varied itself changes with it: GJ / EI
-/// = 1 / (1 + nu) of a round rod, whatever its modulus and diameter.
+/// derived field `gamma` scales gravity so that w l^3 / (EI) has its value, whatever else is
+/// varied. If fields change EI, a given torsional stiffness that is not varied itself changes in
+/// proportion: GJ / EI = 1 / (1 + nu) of a round rod, whatever its modulus and diameter.
 ///
 /// Safe to use from several threads at once.
 class SceneTemplate {
  public:
   /// @param name  name of the file, for messages and Scene::file
   /// @param folder  folder for relative paths of rod.rest_shape, if it is not that of `name`
-  /// @throws InputError if the text is no TOML
+  /// @throws InputError if the text is not TOML
   SceneTemplate(const std::string& text, std::string name,
                 std::vector<Material> known_materials = materials(),
                 MissingElements missing = MissingElements::refused, const std::string& folder = "");

@@ -134,7 +134,7 @@ inline constexpr std::size_t largest_toml = std::size_t{1} << 22;
 
 /// A table of a scene file and its possible keys.
 struct SceneTable {
-  std::string name;  ///< "rod", "gripper"; "" of the file itself, "material" of a rod's own
+  std::string name;  ///< "rod", "gripper"; "" for the file itself, "material" for a rod's own
   std::vector<std::string> keys;  ///< in alphabetical order
 };
 

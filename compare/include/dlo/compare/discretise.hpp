@@ -11,7 +11,7 @@ namespace dlo::compare {
 
 /// How clamps hold a chain of hinges.
 enum class ChainClamp {
-  hinge,   ///< a hinge where the clamp is
+  hinge,   ///< a hinge at the position of the clamp
   welded,  ///< the segment at the clamp does not rotate
   middle,  ///< the clamp is in the middle of a segment, of which half is the rod's
 };

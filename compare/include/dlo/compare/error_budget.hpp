@@ -17,12 +17,12 @@ struct BudgetPart {
 /// Causes of the deviation between force model and rod, each isolated by changing one thing. "rod"
 /// is the energy model's shape, chain(law, bookkeeping, c_c) the polygon at rest, and "rigid" means
 /// c_c = 100 AE:
-///     twist           rod without the twist that the scene holds - rod, where the force model
-///                     neglects it, and its chains with it
+///     twist           rod without the twist that the scene holds - rod, if the force model and
+///                     its chains neglect twist
 ///     natural curvature
-///                     rod without twist that is intrinsically straight - rod without twist, where
-///                     the force model neglects the natural curvature, and its chains with it
-///     discretisation  chain(hooke, consistent, rigid) - rod without what is neglected
+///                     rod without twist that is intrinsically straight - rod without twist, if the
+///                     force model and its chains neglect the natural curvature
+///     discretisation  chain(hooke, consistent, rigid) - rod without the neglected effects
 ///     bookkeeping     chain(hooke, the scene's, rigid) - chain(hooke, consistent, rigid)
 ///     law             chain(the scene's, consistent, rigid) - chain(hooke, consistent, rigid)
 ///     stretch         chain(the scene's, the scene's, c_c), rigid obstacles as under "rigid"

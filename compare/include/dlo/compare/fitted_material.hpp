@@ -258,7 +258,7 @@ struct MaterialFit {
   /// Natural curvature of the first scene with the fitted corrections: coefficients of P_0, P_1, ..
   /// about d1 and d2 [1/m]; empty if it was not requested.
   std::vector<Eigen::Vector2d> natural_curvature;
-  std::vector<ClampCorrection> clamps;                    ///< with `shared_clamps`
+  std::vector<ClampCorrection> clamps;  ///< clamp corrections, with `shared_clamps`
   Eigen::Vector3d camera_tilt = Eigen::Vector3d::Zero();  ///< as in CalibratedRod [rad]
   std::optional<Prediction> prediction;                   ///< if it was requested
   std::optional<ScatterBetweenShapes> scatter;            ///< if there is a significant one
@@ -266,7 +266,7 @@ struct MaterialFit {
   /// identified, or if the scene has what a plain chain lacks (twist, sections, natural curvature,
   /// a gripper between its joints).
   std::vector<ChainSprings> chains;
-  bool noise_is_estimated = true;   ///< else it was given
+  bool noise_is_estimated = true;   ///< whether the noise was estimated, not given
   int degrees_of_freedom = 0;       ///< number of measured numbers minus number of fitted numbers
   double rms_m = 0;                 ///< RMS distance between points and rod at the best fit
   long equilibria = 0;              ///< number of equilibria that the energy model solved

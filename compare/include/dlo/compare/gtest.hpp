@@ -10,16 +10,17 @@
 #include "dlo/compare/check.hpp"
 #include "dlo/compare/scene_file.hpp"
 
-/// GoogleTest for shapes; headers only, the library itself does not need GoogleTest.
+/// Assertions and matchers of GoogleTest for shapes, in headers only: the library itself does not
+/// need GoogleTest.
 ///
 ///     EXPECT_SHAPE_NEAR(shape, load_scene("wire.toml"), 1e-3);         // 0.1 % of the length
 ///     EXPECT_THAT(shape, dlo::compare::IsShapeOf(scene, 1e-3));         // with gmock
 ///     EXPECT_SHAPE_NEAR(shape, scene, dlo::compare::of_deflection(0.05));  // of a stiff rod
 ///
 /// `shape` is a dlo::compare::Shape (points at arc lengths, in m, in the scene's frame),
-/// `tolerance` the RMS deviation that is allowed, as a share of the rod's length: what `dlo check`
-/// calls pass is near, and a failure gives its reason. EXPECT_SHAPE_WITHIN and IsShapeWithin hold
-/// the largest distance of a point against the tolerance, as `dlo check --measure max` does.
+/// `tolerance` the allowed RMS deviation, divided by the rod's length. A shape is near if `dlo
+/// check` would pass it; a failure prints the reason. EXPECT_SHAPE_WITHIN and IsShapeWithin compare
+/// the largest distance of a point with the tolerance, as `dlo check --measure max` does.
 #define EXPECT_SHAPE_NEAR(shape, scene, tolerance)                                              \
   EXPECT_PRED_FORMAT3(::dlo::compare::ShapeAssertion{::dlo::compare::shape_near}, shape, scene, \
                       tolerance)
@@ -89,12 +90,14 @@ class ShapeMatcher {
 };
 
 // Names and interfaces that GoogleTest requires, or that match its own matchers.
-/// EXPECT_THAT(shape, IsShapeOf(scene, 1e-3)): see shape_near.
+/// Matches a shape by its RMS deviation: EXPECT_THAT(shape, IsShapeOf(scene, 1e-3)); see
+/// shape_near.
 // NOLINTNEXTLINE(readability-identifier-naming)
 inline ShapeMatcher IsShapeOf(Scene scene, ToleranceShare tolerance) {
   return {shape_near, std::move(scene), tolerance};
 }
-/// EXPECT_THAT(shape, IsShapeWithin(scene, 1e-3)): see shape_within.
+/// Matches a shape by its largest deviation: EXPECT_THAT(shape, IsShapeWithin(scene, 1e-3)); see
+/// shape_within.
 // NOLINTNEXTLINE(readability-identifier-naming)
 inline ShapeMatcher IsShapeWithin(Scene scene, ToleranceShare tolerance) {
   return {shape_within, std::move(scene), tolerance};

@@ -10,7 +10,7 @@ namespace dlo::compare {
 
 /// Options of a plan.
 struct PlanOptions {
-  double target = 1e-3;  ///< wanted error, RMS over the rod's length [-], > 0
+  double target = 1e-3;  ///< requested error, RMS along the rod divided by its length [-], > 0
   /// Largest speed with which a gripper moves, starts or stops [m/s], >= 0; 0: the scene is static.
   double gripper_speed = 0;
   /// Time limit of all solves of the plan [s], > 0; quantities that are unknown by then have no
@@ -64,7 +64,7 @@ struct Plan {
   bool moving = false;   ///< whether the gripper moves so fast that the rod's inertia matters
   bool stretch = false;  ///< whether the bound of stretch is above a tenth of the target
   std::vector<PlannedSpan> spans;          ///< by increasing arc length
-  std::vector<PlannedObstacle> obstacles;  ///< as in the scene
+  std::vector<PlannedObstacle> obstacles;  ///< in the scene's order
   bool frame_held = false;                 ///< whether a gripper holds the rod's frame
   /// By increasing arc length; a single held frame causes no twist.
   std::vector<PlannedTwist> twist;

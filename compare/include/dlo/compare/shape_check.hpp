@@ -58,19 +58,20 @@ struct ShapeCheck {
   /// outermost point.
   double whole_rms_m = 0;
   double whole_max_m = 0;        ///< largest deviation of the file as the whole rod
-  std::vector<RodPart> between;  ///< parts longer than 1e-3 l between neighbouring points
+  std::vector<RodPart> between;  ///< intervals longer than 1e-3 l between adjacent points
   std::string hint;              ///< what looks wrong, as a clause; may be empty
   long worst_point = 0;          ///< point of the largest deviation, counted from 1 as in the file
-  Eigen::Vector3d worst_position = Eigen::Vector3d::Zero();  ///< in the scene's frame [m]
+  /// Position of the worst point in the scene's frame [m].
+  Eigen::Vector3d worst_position = Eigen::Vector3d::Zero();
   /// RMS displacement of the reference from straight, over the same interval; or NaN.
   double movement_m = 0;
   double polyline_length_m = 0;  ///< length of the polyline through the points
-  double seen_share = 0;         ///< arc length from the first point to the last, over l [-]
-  double largest_gap_m = 0;      ///< largest arc length between neighbours
-  double largest_gap_at_m = 0;   ///< where it begins
+  double seen_share = 0;         ///< arc length from the first point to the last, divided by l [-]
+  double largest_gap_m = 0;      ///< largest arc length between adjacent points
+  double largest_gap_at_m = 0;   ///< start of that interval
   /// Number of the file's points that are not where a gripper holds the rod.
   long measured_points = 0;
-  bool direction_is_clear = false;  ///< the other direction fits at least 5 % worse
+  bool direction_is_clear = false;  ///< whether the other direction fits at least 5 % worse
   /// Whether the points determine the rotation about the line that fits them best; false if they
   /// lie nearly on it.
   bool turn_is_clear = true;

@@ -22,15 +22,15 @@ struct MeasuredShape {
 /// Largest number of points of a shape file.
 inline constexpr long most_shape_points = 100'000;
 
-/// Reads a shape; the content says which format it is.
-///     CSV: x,y or x,y,z or x,y,z,s a line, or any order of these under a header with their names
+/// Reads a shape; the format is recognised from the content.
+///     CSV: x,y or x,y,z or x,y,z,s per line, or any order of these under a header with their names
 ///          (s: arc length, in the unit of the points or in metres, whichever is not less than a
 ///          fifth of the polyline). Fields are separated by commas, or else by semicolons, tabs or
-///          blanks; blank lines and lines that begin with # are skipped. Under a header d1_x,
-///          d1_y, d1_z too. A table of nodes is node,x,y,z a line and whatever else, which is not
-///          read: under a header that names them, or without one where the first column is the
-///          nodes' numbers (integers; in a table of four columns counted from 0 or 1, with a
-///          fourth that is no arc length).
+///          blanks; blank lines and lines that begin with # are skipped. A header may also have
+///          d1_x, d1_y, d1_z. A table of nodes has node,x,y,z per line and other columns, which are
+///          ignored: under a header with these names, or without one if the first column contains
+///          the nodes' numbers (integers; in a table of four columns counted from 0 or 1, with a
+///          fourth column that is no arc length).
 ///     JSON: [[x, y, z], ...], or an object with `points_m` and, if known, `arc_length_m` as `dlo
 ///          solve` writes it; `points` and `arc_length` are in the unit that is given; `d1`,
 ///          vectors as points.
@@ -39,12 +39,13 @@ inline constexpr long most_shape_points = 100'000;
 ///          arc_length_m of a FIELD, as `dlo solve` writes it; such a file is in metres. Its d1.
 ///     NumPy: an array M x 2 or M x 3; of frames x M x 3 the one at FILE.npy:INDEX, from 0 or,
 ///          negative, from the end.
-/// A missing z is zero.
-/// @param file  its name, for messages and to choose an array;
-/// @param unit  what the file's numbers are in [m]
-/// @throws InputError naming file, line (point, in JSON), what is wrong and what is allowed; two
-/// points at least, all finite and within 1e6 m, neighbours distinct, s strictly growing or
-/// falling, d1 of norm 1 within 1e-3 and across the chords within 5 degrees and what these bend by
+/// Without z, z is zero.
+/// @param file  name of the file, for messages and to choose an array;
+/// @param unit  unit of the file's numbers [m]
+/// @throws InputError that names file, line (point, in JSON), what is wrong and what is allowed: at
+/// least two points, all finite and within 1e6 m, neighbours distinct, s strictly increasing or
+/// decreasing, d1 of norm 1 within 1e-3, and perpendicular to the chords within 5 degrees plus the
+/// angle between adjacent chords
 [[nodiscard]] MeasuredShape parse_shape(const std::string& text, const std::string& file,
                                         double unit = 1);
 
@@ -59,8 +60,8 @@ inline constexpr long most_shape_points = 100'000;
 /// Returns the file of a shape's name: the name without :INDEX, unless a file has the whole name.
 [[nodiscard]] std::string file_of_shape(const std::string& name);
 
-/// Reads a shape file. @param path  a file, or an array of it as above @throws InputError as
-/// parse_shape, or if it cannot be read
+/// Reads a shape file. @param path  a file, or FILE.npy:INDEX for an array in it
+/// @throws InputError as parse_shape, or if it cannot be read
 [[nodiscard]] MeasuredShape load_shape(const std::string& path, double unit = 1);
 
 }  // namespace dlo::compare

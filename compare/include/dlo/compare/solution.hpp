@@ -13,10 +13,10 @@ namespace dlo::compare {
 
 /// The models that solve a scene.
 enum class Model {
-  energy,  ///< minimiser of the continuous rod's energy
-  chain,   ///< minimiser over the force model's polygon
-  exact,   ///< boundary value problem of the rod, shot with GSL
-  force,   ///< the paper's model, stepped to rest
+  energy,  ///< minimises the energy of the continuous rod
+  chain,   ///< minimises the energy of the force model's polygon
+  exact,   ///< solves the boundary value problem of the rod by shooting, with GSL
+  force,   ///< steps the paper's model to rest
 };
 
 /// Names of the models in options and files.
@@ -77,7 +77,7 @@ struct StretchEffect {
   double strain = std::numeric_limits<double>::quiet_NaN();  ///< largest |N| / EA [-]
   /// RMS displacement of the points [m].
   double moved_m = std::numeric_limits<double>::quiet_NaN();
-  /// change of the tension, divided by the largest tension [-]
+  /// Relative change of the largest tension [-].
   double tension = std::numeric_limits<double>::quiet_NaN();
 };
 
