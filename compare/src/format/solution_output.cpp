@@ -67,7 +67,7 @@ std::string contact_text(const energy_model::ContactPart& contact) {
   }
   append(out, ": force [{:.6g}, {:.6g}, {:.6g}] N", force.x(), force.y(), force.z());
   if (contact.kind == energy_model::ContactKind::lying) {
-    // Both forces are differences of much larger forces in the rod, so that small ones are rounding.
+    // Both are differences of much larger forces in the rod, so that small ones are rounding.
     constexpr double cancelled = 100;
     const double large = cancelled * force.norm();
     append(out, ", of it {:.4g} N and {:.4g} N where it begins and ends",

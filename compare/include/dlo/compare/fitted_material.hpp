@@ -68,7 +68,7 @@ struct MaterialFitOptions {
   bool alternatives = false;
   /// Number of segments of a chain of hinges that is to be as stiff; 0: no chain.
   int chain_segments = 0;
-  /// Lengths of the segments of such a chain if they are unequal, 4 to 200 [m]; empty: no chain.
+  /// 4 to 200 lengths of the segments of such a chain if they are unequal [m]; empty: no chain.
   std::vector<double> chain_segment_lengths = {};
   int profile_points = 0;  ///< number of points of MaterialFit::profile; 0: no profile
   /// Standard deviation of one coordinate [m]; empty: it is estimated.
@@ -250,9 +250,9 @@ struct MaterialFit {
   /// The interval of E holds only if there is no other error.
   std::vector<FitAlternative> alternatives;
   /// With `choose_options`: the options that were tried, the chosen one first. It has the fewest
-  /// numbers among those that predict as well as the best (within 2 %). The interval of E is
-  /// extended to the values from options that predict nearly as well (within 10 %). If nothing
-  /// systematic was left, it is the only one and has no prediction.
+  /// numbers among those that predict as well as the best (within 1 %). The interval of E is
+  /// extended to that of the largest number of terms that predicts nearly as well (within 10 %). If
+  /// nothing systematic was left, it is the only one and has no prediction.
   std::vector<FitAlternative> tried;
   std::vector<FittedNumber> others;  ///< numbers that were requested, those of the wire first
   /// Natural curvature of the first scene with the fitted corrections: coefficients of P_0, P_1, ..

@@ -50,13 +50,14 @@ class Trajectory {
  public:
   /// Constructs a trajectory without poses, of something that does not move.
   Trajectory() = default;
+  /// Constructs a path through poses.
   /// @param poses  one or more, by increasing time; either all or none has a direction, likewise a
   /// roll, and no direction is opposite to the one before
   /// @throws std::invalid_argument that names the pose if this does not hold, or if a number is not
   /// finite
   explicit Trajectory(std::vector<Pose> poses);
 
-  [[nodiscard]] bool empty() const { return poses_.empty(); }              ///< No poses.
+  [[nodiscard]] bool empty() const { return poses_.empty(); }  ///< Whether there are no poses.
   [[nodiscard]] const std::vector<Pose>& poses() const { return poses_; }  ///< By time.
   [[nodiscard]] double begin() const { return poses_.front().time; }       ///< First time [s].
   [[nodiscard]] double end() const { return poses_.back().time; }          ///< Last time [s].
