@@ -68,10 +68,10 @@ struct Discretisation {
 ///
 /// With c clamps of which e are at ends, L = l/(N - 1 - e/2) (`paper`: l/(N-1)). Held segments have
 /// the length L. The rod between two of them, or to a pin or a free end, is divided into equal
-/// segments: first one in each interval, then one more where the segments are longest, until all N
-/// - 1 - c are assigned. The relative difference from L is therefore about one over the number of
-/// segments, and zero if the grips fit a grid of N points. No such interval may be shorter than
-/// L/2.
+/// segments: first one in each interval, then one more where the segments are longest, until all of
+/// the N - 1 - c are assigned. The relative difference from L is therefore about one over the
+/// number of segments, and zero if the grips fit a grid of N points. No such interval may be
+/// shorter than L/2.
 ///
 /// Forces and torques of both laws balance if adjacent segments a and b differ. The paper's joints
 /// are weaker there, by the relative amount (a - b)^2/(a + b)^2 of the stiffness at their mean

@@ -255,8 +255,8 @@ struct MaterialFit {
   /// nothing systematic was left, it is the only one and has no prediction.
   std::vector<FitAlternative> tried;
   std::vector<FittedNumber> others;  ///< numbers that were requested, those of the wire first
-  /// Natural curvature of the first scene with the fitted corrections: coefficients of P_0, P_1, ..
-  /// about d1 and d2 [1/m]; empty if it was not requested.
+  /// Natural curvature of the first scene with the fitted corrections, about d1 and d2 [1/m]:
+  /// coefficients of P_0, P_1, .. in this order; empty if it was not requested.
   std::vector<Eigen::Vector2d> natural_curvature;
   std::vector<ClampCorrection> clamps;  ///< clamp corrections, with `shared_clamps`
   Eigen::Vector3d camera_tilt = Eigen::Vector3d::Zero();  ///< as in CalibratedRod [rad]
