@@ -19,12 +19,13 @@ Vector3d arc_difference(const ArcTarget& target, Index i, const ArcPlace& at) {
   return target.slides(i) ? Vector3d(d - d.dot(t) * t) : d;
 }
 
-/// About the tangent, from a given d1 to that of a frame [rad].
+/// Returns the angle about the tangent from a given d1 to the d1 of a frame [rad].
 double angle_of_frame(const Vector3d& given, const Matrix3d& frame) {
   return std::atan2(-given.dot(frame.col(1)), given.dot(frame.col(0)));
 }
 
-/// Arcs a step of all their parameters away: rotation, position, strains, ends, over the length.
+/// Returns the arcs after a step of all their parameters. Rotations and strains times length are in
+/// radians; the position and the arc ends are divided by the length.
 Arcs stepped_arcs(const ArcTarget& target, Arcs arcs, const Eigen::VectorXd& step) {
   Index k = 0;
   const double l = target.length;
@@ -51,8 +52,8 @@ Arcs stepped_arcs(const ArcTarget& target, Arcs arcs, const Eigen::VectorXd& ste
   return arcs;
 }
 
-/// Where arcs begin if those from `first` to `last` are as they are in `next`, and those before
-/// stay.
+/// Returns the points and frames at which arcs begin if the arcs from `first` to `last` are
+/// replaced by those of `next` and the arcs before them stay unchanged.
 std::vector<ArcPlace> moved_begins(std::vector<ArcPlace> begins, const Arcs& next,
                                    std::size_t first, std::size_t last) {
   if (first == 0) begins[0] = next.begin;
@@ -63,10 +64,11 @@ std::vector<ArcPlace> moved_begins(std::vector<ArcPlace> begins, const Arcs& nex
   return begins;
 }
 
-/// Of the residual by all parameters, but for what slides: differences of the arc that a parameter
-/// belongs to, behind which the others move as a rigid body.
+/// Derivatives of the residual by all parameters, without residuals along the rod where arc lengths
+/// are free. Computed by differences for the arc to which a parameter belongs; the arcs behind it
+/// move as a rigid body.
 Eigen::MatrixXd arc_derivative(const ArcTarget& target, const Arcs& arcs) {
-  constexpr double h = 1e-7;  // of a parameter over its unit
+  constexpr double h = 1e-7;  // of a parameter, divided by its unit
   const Index count = arc_parameters(target, arcs.arcs.size());
   const std::size_t n = arcs.arcs.size();
   const ArcTrace trace(arcs);
@@ -91,7 +93,8 @@ Eigen::MatrixXd arc_derivative(const ArcTarget& target, const Arcs& arcs) {
     const double turned = there.frame.col(0).dot(here.frame.col(1)) / h;
     J(rows * i + 3, column) = frame_lever * (turned - slide * arcs.arcs[on[point]].strain.z());
   };
-  // Points of arcs from `first` on, of which those up to `last` are bent and the others rigid.
+  // Moves the points of the arcs from `first` on: those up to `last` change shape, later ones move
+  // as a rigid body.
   const auto move = [&](const Arcs& next, std::size_t first, std::size_t last) {
     const std::vector<ArcPlace> moved = moved_begins(begins, next, first, last);
     const ArcPlace& end = moved[last + 1];
@@ -143,7 +146,7 @@ ArcPlace along_arc(const ArcPlace& begin, const Vector3d& strain, double s) {
   if (!(std::abs(angle) > 1e-12)) {
     return {begin.point + s * begin.frame.col(2), begin.frame};
   }
-  // The tangent rotates about the axis: what of it is along this stays, and t' = u2 d1 - u1 d2.
+  // The tangent rotates about the axis: its component along the axis stays, and t' = u2 d1 - u1 d2.
   const Vector3d axis = strain / rate;
   const Vector3d along = axis.z() * axis;
   const Vector3d inward(axis.y(), -axis.x(), 0);

@@ -8,28 +8,29 @@
 
 namespace dlo::compare {
 
-/// Where a rod that has the strains of an arc is behind its begin, and its frame there.
+/// Position and frame of a rod with the strains of an arc, at some arc length.
 struct ArcPlace {
   Eigen::Vector3d point;
   Eigen::Matrix3d frame;  ///< d1, d2, t
 };
 
-/// @param s  arc length from the begin, negative before it
+/// Returns position and frame at arc length `s` from the begin of an arc of constant strain.
+/// @param s  negative before the begin
 [[nodiscard]] ArcPlace along_arc(const ArcPlace& begin, const Eigen::Vector3d& strain, double s);
 
-/// Arcs and where they are.
+/// A sequence of arcs, with the position and frame where the first one begins.
 struct Arcs {
   ArcPlace begin;
   std::vector<RestShape::Arc> arcs;
 };
 
-/// Points of arcs at many arc lengths; the arcs outlive it.
+/// Evaluates points of arcs at many arc lengths; refers to the arcs, which must outlive it.
 class ArcTrace {
  public:
   explicit ArcTrace(const Arcs& arcs);
   [[nodiscard]] std::size_t arc_of(double s) const;
   [[nodiscard]] ArcPlace at(double s) const;
-  /// Of each arc, and where the last one ends.
+  /// Returns position and frame at the begin of each arc and at the end of the last one.
   [[nodiscard]] const std::vector<ArcPlace>& begins() const { return begins_; }
 
  private:
@@ -37,51 +38,55 @@ class ArcTrace {
   std::vector<ArcPlace> begins_;
 };
 
-/// Points to fit, and what is known of their arc lengths.
+/// Points to fit by arcs, and what is known of their arc lengths.
 struct ArcTarget {
   Eigen::Matrix3Xd points;
-  Eigen::Matrix3Xd d1;  ///< of frames there; empty: arcs have no twist
+  Eigen::Matrix3Xd d1;  ///< of the frames at the points; empty: arcs have no twist
   std::vector<double> s;
-  bool knows_s = false;  ///< else that of inner points is that of the nearest point
+  bool knows_s = false;  ///< false: the arc length of an inner point is that of the nearest point
+                         ///< of the arcs
   double length = 0;
   bool planar = false;
-  Eigen::Vector3d normal;  ///< of the plane, or of that which is nearest
+  Eigen::Vector3d normal;  ///< unit normal of the points' plane, or of the plane nearest to the
+                           ///< points
 
-  /// Whether arcs may have a twist, which frames say.
+  /// Whether arcs may have a twist, which only frames determine.
   [[nodiscard]] bool twists() const { return d1.cols() > 0 && !planar; }
   /// Rows of the residual for each point.
   [[nodiscard]] Eigen::Index rows() const { return twists() ? 4 : 3; }
-  /// How many of these are independent, as what lies along the rod says nothing; and how many
-  /// strains an arc has.
+  /// Number of independent residuals per point, since the residual along the rod is not
+  /// independent. It is also the number of strains of an arc.
   [[nodiscard]] Eigen::Index numbers() const { return planar ? 1 : rows() - 1; }
 
-  /// Whether a point's arc length is that of the nearest point.
+  /// Whether a point's arc length is unknown and follows from the nearest point of the arcs.
   [[nodiscard]] bool slides(Eigen::Index i) const {
     return !knows_s && i > 0 && i + 1 < points.cols();
   }
 };
 
-/// What an angle counts beside a distance over the length: as long as the shortest of equal arcs.
+/// Weight of an angle [rad] in the residual, compared with a distance divided by the length: the
+/// length of the shortest of equal arcs, as a share of the rod.
 inline constexpr double frame_lever = 1.0 / most_rest_arcs;
 
-/// Of the points from the arcs over the length, three rows each; with frames a fourth one, the
-/// angle of d1 times frame_lever.
+/// Returns the residual: the vectors from the points to the arcs, divided by the length, three rows
+/// per point; with frames a fourth row, the angle of d1 times frame_lever. A vector of a point that
+/// slides() has no component along the arc.
 [[nodiscard]] Eigen::VectorXd arc_residual(const ArcTarget& target, const Arcs& arcs);
 
-/// Moves the arc lengths that are not known to those of the nearest points.
+/// Replaces unknown arc lengths by those of the nearest points of the arcs.
 void slide_along(ArcTarget& target, const Arcs& arcs);
 
-/// How many numbers say so many arcs and their pose.
+/// Returns the number of parameters of so many arcs and their pose.
 [[nodiscard]] Eigen::Index arc_parameters(const ArcTarget& target, std::size_t arcs);
 
-/// When an iteration ends.
+/// Stopping criteria of improve_arcs().
 struct ArcEffort {
   int most_steps;
-  double least_gain;  ///< of the sum of squares in a step, a share of it
+  double least_gain;  ///< smallest relative decrease of the sum of squares in a step
 };
 
-/// Levenberg and Marquardt's method; arc lengths that are not known follow.
-/// @return the sum of squares over the length's
+/// Fits arcs by the Levenberg-Marquardt method; unknown arc lengths are updated with them.
+/// @return the sum of squared residuals, which are distances divided by the length
 double improve_arcs(ArcTarget& target, Arcs& arcs, const ArcEffort& effort);
 
 }  // namespace dlo::compare

@@ -21,21 +21,23 @@ constexpr const char* columns_allowed =
     "(allowed: x,y or x,y,z or x,y,z,s, or a header with these names in any order, besides d1_x, "
     "d1_y, d1_z, and node, id, index or point, beside which further columns are not read)";
 
-/// Position of the named ones among the columns.
+/// Positions of the named columns among all columns.
 struct Columns {
   std::size_t count = 0;
   std::array<std::optional<std::size_t>, named_columns> of;
-  std::string note = {};  ///< on what is not read
+  std::string note = {};  ///< which columns are not read, for the user
 };
 
-/// Of a number that a row is known by. Points are in the order of their rows.
+/// Names of columns that number the rows. These columns are not read: points are in the order of
+/// their rows.
 constexpr const char* label_names[] = {"node", "id", "index", "point"};
 
-/// No table of nodes comes near it.
+/// Largest number of columns [-]; no table of nodes has nearly as many.
 constexpr std::size_t most_columns = 64;
 
-/// Whether the fourth column is the arc length of points in the first three: it grows, or falls, by
-/// their distances or a little more, in their unit or in metres.
+/// Whether the fourth column is the arc length of the points in the first three: from row to row it
+/// grows, or falls, by 0.99 to 1.5 times their distance, in the points' unit or in metres of points
+/// in cm or mm.
 bool has_arc_length(const std::vector<std::array<double, 4>>& rows) {
   constexpr double shortest = 0.99;
   constexpr double longest = 1.5;
@@ -53,8 +55,9 @@ bool has_arc_length(const std::vector<std::array<double, 4>>& rows) {
   });
 }
 
-/// Whether rows without a header begin with numbers of nodes: distinct integers; where there are
-/// four columns, which may be x, y, z and s, counted from 0 or 1.
+/// Whether rows without a header begin with numbers of nodes, which are distinct integers. Four
+/// columns may also be x, y, z and s; their first column is then only taken as numbers of nodes if
+/// it counts from 0 or 1 and the fourth is no arc length.
 bool begin_with_nodes(const std::vector<CsvRow>& rows) {
   if (rows.size() < 2 || rows.front().fields.size() < 4) return false;
   std::vector<long> nodes;
@@ -168,7 +171,7 @@ void add_row(const CsvRow& row, const Columns& columns, RawShape& raw) {
 
 RawShape read_csv_shape(std::string_view text, const std::string& file) {
   RawShape raw;
-  // One row more than is allowed, beside a header, is refused where it is.
+  // Room for a header and one row more than allowed: the row too many is read and then rejected.
   const CsvForm form{.separator = CsvForm::of_first_row,
                      .around = " \t\r\"",
                      .most_fields = most_columns,

@@ -18,7 +18,8 @@ constexpr const char* json_allowed =
     "points)";
 
 json parsed(std::string_view text, const std::string& file) {
-  // A shape as dlo solve writes it has five values a point, one of several equilibria more.
+  // The limit allows for shapes written by dlo solve: five values per point, with several
+  // equilibria one more.
   require_json_limits(text, file, 30 * most_shape_points);
   try {
     return json::parse(text);

@@ -14,12 +14,12 @@ namespace {
 
 constexpr const char* arrays_allowed = "(allowed: N x 3 or N x 2)";
 
-/// Returns the name by which a frame of an array is asked for.
+/// Returns the name that selects a frame of an array of frames.
 std::string chosen(const ShapeName& name, const std::string& index) {
   return fmt::format("{}:{}", name.file, index);
 }
 
-/// Of an array of frames, that which is asked for.
+/// Returns the index of the selected frame of an array of frames.
 std::size_t frame_of(const NpyArray& array, const ShapeName& name) {
   const std::vector<std::size_t>& n = array.shape();
   const auto frames = static_cast<std::int64_t>(n[0]);

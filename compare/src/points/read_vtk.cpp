@@ -11,7 +11,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Reads a legacy VTK file word by word and knows in which line it is.
+/// Reads a legacy VTK file word by word and keeps count of its lines.
 class VtkReader {
  public:
   VtkReader(std::string_view text, std::string file) : rest_(text), file_(std::move(file)) {}
@@ -57,7 +57,7 @@ class VtkReader {
     return line;
   }
 
-  /// The next word; empty at the end of the file.
+  /// Returns the next word, empty at the end of the file.
   std::string_view next() {
     const std::size_t start = std::min(rest_.find_first_not_of(" \t\r\n"), rest_.size());
     next_line_ += std::count(rest_.begin(), rest_.begin() + static_cast<long>(start), '\n');
@@ -68,7 +68,7 @@ class VtkReader {
     return word;
   }
 
-  /// A block that ends with an empty line.
+  /// Skips a block of metadata, which ends with an empty line.
   void skip_metadata() {
     next_line();
     while (!rest_.empty() && !next_line().empty()) continue;
@@ -122,8 +122,8 @@ class VtkReader {
     return raw;
   }
 
-  /// The arrays of a FIELD that `dlo solve` writes and a shape has: arc_length_m, by which a file
-  /// is in metres, and d1.
+  /// Reads the arrays of a FIELD that a shape uses: d1, and arc_length_m. `dlo solve` writes them;
+  /// a file with arc_length_m is in metres.
   void read_point_data(RawShape& raw) {
     const std::size_t count = raw.points.size();
     for (std::string_view word = next(); !word.empty() && word != "CELL_DATA"; word = next()) {
@@ -156,7 +156,7 @@ class VtkReader {
     return values;
   }
 
-  /// Indices of the points along the polyline.
+  /// Returns the indices of the points in their order along the polyline.
   std::vector<std::size_t> read_lines(std::size_t points) {
     if (points == 0) fail("LINES before POINTS");
     constexpr auto most = static_cast<std::size_t>(3 * most_shape_points);
@@ -178,7 +178,7 @@ class VtkReader {
     return order;
   }
 
-  /// LINES as files of version 5.1 have them.
+  /// Reads LINES in the format of version 5.1, with OFFSETS and CONNECTIVITY.
   std::vector<std::size_t> read_offsets(std::size_t points, std::size_t offsets, std::size_t size) {
     next();  // type
     std::vector<std::size_t> begin;

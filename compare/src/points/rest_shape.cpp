@@ -21,25 +21,25 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// A fit looks at so many points: more would cost time in proportion and say little more about
-/// arcs.
+/// Largest number of points used in a fit. More points take time in proportion and improve the arcs
+/// little.
 constexpr Index most_fitted_points = 150;
-/// Out of a plane by less [l], points are in it.
+/// Distance from a plane, as a share of the length, up to which points lie in the plane.
 constexpr double plane_share = 1e-6;
-/// Once no point is farther away [l], no more arcs are tried.
+/// Distance of the farthest point, as a share of the length, below which no more arcs are tried.
 constexpr double good_enough_share = 1e-7;
-/// The points' curve may be longer or shorter than the rod by this share.
+/// Largest relative difference between the length of the points' curve and that of the rod.
 constexpr double length_tolerance = 0.05;
 
 constexpr ArcEffort of_candidate{10, 3e-2};
 constexpr ArcEffort of_result{30, 1e-6};
 
-/// Strain at the inner points of a polyline: about directors that are given, or transported along
-/// it.
+/// Strains at the inner points of a polyline, in frames from given directors or else in frames
+/// transported along the polyline.
 struct Profile {
   Eigen::Matrix3Xd strain;
-  std::vector<double> segments;  // lengths of arcs over the chords
-  Matrix3d first_frame;          // on the first chord
+  std::vector<double> segments;  // lengths of arcs over the chords [m]
+  Matrix3d first_frame;          // frame on the first chord
 };
 
 Matrix3d frame_on(const Vector3d& tangent, const Vector3d& normal) {
@@ -79,13 +79,13 @@ Profile profile_of(const ArcTarget& target) {
   return profile;
 }
 
-/// Places to cut a profile into pieces of one strain, that first which lowers the sum of squares
-/// most.
+/// Returns the indices at which a profile is cut into intervals of constant strain. The first index
+/// is the cut that reduces the sum of squares most, and so on.
 std::vector<Index> cuts_of(const Eigen::Matrix3Xd& strain, std::size_t most) {
   const Index n = strain.cols();
   Eigen::Matrix3Xd sums = Eigen::Matrix3Xd::Zero(3, n + 1);
   for (Index j = 0; j < n; ++j) sums.col(j + 1) = sums.col(j) + strain.col(j);
-  // What is explained by the mean of a piece.
+  // Part of the sum of squares that the mean of an interval explains.
   const auto explained = [&](Index a, Index b) {
     return (sums.col(b) - sums.col(a)).squaredNorm() / static_cast<double>(b - a);
   };
@@ -129,12 +129,13 @@ Arcs first_guess(const ArcTarget& target, const Profile& profile, std::vector<In
     before = cut;
   }
   guess.begin = {target.points.col(0), profile.first_frame};
-  // A chord has the direction of its arc's middle.
+  // The first chord has the direction of the arc's tangent in the middle of the chord.
   guess.begin.frame = along_arc(guess.begin, guess.arcs.front().strain, -target.s[1] / 2).frame;
   return guess;
 }
 
-/// The same arcs, some cut in their middle so that there are more: those that leave most.
+/// Returns the arcs with more of them: the arc with the largest sum of squared residuals is cut in
+/// the middle, repeatedly, until there are `count`.
 Arcs cut_where_far(const ArcTarget& target, const Arcs& arcs, std::size_t count) {
   struct Piece {
     RestShape::Arc arc;
@@ -170,7 +171,7 @@ Arcs cut_where_far(const ArcTarget& target, const Arcs& arcs, std::size_t count)
   return cut;
 }
 
-/// Sets normal and planar.
+/// Sets `normal` and `planar` of a target from its points and d1.
 void find_points_plane(ArcTarget& target) {
   const Vector3d centre = target.points.rowwise().mean();
   const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(target.points.colwise() - centre,
@@ -184,7 +185,8 @@ void find_points_plane(ArcTarget& target) {
   const Vector3d first = (target.points.col(1) - target.points.col(0)).normalized();
   Vector3d normal = axes.col(2);
   if (spread(1) <= noise) {
-    // A line is in the plane that holds x, or y.
+    // A straight line has no normal of its own: the plane also contains the x axis, or else has the
+    // normal z.
     const Vector3d beside = first.cross(Vector3d::UnitX());
     normal = beside.norm() > 1e-6 ? beside.normalized() : Vector3d(Vector3d::UnitZ());
   } else if (first.cross(normal).norm() < 0.1) {
@@ -196,7 +198,7 @@ void find_points_plane(ArcTarget& target) {
     if (normal[axis] < 0) normal = -normal;
     break;
   }
-  // Of the axes' own planes exactly.
+  // A normal within rounding of an axis is set to the axis exactly.
   for (const Index axis : {2, 1, 0}) {
     if ((normal - Vector3d::Unit(axis)).norm() < plane_share) normal = Vector3d::Unit(axis);
   }
@@ -225,7 +227,8 @@ MeasuredShape forwards(const MeasuredShape& points) {
           points.d1.rowwise().reverse()};
 }
 
-/// Arc lengths of all points, scaled to the rod's, of which `chosen` are known.
+/// Returns the arc lengths of all points from those of the points `chosen`, `s`; between two chosen
+/// points they are in proportion to the polyline.
 std::vector<double> all_arc_lengths(const Eigen::Matrix3Xd& points,
                                     const std::vector<Index>& chosen,
                                     const std::vector<double>& s) {
@@ -242,7 +245,7 @@ std::vector<double> all_arc_lengths(const Eigen::Matrix3Xd& points,
   return all;
 }
 
-/// Of all points.
+/// Computes the errors of a rest shape over all measured points, not only the fitted ones.
 void state_error(ArcTarget all, const Arcs& arcs, RestShape& shape) {
   constexpr int projections = 5;
   for (int i = 0; i < projections; ++i) slide_along(all, arcs);
@@ -262,13 +265,14 @@ void state_error(ArcTarget all, const Arcs& arcs, RestShape& shape) {
   shape.rms_error = std::sqrt(sum / static_cast<double>(all.points.cols()));
 }
 
-/// Of a point and its frame.
+/// Returns the largest norm of the residual of one point, including its frame.
 double largest_part(const ArcTarget& target, const Arcs& arcs) {
   const Eigen::VectorXd r = arc_residual(target, arcs);
   return r.reshaped(target.rows(), target.points.cols()).colwise().norm().maxCoeff();
 }
 
-/// Schwarz's criterion over the number of residuals; what rounding leaves counts as nothing.
+/// Returns Schwarz's criterion (BIC) divided by the number of residuals. A constant of the size of
+/// rounding keeps the logarithm finite.
 double arc_information(const ArcTarget& target, std::size_t arcs, double sum) {
   const auto n = static_cast<double>(target.points.cols() * target.numbers());
   constexpr double rounding = 1e-20;
@@ -283,8 +287,9 @@ std::vector<Index> spread_indices(Index count, Index chosen) {
   return result;
 }
 
-/// Arc lengths of the target's points, scaled to the rod's length.
-/// @return the curve's own length [m]
+/// Sets the arc lengths of the target's points, scaled to the rod's length.
+/// @return the length of the curve itself [m]
+/// @throws InputError if it differs from the rod's by more than length_tolerance
 double place_along(const MeasuredShape& given, const std::vector<Index>& chosen,
                    const Profile& profile, ArcTarget& target) {
   double curve = 0;
@@ -308,15 +313,16 @@ double place_along(const MeasuredShape& given, const std::vector<Index>& chosen,
   return curve;
 }
 
-/// Arcs with the target as it slid along them.
+/// Fitted arcs, and the target with the arc lengths found for them.
 struct FittedArcs {
   ArcTarget target;
   Arcs arcs;
-  double sum = std::numeric_limits<double>::infinity();  ///< of the residuals' squares
+  double sum = std::numeric_limits<double>::infinity();  ///< sum of the squared residuals
 };
 
-/// The nearest of several guesses: cut at jumps of the points' curvature, which noise hides;
-/// equally; where fewer arcs are far.
+/// Returns the best fit from several initial guesses: arcs cut at jumps of the points' curvature
+/// (which noise may hide), arcs of equal length, and the arcs of the fit with `fewer` arcs, cut
+/// where they are far from the points.
 FittedArcs fit_arcs(const ArcTarget& target, const Profile& profile, std::vector<Index> cuts,
                     const FittedArcs& fewer) {
   const std::size_t arcs = cuts.size() + 1;
@@ -335,7 +341,7 @@ FittedArcs fit_arcs(const ArcTarget& target, const Profile& profile, std::vector
   return nearest;
 }
 
-/// As many arcs as the points tell apart.
+/// Returns the fit with the number of arcs that Schwarz's criterion selects.
 FittedArcs best_arcs(const ArcTarget& target, const Profile& profile) {
   const std::vector<Index> cuts = cuts_of(profile.strain, most_rest_arcs - 1);
   const Index residuals = target.points.cols() * target.numbers();

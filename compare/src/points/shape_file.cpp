@@ -18,7 +18,8 @@ namespace dlo::compare {
 namespace {
 
 constexpr double largest_coordinate = 1e6;
-/// Neighbours that are nearer are the same point [m]: lengths between them would underflow.
+/// Smallest distance between distinct neighbours [m]. Neighbours closer than this are the same
+/// point, because lengths between them would underflow.
 constexpr double least_distance = 1e-15;
 
 double distance_between(const std::array<double, 3>& a, const std::array<double, 3>& b) {
@@ -70,8 +71,8 @@ void require_arc_lengths(const RawShape& raw, const std::string& file, double un
 
 Eigen::Vector3d vector_of(const std::array<double, 3>& v) { return {v[0], v[1], v[2]}; }
 
-/// That each d1 is a unit vector across the rod, whose tangent the chords beside a point say but
-/// for how much they turn there.
+/// Checks that each d1 is a unit vector across the rod. The tangent is only known from the two
+/// chords at a point, so the allowed angle includes the angle between them.
 void require_directors(const RawShape& raw, const std::string& file) {
   require_as_many_d1(raw, file);
   const std::size_t count = raw.points.size();
@@ -106,8 +107,8 @@ void require_directors(const RawShape& raw, const std::string& file) {
   }
 }
 
-/// Length of the polyline through 64 of the points at most: few enough that noise between
-/// neighbours hardly lengthens it.
+/// Returns the length of the polyline through 64 of the points at most: few enough that noise
+/// between neighbours hardly lengthens it.
 double coarse_polyline(const RawShape& raw) {
   constexpr std::size_t most_chords = 63;
   const std::size_t last = raw.points.size() - 1;
@@ -121,8 +122,9 @@ double coarse_polyline(const RawShape& raw) {
   return sum;
 }
 
-/// What one of the column s is [m]: the unit of the points, unless the polyline were more than
-/// twice as long as the arc lengths then, and not if they are metres.
+/// Returns the unit of the column s [m]: the unit of the points, or metres if the polyline would
+/// otherwise be more than five times as long as the arc lengths.
+/// @throws InputError if it is more than five times as long with both units
 double arc_length_unit(const RawShape& raw, const std::string& file, double unit) {
   if (raw.arc_length.empty()) return unit;
   constexpr double longest = 5;
@@ -152,7 +154,7 @@ RawShape read_any_shape(std::string_view text, const std::string& file, double u
   return read_csv_shape(text, file);
 }
 
-/// @param unit  what the numbers are in, unless they are metres [m]
+/// @param unit  unit of the numbers, unless the file states that they are in metres [m]
 MeasuredShape checked(const RawShape& raw, const std::string& file, double unit) {
   const double metres = raw.in_metres ? 1 : unit;
   require_points(raw, file, metres);

@@ -16,10 +16,10 @@
 namespace dlo::compare {
 namespace {
 
-/// The moment of a straight rod's load at a point, of the side on which it is larger [N m].
+/// Moment of a straight rod's load about a grip, on the side of the grip where it is larger [N m].
 struct RootMoment {
-  double along = 0;  ///< as the rod points
-  double most = 0;   ///< were every force across the rod
+  double along = 0;  ///< with the directions of the forces and of the rod
+  double most = 0;   ///< if all forces were perpendicular to the rod
 };
 
 RootMoment root_moment(const Scene& scene, const Gripper& grip, double side) {
@@ -47,11 +47,12 @@ RootMoment root_moment(const Scene& scene, const Gripper& grip, double side) {
   return {moment.norm(), most};
 }
 
-/// What a moment-matched c_b should be right at when nobody says otherwise. One clamp: the
-/// curvature that a straight rod's load would bend into the clamp; no less than a tenth of what the
-/// load could do across the rod, since a rod along its load bends into other shapes than the
-/// straight one. Other grips: that of the start shape (RMS), to which the load adds no more than it
-/// would bend into a straight rod between two clamps.
+/// Returns the default curvature at which a moment-matched c_b is exact [1/m]. With one clamp it is
+/// the curvature at the clamp of a straight rod under the load, but at least a tenth of what the
+/// load could cause if it were perpendicular to the rod, since a rod along its load bends into
+/// other shapes than the straight one. With other grips it is the RMS curvature of the start shape,
+/// plus the curvature that the load would cause in a straight rod between two clamps, which the
+/// load does not exceed.
 double design_curvature(const Scene& scene, const Layout& layout, const Eigen::Matrix3Xd& start) {
   const Gripper& grip = scene.grippers.front();
   if (scene.grippers.size() == 1 && grip.direction) {
@@ -110,8 +111,9 @@ void derive_bending(const Scene& scene, const ForceModelSettings& settings, cons
   result.rod.bending = {force_model::BendingLaw::paper, parameters.c_b};
 }
 
-/// The part of the rod whose bend a polygon has in one joint, or whose weight it has in one point:
-/// from the middle of the segment before to that of the segment after [m].
+/// Interval of the rod whose bend a polygon concentrates in one joint, or whose weight it
+/// concentrates in one point: from the middle of the segment before the point to the middle of the
+/// segment after it [m].
 struct Cell {
   double begin = 0;
   double end = 0;
@@ -125,7 +127,8 @@ Cell cell_of(const Scene& scene, const Layout& layout, Eigen::Index point) {
           i + 1 < s.size() ? on_rod((s[i] + s[i + 1]) / 2) : on_rod(s.back())};
 }
 
-/// Joints of a rod with sections, of one that grips twist, and of one that is intrinsically curved.
+/// Sets joints that differ from each other or have a twist or a rest angle: those of a rod with
+/// sections, of a rod twisted by grips, and of an intrinsically curved rod.
 void derive_unlike_joints(const Scene& scene, const ForceModelSettings& settings,
                           const Layout& layout, Discretisation& result) {
   const Eigen::Index joints = settings.points - 2;
@@ -175,8 +178,9 @@ void derive_unlike_joints(const Scene& scene, const ForceModelSettings& settings
   for (Eigen::Matrix3Xd& start : result.starts) start.row(2).setZero();
 }
 
-/// The halves of a point's segments, but for those inside end grippers [m]: of equal segments the
-/// same to the last digit, which a cell between two arc lengths is not.
+/// Returns half the length of a point's adjacent segments, 0 for a point inside an end gripper [m].
+/// For equal segments the value is the same to the last digit, in contrast to a cell between two
+/// arc lengths.
 double weighing_length(const Scene& scene, const Layout& layout, Eigen::Index point) {
   const double s = layout.arc_length[static_cast<std::size_t>(point)];
   if (s < 0 || s > scene.length) return 0;
@@ -210,7 +214,8 @@ void add_weights(const Scene& scene, const ForceModelSettings& settings, const L
 void add_loads(const Scene& scene, const Layout& layout, Discretisation& result) {
   const std::vector<double>& s = layout.arc_length;
   result.rod.loads = result.weights;
-  // On each point what acts on its cell: with sums and moments right to second order in L.
+  // The load on the cell of a point acts on the point. Sums and moments are then accurate to second
+  // order in L.
   for (const DistributedLoad& load : scene.distributed_loads) {
     for (Eigen::Index i = 0; i < result.rod.loads.cols(); ++i) {
       const Cell cell = cell_of(scene, layout, i);
@@ -227,7 +232,9 @@ void add_loads(const Scene& scene, const Layout& layout, Discretisation& result)
   }
 }
 
-/// A joint turns alike about every axis.
+/// Rejects rods with two bending stiffnesses, since a joint of a polygon has one stiffness about
+/// every axis.
+/// @throws InputError
 void require_round(const Scene& scene) {
   if (!scene.has_two_stiffnesses()) return;
   const bool of_rod = scene.bending_stiffness_2().has_value();

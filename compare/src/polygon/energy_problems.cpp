@@ -39,7 +39,8 @@ std::optional<ChainScene> chain_scene(const Scene& scene, const Discretisation& 
   problem.stiffnesses = bending.stiffnesses;
   problem.natural_turns = bending.natural_turns;
   if (bending.natural_turns.size() > 0) {
-    // Turns from x to y of space; those of the chain's plane may go round the other way.
+    // natural_turns are positive from x to y of space, which may be the negative sense in the
+    // chain's plane.
     const double z = plane->x.cross(plane->y).z() > 0 ? 1 : -1;
     problem.natural_turns *= reversed ? -z : z;
   }
@@ -49,7 +50,7 @@ std::optional<ChainScene> chain_scene(const Scene& scene, const Discretisation& 
   }
   problem.node_forces.resize(2, N);
   for (Eigen::Index i = 0; i < N; ++i) {
-    // The chain starts in the gripper, at whichever end of the rod that is.
+    // The chain starts in the gripper, which may be at either end of the rod.
     const Eigen::Index from = reversed ? N - 1 - i : i;
     problem.node_forces.col(i) = plane->coordinates(discretisation.rod.loads.col(from));
   }

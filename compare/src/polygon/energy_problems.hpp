@@ -11,29 +11,31 @@
 
 namespace dlo::compare {
 
-/// The same polygon for the rigid chain solver.
+/// A scene's polygon as a problem of the solver for rigid chains.
 struct ChainScene {
-  energy_model::ChainProblem problem;  ///< in the coordinates of its plane
-  Eigen::Vector3d origin;              ///< of the plane's frame, in space [m]
-  Eigen::Vector3d x;                   ///< its axis, unit
-  Eigen::Vector3d y;                   ///< its axis, unit
+  energy_model::ChainProblem problem;  ///< in the coordinates of the plane
+  Eigen::Vector3d origin;              ///< origin of the plane's frame, in space [m]
+  Eigen::Vector3d x;                   ///< first axis of the plane, unit
+  Eigen::Vector3d y;                   ///< second axis of the plane, unit
 
-  /// Points of the plane [m], 2 x M, in space [m], 3 x M.
+  /// Returns points of the plane [m], 2 x M, as points in space [m], 3 x M.
   [[nodiscard]] Eigen::Matrix3Xd to_space(const Eigen::Matrix2Xd& points) const;
 };
 
-/// Nothing unless the scene has one clamp at an end, forces in one plane and no obstacle.
+/// Returns the rigid chain of a scene's polygon, std::nullopt unless the scene has one clamp at an
+/// end, forces in one plane and no obstacle.
 [[nodiscard]] std::optional<ChainScene> chain_scene(const Scene& scene,
                                                     const Discretisation& discretisation,
                                                     const ForceModelSettings& settings);
 
-/// The same polygon for the solver of elastic ones, which takes every scene.
-/// @param joint_law  in place of the rod's own (ForceModelSettings::joint_law)
+/// Returns a polygon as a problem of the solver for elastic polygons, which takes every scene.
+/// @param joint_law  replaces the law of the rod (ForceModelSettings::joint_law)
 [[nodiscard]] energy_model::PolygonProblem polygon_problem(
     const force_model::Rod& rod, std::optional<energy_model::JointLaw> joint_law = std::nullopt);
 
-/// The scene as the energy model sees it. @throws InputError naming file, line and key if two
-/// grippers hold one arc length, or are no less apart than the rod between them
+/// Returns the scene as a problem of the energy model.
+/// @throws InputError naming file, line and key if two grippers hold one arc length, or are at
+/// least as far apart as the length of the rod between them
 [[nodiscard]] energy_model::Problem energy_problem(const Scene& scene);
 
 }  // namespace dlo::compare

@@ -9,7 +9,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Whether all that holds a rod and acts on it lies in the plane z = 0, to the last digit.
+/// Whether all grips, loads and obstacles of a rod lie in the plane z = 0, to the last digit.
 bool lies_in_plane(const Scene& scene, const ForceModelSettings& settings) {
   const auto flat = [](const Eigen::Vector3d& vector) { return vector.z() == 0; };
   const auto held_flat = [&](const Gripper& gripper) {

@@ -10,29 +10,32 @@
 
 namespace dlo::compare {
 
-/// Whether a polygon's joints are bent at rest as the scene's rod is intrinsically curved: with the
-/// law hooke and in a plane. In space they would need the rod's frame, which points have not.
+/// Whether a polygon models the rod's intrinsic curvature by joints with rest angles. It does with
+/// the law hooke and in a plane; in space it would need the rod's frame, which points do not have.
 [[nodiscard]] bool takes_natural_curvature(const Scene& scene, const ForceModelSettings& settings);
 
-/// Whether a polygon has the twist that the scene's clamps hold: with the law hooke, of a rod that
-/// is intrinsically straight.
+/// Whether a polygon models the twist that the scene's clamps hold. It does with the law hooke, for
+/// an intrinsically straight rod.
 [[nodiscard]] bool takes_twist(const Scene& scene, const ForceModelSettings& settings);
 
-/// What polygons neglect of what the scene has: "twist", "natural curvature", or nothing.
+/// Returns the properties of the scene that its polygon neglects: "twist", "natural curvature",
+/// both or none.
 [[nodiscard]] std::vector<std::string> neglected_by_polygon(const Scene& scene,
                                                             const ForceModelSettings& settings);
 
-/// The scene without that.
+/// Returns the scene without the properties that its polygon neglects (neglected_by_polygon).
 [[nodiscard]] Scene as_polygons_take_it(const Scene& scene, const ForceModelSettings& settings);
 
-/// A turn and a shift that lay a plane scene into the plane z = 0, where joints that are bent at
-/// rest belong.
+/// A rotation and a translation that move a planar scene into the plane z = 0, in which joints with
+/// rest angles are defined.
 class PlaneTurn {
  public:
-  /// @param normal  of the scene's plane, becomes +z;  @param origin  a point of it [m]
+  /// @param normal  normal of the scene's plane, becomes +z;
+  /// @param origin  a point of the plane [m]
   PlaneTurn(const Eigen::Vector3d& normal, Eigen::Vector3d origin);
 
-  /// The scene in the plane; what rounding has left across it is gone.
+  /// Returns the scene moved into the plane z = 0; rounding errors out of the plane are set to
+  /// zero.
   [[nodiscard]] Scene laid(const Scene& scene) const;
   [[nodiscard]] Eigen::Matrix3Xd laid_points(const Eigen::Matrix3Xd& points) const;
 
@@ -50,7 +53,7 @@ class PlaneTurn {
   Eigen::Vector3d origin_;
 };
 
-/// The turn that a scene needs before it is made a polygon; nothing if it needs none.
+/// Returns the rotation that a scene needs before it is discretised, std::nullopt if it needs none.
 [[nodiscard]] std::optional<PlaneTurn> turn_into_plane(const Scene& scene,
                                                        const ForceModelSettings& settings);
 

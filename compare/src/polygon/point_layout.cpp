@@ -16,7 +16,8 @@
 namespace dlo::compare {
 namespace {
 
-/// How far the segment that a gripper holds reaches from its arc length, in segments.
+/// Extent of the segment that a gripper holds, on both sides of the gripper's arc length, in
+/// segments.
 struct Reach {
   double before = 0;
   double after = 0;
@@ -28,11 +29,11 @@ Reach reach(const Scene& scene, const Gripper& gripper, Bookkeeping bookkeeping)
   return gripper.at == scene.length ? Reach{.before = 1} : Reach{.after = 1};
 }
 
-/// A part of the rod between two grips, or between a grip and a free end.
+/// An interval of the rod between two grips, or between a grip and a free end.
 struct Gap {
   double begin = 0;  // arc lengths of the grips or ends [m]
   double end = 0;
-  double reach_begin = 0;  // of the held segments into the gap, in segments
+  double reach_begin = 0;  // parts of the held segments inside the gap, in segments
   double reach_end = 0;
   Eigen::Index segments = 1;
 
@@ -41,7 +42,7 @@ struct Gap {
   }
 };
 
-/// Two grippers that are nearer than this share of the rod's length hold one point of it.
+/// Two grippers that are closer than this share of the rod's length hold the same point.
 constexpr double same_point = 1e-9;
 
 std::string where(const Scene& scene, const Gripper& gripper) {
@@ -65,7 +66,8 @@ std::vector<Gap> gaps_between(const Scene& scene, const std::vector<std::size_t>
   return gaps;
 }
 
-/// Segments of the rod's polygon that lie inside end grippers, beyond the rod.
+/// Returns the number of segments inside end grippers, beyond the rod; a fraction with the
+/// consistent bookkeeping.
 double segments_beyond(const Scene& scene, Bookkeeping bookkeeping) {
   double beyond = 0;
   for (const Gripper& gripper : scene.grippers) {
@@ -86,7 +88,7 @@ void require_enough_points(const Scene& scene, const ForceModelSettings& setting
     segments = std::max(segments, beyond + scene.length * asked / (gap.end - gap.begin));
     closest = std::min(closest, gap.end - gap.begin);
   }
-  // A ratio that is whole but for rounding asks for no further point.
+  // A ratio that exceeds an integer only by rounding needs no further point.
   const double needed = 1 + std::ceil(segments - 1e-9);
   if (settings.points >= needed) return;
   throw InputError(fmt::format(
@@ -96,11 +98,10 @@ void require_enough_points(const Scene& scene, const ForceModelSettings& setting
       scene.grippers.size() == 1 ? "" : "s", closest, needed));
 }
 
-/// Gives every gap its share of `segments`: one more to where segments are longest, again and
-/// again.
+/// Distributes `segments` over the gaps, one at a time, each to the gap whose segments are longest.
 void share_segments(std::vector<Gap>& gaps, Eigen::Index segments, double L) {
   const auto longer = [L](const Gap& a, const Gap& b) {
-    // Lengths that are equal but for rounding go to the first.
+    // Of lengths that differ only by rounding, the first gap counts as the longest.
     return a.free_length(L) / static_cast<double>(a.segments) * (1 + 1e-9) <
            b.free_length(L) / static_cast<double>(b.segments);
   };
@@ -109,7 +110,8 @@ void share_segments(std::vector<Gap>& gaps, Eigen::Index segments, double L) {
   }
 }
 
-/// Whether the grips hold all of the rod on a line, and nothing acts across it.
+/// Whether grips hold the whole rod taut on a line without forces across it, and taut_line() solves
+/// it.
 bool is_solved_taut(const Scene& scene) {
   const energy_model::Problem problem = scene_problem(scene);
   if (!energy_model::is_taut_line(problem)) return false;
@@ -186,7 +188,7 @@ Layout lay_out(const Scene& scene, const ForceModelSettings& settings) {
   layout.first_held.resize(scene.grippers.size());
   Eigen::Index point = 0;
   const auto add_gap = [&](const Gap& gap) {
-    // A single gap has segments of length L, to the last digit.
+    // The segments of a single gap have the length L to the last digit.
     const double length =
         gaps.size() == 1 ? L : gap.free_length(L) / static_cast<double>(gap.segments);
     const double first = gap.begin + gap.reach_begin * L;
@@ -211,7 +213,8 @@ Layout lay_out(const Scene& scene, const ForceModelSettings& settings) {
       last.at < scene.length ? scene.length
                              : scene.length + reach(scene, last, settings.bookkeeping).after * L);
   if (gaps.size() == 1) {
-    // Equal segments: counted from one end, so that no arc length depends on where the grips are.
+    // Equal segments are counted from one end, so that no arc length depends on the positions of
+    // the grips.
     for (std::size_t i = 1; i + 1 < layout.arc_length.size(); ++i) {
       layout.arc_length[i] = layout.arc_length.front() + L * static_cast<double>(i);
     }
@@ -235,13 +238,14 @@ force_model::Grip grip_of(const Gripper& gripper, const Layout& layout, Eigen::I
   return hold;
 }
 
-/// What two neighbouring grips leave between the points that they hold.
+/// The rod between two neighbouring grips, without the segments that they hold.
 struct Between {
-  double apart = 0;  // the two points [m]
-  double rod = 0;    // the segments' rest lengths [m]
+  double apart = 0;  // distance between the two points [m]
+  double rod = 0;    // sum of the segments' rest lengths [m]
   Eigen::Index segments = 0;
 
-  /// One segment alone is as long as the grips are apart; more of them may bend.
+  /// Whether segments of these rest lengths reach from grip to grip: a single segment must have the
+  /// length of the gap, within `strain`; several may bend.
   [[nodiscard]] bool fits(double strain) const {
     if (apart > rod * (1 + 1e-9)) return false;
     return segments > 1 || apart >= rod * (1 - strain);
@@ -280,8 +284,8 @@ bool grips_fit(const Layout& layout, const std::vector<force_model::Grip>& grips
                      [strain](const Between& between) { return between.fits(strain); });
 }
 
-/// The fewest points, above those of the settings, whose held segments leave rod enough; 0: none
-/// among the next thousands.
+/// Returns the smallest number of points, above that of the settings, with which the held segments
+/// leave enough rod between grips; 0 if none of the next 3000 numbers does.
 int points_that_fit(const Scene& scene, ForceModelSettings settings, double strain) {
   constexpr int most_more = 3000;
   const int last = settings.points + most_more;
@@ -312,7 +316,7 @@ void require_fit(const Scene& scene, const ForceModelSettings& settings, const L
 }
 
 PointMasses point_masses(const Scene& scene, const ForceModelSettings& settings) {
-  // Forces of points under an acceleration of 1 along -y, in which only masses have any.
+  // Forces on the points under an acceleration of 1 along -y, in which only masses have weight.
   Scene weighed = scene;
   weighed.gravity = {0, -1, 0};
   for (PointLoad& load : weighed.loads) load.force = load.mass * weighed.gravity;
@@ -328,17 +332,17 @@ PointMasses point_masses(const Scene& scene, const ForceModelSettings& settings)
 
 namespace {
 
-/// dt and c of the stepper `verlet`, see step_options.
+/// Sets dt and c of the stepper `verlet`; see step_options.
 void choose_time_step(const Discretisation& discretisation, force_model::StepOptions& options) {
   const force_model::Rod& rod = discretisation.rod;
   const force_model::ModeBounds modes =
       force_model::mode_bounds(rod, discretisation.starts.front());
-  // Only of points that move: one inside a gripper may weigh nothing.
+  // Only points that move count: one inside a gripper may have no mass.
   double lightest = std::numeric_limits<double>::infinity();
   for (const double mass : rod.masses) {
     if (mass > 0) lightest = std::min(lightest, mass);
   }
-  if (!std::isfinite(lightest)) return;  // Simulation says what is missing
+  if (!std::isfinite(lightest)) return;  // Simulation reports what is missing
   options.time_step = verlet_step_share * 2 / std::sqrt(modes.fastest / lightest);
   options.damping_rate = 2 * std::sqrt(modes.slowest / rod.masses.maxCoeff());
 }

@@ -23,8 +23,8 @@ Eigen::Matrix<double, 3, 2> two_across(const Eigen::Vector3d& axis) {
 
 /// Derivatives of a hooke joint's potential -2 (EI/L) ln((1 + u.v)/2).
 struct JointDerivatives {
-  double slope;      // by u.v, negated: 2 (EI/L) / (1 + u.v)
-  double curvature;  // second: 2 (EI/L) / (1 + u.v)^2
+  double slope;      // derivative by u.v, negated: 2 (EI/L) / (1 + u.v)
+  double curvature;  // second derivative by u.v: 2 (EI/L) / (1 + u.v)^2
 };
 
 JointDerivatives joint_derivatives(double stiffness, const Eigen::Vector3d& u,
@@ -91,8 +91,9 @@ void PolygonResponse::find_held_segments() {
   });
 }
 
-/// The polygon's own loads, from the free ends inwards and between grips from what the grip's
-/// reaction leaves; an error there would only change the constraints' multipliers.
+/// Computes the forces n_i from the loads on the polygon: from the free ends inwards, and between
+/// grips from the force that remains after the grips' reactions. An error of a reaction would only
+/// change the multipliers of the constraints.
 void PolygonResponse::find_forces(const energy_model::Equilibrium& rod) {
   forces_.setZero(3, n_);
   const Eigen::Matrix3Xd& loads = polygon_.rod.loads;
@@ -167,7 +168,7 @@ Eigen::SparseMatrix<double> PolygonResponse::matrix(double joints) const {
     const Eigen::Index row = 2 * n_ + 3 * static_cast<Eigen::Index>(k);
     for (Eigen::Index i = grips[along_[k]].first_point; i < grips[along_[k + 1]].first_point; ++i) {
       if (is_held(i)) continue;
-      // In units of EI, so that the matrix has entries of one size.
+      // Scaled by EI, so that all entries have the same magnitude.
       const Eigen::MatrixXd block = L[i] * scene_.bending_stiffness() * across(i);
       add(row, 2 * i, block);
       add(2 * i, row, block.transpose());
@@ -179,7 +180,7 @@ Eigen::SparseMatrix<double> PolygonResponse::matrix(double joints) const {
 }
 
 bool PolygonResponse::is_positive(const Eigen::SparseMatrix<double>& matrix) const {
-  // The constraints come last, so that no pivot is a zero of the border.
+  // The constraints come last, so that no pivot is a zero of the constraint block.
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower,
                               Eigen::NaturalOrdering<int>>
       factors(matrix);
@@ -207,14 +208,14 @@ PolygonResponse::Turns PolygonResponse::turns(const Eigen::Matrix3Xd& f,
   if (factors.info() != Eigen::Success) return result;
   const Eigen::VectorXd solution = factors.solve(right);
   if (!solution.allFinite()) return result;
-  // A nearly singular matrix: the answer does not solve its own equations.
+  // A nearly singular matrix gives a solution that does not satisfy its equations.
   if ((bordered * solution - right).norm() > 1e-6 * right.norm()) return result;
   result.possible = true;
   result.dt.resize(3, n_);
   for (Eigen::Index i = 0; i < n_; ++i) {
     result.dt.col(i) = across_[static_cast<std::size_t>(i)] * solution.segment<2>(2 * i);
   }
-  // H dt - f = L dn across the tangents, of which the multipliers are -dn / EI.
+  // H dt - f = L dn across the tangents; the multipliers are -dn / EI.
   result.dn.resize(3, gaps.cols());
   for (Eigen::Index k = 0; k < gaps.cols(); ++k) {
     result.dn.col(k) = -scene_.bending_stiffness() * solution.segment<3>(2 * n_ + 3 * k);
@@ -233,7 +234,7 @@ Eigen::Matrix3Xd PolygonResponse::points_along(const Eigen::Vector3d& start,
 }
 
 double PolygonResponse::moved_rms(const Eigen::Matrix3Xd& movement) const {
-  // Points inside end grippers are no part of the rod; its ends there do not move.
+  // Points inside end grippers do not belong to the rod, whose ends there do not move.
   const Shape moved = polygon_.shape(rod_points_ + movement);
   return rms(moved.arc_length, moved.points - rod_points_);
 }
@@ -255,7 +256,7 @@ PolygonResponse::Answer PolygonResponse::answer_to(const Eigen::Matrix3Xd& f,
   const Turns turned = turns(f, gaps);
   if (!turned.possible) return {std::numeric_limits<double>::infinity(), {}, {}};
   steps += turned.dt * L.asDiagonal();
-  // Beyond the grips loads alone act, which do not change.
+  // Beyond the grips only the loads act, which do not change.
   Eigen::Matrix3Xd dn = Eigen::Matrix3Xd::Zero(3, n_);
   for (Eigen::Index k = 0; k < gaps.cols(); ++k) {
     const Eigen::Index begin = grips[along_[static_cast<std::size_t>(k)]].first_point;

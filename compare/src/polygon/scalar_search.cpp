@@ -14,7 +14,7 @@
 namespace dlo::compare {
 namespace {
 
-/// What GSL calls; no exception may cross it.
+/// Arguments of the callback for GSL, which no exception may cross.
 struct Watched {
   const Function* function;
   double level = 0;
@@ -53,22 +53,22 @@ Scan scan(const Function& function, double low, double high, int steps) {
 Minimum minimum_near(const Function& function, const Scan& scan, double tolerance) {
   const std::size_t best = scan.best();
   Minimum result{scan.x[best], scan.value[best]};
-  // Of equal values the first is the best, which may be an end.
+  // Of equal values the first is the best, and it may be an end.
   if (!scan.is_bracketed()) return result;
   silence_gsl();
   Watched watched{&function};
   gsl_function gsl{call_for_gsl, &watched};
   const auto minimiser =
       gsl_owned(gsl_min_fminimizer_alloc(gsl_min_fminimizer_brent), gsl_min_fminimizer_free);
-  // A value that is not finite makes GSL stop; the scan's best then stands.
+  // GSL stops at a value that is not finite; the best point of the scan is then returned.
   if (gsl_min_fminimizer_set_with_values(minimiser.get(), &gsl, result.x, result.value,
                                          scan.x[best - 1], scan.value[best - 1], scan.x[best + 1],
                                          scan.value[best + 1]) != GSL_SUCCESS) {
     return result;
   }
-  // One end of the interval often stays where it was. After a short step the next one says how far
-  // the minimum still is; a step of GSL's least length says nothing, it stands for one that left
-  // the interval.
+  // One end of the interval often does not move. After a short step, the length of the next step
+  // measures the remaining distance from the minimum. A step of GSL's minimum length gives no such
+  // measure, since GSL substitutes it for a step that left the interval.
   constexpr double short_step = 1e-3;
   const double least_step = 2 * std::sqrt(std::numeric_limits<double>::epsilon());
   bool was_short = false;
@@ -92,7 +92,7 @@ Minimum minimum_near(const Function& function, const Scan& scan, double toleranc
 double crossing(const Function& function, double inside, double outside, double level,
                 double tolerance) {
   silence_gsl();
-  // Brent's method interpolates, so what is infinite is made merely large.
+  // Brent's method interpolates, so infinite values are replaced by large ones.
   const Function finite = [&](double x) {
     const double value = function(x);
     return std::isfinite(value) ? value : 1e3 * level + 1e3;

@@ -5,16 +5,16 @@
 
 namespace dlo::compare {
 
-/// A function of one variable; infinite where it has no value.
+/// A function of one variable; infinite where it is undefined.
 using Function = std::function<double(double)>;
 
-/// Equal steps over a range and what a function is there.
+/// Values of a function at equally spaced arguments.
 struct Scan {
   std::vector<double> x;
   std::vector<double> value;
 
   [[nodiscard]] std::size_t best() const;
-  /// The least value is inside the range, not at an end.
+  /// Whether the least value is inside the range, not at an end.
   [[nodiscard]] bool is_bracketed() const;
 };
 
@@ -25,13 +25,16 @@ struct Minimum {
   double value = 0;
 };
 
-/// GSL's Brent minimiser about the best point of a bracketed scan, to `tolerance` in x: it ends
-/// where the step after a short one is below it, or the interval.
+/// Finds a minimum near the best point of a bracketed scan by GSL's Brent minimiser. The iteration
+/// ends if the step after a short one, or the interval, is shorter than `tolerance` in x. Returns
+/// the best point of a scan that is not bracketed.
 [[nodiscard]] Minimum minimum_near(const Function& function, const Scan& scan,
                                    double tolerance = 1e-7);
 
-/// GSL's Brent root finder: where the function crosses `level` between `inside`, where it is below,
-/// and `outside`, where it is above; to `tolerance` in x.
+/// Finds the argument at which a function crosses `level`, to `tolerance`, by GSL's Brent root
+/// finder.
+/// @param inside  where the function is below `level`;
+/// @param outside  where it is above
 [[nodiscard]] double crossing(const Function& function, double inside, double outside, double level,
                               double tolerance = 1e-5);
 

@@ -8,13 +8,14 @@
 namespace dlo::compare {
 namespace {
 
-/// Along the rod, in diameters: how far apart two places are at least.
+/// Smallest distance along the rod between two points that can cross, in diameters.
 constexpr double neighbouring = 3;
-/// Over the largest coordinate: axes that cross are this far apart by rounding.
+/// Rounding of a distance, divided by the largest coordinate: axes that cross may be this far
+/// apart.
 constexpr double coordinate_rounding = 1e-12;
 
-/// Shares of the way along two segments at which they are nearest (Ericson, Real-Time Collision
-/// Detection, 2005, section 5.1.9).
+/// Positions of the nearest points of two segments, as fractions of the segments (Ericson,
+/// Real-Time Collision Detection, 2005, section 5.1.9).
 struct Nearest {
   double along_a = 0;
   double along_b = 0;
@@ -37,9 +38,9 @@ Nearest nearest_of(const Eigen::Vector3d& a, const Eigen::Vector3d& along_a,
   return result;
 }
 
-/// Boxes about runs of segments, halved until a run has few: what is within two boxes that are
-/// farther apart than the nearest pair so far need not be looked at. So of n points the pairs that
-/// are looked at are about n, not n^2 / 2.
+/// A tree of bounding boxes of runs of segments, halved down to runs of few segments. Two boxes
+/// that are farther apart than the nearest pair so far are skipped. So about n pairs of n points
+/// are compared, not n^2 / 2.
 class Crossings {
  public:
   Crossings(const Shape& shape, double diameter)
@@ -60,8 +61,8 @@ class Crossings {
   static constexpr Eigen::Index most_in_leaf = 4;
 
   struct Node {
-    Eigen::Index begin = 0, end = 0;    // segments, the last one not in it
-    std::size_t first = 0, second = 0;  // halves, unless it is a leaf
+    Eigen::Index begin = 0, end = 0;    // segments, `end` excluded
+    std::size_t first = 0, second = 0;  // indices of the halves, unless the node is a leaf
     Eigen::Vector3d low, high;
 
     [[nodiscard]] bool is_leaf() const { return end - begin <= most_in_leaf; }
@@ -92,11 +93,12 @@ class Crossings {
     between(node.first, node.second);
   }
 
-  /// @param a, b  one before the other along the rod
+  /// Compares the segments of two nodes.
+  /// @param at_a, at_b  indices of the nodes, the first one before the other along the rod
   void between(std::size_t at_a, std::size_t at_b) {
     const Node& a = nodes_[at_a];
     const Node& b = nodes_[at_b];
-    // Neighbours along the rod throughout.
+    // All pairs are too close along the rod.
     const double farthest =
         s_[static_cast<std::size_t>(b.end)] - s_[static_cast<std::size_t>(a.begin)];
     if (farthest < apart_ - coordinate_rounding * s_.back()) return;
@@ -132,7 +134,7 @@ class Crossings {
         (points_.col(i) + at.along_a * along_a - points_.col(j) - at.along_b * along_b).norm()};
     if (!(here.second - here.first >= apart_) || !(here.distance <= near_)) return;
     const std::pair segments{i, j};
-    // Of several that are as near, the first along the rod.
+    // Of several pairs with the same distance, the first along the rod counts.
     if (found_ && here.distance == near_ && !(segments < segments_)) return;
     found_ = here;
     segments_ = segments;
@@ -141,9 +143,9 @@ class Crossings {
 
   const std::vector<double>& s_;
   const Eigen::Matrix3Xd& points_;
-  double apart_;  // along the rod [m]
+  double apart_;  // least distance along the rod [m]
   double slack_;  // rounding of a distance [m]
-  double near_;   // distance up to which a pair is one, or of the nearest so far [m]
+  double near_;   // largest distance of a pair; after a find, the smallest distance so far [m]
   std::vector<Node> nodes_;
   std::optional<SelfCrossing> found_;
   std::pair<Eigen::Index, Eigen::Index> segments_;

@@ -6,17 +6,17 @@
 
 namespace dlo::compare {
 
-/// Where two parts of a rod come nearer to each other than the rod is thick. No model knows contact
-/// of the rod with itself.
+/// Two points of the rod's axis that are closer to each other than the diameter of the rod. No
+/// model has contact of the rod with itself.
 struct SelfCrossing {
   double first = 0;     ///< arc length [m]
   double second = 0;    ///< arc length [m], > first
-  double distance = 0;  ///< of the axis there [m]
+  double distance = 0;  ///< distance between the axes there [m]
 };
 
-/// The nearest two places of the polygon through a shape's points that are less than a diameter
-/// apart, if there are any; places that are nearer along the rod than three diameters, or on
-/// neighbouring segments, are one.
+/// Finds the nearest two points of the polygon through a shape's points that are less than a
+/// diameter apart; std::nullopt if there are none. Points closer along the rod than three
+/// diameters, or on neighbouring segments, are not compared.
 [[nodiscard]] std::optional<SelfCrossing> self_crossing(const Shape& shape, double diameter);
 
 }  // namespace dlo::compare

@@ -17,7 +17,7 @@ constexpr std::array<double, 4> drag_weights = {0.347854845137453857, 0.65214515
 
 void add_drag(const Scene& scene, const energy_model::Equilibrium& shape,
               const std::vector<double>& arc_lengths, std::vector<Eigen::Vector3d>& sums) {
-  constexpr int panels = 64;  // of the rod, besides
+  constexpr int panels = 64;  // intervals of the whole rod, in addition to the other cuts
   std::vector<double> cuts(arc_lengths);
   for (int i = 0; i <= panels; ++i) cuts.push_back(scene.length * i / panels);
   for (const Gripper& gripper : scene.grippers) cuts.push_back(gripper.at);
@@ -34,7 +34,7 @@ void add_drag(const Scene& scene, const energy_model::Equilibrium& shape,
     }
   }
   const Eigen::Matrix3Xd tangents = shape.sample(at).tangents;
-  std::vector<Eigen::Vector3d> before = {Eigen::Vector3d::Zero()};  // each cut
+  std::vector<Eigen::Vector3d> before = {Eigen::Vector3d::Zero()};  // sum before each cut
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
     Eigen::Vector3d sum = before.back();
     for (std::size_t q = 0; q < drag_nodes.size(); ++q) {

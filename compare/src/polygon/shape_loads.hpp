@@ -8,15 +8,16 @@
 
 namespace dlo::compare {
 
-/// The sum of what depends on a shape, drag and forces that follow the rod, before arc lengths [N]:
-/// at the rod's end without what acts there, as a tension counts. Drag by Gauss's rule between
-/// where the tangent has kinks in its rate.
+/// Returns the sums of the loads that depend on the shape, drag and forces that follow the rod, on
+/// the part of the rod before each arc length [N]. As in a tension, the sum at the rod's end
+/// excludes forces that act there. Drag is integrated by Gauss's rule between the points at which
+/// the derivative of the tangent has kinks.
 [[nodiscard]] std::vector<Eigen::Vector3d> shape_loads_before(
     const Scene& scene, const energy_model::Equilibrium& shape,
     const std::vector<double>& arc_lengths);
 
-/// Drag on a polygon's points, as it lies [N], 3 x points: that of each segment by halves on its
-/// ends, of what of it is on the rod.
+/// Returns the drag on the points of a polygon in its current shape [N], 3 x points. The drag on
+/// the part of a segment that belongs to the rod acts by halves on the segment's ends.
 /// @param scene       has drag
 /// @param arc_length  of the points [m]
 [[nodiscard]] Eigen::Matrix3Xd drag_forces(const Scene& scene,

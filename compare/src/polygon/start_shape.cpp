@@ -9,23 +9,25 @@ namespace dlo::compare {
 namespace {
 
 constexpr int curve_points = 400;
-/// How far an arch leaves its plane, in rod lengths.
+/// Displacement of an arch out of its plane, divided by the rod length.
 constexpr double lean = 1e-6;
 
-/// A grip as the curve sees it.
+/// A grip as the curve uses it, with a direction for pins too.
 struct Knot {
   double at;
   Eigen::Vector3d position;
   Eigen::Vector3d direction;
 };
 
-/// `vector` without its part along the unit vector `axis`; zero if rounding is all that is left.
+/// Returns the component of `vector` perpendicular to the unit vector `axis`; zero if only rounding
+/// is left.
 Eigen::Vector3d across(const Eigen::Vector3d& vector, const Eigen::Vector3d& axis) {
   const Eigen::Vector3d result = vector - vector.dot(axis) * axis;
   return result.norm() > 1e-9 * vector.norm() ? result : Eigen::Vector3d::Zero();
 }
 
-/// +x, or +y for an axis along x: as everywhere in the project.
+/// Returns the unit vector perpendicular to an axis that is nearest to +x, or to +y for an axis
+/// along x. The same convention applies in the whole project.
 Eigen::Vector3d any_across(const Eigen::Vector3d& axis) {
   const Eigen::Vector3d towards =
       std::abs(axis.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
@@ -52,7 +54,7 @@ std::vector<Knot> knots_of(const Scene& scene, const std::vector<std::size_t>& a
       const Gripper& before = scene.grippers[along[k > 0 ? k - 1 : 0]];
       const Gripper& after = scene.grippers[along[std::min(k + 1, along.size() - 1)]];
       direction = after.position - before.position;
-      // A single pin: the rod hangs from it.
+      // A rod on a single pin hangs from it.
       if (!(direction.norm() > 0)) direction = load_between(scene, gripper.at, scene.length);
       direction = direction.norm() > 0 ? direction.normalized() : Eigen::Vector3d::UnitX();
     }
@@ -85,7 +87,7 @@ class Arch {
     }
   }
 
-  /// Points at these shares of the curve's length.
+  /// Returns the points at the given fractions of the curve's length.
   [[nodiscard]] Eigen::Matrix3Xd at(const std::vector<double>& shares) const {
     std::vector<double> lengths(curve_points + 1, 0);
     double total = 0;
@@ -109,7 +111,7 @@ class Arch {
     const double u = i / curve_points;
     const double w = 1 - u;
     const double bump = 16 * u * u * w * w;
-    // A high arch is also wide, so that its two sides stay apart.
+    // A high arch is also widened, so that its two sides do not touch.
     const double width = 1.7 * height_ * height_ / (end_.at - begin_.at);
     return begin_.position * (w * w * (1 + 2 * u)) + end_.position * (u * u * (1 + 2 * w)) +
            slope_ * (u * w * w * begin_.direction - u * u * w * end_.direction) +
@@ -127,8 +129,8 @@ class Arch {
     return sum;
   }
 
-  /// One of the curve's own numbers between 0 and `most` so that the curve is as long as the rod;
-  /// or 0 if it is longer there, as between grips that are too far apart.
+  /// Sets one parameter of the curve, between 0 and `most`, so that the curve has the length of the
+  /// rod. Sets it to 0 if the curve is longer even then, as between grips that are too far apart.
   void solve(double& number, double most, double rod) {
     constexpr double rounding = 1e-15;
     const Function length_at = [&](double value) {
@@ -140,7 +142,7 @@ class Arch {
 
   Knot begin_, end_;
   Eigen::Vector3d axis_, up_, lean_;
-  double slope_;  // of the cubic's directions [m]
+  double slope_;  // scale of the directions in the cubic [m]
   double height_ = 0;
 };
 
@@ -172,8 +174,9 @@ Eigen::Matrix3Xd start_shape(const Scene& scene, const std::vector<std::size_t>&
 
 namespace {
 
-/// The direction of a segment of length L from `from`, turned into the face of a body that it would
-/// enter; `last` is where it goes if it points straight into the body.
+/// Returns the direction of a segment of length L that begins at `from`. A segment that would enter
+/// a body is rotated into the body's surface.
+/// @param last  direction along the surface if the segment points straight into the body
 Eigen::Vector3d turned_along(const obstacle::Body& body, const Eigen::Vector3d& from,
                              const Eigen::Vector3d& direction, double L,
                              const Eigen::Vector3d& last) {

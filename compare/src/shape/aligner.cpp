@@ -20,21 +20,23 @@
 namespace dlo::compare {
 namespace {
 
-/// Points with which starts are looked for.
+/// Largest number of points used to find initial poses.
 constexpr Eigen::Index most_coarse_points = 200;
-/// Share of the mean square that a step has to take away, or was the last.
+/// Smallest relative decrease of the mean square in one step; below it the iteration ends.
 constexpr double least_squares_gain = 1e-9;
-/// Of a mean square: more than noise makes of the points that are left out.
+/// Ratio of two mean squares of thinned points from which the worse direction is rejected without
+/// using all points. It is larger than what noise in the omitted points can cause.
 constexpr double clearly_worse = 4;
-/// Share of the rod by which a file may be longer or shorter for its ends to be the
-/// rod's: what lengths along a dozen points of a smooth rod and single precision leave.
+/// Relative difference between the lengths of the file and the rod up to which the ends of the file
+/// are the ends of the rod. It covers the error of lengths along a dozen points of a smooth rod,
+/// and single precision.
 constexpr double end_slack = 1e-3;
-/// Share of the rod by which a file may be shorter and is taken for all of it.
+/// Share of the rod by which a file may be shorter and still be treated as the whole rod.
 constexpr double whole_slack = 0.03;
-/// Places along the rod at which a part of it may lie.
+/// Number of positions along the rod at which a file that covers a part of it is tried.
 constexpr int coarse_places_along = 5;
 
-/// l - s, so that it grows again.
+/// Returns l - s in reverse order, so that it increases again.
 std::vector<double> mirrored(const std::vector<double>& s, double length) {
   std::vector<double> result(s.rbegin(), s.rend());
   for (double& value : result) value = length - value;
@@ -108,7 +110,7 @@ RigidMotion Aligner::closest_pose(const Eigen::Matrix3Xd& from, const Eigen::Mat
   const Eigen::Matrix3d moments =
       (from.colwise() - from_centre) * weight.asDiagonal() * (to.colwise() - to_centre).transpose();
   if (options_.pose == PoseFreedom::upright) {
-    // Of all rotations by an angle a about up: the one with the largest cos a C + sin a S.
+    // Among the rotations by an angle a about up, maximise cos a C + sin a S.
     const Eigen::Vector3d& up = options_.up;
     const double cosine = moments.trace() - up.dot(moments * up);
     const Eigen::Vector3d twist(moments(1, 2) - moments(2, 1), moments(2, 0) - moments(0, 2),
@@ -233,7 +235,7 @@ void Aligner::gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve,
     A.diagonal().array() += damping;
     const Eigen::VectorXd move = A.ldlt().solve(b);
     if (!move.allFinite()) return;
-    // Nothing to be gained but rounding; it would be tried for at every damping.
+    // A step that gains no more than rounding would be retried at every damping.
     if (!(b.dot(move) > least_squares_gain * placed.mean_square)) return;
     Eigen::Vector3d turn = Eigen::Vector3d::Zero();
     for (Eigen::Index k = 0; k < turns; ++k) turn += move[k] / length_ * axes.col(k);
@@ -285,7 +287,7 @@ Alignment Aligner::finished(const Placed& placed, bool reversed, const Curve& cu
   result.reversed = reversed;
   result.arc_lengths = rule_;
   result.shape.arc_length = placed.arc_length;
-  // Within a piece of the curve, noise may have swapped neighbours.
+  // Within an interval of the curve, noise may have swapped neighbours.
   std::vector<double>& s = result.shape.arc_length;
   std::partial_sum(s.begin(), s.end(), s.begin(),
                    [](double before, double next) { return std::max(before, next); });
@@ -349,7 +351,7 @@ Alignment Aligner::laid(std::size_t way, const Placed& nearest, const Curve& cur
 
 Alignment Aligner::align(const Curve& curve) const {
   if (is_dense() && has_free_arc_lengths() && free_coordinates() > 0) {
-    // That a way is wrong, a part of the points tells.
+    // A part of the points suffices to reject a direction that is clearly wrong.
     const std::array few = {best_of_few(ways_[0], curve), best_of_few(ways_[1], curve)};
     for (const std::size_t way : {0, 1}) {
       const Placed& other = few[1 - way];
@@ -359,10 +361,11 @@ Alignment Aligner::align(const Curve& curve) const {
       return result;
     }
   }
-  // With arc lengths in order, which points that run the other way find only out of order.
+  // The directions are compared with arc lengths in order. Points that run the other way fit well
+  // only out of order.
   Alignment along = laid(0, best_place(ways_[0], curve), curve);
   Alignment against = laid(1, best_place(ways_[1], curve), curve);
-  // Of two ways that are as good, along.
+  // If both directions fit equally well, the file runs along the rod.
   const double rounding = 1e-12 * length_;
   if (against.rms_m + rounding < (1 - 1e-9) * along.rms_m) std::swap(along, against);
   along.other_rms_m = against.rms_m;

@@ -10,24 +10,24 @@
 
 namespace dlo::compare {
 
-/// Lays one measured shape on many curves, see align().
+/// Aligns one measured shape with many curves; see align().
 class Aligner {
  public:
-  /// @throws InputError as align()
+  /// @throws InputError in the cases of align()
   Aligner(const MeasuredShape& shape, double length, const AlignOptions& options);
 
   [[nodiscard]] Alignment align(const Curve& curve) const;
 
   [[nodiscard]] Eigen::Index points() const { return ways_[0].points.cols(); }
   [[nodiscard]] ArcLengths arc_lengths() const { return rule_; }
-  /// Coordinates of the motion that are free: 0, 3, 4 or 6.
+  /// Returns the number of free coordinates of the motion: 0, 3, 4 or 6.
   [[nodiscard]] Eigen::Index free_coordinates() const;
 
  private:
-  /// The file's points by growing arc length, if the file runs along the rod or against it.
+  /// The file's points by growing arc length, for one direction in which the file may run.
   struct Way {
     Eigen::Matrix3Xd points;
-    std::vector<double> arc_length;  // given, or a guess along the polyline
+    std::vector<double> arc_length;  // as given, or an estimate along the polyline
   };
   struct Placed {
     RigidMotion pose;
@@ -41,25 +41,29 @@ class Aligner {
   [[nodiscard]] RigidMotion closest_pose(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
                                          const Eigen::VectorXd& weight) const;
   [[nodiscard]] Placed place_given(const Way& way, const Curve& curve) const;
-  /// Whether thinned() leaves points out.
+  /// Whether thinned() omits points.
   [[nodiscard]] bool is_dense() const;
   [[nodiscard]] static Way thinned(const Way& way);
   [[nodiscard]] std::vector<Placed> coarse_places(const Way& way, const Curve& curve) const;
   [[nodiscard]] Placed refine_all(const Way& way, const Curve& curve,
                                   const RigidMotion& start) const;
-  /// The same by way of fewer points, so that many need few steps.
+  /// Refines a pose with the thinned points first, so that the fit with all points needs few steps.
   [[nodiscard]] Placed refine(const Way& way, const Curve& curve, const RigidMotion& start) const;
   void gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve, Placed& placed) const;
   [[nodiscard]] Way stretched_to_rod(Way way) const;
-  /// What check tells of a laid shape: of a file that is as long as the rod as the whole rod.
+  /// Returns the RMS distance that ShapeCheck reports for an aligned shape [m]. A file that is as
+  /// long as the rod is compared with the whole rod.
+  /// @param[out] measured  the distances
   [[nodiscard]] double told_distance(const Alignment& laid, const Curve& curve,
                                      Measured& measured) const;
-  /// Goes on from a pose as long as told_distance() falls: what measure() does with points past an
-  /// end is no part of the distances across the curve, which refine() makes least.
+  /// Iterates from a pose as long as told_distance() decreases. This is needed because measure()
+  /// redistributes points past an end, which is no part of the distances across the curve that
+  /// refine() minimises.
   [[nodiscard]] Alignment spread(const Way& way, RigidMotion pose, const Curve& curve) const;
-  /// Nearest points, unless lengths along a whole file lay it nearer.
+  /// Returns the alignment with nearest points. A file that is as long as the rod is aligned by
+  /// lengths along it instead, where that gives the smaller distance.
   [[nodiscard]] Alignment laid(std::size_t way, const Placed& nearest, const Curve& curve) const;
-  /// Of the thinned points.
+  /// Returns the best alignment of the thinned points.
   [[nodiscard]] Placed best_of_few(const Way& way, const Curve& curve) const;
   [[nodiscard]] Placed best_place(const Way& way, const Curve& curve) const;
   [[nodiscard]] Alignment finished(const Placed& placed, bool reversed, const Curve& curve) const;
@@ -67,9 +71,9 @@ class Aligner {
   double length_;
   AlignOptions options_;
   ArcLengths rule_ = ArcLengths::nearest;
-  bool is_whole_ = false;      // as long as the rod, or nearly
-  bool has_rod_ends_ = false;  // as long as the rod: its ends are laid on the rod's
-  std::array<Way, 2> ways_;    // along, against
+  bool is_whole_ = false;      // as long as the rod, within whole_slack
+  bool has_rod_ends_ = false;  // as long as the rod within end_slack: its ends are those of the rod
+  std::array<Way, 2> ways_;    // file runs along the rod, against it
 };
 
 }  // namespace dlo::compare

@@ -16,8 +16,8 @@ double turning_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// How far a shape's points are from the grippers, root of a sum of squares [m]. A gripper beyond
-/// the points counts with what the rod between could not span.
+/// Returns the distance of a shape's points from the grippers, as the root of the sum of squares
+/// [m]. For a gripper beyond the points, the rod between them is subtracted from the distance.
 double distance_from_grippers(const Shape& shape, const Scene& scene) {
   double sum = 0;
   const std::vector<double>& s = shape.arc_length;
@@ -31,7 +31,7 @@ double distance_from_grippers(const Shape& shape, const Scene& scene) {
   return std::sqrt(sum);
 }
 
-/// l - s by growing arc length, of a shape that runs from l to 0.
+/// Returns the shape with arc lengths l - s in growing order, for a file that runs from l to 0.
 Shape reversed(const Shape& shape, double length) {
   Shape result;
   result.points = shape.points.rowwise().reverse();
@@ -40,7 +40,8 @@ Shape reversed(const Shape& shape, double length) {
   return result;
 }
 
-/// Arc lengths that grow strictly, each with its first point.
+/// Removes points until the arc lengths increase strictly; the first point of each arc length
+/// stays.
 Shape without_repeated_lengths(const Shape& shape) {
   Shape result;
   std::vector<Eigen::Index> kept;

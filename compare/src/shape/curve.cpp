@@ -43,7 +43,7 @@ Eigen::Matrix3Xd Curve::points(const std::vector<double>& s) const {
 }
 
 double Curve::nearest(const Eigen::Vector3d& position, double s) const {
-  // Newton's method for (position - r) . r' = 0, downhill and no further than a few pieces a step.
+  // Newton's method for (position - r) . r' = 0, with descent, limited to four intervals per step.
   constexpr int most_steps = 30;
   Local local = at(s);
   double distance = (position - local.point).squaredNorm();
@@ -72,7 +72,8 @@ double Curve::nearest(const Eigen::Vector3d& position, double s) const {
 std::vector<double> Curve::nearest_in_order(const Eigen::Matrix3Xd& positions) const {
   const Eigen::Index count = positions.cols();
   constexpr Eigen::Index nodes = curve_pieces + 1;
-  // sums[g]: least sum of squares with the last point so far at node g; from: its predecessor's
+  // sums[g]: least sum of squares with the last point so far at node g; from: node of its
+  // predecessor
   Eigen::VectorXd sums = Eigen::VectorXd::Zero(nodes);
   std::vector<std::uint16_t> from(static_cast<std::size_t>(count * nodes));
   for (Eigen::Index i = 0; i < count; ++i) {

@@ -35,7 +35,8 @@ double curvature_rms(const Shape& shape, const energy_model::Samples& samples) {
   for (std::size_t i = 1; i + 1 < s.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
     const double share = joint_length(shape, i);
-    // The binormal carries the sense of turning: a wrong side counts twice.
+    // The binormal includes the sense of rotation: a bend to the wrong side contributes both
+    // curvatures.
     const Eigen::Vector3d expected =
         samples.tangents.col(column).cross(samples.curvature.col(column));
     sum += (joint_curvature(shape, i) - expected).squaredNorm() * share;
@@ -44,7 +45,8 @@ double curvature_rms(const Shape& shape, const energy_model::Samples& samples) {
   return length > 0 ? std::sqrt(sum / length) : 0;
 }
 
-/// The end that no gripper holds; of two the one at arc length l.
+/// Returns the index of the point at the end that no gripper holds; if both ends are free, that at
+/// arc length l.
 std::optional<Eigen::Index> free_end(const Scene& scene, const std::vector<double>& s) {
   const auto held = [&](double at) {
     return std::any_of(scene.grippers.begin(), scene.grippers.end(),
@@ -79,12 +81,12 @@ Deviation deviation(const Shape& shape, const Reference& reference,
   Eigen::Index worst = 0;
   result.max_m = std::sqrt(difference.colwise().squaredNorm().maxCoeff(&worst));
   result.max_at_m = shape.arc_length[static_cast<std::size_t>(worst)];
-  // A mean is not above the largest; only its rounding is.
+  // A mean cannot exceed the maximum, except by rounding.
   result.rms_m = std::min(rms(shape.arc_length, difference), result.max_m);
   result.tip_m = tip ? difference.col(*tip).norm() : NAN;
   result.rms_over_length = result.rms_m / (shape.arc_length.back() - shape.arc_length.front());
   const double movement = straight ? rms(shape.arc_length, samples.points - *straight) : 0;
-  // A rod that stays where it was has no movement to compare with.
+  // A rod that did not move has no displacement to divide by.
   const double length = shape.arc_length.back() - shape.arc_length.front();
   result.rms_over_movement = movement > 1e-9 * length ? result.rms_m / movement : NAN;
   result.angle_rms_rad = segment_angle_rms(shape, reference);

@@ -8,16 +8,16 @@
 namespace dlo::compare {
 namespace {
 
-/// Between which given arc lengths another one lies.
+/// Position of an arc length between two neighbours of a sorted list.
 struct Bracket {
-  std::size_t right;  // of the two
-  double share;       // of the way from the left one, 0 to 1
+  std::size_t right;  // index of the upper neighbour
+  double share;       // fraction of the interval from the lower neighbour, 0 to 1
 };
 
 Bracket bracket_of(const std::vector<double>& s, double at) {
   const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, at);
   const double left = *(above - 1);
-  const double step = *above - left;  // 0 of two points at the rod's end
+  const double step = *above - left;  // 0 for two points at the rod's end
   return {static_cast<std::size_t>(above - s.begin()),
           step > 0 ? std::clamp((at - left) / step, 0.0, 1.0) : 0};
 }

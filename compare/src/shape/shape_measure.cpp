@@ -9,16 +9,17 @@
 namespace dlo::compare {
 namespace {
 
-/// Stretch up to which a segment counts by the rod's arc length alone [-].
+/// Axial strain up to which a segment is weighted by the rod's arc length alone [-].
 constexpr double counted_stretch = 0.01;
-/// Arc lengths that are nearer to an end than this share of the length are at it: the accuracy with
-/// which nearest points are found.
+/// Distance from an end, as a share of the length, up to which an arc length is at the end. It is
+/// the accuracy with which nearest points are found.
 constexpr double end_rounding = 1e-9;
 
 enum class RodEnd { start, end };
 
-/// Past how much of the rod's end the points go on: the running largest distance from the end of
-/// all from the first that lies at it on, for each point; zero before.
+/// Returns for each point how far the points up to it extend past the rod's end [m]: the running
+/// maximum of the distances from the end, beginning at the innermost point whose nearest point is
+/// the end; 0 for points whose nearest point is on the rod.
 std::vector<double> distances_past(const std::vector<double>& s, const Eigen::Matrix3Xd& points,
                                    double end, double rounding, const Eigen::Vector3d& rod_end,
                                    RodEnd side) {
@@ -29,7 +30,7 @@ std::vector<double> distances_past(const std::vector<double>& s, const Eigen::Ma
     if (std::abs(s[i] - end) > rounding) break;
     past[i] = (points.col(static_cast<Eigen::Index>(i)) - rod_end).norm();
   }
-  // From the inside to the outside.
+  // Running maximum, from the innermost to the outermost point.
   for (std::size_t k = s.size(); k-- > 0;) {
     const std::size_t i = side == RodEnd::start ? k : s.size() - 1 - k;
     if (past[i] == 0) continue;
@@ -39,7 +40,8 @@ std::vector<double> distances_past(const std::vector<double>& s, const Eigen::Ma
   return past;
 }
 
-/// Value at `x` of the polynomial through the reference at some of its arc lengths.
+/// Returns the value at `x` of the polynomial through the reference points at the arc lengths
+/// s[nodes].
 Eigen::Vector3d interpolated_point(const std::vector<double>& s, const Eigen::Matrix3Xd& points,
                                    const std::vector<std::size_t>& nodes, double x) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -85,7 +87,7 @@ Measured measure(const Alignment& alignment, const Reference& reference, double 
     const double covered = s.back() - s.front();
     const double longer = std::max(0.0, polyline_length(shape.points) - covered);
     const double past = before.front() + after.back();
-    // Of another shape of the right length points lie past the end as well.
+    // Points of a different shape with the right length lie past the end as well.
     const double share = past > longer ? longer / past : 1;
     result.excess_at_start_m = share * before.front();
     result.excess_at_end_m = share * after.back();
@@ -100,7 +102,7 @@ Measured measure(const Alignment& alignment, const Reference& reference, double 
   const Eigen::VectorXd squares =
       (shape.points - result.reference).colwise().squaredNorm().transpose();
   result.max_m = std::sqrt(squares.maxCoeff(&result.worst));
-  // A mean is not above the largest; only its rounding is.
+  // A mean cannot exceed the maximum, except by rounding.
   result.rms_m = std::min(result.max_m, std::sqrt(squares.dot(point_weights(s, shape.points))));
   return result;
 }

@@ -8,47 +8,50 @@
 
 namespace dlo::compare {
 
-/// How much each point of a polyline on a rod counts, together 1: half of both its segments, each
-/// by the longer of the rod's arc length and the polyline's own. So neither a part of the rod that
-/// the points cut short nor points that leave the rod go uncounted. Up to a percent of stretch is
-/// the polyline's own affair: the weights are then the trapezoidal rule's over the arc length.
+/// Returns the weights of the points of a polyline on a rod, with sum 1: half the length of both
+/// adjacent segments. The length of a segment is the larger of the rod's arc length and the
+/// polyline's own length, reduced by 1 %. So both parts of the rod that the points cut short and
+/// points that leave the rod are counted. For an axial strain of the polyline up to 1 % the weights
+/// are those of the trapezoidal rule over the arc length.
 /// @param s  rod arc length of each point, growing [m], M >= 2;  @param points  [m], 3 x M
 [[nodiscard]] Eigen::VectorXd point_weights(const std::vector<double>& s,
                                             const Eigen::Matrix3Xd& points);
 
-/// Every point of a laid shape against the rod.
+/// Distances of the points of an aligned shape from the rod.
 struct Measured {
-  std::vector<double> arc_length;  ///< of the rod where each point is held against it [m], M
-  Eigen::Matrix3Xd reference;      ///< the rod there [m], 3 x M
-  double excess_at_start_m = 0;    ///< by which the points go on past arc length 0 [m]
-  double excess_at_end_m = 0;      ///< and past l
-  double rms_m = 0;                ///< with point_weights [m]
-  double max_m = 0;                ///< of all points, never below the RMS [m]
-  Eigen::Index worst = 0;          ///< where that is
+  std::vector<double> arc_length;  ///< of the rod, with which each point is compared [m], M
+  Eigen::Matrix3Xd reference;      ///< points of the rod at these arc lengths [m], 3 x M
+  double excess_at_start_m = 0;    ///< length by which the points extend past arc length 0 [m]
+  double excess_at_end_m = 0;      ///< length by which they extend past arc length l [m]
+  double rms_m = 0;                ///< RMS distance with point_weights [m]
+  double max_m = 0;                ///< largest distance of all points, never below the RMS [m]
+  Eigen::Index worst = 0;          ///< index of the point with the largest distance
 };
 
-/// Distances of a laid shape's points from the rod: at their arc lengths if those are given. For
-/// `nearest` at the points laid on; if points go on past an end of the rod, the file is longer than
-/// the rod, and the excess is spread evenly: arc lengths are scaled until the outermost point is
-/// the rod's end. The excess is how far from the end points get, but no more than what the polyline
-/// is longer than the rod that it covers: another shape of the right length has none.
+/// Computes the distances of an aligned shape's points from the rod at their arc lengths. With
+/// `nearest`, points that extend past an end of the rod mean that the file is longer than the rod.
+/// The excess is then spread evenly: arc lengths are scaled until the outermost point is at the
+/// rod's end. The excess is the distance that points reach from the end, limited to the difference
+/// between the polyline and the part of the rod that it covers: a different shape of the right
+/// length has no excess.
 [[nodiscard]] Measured measure(const Alignment& alignment, const Reference& reference,
                                double length);
 
-/// Distances of a file as the whole rod.
+/// Distances between a file and the whole rod [m].
 struct WholeRod {
   double rms_m = 0;
   double max_m = 0;
 };
 
-/// What is missing of the rod at an end counts with its distance from the outermost point.
+/// Computes the distances between a file and the whole rod. A part of the rod that the file lacks
+/// at an end is compared with the outermost point.
 [[nodiscard]] WholeRod whole_of(const Measured& measured, const Alignment& alignment,
                                 const Reference& reference, double length);
 
-/// Parts of the rod between neighbouring points, those longer than 1e-3 l, and how well points
-/// there tell the rod between: the reference at the middle against the cubic through the
-/// reference at the four points around (fewer at the ends; none that are nearer to the gap than
-/// a tenth of it).
+/// Returns the intervals of the rod between neighbouring points that are longer than 1e-3 l, with
+/// the interpolation error of each: the distance between the reference at the middle and the cubic
+/// through the reference at the four points around. Fewer points are used at the ends, and none
+/// that is nearer to the interval than a tenth of its length.
 [[nodiscard]] std::vector<RodPart> parts_between(const std::vector<double>& s,
                                                  const Reference& reference, double length);
 

@@ -9,7 +9,8 @@
 namespace dlo::compare {
 namespace {
 
-/// The format knows printable ASCII and 255 characters in a line.
+/// Replaces characters other than printable ASCII and limits the length: VTK allows 255 characters
+/// per line.
 std::string vtk_title(std::string title) {
   std::replace_if(
       title.begin(), title.end(), [](char c) { return c < ' ' || c > '~'; }, '?');

@@ -7,21 +7,21 @@
 
 namespace dlo::compare {
 
-/// What is known at a shape's points; empty: nothing.
+/// Quantities at a shape's points; an empty one is unknown.
 struct PointFields {
   std::vector<double> curvature;  ///< [1/m], M
   std::vector<double> tension;    ///< [N], M
   Eigen::Matrix3Xd d1;            ///< first director of the rod's frame, unit, 3 x M
 };
 
-/// A shape as a legacy ASCII VTK file of one polyline, for ParaView and load_shape: points [m], and
-/// as point data arc_length_m and, where they are known, curvature_per_m, tension_N and d1.
+/// Formats a shape as a legacy ASCII VTK file of one polyline, for ParaView and load_shape: points
+/// [m], and as point data arc_length_m and, where known, curvature_per_m, tension_N and d1.
 /// @param title  second line of the file, cut to what the format allows
 [[nodiscard]] std::string vtk_polyline(const Shape& shape, const PointFields& fields,
                                        const std::string& title);
 
-/// A shape as VTK's XML file of an unstructured grid (VTU) of one polyline, in ASCII with as many
-/// digits as tell the numbers: points [m], and arc_length_m as point data.
+/// Formats a shape as an XML file of a VTK unstructured grid (VTU) with one polyline, in ASCII with
+/// enough digits for an exact round trip: points [m], and arc_length_m as point data.
 [[nodiscard]] std::string vtu_polyline(const Shape& shape);
 
 }  // namespace dlo::compare

@@ -19,8 +19,8 @@
 namespace dlo::compare {
 namespace {
 
-/// What the gripper of a polygon without stretch exerts: the force balances all loads, the torque
-/// is that of the first segment.
+/// Returns force and torque of the gripper on a polygon without stretch. The force balances all
+/// loads; the torque includes that on the first segment.
 GripperLoad holding_load(const Discretisation& discretisation, const ChainScene& chain,
                          const energy_model::ChainResult& result) {
   GripperLoad load;
@@ -71,7 +71,7 @@ Solution solve_elastic_chain(const Scene& scene, const ForceModelSettings& setti
   const Eigen::Matrix3Xd& points = lowest.result.points;
   Solution solution = polygon_solution(scene, settings, discretisation, lowest.rod, points);
   if (settings.joint_law) {
-    // The rest is that of the rod's own law.
+    // All other bending energy is that of the rod's own law.
     const auto energy_with = [&](std::optional<energy_model::JointLaw> law) {
       Eigen::Matrix3Xd gradient(3, points.cols());
       return energy_model::polygon_energy(polygon_problem(lowest.rod, law), points, gradient);
@@ -129,9 +129,10 @@ Shape chain_from(const Scene& scene, const ForceModelSettings& settings, const S
   }
   const Discretisation discretisation = discretise(scene, settings);
   Eigen::Matrix3Xd points = resample(start, discretisation.arc_length).points;
-  // A shape in the plane but for rounding, and its joints are turned in it.
+  // A planar shape lies in the plane only up to rounding, and its joints have rest angles in the
+  // plane.
   if (takes_natural_curvature(scene, settings)) points.row(2).setZero();
-  // The frames are those of the lowest shape's way, and whole turns are nearest to its twist.
+  // The frames, and the whole turns nearest to their twist, are those found from the lowest shape.
   const force_model::Rod rod = takes_twist(scene, settings)
                                    ? lowest_polygon(scene, settings, discretisation, options).rod
                                    : discretisation.rod;

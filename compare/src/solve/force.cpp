@@ -27,21 +27,23 @@
 namespace dlo::compare {
 namespace {
 
-/// Of the way to the chain's shape, from where a simulation cannot swing past it.
+/// Fraction of the displacement from the start to the chain's shape at which a simulation starts
+/// close enough not to swing past that shape.
 constexpr double nearly_there = 0.9;
 
-/// Where a simulation starts, and where it should come to rest.
+/// Initial state of a simulation, and the shape at which it should come to rest.
 struct SimulationStart {
   force_model::Rod rod;
   Eigen::Matrix3Xd points;
-  std::optional<Eigen::Matrix3Xd> rest;  // of the chain, where there are several states
+  std::optional<Eigen::Matrix3Xd> rest;  // shape of the chain, if there are several starts
 };
 
-/// Of several starts it is the one from which the chain comes lowest, since the two are to be
-/// compared in the same state; and it is moved by a thousandth of the way to the chain's shape, for
-/// starts are as symmetric as their scene and may lead to a saddle, on which a simulation would
-/// balance. A rod that clamps twist starts near the chain's shape: it has been twisted there little
-/// by little, and all at once could lead elsewhere.
+/// Returns the start of a simulation. Of several starts it is the one from which the chain is
+/// lowest, because the two models are to be compared in the same equilibrium. The start is moved by
+/// a thousandth of the displacement to the chain's shape: starts are as symmetric as their scene
+/// and may lead to a saddle, at which a simulation would stay. A rod that clamps twist starts near
+/// the chain's shape, which was reached by small steps of twist; the whole twist at once could lead
+/// to another equilibrium.
 SimulationStart simulation_start(const Scene& scene, const ForceModelSettings& settings,
                                  const Discretisation& discretisation,
                                  const SolveOptions& options) {
@@ -61,7 +63,8 @@ SimulationStart simulation_start(const Scene& scene, const ForceModelSettings& s
   return {std::move(lowest.rod), std::move(points), std::move(lowest.result.points)};
 }
 
-/// Whether a simulation has come to rest elsewhere than the chain, by more than the laws differ.
+/// Whether a simulation has come to rest farther from the chain's shape than the difference between
+/// the two laws explains.
 bool in_another_state(const Scene& scene, const Discretisation& discretisation,
                       const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& rest) {
   constexpr double apart = 0.01;
@@ -71,17 +74,17 @@ bool in_another_state(const Scene& scene, const Discretisation& discretisation,
 using Simulate = std::function<force_model::Simulation(const force_model::Rod& rod,
                                                        const Eigen::Matrix3Xd& points)>;
 
-/// A simulation at rest, and how it came there.
+/// A simulation that has come to rest, and how it did.
 struct RestingRod {
   force_model::Simulation simulation;
   force_model::RelaxResult result;
 };
 
-/// Anderson's acceleration of a fixed-point iteration (type II; Walker and Ni 2011): what the least
-/// squares of the last residuals make of the last values.
+/// Anderson acceleration of a fixed-point iteration (type II; Walker and Ni 2011): combines the
+/// last values with the coefficients that minimise the combined residual.
 class FixedPoint {
  public:
-  /// @return where to look next, after g(x)
+  /// Returns the next iterate. @param g  value of the fixed-point function at x
   Eigen::VectorXd next(const Eigen::VectorXd& x, const Eigen::VectorXd& g) {
     constexpr Eigen::Index most_kept = 8;
     const Eigen::VectorXd f = g - x;
@@ -107,11 +110,11 @@ class FixedPoint {
  private:
   Eigen::VectorXd f_;
   Eigen::VectorXd g_;
-  Eigen::MatrixXd residuals_;  // changes of f, one a column
-  Eigen::MatrixXd values_;     // of g
+  Eigen::MatrixXd residuals_;  // changes of f = g - x, one per column
+  Eigen::MatrixXd values_;     // changes of g, one per column
 };
 
-/// What comes to rest under drag: the rod without it, and how it is relaxed.
+/// A rod under drag: the rod without the drag, and how it is relaxed.
 struct DraggedRod {
   const Scene& scene;
   const std::vector<double>& arc_length;
@@ -120,18 +123,18 @@ struct DraggedRod {
   const Simulate& simulate;
 };
 
-/// Rest under a share of the drag: it is frozen on a shape while the polygon comes to
-/// rest, and the shape is sought that is its own rest.
-/// @param moves  by which it counts as not moving [m]
-/// @param steps  added to
-/// @return nothing where it goes on moving, or does not come to rest
+/// Finds the shape at rest under a share of the drag. The drag is frozen on a shape while the
+/// polygon comes to rest; a fixed-point iteration finds the shape that is its own rest.
+/// @param moves  displacement below which the iteration has converged [m]
+/// @param[in,out] steps  number of steps, added to
+/// @return std::nullopt if the iteration does not converge, or a simulation does not come to rest
 std::optional<RestingRod> rest_under(const DraggedRod& dragged, double share,
                                      const Eigen::Matrix3Xd& begin, double moves, long& steps) {
   constexpr int most_rounds = 25;
-  // A longer way may lead to another branch.
+  // A larger displacement may lead to another branch.
   const double farthest = 0.25 * dragged.scene.length;
   FixedPoint search;
-  Eigen::Matrix3Xd shape = begin;  // that the drag is frozen on
+  Eigen::Matrix3Xd shape = begin;  // on which the drag is frozen
   Eigen::Matrix3Xd rest = begin;
   for (int round = 0; round < most_rounds; ++round) {
     force_model::Rod rod = dragged.dead;
@@ -150,13 +153,15 @@ std::optional<RestingRod> rest_under(const DraggedRod& dragged, double share,
   return std::nullopt;
 }
 
-/// The rest that one without drag goes over into while it grows.
+/// Continues the shape at rest without drag to the one under the full drag, by growing shares of
+/// the drag.
+/// @throws ConvergenceError if the share cannot grow to 1
 RestingRod raise_drag(const Scene& scene, const std::vector<double>& arc_length,
                       const force_model::Simulation& unloaded,
                       const force_model::RelaxOptions& limits, const Simulate& simulate) {
   constexpr double first_share = 0.25;
-  constexpr double least_share = 0.02;  // below, it does not grow
-  constexpr double on_the_way = 1e-3;   // of the length, before all of it is there
+  constexpr double least_share = 0.02;  // a shorter step of the share ends the continuation
+  constexpr double on_the_way = 1e-3;   // tolerance before the full drag, divided by the length
   const double at_the_end = 10 * limits.tolerance;
   const DraggedRod dragged{scene, arc_length, unloaded.rod(), limits, simulate};
   Eigen::Matrix3Xd points = unloaded.points();
@@ -199,7 +204,7 @@ std::string why_not_at_rest(const Scene& scene, const ForceModelSettings& settin
             "steps");
 }
 
-/// How the rest was found.
+/// Adds to a solution how the shape at rest was found.
 void add_rest(const RestingRod& rest, Solution& solution) {
   const force_model::Simulation& simulation = rest.simulation;
   solution.model = Model::force;
@@ -246,7 +251,8 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
            in_another_state(dead_scene, discretisation, rest.simulation.points(), *start.rest);
   };
   if (strayed()) {
-    // It has swung past the chain's state; from a tenth of the way before it it cannot.
+    // The simulation went past the chain's equilibrium. It does not if it starts nine tenths of the
+    // way to it.
     const long steps = rest.result.steps;
     rest.simulation = simulation_from(start.points + nearly_there * (*start.rest - start.points));
     rest.result = rest.simulation.relax(limits);
@@ -269,16 +275,16 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
   add_rest(rest, solution);
   const force_model::Rod& resting = rest.simulation.rod();
   const Eigen::Matrix3Xd& points = rest.simulation.points();
-  // Newton's step to rest bounds the imbalance only near rest, and not with the paper's law, which
-  // has no stiffness at a straight joint.
-  constexpr double near_rest = 1e-6;  // of the length
+  // Newton's step to rest bounds the imbalance only near rest, and not with the paper's law, whose
+  // straight joints have no stiffness.
+  constexpr double near_rest = 1e-6;  // divided by the length
   const bool is_bounded =
       settings.law == BendingLaw::hooke && solution.error_estimate <= near_rest * scene.length;
   const double allowed = is_bounded ? allowed_rest_imbalance(resting, points, solution.to_rest)
                                     : std::numeric_limits<double>::infinity();
   solution.grippers =
       balanced(scene, resting, points, gripper_loads(resting, points), allowed, "force");
-  constexpr double stated_above = 1e-6;  // of the largest force or moment
+  constexpr double stated_above = 1e-6;  // divided by the largest force or moment
   const double imbalance = polygon_imbalance(resting, points, solution.grippers).share();
   if (imbalance > stated_above) {
     solution.message +=

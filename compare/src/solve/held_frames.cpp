@@ -19,7 +19,8 @@ Eigen::Vector3d direction_of(const Eigen::Matrix3Xd& points, Eigen::Index segmen
   return (points.col(segment + 1) - points.col(segment)).normalized();
 }
 
-/// First director of the frame that a clamp holds, rotated by its roll about the held segment.
+/// Returns the first director of the frame that a clamp holds, rotated by the clamp's roll about
+/// the held segment.
 Eigen::Vector3d rolled_d1(const energy_model::Problem& problem, const energy_model::Grip& clamp,
                           const Eigen::Vector3d& axis) {
   return Eigen::AngleAxisd(clamp.frame->roll, axis) * energy_model::held_d1(problem, clamp);
@@ -106,8 +107,8 @@ void add_twisting_torques(const force_model::Rod& rod, const Eigen::Matrix3Xd& p
 
 namespace {
 
-/// By how many turns a shape differs from those that are held, a whole number. Each passage through
-/// itself takes or gives two.
+/// Returns the difference between the turns that the grips hold and those of a shape, an integer.
+/// Each passage of the rod through itself changes it by two.
 double turns_lost(const Linking& part) { return std::round(part.held - part.twist - part.writhe); }
 
 std::string why_lost(const Linking& part) {
@@ -119,7 +120,8 @@ std::string why_lost(const Linking& part) {
       odd ? "its frames are a path of the other homotopy class" : "it has passed through itself");
 }
 
-/// Axis of the shortest rotation between the directions of the clamps at the ends of a part.
+/// Returns the axis of the shortest rotation between the directions of the clamps at the ends of a
+/// part.
 Eigen::Vector3d shortest_axis(const Scene& scene, const Linking& part) {
   std::array<Eigen::Vector3d, 2> ends = {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   for (const Gripper& gripper : scene.grippers) {
@@ -129,7 +131,8 @@ Eigen::Vector3d shortest_axis(const Scene& scene, const Linking& part) {
   return ends[0].cross(ends[1]);
 }
 
-/// Whether the directions of its clamps are opposite between two times: the axis reverses.
+/// Whether the directions of a part's clamps are opposite at some time between two scenes: the axis
+/// of the shortest rotation then reverses.
 bool passes_opposite(const Scene& before, const Scene& after, const Linking& part) {
   return shortest_axis(before, part).dot(shortest_axis(after, part)) < 0;
 }
@@ -158,7 +161,7 @@ std::vector<Linking> linking_of(const Scene& scene, const energy_model::Equilibr
                  .twist = twist.angle / (2 * std::numbers::pi),
                  .writhe_error = writhe->error};
     part.writhe = energy_model::nearest_writhe(*writhe, *held - part.twist);
-    // A roll counts from the rod as it lies without it.
+    // A roll is counted from the twist of the rod without it.
     if (!energy_model::turns_between(problem, **(last - 1), **last).turns) {
       *held += std::round(part.twist + part.writhe - *held);
     }

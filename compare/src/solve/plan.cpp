@@ -49,7 +49,8 @@ std::vector<PlannedSpan> spans_of(const Scene& scene) {
   return spans;
 }
 
-/// Between neighbouring clamps that hold frames; by the grippers alone.
+/// Returns the parts between neighbouring clamps that hold frames, as far as the grippers alone
+/// determine them.
 std::vector<PlannedTwist> twists_of(const Scene& scene) {
   std::vector<PlannedTwist> twists;
   const Gripper* before = nullptr;
@@ -67,7 +68,8 @@ std::vector<PlannedTwist> twists_of(const Scene& scene) {
   return twists;
 }
 
-/// The rod's own shape; nothing, and why, if the energy model finds none, as for a taut rod.
+/// Returns the shape of the rod; std::nullopt if the energy model finds none, as for a taut rod.
+/// @param[out] why  the reason
 std::optional<energy_model::Equilibrium> rod_shape(const Scene& scene, double time_limit,
                                                    std::string& why) {
   try {
@@ -92,7 +94,8 @@ double bound_at(const Scene& scene, const energy_model::Equilibrium& rod, int po
   return polygon ? polygon_bound(scene, *polygon, rod) : unbounded;
 }
 
-/// From the error at one N to the next, by the order of convergence, until it is met or time is up.
+/// Returns the number of points at which the polygon's error meets the target, by extrapolation
+/// with the order of convergence; 0 if time is up, or no N up to most_planned_points does.
 int points_for_target(const Scene& scene, const energy_model::Equilibrium& rod, double target,
                       const TimeLimit& time) {
   const std::vector<double> s = equal_arc_lengths(scene.length, rod_points);
@@ -107,7 +110,7 @@ int points_for_target(const Scene& scene, const energy_model::Equilibrium& rod, 
     if (bound <= target * scene.length) return points;
     const double growth =
         std::isfinite(bound) ? std::pow(bound / (target * scene.length), 1 / order) : 1.5;
-    // Careful steps: the order shows only once segments are short.
+    // The steps are cautious, because the order of convergence only appears with short segments.
     points += std::max(1, static_cast<int>(0.7 * points * (std::min(growth, 8.0) - 1)));
   }
   return 0;
@@ -163,7 +166,7 @@ Neglected neglected_friction(const Plan& plan) {
                        : "none in the shape found, but friction could hold one that touches"};
 }
 
-/// What neglecting something changes: the rod is solved without it too.
+/// Sets the effect of neglecting something: the distance from the lowest shape without it.
 void look_at(const Scene& without, const energy_model::Equilibrium& rod, double time_limit,
              Neglected& item) {
   if (!(time_limit > 0)) return;
@@ -175,13 +178,13 @@ void look_at(const Scene& without, const energy_model::Equilibrium& rod, double 
   item.why = "distance from the lowest shape without it";
 }
 
-/// How much of the turn the rod takes up.
+/// Sets the twist that the rod takes up, for each part.
 void look_at_twist(const energy_model::Equilibrium& rod, Plan& plan) {
   if (rod.twists.size() != plan.twist.size()) return;
   for (std::size_t i = 0; i < plan.twist.size(); ++i) plan.twist[i].twist = rod.twists[i].angle;
 }
 
-/// What the shape of the rod bounds.
+/// Bounds of neglected effects that follow from the shape of the rod.
 struct ShapeBounds {
   Neglected stretch{.what = "stretch", .models = "energy, exact, chain of rigid segments"};
   Neglected shear{.what = "shear", .models = "all"};
@@ -195,7 +198,7 @@ struct ShapeBounds {
   }
 };
 
-/// All that is known before anything is solved.
+/// Returns the parts of a plan that need no solution.
 Plan plan_of(const Scene& scene, double target) {
   const std::vector<std::size_t> in_reach = obstacles_in_reach(scene, scene.force_model);
   const std::vector<double> clearances = obstacle_clearances(scene);
@@ -216,12 +219,12 @@ Plan plan_of(const Scene& scene, double target) {
   return plan;
 }
 
-/// Whether EA follows from what the scene gives: axial_stiffness, or a section.
+/// Whether EA follows from the scene: from axial_stiffness, or from a section.
 bool has_axial_stiffness(const Scene& scene) {
   return scene.given_axial_stiffness.has_value() || scene.cross_section() > 0;
 }
 
-/// Of a rod that touches nothing, by the response of a fine polygon.
+/// Sets the bounds of a rod without contact, by the response of a fine polygon.
 void bound_by_response(const Scene& scene, const energy_model::Equilibrium& rod,
                        const Discretisation& fine, ShapeBounds& bounds) {
   const PolygonResponse response(scene, fine, rod);
@@ -243,7 +246,7 @@ void bound_by_response(const Scene& scene, const energy_model::Equilibrium& rod,
                   to_string(scene.force_model.bookkeeping), scene.force_model.points);
 }
 
-/// What the shape says about what is neglected.
+/// Neglected effects that the shape of the rod determines.
 struct LookedAt {
   ShapeBounds& bounds;
   Neglected& twist;
@@ -303,7 +306,7 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
         "make_plan: target = {}, gripper_speed = {}, time_limit = {}, must be > 0, >= 0 and > 0",
         options.target, options.gripper_speed, options.time_limit));
   }
-  // What stretches is planned for by the shape that does not.
+  // A rod that stretches is planned with its shape without stretch.
   Scene inextensible = scene;
   inextensible.stretch = Stretch::none;
   Plan plan = plan_of(inextensible, options.target);
@@ -313,7 +316,7 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
   try {
     bound_by_shape(inextensible, options, {bounds, twist, natural}, plan);
   } catch (const std::exception& error) {
-    // A plan is no reason for a solve to fail.
+    // A failing plan must not make a solve fail.
     bounds.set_unbounded(fmt::format("not found out: {}", error.what()));
   }
   const bool counted = scene.stretch == Stretch::counted;

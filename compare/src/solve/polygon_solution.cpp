@@ -17,10 +17,10 @@
 namespace dlo::compare {
 namespace {
 
-/// The segment that differs most from its rest length.
+/// Segment whose length differs most from its rest length, relative to it.
 struct Strain {
   Eigen::Index segment = 0;
-  double share = 0;  // of its rest length, positive where longer
+  double share = 0;  // relative elongation, positive if longer
 };
 
 Strain largest_of(const force_model::Rod& rod, const Eigen::Matrix3Xd& points) {
@@ -33,7 +33,7 @@ Strain largest_of(const force_model::Rod& rod, const Eigen::Matrix3Xd& points) {
   return result;
 }
 
-/// Which points grippers hold.
+/// Returns for each point whether a gripper holds it.
 std::vector<bool> held_points(const force_model::Rod& rod, Eigen::Index count) {
   std::vector<bool> held(static_cast<std::size_t>(count), false);
   for (const force_model::Grip& grip : rod.grips) {
@@ -42,8 +42,8 @@ std::vector<bool> held_points(const force_model::Rod& rod, Eigen::Index count) {
   return held;
 }
 
-/// What the grippers exert, the loads, and obstacles on points that no gripper holds; as many
-/// actions for every shape of a rod.
+/// Returns the actions on a polygon: those of the grippers, the loads, and forces of obstacles on
+/// points that no gripper holds. Their number is the same for every shape of a rod.
 std::vector<energy_model::Action> actions_on(const force_model::Rod& rod,
                                              const Eigen::Matrix3Xd& points,
                                              const std::vector<GripperLoad>& grippers) {
@@ -200,7 +200,8 @@ LowestPolygon lowest_polygon(const Scene& scene, const ForceModelSettings& setti
         energy_model::solve_polygon(problem, discretisation.starts[i], polygon_options);
     lowest.evaluations += result.evaluations;
     lowest.seconds += result.seconds;
-    // Mirror images have the same energy but for rounding; the first start keeps them.
+    // Mirror images have the same energy up to rounding; the tolerance keeps the image of the first
+    // start.
     const double size = std::abs(result.energy) + std::abs(lowest.result.energy);
     const bool lower = result.energy < lowest.result.energy - 1e-9 * size;
     const bool is_shape = energy_model::succeeded(result.status) &&

@@ -22,7 +22,8 @@
 namespace dlo::compare {
 namespace {
 
-/// What a solver does not take, said of the scene's rod instead of the solver's function.
+/// Throws an InputError for a rod that a solver rejects, with the scene's file in place of the
+/// solver's function.
 [[noreturn]] void refuse_rod(const Scene& scene, Model model, const std::invalid_argument& error) {
   const std::string_view message = error.what();
   const std::size_t function = message.find(": ");
@@ -33,7 +34,7 @@ namespace {
                   touches ? " (--model energy, chain or force takes every obstacle)" : ""));
 }
 
-/// What came of the searches for equilibria, for a message.
+/// Describes the searches for equilibria, for a message.
 std::string looked_from(const std::vector<energy_model::Equilibrium>& searches) {
   if (searches.empty()) return "no start to look from";
   return fmt::format("{} search{}, the first: {} after {} evaluations", searches.size(),
@@ -41,21 +42,23 @@ std::string looked_from(const std::vector<energy_model::Equilibrium>& searches) 
                      searches.front().evaluations);
 }
 
-/// Whether it is an equilibrium of loads without a potential: no energy could say more of it.
+/// Whether a shape is an equilibrium under loads without a potential, whose stability no energy can
+/// decide.
 bool is_balance_alone(const energy_model::Problem& problem,
                       const energy_model::Equilibrium& shape) {
   return shape.status == energy_model::SolveStatus::not_verified && shape.sample &&
          !energy_model::has_potential(problem);
 }
 
-/// Whether a shape may be handed on: proven, or unproven and asked for.
+/// Whether a shape may be returned: it is proven, or unproven results are accepted.
 bool acceptable(energy_model::SolveStatus status, const SolveOptions& options) {
   return energy_model::succeeded(status) ||
          (options.accept_unverified && (status == energy_model::SolveStatus::not_verified ||
                                         status == energy_model::SolveStatus::near_singular));
 }
 
-/// A balance whose turns are not those of the grips is one of another scene.
+/// Sets the status of an equilibrium with other turns than the grips hold to not_verified: it is an
+/// equilibrium of another scene.
 void refuse_lost_turns(const Scene& scene, energy_model::Equilibrium& equilibrium) {
   if (!energy_model::succeeded(equilibrium.status)) return;
   std::string lost = lost_turns(linking_of(scene, equilibrium));
@@ -64,12 +67,13 @@ void refuse_lost_turns(const Scene& scene, energy_model::Equilibrium& equilibriu
   equilibrium.message = std::move(lost);
 }
 
-/// Of a soft rod that stretches, whose search by shots is slow: from the shape that does not, as
-/// the energy model finds it. None where it finds none, as of one that is pulled straight.
+/// Solves a soft rod that stretches, starting at the energy model's shape without stretch, because
+/// the search by multiple shooting is slow for it. Returns std::nullopt for other rods, and if the
+/// energy model finds no shape, as for a rod that is pulled straight.
 std::optional<energy_model::Equilibrium> stretched_shape(const Scene& scene,
                                                          const energy_model::Problem& problem,
                                                          const energy_model::ExactOptions& exact) {
-  constexpr double soft = 1e3;  // Gamma; stiffer rods are searched by shots in no time
+  constexpr double soft = 1e3;  // Gamma; for stiffer rods multiple shooting is fast
   if (!problem.axial_stiffness || !problem.obstacles.empty() || !(scene.gamma() > soft)) {
     return std::nullopt;
   }
@@ -106,7 +110,7 @@ energy_model::Equilibrium exact_shape(const Scene& scene, const energy_model::Pr
   if (std::optional<energy_model::Equilibrium> stretched = stretched_shape(scene, problem, exact)) {
     return *std::move(stretched);
   }
-  // What yields it refuses from any start.
+  // The exact model rejects yielding obstacles with any start.
   const bool yields = std::any_of(
       problem.obstacles.begin(), problem.obstacles.end(),
       [](const energy_model::Obstacle& obstacle) { return std::isfinite(obstacle.stiffness); });
@@ -137,9 +141,10 @@ bool enters_obstacle(const Scene& scene, const energy_model::Equilibrium& shape)
   });
 }
 
-/// @param stretched  a shape of the rod, which may reach obstacles by its stretch; null: none yet
-/// @throws InputError if the rod stretches and an obstacle is in reach: no continuous model has
-/// both
+/// Rejects a rod that stretches and has an obstacle in reach, since no continuous model has both.
+/// @param stretched  a shape of the rod, which may reach obstacles by its stretch; null: not yet
+/// solved
+/// @throws InputError
 void refuse_stretch_beside_obstacles(const Scene& scene,
                                      const energy_model::Equilibrium* stretched) {
   if (scene.stretch != Stretch::counted || scene.obstacles.empty()) return;
@@ -154,7 +159,7 @@ void refuse_stretch_beside_obstacles(const Scene& scene,
       scene.file));
 }
 
-/// @throws InputError if the rod stretches, which is said of the scene's key
+/// Rejects a rod that stretches, with a message about the scene's key. @throws InputError
 void refuse_stretch(const Scene& scene) {
   if (scene.stretch != Stretch::counted) return;
   throw InputError(fmt::format(

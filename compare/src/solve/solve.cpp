@@ -23,10 +23,10 @@
 namespace dlo::compare {
 namespace {
 
-/// What the part of the rod beyond `at` pulls the part before it with: the opposite of all that
+/// Returns the force of the rod beyond `at` on the part before it: the negative sum of all that
 /// acts on the part before.
-/// @param solution  its grippers and contacts count
-/// @param of_shape  of loads that depend on the shape, on the part before
+/// @param solution  its grippers and contacts are used
+/// @param of_shape  force on the part before, of loads that depend on the shape
 Eigen::Vector3d section_force(const Scene& scene, const Solution& solution, double at,
                               const Eigen::Vector3d& of_shape) {
   const auto before = [&](double s) { return s < at || (s == at && at < scene.length); };
@@ -34,7 +34,8 @@ Eigen::Vector3d section_force(const Scene& scene, const Solution& solution, doub
   for (std::size_t i = 0; i < solution.grippers.size(); ++i) {
     if (before(scene.grippers[i].at)) sum += solution.grippers[i].force;
   }
-  // Of a part that lies there what is missing is across the rod.
+  // A contact that extends past `at` is omitted: its missing part acts across the rod and does not
+  // change the tension.
   for (const energy_model::ContactPart& contact : solution.contacts) {
     if (before(contact.end)) sum += contact.force;
   }
@@ -44,7 +45,7 @@ Eigen::Vector3d section_force(const Scene& scene, const Solution& solution, doub
   return -sum;
 }
 
-/// Such an obstacle pushes with a pressure that is told by its sum alone.
+/// Whether the rod touches a yielding obstacle, of whose pressure only the resultant is known.
 bool touches_yielding_obstacle(const Scene& scene, const std::vector<Eigen::Vector3d>& forces) {
   for (std::size_t i = 0; i < forces.size(); ++i) {
     if (std::isfinite(scene.obstacles[i].stiffness) && forces[i].norm() > 0) return true;
@@ -52,6 +53,7 @@ bool touches_yielding_obstacle(const Scene& scene, const std::vector<Eigen::Vect
   return false;
 }
 
+/// Returns arc lengths limited to the rod.
 /// @throws InputError for an arc length that is not on the rod
 std::vector<double> all_on_rod(std::vector<double> arc_lengths, double length) {
   for (double& s : arc_lengths) {
@@ -64,7 +66,7 @@ std::vector<double> all_on_rod(std::vector<double> arc_lengths, double length) {
   return arc_lengths;
 }
 
-/// The same, and what stretch would change of it.
+/// Returns solution_of() with the effect of stretch.
 Solution told_solution(const StretchedRod& of, Model model, const std::vector<double>& arc_lengths,
                        const std::vector<std::size_t>& obstacles) {
   Solution solution = solution_of(of.scene, model, of.rod, arc_lengths, obstacles);
@@ -117,7 +119,7 @@ Solution solution_of(const Scene& scene, Model model, const energy_model::Equili
     solution.curvature.push_back(shape.curvature.col(column).norm());
     if (sinks_in) continue;
     const Eigen::Vector3d force = section_force(scene, solution, samples[i], of_shape[i]);
-    // Adding zero turns -0 into 0.
+    // Adding zero replaces -0 by 0.
     solution.tension.push_back(force.dot(shape.tangents.col(column)) + 0.0);
   }
   solution.smallest_eigenvalue = equilibrium.smallest_eigenvalue;

@@ -15,7 +15,7 @@ namespace {
 
 using energy_model::Equilibrium;
 
-/// Stable, as far as is known of a shape that is not verified or at a singular point.
+/// Whether a state is stable, as far as is known if it is not verified or at a singular point.
 bool is_stable(const Equilibrium& state) {
   return succeeded(state.status) || state.status == energy_model::SolveStatus::not_verified ||
          state.status == energy_model::SolveStatus::near_singular;
@@ -26,11 +26,11 @@ double shapes_apart(const Scene& scene, const Equilibrium& a, const Equilibrium&
   return rms(s, a.sample(s).points - b.sample(s).points);
 }
 
-/// d1 of the mirror image of a material frame (d1, d2 = t x d1) that keeps what is across the plane
-/// at the first clamp: with d1 = a n + b t x n there, e = a d1 - b d2 is the material direction of
-/// the normal n and p = b d1 + a d2 the other one. An image that is right-handed and held alike has
-/// -M e and M p for them, so that its strains are those of the same rod: about the normal as they
-/// were, about the other axis and of twist with the other sign.
+/// Returns d1 of the mirror image of a material frame (d1, d2 = t x d1). The image keeps the
+/// direction of d1 at the first clamp. With d1 = a n + b t x n there, e = a d1 - b d2 is the
+/// material direction of the normal n, and p = b d1 + a d2 is the other one. A right-handed image
+/// with the same grips has -M e and M p in their place. Its strains are then those of the same rod:
+/// unchanged about the normal, and with the opposite sign about the other axis and for twist.
 Eigen::Matrix3Xd mirrored_d1(const energy_model::Samples& samples, const Eigen::Matrix3d& mirror,
                              double a, double b) {
   Eigen::Matrix3Xd result(3, samples.d1.cols());
@@ -42,12 +42,12 @@ Eigen::Matrix3Xd mirrored_d1(const energy_model::Samples& samples, const Eigen::
   return result;
 }
 
-/// The mirror image in the plane through the first gripper.
+/// Returns the mirror image of a state in the plane through the first gripper.
 Equilibrium mirrored(const Scene& scene, const Equilibrium& state, const Eigen::Vector3d& normal) {
   const Eigen::Matrix3d mirror = Eigen::Matrix3d::Identity() - 2 * normal * normal.transpose();
   const Eigen::Vector3d origin = scene.grippers.front().position;
   Equilibrium result = state;
-  // Where the clamp holds d1, if the shape has one.
+  // Direction of d1 at the first clamp, if the shape has directors.
   double a = 0;
   double b = 1;
   const std::vector<const Gripper*> along = grippers_along(scene);
@@ -84,7 +84,7 @@ Equilibrium mirrored(const Scene& scene, const Equilibrium& state, const Eigen::
   return result;
 }
 
-/// The order of states: stable ones first, by energy.
+/// Whether a state precedes another in the order of states: stable ones first, then by energy.
 bool comes_before(const Equilibrium& a, const Equilibrium& b) {
   const bool a_stable = is_stable(a);
   const bool b_stable = is_stable(b);
@@ -100,14 +100,14 @@ std::vector<Equilibrium> all_states(const Scene& scene, const Equilibrium& lowes
   try {
     if (reference_model(scene) == Model::energy) states = reference_states(scene, options);
   } catch (const ConvergenceError&) {
-    // The lowest one is known.
+    // The lowest one is known even if the search fails.
   }
   const auto find = [&](const Equilibrium& state) {
     return std::find_if(states.begin(), states.end(), [&](const Equilibrium& other) {
       return shapes_apart(scene, state, other) < same_shape * scene.length;
     });
   };
-  // With the digits that solve() has.
+  // `lowest` replaces the state found again, because solve() computed it with all digits.
   const auto found_too = find(lowest);
   if (found_too != states.end()) {
     *found_too = lowest;

@@ -10,13 +10,13 @@
 
 namespace dlo::compare {
 
-/// All equilibria of a scene that are found, stable ones first, by energy: those of
-/// reference_states, `lowest` even where that wider search does not find it, and of a planar
-/// scene's shapes out of its plane also the mirror images.
+/// Returns all equilibria of a scene that are found, stable ones first, by energy: those of
+/// reference_states, `lowest` even if that wider search does not find it, and the mirror images of
+/// shapes of a planar scene that leave its plane.
 [[nodiscard]] std::vector<energy_model::Equilibrium> all_states(
     const Scene& scene, const energy_model::Equilibrium& lowest, const SolveOptions& options);
 
-/// Shapes that are nearer than this share of the length, RMS, are the same.
+/// RMS distance between shapes, divided by the length, below which they are the same.
 inline constexpr double same_shape = 1e-4;
 
 /// Distance of a known equilibrium from a shape, as a share of the length, below which a search
@@ -32,21 +32,21 @@ inline constexpr double surely_nearest = same_shape / 2;
                                                                   const SolveOptions& options);
 
 /// Adds an equilibrium to the states in their order, if it is proven stable and none of them.
-/// @param[in,out] states  of all_states()
-/// @return the index of the one added, std::nullopt if none is
+/// @param[in,out] states  result of all_states()
+/// @return the index of the added state, std::nullopt if none was added
 [[nodiscard]] std::optional<std::size_t> add_state(const Scene& scene,
                                                    energy_model::Equilibrium state,
                                                    std::vector<energy_model::Equilibrium>& states);
 
-/// What there is to say of the state compared.
-/// @param states  of all_states();  @param compared  its index
-/// @param from_shape  of each state, RMS distance from the shape that was compared [m]
+/// Describes the state with which a shape was compared.
+/// @param states  result of all_states();  @param compared  index of the state
+/// @param from_shape  RMS distance of each state from the shape [m]
 [[nodiscard]] ComparedState describe_state(const Scene& scene,
                                            const std::vector<energy_model::Equilibrium>& states,
                                            std::size_t compared,
                                            const std::vector<double>& from_shape);
 
-/// A polygon's solution of the scene that `turn` has laid into its plane, as it is in space.
+/// Returns the solution in space of a scene that `turn` moved into the plane z = 0.
 [[nodiscard]] Solution turned_back(Solution solution, const PlaneTurn& turn);
 
 }  // namespace dlo::compare

@@ -17,7 +17,8 @@
 namespace dlo::compare {
 namespace {
 
-/// No section carries more than half of all forces, since those on both sides of it balance [N].
+/// Returns an upper bound of the force in any cross-section [N]: half the sum of all forces, since
+/// the forces on both sides of a section balance.
 double most_force(const Scene& scene, const energy_model::Equilibrium& rod) {
   double all = scene.weight_per_length().norm() * scene.length + scene.total_of_loads();
   for (const energy_model::Reaction& grip : rod.grips) all += grip.force.norm();
@@ -25,7 +26,8 @@ double most_force(const Scene& scene, const energy_model::Equilibrium& rod) {
   return all / 2;
 }
 
-/// The least share of rod that two neighbouring grips leave to spare; 1 of a single one.
+/// Returns the smallest slack between two neighbouring grips, as a share of the rod between them; 1
+/// with a single grip.
 double least_slack(const Scene& scene) {
   const std::vector<const Gripper*> along = grippers_along(scene);
   double least = 1;
@@ -48,8 +50,9 @@ double largest_size(const std::vector<double>& values) {
   return largest;
 }
 
-/// The lowest shape of the rod as much longer, with its weight and EI.
-/// @param own  the rod's solution, with a tension at equal distances
+/// Estimates the effect by the lowest shape of a rod that is longer by the mean strain, with the
+/// same weight and EI.
+/// @param own  solution of the rod, with tensions at equally spaced arc lengths
 void look_at_longer_rod(const Scene& scene, const Solution& own, double EA,
                         const SolveOptions& options, StretchEffect& effect) {
   double mean = 0;
@@ -73,25 +76,26 @@ void look_at_longer_rod(const Scene& scene, const Solution& own, double EA,
     const double before = largest_size(own.tension);
     effect.tension = largest_size(other.tension) / before - 1;
   } catch (const ConvergenceError&) {
-    // Then it is not known.
+    // The effect remains unknown.
   } catch (const InputError&) {
-    // The same.
+    // As above.
   }
 }
 
-/// The least slack that an estimate goes by [-].
+/// Smallest slack for which the effect is estimated [-].
 constexpr double taut = 1e-9;
 
 bool matters(const StretchEffect& effect, const Scene& scene, const SolveOptions& options) {
   if (std::isnan(effect.moved_m)) {
-    // A line that sags by its slack alone is pulled less by this share.
+    // The tension of a line that sags only by its slack decreases by this share.
     return effect.strain / (2 * least_slack(scene)) > options.target;
   }
   return effect.moved_m > options.target * scene.length ||
          std::abs(effect.tension) > options.target;
 }
 
-/// None: model exact does not take the scene with stretch, as beside obstacles.
+/// Returns the shape with stretch, std::nullopt if the exact model rejects the scene with stretch,
+/// as next to obstacles.
 std::optional<energy_model::Equilibrium> exact_with_stretch(const Scene& scene,
                                                             const SolveOptions& options) {
   try {
@@ -127,7 +131,7 @@ StretchEffect stretch_effect(const Scene& scene, Model model, const energy_model
     }
   }
   look_at_longer_rod(scene, own, *EA, options, effect);
-  // Another state would be farther away than that.
+  // A larger displacement means that the search found another equilibrium.
   constexpr double another = 10;
   if (effect.moved_m > another * effect.strain * (1 + 1 / slack) * scene.length) {
     effect.moved_m = effect.tension = std::numeric_limits<double>::quiet_NaN();
@@ -158,7 +162,7 @@ StretchedRod decide_stretch(const Scene& scene, Model model, const SolveOptions&
   stretched.stretch = Stretch::counted;
   const bool may_count = scene.stretch == Stretch::automatic && model == Model::exact;
   if (may_count && !(least_slack(scene) > taut)) {
-    // Nothing is solved first: without stretch it may not reach.
+    // Without stretch the rod may not reach its grips, so it is not solved first.
     return {.scene = stretched,
             .rod = solve_reference(stretched, model, options),
             .decision = StretchDecision::counted};

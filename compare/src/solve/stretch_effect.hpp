@@ -6,34 +6,36 @@
 
 namespace dlo::compare {
 
-/// What stretch would change of an equilibrium of `energy` or `exact`, by the polygon that answers
-/// for the rod (PolygonResponse); where none does, as of a rod that touches an obstacle, by the
-/// energy model of the rod as much longer as it is stretched in the mean. Neither is asked where
-/// strain (1 + 1 / slack), of which the answer is a part but next to a bifurcation, stays below the
-/// target; nor of a rod whose EA is not known, or that grips hold taut.
+/// Estimates what stretch would change of an equilibrium of `energy` or `exact`: by
+/// PolygonResponse, or, where that does not apply, as for a rod that touches an obstacle, by the
+/// energy model's shape of a rod that is longer by the mean strain. The estimate is omitted if
+/// strain (1 + 1 / slack) does not exceed the target, because away from a bifurcation the effect is
+/// smaller than this product. It is also omitted if EA is unknown or grips hold the rod taut.
 [[nodiscard]] StretchEffect stretch_effect(const Scene& scene, Model model,
                                            const energy_model::Equilibrium& rod,
                                            const SolveOptions& options);
 
-/// An equilibrium of `energy` or `exact`, and what is known of its rod's stretch.
+/// An equilibrium of `energy` or `exact`, and the effect of stretch on it.
 struct StretchedRod {
-  Scene scene;  ///< that was solved: Stretch::none or Stretch::counted
+  Scene scene;  ///< scene that was solved: Stretch::none or Stretch::counted
   energy_model::Equilibrium rod;
-  StretchEffect effect;  ///< of the shape without stretch; NaN of one that the scene counts
-  bool neglects_stretch = false;  ///< though it matters
+  StretchEffect effect;  ///< effect on the shape without stretch; NaN if the scene counts stretch
+  bool neglects_stretch = false;  ///< stretch is not modelled although it matters
   StretchDecision decision = StretchDecision::given;
 };
 
-/// What is known of a shape that was solved without stretch: it matters where its effect is more
-/// than the options' target, or not known and may well be, or, of Stretch::automatic, where grips
-/// hold the rod taut, so that EA alone says how it is pulled.
+/// Returns a shape that was solved without stretch together with the effect of stretch. Stretch
+/// matters if its effect exceeds the options' target, or is unknown and may exceed it, or if the
+/// scene has Stretch::automatic and grips hold the rod taut, so that its tension depends on EA
+/// alone.
 [[nodiscard]] StretchedRod told_of_stretch(const Scene& scene, Model model,
                                            const energy_model::Equilibrium& rod,
                                            const SolveOptions& options);
 
-/// solve_reference() with Stretch::automatic decided: the shape without stretch is solved, and the
-/// one with it where that matters and the model has it. The only place that decides.
-/// @throws InputError, ConvergenceError as solve_reference()
+/// Solves a scene as solve_reference(), and decides Stretch::automatic: the shape without stretch
+/// is solved, and the shape with stretch if stretch matters and the model has it. No other function
+/// makes this decision.
+/// @throws InputError, ConvergenceError in the cases of solve_reference()
 [[nodiscard]] StretchedRod decide_stretch(const Scene& scene, Model model,
                                           const SolveOptions& options);
 
