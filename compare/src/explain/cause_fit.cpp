@@ -10,11 +10,12 @@
 namespace dlo::compare {
 namespace {
 
-/// Share of its mean square that a step towards the shape has to take away.
+/// Smallest relative decrease of the mean square that a step must promise.
 constexpr double least_gain = 0.1;
 
-/// To the state near the one that was compared with, or, where the rod is held in another way, to
-/// the lowest if that is nearer to the shape; false if there is none.
+/// Sets the rods to the equilibrium of the changed scene near the compared one. If the cause
+/// changes how the rod is held, the lowest equilibrium is used if it is nearer to the shape.
+/// Returns false if there is no equilibrium.
 bool goes_to_state(const SceneCause& cause, const energy_model::Equilibrium& rod,
                    FittedRods& rods) {
   if (cause.start.isZero()) rods.go_on_from({rod});
@@ -28,7 +29,7 @@ bool goes_to_state(const SceneCause& cause, const energy_model::Equilibrium& rod
   return state.rods[0].has_value();
 }
 
-/// Those whose rod, that of `rods` then, is nearest to the shape.
+/// Returns the numbers whose rod is nearest to the shape, and sets `rods` to that rod.
 Eigen::VectorXd best_numbers(const SceneCause& cause, double noise, FittedRods& rods) {
   if (cause.stride.isZero()) return cause.start;
   GaussNewton fit(rods, cause.start, {.noise = noise, .last_step = 0.05, .least_gain = least_gain});
@@ -36,7 +37,7 @@ Eigen::VectorXd best_numbers(const SceneCause& cause, double noise, FittedRods& 
   try {
     (void)fit.descend();
   } catch (const ConvergenceError&) {
-    // No time is left for more.
+    // The time limit ends the fit; the numbers so far are used.
   }
   rods.go_on_from(fit.rods().empty() ? start : fit.rods());
   return fit.values();

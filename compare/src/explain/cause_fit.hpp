@@ -10,21 +10,21 @@
 
 namespace dlo::compare {
 
-/// Numbers of a cause whose rod is nearest to a shape.
+/// Numbers of a cause whose rod is nearest to a shape, and that rod.
 struct FittedCause {
   Eigen::VectorXd numbers;
   energy_model::Equilibrium rod;
 };
 
 struct CauseFitLimits {
-  double noise = 0;  ///< what is nearer is the same [m]
-  Timer timer;       ///< from when on the time limit is
+  double noise = 0;  ///< differences up to this count as equal [m]
+  Timer timer;       ///< started when the time limit begins
 };
 
-/// @param rod  that the shape was compared with
-/// @return none if the scene that the cause begins with has no equilibrium
-/// @throws ConvergenceError if no time is left; InputError if there is no such scene, or the shape
-///         has too few points
+/// Fits the numbers of a cause to a shape. @param rod  rod with which the shape was compared
+/// @return std::nullopt if the scene at the start of the cause has no equilibrium
+/// @throws ConvergenceError if no time is left; InputError if the scene is invalid, or the shape
+/// has too few points
 [[nodiscard]] std::optional<FittedCause> fit_cause(const SceneCause& cause,
                                                    const MeasuredShape& shape,
                                                    const energy_model::Equilibrium& rod,

@@ -57,7 +57,7 @@ std::vector<double> refined_arc_lengths(const Scene& scene, const OwnPolygon& ch
     while (!is_held(end)) ++end;
     const double first = is_half(begin) ? 0.5 : 0;
     const double last = is_half(end) ? 0.5 : 0;
-    // Segments are counted from the begin of the first whole one.
+    // Segments are counted from the start of the first whole one.
     std::vector<double> count;
     for (std::size_t i = begin; i <= end; ++i) count.push_back(static_cast<double>(i - begin));
     count.front() += first;
@@ -88,7 +88,7 @@ int order_of(const Scene& scene, ChainClamp clamp) {
 }
 
 /// Whether the distance [m] is within the bound of make_plan() for a polygon with the chain's
-/// points, the middle of whose first or last segment a clamp holds.
+/// points, if a clamp holds the middle of its first or last segment and the rod touches nothing.
 bool is_within_bound(const Scene& scene, const OwnPolygon& chain,
                      const energy_model::Equilibrium& rod, double distance_m) {
   const bool touches = std::ranges::any_of(
@@ -100,7 +100,7 @@ bool is_within_bound(const Scene& scene, const OwnPolygon& chain,
   const std::optional<Discretisation> polygon =
       hooke_polygon(held_in_middle, static_cast<int>(s.size()));
   if (!polygon) return false;
-  constexpr double same = 0.01;  // of a segment
+  constexpr double same = 0.01;  // divided by a segment
   const double tolerance = same * scene.length / static_cast<double>(s.size());
   for (std::size_t i = 1; i + 1 < s.size(); ++i) {
     if (std::abs(polygon->arc_length[i] - s[i]) > tolerance) return false;

@@ -18,9 +18,10 @@ enum class ChainError {
 /// Distances of a chain and of the chain with twice as many segments from a rod, both at rest.
 struct ChainConvergence {
   ChainError error = ChainError::another_shape;
-  double coarse_m = 0;  ///< d(N): of the chain [m]
-  double fine_m = 0;    ///< d(2N): of the chain with twice as many segments [m]; NaN: not at rest
-  int order = 0;        ///< p: both 2^p and d(N) / d(2N) are the same for short segments
+  double coarse_m = 0;  ///< d(N): distance of the chain [m]
+  double fine_m = 0;    ///< d(2N): distance with twice as many segments [m]; NaN if that chain did
+                        ///< not come to rest
+  int order = 0;        ///< p: d(N) / d(2N) tends to 2^p for short segments
 };
 
 /// Compares a chain with an equilibrium of the continuous rod, at equal arc lengths.

@@ -12,7 +12,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Points are counted from 1.
+/// Describes why a shape is invalid; empty if it is valid. Points are counted from 1.
 std::string problem_of(const Shape& shape, double length) {
   const std::vector<double>& s = shape.arc_length;
   if (static_cast<Eigen::Index>(s.size()) != shape.points.cols() || s.size() < 2) {
@@ -69,7 +69,7 @@ bool is_loaded(const Scene& scene) {
          scene.drag;
 }
 
-/// Sets whether a shape that passes is significant, and says it if it is not.
+/// Sets whether a verdict "pass" is significant, and explains it if it is not.
 void judge_significance(const ShapeCheckOptions& options,
                         const std::optional<TrivialShape>& trivial, CheckResult& result) {
   if (!trivial) return;

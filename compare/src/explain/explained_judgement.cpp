@@ -13,7 +13,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Of a tolerance: how far a file is that is so far off because of how it was read, says nothing.
+/// Deviation, in tolerances, above which the deviation of a misread file is not meaningful.
 constexpr double far_beyond = 10;
 
 /// Returns the chain that the file is nearest to, if the file is near enough to be that chain's

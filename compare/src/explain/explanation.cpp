@@ -27,28 +27,28 @@ namespace {
 
 using energy_model::JointLaw;
 
-/// What an explanation may leave of the deviation.
+/// Largest part of the deviation that an explanation may leave.
 constexpr double most_left = 0.5;
-/// A number more has to take away this share of what is left.
+/// Part of the remaining deviation that each additional number must remove.
 constexpr double worth_of_a_number = 0.5;
-/// What is nearer than this share of the deviation, or of the length, is the same.
+/// Deviations below this share of the deviation to explain, or of the length, count as equal.
 constexpr double same_share = 0.02;
 constexpr double same_length = 1e-5;
-/// Deviation beyond which a shape is just another one, in lengths.
+/// Deviation, divided by the length, above which a shape is simply another one.
 constexpr double another_shape = 0.05;
-/// By how much a rod that has left its plane is out of it, in lengths.
+/// Distance out of plane, divided by the length, above which a rod has left its plane.
 constexpr double another_shape_out = 1e-3;
 
-/// What is left and the numbers that it takes, in one: the less the better. What is left below the
-/// rest that is the same counts as that.
-/// @param before  the deviation that is to be explained [m];  @param length  of the rod [m]
+/// Returns a price that combines the remaining deviation with the number of fitted numbers; smaller
+/// is better. Remaining deviations below the limit of equality count as that limit.
+/// @param before  deviation to explain [m];  @param length  of the rod [m]
 double price_of(double rms, int numbers, double before, double length) {
   const double same =
       std::max(same_share * std::min(before, another_shape * length), same_length * length);
   return std::max(rms, same) * std::pow(1 / worth_of_a_number, std::max(0, numbers));
 }
 
-/// A shape with the end of its last segment, straight on from it.
+/// Returns a shape with a straight extension of its last segment as last point.
 Shape extended_straight(Shape shape, double length) {
   const Eigen::Index count = shape.points.cols();
   const Eigen::Vector3d end = 2 * shape.points.col(count - 1) - shape.points.col(count - 2);
@@ -76,12 +76,12 @@ class Search {
   [[nodiscard]] std::vector<Explanation> run() {
     const energy_model::Equilibrium& rod = check_.rod;
     before_ = check_.whole_rms_m;
-    // It fails because too little is seen.
+    // Without a deviation the check fails only because too little of the rod is observed.
     if (!(before_ > same_length * scene_.length)) return {};
     if (options_.pose == PoseFreedom::known) {
       for (const FileCause& cause : file_causes(scene_, shape_, check_)) look_at(cause);
     }
-    // Without its noise a shape has to be nearer to the rod at its own points.
+    // The smoothed shape is compared with the rod at the points of the file.
     const auto noise = noise_of_points(check_.alignment.shape, check_.rod);
     if (noise && noise->rms_m <= most_left * check_.deviation.rms_m) add(*noise);
     look_at_unstable();
@@ -101,8 +101,8 @@ class Search {
     std::stable_sort(found_.begin(), found_.end(), [this](const auto& a, const auto& b) {
       return price(a.first) < price(b.first);
     });
-    // Several things that are wrong with a file at once are told if nothing explains more, and
-    // then none of them alone.
+    // A combination of several errors of a file is reported if no other explanation is better, and
+    // then none of these errors alone.
     const bool is_joint = !found_.empty() && found_.front().second == joint_cause;
     std::vector<Explanation> result;
     result.reserve(found_.size());
@@ -120,19 +120,20 @@ class Search {
     return timer_.seconds() > options_.solve.time_limit || energy_model::interrupted();
   }
 
-  /// Whether nothing with so many numbers could be better than what has been found.
+  /// Whether no explanation with so many numbers could be better than the best one found.
   [[nodiscard]] bool is_found(int numbers) const {
     return best_ && price(*best_) <= price({"", 0, numbers, ExplanationKind::scene});
   }
 
-  /// Of the shape, if the way between two points is as much longer as on the rod [m].
+  /// Returns the length of the shape, if the arc between two points exceeds the chord by the same
+  /// ratio as on the rod [m].
   [[nodiscard]] double length_of_shape() const {
     const std::vector<double>& s = check_.alignment.shape.arc_length;
     const double chords = lengths_along(check_.reference.points).back();
     return check_.polyline_length_m * (s.back() - s.front()) / chords;
   }
 
-  /// The chains whose points a shape may have, its last end missing or not.
+  /// Returns the chains that may have the points of a shape, whose last end may be missing.
   [[nodiscard]] std::vector<OwnPolygon> chains_of(
       const Shape& shape, Springs springs, std::optional<JointLaw> law = std::nullopt) const {
     if (!lacks_last_end(shape)) return own_polygons(scene_, shape, springs, law);
@@ -181,7 +182,7 @@ class Search {
 
   /// Adds the chain with the paper's joint law, whose shape depends on its number of segments.
   void look_at_paper_chains() {
-    constexpr double stretch = 1e-6;  // of a chain's segments, which no fit knows better
+    constexpr double stretch = 1e-6;  // strain of a chain's segments; fits are not more accurate
     const Shape& shape = check_.alignment.shape;
     for (const OwnPolygon& chain : chains_of(shape, Springs::fitted, JointLaw::paper)) {
       add({fmt::format("it is {}, with the paper's joint law, c_b = {:.3g} N, which does not "
@@ -192,7 +193,7 @@ class Search {
     }
   }
 
-  /// A chain's points in a file that says them wrongly.
+  /// Adds chains that fit the points of a file after its errors are corrected.
   void look_at_chains_said_rightly() {
     if (!said_rightly_ || is_found(said_rightly_->numbers + 1)) return;
     const Shape& shape = said_rightly_->shape;
@@ -213,7 +214,8 @@ class Search {
     return price_of(explanation.rms_m, explanation.numbers, before_, scene_.length);
   }
 
-  /// @param same_as  what of several only the best is told; empty: its own words
+  /// @param same_as  name of a group of causes of which only the best is reported; empty: the cause
+  /// itself
   void add(Explanation explanation, std::string same_as = {}) {
     if (!(explanation.rms_m <= most_left * before_)) return;
     if (explanation.numbers > most_numbers_) return;
@@ -229,8 +231,8 @@ class Search {
     }
   }
 
-  /// What a solver keeps at rest that does not see which way the rod leaves: one in the plane, or
-  /// one that looks for no minimum.
+  /// Adds the nearest unstable equilibrium, if any. A solver may find it if it is confined to the
+  /// plane, or if it does not search for a minimum.
   void look_at_unstable() {
     double least = std::numeric_limits<double>::infinity();
     for (const OtherState& other : check_.state.others) {
@@ -250,7 +252,7 @@ class Search {
          least, 0, ExplanationKind::scene});
   }
 
-  /// The largest distance of points from the scene's plane [m].
+  /// Returns the largest distance of points from the scene's plane [m].
   [[nodiscard]] double out_of_plane(const Eigen::Vector3d& normal,
                                     const Eigen::Matrix3Xd& points) const {
     return (normal.transpose() * (points.colwise() - scene_.grippers.front().position))
@@ -258,8 +260,8 @@ class Search {
         .maxCoeff();
   }
 
-  /// Lays a shape on the stable equilibrium that it is nearest to. If the file was read wrongly,
-  /// that may be another one than check_.rod.
+  /// Aligns a shape with the stable equilibrium nearest to it. For a file that was read wrongly it
+  /// may be another one than check_.rod.
   [[nodiscard]] std::pair<Alignment, Reference> nearest(const Aligner& aligner) const {
     std::pair<Alignment, Reference> result(aligner.align(curves_.front()), check_.rod.sample);
     for (std::size_t i = 1; i < curves_.size(); ++i) {
@@ -280,7 +282,8 @@ class Search {
       const Measured measured = measure(laid, sample, scene_.length);
       Explanation explanation{clauses_of(cause, laid), measured.rms_m, cause.numbers,
                               ExplanationKind::file};
-      // What points that are left out are blamed for has to be their own.
+      // If points are omitted, they must have caused the deviation: the others must be near the
+      // rod.
       if (cause.part && cause.shape.points.cols() < shape_.points.cols() &&
           !(measured.rms_m <= most_left * check_.deviation.rms_m)) {
         return;
@@ -296,11 +299,11 @@ class Search {
       }
       add(std::move(explanation), cause.same_as);
     } catch (const InputError&) {
-      // No file, said in this way.
+      // The shape is invalid with this cause.
     }
   }
 
-  /// All that is wrong with a file, with what was found in laying it.
+  /// Describes all errors of a file, including those found by aligning it.
   [[nodiscard]] std::string clauses_of(const FileCause& cause, const Alignment& laid) const {
     std::string words = cause.words;
     const auto add_clause = [&words](const std::string& clause) {
@@ -317,7 +320,7 @@ class Search {
     return words;
   }
 
-  /// RMS deviation of the whole rod, in the state that a cause leads to [m].
+  /// Returns the RMS deviation of the whole rod in the equilibrium that a cause results in [m].
   [[nodiscard]] double rms_of(const Scene& scene, const energy_model::Equilibrium& rod) const {
     const Alignment laid =
         Aligner(shape_, scene.length, align_).align(Curve(rod.sample, scene.length));
@@ -335,7 +338,7 @@ class Search {
            static_cast<int>(found->numbers.size()), ExplanationKind::scene},
           cause.same_as);
     } catch (const ResultError&) {
-      // No scene, or a shape of too few points for one; or no time is left.
+      // The scene is invalid, the shape has too few points for the cause, or no time is left.
     }
   }
 
@@ -343,20 +346,21 @@ class Search {
   const MeasuredShape& shape_;
   const ShapeCheck& check_;
   const ShapeCheckOptions& options_;
-  std::vector<Curve> curves_;  // of the rod that was compared with, then of other_rods
+  std::vector<Curve> curves_;  // of the rod that was compared, then of other_rods
   AlignOptions align_;
   double before_ = 0;
-  int most_numbers_ = std::numeric_limits<int>::max();      // unknowns that an explanation may have
-  std::vector<std::pair<Explanation, std::string>> found_;  // and what of several it is the best
+  int most_numbers_ = std::numeric_limits<int>::max();      // limit of fitted numbers
+  std::vector<std::pair<Explanation, std::string>> found_;  // with the group of which it is the
+                                                            // best
   std::optional<Explanation> best_;
-  /// A shape that a file says wrongly.
+  /// The shape of a file after correction of the file's errors.
   struct SaidRightly {
     std::string words;
     Shape shape;  // in the scene's frame
     int numbers;
     double price;
   };
-  std::optional<SaidRightly> said_rightly_;  // the best
+  std::optional<SaidRightly> said_rightly_;  // the one with the lowest price
   Timer timer_;
 };
 
@@ -373,7 +377,7 @@ std::optional<Explanation> better_than_stiffness(const ShapeCheck& check,
   const auto price = [&check](double rms, int numbers) {
     return price_of(rms, numbers, check.whole_rms_m, check.length_m);
   };
-  // E* is one number; a reason without any has to be as much better.
+  // E* is one number, so an explanation without numbers is treated as one with one number.
   const double of_stiffness = price(check.effective_modulus.rms_m, 0);
   for (const Explanation& explanation : explanations) {
     if (price(explanation.rms_m, std::max(1, explanation.numbers)) < of_stiffness) {

@@ -12,7 +12,8 @@ namespace {
 
 constexpr std::array axis_names = {"x", "y", "z"};
 
-/// Which axis of the file is the scene's vertical, if it is another one; else what is wrong.
+/// Names the file's axis that is the scene's vertical, if it differs; otherwise what is wrong with
+/// the axes.
 std::string name_of(const Eigen::Matrix3d& axes, const Eigen::Vector3d& gravity) {
   Eigen::Index vertical = 0;
   if (gravity.cwiseAbs().maxCoeff(&vertical) > 0.999 * gravity.norm() && gravity.norm() > 0) {
@@ -26,7 +27,7 @@ std::string name_of(const Eigen::Matrix3d& axes, const Eigen::Vector3d& gravity)
   return axes.determinant() < 0 ? "the file is mirrored" : "the file's axes are turned";
 }
 
-/// In words which of the file's axes are the scene's.
+/// Describes which axes of the file are the scene's axes.
 std::string axes_text(const Eigen::Matrix3d& axes) {
   std::string text;
   for (Eigen::Index to = 0; to < 3; ++to) {
@@ -41,8 +42,8 @@ std::string axes_text(const Eigen::Matrix3d& axes) {
   return text;
 }
 
-/// All but the identity: those with the fewest changes first, of exchanged ones proper rotations
-/// before mirror images.
+/// Returns all signed permutations except the identity: those with the fewest changes first, and
+/// among exchanged axes proper rotations before mirror images.
 std::vector<Eigen::Matrix3d> signed_permutations() {
   std::vector<Eigen::Matrix3d> all;
   std::array<Eigen::Index, 3> order = {0, 1, 2};

@@ -37,7 +37,7 @@ constexpr NamedUnit named_units[] = {{"metres", 1}, {"mm", 1e-3},       {"cm", 1
                                      {"um", 1e-6},  {"inches", 0.0254}, {"feet", 0.3048},
                                      {"km", 1e3}};
 
-/// A picture: of any scale, and it counts from a corner, often downwards.
+/// Adds pixel coordinates: of any scale, counted from a corner, often downwards.
 void add_pixels(const Scene& scene, const MeasuredShape& shape, std::vector<FileCause>& causes) {
   const double per_unit = scene.length / lengths_along(shape.points).back();
   constexpr double another_scale = 0.1;
@@ -54,7 +54,8 @@ void add_pixels(const Scene& scene, const MeasuredShape& shape, std::vector<File
   }
 }
 
-/// From a point on, each the nearest of those that are left, and how long that way is.
+/// Returns the length and the order of the greedy path from a point, always to the nearest
+/// remaining point.
 std::pair<double, std::vector<Eigen::Index>> way_from(Eigen::Index start,
                                                       const Eigen::Matrix3Xd& points) {
   std::vector<Eigen::Index> left(static_cast<std::size_t>(points.cols()));
@@ -74,7 +75,8 @@ std::pair<double, std::vector<Eigen::Index>> way_from(Eigen::Index start,
   }
 }
 
-/// Points whose shortest way past all of them is another one than the file's.
+/// Adds another order of the points, if the shortest greedy path through them is clearly shorter
+/// than the file's polyline.
 void add_order(const MeasuredShape& shape, const ShapeCheck& check,
                std::vector<FileCause>& causes) {
   constexpr Eigen::Index most_points = 300;
@@ -104,11 +106,12 @@ void add_order(const MeasuredShape& shape, const ShapeCheck& check,
        std::move(sorted)});
 }
 
-/// Points at an end that lead away from the rod, and a file that is a part of the rod.
+/// Adds points at an end that lead away from the rod, and a file that covers only a part of the
+/// rod.
 void add_lengths(const MeasuredShape& shape, const ShapeCheck& check,
                  std::vector<FileCause>& causes) {
   const std::vector<double>& s = check.reference.arc_length;
-  // A shorter part is next to the rod whatever the file is.
+  // A shorter part lies close to the rod for almost any file.
   constexpr double least_part = 0.05;
   const double part = s.back() - s.front();
   if (is_short(part, check.length_m) && part > least_part * check.length_m &&
@@ -146,7 +149,8 @@ void add_scale(const MeasuredShape& shape, const ShapeCheck& check,
     const Eigen::Vector3d fixed = about_first ? first : Eigen::Vector3d(Eigen::Vector3d::Zero());
     MeasuredShape right = shape;
     right.points = ((shape.points.colwise() - fixed) / stretch).colwise() + fixed;
-    // A strain is found from the file's length; another scale competes with the units by name.
+    // A strain follows from the file's length and counts as no number; another scale counts as one,
+    // like the named units' alternatives.
     const int numbers = may_be_strain && about_first ? 0 : 1;
     causes.push_back({words, std::move(right), PoseFreedom::known, numbers, false, "scale"});
   }
@@ -179,7 +183,7 @@ void add_rotations(const Scene& scene, const MeasuredShape& shape, const ShapeCh
     const Eigen::Vector3d& centre = scene.grippers[i].position;
     const Eigen::Matrix3d rotation =
         nearest_rotation(points.colwise() - centre, rod.colwise() - centre);
-    // Back from the file: the axis and the angle are those of the error.
+    // The rotation back from the corrected shape to the file is the error that is reported.
     const Eigen::AngleAxisd error(rotation.transpose());
     FileCause cause;
     cause.words = fmt::format("the file is rotated by {:.3g} deg about gripper {}",

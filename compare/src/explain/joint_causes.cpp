@@ -9,11 +9,12 @@
 namespace dlo::compare {
 namespace {
 
-/// What a file's polyline may be of the rod, in the unit that it is in.
+/// Range of the length of a file's polyline, divided by the rod's, for which a unit is considered.
 constexpr double shortest = 0.5;
 constexpr double longest = 1.25;
 
-/// Units in which the shape is as long as the rod, or a part of it; the metre's words are empty.
+/// Returns the units in which the shape is about as long as the rod or a part of it; the name of
+/// the metre is empty.
 std::vector<std::pair<std::string, double>> units_for(const MeasuredShape& shape, double length) {
   const double share = lengths_along(shape.points).back() / length;
   std::vector<std::pair<std::string, double>> units;
@@ -25,8 +26,8 @@ std::vector<std::pair<std::string, double>> units_for(const MeasuredShape& shape
   return units;
 }
 
-/// Calls `look` for a file in this unit and these axes: with or without the missing ends, in its
-/// place or moved. At least two of these have to differ from the file as it is.
+/// Calls `look` for a file in this unit and these axes: with or without missing ends, at its place
+/// or translated. Only combinations with at least two errors are used.
 void look_at_poses(const std::string& unit, const FileAxes& axes, const MeasuredShape& in_metres,
                    bool lacks_ends, const std::function<void(const FileCause&)>& look) {
   const int changed = (unit.empty() ? 0 : 1) + (axes.words.empty() ? 0 : 1);

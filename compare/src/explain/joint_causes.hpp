@@ -6,12 +6,12 @@
 
 namespace dlo::compare {
 
-/// What the causes below are said to be the same as.
+/// Group name (FileCause::same_as) of combinations of several errors.
 inline constexpr const char* joint_cause = "several";
 
-/// Looks at all ways in which several things are wrong with a file at once: its unit, its axes, its
-/// origin and the ends that it lacks. Each counts as a number more, but for the first.
-/// @param length  of the rod's axis, stretched [m]
+/// Calls `look` for all combinations of several errors of a file: its unit, axes, origin and
+/// missing ends. Each error after the first counts as one number.
+/// @param length  length of the rod's axis, with stretch [m]
 void look_at_joint_causes(const Scene& scene, const MeasuredShape& shape, double length,
                           const std::function<void(const FileCause&)>& look);
 

@@ -18,7 +18,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Segments that a chain may have to be told from the rod itself.
+/// Largest number of segments of a chain that can be distinguished from the rod itself.
 constexpr Eigen::Index most_segments = 200;
 
 /// Largest number of energies for a chain that may be that of the file. A file that is not near
@@ -31,13 +31,14 @@ constexpr int most_evaluations_refined = 20000;
 
 using energy_model::JointLaw;
 
-/// Those that are Hookean for small angles, most simulators' first.
+/// Joint laws that are Hookean for small angles; the one of most simulators comes first.
 constexpr JointLaw hookean_laws[] = {JointLaw::linear, JointLaw::hooke, JointLaw::binormal};
 
-/// How much farther from the points the other laws have to be for one to show.
+/// Ratio by which the other laws must be farther from the points for one to be identified.
 constexpr double showing = 2;
 
-/// Of what is below, as a share of the length, the chain's own stretch is a part: no law shows.
+/// Distance, divided by the length, below which no law is identified: the chain's own stretch
+/// contributes as much.
 constexpr double least_showing = 1e-5;
 
 /// Largest strain of a segment of a chain at rest [-]. Segments stretch by a millionth; a crushed
@@ -51,14 +52,16 @@ constexpr double same_arc_length = largest_chain_strain;
 /// Largest distance of a clamp from the middle of the segment that it holds, in half segments.
 constexpr double same_middle = 0.1;
 
-/// Where a gripper holds a chain.
+/// Position at which a gripper holds a chain.
 struct HeldAt {
-  Eigen::Index point = 0;  ///< the point that it holds, or the first of the segment
-  bool segment = false;    ///< a clamp holds the segment from that point in its middle
+  Eigen::Index point = 0;  ///< index of the point that it holds, or of the first point of the
+                           ///< segment
+  bool segment = false;    ///< whether a clamp holds the middle of the segment that begins at the
+                           ///< point
 };
 
-/// Returns where a gripper holds the chain; nothing if it does so neither at a point nor, if it is
-/// a clamp, in the middle of a segment.
+/// Returns the position at which a gripper holds the chain; std::nullopt if it holds neither a
+/// point nor, as a clamp, the middle of a segment.
 /// @param s  arc lengths of the chain's points [m]
 std::optional<HeldAt> held_at(const Gripper& gripper, const std::vector<double>& s) {
   const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, gripper.at);
@@ -81,7 +84,7 @@ Eigen::VectorXd rest_lengths(const Scene& scene, const Eigen::Matrix3Xd& points)
   double along = 0;
   std::vector<double> s = {along};
   for (const double h : chords) s.push_back(along += h * scene.length / chords.sum());
-  s.back() = scene.length;  // but for rounding it is
+  s.back() = scene.length;  // removes rounding
   std::vector<std::pair<double, double>> known = {{0, 0}, {scene.length, scene.length}};
   for (const Gripper& gripper : scene.grippers) {
     const std::optional<HeldAt> held = held_at(gripper, s);
@@ -101,8 +104,8 @@ Eigen::VectorXd rest_lengths(const Scene& scene, const Eigen::Matrix3Xd& points)
   return at.tail(n) - at.head(n);
 }
 
-/// Returns c_b of the paper's law [N], as models force and chain have it in this scene; if they
-/// have none, that of Formula 21 for the curvature 1/l.
+/// Returns c_b of the paper's law [N] as models force and chain use it in this scene; if they
+/// reject the scene, that of Formula 21 for the curvature 1/l.
 double paper_stiffness(const Scene& scene, Eigen::Index segments, ChainClamp clamp) {
   ForceModelSettings settings = scene.force_model;
   settings.law = BendingLaw::paper;
@@ -120,17 +123,17 @@ double paper_stiffness(const Scene& scene, Eigen::Index segments, ChainClamp cla
 
 class Chain {
  public:
-  /// @param points  where the search for the rest shape starts, and what it is compared with [m]
-  /// @param lengths  of the segments between them [m]
+  /// @param points  initial guess of the rest shape, with which it is compared too [m]
+  /// @param lengths  rest lengths of the segments between the points [m]
   Chain(const Scene& scene, const Eigen::Matrix3Xd& points, Eigen::VectorXd lengths,
         ChainClamp clamp, LastPoint last)
       : scene_(scene), points_(points), clamp_(clamp), last_(last), inner_(std::move(lengths)) {
     s_.push_back(0);
     for (const double L : inner_) s_.push_back(s_.back() + L);
-    s_.back() = scene.length;  // but for rounding it is
+    s_.back() = scene.length;  // removes rounding
   }
 
-  /// Whether the chain is one of this scene.
+  /// Whether the grippers of this scene can hold the chain; prepares its problem.
   [[nodiscard]] bool exists() {
     if (!hold()) return false;
     lay_out();
@@ -138,8 +141,9 @@ class Chain {
     return true;
   }
 
-  /// The file's points less its own at rest; nothing if it does not come to rest.
-  /// @param factor  of the springs
+  /// Returns the file's points minus the chain's points at rest; std::nullopt if the chain does not
+  /// come to rest.
+  /// @param factor  factor on the stiffness of the springs
   [[nodiscard]] std::optional<Eigen::Matrix3Xd> gaps(
       double factor, JointLaw law, int max_evaluations = most_evaluations_near_file) const {
     energy_model::PolygonProblem problem = problem_;
@@ -167,7 +171,7 @@ class Chain {
     problem_.node_forces += (-weights_).colwise() + weight;
   }
 
-  /// Sets its joints and their springs, or c_b of the paper's law.
+  /// Sets the joints and springs of a result, or c_b of the paper's law.
   void add_springs(OwnPolygon& polygon) const {
     if (polygon.law == JointLaw::paper) {
       polygon.paper_stiffness = polygon.stiffness * problem_.stiffness;
@@ -177,7 +181,8 @@ class Chain {
     for (Eigen::Index j = 0; j + 1 < h.size(); ++j) {
       const double EI =
           problem_.stiffnesses.size() > 0 ? problem_.stiffnesses[j] : problem_.stiffness;
-      // A hinge at the clamp is the first point's, other joints are those behind it.
+      // With a hinge at the clamp the first joint is at the first point, otherwise at the point
+      // behind it.
       polygon.joints.push_back(s_[static_cast<std::size_t>(j + 1 - before_)]);
       polygon.springs.push_back(polygon.stiffness * EI / ((h[j] + h[j + 1]) / 2));
     }
@@ -200,9 +205,9 @@ class Chain {
     problem_.held.push_back({point, position});
   }
 
-  /// Holds the segment that a clamp inside the rod holds: that whose middle is at the clamp, or,
-  /// welded to a point, the one that begins there.
-  /// @return whether the chain's kind of clamp can be there; a hinge cannot
+  /// Holds the segment that a clamp inside the rod holds: the one whose middle is at the clamp, or,
+  /// if welded to a point, the one that begins there.
+  /// @return whether the chain's kind of clamp is possible there; a hinge is not
   [[nodiscard]] bool hold_inside(const Gripper& clamp, const HeldAt& at) {
     if (clamp_ != (at.segment ? ChainClamp::middle : ChainClamp::welded)) return false;
     has_inner_clamp_ = true;
@@ -222,8 +227,8 @@ class Chain {
     return clamp == scene_.grippers.end() ? nullptr : &*clamp;
   }
 
-  /// Holds the end of the segment at a clamp at one of the rod's ends: the segment of the file, or
-  /// one beyond the rod if the chain has a hinge at the clamp.
+  /// Holds the second point of the segment at a clamp at an end of the rod: the file's own segment,
+  /// or a segment beyond the rod if the chain has a hinge at the clamp.
   void hold_direction(const Gripper& clamp, bool at_start) {
     const Eigen::Index n = inner_.size();
     const bool hinged = clamp_ == ChainClamp::hinge;
@@ -244,7 +249,8 @@ class Chain {
            (!is_clamped_at_end_ || is_half(inner_[n - 1], inner_[n - 2]));
   }
 
-  /// @return whether the grippers hold the chain in this way at the file's points
+  /// Sets the held points.
+  /// @return whether the grippers can hold the chain in this way at the file's points
   [[nodiscard]] bool hold() {
     const bool hinged = clamp_ == ChainClamp::hinge;
     const Gripper* const first = clamp_at(0);
@@ -265,7 +271,7 @@ class Chain {
     if (first != nullptr) hold_direction(*first, true);
     if (last != nullptr) hold_direction(*last, false);
     if (holds_twice()) return false;
-    // Chains that pins alone hold are the same with all three clamps.
+    // Chains held only by pins are equal with all three clamps, so only one of them counts.
     if (first == nullptr && last == nullptr) return hinged || has_inner_clamp_;
     return clamp_ != ChainClamp::middle || ends_in_half_segments();
   }
@@ -287,11 +293,11 @@ class Chain {
     const double l = scene_.length;
     const double force =
         stiffness / (l * l) + scene_.weight_per_length().norm() * l + scene_.total_of_loads();
-    // Segments that do not stretch, but for a millionth.
+    // The segments stretch by about a millionth.
     problem_.stretch_stiffness = 1e6 * force;
     problem_.stiffness = stiffness;
     if (clamp_ == ChainClamp::middle) {
-      // The spring is that between two whole segments.
+      // The spring has the stiffness between two whole segments.
       problem_.stiffnesses.setConstant(problem_.rest_lengths.size() - 1, stiffness);
       const auto whole = [&](Eigen::Index half, Eigen::Index next) {
         return (inner_[half] + inner_[next]) / (2 * inner_[half] + inner_[next]);
@@ -328,14 +334,14 @@ class Chain {
     }
   }
 
-  /// Adds the twist between clamps that hold frames. The turns are those of the points.
+  /// Adds the twist between clamps that hold frames, with the turns of the points.
   void add_twists() {
     if (!scene_.holds_twist()) return;
     const energy_model::Problem rod = scene_problem(scene_);
     const std::vector<std::size_t> framed = framed_grippers(scene_);
     Eigen::VectorXd h = problem_.rest_lengths;
     if (clamp_ == ChainClamp::middle) {
-      // The file has half of the whole segment that a clamp at the rod's end holds.
+      // The file has half of the whole segment that a clamp at the end of the rod holds.
       if (is_clamped_at_start_) h[0] *= 2;
       if (is_clamped_at_end_) h[h.size() - 1] *= 2;
     }
@@ -343,7 +349,8 @@ class Chain {
       const force_model::TwistedSpan span =
           held_span(rod, framed[k - 1], framed[k], held_segment(framed[k - 1]),
                     held_segment(framed[k]), start());
-      // Each joint has the torsional stiffness of half of both its segments, as in discretise().
+      // The torsional compliance of a joint is that of half of both adjacent segments, as in
+      // discretise().
       const Eigen::Index joints = span.last_segment - span.first_segment;
       const double length =
           (h.segment(span.first_segment, joints) + h.segment(span.first_segment + 1, joints))
@@ -374,10 +381,10 @@ class Chain {
   ChainClamp clamp_;
   LastPoint last_;
   Eigen::VectorXd inner_;  // rest lengths of the file's own segments
-  std::vector<double> s_;  // of the file's points
+  std::vector<double> s_;  // arc lengths of the file's points
   energy_model::PolygonProblem problem_;
   Eigen::Matrix3Xd weights_;             // the part of node_forces that is gravity [N]
-  Eigen::Index before_ = 0, after_ = 0;  // points beyond the rod's ends
+  Eigen::Index before_ = 0, after_ = 0;  // numbers of points beyond the rod's ends
   bool is_clamped_at_start_ = false, is_clamped_at_end_ = false, has_inner_clamp_ = false;
 };
 
@@ -385,7 +392,8 @@ double largest(const Eigen::Matrix3Xd& gaps) {
   return std::sqrt(gaps.colwise().squaredNorm().maxCoeff());
 }
 
-/// The springs that fit best, by Gauss-Newton steps along the logarithm of their stiffness.
+/// Returns the chain with the springs that fit best, by Gauss-Newton steps along the logarithm of
+/// their stiffness.
 std::optional<OwnPolygon> fitted(const Chain& chain, Eigen::Matrix3Xd gaps, ChainClamp clamp,
                                  JointLaw law) {
   constexpr int most_steps = 10;
@@ -396,7 +404,7 @@ std::optional<OwnPolygon> fitted(const Chain& chain, Eigen::Matrix3Xd gaps, Chai
     const std::optional<Eigen::Matrix3Xd> beside = chain.gaps(std::exp(log_factor + stride), law);
     if (!beside) return std::nullopt;
     const Eigen::Matrix3Xd slope = (*beside - gaps) / stride;
-    if (!(slope.squaredNorm() > 0)) break;  // a straight chain, whatever its springs
+    if (!(slope.squaredNorm() > 0)) break;  // a straight chain does not depend on its springs
     const double way = std::clamp(-slope.cwiseProduct(gaps).sum() / slope.squaredNorm(), -1.0, 1.0);
     std::optional<Eigen::Matrix3Xd> next = chain.gaps(std::exp(log_factor + way), law);
     if (!next || !(chain.rms_of(*next) < chain.rms_of(gaps))) break;
@@ -419,12 +427,12 @@ std::optional<OwnPolygon> with_law(const Chain& chain, ChainClamp clamp, Springs
   return found;
 }
 
-/// With the law that comes nearest, the first one if none shows.
+/// Returns the chain with the law that fits best, or with the first law if none is identified.
 std::optional<OwnPolygon> with_best_law(const Chain& chain, ChainClamp clamp, Springs springs,
                                         double length) {
   std::optional<OwnPolygon> first;
   std::optional<OwnPolygon> best;
-  double next = std::numeric_limits<double>::infinity();  // of the others, the nearest
+  double next = std::numeric_limits<double>::infinity();  // distance with the second-best law
   for (const JointLaw law : hookean_laws) {
     const std::optional<OwnPolygon> one = with_law(chain, clamp, springs, law);
     if (!one) continue;

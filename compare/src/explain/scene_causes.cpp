@@ -47,7 +47,8 @@ SceneCause torsional_stiffness(const Scene& scene) {
           }};
 }
 
-/// @param down  where it may point
+/// Returns the cause that gravity has another size or direction.
+/// @param down  direction at the start of the fit
 SceneCause gravity(const Scene& scene, const Eigen::Vector3d& down) {
   const double size = scene.gravity.norm();
   return {down * size - scene.gravity, Eigen::VectorXd::Constant(3, 0.02 * size), size,
@@ -64,7 +65,7 @@ SceneCause gravity(const Scene& scene, const Eigen::Vector3d& down) {
           }};
 }
 
-/// The shape's own, which nothing needs to be fitted for.
+/// Returns the cause that the rod has the length of the shape, for which nothing is fitted.
 SceneCause length(const Scene& scene, double of_shape) {
   return {Eigen::VectorXd::Constant(1, std::log(of_shape / scene.length)), zeros(1), 0,
           [scene](const Eigen::VectorXd& p) {
@@ -78,7 +79,7 @@ SceneCause length(const Scene& scene, double of_shape) {
           }};
 }
 
-/// Of a clamp, in the plane with this normal or every way.
+/// Returns the cause that a clamp has another direction: in the plane with this normal, or any.
 SceneCause direction(const Scene& scene, std::size_t index,
                      const std::optional<Eigen::Vector3d>& normal) {
   const Gripper& clamp = scene.grippers[index];
@@ -98,7 +99,7 @@ SceneCause direction(const Scene& scene, std::size_t index,
           }};
 }
 
-/// Of a gripper, in the plane with this normal or every way.
+/// Returns the cause that a gripper has another position: in the plane with this normal, or any.
 SceneCause position(const Scene& scene, std::size_t index,
                     const std::optional<Eigen::Vector3d>& normal) {
   const Eigen::Matrix3Xd ways = ways_of_place(normal);
@@ -124,7 +125,7 @@ std::string text_of(const Eigen::Vector3d& direction) {
   return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", shown.x(), shown.y(), shown.z());
 }
 
-/// Unit, along the rod.
+/// Returns the unit tangent of a shape at an arc length.
 Eigen::Vector3d tangent_at(const Shape& shape, double at) {
   const std::vector<double>& s = shape.arc_length;
   const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, at);
@@ -133,7 +134,7 @@ Eigen::Vector3d tangent_at(const Shape& shape, double at) {
   return along.norm() > 0 ? along.normalized() : Eigen::Vector3d::UnitX();
 }
 
-/// Pins that hold directions all the same, those that the shape has there to begin with.
+/// Returns the cause that pins hold directions; the fit starts at the directions of the shape.
 SceneCause clamps_for_pins(const Scene& scene, const std::vector<std::size_t>& pins,
                            const Shape& shape, const std::optional<Eigen::Vector3d>& normal) {
   Scene held = scene;
@@ -177,7 +178,7 @@ SceneCause clamps_for_pins(const Scene& scene, const std::vector<std::size_t>& p
   return cause;
 }
 
-/// Clamps that let the rod rotate all the same.
+/// Returns the cause that clamps let the rod rotate.
 SceneCause pins_for_clamps(const Scene& scene, const std::vector<std::size_t>& clamps) {
   Scene free = scene;
   for (const std::size_t i : clamps) {
@@ -195,7 +196,7 @@ SceneCause pins_for_clamps(const Scene& scene, const std::vector<std::size_t>& c
   return cause;
 }
 
-/// Each gripper that is a pin for a clamp or the reverse, then all of a kind.
+/// Adds the exchange of pin and clamp for each gripper, then for all pins and for all clamps.
 void add_other_holds(std::vector<SceneCause>& causes, const Scene& scene, const Shape& shape,
                      const std::optional<Eigen::Vector3d>& normal) {
   std::vector<std::size_t> pins;
@@ -244,7 +245,7 @@ SceneCause twist(const Scene& scene, std::size_t last) {
           }};
 }
 
-/// Adds gravity of another size, and in the other directions of its axes.
+/// Adds gravity of another size, and starts in the other directions of its axes.
 void add_other_gravity(std::vector<SceneCause>& causes, const Scene& scene) {
   const Eigen::Vector3d down = scene.gravity.normalized();
   const Eigen::Vector3d across = down.unitOrthogonal();
@@ -267,7 +268,7 @@ bool is_pulled_by_weight_alone(const Scene& scene) {
 std::vector<SceneCause> scene_causes(const Scene& scene, const Shape& shape, double length_of_shape,
                                      bool flat) {
   std::vector<SceneCause> causes = {stiffness(scene)};
-  // GJ bends a rod that twists, and no other.
+  // GJ affects the shape only of a rod that twists.
   const bool twists = scene.holds_twist() || scene.has_material_directors();
   if (!flat && twists && scene.twisting_stiffness() > 0) {
     causes.push_back(torsional_stiffness(scene));
@@ -283,7 +284,7 @@ std::vector<SceneCause> scene_causes(const Scene& scene, const Shape& shape, dou
   if (clamps > 0 && says_which_way && !scene.holds_twist()) {
     causes.push_back(natural_curvature(scene));
   }
-  // Another length shows in the points.
+  // A different length is visible in the points.
   constexpr double seen = 0.005;
   const double longer = std::abs(std::log(length_of_shape / scene.length));
   if (longer > seen && longer < 1) causes.push_back(length(scene, length_of_shape));
@@ -292,7 +293,8 @@ std::vector<SceneCause> scene_causes(const Scene& scene, const Shape& shape, dou
     const Gripper& gripper = scene.grippers[i];
     const bool held_frame = gripper.frame && gripper.frame->d1;
     if (gripper.direction && !held_frame) causes.push_back(direction(scene, i, normal));
-    // Where the only gripper is, the file's origin says.
+    // A displaced single gripper only shifts the whole shape. The cause "the file has another
+    // origin" (file_causes) covers this case.
     if (scene.grippers.size() > 1 || !scene.obstacles.empty()) {
       causes.push_back(position(scene, i, normal));
     }

@@ -10,27 +10,29 @@
 
 namespace dlo::compare {
 
-/// A way in which a scene may be another one, by some numbers that are zero if it is not.
+/// A possible error of a scene, described by numbers that are zero without the error.
 struct SceneCause {
-  Eigen::VectorXd start;    ///< of the search
-  Eigen::VectorXd stride;   ///< of differences; zero: the start is it
-  double longest_step = 0;  ///< of any number
+  Eigen::VectorXd start;    ///< start of the fit
+  Eigen::VectorXd stride;   ///< strides of differences; zero: nothing is fitted, and the start is
+                            ///< the result
+  double longest_step = 0;  ///< longest step of any number
   std::function<Scene(const Eigen::VectorXd&)> changed;
   std::function<std::string(const Eigen::VectorXd&)> words;
-  /// Of several starts of the same cause the best is told; empty: there is one.
+  /// Name of a group of causes of which only the best is reported; empty: reported by itself.
   std::string same_as = {};
-  /// The rod is held in another way, so that its state may be none that is near.
+  /// Whether the rod is held in another way, so that its equilibrium may be far from the compared
+  /// one.
   bool other_state = false;
 };
 
-/// Whether nothing but its weight bends the rod, so that a stiffness times a number is the weight
-/// over it.
+/// Whether weight is the only load, so that a factor on the stiffness has the effect of the inverse
+/// factor on the weight.
 [[nodiscard]] bool is_pulled_by_weight_alone(const Scene& scene);
 
-/// All that can be wrong with this scene, what takes longest last.
-/// @param shape     that it is held against, in the scene's frame
-/// @param length_of_shape  along its points [m]
-/// @param flat      the shape lies in the scene's plane: nothing leads out of it
+/// Returns all possible single errors of a scene, the slowest to fit last.
+/// @param shape     compared shape, in the scene's frame
+/// @param length_of_shape  length along its points [m]
+/// @param flat      whether the shape lies in the scene's plane: no cause then leaves it
 [[nodiscard]] std::vector<SceneCause> scene_causes(const Scene& scene, const Shape& shape,
                                                    double length_of_shape, bool flat);
 

@@ -16,7 +16,7 @@ namespace {
 using Eigen::Index;
 using Eigen::Vector3d;
 
-/// Lengths of a chain's segments are the model's to this share.
+/// Largest relative difference between the segments of a chain and those of the model.
 constexpr double like_the_model = 0.02;
 
 bool are_starts(const Eigen::Matrix3Xd& points, double segment) {
@@ -25,7 +25,7 @@ bool are_starts(const Eigen::Matrix3Xd& points, double segment) {
   return (h.array() - segment).abs().maxCoeff() <= like_the_model * segment;
 }
 
-/// The end of a last segment that a gripper holds.
+/// Returns the end of the last segment if a gripper holds it.
 std::optional<Vector3d> held_end(const Scene& scene, const Vector3d& last, double segment) {
   for (const Gripper& gripper : scene.grippers) {
     const bool at_end = std::abs(gripper.at - scene.length) < 1e-6 * scene.length;
@@ -45,8 +45,8 @@ Vector3d free_end(const Eigen::Matrix3Xd& points, double segment) {
   return points.col(n - 1) + turn * (segment * last.normalized());
 }
 
-/// Returns the number of grippers that hold an end of the rod, and of those that hold it at a
-/// point.
+/// Returns the number of grippers that hold an end of the rod, and the number of those that hold it
+/// at `point`.
 std::pair<int, int> held_ends(const Scene& scene, const Vector3d& point, double segment) {
   std::pair<int, int> count;
   for (const Gripper& gripper : scene.grippers) {
@@ -57,7 +57,7 @@ std::pair<int, int> held_ends(const Scene& scene, const Vector3d& point, double 
   return count;
 }
 
-/// Returns the shape with the end of its last segment.
+/// Returns the shape with the end of its last segment added.
 MeasuredShape with_end(const Scene& scene, MeasuredShape shape, double segment) {
   const Index n = shape.points.cols();
   const Vector3d last = shape.points.col(n - 1);
@@ -72,11 +72,11 @@ MeasuredShape with_end(const Scene& scene, MeasuredShape shape, double segment) 
   return shape;
 }
 
-/// Returns the bodies of the cable, if the shape has those of the whole model; else the shape.
+/// Returns the bodies of the cable if the shape has all bodies of the model; otherwise the shape.
 MeasuredShape cable_of_model(const ModelChain& model, const MeasuredShape& shape, double segment) {
   if (shape.points.cols() != model.bodies || model.bodies <= model.segments) return shape;
   const Eigen::Matrix3Xd chain = shape.points.middleCols(model.first_body, model.segments);
-  // A chain with its end may have as many points as the model bodies.
+  // A chain with its end may have as many points as the model has bodies.
   if (are_starts(shape.points, segment) || !are_starts(chain, segment)) return shape;
   MeasuredShape cable = shape;
   cable.points = chain;
@@ -102,7 +102,7 @@ MeasuredShape whole_of_segment_starts(const Scene& scene, const MeasuredShape& s
   }
   const Index n = shape.points.cols();
   const double segment = scene.length / static_cast<double>(n);
-  // The points of a whole rod are nearly as far apart if they are many.
+  // With many points, those of a whole rod have nearly the same distances.
   const bool lacks_end = n > 3 && lacks_one_segment(shape.points, scene.length);
   if (pose != PoseFreedom::known || !lacks_end || !are_starts(shape.points, segment)) return shape;
   const Vector3d last = shape.points.rightCols<1>();

@@ -6,16 +6,15 @@
 
 namespace dlo::compare {
 
-/// Returns a shape whose points are where the segments of a chain begin, as MuJoCo's xpos are, with
-/// the end of its last segment; any other shape as it is. That end is where a gripper holds it. A
-/// free end's last segment is rotated by a quarter of the rotation of the segment before, as the
-/// moment of a weight grows with the square of the distance. Points are such begins if they have no
-/// arc lengths, N of them are l/N apart within 2 %, and the first one is held at an end of the rod;
-/// those of a simulator's model need not be held, and of all bodies of the model those of the chain
-/// are taken. Notes state what was done.
-/// @param pose  what is unknown of the shape's frame; unless that is the scene's, only the points
-/// of
-///              a model are completed
+/// Completes a shape whose points are the start points of a chain's segments, as MuJoCo's xpos are,
+/// by the end of the last segment; returns any other shape unchanged. The end is the position of
+/// the gripper that holds it. The last segment of a free end is rotated by a quarter of the
+/// rotation of the segment before, since the moment of a weight grows with the square of the
+/// distance. Points are start points if they have no arc lengths, N of them are l/N apart within 2
+/// %, and the first one is held at an end of the rod. Points of a simulator's model need not be
+/// held, and of all bodies of the model those of the chain are used. Notes state what was done.
+/// @param pose  unknown coordinates of the shape's frame; if it is not the scene's frame, only
+/// points of a model are completed
 [[nodiscard]] MeasuredShape whole_of_segment_starts(const Scene& scene, const MeasuredShape& shape,
                                                     PoseFreedom pose = PoseFreedom::known);
 

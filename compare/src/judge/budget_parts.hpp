@@ -8,22 +8,23 @@
 
 namespace dlo::compare {
 
-/// Whether the force model left something out that the scene has (Solution::neglected).
+/// Whether the force model neglected a property of the scene (Solution::neglected).
 [[nodiscard]] bool neglects(const Comparison& comparison, const char* what);
 
-/// A part of an error budget, by its name.
+/// A named part of an error budget.
 struct NamedPart {
   const char* name;
-  const char* words;  ///< in a sentence
+  const char* words;  ///< name in a sentence
   BudgetPart Budget::*of;
-  bool is_neglected = false;  ///< it is there where the force model neglects what is called so
+  bool is_neglected = false;  ///< the part only exists if the force model neglects the property of
+                              ///< this name
 };
 
-/// All of them.
+/// Returns all parts.
 [[nodiscard]] std::span<const NamedPart> budget_parts();
 
-/// The parts of a comparison's error budget that are told, by name: without those that its scene
-/// has not. They point into the comparison.
+/// Returns the parts of a comparison's error budget with their names, without those that its scene
+/// does not have. The pointers refer to the comparison.
 [[nodiscard]] std::vector<std::pair<const char*, const BudgetPart*>> shown_parts(
     const Comparison& comparison);
 

@@ -16,15 +16,15 @@
 namespace dlo::compare {
 namespace {
 
-/// The stable state nearest to where the Hookean polygon goes downhill from the force model's
-/// shape.
+/// Returns the index of the state nearest to the shape to which the Hookean polygon relaxes from
+/// the force model's shape; saddles are excluded.
 std::size_t state_of(const Scene& scene, const Shape& force,
                      const std::vector<energy_model::Equilibrium>& states,
                      const SolveOptions& options) {
   if (states.size() == 1) return 0;
   ForceModelSettings settings = scene.force_model;
   settings.law = BendingLaw::hooke;
-  // A force model that neglects twist is in a state without it.
+  // The force model without twist is compared with a relaxed shape without twist.
   const bool twisted = takes_twist(scene, scene.force_model);
   const Shape downhill =
       chain_from(twisted ? scene : scene.without_twist(), settings, force, options);
@@ -40,7 +40,8 @@ std::size_t state_of(const Scene& scene, const Shape& force,
   return nearest;
 }
 
-/// What a search from the force model's points finds, unless a known state is as near as any.
+/// Adds the equilibrium that a search from the force model's points finds, unless a known state is
+/// nearer than any other can be.
 void add_state_of_force_model(const Scene& scene, const Shape& force, const SolveOptions& options,
                               std::vector<energy_model::Equilibrium>& states) {
   const bool is_near = std::any_of(states.begin(), states.end(), [&](const auto& state) {
@@ -65,7 +66,8 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
   if (plan) result.plan = make_plan(scene, *plan);
   result.force = solve_force(scene, scene.force_model, options);
   const Shape& force = result.force.shape;
-  // What a user would call, for its cost; the other states are looked for besides.
+  // The cost is that of the call that a user would make; the search for other states is not
+  // counted.
   const energy_model::Equilibrium lowest = solve_reference(scene, options);
   result.energy_seconds = lowest.seconds;
   result.energy_evaluations = lowest.evaluations;
@@ -98,7 +100,7 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
   }
   result.residual_over_movement =
       result.deviation.rms_over_movement / result.deviation.rms_m * result.effective_modulus.rms_m;
-  // The same movement as is told, at the force model's points.
+  // The deflection is the one reported, at the force model's points.
   result.effective_modulus.optimum = without_small_movement(
       result.effective_modulus, result.effective_modulus.rms_m / result.residual_over_movement);
   result.budget = error_budget(scene, result.force, energy.sample, options);

@@ -18,20 +18,23 @@
 namespace dlo::compare {
 namespace {
 
-/// Steps of the scan along ln(E*/E), and how many without improvement end it: half a decade.
+/// Steps per decade of the scan along ln(E*/E), and number of steps without improvement, half a
+/// decade, after which it ends.
 constexpr int steps_per_decade = 4;
 constexpr int most_worse_steps = 2;
-/// RMS way between two moduli up to which a shape is the same equilibrium, share of the length.
+/// RMS distance between the shapes at two moduli, divided by the length, up to which they belong to
+/// the same equilibrium.
 constexpr double largest_way = 0.1;
-/// Shortest step along ln(E*/E): an equilibrium that is lost there ends there.
+/// Shortest step along ln(E*/E). An equilibrium that is lost with it is considered to end.
 constexpr double least_step = 0.02;
 /// Accuracy of ln(E*/E).
 constexpr double log_tolerance = 1e-6;
 
-/// Beyond the time limit of the whole search.
+/// Thrown if the time limit of the whole search is exceeded.
 struct OutOfTime {};
 
-/// One equilibrium of a scene for any modulus, each solved from the nearest that is known.
+/// One equilibrium of a scene as a function of the modulus; each solve starts from the nearest
+/// known one.
 class FollowedState {
  public:
   FollowedState(const Scene& scene, const ShapeDistance& distance,
@@ -43,7 +46,8 @@ class FollowedState {
     remember(0, state);
   }
 
-  /// Mean square distance [m^2]; infinite beyond where the equilibrium ends. @throws OutOfTime
+  /// Returns the mean square distance [m^2]; infinite beyond the end of the equilibrium.
+  /// @throws OutOfTime
   double operator()(double log_ratio) {
     const auto known = known_.find(log_ratio);
     if (known != known_.end()) return known->second.mean_square;
@@ -51,8 +55,8 @@ class FollowedState {
     return reached != nullptr ? reached->mean_square : std::numeric_limits<double>::infinity();
   }
 
-  /// Smallest eigenvalue of the second variation where the equilibrium is; NaN beyond its end, or
-  /// where the solver did not look.
+  /// Returns the smallest eigenvalue of the second variation; NaN beyond the end of the
+  /// equilibrium, or if the solver did not compute it.
   [[nodiscard]] double curvature(double log_ratio) {
     if (!std::isfinite((*this)(log_ratio))) return NAN;
     return known_.at(log_ratio).state.smallest_eigenvalue;
@@ -76,7 +80,8 @@ class FollowedState {
     return known_.insert_or_assign(log_ratio, std::move(known)).first->second;
   }
 
-  /// From the nearest known modulus, halving the way while the equilibrium is lost on it.
+  /// Continues the equilibrium from the nearest known modulus; steps on which it is lost are
+  /// halved. Returns null if it ends.
   const Known* reach(double log_ratio) {
     for (double target = log_ratio;;) {
       const auto [from, start] = nearest(target);
@@ -99,7 +104,7 @@ class FollowedState {
     return up ? std::pair{above->first, &above->second} : std::pair{below->first, &below->second};
   }
 
-  /// Nothing if the equilibrium is not there, or is another one.
+  /// Returns null if there is no equilibrium at the modulus, or a different one.
   const Known* step(const Known& start, double log_ratio) {
     SolveOptions options = options_;
     options.start = &start.state;
@@ -116,7 +121,7 @@ class FollowedState {
     } catch (const ConvergenceError&) {
       return nullptr;
     } catch (const InputError&) {
-      return nullptr;  // softer or stiffer than the energy model takes
+      return nullptr;  // softer or stiffer than the energy model supports
     }
   }
 
@@ -129,7 +134,8 @@ class FollowedState {
   int solves_ = 0;
 };
 
-/// From E*/E = 1 both ways, each until the mean square has not got less for half a decade.
+/// Scans from E*/E = 1 in both directions, each until the mean square has not decreased for half a
+/// decade.
 Scan scan_both_ways(FollowedState& mean_square, double resolution) {
   const double step = std::log(10) / steps_per_decade;
   const int lowest = static_cast<int>(std::round(std::log(smallest_modulus_ratio) / step));
@@ -161,7 +167,8 @@ EffectiveModulus no_modulus(std::string why) {
   return result;
 }
 
-/// RMS way of an equilibrium from the straight rod [m]; NaN if there is none.
+/// Returns the RMS distance of an equilibrium from the straight rod [m]; NaN if there is no
+/// straight rod.
 double movement_of(const Scene& scene, const energy_model::Equilibrium& state) {
   constexpr int samples = 101;
   const std::vector<double> s = equal_arc_lengths(scene.length, samples);
@@ -169,15 +176,16 @@ double movement_of(const Scene& scene, const energy_model::Equilibrium& state) {
   return straight ? rms(s, *straight - state.sample(s).points) : NAN;
 }
 
-/// Whether the followed equilibrium ends or bifurcates beside a modulus. At a bifurcation the
-/// smallest eigenvalue is zero, and grows to both sides: on one of them it is another branch's.
+/// Whether the followed equilibrium ends or bifurcates close to a modulus. At a bifurcation the
+/// smallest eigenvalue is zero and increases on both sides; on one side it belongs to another
+/// branch.
 bool is_at_bifurcation(FollowedState& state, double log_ratio) {
-  // An equilibrium that ends is followed to this distance from its end.
+  // The distance from its end to which an equilibrium is followed.
   constexpr double beside = 2 * least_step;
   constexpr double vanishing = 0.25;
   const double low = log_ratio - beside;
   const double high = log_ratio + beside;
-  // Beyond its range nothing is known.
+  // Beyond the range of moduli nothing is known.
   const bool in_range =
       low >= std::log(smallest_modulus_ratio) && high <= std::log(largest_modulus_ratio);
   if (!in_range) return false;

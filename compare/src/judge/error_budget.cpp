@@ -14,8 +14,8 @@ namespace {
 
 constexpr int field_points = 201;
 
-/// Differences of polygons from the rod, all at the same arc lengths: smooth where a polygon is
-/// not.
+/// Differences between polygons and the rod, all interpolated at the same arc lengths. They are
+/// smooth although polygons are not.
 class Fields {
  public:
   Fields(const Reference& reference, double length)
@@ -50,7 +50,8 @@ bool reaches_rigid_obstacle(const Scene& scene) {
                      [&](std::size_t i) { return std::isinf(scene.obstacles[i].stiffness); });
 }
 
-/// On obstacles that are as stiff to a polygon of any c_c as rigid ones are to one with this c_c.
+/// Returns the scene with finite stiffnesses of its rigid obstacles, so that they deform a polygon
+/// with any c_c as rigid ones deform a polygon with this c_c.
 Scene on_obstacles_for(Scene scene, double c_c, double segment_length) {
   for (Obstacle& obstacle : scene.obstacles) {
     if (std::isinf(obstacle.stiffness)) {
@@ -60,13 +61,15 @@ Scene on_obstacles_for(Scene scene, double c_c, double segment_length) {
   return scene;
 }
 
-/// How far rods without what the force model neglects are from the rod.
+/// Differences between the rod and rods without properties that the force model neglects.
 struct RodsWithout {
   Eigen::Matrix3Xd twist;  ///< without the twist
-  Eigen::Matrix3Xd all;    ///< without the natural curvature too, of which the polygon is one
+  Eigen::Matrix3Xd all;    ///< without the natural curvature too, which is the rod that the polygon
+                           ///< discretises
 };
 
-/// Of the lowest shapes of these rods. @param taken  what the polygons have of the scene
+/// Returns the differences for the lowest shapes of these rods.
+/// @param taken  the scene as the polygons model it
 RodsWithout rods_without(const Scene& scene, const Scene& taken, const std::vector<double>& s,
                          const Fields& fields, const SolveOptions& options) {
   const auto rod = [&](const Scene& other) {
@@ -89,10 +92,10 @@ Budget error_budget(const Scene& scene, const Solution& force, const Reference& 
                     const SolveOptions& options) {
   const Fields fields(reference, scene.length);
   const ForceModelSettings& own = scene.force_model;
-  // The reference's own stretch is no error of the polygons.
+  // The stretch of the reference itself is no error of the polygons.
   const double stiffer = reference_model(scene) == Model::exact ? 1 : 100;
   const double rigid = stiffer * scene.axial_stiffness();
-  // The chains are of the scene that the force model has taken.
+  // The chains model the scene as the force model does.
   const Scene taken = as_polygons_take_it(scene, own);
   const auto chain_in = [&](const Scene& other, BendingLaw law, Bookkeeping bookkeeping,
                             double c_c) {

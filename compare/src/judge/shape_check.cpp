@@ -23,7 +23,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Points with which E*/E is fitted; of more, every so many-th.
+/// Largest number of points with which E*/E is fitted; more points are thinned at equal intervals.
 constexpr Eigen::Index most_modulus_points = 500;
 
 MeasuredShape thinned(const MeasuredShape& shape) {
@@ -35,7 +35,7 @@ MeasuredShape thinned(const MeasuredShape& shape) {
   const Eigen::Index kept = (count - 1) / every + 1;
   result.points.resize(3, kept);
   for (Eigen::Index i = 0; i < kept; ++i) {
-    // The last point stays, for the polyline keeps its length.
+    // The last point is kept, so that the polyline keeps its length.
     const Eigen::Index from = i + 1 == kept ? count - 1 : i * every;
     result.points.col(i) = shape.points.col(from);
     if (!shape.arc_length.empty()) {
@@ -45,7 +45,7 @@ MeasuredShape thinned(const MeasuredShape& shape) {
   return result;
 }
 
-/// RMS distance of points from the line that comes nearest to them.
+/// Returns the RMS distance of points from the straight line nearest to them.
 double distance_from_line(const Eigen::Matrix3Xd& points) {
   const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean();
   const Eigen::Matrix3d moments =
@@ -101,13 +101,14 @@ Deviation measured_deviation(const Scene& scene, const Alignment& alignment,
   return result;
 }
 
-/// What looks wrong with a polyline that is not as long as the rod under it.
+/// Describes what is probably wrong with a polyline that is not as long as its part of the rod;
+/// empty if nothing.
 std::string hint_of(const ShapeCheck& check, const Measured& measured) {
-  constexpr double least = 1e-3;  // of the length: what a person would see
+  constexpr double least = 1e-3;  // divided by the length: a difference that a person would see
   const Alignment& alignment = check.alignment;
   const Eigen::Matrix3Xd& points = alignment.shape.points;
   const std::vector<double>& s = alignment.shape.arc_length;
-  // Another unit, rather.
+  // A much longer or shorter polyline suggests another unit instead.
   if (check.polyline_length_m > 2 * check.length_m) return {};
   if (check.polyline_length_m < check.length_m / 50) return {};
   if (alignment.arc_lengths != ArcLengths::nearest) {
@@ -124,7 +125,7 @@ std::string hint_of(const ShapeCheck& check, const Measured& measured) {
     const Eigen::Vector3d along = (end - measured.reference.col(inner)).normalized();
     const Eigen::Vector3d past = points.col(outermost) - end;
     const double share = past.dot(along) / past.norm();
-    // Within 30 degrees of the rod's own direction it goes straight on.
+    // Points within 30 degrees of the rod's direction continue the rod.
     const bool straight_on = share > 0.866;
     return fmt::format("longer than the rod by {:.4g} mm past {}: {}", check.excess_m * 1e3,
                        at_end ? "arc length l" : "arc length 0",
@@ -134,7 +135,7 @@ std::string hint_of(const ShapeCheck& check, const Measured& measured) {
   }
   const double missing = check.length_m - (s.back() - s.front());
   if (missing > least * check.length_m) {
-    // The way along the points tells a file that is cut off from the shape of another rod.
+    // The length of the polyline distinguishes a file that is cut off from a rod of another shape.
     if (check.polyline_length_m > (1 - least) * check.length_m) {
       return fmt::format(
           "as long as the rod, but {:.4g} mm of the rod are nearest to none of the points: the "
@@ -167,7 +168,7 @@ void add_worst_point(const MeasuredShape& shape, const Measured& measured, Shape
   check.worst_point = 1 + (backwards ? shape.points.cols() - 1 - worst : worst);
 }
 
-/// What of the rod the points show.
+/// Computes which part of the rod the points show.
 /// @param s  arc lengths of the points
 void add_seen_part(const MeasuredShape& shape, const std::vector<double>& s, double length,
                    ShapeCheck& check) {
@@ -187,7 +188,7 @@ AlignOptions align_options(const Scene& scene, const ShapeCheckOptions& options)
       .pose = options.pose, .arc_lengths = options.arc_lengths, .up = up_of(scene, options.pose)};
 }
 
-/// Compares a laid shape with an equilibrium: all of ShapeCheck but the state and E*/E.
+/// Compares an aligned shape with an equilibrium: sets all of ShapeCheck except the state and E*/E.
 ShapeCheck compared(const Scene& scene, const MeasuredShape& shape, Alignment laid,
                     const energy_model::Equilibrium& rod) {
   ShapeCheck result;
@@ -219,7 +220,7 @@ ShapeCheck compared(const Scene& scene, const MeasuredShape& shape, Alignment la
   return result;
 }
 
-/// A shape as it lies on each equilibrium.
+/// A shape, aligned with each equilibrium.
 struct LaidStates {
   LaidStates(const Aligner& on, double length, std::vector<energy_model::Equilibrium> of)
       : aligner(on), states(std::move(of)) {
@@ -229,8 +230,8 @@ struct LaidStates {
     }
   }
 
-  /// The index of the stable one that the shape is nearest to; the first one, which is the lowest,
-  /// where none is proven stable.
+  /// Returns the index of the stable equilibrium nearest to the shape, or 0, the index of the
+  /// lowest one, if none is proven stable.
   [[nodiscard]] std::size_t nearest() const {
     std::size_t result = 0;
     for (std::size_t i = 1; i < states.size(); ++i) {

@@ -17,7 +17,7 @@ std::string arc_range(double from, double to) {
   return fmt::format("s = {:.4g} to {:.4g} m", from, to);
 }
 
-/// What of the rod a file does not have, in words; empty if nothing.
+/// Describes the parts of the rod that a file lacks; empty if it lacks none.
 std::string missing_parts(const ShapeCheck& check, double least) {
   const std::vector<double>& s = check.reference.arc_length;
   std::vector<std::string> parts;
@@ -37,7 +37,7 @@ ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance) {
   ShapeJudgement result;
   const double rms = tolerance.part ? check.deviation.rms_m : check.whole_rms_m;
   const double largest = tolerance.part ? check.deviation.max_m : check.whole_max_m;
-  // One point has no mean over the rod.
+  // A single point has no mean along the rod.
   const bool is_single = check.measured_points == 1;
   result.judged_m = is_single ? check.deviation.max_m : tolerance.largest ? largest : rms;
   const bool near = result.judged_m <= tolerance.allowed_m;

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t most_terms = 25;
 constexpr int most_corrected = 1000;
 
-/// Of a rod by E: the material that calibrate writes.
+/// Reads the material that calibrate writes for a rod given by E.
 void read_calibrated_material(StrictTable& table, CalibratedRod& rod) {
   for (StrictTable& entry : table.tables("material")) {
     entry.only({"density", "name", "source", "youngs_modulus"});
@@ -27,12 +27,12 @@ void read_calibrated_material(StrictTable& table, CalibratedRod& rod) {
   }
 }
 
-/// Of a rod by EI: lines of [rod].
+/// Reads the lines of [rod] that calibrate writes for a rod given by EI.
 void read_calibrated_stiffness(StrictTable& table, CalibratedRod& rod) {
   const auto EI = table.optional_pair("bending_stiffness", Dimension::section_stiffness);
   if (!EI) return;
   rod.by_stiffness = true;
-  // Two stiffnesses are scaled alike: the first says both.
+  // Two stiffnesses are scaled by one factor, so the first one determines it.
   rod.stiffness = EI->x() > 0 ? EI->x() : EI->y();
   if (!(*rod.stiffness > 0)) table.fail("bending_stiffness", "not positive (allowed: > 0)");
   rod.heaviness = table.number("mass_per_length", Dimension::mass_per_length, Range::positive());

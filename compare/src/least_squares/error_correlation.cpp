@@ -9,21 +9,23 @@
 namespace dlo::compare {
 namespace {
 
-/// Residuals beyond the fitted numbers with which a correlation is looked for.
+/// Smallest number of residuals beyond the fitted numbers for which a correlation is estimated.
 constexpr Eigen::Index least_degrees_of_freedom = 5;
-/// Part of a design column, divided by the column, that the columns before it do not explain and
-/// that is an error: shapes are right to 1e-10 l, and derivatives are their differences over
-/// strides of 1e-3 that move them by some 0.1 l.
+/// Smallest part of a design column that the columns before it do not explain, divided by the
+/// column. A smaller part is an error: shapes are accurate to 1e-10 l, and derivatives are their
+/// differences over strides of 1e-3, which move them by some 0.1 l.
 constexpr double rank_tolerance = 1e-6;
-/// A gain of twice the log likelihood that independent errors reach in one case of twenty or fewer,
-/// between the 2.71 of one parameter at its bound and the 5.99 of two (measured: see the tests).
+/// Gain of twice the log likelihood that independent errors reach in one case of twenty or fewer.
+/// It lies between the 2.71 of one parameter at its bound and the 5.99 of two (measured: see the
+/// tests).
 constexpr double significant_gain = 5;
 
-/// All series below each other; where a new one begins the errors are independent of those before.
+/// All series concatenated. Where a new series begins, the errors are independent of those before.
 struct Stacked {
   Eigen::VectorXd residual;
   Eigen::MatrixXd design;
-  std::vector<double> step;  // arc length since the row before [m]; infinite where a series begins
+  std::vector<double> step;  // arc length since the previous row [m]; infinite where a series
+                             // begins
 };
 
 Stacked stacked(const std::vector<ResidualSeries>& series) {
@@ -47,8 +49,8 @@ Stacked stacked(const std::vector<ResidualSeries>& series) {
   return result;
 }
 
-/// Columns turned into independent innovations of unit variance by the Kalman filter of
-/// ErrorCovariance; the state is the correlated part, of variance `share`.
+/// Columns transformed into independent innovations of unit variance by the Kalman filter of
+/// ErrorCovariance. The filter's state is the correlated part, with variance `share`.
 struct Whitened {
   Eigen::MatrixXd columns;
   double log_determinant = 0;  // of the covariance
@@ -64,7 +66,7 @@ Whitened whitened(Eigen::MatrixXd columns, const std::vector<double>& step,
     const double kept = std::exp(-step[static_cast<std::size_t>(i)] / covariance.length);
     state *= kept;
     variance = kept * kept * variance + (1 - kept * kept) * covariance.share;
-    // Equal arc lengths without white noise would be one and the same error.
+    // Errors at equal arc lengths without white noise would be identical, with zero innovation.
     const double innovation = std::max(variance + white, 1e-12);
     const double gain = variance / innovation;
     const Eigen::RowVectorXd gap = columns.row(i) - state;
@@ -77,7 +79,7 @@ Whitened whitened(Eigen::MatrixXd columns, const std::vector<double>& step,
   return result;
 }
 
-/// -2 times the restricted log likelihood, up to a constant.
+/// Returns -2 times the restricted log likelihood, up to a constant.
 double deviance(const Eigen::VectorXd& residual, const Eigen::MatrixXd& basis,
                 const std::vector<double>& step, const ErrorCovariance& covariance) {
   const Eigen::Index rank = basis.cols();
@@ -99,13 +101,13 @@ double deviance(const Eigen::VectorXd& residual, const Eigen::MatrixXd& basis,
   return freedom * std::log(squares / freedom) + log_determinant;
 }
 
-/// A covariance of the grid that is searched.
+/// A covariance of the search grid, and its deviance.
 struct Candidate {
   ErrorCovariance covariance;
   double deviance = 0;
 };
 
-/// Independence first; nothing where there are too few residuals.
+/// Returns the covariances of the grid, independent errors first; empty with too few residuals.
 std::vector<Candidate> candidates(const std::vector<ResidualSeries>& whole) {
   const std::vector<ResidualSeries> series = thinned(whole);
   const Stacked all = stacked(series);
@@ -116,7 +118,7 @@ std::vector<Candidate> candidates(const std::vector<ResidualSeries>& whole) {
   for (const ResidualSeries& one : series) {
     if (one.arc_length.size() < 2) continue;
     const double length = one.arc_length.back() - one.arc_length.front();
-    // All points past an end of a rod that does not fit are at that end.
+    // If the rod does not fit, all points of a series may lie at an end of the rod.
     if (!(length > 0)) continue;
     total = std::max(total, length);
     shortest = std::min(shortest, length / static_cast<double>(one.arc_length.size() - 1));
@@ -135,7 +137,8 @@ std::vector<Candidate> candidates(const std::vector<ResidualSeries>& whole) {
   return result;
 }
 
-/// exp(-|s - s'| / length) times columns, in one pass along the rod and one back.
+/// Returns the product of the matrix exp(-|s - s'| / length) and columns, by one pass along the rod
+/// and one back.
 Eigen::MatrixXd smoothed(const Eigen::MatrixXd& columns, const std::vector<double>& step,
                          double length) {
   Eigen::MatrixXd result(columns.rows(), columns.cols());
@@ -158,7 +161,7 @@ Eigen::MatrixXd covariance_times(const Eigen::MatrixXd& columns, const std::vect
          covariance.share * smoothed(columns, step, covariance.length);
 }
 
-/// Sum of the squares of all entries of the covariance.
+/// Returns the sum of the squares of all entries of the covariance.
 double squared_entries(const std::vector<double>& step, const ErrorCovariance& covariance) {
   const double a = 1 - covariance.share;
   const double b = covariance.share;
@@ -261,7 +264,7 @@ CorrelationEffect correlation_effect(const std::vector<ResidualSeries>& series, 
   if (!(covariance.share > 0)) return result;
   const Eigen::MatrixXd moved = covariance_times(basis, all.step, covariance);
   const Eigen::MatrixXd inner = basis.transpose() * moved;
-  // Traces of P C and P C P C with the residuals' projector P = 1 - Q Q'.
+  // Traces of P C and P C P C, with the projector P = 1 - Q Q' onto the residuals.
   const double mean = count - inner.trace();
   const double squares =
       squared_entries(all.step, covariance) - 2 * moved.squaredNorm() + inner.squaredNorm();

@@ -6,21 +6,21 @@
 
 namespace dlo::compare {
 
-/// One coordinate of a shape's residuals, by growing arc length, and how the fitted numbers move
-/// it.
+/// One coordinate of a shape's residuals, by growing arc length, and its derivatives by the fitted
+/// numbers.
 struct ResidualSeries {
-  std::size_t shape = 0;           ///< whose they are
-  std::vector<double> arc_length;  ///< grows [m], n
+  std::size_t shape = 0;           ///< index of the shape
+  std::vector<double> arc_length;  ///< non-decreasing [m], n
   Eigen::VectorXd residual;        ///< [m], n
-  Eigen::MatrixXd design;          ///< its derivatives by the fitted numbers, n x p, any scale
+  Eigen::MatrixXd design;          ///< derivatives by the fitted numbers, n x p, any scale
 };
 
-/// Errors e along the rod whose covariance is, up to a factor,
+/// Covariance of errors e along the rod, up to a factor,
 ///     C(s, s') = (1 - share) [s = s'] + share exp(-|s - s'| / length):
 /// white noise of the points plus a first-order autoregression in arc length.
 struct ErrorCovariance {
-  double share = 0;   ///< of the variance that is correlated, 0 to 1
-  double length = 0;  ///< of correlation [m]
+  double share = 0;   ///< part of the variance that is correlated, 0 to 1
+  double length = 0;  ///< correlation length [m]
 };
 
 /// Returns an orthonormal basis of the span of design columns, which may have any scale. A column
@@ -28,65 +28,66 @@ struct ErrorCovariance {
 /// numbers that move all points alike have one column in the basis.
 [[nodiscard]] Eigen::MatrixXd basis_of(Eigen::MatrixXd columns);
 
-/// With no more than 250 rows each, equally many left out between two: enough to tell covariances
-/// apart, of which hundreds are tried.
+/// Returns the series with at most 250 rows each, at equal intervals. That is enough to distinguish
+/// covariances, of which hundreds are tried.
 [[nodiscard]] std::vector<ResidualSeries> thinned(const std::vector<ResidualSeries>& series);
 
-/// What residuals say of the errors' correlation, see correlation_of().
+/// Correlation of the errors as estimated from residuals; see correlation_of().
 struct CorrelationEstimate {
-  ErrorCovariance covariance;  ///< the most likely one
+  ErrorCovariance covariance;  ///< the most likely covariance
   /// Twice the gain in (restricted) log likelihood over independent errors.
   double likelihood_gain = 0;
-  bool tested = false;       ///< there were enough residuals
+  bool tested = false;       ///< whether there were enough residuals
   bool significant = false;  ///< independent errors gain as much in less than one case of twenty
 };
 
-/// The most likely covariance by restricted maximum likelihood, which allows for what the fitted
-/// numbers took out of the residuals; of thinned() series. The likelihood is that of a Kalman
-/// filter's innovations, so it costs O(n p) for n residuals.
+/// Returns the most likely covariance of thinned() series by restricted maximum likelihood, which
+/// accounts for the part of the errors that the fitted numbers absorbed. The likelihood is that of
+/// a Kalman filter's innovations, so it costs O(n p) for n residuals.
 [[nodiscard]] CorrelationEstimate correlation_of(const std::vector<ResidualSeries>& series);
 
-/// A covariance and how likely it is beside others.
+/// A covariance and its probability relative to others.
 struct LikelyCovariance {
   ErrorCovariance covariance;
-  double weight = 0;  ///< all weights sum up to 1
+  double weight = 0;  ///< the weights of all covariances add up to 1
 };
 
-/// All covariances of a grid that residuals leave likely, a thousandth as much as the most likely
-/// one at least, by the restricted likelihood. Where there are too few residuals: independence.
+/// Returns the covariances of a grid whose restricted likelihood is at least a thousandth of the
+/// largest one. With too few residuals it returns independent errors.
 [[nodiscard]] std::vector<LikelyCovariance> likely_covariances(
     const std::vector<ResidualSeries>& series);
 
-/// What a covariance does to a least squares fit that takes errors for independent.
+/// Effect of a covariance on a least squares fit that assumes independent errors.
 struct CorrelationEffect {
-  /// Variance of a fitted number over that of independent errors with the same variance.
+  /// Variance of a fitted number, divided by that with independent errors of the same variance.
   double variance_factor = 1;
-  /// Expected sum of squares of the residuals over that of independent errors with the same
-  /// variance; below 1, for the fitted numbers take out what neighbours have in common.
+  /// Expected sum of squares of the residuals, divided by that with independent errors of the same
+  /// variance. It is below 1, because the fitted numbers absorb what neighbours have in common.
   double residual_factor = 1;
-  /// Of the sum of squares (Satterthwaite: the chi-squared distribution of the same mean and
-  /// variance).
+  /// Degrees of freedom of the sum of squares: those of the chi-squared distribution with the same
+  /// mean and variance (Satterthwaite).
   double degrees_of_freedom = 0;
 };
 
-/// Residuals and their design, all series below each other, turned into innovations: errors of this
-/// covariance become independent, of the same variance each.
+/// Residuals and design of all series, concatenated and transformed into innovations: errors of the
+/// covariance become independent, with equal variances.
 struct Innovations {
   Eigen::VectorXd residual;  ///< n
   Eigen::MatrixXd design;    ///< n x p
 };
 
-/// Without correlation they are the residuals themselves.
+/// Returns the innovations; without correlation these are the residuals themselves.
 [[nodiscard]] Innovations innovations(const std::vector<ResidualSeries>& series,
                                       const ErrorCovariance& covariance);
 
-/// columns' C columns.
-/// @param columns  a row for each residual, the series below each other
+/// Returns columns' C columns, with the covariance C.
+/// @param columns  one row per residual, the series concatenated
 [[nodiscard]] Eigen::MatrixXd covariance_products(const std::vector<ResidualSeries>& series,
                                                   const Eigen::MatrixXd& columns,
                                                   const ErrorCovariance& covariance);
 
-/// @param column  of the design: the fitted number
+/// Returns the effect of a covariance on one fitted number.
+/// @param column  index of the number in the design
 [[nodiscard]] CorrelationEffect correlation_effect(const std::vector<ResidualSeries>& series,
                                                    Eigen::Index column,
                                                    const ErrorCovariance& covariance);

@@ -8,7 +8,8 @@
 namespace dlo::compare {
 namespace {
 
-/// A movement below this share of the length is the solver's error (1e-10 l), not the number's.
+/// Movement, divided by the length, below which it is the error of the solver (1e-10 l) and not an
+/// effect of the number.
 constexpr double least_movement = 1e-9;
 
 }  // namespace
@@ -25,7 +26,7 @@ std::optional<energy_model::Equilibrium> FittedRods::solve(std::size_t shape,
     if (!energy_model::succeeded(rod.status)) return std::nullopt;
     return rod;
   } catch (const InputError&) {
-    // Grippers that a step moved farther apart than the rod between them.
+    // A step may move grippers farther apart than the rod between them.
     return std::nullopt;
   }
 }
@@ -45,7 +46,8 @@ std::optional<std::vector<Movement>> FittedRods::movements(std::size_t shape,
                           Eigen::Matrix3Xd::Zero(3, points.cols()));
       continue;
     }
-    // The side on which there is a shape: a straight rod's grippers come nearer, not farther.
+    // Differences are taken to the side on which a shape exists: the grippers of a straight rod can
+    // only approach each other.
     for (const double stride : {unknown.stride, -unknown.stride}) {
       Eigen::VectorXd beside = values;
       beside[number] += stride;

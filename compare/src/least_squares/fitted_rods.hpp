@@ -13,18 +13,20 @@ namespace dlo::compare {
 
 /// A number that is fitted to measured shapes.
 struct Unknown {
-  double stride = 0;                 ///< of differences, in its unit; 0: it is in no shape
-  std::optional<std::size_t> shape;  ///< whose own it is; none: it is of all
-  /// Standard deviation about zero without the shapes; infinite: nothing is known.
+  double stride = 0;  ///< stride of differences, in the number's unit; 0: no shape depends on it
+  std::optional<std::size_t> shape;  ///< index of the only shape that has it; empty: all shapes
+                                     ///< have it
+  /// Prior standard deviation about zero; infinite: no prior.
   double known_before = std::numeric_limits<double>::infinity();
-  double longest_step = std::numeric_limits<double>::infinity();  ///< beyond it nothing is linear
+  double longest_step = std::numeric_limits<double>::infinity();  ///< longest step for which the
+                                                                  ///< fit is nearly linear
 };
 
-/// The energy model's rods of measured shapes' scenes, for any values of the numbers that are
-/// fitted. Each equilibrium is followed from the last one.
+/// The energy model's rods for the scenes of measured shapes, at any values of the fitted numbers.
+/// Each solve starts from the previous equilibrium.
 class FittedRods {
  public:
-  /// A shape's scene at some values.
+  /// Returns the scene of a shape at some values of the numbers.
   using SceneAt = std::function<Scene(std::size_t shape, const Eigen::VectorXd& values)>;
 
   FittedRods(MeasuredShapes& measured, SceneAt scene, std::vector<Unknown> unknowns)
@@ -36,30 +38,30 @@ class FittedRods {
   [[nodiscard]] const std::vector<Unknown>& unknowns() const { return unknowns_; }
   [[nodiscard]] const MeasuredShapes& measured() const { return measured_; }
 
-  /// Whether the derivatives by the numbers are wanted, or only those by the frames.
+  /// Columns of the design to compute: derivatives by the frames only, or by the numbers too.
   enum class Columns { frames, all };
-  /// Residuals of all shapes, none if one has no equilibrium there.
-  /// @throws ConvergenceError if the time limit is over
+  /// Returns the residuals of all shapes, std::nullopt if a shape has no equilibrium there.
+  /// @throws ConvergenceError if the time limit is exceeded
   [[nodiscard]] std::optional<std::vector<ResidualSeries>> residuals(const Eigen::VectorXd& values,
                                                                      Columns columns);
 
-  /// An equilibrium of each shape to go on from; none: search.
+  /// An equilibrium for each shape from which the next solve starts; empty: search.
   using Rods = std::vector<std::optional<energy_model::Equilibrium>>;
   void go_on_from(Rods rods) { last_ = std::move(rods); }
-  /// From searches.
+  /// Makes the next solve of each shape a search.
   void search_next() { last_ = Rods(measured_.size()); }
-  /// Those of the last values.
+  /// Returns the rods at the last values.
   [[nodiscard]] const Rods& rods() const { return last_; }
 
-  /// Rods at some values, and their sums of squared distances from the shapes [m^2].
+  /// Rods at some values, and the sum of squared distances of each shape from its rod [m^2].
   struct State {
     Rods rods;
     std::vector<double> squares;  // infinite without a rod
   };
-  /// Goes there, as residuals() does.
+  /// Solves all shapes at some values and keeps the rods as residuals() does.
   [[nodiscard]] State state(const Eigen::VectorXd& values);
 
-  /// How the shapes lie at values where all have an equilibrium.
+  /// Returns the alignment of each shape at values at which all have an equilibrium.
   [[nodiscard]] std::vector<Alignment> alignments(const Eigen::VectorXd& values);
 
  private:
@@ -76,7 +78,7 @@ class FittedRods {
   Rods last_;
 };
 
-/// Rods at equal arc lengths, up to the first that there is not.
+/// Returns rods sampled at equal arc lengths, up to the first one that does not exist.
 [[nodiscard]] std::vector<Shape> sampled(const FittedRods::Rods& rods,
                                          const std::vector<Scene>& scenes, int samples);
 

@@ -13,8 +13,9 @@ namespace {
 
 constexpr int most_steps = 30;
 constexpr int most_halvings = 8;
-/// Decrease of the deviance that a step of a profile's chord iteration predicts and below which the
-/// iteration ends: the root of a deviance of 4, at the interval's end, is then right to 1e-6.
+/// Predicted decrease of the deviance in one step of a profile's chord iteration below which the
+/// iteration ends. With it the root of a deviance of 4, at the end of an interval, is accurate to
+/// 1e-6.
 constexpr double deviance_tolerance = 1e-5;
 
 }  // namespace
@@ -54,7 +55,7 @@ void GaussNewton::measure_variance() {
   if (!(variance_ > 0)) {
     variance_ = std::max(floor, squares / static_cast<double>(linear_.freedom));
   }
-  // What was known before is no number found.
+  // A number that is determined by its prior does not reduce the degrees of freedom.
   const Eigen::VectorXd kept =
       posterior(linear_, weight(), before_).diagonal().cwiseProduct(before_.cwiseAbs2());
   freedom_ = static_cast<double>(linear_.freedom - before_.size()) + kept.sum();
@@ -77,7 +78,7 @@ bool GaussNewton::descend() {
     linear_ = linear_fit(series_, {}, rods_.measured().frame_columns());
     measure_variance();
     posterior_ = posterior(linear_, weight(), before_);
-    // What is said of the values belongs to them: no step is made that nothing would be said of.
+    // All results must belong to the final values, so no step is made after the last linearisation.
     if (i == most_steps) return true;
     Eigen::VectorXd step = next_step();
     const Eigen::VectorXd deviations = posterior_.diagonal().cwiseSqrt();
@@ -86,30 +87,31 @@ bool GaussNewton::descend() {
     const double promised = (linear_.residual - linear_.design * step).squaredNorm() / weight() +
                             penalty(values_ + step);
     if (here - promised < options_.least_gain * here) return true;
-    // Every trial follows from here, not from where a longer one has led.
+    // Every trial starts from the current rods, not from those of a longer trial step.
     int halvings = 0;
     while (halvings < most_halvings && !(deviance_at(values_ + step) < here)) {
       rods_.go_on_from(here_);
       step /= 2;
       ++halvings;
     }
-    // Nothing less along a direction of descent but rounding.
+    // No decrease along a direction of descent is left except rounding.
     if (halvings == most_halvings) return true;
     values_ += step;
   }
 }
 
-/// Returns the step with which the iteration ends. A first number that is not known to within its
-/// longest step is not identified: its deviance is a flat valley in which small shares of its large
-/// deviation lead far away, so there the iteration ends earlier.
+/// Returns the relative step at which the iteration ends. A first number whose deviation exceeds
+/// its longest step is not identified: its deviance is a flat valley, in which even small shares of
+/// its large deviation move it far. There the iteration ends earlier.
 double GaussNewton::last_step(double first_deviation) const {
   constexpr double last_in_valley = 0.01;
   const bool in_valley = first_deviation > rods_.unknowns().front().longest_step;
   return in_valley ? std::max(last_in_valley, options_.last_step) : options_.last_step;
 }
 
-/// To the least deviance of the linear problem with the first number near: where that is hardly
-/// seen it would be far away, and take the others with it.
+/// Returns the step to the least deviance of the linear problem, with the first number limited to
+/// its longest step: a first number that the shapes hardly determine would move far away, and the
+/// others with it.
 Eigen::VectorXd GaussNewton::next_step() const {
   const std::vector<Unknown>& unknowns = rods_.unknowns();
   const Eigen::VectorXd down = slope(linear_, weight(), before_, values_);

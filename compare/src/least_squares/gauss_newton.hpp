@@ -8,64 +8,77 @@
 
 namespace dlo::compare {
 
-/// How Gauss-Newton steps are made.
+/// Options of the Gauss-Newton iteration.
 struct GaussNewtonOptions {
-  std::optional<double> noise;  ///< standard deviation of a coordinate [m]; none: of the residuals
-  double least_noise = 0;       ///< it is taken to be no less [m]
-  double lowest = -std::numeric_limits<double>::infinity();  ///< of the first number
-  double highest = std::numeric_limits<double>::infinity();  ///< of the first number
-  /// Largest step of any number, divided by its standard deviation, with which the iteration ends;
-  /// with the default the fourth digits of numbers and intervals hold.
+  std::optional<double> noise;  ///< standard deviation of a coordinate [m]; empty: estimated from
+                                ///< the residuals
+  double least_noise = 0;       ///< lower bound of the estimated noise [m]
+  double lowest = -std::numeric_limits<double>::infinity();  ///< lower bound of the first number
+  double highest = std::numeric_limits<double>::infinity();  ///< upper bound of the first number
+  /// Largest step of any number, divided by its standard deviation, at which the iteration ends.
+  /// With the default, four digits of numbers and intervals are final.
   double last_step = 1e-5;
-  double least_gain = 0;  ///< share of the deviance that a step has to promise to be made
+  double least_gain = 0;  ///< smallest predicted relative decrease of the deviance for which a step
+                          ///< is made
 };
 
-/// The least deviance of measured shapes over numbers that change their scenes: least squares with
-/// what was known of the numbers before (Gauss-Newton steps, each shortened until the deviance is
-/// less). Errors that are correlated along the rod count in intervals, not here: a fit under their
-/// covariance leaves larger residuals wherever the rod itself is not quite the wire. Every fit to
-/// shapes is made by it: those of a wire's numbers, and the explanations of a shape that is wrong.
+/// Minimises the deviance of measured shapes over numbers that change their scenes: least squares
+/// with priors of the numbers, by Gauss-Newton steps that are halved until the deviance decreases.
+/// Correlation of the errors along the rod enters intervals, not this fit: with a correlated
+/// covariance it would leave larger residuals where the model differs from the wire. All fits to
+/// shapes use this class: those of a wire's numbers, and the causes of a wrong shape.
 class GaussNewton {
  public:
-  /// @param rods     outlives this; they go on from where they are
-  /// @param values   to begin with
+  /// @param rods     must outlive this; solves start from their current equilibria
+  /// @param values   initial values
   GaussNewton(FittedRods& rods, Eigen::VectorXd values, const GaussNewtonOptions& options);
 
-  /// Goes to the least deviance nearby.
-  /// @return whether there; false: at its values, or beside them, a shape has no equilibrium
-  /// @throws ConvergenceError if the time limit is over
-  /// @throws InputError if there are no more numbers measured than found
+  /// Iterates to a local minimum of the deviance.
+  /// @return false if a shape has no equilibrium at the values or at neighbouring ones
+  /// @throws ConvergenceError if the time limit is exceeded
+  /// @throws InputError if no more numbers are measured than fitted
   [[nodiscard]] bool descend();
 
-  /// Squares count over this variance beside what was known before, from the next descend() on
-  /// [m^2].
+  /// Sets the variance by which squares are divided in the sum with the priors, from the next
+  /// descend() on [m^2].
   void weigh(double weight) { given_weight_ = weight; }
 
-  // At the values, after descend():
+  // Results at the values, after descend():
   [[nodiscard]] const Eigen::VectorXd& values() const { return values_; }
   [[nodiscard]] const FittedRods::Rods& rods() const { return here_; }
   [[nodiscard]] const std::vector<ResidualSeries>& series() const { return series_; }
   [[nodiscard]] const LinearFit& linear() const { return linear_; }
   [[nodiscard]] const Eigen::MatrixXd& covariance_of_numbers() const { return posterior_; }
-  [[nodiscard]] double variance() const { return variance_; }  ///< of a coordinate's error [m^2]
+  [[nodiscard]] double variance() const {
+    return variance_;
+  }  ///< variance of a coordinate's error
+     ///< [m^2]
   [[nodiscard]] double weight() const { return given_weight_.value_or(variance_); }
-  [[nodiscard]] double freedom() const { return freedom_; }  ///< degrees, of the residuals
-  [[nodiscard]] const Eigen::VectorXd& before() const { return before_; }  ///< see posterior()
-  /// Sum of squares over the weight, and of what was known before.
+  [[nodiscard]] double freedom() const {
+    return freedom_;
+  }  ///< degrees of freedom of the
+     ///< residuals
+  [[nodiscard]] const Eigen::VectorXd& before() const {
+    return before_;
+  }  ///< 1 over the prior deviations,
+     ///< see posterior()
+  /// Returns the sum of squares divided by the weight, plus the priors' terms.
   [[nodiscard]] double deviance() const;
 
-  /// The first number at some value, the others where the deviance is then least to first order.
+  /// Returns values with the given first number and the others at the least deviance, to first
+  /// order.
   [[nodiscard]] Eigen::VectorXd values_beside(double first) const;
 
-  /// How twice the logarithm of the probability of a first number, summed over all values that the
-  /// others may have, falls with it beside the deviance (Laplace's approximation: the logarithm of
-  /// the determinant of their second derivatives). The more a larger first number lets points tell
-  /// the others, the less room these have: the least deviance alone is then at too large a one.
-  /// 0 without others, or where a shape has no equilibrium beside the values.
+  /// Returns the derivative by the first number of the term that marginalisation over the others
+  /// adds to the deviance (Laplace's approximation: the logarithm of the determinant of the others'
+  /// second derivatives). If points determine the others better at a larger first number, the
+  /// others have less volume there, and the minimum of the deviance alone is at too large a first
+  /// number. Returns 0 without other numbers, or if a shape has no equilibrium at the neighbouring
+  /// values.
   [[nodiscard]] double marginal_slope();
 
-  /// Least deviance over all other numbers with the first at some value, by chords of the
-  /// derivatives at the values; infinite where there is no shape.
+  /// Returns the least deviance over all other numbers at a given first number, by chord iterations
+  /// with the derivatives at the values; infinite if a shape does not exist.
   [[nodiscard]] double profile(double first);
 
  private:

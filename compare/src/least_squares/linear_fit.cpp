@@ -9,13 +9,14 @@
 namespace dlo::compare {
 namespace {
 
-/// Columns of frames that are no more than this share of the largest are rounding: a flat shape
-/// does not see its third coordinate.
+/// Size of a frame column, divided by the largest, up to which it is rounding: a flat shape has no
+/// residuals in its third coordinate.
 constexpr double frame_rank_tolerance = 1e-8;
-/// An eigenvalue of the numbers' information, scaled to a diagonal of ones, that is rounding: two
-/// columns are then alike to its root.
+/// Eigenvalue up to which the numbers' information, scaled to a unit diagonal, is singular; two
+/// columns then agree to its root.
 constexpr double information_tolerance = 1e-12;
-/// Part of a number in a combination of which nothing is known, above rounding.
+/// Component of a number in a null direction of the information above which the number is not
+/// identified.
 constexpr double least_part = 1e-3;
 
 Eigen::MatrixXd information_of(const LinearFit& fit, double variance,

@@ -7,35 +7,39 @@
 
 namespace dlo::compare {
 
-/// Generalised least squares about some values of the numbers that are fitted, of some of which
-/// something was known before. All matrices are in the numbers' order.
+/// Generalised least squares, linearised about some values of the fitted numbers, some of which
+/// have priors. All matrices are in the order of the numbers.
 struct LinearFit {
-  Eigen::MatrixXd design;  ///< innovations by the numbers, freed of what the shapes' frames explain
-  Eigen::VectorXd residual;  ///< the same of the points less the rod
-  Eigen::Index freedom = 0;  ///< rows less the frames' rank
+  Eigen::MatrixXd design;    ///< innovations by the numbers, with the part that the shapes' frames
+                             ///< explain removed
+  Eigen::VectorXd residual;  ///< innovations of points minus rod, with the frames' part removed
+  Eigen::Index freedom = 0;  ///< number of rows minus rank of the frames' columns
 };
 
-/// @param frames  columns of the series' design that are the frames', before those of the numbers
+/// Linearises a fit.
+/// @param frames  number of columns of the series' design, before those of the numbers, that belong
+/// to frames
 [[nodiscard]] LinearFit linear_fit(const std::vector<ResidualSeries>& series,
                                    const ErrorCovariance& covariance, Eigen::Index frames);
 
-/// Covariance of the numbers after the fit; of those that are unseen() the least that fits, which
-/// is no variance.
-/// @param variance  of the errors;  @param before  1 over what was known of each, standard
-///                  deviations about zero
+/// Returns the covariance of the numbers after the fit. For numbers that are unseen() it is that of
+/// the pseudoinverse, which is no variance.
+/// @param variance  of the errors;
+/// @param before  1 over the prior standard deviation of each number about zero
 [[nodiscard]] Eigen::MatrixXd posterior(const LinearFit& fit, double variance,
                                         const Eigen::VectorXd& before);
 
-/// The same of a least squares fit that takes errors for independent while they are not.
-/// @param series  of which the fit is;  @param weight  the variance over which its squares counted
-/// @param errors  their covariance, up to `variance`
+/// Returns the covariance of the numbers after a least squares fit that assumes independent errors,
+/// for errors with another covariance.
+/// @param series  of the fit;  @param weight  variance by which its squares were divided
+/// @param errors  covariance of the errors, up to `variance`
 [[nodiscard]] Eigen::MatrixXd posterior_under(const std::vector<ResidualSeries>& series,
                                               const LinearFit& fit, double weight,
                                               const Eigen::VectorXd& before,
                                               const ErrorCovariance& errors, double variance);
 
-/// Variance of errors of that covariance, from what generalised least squares without anything
-/// known before leaves, and of how many degrees of freedom that is.
+/// Variance of errors of a given correlation, estimated from the residuals of generalised least
+/// squares without priors, and its degrees of freedom.
 struct VarianceEstimate {
   double variance = 0;  ///< [m^2]
   double freedom = 0;
@@ -43,23 +47,24 @@ struct VarianceEstimate {
 [[nodiscard]] VarianceEstimate variance_under(const std::vector<ResidualSeries>& series,
                                               const ErrorCovariance& errors, Eigen::Index frames);
 
-/// Of each number: neither the points nor what was known before tells it, alone or beside the
-/// others. Its variance is infinite.
+/// Returns for each number whether neither the points nor priors determine it, alone or in
+/// combination with others. The variance of such a number is infinite.
 [[nodiscard]] std::vector<bool> unseen(const LinearFit& fit, double variance,
                                        const Eigen::VectorXd& before);
 
-/// Minus half the derivative of the deviance (sum of squares over the variance, and of what was
-/// known before) by the numbers.
+/// Returns minus half the derivative of the deviance by the numbers. The deviance is the sum of
+/// squares divided by the variance, plus the priors' terms.
 [[nodiscard]] Eigen::VectorXd slope(const LinearFit& fit, double variance,
                                     const Eigen::VectorXd& before, const Eigen::VectorXd& values);
 
-/// Logarithm of the determinant of half the deviance's second derivatives by all numbers but the
-/// first, of those that the points or what was known before tell.
+/// Returns the logarithm of the determinant of half the deviance's second derivatives by all
+/// numbers except the first, without those that neither points nor priors determine.
 [[nodiscard]] double log_determinant(const LinearFit& fit, double variance,
                                      const Eigen::VectorXd& before);
 
-/// Step of all numbers but the first to the least deviance, with the first moved by `held`.
-/// @param slope  as above, of all
+/// Returns the step of all numbers except the first to the least deviance, if the first one moves
+/// by `held`.
+/// @param slope  result of slope(), of all numbers
 [[nodiscard]] Eigen::VectorXd step_of_others(const LinearFit& fit, double variance,
                                              const Eigen::VectorXd& before,
                                              const Eigen::VectorXd& slope, double held);

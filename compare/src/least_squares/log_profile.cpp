@@ -11,9 +11,9 @@ namespace {
 
 constexpr int profile_steps_per_decade = 4;
 const double profile_step = std::log(10.0) / profile_steps_per_decade;
-/// A sum of squares this many times the least is outside any interval of interest (Student's t
-/// beyond 97.5 % with 2 degrees of freedom: 1 + 4.3^2 / 2 = 10), and between steps of a quarter of
-/// a decade a local minimum above it is no rival of the least.
+/// Ratio of a sum of squares to the least one above which it is outside any interval of interest
+/// (Student's t beyond 97.5 % with 2 degrees of freedom: 1 + 4.3^2 / 2 = 10). Between steps of a
+/// quarter of a decade, a local minimum above it cannot be the least one.
 constexpr double far_above = 100;
 
 }  // namespace
@@ -58,7 +58,7 @@ bool LogProfile::has_risen(int way) const {
   };
   if (!(value(end) > far_above * minimum_.value)) return false;
   for (int k = 0; k < profile_steps_per_decade; ++k) {
-    // Plateaus count: beyond them a soft rod hangs and a stiff one is straight.
+    // Plateaus count as rising: beyond them a soft rod hangs and a stiff one is straight.
     if (!(value(end - way * k) >= 0.9 * value(end - way * (k + 1)))) return false;
   }
   return true;
@@ -97,7 +97,7 @@ void LogProfile::refine() {
 
 std::optional<double> LogProfile::outermost(double level, int way) {
   const auto end = [&] { return way < 0 ? *values_.begin() : *std::prev(values_.end()); };
-  // The level may be higher than the search looked for.
+  // The level may be higher than the values that the search reached.
   while (!(end().second > level && std::isfinite(end().second)) &&
          (way < 0 ? left_ > first_ : right_ < last_)) {
     (void)value_at(way < 0 ? --left_ : ++right_);

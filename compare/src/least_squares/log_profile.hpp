@@ -8,30 +8,32 @@
 
 namespace dlo::compare {
 
-/// Where a profile is drawn: `count` logarithms, equally spaced, from half an interval's width
-/// below the interval to as far above; an open side goes to a factor of two from `best`.
+/// Returns `count` equally spaced logarithms at which a profile is drawn, from half an interval's
+/// width below the interval to as far above it. An open side extends to a factor of two from
+/// `best`.
 [[nodiscard]] std::vector<double> drawn_logarithms(const std::optional<double>& low, double best,
                                                    const std::optional<double>& high, int count);
 
-/// A sum of squares over the logarithm of a parameter: its minima, and where it is below a level.
+/// A sum of squares as a function of the logarithm of a parameter: its minima, and the interval in
+/// which it is below a level.
 class LogProfile {
  public:
-  /// Looks at steps of a quarter of a decade from 0 to both sides, as far as `low` and `high`; a
-  /// side ends before where the function has risen for a decade, to above a hundred times its
-  /// least. Then at every local minimum among these that is not above that.
+  /// Evaluates the function at steps of a quarter of a decade from 0 to both sides, within `low`
+  /// and `high`. A side ends earlier if the function has risen for a decade to above a hundred
+  /// times its least value. Local minima of these values that are not above that are then refined.
   LogProfile(Function function, double low, double high);
 
   [[nodiscard]] const Minimum& minimum() const { return minimum_; }
 
-  /// The outermost crossings of a level; open where the function is below it as far as was
-  /// searched, or has no values beyond. Where it has none between values below and above the level,
-  /// it is taken to be below.
+  /// The outermost crossings of a level. A side is open if the function is below the level as far
+  /// as it was searched, or is undefined beyond. An undefined value between values below and above
+  /// the level counts as below.
   struct Interval {
     std::optional<double> low, high;
   };
   [[nodiscard]] Interval below(double level);
 
-  /// Local minima up to a level, the least among them, by growing parameter.
+  /// Returns the local minima up to a level, including the least one, by growing parameter.
   [[nodiscard]] std::vector<Minimum> minima_below(double level) const;
 
  private:
@@ -42,8 +44,8 @@ class LogProfile {
   [[nodiscard]] std::optional<double> outermost(double level, int way);
 
   Function function_;
-  int first_, last_;          // steps from 0
-  int left_ = 0, right_ = 0;  // reached so far
+  int first_, last_;          // range of steps from 0
+  int left_ = 0, right_ = 0;  // range of steps evaluated so far
   std::map<double, double> values_;
   Minimum minimum_;
 };

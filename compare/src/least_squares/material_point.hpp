@@ -7,7 +7,7 @@
 
 namespace dlo::compare {
 
-/// Factors on the scenes' modulus and density, as logarithms.
+/// Logarithms of the factors on the scenes' modulus and density.
 struct MaterialPoint {
   double log_modulus = 0;
   double log_density = 0;
@@ -19,7 +19,7 @@ struct MaterialPoint {
   }
 };
 
-/// The scene with its rod of another material.
+/// Returns the scene with its modulus and density scaled.
 [[nodiscard]] inline Scene of_material(Scene scene, const MaterialPoint& material) {
   scene.scale_modulus(std::exp(material.log_modulus));
   scene.scale_density(std::exp(material.log_density));

@@ -18,36 +18,37 @@
 namespace dlo::compare {
 namespace {
 
-/// A rod is in a plane that it leaves by no more than this share of its length: rounding.
+/// Distance from a plane, divided by the length, up to which a rod lies in the plane except for
+/// rounding.
 constexpr double in_plane = 1e-8;
 
-/// Numbers that are measured of a shape.
+/// Returns the number of measured coordinates of a shape.
 int measured_numbers(const Aligner& aligner, bool flat) {
   const int per_point = (aligner.arc_lengths() == ArcLengths::nearest ? 2 : 3) - (flat ? 1 : 0);
   return per_point * static_cast<int>(aligner.points());
 }
 
-/// Where a rod is looked at along its length.
+/// Number of samples along a rod.
 constexpr int looks = 201;
 
-/// What energy_model::Problem::confined_to_plane allows: a scene whose clamps twist the rod has no
-/// plane.
+/// Whether energy_model::Problem::confined_to_plane applies to a scene; a scene whose clamps twist
+/// the rod has no plane.
 bool can_be_confined(const Scene& scene) { return scene.planar() && scene.obstacles.empty(); }
 
-/// Numbers of a shape's frame.
+/// Returns the number of unknown coordinates of a shape's frame.
 int numbers_of_frame(bool flat, PoseFreedom pose) {
   constexpr int frame[] = {0, 3, 4, 6};
   constexpr int flat_frame[] = {0, 2, 2, 3};
   return (flat ? flat_frame : frame)[static_cast<std::size_t>(pose)];
 }
 
-/// Principal directions of points, that of their least extent first.
+/// Returns the principal directions of points, the one of least extent first.
 Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> extents(const Eigen::Matrix3Xd& points) {
   const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean();
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(centred * centred.transpose());
 }
 
-/// The directions in which a point's residual is seen, as columns.
+/// Returns the directions in which a point's residual is observed, as columns.
 std::vector<Eigen::Matrix3Xd> seen_directions(const Alignment& alignment, const Curve& curve,
                                               bool flat) {
   const std::vector<double>& s = alignment.shape.arc_length;
@@ -67,7 +68,7 @@ std::vector<Eigen::Matrix3Xd> seen_directions(const Alignment& alignment, const 
       result.emplace_back(out_of_plane.cross(tangent).normalized());
       continue;
     }
-    // Carried along the rod without a rotation about it, so that neighbours look the same way.
+    // Parallel transport along the rod makes the directions of neighbours correspond.
     normal -= normal.dot(tangent) * tangent;
     if (!(normal.norm() > 1e-3)) normal = tangent.unitOrthogonal();
     normal.normalize();
@@ -78,7 +79,7 @@ std::vector<Eigen::Matrix3Xd> seen_directions(const Alignment& alignment, const 
   return result;
 }
 
-/// Derivatives of a point by the free coordinates of its motion.
+/// Returns the derivatives of a point by the free coordinates of its motion.
 Eigen::Matrix3Xd frame_derivatives(PoseFreedom pose, const Eigen::Vector3d& arm,
                                    const Eigen::Vector3d& up) {
   const Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();
@@ -155,7 +156,7 @@ double MeasuredShapes::way_out_of_plane(std::size_t shape, const Scene& scene,
                                         const energy_model::Equilibrium& rod) {
   if (!is_confined(shape, scene)) return 0;
   energy_model::Equilibrium free = solve(energy_problem(scene), scene.file, &rod);
-  // Where it would not stay it is a saddle there, to which steps from it lead back.
+  // An unstable rod is a saddle in its plane, and steps from it converge back to it.
   if (!energy_model::succeeded(free.status)) {
     free = solve(energy_problem(scene), scene.file, nullptr);
   }

@@ -15,114 +15,117 @@
 
 namespace dlo::compare {
 
-/// Points that lie in a plane to rounding: their third coordinate was not measured.
+/// Whether points lie in a plane up to rounding, so that their third coordinate was not measured.
 [[nodiscard]] bool lies_in_a_plane(const Eigen::Matrix3Xd& points);
 
-/// What points that lie in a plane say of the third coordinate.
+/// Meaning of the third coordinate of points that lie in a plane.
 enum class FlatShapes {
-  unmeasured,  ///< nothing: it is a photograph
-  confined,    ///< nothing either, and a rod of a scene with a plane is confined to that
-  measured,    ///< that it is nought
+  unmeasured,  ///< it is unknown: the shape is a photograph
+  confined,    ///< it is unknown, and the rod of a planar scene is confined to the scene's plane
+  measured,    ///< it was measured as zero
 };
 
-/// How shapes lie, and how far the rods that they are held against may be looked for.
+/// Options of the alignment of shapes, and limits of the solves of their rods.
 struct MeasuredOptions {
   PoseFreedom pose = PoseFreedom::known;  ///< what is unknown of their frames
   ArcLengths arc_lengths = ArcLengths::automatic;
   PointWeights weights = PointWeights::equal;
-  SolveOptions solve;  ///< limits; the time is that of each shape
+  SolveOptions solve;  ///< limits; the time limit is that of each shape
   FlatShapes flat = FlatShapes::unmeasured;
 };
 
-/// How a fitted number moves the rod's points where the measured ones are [m per its unit], 3 x M,
-/// and its column.
+/// Column of a fitted number, and its derivative of the rod's points at the measured ones [m per
+/// unit of the number], 3 x M.
 using Movement = std::pair<Eigen::Index, Eigen::Matrix3Xd>;
 
-/// Measured shapes against rods, each shape against those of its own scene: the residuals of every
-/// fit, and the energy model's solutions that it needs, within one time limit.
+/// Measured shapes and the rods of their scenes: computes the residuals of every fit, and the
+/// energy model's solutions for them, within one time limit.
 class MeasuredShapes {
  public:
-  /// @param timer  from when on the time limit is
-  /// @throws InputError as align()
+  /// @param timer  started when the time limit begins
+  /// @throws InputError in the cases of align()
   MeasuredShapes(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
                  const MeasuredOptions& options, const Timer& timer);
 
   [[nodiscard]] std::size_t size() const { return shapes_.size(); }
-  /// A shape of which only two coordinates are measured.
+  /// Whether only two coordinates of a shape are measured.
   [[nodiscard]] bool is_flat(std::size_t shape) const { return shapes_[shape].flat; }
-  /// Points of all shapes.
+  /// Returns the number of points of all shapes.
   [[nodiscard]] Eigen::Index points() const;
-  /// Numbers measured of all shapes, less those that place them.
+  /// Returns the number of measured coordinates of all shapes, minus the unknowns of their frames.
   [[nodiscard]] int numbers() const;
-  /// Numbers that place the shapes.
+  /// Returns the number of unknown coordinates of the shapes' frames.
   [[nodiscard]] int frame_numbers() const;
-  /// Columns of a design before those of the fitted numbers: each shape's frame.
+  /// Returns the number of columns of a design before those of the fitted numbers: the coordinates
+  /// of each shape's frame.
   [[nodiscard]] Eigen::Index frame_columns() const { return frame_columns_; }
 
-  /// The solution of a shape's scene as it was changed, by the scene's reference_model().
-  /// @param start  an equilibrium to follow; null: search
-  /// @throws ConvergenceError if the time limit is over
-  /// @throws InputError if the scene is none that the model has
+  /// Solves a modified scene of a shape by the scene's reference_model().
+  /// @param start  an equilibrium to start from; null: search
+  /// @throws ConvergenceError if the time limit is exceeded
+  /// @throws InputError if the model does not support the scene
   [[nodiscard]] energy_model::Equilibrium solve(std::size_t shape, const Scene& scene,
                                                 const energy_model::Equilibrium* start);
-  /// The equilibrium that a local search from the shape's own points leads to
+  /// Returns the equilibrium that a local search from the shape's own points finds
   /// (energy_model::energy_near), whatever its status; not_run if the rod stretches.
-  /// @param like  an equilibrium on which the shape is laid where its frame is not known
-  /// @throws as solve()
+  /// @param like  an equilibrium with which the shape is aligned if its frame is unknown
+  /// @throws in the cases of solve()
   [[nodiscard]] energy_model::Equilibrium solve_near(std::size_t shape, const Scene& scene,
                                                      const energy_model::Equilibrium& like);
-  /// How far a rod that was confined leaves its plane where nothing confines it [m].
+  /// Returns how far a rod that was confined leaves its plane without the confinement [m]; 0 if it
+  /// does not.
   [[nodiscard]] double way_out_of_plane(std::size_t shape, const Scene& scene,
                                         const energy_model::Equilibrium& rod);
 
-  /// A rod as a curve that shapes are laid on.
+  /// Returns a rod as a curve with which shapes are aligned.
   [[nodiscard]] Curve curve(std::size_t shape, const energy_model::Equilibrium& rod) const {
     return {rod.sample, shapes_[shape].length};
   }
-  /// How a shape lies on a rod.
+  /// Aligns a shape with a rod.
   [[nodiscard]] Alignment alignment(std::size_t shape, const energy_model::Equilibrium& rod) const {
     return shapes_[shape].aligner.align(curve(shape, rod));
   }
-  /// Sum of a shape's squared distances from a rod, weighted [m^2].
+  /// Returns the sum of a shape's squared distances from a rod [m^2].
   [[nodiscard]] double squares(std::size_t shape, const energy_model::Equilibrium& rod) const;
 
-  /// Residuals of a shape as it lies on a rod, points less rod, with the columns of its own frame's
-  /// coordinates and of the fitted numbers; the others are zero. With given arc lengths a series
-  /// for each coordinate, else for each of the directions across the rod; none out of the plane of
-  /// a shape that lies in one.
-  /// @param movements  by the fitted numbers, in columns after the frames';  @param numbers  fitted
+  /// Returns the residuals of an aligned shape, points minus rod, with the derivatives by its own
+  /// frame's coordinates and by the fitted numbers; other columns are zero. There is one series per
+  /// coordinate with given arc lengths, else one per direction across the rod; none out of the
+  /// plane of a shape that lies in one.
+  /// @param movements  by the fitted numbers, in columns after the frames';
+  /// @param numbers  number of fitted numbers
   [[nodiscard]] std::vector<ResidualSeries> residuals(std::size_t shape, const Curve& curve,
                                                       const Alignment& alignment,
                                                       const std::vector<Movement>& movements,
                                                       Eigen::Index numbers) const;
 
-  /// Number of solves that ended at SolveOptions::max_evaluations.
+  /// Returns the number of solves that ended at SolveOptions::max_evaluations.
   [[nodiscard]] long limited_solves() const { return limited_solves_; }
-  /// Equilibria solved so far.
+  /// Returns the number of equilibria solved so far.
   [[nodiscard]] long solves() const { return solves_; }
-  /// Of the energy model's objective, for these.
+  /// Returns the number of evaluations of the energy in these solves.
   [[nodiscard]] long evaluations() const { return evaluations_; }
 
  private:
   [[nodiscard]] bool is_confined(std::size_t shape, const Scene& scene) const;
-  /// Time that the next equilibrium may take [s]. @throws ConvergenceError if there is none left
+  /// Returns the time limit of the next solve [s]. @throws ConvergenceError if no time is left
   [[nodiscard]] double time_left() const;
   [[nodiscard]] energy_model::Equilibrium solve_stretched(const Scene& scene,
                                                           const energy_model::Equilibrium* start);
   energy_model::Equilibrium solve(const energy_model::Problem& problem, const std::string& file,
                                   const energy_model::Equilibrium* start);
 
-  /// Roots of the points' weights, whose mean is 1.
+  /// Returns the roots of the points' weights, whose mean is 1.
   [[nodiscard]] Eigen::VectorXd root_weights(const std::vector<double>& s,
                                              const Eigen::Matrix3Xd& points) const;
 
   struct OneShape {
     MeasuredShape file;
     Aligner aligner;
-    double length;         // of its rod [m]
+    double length;         // length of its rod [m]
     bool flat;             // only two coordinates are measured
     Eigen::Vector3d up;    // as in AlignOptions
-    Eigen::Index columns;  // before its frame's first
+    Eigen::Index columns;  // index of the first column of its frame
   };
 
   MeasuredOptions options_;

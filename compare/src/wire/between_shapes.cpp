@@ -11,12 +11,14 @@
 namespace dlo::compare {
 namespace {
 
-/// What a number's column may lose to its nuisances before it is rounding.
+/// Part of a number's column, relative to the column, that must remain after its nuisances are
+/// removed; a smaller part is rounding.
 constexpr double least_own_share = 1e-7;
-/// The chance below which estimates are said to scatter.
+/// Probability below which estimates are reported to scatter.
 constexpr double significant_chance = 0.05;
 
-/// Their mean with weights 1 / (variance + between), and how far they are from it in these weights.
+/// Weighted mean of estimates with weights 1 / (variance + between): its precision, and the
+/// weighted sum of squared distances from it.
 struct Spread {
   double squares = 0;
   double precision = 0;  // of the mean
@@ -37,8 +39,8 @@ Spread spread(const std::vector<ShapeEstimate>& estimates, double between) {
   return result;
 }
 
-/// The variance between estimates with which they are as far apart as they should be (Paule and
-/// Mandel 1982): the squares fall as it grows.
+/// Returns the variance between estimates for which the weighted sum of squares has its expected
+/// value (Paule and Mandel 1982). The sum decreases with the variance.
 double variance_between(const std::vector<ShapeEstimate>& estimates, double expected) {
   double low = 0;
   double high = 1;
@@ -51,12 +53,12 @@ double variance_between(const std::vector<ShapeEstimate>& estimates, double expe
   return high;
 }
 
-/// @param variance  of the innovations [m^2]
+/// Estimates one number from one shape. @param variance  of the innovations [m^2]
 ShapeEstimate estimate_of_shape(const Innovations& seen, double variance, Eigen::Index column,
                                 const std::vector<Nuisance>& nuisances) {
   const Eigen::Index rows = seen.residual.size();
   const auto count = static_cast<Eigen::Index>(nuisances.size());
-  // What was known before is a row more each, in units of the errors.
+  // Each prior adds a row, in units of the errors.
   Eigen::MatrixXd others = Eigen::MatrixXd::Zero(rows + count, count);
   Eigen::VectorXd own = Eigen::VectorXd::Zero(rows + count);
   Eigen::VectorXd residual = Eigen::VectorXd::Zero(rows + count);
@@ -80,7 +82,7 @@ ShapeEstimate estimate_of_shape(const Innovations& seen, double variance, Eigen:
   return {own.dot(residual) / own.squaredNorm(), variance / own.squaredNorm()};
 }
 
-/// Of a point from a polyline [m^2].
+/// Returns the squared distance of a point from a polyline [m^2].
 double squared_distance(const Eigen::Vector3d& point, const Eigen::Matrix3Xd& nodes) {
   double least = std::numeric_limits<double>::infinity();
   for (Eigen::Index k = 0; k + 1 < nodes.cols(); ++k) {
@@ -92,11 +94,11 @@ double squared_distance(const Eigen::Vector3d& point, const Eigen::Matrix3Xd& no
   return least;
 }
 
-/// Places along the rod at which shapes are compared.
+/// Number of positions along the rod at which shapes are compared.
 constexpr int places = 21;
 
-/// Equally spaced over the arc lengths that all shapes have; none of fewer than two shapes, or if
-/// that is less than half of the longest.
+/// Returns arc lengths equally spaced over the range common to all shapes; std::nullopt for fewer
+/// than two shapes, or if the range is less than half of the longest shape.
 std::optional<std::vector<double>> common_places(
     const std::vector<const std::vector<double>*>& arc_lengths) {
   if (arc_lengths.size() < 2) return std::nullopt;
@@ -136,7 +138,8 @@ AcrossRod across_rod(const Shape& shape, const Shape& rod, const Eigen::Vector3d
     const Eigen::Vector3d begin = rod.points.col(k - 1);
     const Eigen::Vector3d along = (rod.points.col(k) - begin).normalized();
     result.arc_length.push_back(at);
-    // Across, the rod's piece may be taken for straight; where along it does not matter.
+    // Distances across the rod treat the segment as straight; the position along it does not
+    // matter.
     result.gap.push_back(normal.cross(along).dot(shape.points.col(i) - begin));
   }
   return result;

@@ -11,58 +11,63 @@
 
 namespace dlo::compare {
 
-/// What one shape alone says of a number.
+/// Estimate of a number from one shape alone.
 struct ShapeEstimate {
-  double value = 0;     ///< less the common estimate
-  double variance = 0;  ///< infinite where it says nothing
+  double value = 0;     ///< relative to the common estimate
+  double variance = 0;  ///< infinite if the shape does not determine the number
 };
 
-/// Another number that one shape has to be freed of: a column of its design.
+/// Another number that is eliminated from the estimate of one shape: a column of its design.
 struct Nuisance {
   Eigen::Index column = 0;
-  double value = 0;         ///< as it is now
-  double known_before = 0;  ///< standard deviation about zero; infinite: nothing was known
+  double value = 0;         ///< current value
+  double known_before = 0;  ///< prior standard deviation about zero; infinite: no prior
 };
 
-/// Nothing is known of a shape's frame. @param frames  its columns, the first of the design
+/// Returns nuisances without priors for the frames.
+/// @param frames  number of their columns, the first ones of the design
 [[nodiscard]] std::vector<Nuisance> frame_nuisances(Eigen::Index frames);
 
-/// What each shape alone says of one number: generalised least squares of it and the shape's
-/// nuisances, linear about the common fit.
-/// @param series  of all shapes, whose errors have that covariance up to their variance [m^2]
-/// @param column  the number's;  @param nuisances  of each shape
+/// Returns the estimate of one number from each shape alone: generalised least squares of the
+/// number and the shape's nuisances, linearised about the common fit.
+/// @param series  of all shapes; their errors have this covariance up to the variance [m^2]
+/// @param column  of the number;  @param nuisances  of each shape
 [[nodiscard]] std::vector<ShapeEstimate> estimates_of_shapes(
     const std::vector<ResidualSeries>& series, const ErrorCovariance& covariance, double variance,
     Eigen::Index column, const std::vector<std::vector<Nuisance>>& nuisances);
 
-/// What of a shape's points is across its rod, in a plane that all shapes share.
+/// Distances of a shape's points across its rod, in a plane that all shapes share.
 struct AcrossRod {
-  std::vector<double> arc_length;  ///< grows [m]
-  std::vector<double> gap;         ///< of each point, to the rod's left [m]
+  std::vector<double> arc_length;  ///< non-decreasing [m]
+  std::vector<double> gap;         ///< distance of each point to the rod's left [m]
 };
 
-/// @param normal  of the plane;  @param shape  as it lies on the rod;  @param rod  at many arc
-///                lengths
+/// Computes the distances across the rod.
+/// @param normal  of the plane;
+/// @param shape  aligned with the rod;
+/// @param rod  sampled at many arc lengths
 [[nodiscard]] AcrossRod across_rod(const Shape& shape, const Shape& rod,
                                    const Eigen::Vector3d& normal);
 
-/// Share of the mean square that all have in common at equal arc lengths: N |mean|^2 over the sum
-/// of squares, 1 / N of independent ones, 1 of equal ones; none of fewer than two, or of those
-/// that have less than half of their arc lengths in common.
+/// Returns the share of the mean square that all shapes have in common at equal arc lengths: N
+/// |mean|^2 divided by the sum of squares. It is 1 / N for independent shapes and 1 for equal ones.
+/// Returns std::nullopt for fewer than two shapes, or if less than half of their arc lengths is
+/// common.
 [[nodiscard]] std::optional<double> common_share(const std::vector<AcrossRod>& shapes);
 
-/// Distance of each shape from the mean of the others, as that of a rod is measured: at equal arc
-/// lengths by `file`, else to the nearest point of the mean, RMS [m]; none of fewer than two, or of
-/// those that have less than half of their arc lengths in common.
+/// Returns the RMS distance of each shape from the mean of the others [m], measured as the distance
+/// from a rod: at equal arc lengths with `file`, else to the nearest point of the mean. Returns
+/// std::nullopt for fewer than two shapes, or if less than half of their arc lengths is common.
 [[nodiscard]] std::optional<double> repeatability(const std::vector<Shape>& shapes,
                                                   ArcLengths rule);
 
-/// Between what chance gives, 0, and all of it, 1.
+/// Rescales common_share(), so that 0 is the value expected by chance and 1 that of equal shapes.
 [[nodiscard]] double beyond_chance(double share, std::size_t shapes);
 
-/// Whether estimates differ by more than their variances explain (Cochran's Q, chance below 1/20),
-/// and what that does to the interval of their mean; none of fewer than two that say something.
-/// @param quantile  of the interval without a scatter, in standard deviations
+/// Tests whether estimates differ by more than their variances explain (Cochran's Q, probability
+/// below 1/20), and returns the effect on the interval of their mean. Returns std::nullopt if they
+/// do not, or if fewer than two shapes determine the number.
+/// @param quantile  half width of the interval without scatter, in standard deviations
 [[nodiscard]] std::optional<ScatterBetweenShapes> scatter_between(
     const std::vector<ShapeEstimate>& estimates, double quantile);
 

@@ -9,24 +9,27 @@
 
 namespace dlo::compare {
 
-/// Whether a force acts on the rod that does not grow with its stiffness: weight, a load, an
-/// obstacle that yields. Without one its energy is E times a function of the shape alone, so the
-/// scene has the same equilibria with every E.
+/// Whether a force acts on the rod that is not proportional to its stiffness: weight, a load, or a
+/// yielding obstacle. Without one the energy is E times a function of the shape, so the scene has
+/// the same equilibria for every E.
 [[nodiscard]] bool is_forced(const Scene& scene);
 
-/// The same but for its weight, without which it has the same ones with every density / E.
+/// Whether such a force other than weight acts. Without one, the scene has the same equilibria for
+/// every E at a fixed ratio of density and E.
 [[nodiscard]] bool has_forces_beside_weight(const Scene& scene);
 
-/// What is not identifiable from shapes of scenes that are not is_forced(), in words.
+/// Returns a message that states what is not identifiable from shapes of scenes that are not
+/// is_forced().
 [[nodiscard]] std::string why_unforced(const Scene& scene);
 
-/// Half the width of a 95 % interval in standard deviations: the normal's of a given noise, else
-/// Student's t.
-/// @param noise  given;  @param freedom  degrees, of the residuals from which it is estimated
+/// Returns half the width of a 95 % interval in standard deviations: of the normal distribution if
+/// the noise is given, otherwise of Student's t distribution.
+/// @param noise  given noise [m];
+/// @param freedom  degrees of freedom of the residuals from which noise is estimated
 [[nodiscard]] double interval_quantile(const std::optional<double>& noise, double freedom);
 
-/// A number that is fitted as the logarithm of its factor on what the scene says.
-/// @param interval  of that logarithm;  @param unit  what the scene says
+/// Returns a value that was fitted as the logarithm of its ratio to the scene's value.
+/// @param interval  of the logarithm;  @param unit  the scene's value
 /// @param identified_within  see MaterialFitOptions
 [[nodiscard]] FittedValue fitted_value(double logarithm, const LogProfile::Interval& interval,
                                        double unit, double identified_within);

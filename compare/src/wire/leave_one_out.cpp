@@ -14,11 +14,12 @@
 namespace dlo::compare {
 namespace {
 
-/// Of grippers that hold a rod alike, in lengths.
+/// Largest difference between grippers that hold a rod in the same way: of positions divided by the
+/// length, and of directions.
 constexpr double alike = 0.02;
 
-/// A laid shape, by lengths along its own points if they are the whole rod: where on the rod they
-/// are nearest depends on what else is fitted.
+/// Replaces the arc lengths of an aligned shape that covers the whole rod by lengths along its own
+/// points, because nearest points on the rod depend on the other fitted numbers.
 Shape by_its_own_lengths(Shape shape, double length) {
   const std::vector<double> s = lengths_along(shape.points);
   constexpr double whole = 0.97;

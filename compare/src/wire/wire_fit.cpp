@@ -14,8 +14,8 @@
 namespace dlo::compare {
 namespace {
 
-/// The scene of a shape as the fit to the others says, to which steps lead from the fit to all,
-/// with its weights. What was the shape's own is as if nothing were known of it.
+/// Predicts the scene of a shape by the fit to the others, which starts at the fit to all and uses
+/// its weights. Numbers that belong to the shape alone are set to zero.
 PredictedScene predicted(const WireProblem& problem, const WireOptimum& all, std::size_t left) {
   const std::vector<Scene> scenes = all_but(problem.scenes, left);
   const std::vector<MeasuredShape> shapes = all_but(problem.shapes, left);
@@ -55,8 +55,8 @@ std::optional<std::size_t> undetermined_term(const WireProblem& problem, const M
   return result;
 }
 
-/// The interval with the term and without it: that the shapes do not determine it does not make it
-/// zero.
+/// Extends the interval to that of the fit with the term: the shapes do not determine the term,
+/// which does not mean that it is zero.
 void widen(MaterialFit& fit, const MaterialFit& with_term, double identified_within) {
   FittedValue& E = fit.youngs_modulus;
   const FittedValue& other = with_term.youngs_modulus;
@@ -67,9 +67,9 @@ void widen(MaterialFit& fit, const MaterialFit& with_term, double identified_wit
   if (fit.not_identified.empty()) fit.not_identified = with_term.not_identified;
 }
 
-/// The fit in which terms of natural curvature that the shapes do not determine are zero, as most
-/// likely before: what the other numbers have to make up for them would make predictions of other
-/// shapes worse.
+/// Returns the fit in which terms of natural curvature that the shapes do not determine are set to
+/// zero, their most likely prior value. Otherwise the other numbers would compensate for them,
+/// which makes predictions of other shapes worse.
 MaterialFit determined_fit(const WireProblem& problem, WireOptimum& optimum) {
   const MaterialFitOptions& options = problem.options;
   MaterialFit fit = wire_result(problem, optimum);

@@ -8,13 +8,14 @@
 
 namespace dlo::compare {
 
-/// Whether more than E and the density is to be fitted.
+/// Whether more than E and the density is fitted.
 [[nodiscard]] bool fits_a_wire(const MaterialFitOptions& options);
 
-/// Finds E, with `density` the density, and all other numbers that are asked for together, from the
-/// material that fits best without them. Fills the result but for the degrees of freedom before.
-/// @param measured  the shapes, whose time limit counts
-/// @throws ConvergenceError if the steps lead nowhere, or the time limit is over
+/// Fits E, with `density` the density, and all other requested numbers together, starting from the
+/// material that fits best without them. Sets all of the result except the degrees of freedom of
+/// that earlier fit.
+/// @param measured  the shapes, with their time limit
+/// @throws ConvergenceError if the iteration does not converge, or the time limit is exceeded
 [[nodiscard]] MaterialFit fit_wire(const std::vector<Scene>& scenes,
                                    const std::vector<MeasuredShape>& shapes,
                                    MeasuredShapes& measured, const MaterialFitOptions& options,

@@ -17,26 +17,28 @@
 namespace dlo::compare {
 namespace {
 
-/// What is known of natural curvature before, as standard deviation of each term times the length:
-/// hardly anything, the stress-free shape may have some whole turns.
+/// Prior standard deviation of each term of natural curvature, times the length [rad]. It is large,
+/// because the stress-free shape may have several whole turns.
 constexpr double natural_turns_before = 10;
 
-/// What is known of GJ / EI before, as standard deviation of its logarithm: a factor of ten.
+/// Prior standard deviation of ln(GJ / EI): a factor of ten.
 constexpr double torsion_before = 2.3;
 
-/// Farther a roll is not linear.
+/// Longest step of a roll for which the fit is nearly linear [rad].
 constexpr double longest_roll_step = 0.5;
-/// A roll that is known better than this is looked for from what the scene says alone.
+/// Prior deviation of a roll above which several starts are tried; below it the fit starts at the
+/// scene's roll only [rad].
 constexpr double unknown_roll = 0.7;
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
-/// The plane in which a shape's gripper may be off: the scene's, if nothing was measured out of it.
+/// Returns the normal of the plane in which a shape's grippers may be misplaced: the scene's plane
+/// if no point was measured out of it.
 std::optional<Eigen::Vector3d> plane_of(const Scene& scene, const MeasuredShape& shape) {
   return lies_in_a_plane(shape.points) ? scene.plane_normal() : std::nullopt;
 }
 
-/// Whether GJ has an effect.
+/// Whether GJ affects the shape of a scene.
 bool twists(const Scene& scene) { return scene.twisting_stiffness() > 0 && !scene.planar(); }
 
 void add_natural_curvature(std::vector<WireNumber>& numbers, const std::vector<Scene>& scenes,
@@ -46,7 +48,7 @@ void add_natural_curvature(std::vector<WireNumber>& numbers, const std::vector<S
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     planar = planar && plane_of(scenes[i], shapes[i]).has_value();
   }
-  // Where nothing is known of how the rod is turned, its mean curvature is about d2.
+  // If the roll of the rod is unknown, its mean curvature is about d2 by definition.
   const bool turned = options.roll_tolerance > unknown_roll;
   for (const Scene& scene : scenes) {
     if (scene.rest_shape) {
@@ -135,7 +137,7 @@ void add_positions(std::vector<WireNumber>& numbers, const Scene& scene,
   }
 }
 
-/// The first clamp along the rod; null: there is none.
+/// Returns the first clamp along the rod; null if there is none.
 Gripper* first_clamp(Scene& scene) {
   Gripper* first = nullptr;
   for (Gripper& gripper : scene.grippers) {
@@ -144,7 +146,7 @@ Gripper* first_clamp(Scene& scene) {
   return first;
 }
 
-/// Whether its first clamp is turned about its direction shows in no shape.
+/// Whether a roll of the first clamp does not change any shape.
 bool is_alike_all_around(const Scene& scene, const MaterialFitOptions& options) {
   return options.natural_curvature_terms == 0 && !scene.has_material_directors();
 }
@@ -170,7 +172,8 @@ void add_rolls(std::vector<WireNumber>& numbers, Scene scene, std::size_t shape,
   }
 }
 
-/// Unit, across a direction and as level as that allows.
+/// Returns a unit vector perpendicular to a direction and to gravity, or to the direction alone if
+/// the two are parallel.
 Eigen::Vector3d level_across(const Eigen::Vector3d& direction, const Eigen::Vector3d& gravity) {
   const Eigen::Vector3d level = gravity.cross(direction);
   constexpr double upright = 1e-6;
@@ -178,7 +181,8 @@ Eigen::Vector3d level_across(const Eigen::Vector3d& direction, const Eigen::Vect
                                                  : Eigen::Vector3d(direction.unitOrthogonal());
 }
 
-/// About the normal of the shapes' plane, else about all level axes.
+/// Adds the tilt about the normal of the shapes' plane, or, for shapes in space, about all level
+/// axes.
 void add_camera_tilt(std::vector<WireNumber>& numbers, const std::vector<Scene>& scenes,
                      const std::vector<MeasuredShape>& shapes, double tolerance) {
   if (const std::string why = why_no_camera_tilt(scenes, shapes); !why.empty()) {
@@ -199,7 +203,8 @@ void add_camera_tilt(std::vector<WireNumber>& numbers, const std::vector<Scene>&
   }
 }
 
-/// What is wrong with clamps is the same in all scenes only if they are the same.
+/// Checks that all scenes have the same clamps, since only then the clamps' errors can be shared.
+/// @throws InputError
 void require_like_clamps(const std::vector<Scene>& scenes) {
   const std::vector<Gripper>& first = scenes.front().grippers;
   for (const Scene& scene : scenes) {
@@ -265,7 +270,7 @@ std::vector<WireNumber> wire_numbers(const std::vector<Scene>& scenes,
                                      const std::vector<MeasuredShape>& shapes,
                                      const MaterialFitOptions& options, bool density) {
   std::vector<WireNumber> numbers;
-  // Without forces differences by E are rounding, or a way along equilibria that have neighbours.
+  // Without forces, differences by E are rounding, or movements along a family of equilibria.
   const bool forced = std::any_of(scenes.begin(), scenes.end(), is_forced);
   const FittedNumber of_wire{
       .name = "", .unit = "", .known_before = unknown, .shape = std::nullopt};
@@ -310,7 +315,7 @@ std::vector<WireNumber> wire_numbers(const std::vector<Scene>& scenes,
                       scenes.front().file));
     }
   }
-  // The last one: what is wrong with clamps is said in the scene's coordinates.
+  // The tilt is applied last, because errors of clamps are given in the scene's coordinates.
   if (options.camera_tilt > 0) add_camera_tilt(numbers, scenes, shapes, options.camera_tilt);
   return numbers;
 }

@@ -13,22 +13,24 @@
 
 namespace dlo::compare {
 
-/// A number of a wire, or of how one shape of it was held, that is fitted to shapes.
+/// A number of a wire, or of the way in which one shape of it was held, that is fitted to shapes.
 struct WireNumber {
-  /// Its value is not in use; nothing known before is an infinite deviation.
+  /// Description of the number; its value is not used, and an infinite deviation means no prior.
   FittedNumber described;
-  double stride = 0;  ///< of differences, in its unit; 0: it is in no shape
+  double stride = 0;  ///< stride of differences, in the number's unit; 0: no shape depends on it
   std::function<void(Scene&, double)> change;
-  int term = 0;  ///< of natural curvature; 0 of all other numbers
-  double longest_step = std::numeric_limits<double>::infinity();  ///< beyond it nothing is linear
-  /// How the first clamp holds a rod whose own frame shows: all angles are to be tried.
+  int term = 0;  ///< index of the term of natural curvature; 0 for all other numbers
+  double longest_step = std::numeric_limits<double>::infinity();  ///< longest step for which the
+                                                                  ///< fit is nearly linear
+  /// Whether it rotates the first clamp of a rod whose frame affects the shape, so that all angles
+  /// must be tried.
   bool turns_the_rod = false;
-  std::optional<Eigen::Vector3d> camera_axis = std::nullopt;  ///< of a camera's tilt, unit
+  std::optional<Eigen::Vector3d> camera_axis = std::nullopt;  ///< axis of a camera's tilt, unit
 };
 
-/// How the shapes of a fit lie on its rods. A photograph does not see the third coordinate: a fit
-/// of natural curvature would bend the rod out of the picture to come nearer in it, so it is
-/// confined.
+/// Returns the options with which the shapes of a fit are aligned with its rods. A photograph has
+/// no third coordinate: a fit of natural curvature would bend the rod out of the picture to reduce
+/// the residuals in it, so the rod is confined to its plane.
 [[nodiscard]] inline MeasuredOptions measured_options(const MaterialFitOptions& options) {
   return {
       .pose = options.pose,
@@ -37,26 +39,27 @@ struct WireNumber {
       .flat = options.natural_curvature_terms > 0 ? FlatShapes::confined : FlatShapes::unmeasured};
 }
 
-/// Why shapes do not have a camera's tilt in common, naming file and what is allowed; empty: they
-/// may.
+/// Returns why shapes cannot share the tilt of a camera, with file and allowed values; empty if
+/// they can.
 [[nodiscard]] std::string why_no_camera_tilt(const std::vector<Scene>& scenes,
                                              const std::vector<MeasuredShape>& shapes);
 
-/// Scenes in which the first clamp says where d1 is, so that it goes on holding it when it is
-/// turned out of the scene's plane: where the scene leaves it open but for `roll_tolerance`, d1 is
+/// Returns the scenes with a first clamp that defines d1, so that it keeps holding d1 when it is
+/// rotated out of the scene's plane. If the scene determines d1 only up to `roll_tolerance`, d1 is
 /// level.
-/// @param flat  whose shape was measured in the scene's plane, which says where d1 is
+/// @param flat  for each scene, whether its shape was measured in the scene's plane, which
+/// determines d1
 [[nodiscard]] std::vector<Scene> with_said_frames(std::vector<Scene> scenes,
                                                   const std::vector<bool>& flat,
                                                   const MaterialFitOptions& options);
 
-/// All that is to be found: first the logarithm of E over the scenes', then, with `density`, of the
-/// density, if asked for of GJ / EI, natural curvature, then each shape's own directions and
-/// positions and rolls, and the camera's tilt.
-/// @param scenes  with_said_frames()
-/// @throws InputError if natural curvature is asked for where no clamp or plane says about which
-/// axes, GJ where no scene twists the rod, rolls where none is in a shape, or a tilt where
-/// why_no_camera_tilt()
+/// Returns all numbers to fit, in this order: the logarithm of the factor on E; with `density` that
+/// on the density; if requested that on GJ / EI, and natural curvature; then directions, positions
+/// and rolls of each shape; and the tilt of the camera.
+/// @param scenes  result of with_said_frames()
+/// @throws InputError if natural curvature is requested but no clamp or plane defines its axes, GJ
+/// but no scene twists the rod, rolls but no shape depends on one, or a tilt that
+/// why_no_camera_tilt() rejects
 [[nodiscard]] std::vector<WireNumber> wire_numbers(const std::vector<Scene>& scenes,
                                                    const std::vector<MeasuredShape>& shapes,
                                                    const MaterialFitOptions& options, bool density);

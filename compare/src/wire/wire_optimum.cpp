@@ -10,9 +10,10 @@
 namespace dlo::compare {
 namespace {
 
-/// Correlated errors tell less than as many independent ones, which counts beside what was known
-/// before. How much less is measured from the residuals of a fit that knows it: so often, and to so
-/// much of it.
+/// Largest number of fits with updated weights, and relative change of the weight at which they
+/// end. Correlated errors carry less information than as many independent ones, which matters
+/// relative to the priors. The weight is measured from the residuals of a fit that uses the
+/// previous weight.
 constexpr int most_weights = 3;
 constexpr double weight_tolerance = 0.1;
 /// Relative error of the root of the deviance at an end of the interval: below the printed digits.
@@ -43,8 +44,8 @@ void WireOptimum::descend() {
                          problem_.least_noise());
 }
 
-/// From the least deviance to the E that is likeliest whatever the other numbers are. The two
-/// differ by how much more a stiffer rod lets the shapes tell of its clamps.
+/// Moves from the least deviance to the most likely E, marginalised over the other numbers. The two
+/// differ if the shapes determine the clamps better for a stiffer rod.
 void WireOptimum::go_to_likely_modulus() {
   marginal_slope_ = fit_->marginal_slope();
   const double variance = fit_->covariance_of_numbers()(0, 0);
@@ -70,8 +71,8 @@ double WireOptimum::correlated_widening() const {
   return std::sqrt(covariance_(0, 0) / independent) * quantile() / alone;
 }
 
-/// Root of the unlikelihood at the interval's ends: farther than where the deviance of independent
-/// errors has its limit.
+/// Returns the root of unlikelihood() at the ends of the interval, which is larger than the limit
+/// of the deviance for independent errors.
 double WireOptimum::limit() const {
   return quantile() * std::sqrt(covariance_(0, 0) / fit_->covariance_of_numbers()(0, 0));
 }
@@ -94,7 +95,7 @@ std::optional<double> WireOptimum::end(double side) {
   const double farthest = side > 0 ? range.highest - values()[0] : values()[0] - range.lowest;
   constexpr double jump = 4;
   double distance = linear;
-  double before = 0;  // the distance of the last step, and the root of the deviance there
+  double before = 0;  // distance of the previous step, and the root of the deviance there
   double reached_before = 0;
   for (int i = 0; i < most_ends; ++i) {
     if (!(distance < farthest)) return std::nullopt;
@@ -102,7 +103,7 @@ std::optional<double> WireOptimum::end(double side) {
     const double reached = std::sqrt(std::max(0.0, excess));
     if (!(reached < jump * wanted)) return linear;
     if (std::abs(reached - wanted) <= end_tolerance * wanted) break;
-    // The secant; the root grows about in proportion to the distance, from 0.
+    // A secant step; the root is about proportional to the distance, with value 0 at 0.
     const double slope = (reached - reached_before) / (distance - before);
     const double next = slope > 0 ? distance + (wanted - reached) / slope
                                   : distance * wanted / std::max(reached, 1e-300);

@@ -11,41 +11,42 @@
 
 namespace dlo::compare {
 
-/// The likeliest values of a wire's numbers, and how likely others are.
+/// The most likely values of a wire's numbers, and the likelihood of others.
 class WireOptimum {
  public:
-  /// Goes there.
-  /// @param problem  outlives this, as do the rods of all its numbers;  @param start  values that
-  ///                 they go on from
-  /// @throws ConvergenceError if the steps lead nowhere, or the time limit is over
+  /// Finds the most likely values.
+  /// @param problem  must outlive this, as must the rods with all its numbers;
+  /// @param start  initial values
+  /// @throws ConvergenceError if the iteration does not converge, or the time limit is exceeded
   WireOptimum(const WireProblem& problem, FittedRods& rods, const Eigen::VectorXd& start);
 
   [[nodiscard]] const GaussNewton& fit() const { return *fit_; }
   [[nodiscard]] const Eigen::VectorXd& values() const { return fit_->values(); }
   [[nodiscard]] const WireErrors& errors() const { return errors_; }
-  /// Of the numbers, under these errors.
+  /// Returns the covariance of the numbers under these errors.
   [[nodiscard]] const Eigen::MatrixXd& covariance() const { return covariance_; }
   [[nodiscard]] const FittedRods::Rods& rods() const { return here_; }
-  /// Of the numbers, see unseen().
+  /// Whether a number is not identified, see unseen().
   [[nodiscard]] bool is_unseen(Eigen::Index number) const {
     return unseen_[static_cast<std::size_t>(number)];
   }
-  /// Of an interval, in standard deviations.
+  /// Returns half the width of an interval, in standard deviations.
   [[nodiscard]] double quantile() const;
 
-  /// By what correlated errors make an interval wider than as many independent ones of the same
-  /// squares would.
+  /// Returns the ratio of the interval with correlated errors to that with as many independent
+  /// errors of the same sum of squares.
   [[nodiscard]] double correlated_widening() const;
 
-  /// How much less likely another E is, whatever the other numbers are: twice the logarithm, as a
-  /// share of what it is at the interval's ends.
+  /// Returns how much less likely another E is, marginalised over the other numbers: twice the
+  /// decrease of the log likelihood, divided by its value at the ends of the interval.
   [[nodiscard]] double excess_over_limit(double log_modulus);
 
-  /// Distance in log E to the end of the interval on a side (1: above, -1: below); none: open.
-  /// Where the equilibria that are followed end before, linear theory has to do.
+  /// Returns the distance in log E to the end of the interval on a side (1: above, -1: below);
+  /// std::nullopt if it is open. If the followed equilibria end before, the distance is that of
+  /// linear theory.
   [[nodiscard]] std::optional<double> end(double side);
 
-  /// How the shapes lie.
+  /// Returns the alignments of the shapes.
   [[nodiscard]] std::vector<Alignment> alignments();
 
  private:

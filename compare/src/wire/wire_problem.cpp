@@ -12,14 +12,14 @@
 namespace dlo::compare {
 namespace {
 
-/// In lengths.
+/// Error of the energy model, divided by the length.
 constexpr double own_error = 1e-8;
-/// Longest step in log E: beyond it nothing is linear.
+/// Longest step in log E for which the fit is nearly linear.
 constexpr double longest_log_step = 1;
-/// Last step of fits from which others go on, in standard deviations.
+/// Largest last step of fits from which others start, in standard deviations.
 constexpr double coarse_step = 0.1;
 
-/// Scenes whose numbers are fitted.
+/// Returns the scenes whose numbers are fitted.
 std::vector<Scene> fitted_scenes(const std::vector<Scene>& scenes, const MeasuredShapes& measured,
                                  const MaterialFitOptions& options) {
   std::vector<bool> flat;

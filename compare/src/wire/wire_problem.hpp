@@ -13,41 +13,43 @@
 
 namespace dlo::compare {
 
-/// A wire's numbers, and the shapes that they are fitted to. What is given outlives it.
+/// A wire's numbers, and the shapes to which they are fitted. All references must outlive it.
 struct WireProblem {
-  /// @param with_density  it is the second number, after E
+  /// @param with_density  whether the density is the second number, after E
   WireProblem(const std::vector<Scene>& said, const std::vector<MeasuredShape>& of,
               MeasuredShapes& against, const MaterialFitOptions& asked, bool with_density);
 
-  const std::vector<Scene>& scenes;  ///< as they are said, of each shape one
+  const std::vector<Scene>& scenes;  ///< as given, one per shape
   const std::vector<MeasuredShape>& shapes;
-  MeasuredShapes& measured;  ///< the shapes, whose time limit counts
+  MeasuredShapes& measured;  ///< the shapes, with their time limit
   const MaterialFitOptions& options;
   bool density;
   std::vector<WireNumber> numbers;
-  FittedRods::SceneAt scene_at;  ///< of a shape, at some values of the numbers
+  FittedRods::SceneAt scene_at;  ///< scene of a shape, at some values of the numbers
 
-  /// The first number that has its own value: of natural curvature, if any.
+  /// Returns the index of the first number after E, density and GJ: of natural curvature, if
+  /// fitted.
   [[nodiscard]] Eigen::Index first_of_others() const;
-  /// Those that are a shape's own; none: those that are of all.
+  /// Whether a number belongs to one shape alone. @param shape  index of the shape
   [[nodiscard]] bool is_own(std::size_t number, std::size_t shape) const {
     return numbers[number].described.shape == shape;
   }
 
-  /// @param terms  of natural curvature that are fitted, the others stay
+  /// Returns the rods of the shapes.
+  /// @param terms  number of fitted terms of natural curvature, the others are constant
   [[nodiscard]] FittedRods rods(int terms) const;
 
-  /// Of log E, where it is looked for. Weight makes a rope of a softer rod, whose shape is the same
-  /// with any E; at least two decades are looked at.
+  /// Returns the lower bound of log E in the search. The weight makes a softer rod a rope, whose
+  /// shape does not depend on E. The search covers at least two decades.
   [[nodiscard]] double lowest() const;
-  /// How steps are made.
+  /// Returns the options of the iteration.
   [[nodiscard]] GaussNewtonOptions steps() const;
-  /// The same for a fit from which another one goes on.
+  /// Returns the options of a fit from which another one starts.
   [[nodiscard]] GaussNewtonOptions coarse_steps() const;
-  /// The energy model's own error: no noise is taken to be less [m].
+  /// Returns the error of the energy model, the lower bound of any noise [m].
   [[nodiscard]] double least_noise() const;
 
-  /// @throws ConvergenceError if that leads to no fit
+  /// Minimises the deviance. @throws ConvergenceError if the iteration does not converge
   void descend(GaussNewton& fit) const;
 };
 

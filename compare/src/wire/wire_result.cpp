@@ -21,7 +21,7 @@ void warn(MaterialFit& fit, const std::string& what) {
   fit.warning += what;
 }
 
-/// The intervals of E, the density, GJ and GJ / EI.
+/// Computes the intervals of E, the density, GJ and GJ / EI.
 class WireIntervals {
  public:
   WireIntervals(const WireProblem& problem, WireOptimum& optimum)
@@ -41,7 +41,7 @@ class WireIntervals {
     if (problem_.options.torsional_stiffness) find_torsion(fit);
   }
 
-  /// Of E.
+  /// Samples the profile of E.
   void draw_profile(MaterialFit& fit) {
     if (optimum_.is_unseen(0)) return;
     const double best = optimum_.values()[0];
@@ -52,14 +52,15 @@ class WireIntervals {
     for (const double x :
          drawn_logarithms(logarithm(fit.youngs_modulus.low), best,
                           logarithm(fit.youngs_modulus.high), problem_.options.profile_points)) {
-      // The interval's ends are `widening_` times as far away as where the deviance has its limit.
+      // The ends of the interval are `widening_` times as far away as the limit of the deviance.
       fit.profile.push_back(
           {unit * std::exp(x), optimum_.excess_over_limit(best + (x - best) / widening_)});
     }
   }
 
  private:
-  /// Where a given noise explains less than there is: by what the interval is wider.
+  /// Returns the factor by which the interval is wider because the residuals exceed the given
+  /// noise; 1 if they do not.
   [[nodiscard]] double misfit(MaterialFit& fit) const {
     if (!problem_.options.noise) return 1;
     constexpr double significant = 0.05;
@@ -99,7 +100,7 @@ class WireIntervals {
                                        const std::optional<double>& below,
                                        const std::optional<double>& above) const {
     const MaterialFitOptions& options = problem_.options;
-    // An end farther away than E is looked for is no bound.
+    // An end outside the search range of E is no bound.
     const double farthest = std::log(options.largest_ratio) - problem_.lowest();
     LogProfile::Interval interval;
     if (below && *below < farthest) interval.low = log_value - *below;
@@ -107,14 +108,14 @@ class WireIntervals {
     return fitted_value(log_value, interval, unit, options.identified_within);
   }
 
-  /// A value that is the sum of some numbers, of that variance.
+  /// Returns the value whose logarithm is the sum of some numbers, with that sum's variance.
   [[nodiscard]] FittedValue identified(std::initializer_list<Eigen::Index> numbers, double unit,
                                        double variance) const {
     double log_value = 0;
     std::optional<double> half = optimum_.quantile() * std::sqrt(variance) * widening_;
     for (const Eigen::Index number : numbers) {
       log_value += optimum_.values()[number];
-      // What was known before is no finding.
+      // A number that only its prior determines has no interval.
       const bool in_no_shape = optimum_.fit().linear().design.col(number).isZero(0);
       if (in_no_shape || optimum_.is_unseen(number)) half.reset();
     }
@@ -143,7 +144,7 @@ class WireIntervals {
         problem_.options.identified_within);
   }
 
-  /// Its number is the logarithm of GJ / EI.
+  /// Sets GJ and GJ / EI; the fitted number is the logarithm of the factor on GJ / EI.
   void find_torsion(MaterialFit& fit) const {
     const Eigen::Index k = problem_.first_of_others() - 1;
     const Eigen::MatrixXd& covariance = optimum_.covariance();
@@ -157,12 +158,12 @@ class WireIntervals {
   const WireProblem& problem_;
   WireOptimum& optimum_;
   const Scene& scene_;
-  double widening_ = 1;  // of intervals, beside what the deviance alone gives
+  double widening_ = 1;  // of intervals, relative to those of the deviance alone
 };
 
-/// The numbers; what is in no shape is nought to rounding.
+/// Returns the values of the numbers; rounding of those that no shape depends on is set to zero.
 Eigen::VectorXd found_values(const WireProblem& problem, const WireOptimum& optimum) {
-  constexpr double rounding = 1e-9;  // of what was known before
+  constexpr double rounding = 1e-9;  // divided by the prior deviation
   Eigen::VectorXd values = optimum.values();
   for (Eigen::Index k = 0; k < values.size(); ++k) {
     const double before = problem.numbers[static_cast<std::size_t>(k)].described.known_before;
@@ -171,7 +172,7 @@ Eigen::VectorXd found_values(const WireProblem& problem, const WireOptimum& opti
   return values;
 }
 
-/// Natural curvature, and how shapes were held.
+/// Sets natural curvature, and how the shapes were held.
 void tell_others(const WireProblem& problem, const WireOptimum& optimum,
                  const Eigen::VectorXd& values, MaterialFit& fit) {
   for (Eigen::Index k = problem.first_of_others(); k < values.size(); ++k) {
@@ -187,7 +188,7 @@ void tell_others(const WireProblem& problem, const WireOptimum& optimum,
                                found.natural_variation.end());
 }
 
-/// What was found of clamps that are alike in all scenes.
+/// Returns the corrections of clamps that all scenes share.
 std::vector<ClampCorrection> clamp_corrections(const WireProblem& problem, Eigen::VectorXd values) {
   for (std::size_t k = 0; k < problem.numbers.size(); ++k) {
     const WireNumber& number = problem.numbers[k];
@@ -209,7 +210,7 @@ std::vector<ClampCorrection> clamp_corrections(const WireProblem& problem, Eigen
   return result;
 }
 
-/// What was found of the camera, all axes together: a rotation vector.
+/// Returns the tilt of the camera about all axes as a rotation vector [rad].
 Eigen::Vector3d camera_tilt(const WireProblem& problem, const Eigen::VectorXd& values) {
   Eigen::Quaterniond tilt = Eigen::Quaterniond::Identity();
   for (std::size_t k = 0; k < problem.numbers.size(); ++k) {
@@ -244,7 +245,7 @@ void tell_shapes(const WireProblem& problem, WireOptimum& optimum, MaterialFit& 
   fit.rms_m = std::sqrt(squares / static_cast<double>(problem.measured.points()));
 }
 
-/// A rod that was found in its plane, but would not stay there.
+/// Adds a warning if a rod was fitted in its plane but would leave it.
 void note_ways_out_of_plane(const WireProblem& problem, const WireOptimum& optimum,
                             MaterialFit& fit) {
   double farthest = 0;
@@ -261,7 +262,7 @@ void note_ways_out_of_plane(const WireProblem& problem, const WireOptimum& optim
                         farthest * 1000, problem.scenes[whose].file));
 }
 
-/// Clamps, or a camera, that are not known as well as was said.
+/// Adds a warning if clamps or a camera deviate more than their tolerances allow.
 void note_contradicted_tolerances(MaterialFit& fit) {
   constexpr double likely = 2.5;  // standard deviations
   const auto excess = [](const FittedNumber& number) {

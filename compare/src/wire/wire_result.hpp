@@ -10,10 +10,11 @@
 
 namespace dlo::compare {
 
-/// What a fit says, but for its degrees of freedom before and a prediction.
+/// Returns the result of a fit, without the degrees of freedom of the earlier fit and the
+/// prediction.
 [[nodiscard]] MaterialFit wire_result(const WireProblem& problem, WireOptimum& optimum);
 
-/// FittedShape::rod of the fit's shapes.
+/// Sets FittedShape::rod of the fit's shapes.
 void draw_rods(const FittedRods::Rods& rods, const std::vector<Scene>& scenes, MaterialFit& fit);
 
 }  // namespace dlo::compare

@@ -12,10 +12,11 @@
 namespace dlo::compare {
 namespace {
 
-/// In log E from the scene's: another one fits best without the other numbers than with them.
+/// Distance of the material's log E from the scene's above which both are tried as starts: the E
+/// that fits best without the other numbers may differ from the one with them.
 constexpr double far_away = 0.7;
 
-/// Each shape's numbers and its rod, those of some that come nearest to its points.
+/// Rods and own numbers of each shape that are nearest to its points among several trials.
 struct NearestStart {
   std::vector<double> squares;
   FittedRods::Rods rods;
@@ -41,16 +42,18 @@ struct NearestStart {
   }
 };
 
-/// Whether the mean natural curvature is fitted about both axes of the section, about d2 first.
+/// Whether the mean natural curvature is fitted about both axes of the section; the number about d2
+/// is the first.
 bool is_about_both_axes(const WireProblem& problem) {
   const auto second = static_cast<std::size_t>(problem.first_of_others()) + 1;
   return second < problem.numbers.size() && problem.numbers[second].term == 0 &&
          problem.numbers[second].described.unit == "1/m";
 }
 
-/// The same of each mean curvature all over what is likely [turns of the rod], gone through from
-/// both ends, each shape following its own equilibrium; where it is not known how the clamp holds
-/// the rod, with angles all around. A curvature about both axes has several directions.
+/// Returns the nearest start for each of several mean curvatures in the likely range [turns of the
+/// rod]. The curvatures are visited from both ends, and each shape follows its own equilibrium. If
+/// the roll of the clamp is unknown, several angles are tried. A curvature about both axes has
+/// several directions.
 std::vector<NearestStart> nearest_by_curvature(const WireProblem& problem,
                                                const Eigen::VectorXd& from, FittedRods& rods) {
   constexpr std::array turns = {8.0, 5.0, 3.0, 1.5, 0.0, -1.5, -3.0, -5.0, -8.0};
@@ -58,7 +61,7 @@ std::vector<NearestStart> nearest_by_curvature(const WireProblem& problem,
   const bool turns_the_rod =
       std::ranges::any_of(problem.numbers, [](const WireNumber& one) { return one.turns_the_rod; });
   const bool both_axes = is_about_both_axes(problem);
-  // Negative turns are about the opposite axes.
+  // Negative turns represent the opposite axes.
   const int directions = both_axes ? angles / 2 : 1;
   std::vector<NearestStart> found(directions * turns.size());
   for (int i = 0; i < directions * (turns_the_rod ? angles : 1); ++i) {
@@ -84,16 +87,16 @@ std::vector<NearestStart> nearest_by_curvature(const WireProblem& problem,
   return found;
 }
 
-/// Values of all numbers and the rods that steps go on from.
+/// Values of all numbers, and the rods from which the iteration starts.
 struct Start {
   Eigen::VectorXd values;
   FittedRods::Rods rods;
 };
 
-/// Returns the starts with the least squares first. A rod that is intrinsically curved may hang on
-/// the other side of its clamp, and the E that fits best without natural curvature may be far away:
-/// mean curvatures are tried with that E and the scene's, and each shape begins with the one that
-/// is nearest to its points.
+/// Returns the starts in the order of their sums of squares. An intrinsically curved rod may hang
+/// on the other side of its clamp, and the E that fits best without natural curvature may be far
+/// away. So mean curvatures are tried with that E and with the scene's, and each shape starts with
+/// the trial that is nearest to its points.
 std::vector<Start> starts_by_curvature(const WireProblem& problem, FittedRods& rods,
                                        Eigen::VectorXd from) {
   std::vector<NearestStart> found;
@@ -102,7 +105,7 @@ std::vector<Start> starts_by_curvature(const WireProblem& problem, FittedRods& r
   for (const double log_modulus : moduli) {
     from[0] = log_modulus;
     std::vector<NearestStart> some = nearest_by_curvature(problem, from, rods);
-    // From the last one, as of two that are as near.
+    // In reverse order, so that of two equal starts the later one is used.
     std::move(some.rbegin(), some.rend(), std::back_inserter(found));
   }
   std::ranges::stable_sort(found, {}, &NearestStart::sum);
@@ -113,7 +116,8 @@ std::vector<Start> starts_by_curvature(const WireProblem& problem, FittedRods& r
   return result;
 }
 
-/// Goes to the fit of least variance among those that coarse steps reach from the starts.
+/// Sets rods and values to the fit of least variance among those that coarse fits reach from the
+/// starts.
 void go_to_best(const WireProblem& problem, const std::vector<Start>& starts, FittedRods& rods,
                 Eigen::VectorXd& values) {
   double least = INFINITY;
@@ -129,8 +133,8 @@ void go_to_best(const WireProblem& problem, const std::vector<Start>& starts, Fi
   rods.go_on_from(std::move(nearest));
 }
 
-/// Of a rod that is held otherwise than was said, the E that fits best with what was said may be
-/// far away: steps begin at the scene's E as well.
+/// Chooses the start for E. If the rod is not held as the scene states, the E that fits best with
+/// the scene's grips may be far away, so the fit also starts at the scene's E.
 void look_for_modulus(const WireProblem& problem, FittedRods& rods, Eigen::VectorXd& values) {
   const FittedRods::Rods none(problem.scenes.size());
   Eigen::VectorXd said = values;
@@ -138,8 +142,8 @@ void look_for_modulus(const WireProblem& problem, FittedRods& rods, Eigen::Vecto
   go_to_best(problem, {{values, none}, {said, none}}, rods, values);
 }
 
-/// More terms of natural curvature never fit worse than fewer: each one is added where the fit
-/// without it has led.
+/// Adds terms of natural curvature one by one, each fit starting at the result without the new
+/// term, so that more terms never fit worse than fewer.
 void fit_fewer_terms(const WireProblem& problem, FittedRods& rods, Eigen::VectorXd& values) {
   for (int terms = 1; terms < problem.options.natural_curvature_terms; ++terms) {
     FittedRods fewer = problem.rods(terms);
@@ -151,10 +155,11 @@ void fit_fewer_terms(const WireProblem& problem, FittedRods& rods, Eigen::Vector
   }
 }
 
-/// A rod that leaves its plane may lose its stability between one fit and the next: a fit with
-/// fewer terms of natural curvature can end at that limit, which no step with more terms leaves.
-/// Such fits begin with all terms too, from this many mean curvatures (from one of four all
-/// those that had ended there on 100 wires of WireFit's coverage test reached their best fit).
+/// Number of mean curvatures from which fits with all terms start in addition. A rod that leaves
+/// its plane may lose its stability between one fit and the next: a fit with fewer terms of natural
+/// curvature can end at that limit, which no step with more terms leaves. (On 100 wires of
+/// WireFit's coverage test, one of four starts reached the best fit in all cases that had ended at
+/// the limit.)
 constexpr std::size_t most_starts = 4;
 
 void look_for_curvature(const WireProblem& problem, FittedRods& rods, Eigen::VectorXd& values) {

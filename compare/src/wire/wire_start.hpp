@@ -8,9 +8,9 @@
 
 namespace dlo::compare {
 
-/// Values of a wire's numbers from which steps lead to the fit.
-/// @param material     that fits best without the other numbers
-/// @param[in,out] rods  of all numbers; they go on from the equilibria that are nearest there
+/// Returns values of a wire's numbers from which the iteration converges to the fit.
+/// @param material     material that fits best without the other numbers
+/// @param[in,out] rods  rods with all numbers; set to the equilibria nearest to the shapes there
 [[nodiscard]] Eigen::VectorXd wire_start(const WireProblem& problem, const MaterialPoint& material,
                                          FittedRods& rods);
 
