@@ -149,8 +149,8 @@ void add_scale(const MeasuredShape& shape, const ShapeCheck& check,
     const Eigen::Vector3d fixed = about_first ? first : Eigen::Vector3d(Eigen::Vector3d::Zero());
     MeasuredShape right = shape;
     right.points = ((shape.points.colwise() - fixed) / stretch).colwise() + fixed;
-    // A strain follows from the file's length and counts as no number; another scale counts as one,
-    // like the named units' alternatives.
+    // A strain about the first point follows from the file's length and counts as no number. Other
+    // scales count as one number, so that a named unit, which counts as none, is preferred.
     const int numbers = may_be_strain && about_first ? 0 : 1;
     causes.push_back({words, std::move(right), PoseFreedom::known, numbers, false, "scale"});
   }

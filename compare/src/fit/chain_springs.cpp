@@ -14,7 +14,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Points of a rod whose distances from each other have given ratios: a chain's joints.
+/// Returns points of a rod, the joints of a chain, whose distances have given ratios.
 Shape points_apart(const energy_model::Equilibrium& rod, double length,
                    const Eigen::VectorXd& shares) {
   constexpr int most_rounds = 8;
@@ -30,7 +30,7 @@ Shape points_apart(const energy_model::Equilibrium& rod, double length,
     const Eigen::Index n = shares.size();
     const Eigen::VectorXd chords =
         (shape.points.rightCols(n) - shape.points.leftCols(n)).colwise().norm();
-    // Chords are shorter than arcs by their bow, which hardly changes.
+    // Chords are shorter than their arcs, by amounts that hardly change between rounds.
     parts = parts.cwiseProduct(shares).cwiseQuotient(chords);
     parts *= length / parts.sum();
   }
@@ -43,8 +43,8 @@ bool has_clamp_at(const Scene& scene, double at) {
   });
 }
 
-/// The springs of a chain whose segments are these shares of the rod.
-/// @param h  the length of a whole segment, of unequal ones the mean [m]
+/// Returns the springs of a chain whose segments are these shares of the rod.
+/// @param h  length of a whole segment; the mean if segments are unequal [m]
 std::vector<ChainSprings> springs_of(const Scene& scene, const energy_model::Equilibrium& rod,
                                      const Eigen::VectorXd& shares, double h) {
   const Shape joints = points_apart(rod, scene.length, shares);
@@ -75,7 +75,8 @@ std::vector<ChainSprings> springs_of(const Scene& scene, const energy_model::Equ
   return found;
 }
 
-/// @throws InputError as chain_springs()
+/// Returns the shares of segments with given lengths.
+/// @throws InputError in the cases of chain_springs()
 Eigen::VectorXd shares_of(const Scene& scene, const std::vector<double>& lengths) {
   constexpr std::size_t fewest = 4;
   constexpr std::size_t most = 200;

@@ -8,23 +8,23 @@
 
 namespace dlo::compare {
 
-/// Springs of chains of equal segments that come nearest to a scene's rod, for each way to hold
-/// them that is one of this scene.
+/// Returns the springs of chains of equal segments that are nearest to a scene's rod, one chain for
+/// each kind of clamp that is possible in the scene.
 /// @param segments  4 to 200
-/// @throws ConvergenceError if the rod has no shape
+/// @throws ConvergenceError if no shape of the rod is found
 [[nodiscard]] std::vector<ChainSprings> chain_springs(const Scene& scene, int segments,
                                                       const SolveOptions& options);
 
-/// The same of a chain of unequal segments. Held in the middle of segments only where the lengths
-/// have halves at the clamps.
-/// @param lengths  along the rod, 4 to 200, which are scaled to its length [m]
-/// @throws InputError if their number or sum is another one, or one is not > 0; ConvergenceError as
-///         above
+/// Returns the springs of chains of unequal segments that are nearest to a scene's rod. A chain is
+/// held in the middle of segments only if the segments at the clamps have half their length.
+/// @param lengths  along the rod, 4 to 200, scaled to the rod's length [m]
+/// @throws InputError if their number or sum differs, or one is not > 0; ConvergenceError if no
+/// shape of the rod is found
 [[nodiscard]] std::vector<ChainSprings> chain_springs(const Scene& scene,
                                                       const std::vector<double>& lengths,
                                                       const SolveOptions& options);
 
-/// Lengths of the segments between the joints that a file has, as straight ones.
+/// Returns the lengths of straight segments between the joints of a file.
 [[nodiscard]] std::vector<double> segment_lengths(const Eigen::Matrix3Xd& points);
 
 }  // namespace dlo::compare

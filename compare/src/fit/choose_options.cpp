@@ -17,15 +17,18 @@
 namespace dlo::compare {
 namespace {
 
-/// How well clamps are known where the options do not say: each shape's own are like each other.
+/// Default tolerance of clamp directions that belong to one shape alone, and default scatter
+/// between shapes [rad].
 constexpr double own_tolerance = 5 * std::numbers::pi / 180;
-/// Fewer numbers are chosen where they predict worse by no more than this share.
+/// Relative difference of predictions up to which they count as equal, and fewer numbers are
+/// chosen.
 constexpr double as_well = 0.01;
-/// In lengths: no shape is measured more exactly, so predictions below it are alike.
+/// Accuracy of predictions, divided by the length: shapes are not measured better, so smaller
+/// predictions count as equal.
 constexpr double exactly = 1e-5;
-/// Options that predict worse by no more than this share may be right too.
+/// Relative difference of predictions up to which options may also be correct.
 constexpr double nearly_as_well = 0.1;
-/// Terms in a row that predict no better, after which no more are tried.
+/// Number of successive terms that do not improve the prediction, after which no more are tried.
 constexpr int most_vain_terms = 2;
 
 enum class Clamps { as_said, alike, own };
@@ -39,7 +42,7 @@ struct Trial {
   [[nodiscard]] int terms() const { return options.natural_curvature_terms; }
 };
 
-/// Whether something beside noise may be left.
+/// Whether the residuals may contain more than noise.
 bool is_systematic(const MaterialFit& fit) {
   return !fit.correlation_was_tested || fit.correlation || fit.scatter || !fit.warning.empty() ||
          !fit.alternatives.empty();
@@ -68,7 +71,8 @@ class OptionsSearch {
     }
     const Trial& chosen = best();
     MaterialFit fit = with_all_outputs(chosen);
-    // The trials with these numbers predict the shapes less well, or the interval includes them.
+    // Other assumptions were tried: they predict the shapes less well, or the interval includes
+    // them.
     fit.assumed.clear();
     widen(fit, chosen);
     for (const Trial& trial : trials_) {
@@ -101,8 +105,8 @@ class OptionsSearch {
     return options;
   }
 
-  /// A profile and chains are those of the chosen fit alone. Without further numbers it is the one
-  /// that has looked at all E.
+  /// Returns the fit with the chosen options and all requested outputs, such as a profile and
+  /// chains. Without further numbers it is the fit that searched all E.
   [[nodiscard]] MaterialFit with_all_outputs(const Trial& chosen) const {
     MaterialFitOptions last = with_all_outputs(chosen.options);
     last.predict = false;
@@ -112,8 +116,9 @@ class OptionsSearch {
     return fit;
   }
 
-  /// The fit of the material alone, with what would remove its residuals. That may take as long as
-  /// all that is chosen from, so it is looked for only where it decides or is the answer.
+  /// Returns the fit of the material alone, with alternatives that would remove its residuals. The
+  /// alternatives may take as long as all trials, so they are computed only if they decide between
+  /// fits or belong to the result.
   [[nodiscard]] MaterialFit with_alternatives() const {
     if (!options_.alternatives) return plain_;
     MaterialFitOptions as_said = with_all_outputs(options_of(0, Clamps::as_said));
@@ -134,7 +139,7 @@ class OptionsSearch {
     }
   }
 
-  /// @return how well that predicts; none if it has no fit
+  /// Adds the trial with these options. @return its prediction; std::nullopt if it has no fit
   std::optional<double> predict(int terms, Clamps clamps) {
     MaterialFitOptions options = options_of(terms, clamps);
     options.predict = true;
@@ -147,13 +152,14 @@ class OptionsSearch {
         trials_.push_back({options, std::move(plain)});
       }
     } catch (const ResultError&) {
-      // No clamp, no plane, other grippers, or too few points; or no shape.
+      // There is no clamp or plane, the grippers differ, the points are too few, or a shape was not
+      // found.
       return std::nullopt;
     }
     return trials_.back().prediction();
   }
 
-  /// Of the material alone.
+  /// Returns the prediction by the fit of the material alone.
   [[nodiscard]] std::optional<Prediction> plain_prediction() const {
     MaterialFitOptions options = options_of(0, Clamps::as_said);
     options.predict = true;
@@ -172,7 +178,8 @@ class OptionsSearch {
     } else if (!(options.direction_scatter > 0)) {
       options.direction_scatter = own_tolerance;
     }
-    // A tilted camera is what tells a fixture's clamps from the wire's natural curvature.
+    // Without the tilt of the camera, errors of a fixture's clamps cannot be separated from the
+    // wire's natural curvature.
     if (options.shared_clamps && !(options.camera_tilt > 0) &&
         why_no_camera_tilt(scenes_, shapes_).empty()) {
       options.camera_tilt = usual_tilt;
@@ -185,12 +192,12 @@ class OptionsSearch {
     return options;
   }
 
-  /// The largest prediction that is as good as some.
+  /// Returns the largest prediction that counts as equal to `prediction`.
   [[nodiscard]] double as_good_as(double prediction) const {
     return std::max((1 + as_well) * prediction, exactly * scenes_.front().length);
   }
 
-  /// The one of fewest numbers among those that predict as well as any.
+  /// Returns the trial with the fewest numbers among those with the best prediction.
   [[nodiscard]] const Trial& best() const {
     const auto better = [](const Trial& a, const Trial& b) {
       return a.prediction() < b.prediction();
@@ -204,9 +211,9 @@ class OptionsSearch {
     return *result;
   }
 
-  /// The interval under one model knows nothing of the others: it holds that of the most terms of
-  /// natural curvature that predict nearly as well. Whether a wire has fewer is not identifiable
-  /// from shapes that are predicted alike, and E is another one where it has.
+  /// Widens the interval of E, which ignores all models but one. It is extended to the interval of
+  /// the trial with the most terms of natural curvature among those that predict nearly as well:
+  /// such shapes do not show whether the wire has fewer terms, and E differs if it has.
   void widen(MaterialFit& fit, const Trial& chosen) const {
     FittedValue& E = fit.youngs_modulus;
     if (!E.estimate || !E.low || !E.high) return;
@@ -230,8 +237,8 @@ class OptionsSearch {
   const std::vector<Scene>& scenes_;
   const std::vector<MeasuredShape>& shapes_;
   const MaterialFitOptions& options_;
-  MaterialFit plain_;    // without any of what is tried
-  MaterialPoint start_;  // its material
+  MaterialFit plain_;    // fit of the material alone
+  MaterialPoint start_;  // material of that fit
   std::vector<Trial> trials_;
 };
 

@@ -10,20 +10,21 @@
 
 namespace dlo::compare {
 
-/// Number of terms of natural curvature that are tried where the options do not ask for more.
+/// Number of terms of natural curvature that are tried if the options do not request more.
 inline constexpr int usual_curvature_terms = 3;
-/// How well the clamps of a fixture are known where the options do not say: hardly [rad].
+/// Default tolerance of the clamp directions of a fixture: they are hardly known [rad].
 inline constexpr double fixture_tolerance = 20 * std::numbers::pi / 180;
-/// How level a camera is where the options do not say [rad].
+/// Default tolerance of the tilt of a camera [rad].
 inline constexpr double usual_tilt = 2 * std::numbers::pi / 180;
-/// Number of shapes from which each can be predicted by the others.
+/// Smallest number of shapes with which each one can be predicted by the others.
 inline constexpr std::size_t fewest_predicted = 3;
 
-/// The fit with those of the options by which each shape is predicted best from the others: so many
-/// terms of natural curvature, with clamps as said, misaligned alike in all shapes or each on its
-/// own. Its interval of E is widened to what the options say that predict nearly as well.
-/// @param options  fit_material() has checked them
-/// @throws ConvergenceError if no options lead to a fit; what else fit_material() throws
+/// Fits the material with the options that predict each shape best from the others: the number of
+/// terms of natural curvature, and whether clamps are as given, misaligned equally in all shapes,
+/// or misaligned in each shape. The interval of E is widened to that of options that predict nearly
+/// as well.
+/// @param options  checked by fit_material()
+/// @throws ConvergenceError if no options result in a fit; other exceptions as fit_material()
 [[nodiscard]] MaterialFit fit_with_chosen_options(const std::vector<Scene>& scenes,
                                                   const std::vector<MeasuredShape>& shapes,
                                                   const MaterialFitOptions& options);

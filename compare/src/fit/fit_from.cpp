@@ -17,7 +17,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Each scene's once.
+/// Adds the chains of each scene; equal scenes are used once.
 void add_chains(const std::vector<Scene>& scenes, const MaterialFitOptions& options,
                 MaterialFit& fit) {
   for (auto scene = scenes.begin(); scene != scenes.end(); ++scene) {
@@ -32,7 +32,9 @@ void add_chains(const std::vector<Scene>& scenes, const MaterialFitOptions& opti
   }
 }
 
-/// E that is not identified where solves ended at their limit may be identifiable without it.
+/// Throws if E is not identified and solves ended at their evaluation limit: without the limit it
+/// may be identifiable.
+/// @throws ConvergenceError
 void refuse_limited(MaterialProfiles& material, const MaterialFit& fit) {
   const long limited = material.measured().limited_solves();
   if (limited == 0 || fit.youngs_modulus.value || !material.is_forced()) return;
@@ -44,7 +46,7 @@ void refuse_limited(MaterialProfiles& material, const MaterialFit& fit) {
       material.options().solve.max_evaluations));
 }
 
-/// @param least  sum of squares at the start [m^2]
+/// Fits all numbers of a wire. @param least  sum of squares at the start [m^2]
 MaterialFit whole_wire(MaterialProfiles& material, const MaterialPoint& start, double least) {
   MaterialFit fit = fit_wire(material.scenes(), material.shapes(), material.measured(),
                              material.options(), start, material.has_density());

@@ -10,16 +10,17 @@
 
 namespace dlo::compare {
 
-/// fit_material() with options as they are given, which it has checked.
-/// @param start  of steps to all numbers, and to those of each prediction; none: all E are searched
+/// Fits the material with the given options, which fit_material() has checked.
+/// @param start  material from which the fit of all numbers starts, also for each prediction;
+/// empty: all E are searched
 [[nodiscard]] MaterialFit fit_from(const std::vector<Scene>& scenes,
                                    const std::vector<MeasuredShape>& shapes,
                                    const MaterialFitOptions& options,
                                    const std::optional<MaterialPoint>& start);
 
-/// Each shape predicted by the fit to all others that begins from nothing.
-/// @param fit  to all shapes, which says where along the rod their points are
-/// @throws as fit_material()
+/// Predicts each shape by a new fit to all others, which searches all E, and returns the distances.
+/// @param fit  fit to all shapes, which determines the arc lengths of their points
+/// @throws in the cases of fit_material()
 [[nodiscard]] Prediction predict_each(const std::vector<Scene>& scenes,
                                       const std::vector<MeasuredShape>& shapes,
                                       const MaterialFitOptions& options, const MaterialFit& fit);

@@ -6,12 +6,12 @@
 
 namespace dlo::compare {
 
-/// A scene with the best estimates of the wire and of clamps that are alike in all scenes,
-/// identified or not.
-/// @param first  of the scenes that were fitted, as it was before
+/// Returns a scene with the best estimates of the wire, and of clamp errors that all scenes share,
+/// whether identified or not.
+/// @param first  the first of the fitted scenes, as it was before the fit
 [[nodiscard]] Scene fitted_scene(Scene scene, const MaterialFit& fit, const Scene& first);
 
-/// The material of a fit, identified or not, as factors on that of the first scene.
+/// Returns the material of a fit, whether identified or not, as factors on that of the first scene.
 [[nodiscard]] MaterialPoint material_of(const MaterialFit& fit, const Scene& first);
 
 }  // namespace dlo::compare

@@ -23,13 +23,13 @@ namespace dlo::compare {
 namespace {
 
 constexpr int most_points = 4000;
-/// Shares of the target that the polygon and its stretch may take.
+/// Parts of the target that the errors of the polygon and of its stretch may take.
 constexpr double polygon_share = 0.9;
 constexpr double stretch_share = 0.1;
-/// The fastest mode may be this much faster on the way than at the start and at rest.
+/// Ratio by which the fastest mode may be faster during a simulation than at its start and at rest.
 constexpr double mode_margin = 1.2;
 
-/// A scene with its reference, for many chains.
+/// A scene with its reference, for comparison with many chains.
 struct FittedCase {
   Scene scene;
   energy_model::Equilibrium reference;
@@ -41,7 +41,8 @@ struct FittedCase {
                              const SolveOptions& options) const {
     return rms_over_length(solve_chain(scene, settings, options).shape);
   }
-  /// Infinite where the chain does not converge.
+  /// Returns the RMS deviation of a chain with the given c_b, divided by the length; infinite if
+  /// the chain does not converge.
   [[nodiscard]] double chain_with(ForceModelSettings settings, double c_b,
                                   const SolveOptions& options) const {
     settings.c_b = c_b;
@@ -51,7 +52,8 @@ struct FittedCase {
       return std::numeric_limits<double>::infinity();
     }
   }
-  /// Upper bound of the tension: all that hangs on the rod, or what its grippers pull with.
+  /// Returns an upper bound of the tension [N]: all weight and loads of the rod, or the largest
+  /// force of a gripper.
   [[nodiscard]] double pull() const {
     double sum = scene.weight_per_length().norm() * scene.length + scene.total_of_loads();
     for (const energy_model::Reaction& grip : reference.grips)
@@ -60,7 +62,8 @@ struct FittedCase {
   }
 };
 
-/// Velocity Verlet and implicit Euler find their step size by themselves.
+/// Whether a stepper has step parameters; velocity Verlet and implicit Euler choose their step size
+/// themselves.
 bool has_step_parameters(Stepper stepper) {
   return stepper != Stepper::verlet && stepper != Stepper::implicit;
 }
@@ -124,7 +127,7 @@ class ForceModelFitter {
     return worst;
   }
 
-  /// L of the first scene [m].
+  /// Returns L of the first scene [m].
   [[nodiscard]] double segment_length(int points) const {
     ForceModelSettings settings = settings_;
     settings.points = points;
@@ -139,7 +142,7 @@ class ForceModelFitter {
     const double at_fine = worst_chain(fine);
     result_.order =
         std::log(at_coarse / at_fine) / std::log(segment_length(coarse) / segment_length(fine));
-    // A nearly straight rod has no order to speak of.
+    // The order of a nearly straight rod is not meaningful, so it is limited.
     const double order = std::clamp(result_.order, 0.8, 2.2);
     const double finer = std::pow(at_fine / allowed, 1 / order);
     const double estimate = std::clamp((fine - 1) * finer, 1.0, most_points - 1.0);
@@ -150,7 +153,7 @@ class ForceModelFitter {
     settings_.points = points;
   }
 
-  /// Fewest points that every scene's grippers leave room for.
+  /// Returns the smallest number of points that fits the grippers of every scene.
   [[nodiscard]] int least_points() const {
     ForceModelSettings settings = settings_;
     for (int points = 5; points < most_points; ++points) {
@@ -181,7 +184,7 @@ class ForceModelFitter {
           deviations.rms_over_length.push_back(
               entry.chain_with(settings, deviations.c_b.back(), options_.solve));
         } catch (const InputError&) {
-          // The design curvature turns a joint by half a turn or more: no c_b by this rule.
+          // The design curvature rotates a joint by half a turn or more, so this rule gives no c_b.
           deviations.c_b.resize(deviations.rms_over_length.size() + 1, NAN);
           deviations.rms_over_length.push_back(NAN);
         }
@@ -208,7 +211,7 @@ class ForceModelFitter {
     settings_.design_curvature.reset();
   }
 
-  /// Middle of the range that is searched: the geometric mean of the moment-matched ones.
+  /// Returns the middle of the search range of ln c_b: the mean of the moment-matched ones.
   [[nodiscard]] double search_centre(const std::vector<double>& matched) const {
     double sum = 0;
     int count = 0;
@@ -222,7 +225,7 @@ class ForceModelFitter {
     return std::log(first.bending_stiffness() / std::pow(first.length, 2));
   }
 
-  /// The c_b that is nearest to the cases [begin, end).
+  /// Returns the c_b with the least deviation of the cases [begin, end).
   [[nodiscard]] double fitted_c_b(double centre, std::size_t begin, std::size_t end) const {
     constexpr double no_value = 1e3;
     const Function misfit = [&](double log_c_b) {
@@ -230,7 +233,7 @@ class ForceModelFitter {
       for (std::size_t i = begin; i < end; ++i) {
         sum += std::pow(cases_[i].chain_with(settings_, std::exp(log_c_b), options_.solve), 2);
       }
-      // Brent's method interpolates, so what has no value is made merely large.
+      // Brent's method interpolates, so an undefined value is replaced by a large one.
       return std::min(sum / static_cast<double>(end - begin), no_value);
     };
     constexpr int steps_per_decade = 4;
@@ -238,7 +241,7 @@ class ForceModelFitter {
     for (const int decades : {4, 8, 16}) {
       const double reach = decades * std::log(10.0);
       values = scan(misfit, centre - reach, centre + reach, 2 * decades * steps_per_decade);
-      // Where no c_b gives a shape there is no end to look beyond.
+      // If no c_b gives a shape, a wider range does not help.
       if (values.is_bracketed() || !(values.value[values.best()] < no_value)) break;
     }
     return std::exp(minimum_near(misfit, values, 1e-6).x);
@@ -257,7 +260,7 @@ class ForceModelFitter {
     result_.c_c_is_physical = !(stiffness > 0 && stiffness <= axial);
   }
 
-  /// Modes of all scenes at their starts and at rest.
+  /// Returns the bounds of the modes of all scenes at their starts and at rest.
   [[nodiscard]] force_model::ModeBounds modes() const {
     force_model::ModeBounds result{0, std::numeric_limits<double>::infinity()};
     for (const FittedCase& entry : cases_) {
@@ -318,7 +321,7 @@ class ForceModelFitter {
   std::vector<FittedCase> cases_;
   ForceModelSettings settings_;
   ForceModelFit result_;
-  ProgressCounter counter_;  // of scenes, then the runs to rest
+  ProgressCounter counter_;  // counts scenes, then the simulations to rest
 };
 
 double largest_of(const std::vector<double>& values, std::size_t begin, std::size_t end) {

@@ -10,7 +10,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Of the rigid segments with the parameters that were chosen, worst of all scenes.
+/// Returns the largest deviation over all scenes of rigid segments with the chosen parameters.
 double worst_of_segments(const ForceModelFit& fit) {
   const bool paper = fit.settings.law == BendingLaw::paper;
   const StiffnessRule chosen = paper ? StiffnessRule::fitted : StiffnessRule::physical;

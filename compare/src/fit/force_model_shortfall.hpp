@@ -7,7 +7,7 @@
 
 namespace dlo::compare {
 
-/// ForceModelFit::why_missed.
+/// Returns the reasons in ForceModelFit::why_missed.
 [[nodiscard]] std::vector<std::string> shortfall(const ForceModelFit& fit);
 
 }  // namespace dlo::compare

@@ -16,14 +16,16 @@
 namespace dlo::compare {
 namespace {
 
-/// What a profile says of a number.
+/// Result of a profile for one number.
 struct Finding {
-  LogProfile::Interval interval;  // reaches to every one of `optima`
+  LogProfile::Interval interval;  // includes all of `optima`
   std::vector<Minimum> optima;    // between which the shapes do not decide
   FittedValue value;
 };
 
-/// @param number  see MaterialErrors;  @param unit  what the scene says of it
+/// Evaluates a profile.
+/// @param number  see MaterialErrors;
+/// @param unit  the scene's value of the number
 Finding finding(LogProfile& profile, const MaterialErrors& errors, std::size_t number, double unit,
                 double identified_within) {
   Finding result{

@@ -8,13 +8,14 @@
 
 namespace dlo::compare {
 
-/// The fit of E, and where it can be told the density, with nothing else.
+/// Fits E and, if identifiable, the density, without other numbers.
 /// @throws ConvergenceError if a rod within the interval is not verified on its obstacles
 [[nodiscard]] MaterialFit fit_material_alone(MaterialProfiles& material,
                                              const MaterialProfiles::Search& found);
 
-/// MaterialFit::warning of residuals that are too large; empty: they are not.
-/// @param squares  their sum [m^2];  @param noise  given, if the interval does not allow for more
+/// Returns MaterialFit::warning if the residuals are too large; empty if they are not.
+/// @param squares  sum of their squares [m^2];
+/// @param noise  given noise, unless the interval already accounts for larger residuals
 [[nodiscard]] std::string warning_of(const MaterialProfiles& material, double squares,
                                      const std::optional<double>& noise);
 

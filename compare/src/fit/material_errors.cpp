@@ -35,7 +35,7 @@ MaterialErrors::MaterialErrors(MaterialProfiles& material, const MaterialPoint& 
                              quantile(0));
 }
 
-/// Errors are correlated.
+/// Sets the effects of correlated errors.
 void MaterialErrors::allow_for(const ErrorCovariance& covariance,
                                const std::vector<ResidualSeries>& series, Eigen::Index frames) {
   for (std::size_t k = 0; k < effects_.size(); ++k) {
@@ -58,13 +58,13 @@ void MaterialErrors::tell(MaterialFit& fit) const {
   fit.scatter = scatter_;
 }
 
-/// Of a number's interval, in standard deviations.
+/// Returns half the width of a number's interval, in standard deviations.
 double MaterialErrors::quantile(std::size_t number) const {
   return interval_quantile(options_.noise, effects_[number].degrees_of_freedom);
 }
 
-/// Variance of a fitted number over that which independent errors would have, as they are taken to
-/// be from the sum of squares (or given).
+/// Returns the variance of a fitted number, divided by that which follows from the sum of squares
+/// (or the given noise) under the assumption of independent errors.
 double MaterialErrors::excess(std::size_t number) const {
   const CorrelationEffect& effect = effects_[number];
   const double between = scatter_ ? std::pow(scatter_->widening, 2) : 1;

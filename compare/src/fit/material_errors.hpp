@@ -11,25 +11,27 @@
 
 namespace dlo::compare {
 
-/// Errors of the points about the rods of the material that fits best, and up to which sum of
-/// squares others fit. A number is E, 0, or the density, 1.
+/// Errors of the points about the rods of the best material, and the sums of squares up to which
+/// other materials fit. The index of a number is 0 for E and 1 for the density.
 class MaterialErrors {
  public:
-  /// @param least  sum of squares at the best one [m^2]
+  /// @param least  sum of squares at the best material [m^2]
   MaterialErrors(MaterialProfiles& material, const MaterialPoint& best, double least);
 
-  /// Noise, correlation and scatter.
+  /// Sets noise, correlation and scatter of the result.
   void tell(MaterialFit& fit) const;
 
-  /// Of the sum of squares, at the ends of a number's interval [m^2].
+  /// Returns the sum of squares at the ends of a number's interval [m^2].
   [[nodiscard]] double level(std::size_t number) const;
 
-  /// Up to which another local minimum is as good an explanation. Its frames are others as well, so
-  /// it is outside the joint region of all fitted numbers only where its sum of squares is so much
-  /// larger with a chance of 1e-3 (F distribution; a given noise: chi-squared).
+  /// Returns the sum of squares up to which another local minimum is an equally good explanation
+  /// [m^2]. Its frames differ too, so it must be outside the joint region of all fitted numbers:
+  /// its sum of squares must be so large that the probability is below 1e-3 (F distribution;
+  /// chi-squared distribution for given noise).
   [[nodiscard]] double rival_level(std::size_t number) const;
 
-  /// The energy model's own error, so that a perfect shape gets no interval of rounding [m].
+  /// Returns the error of the energy model [m]. With it as lower bound of the noise, the interval
+  /// of a perfect shape is not rounding.
   [[nodiscard]] static double least_noise(const Scene& scene);
 
  private:
@@ -40,12 +42,12 @@ class MaterialErrors {
 
   const MaterialFitOptions& options_;
   double least_;
-  double freedom_;  // degrees, of independent errors
-  double fitted_;   // numbers that are, frames included
+  double freedom_;  // degrees of freedom, of independent errors
+  double fitted_;   // number of fitted numbers, frames included
   std::vector<CorrelationEffect> effects_;
-  double variance_ = 0;  // of one coordinate if errors were independent [m^2]
+  double variance_ = 0;  // of one coordinate, for independent errors [m^2]
   double noise_m_ = 0;
-  bool tested_ = false;  // whether errors are correlated
+  bool tested_ = false;  // whether correlation of errors was tested
   std::optional<CorrelatedErrors> correlation_;
   std::optional<ScatterBetweenShapes> scatter_;
 };

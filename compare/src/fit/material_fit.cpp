@@ -52,10 +52,10 @@ void require_pairs(const std::vector<Scene>& scenes, const std::vector<MeasuredS
   }
 }
 
-/// Removes each shape that has the points of an earlier one: the same measurement, whose errors are
-/// no independent ones.
-/// @param[in,out] scenes  of each shape one
-/// @return a sentence that names the removed shapes; empty: none
+/// Removes each shape that has the points of an earlier one: it is the same measurement, whose
+/// errors are not independent.
+/// @param[in,out] scenes  one per shape
+/// @return a sentence that names the removed shapes; empty if there are none
 std::string remove_repeats(std::vector<Scene>& scenes, std::vector<MeasuredShape>& shapes) {
   std::string removed;
   for (std::size_t i = 0; i < shapes.size();) {
@@ -76,7 +76,7 @@ std::string remove_repeats(std::vector<Scene>& scenes, std::vector<MeasuredShape
                      removed);
 }
 
-/// See MaterialFit::assumed.
+/// Returns MaterialFit::assumed.
 std::vector<std::string> assumed_by(const Calibration& found, const MaterialFitOptions& options) {
   const MaterialFit& fit = found.fit;
   if (!fit.youngs_modulus.low && !fit.youngs_modulus.high) return {};
@@ -134,7 +134,7 @@ Calibration calibrate(std::vector<Scene> scenes, std::vector<MeasuredShape> shap
   if (!repeats.empty()) {
     result.fit.warning += (result.fit.warning.empty() ? "" : "; ") + repeats;
   }
-  // A rod that was confined to its shapes' plane is predicted in it.
+  // A rod that was confined to the plane of its shapes is predicted in that plane.
   if (!result.fit.tried.empty()) {
     options.natural_curvature_terms = result.fit.tried.front().natural_curvature_terms;
   }

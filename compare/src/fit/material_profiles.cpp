@@ -13,9 +13,10 @@
 namespace dlo::compare {
 namespace {
 
-/// Searches for another state between several grippers, at the optimum of the one followed.
+/// Largest number of searches for another equilibrium of a rod between several grippers, at the
+/// optimum of the followed one.
 constexpr int most_other_states = 2;
-/// Step in the logarithm of a material for derivatives; shapes are right to 1e-10 l.
+/// Step in the logarithm of a material for derivatives; shapes are accurate to 1e-10 l.
 constexpr double derivative_step = 1e-3;
 
 }  // namespace
@@ -30,7 +31,7 @@ MaterialProfiles::MaterialProfiles(const std::vector<Scene>& scenes,
       misfit_(scenes, measured_),
       forced_(std::any_of(scenes.begin(), scenes.end(), compare::is_forced)),
       both_(options.density && std::any_of(scenes.begin(), scenes.end(), has_forces_beside_weight)),
-      // Where every E has the same shapes, differences between them are rounding.
+      // If every E has the same shapes, differences between them are rounding.
       low_(forced_ ? std::log(options.smallest_ratio) : 0),
       high_(forced_ ? std::log(options.largest_ratio) : 0) {
   const int fewest = options.noise ? 0 : 1;
@@ -42,7 +43,7 @@ MaterialProfiles::MaterialProfiles(const std::vector<Scene>& scenes,
       options.noise ? "" : ", or a given noise"));
 }
 
-/// At an E: where it is best, and what the sum of squares is there.
+/// Returns the best logarithm of the density at an E, and the sum of squares there.
 Minimum MaterialProfiles::density_at(double log_modulus) {
   if (!both_) return {0, misfit_({log_modulus, 0})};
   return LogProfile(

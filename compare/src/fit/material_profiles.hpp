@@ -13,12 +13,12 @@
 
 namespace dlo::compare {
 
-/// Shapes and the rods of any E and, where both can be told, any density: the sum of their squared
-/// distances over the logarithms of these.
+/// Sum of squared distances between shapes and rods, as a function of the logarithms of E and, if
+/// both are identifiable, the density.
 class MaterialProfiles {
  public:
-  /// What is given outlives this.
-  /// @throws InputError if there are fewer numbers measured than found
+  /// All references must outlive this.
+  /// @throws InputError if fewer numbers are measured than fitted
   MaterialProfiles(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
                    const MaterialFitOptions& options);
 
@@ -26,38 +26,39 @@ class MaterialProfiles {
   [[nodiscard]] const std::vector<MeasuredShape>& shapes() const { return shapes_; }
   [[nodiscard]] const MaterialFitOptions& options() const { return options_; }
   [[nodiscard]] MeasuredShapes& measured() { return measured_; }
-  /// Whether E has an effect.
+  /// Whether E has an effect on the shapes.
   [[nodiscard]] bool is_forced() const { return forced_; }
-  /// Whether the density is found beside E.
+  /// Whether the density is fitted besides E.
   [[nodiscard]] bool has_density() const { return both_; }
   [[nodiscard]] int unknowns() const { return both_ ? 2 : 1; }
-  /// Degrees, of the residuals.
+  /// Returns the degrees of freedom of the residuals.
   [[nodiscard]] int freedom() const { return measured_.numbers() - unknowns(); }
   [[nodiscard]] double points() const { return static_cast<double>(measured_.points()); }
 
-  /// The sum of squares over E, with the density at its own best.
+  /// Profile of the sum of squares over E, each with the best density, and the best material.
   struct Search {
     LogProfile over_modulus;
     MaterialPoint best;
   };
-  /// Over all E, and of what other states are found at its best.
-  /// @throws ConvergenceError if the energy model has a shape at no modulus
+  /// Searches all E, and other equilibria at the best one.
+  /// @throws ConvergenceError if the energy model finds no shape at any E
   [[nodiscard]] Search search();
 
-  /// The same over the density, with E at its own best.
+  /// Returns the profile over the density, each with the best E.
   [[nodiscard]] LogProfile over_density();
 
-  /// Sum of squares [m^2].
+  /// Returns the sum of squares [m^2].
   [[nodiscard]] double squares(const MaterialPoint& material) { return misfit_(material); }
-  /// With the density at its own best [m^2].
+  /// Returns the sum of squares with the best density [m^2].
   [[nodiscard]] double least_squares(double log_modulus) { return density_at(log_modulus).value; }
 
-  /// The equilibria at a material, and residuals with their derivatives by the frames, by log E
-  /// and, if both are fitted, by the logarithm of the density; none if a shape is missing beside
-  /// it.
+  /// Returns the equilibria at a material.
   [[nodiscard]] FittedRods::Rods rods(const MaterialPoint& material) {
     return misfit_.rods(material);
   }
+  /// Returns residuals at a material, with their derivatives by the frames, by log E and, if both
+  /// are fitted, by the logarithm of the density; empty if a shape is missing close to the
+  /// material.
   [[nodiscard]] std::vector<ResidualSeries> residuals(const MaterialPoint& material);
 
   /// @param highest  sum of squares that may still fit [m^2]
@@ -75,7 +76,7 @@ class MaterialProfiles {
   ShapeMisfit misfit_;
   bool forced_;
   bool both_;
-  double low_, high_;  // of log E
+  double low_, high_;  // range of log E
 };
 
 }  // namespace dlo::compare

@@ -9,12 +9,13 @@
 namespace dlo::compare {
 namespace {
 
-/// Searches per scene between several grippers; each may take as long as all that is followed.
+/// Largest number of searches per scene with several grippers; each may take as long as all solves
+/// that follow an equilibrium.
 constexpr int most_searches = 4;
-/// Equilibria kept to start from; a scan over the modulus has some thirty.
+/// Number of equilibria kept as starts, per scene; a scan over the modulus has some thirty.
 constexpr std::size_t most_kept = 64;
 
-/// How deep a shape sinks into the scene's rigid obstacles [m].
+/// Returns how deep a shape enters the rigid obstacles of a scene [m].
 double depth_in_obstacles(const Scene& scene, const energy_model::Equilibrium& equilibrium) {
   constexpr int samples = 401;
   const Eigen::Matrix3Xd points =
@@ -27,7 +28,7 @@ double depth_in_obstacles(const Scene& scene, const energy_model::Equilibrium& e
   return depth;
 }
 
-/// Without names and places in files, and without the force model.
+/// Returns a scene without names, positions in files, and force model, for comparison.
 Scene only_the_rod(Scene scene) {
   scene.name.clear();
   scene.file.clear();
@@ -84,7 +85,7 @@ std::shared_ptr<const ShapeMisfit::Solved> ShapeMisfit::solved(std::size_t i,
                                                                const MaterialPoint& material) {
   const bool follows = follows_[i];
   if (!follows) {
-    // The next shape of the same scene needs the same equilibria.
+    // Another shape of the same scene needs the same equilibria.
     const auto shared = std::find_if(shared_.begin(), shared_.end(), [&](const auto& entry) {
       return entry->scene == first_like_[i] && entry->material == material;
     });
@@ -196,7 +197,8 @@ FittedRods::Rods ShapeMisfit::rods(const MaterialPoint& material) {
 
 const ShapeMisfit::Unverified* ShapeMisfit::unverified_below(double level) const {
   for (const auto& [unverified, sum] : unverified_) {
-    // Moving every point of the shape by the depth moves the root of the sum by no more than this.
+    // Moving every point of the shape by the depth changes the root of the sum by no more than
+    // this.
     const double off = std::sqrt(static_cast<double>(measured_.points())) * unverified.penetration;
     if (std::sqrt(sum) - off <= std::sqrt(level)) return &unverified;
   }

@@ -19,17 +19,18 @@
 namespace dlo::compare {
 namespace {
 
-/// What shapes have in common beyond chance, of all that they could. Smooth residuals have some
-/// three numbers each: two shapes of them are beyond the first in one case of five, beyond the
-/// second in one of eleven, five shapes in one of a hundred and one of two thousand.
+/// Part of the mean square that shapes have in common beyond chance, above which residuals may be,
+/// and certainly are, systematic. Smooth residuals have some three independent numbers each. Two
+/// shapes with random residuals then exceed the first limit in one case of five and the second in
+/// one of eleven, five shapes in one of a hundred and one of two thousand.
 constexpr double maybe_common = 0.5;
 constexpr double surely_common = 0.7;
-/// Share of the residual that an alternative may leave to be told, and to put the fit in doubt.
+/// Part of the residual that an alternative may leave to be reported, and to cast doubt on the fit.
 constexpr double worth_naming = 0.7;
 constexpr double too_much = 0.5;
 constexpr double next_to_nothing = 0.02;
 
-/// What of the residuals all shapes have in common; nothing without a plane.
+/// Returns the part of the residuals that all shapes have in common; std::nullopt without a plane.
 std::optional<double> common_to_shapes(MaterialProfiles& material, const MaterialPoint& best,
                                        const std::vector<FittedShape>& shapes) {
   constexpr int samples = 1001;
@@ -47,7 +48,8 @@ std::optional<double> common_to_shapes(MaterialProfiles& material, const Materia
   return common_share(across);
 }
 
-/// Those with fewer numbers come first; one that has theirs and more has to leave less.
+/// Adds an alternative. Alternatives are added in the order of their number of fitted numbers; one
+/// that includes an earlier one must leave less.
 void add_alternative(const FitAlternative& found, MaterialFit& fit) {
   for (const FitAlternative& one : fit.alternatives) {
     const bool has_more = found.natural_curvature_terms >= one.natural_curvature_terms &&
@@ -71,7 +73,7 @@ void try_alternatives(MaterialProfiles& material, const MaterialPoint& best, Mat
       if (!(other.rms_m <= worth_naming * fit.rms_m)) continue;
       add_alternative({terms, directions, other.rms_m, other.youngs_modulus}, fit);
     } catch (const ResultError&) {
-      // No clamp, no plane, or too few points; no shape, or no time.
+      // There is no clamp or plane, the points are too few, a shape was not found, or time is up.
     }
   }
   std::stable_sort(
@@ -79,9 +81,9 @@ void try_alternatives(MaterialProfiles& material, const MaterialPoint& best, Mat
       [](const FitAlternative& a, const FitAlternative& b) { return a.rms_m < b.rms_m; });
 }
 
-/// Widens the interval of E to what an intrinsically curved wire in misaligned clamps allows, seen
-/// by a camera that is not level. One shape or two do not show whether that is what their residuals
-/// come from, and E is another one if it is: predictions that choose need more shapes.
+/// Widens the interval of E to that of an intrinsically curved wire in misaligned clamps, observed
+/// by a camera that is not level. One or two shapes do not show whether this is the cause of their
+/// residuals, and E differs if it is. The choice by predictions needs more shapes.
 /// @return whether such a wire has a fit
 bool widen_to_any_wire(MaterialProfiles& material, const MaterialPoint& best, MaterialFit& fit) {
   MaterialFitOptions options = material.options();
@@ -101,7 +103,7 @@ bool widen_to_any_wire(MaterialProfiles& material, const MaterialPoint& best, Ma
     if (E.low && E.high && *E.high <= options.identified_within * *E.low) return true;
     E.value.reset();
   } catch (const ResultError&) {
-    // No clamp, no plane, or too few points; no shape, or no time.
+    // There is no clamp or plane, the points are too few, a shape was not found, or time is up.
     return false;
   }
   if (fit.not_identified.empty()) {
@@ -113,8 +115,9 @@ bool widen_to_any_wire(MaterialProfiles& material, const MaterialPoint& best, Ma
   return true;
 }
 
-/// @param common  shapes surely have much of it in common
-/// @param widened  the interval is that of any wire
+/// Returns the warning that residuals are systematic.
+/// @param common  shapes certainly have much of the residuals in common
+/// @param widened  whether the interval is that of any wire
 std::string doubt(const MaterialFit& fit, bool common, bool widened, const char* stiffness) {
   if (widened) {
     return fmt::format(
@@ -135,7 +138,7 @@ std::string doubt(const MaterialFit& fit, bool common, bool widened, const char*
       *fit.common_share * 100, stiffness);
 }
 
-/// A wrong weight leaves no residual.
+/// Adds to `not_identified` that the weight is not identifiable: a wrong weight leaves no residual.
 void note_weight(const Scene& scene, MaterialFit& fit) {
   const char* const heaviness = scene.heaviness().name;
   const bool first = fit.not_identified.empty();
@@ -164,7 +167,7 @@ bool look_for_alternatives(MaterialProfiles& material, const MaterialPoint& best
     fit.warning = doubt(fit, common > surely_common, widened, scenes.front().stiffness().name);
   }
   const bool weight_alone = std::none_of(scenes.begin(), scenes.end(), has_forces_beside_weight);
-  // Where the density was asked for it is said already.
+  // If the density was requested, this was reported already.
   if (weight_alone && !material.options().density) note_weight(scenes.front(), fit);
   return widened;
 }

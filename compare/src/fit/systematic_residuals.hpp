@@ -5,9 +5,10 @@
 
 namespace dlo::compare {
 
-/// Residuals that no noise leaves: what would remove them, and whether they put the fit in doubt.
+/// Analyses residuals that noise does not explain: adds alternatives that would remove them, and a
+/// warning if they cast doubt on the fit.
 /// @param best         material of the fit
-/// @param[in,out] fit  of it alone, with all but its alternatives
+/// @param[in,out] fit  fit of the material alone, complete except for its alternatives
 /// @return whether the interval of E includes that of any intrinsically curved wire in misaligned
 /// clamps
 bool look_for_alternatives(MaterialProfiles& material, const MaterialPoint& best, MaterialFit& fit);

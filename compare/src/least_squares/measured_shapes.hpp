@@ -27,7 +27,7 @@ enum class FlatShapes {
 
 /// Options of the alignment of shapes, and limits of the solves of their rods.
 struct MeasuredOptions {
-  PoseFreedom pose = PoseFreedom::known;  ///< what is unknown of their frames
+  PoseFreedom pose = PoseFreedom::known;  ///< unknown coordinates of the shapes' frames
   ArcLengths arc_lengths = ArcLengths::automatic;
   PointWeights weights = PointWeights::equal;
   SolveOptions solve;  ///< limits; the time limit is that of each shape

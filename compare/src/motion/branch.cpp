@@ -20,20 +20,21 @@ namespace {
 
 using energy_model::Equilibrium;
 
-/// Of one frame, kept or not, and snaps of which each is looked at on its own.
+/// Largest number of steps in one frame, kept or not, and of snaps in it that are resolved one by
+/// one.
 constexpr int most_branch_steps = 96;
 constexpr int most_snaps = 4;
 
-/// How many of the smallest steps beyond the last shape what is extrapolated may come to zero: at a
-/// fold the smallest eigenvalue has a vertical tangent, which a straight line through two shapes
-/// meets late.
+/// Number of smallest steps beyond the last shape within which an extrapolated quantity must vanish
+/// for a branch to have ended. It is larger than 1 because the smallest eigenvalue has a vertical
+/// tangent at a fold, so that a straight line through two values reaches zero late.
 constexpr double steps_to_end = 4;
 
-/// Energy that rounding and the solver's tolerance leave open, over EI/l and what gravity and loads
-/// could do [-].
+/// Energy differences that rounding and the solver's tolerance may cause, divided by EI/l plus the
+/// largest work of gravity and loads [-].
 constexpr double energy_noise = 1e-8;
 
-/// @throws InputError if a gripper has been moved into an obstacle
+/// Checks that no gripper is in an obstacle. @throws InputError if one is
 void require_clear(const Scene& now) {
   for (std::size_t g = 0; g < now.grippers.size(); ++g) {
     for (std::size_t i = 0; i < now.obstacles.size(); ++i) {
@@ -46,7 +47,7 @@ void require_clear(const Scene& now) {
   }
 }
 
-/// The turn from one direction to another, about the vector, by its length [rad].
+/// Returns the rotation vector of the shortest rotation from one direction to another [rad].
 Eigen::Vector3d turn_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const Eigen::Vector3d across = from.cross(to);
   const double sine = across.norm();
@@ -54,9 +55,9 @@ Eigen::Vector3d turn_between(const Eigen::Vector3d& from, const Eigen::Vector3d&
   return std::atan2(sine, from.dot(to)) / sine * across;
 }
 
-/// Returns what the potential of the couples loses between two shapes because its zero moves with a
-/// clamp or a chord [J]. Whole turns that couple_zero() does not count are counted here: the
-/// tangent there rotates by less than half a turn in a step.
+/// Returns the decrease of the couples' potential between two shapes that is caused by the motion
+/// of its zero with a clamp or a chord [J]. Whole turns that couple_zero() does not count are
+/// counted here, since the tangent there rotates by less than half a turn in a step.
 double couples_of_moved_zero(const Moment& before, const Moment& after) {
   if (!after.scene.has_couples()) return 0;
   const energy_model::Problem from = energy_problem(before.scene);
@@ -76,14 +77,15 @@ double couples_of_moved_zero(const Moment& before, const Moment& after) {
   return energy;
 }
 
-/// What is done on the rod between two frames: with the mean of the forces, and what other forces
-/// could make of it that are between those of both, or beyond by as much as they have changed in
-/// the frame before (where a force has its largest value they are the same on either side of it).
+/// Work done on the rod between two frames: by the mean of the forces, with a bound for other
+/// forces. The bound allows for forces between those of both frames, or beyond them by as much as
+/// the forces changed in the step before (near an extreme value a force may be the same in both
+/// frames).
 class Work {
  public:
-  /// @param step     between the two shapes [frames]
-  /// @param changes  of the forces in the step before, a frame, one for each add(); empty: there is
-  ///                 none. Becomes those of this one.
+  /// @param step     time between the two shapes [frames]
+  /// @param changes  rates of change of the forces in the step before [per frame], one for each
+  ///                 add(); empty if there is none. Set to those of this step.
   Work(double step, std::vector<Eigen::Vector3d>& changes) : step_(step), changes_(changes) {}
 
   void add(const Eigen::Vector3d& before, const Eigen::Vector3d& after,
@@ -104,9 +106,9 @@ class Work {
   std::size_t next_ = 0;
 };
 
-/// Returns by how much each clamp that holds the frame rotates it about the clamp's direction,
-/// besides the shortest rotation between its two directions [rad]. The frame of the first of them
-/// is free to choose on a round straight rod. It follows that rotation.
+/// Returns the rotation of each clamp that holds the frame about its direction, in addition to the
+/// shortest rotation between its two directions [rad]. On a round straight rod the frame of the
+/// first clamp is arbitrary; it follows the shortest rotation.
 std::vector<double> rolls_between(const Scene& before, const Scene& after) {
   std::vector<double> rolls(after.grippers.size(), 0.0);
   for (std::size_t i = 0; i < rolls.size(); ++i) {
@@ -145,7 +147,7 @@ Work work_between(const Moment& before, const Moment& after, double step,
     work.add(before.rod.grips[i].force, after.rod.grips[i].force, to.position - from.position);
     if (!to.direction) continue;
     Eigen::Vector3d turn = turn_between(*from.direction, *to.direction);
-    // About the direction half-way, so that the sum of both is exact to second order.
+    // A rotation about the direction half-way makes the sum of both exact to second order.
     if (to.frame) turn += rolls[i] * (*from.direction + *to.direction).normalized();
     work.add(before.rod.grips[i].torque, after.rod.grips[i].torque, turn);
   }
@@ -157,15 +159,15 @@ Work work_between(const Moment& before, const Moment& after, double step,
   return work;
 }
 
-/// Whether the rod has come through an obstacle instead of to it: on the straight ways of its
-/// points in one step it would be deep inside.
+/// Whether the rod passed through an obstacle in a step: its points would be deep inside the
+/// obstacle on straight paths between both shapes.
 bool passes_through(const Moment& before, const Moment& after,
                     const std::vector<std::size_t>& obstacles) {
   return std::any_of(obstacles.begin(), obstacles.end(), [&](std::size_t i) {
     const obstacle::Body& body = before.scene.obstacles[i].body;
     const double radius = inner_radius(body);
     if (!std::isfinite(radius)) return false;
-    // Chords of what lies, and of what slides along, are not as deep as this.
+    // The chords of a rod that lies or slides on the obstacle are not as deep as this.
     constexpr double share = 0.25;
     constexpr double most_points = 513;
     const double length = before.scene.length;
@@ -180,7 +182,8 @@ bool passes_through(const Moment& before, const Moment& after,
   });
 }
 
-/// Where what goes from a to b on a way comes to zero beyond b, in units of that way.
+/// Returns the extrapolated position at which a quantity with the values a and b is zero, measured
+/// from b in units of the distance from a to b; infinite if it does not decrease towards zero.
 double comes_to_zero(double a, double b) {
   if (!(b >= 0 && a > b)) return std::numeric_limits<double>::infinity();
   return b / (a - b);
@@ -229,8 +232,8 @@ Branch::Branch(const Scene& scene, const FrameClock& clock,
   for (const std::size_t i : obstacles_) {
     yields = yields || std::isfinite(scene.obstacles[i].stiffness);
   }
-  // By what a clamp rotates the directors of a material about their tangent, and what a yielding
-  // obstacle stores, is not known.
+  // The rotation of a material's directors by a clamp about their tangent, and the energy stored in
+  // a yielding obstacle, are not known.
   balances_ = !yields && !(scene.has_material_directors() &&
                            (scene.holds_twist() || !clock_.scene(scene, 0).planar()));
   const double loads = scene.weight_between(0, scene.length).norm() + scene.total_of_loads();
@@ -278,7 +281,7 @@ void Branch::go_to_frame(Passage& passage) {
       }
       continue;
     }
-    // What is just beyond the end of the branch tells best to what shape the rod has snapped.
+    // The shape just beyond the end of the branch is the best start for the shape after the snap.
     const bool near = made < most_branch_steps && ++snaps <= most_snaps;
     const double rejected = near ? std::min(2 * step, 1 - at) : 1 - at;
     at += leave(at, rejected, passage);
@@ -289,8 +292,9 @@ void Branch::go_to_frame(Passage& passage) {
   }
 }
 
-/// To the shape that a search finds from the end of the branch, a small step away or, where it
-/// finds none there, in the frame. @return the step [frames]
+/// Leaves the branch for the equilibrium that is found from its end: a small step away or, if none
+/// is found there, at the frame.
+/// @return the step [frames]
 double Branch::leave(double at, double rejected, Passage& passage) {
   if (passage.kept) {
     passage.kept = false;
@@ -309,7 +313,7 @@ double Branch::leave(double at, double rejected, Passage& passage) {
     after.scene = scene_at(1);
     after.rod = solver_.follow(frame_problem(after.scene, obstacles_));
   }
-  // Next to a bifurcation the last shape leads to an unstable one.
+  // Close to a bifurcation, following the last shape may result in an unstable one.
   if (!energy_model::succeeded(after.rod.status)) {
     after.rod = solver_.solve(frame_problem(after.scene, obstacles_));
   }
@@ -322,15 +326,15 @@ double Branch::leave(double at, double rejected, Passage& passage) {
     passage.released_bound += work.bound + noise_;
   }
   now_ = std::move(after);
-  // What is seen on another branch tells nothing of this one.
+  // Witnesses of another branch say nothing about the end of the new one.
   seen_.reset();
   witness(at + step);
-  // Nor do forces that have jumped.
+  // Neither do changes of forces across a jump.
   changes_.clear();
   return step;
 }
 
-/// Where a motion dwells, so does the rod.
+/// Whether nothing has moved since the last frame, so that the rod rests too.
 bool Branch::stands() const {
   const Scene scene = clock_.scene(scene_, frame_);
   return scene.grippers == now_.scene.grippers && scene.obstacles == now_.scene.obstacles;
@@ -343,7 +347,7 @@ Scene Branch::scene_at(double share) const {
   return scene;
 }
 
-/// One step on the branch.
+/// Makes one step on the branch; returns false and leaves the state unchanged if it cannot be kept.
 bool Branch::try_follow(Scene scene, double from, double step, Passage& passage) {
   std::optional<Equilibrium> rod = solver_.try_follow(frame_problem(scene, obstacles_));
   if (!rod) return false;

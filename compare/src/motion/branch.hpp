@@ -13,79 +13,82 @@
 
 namespace dlo::compare {
 
-/// One frame's scene and what the energy model says of it.
+/// The scene at one time of the motion, and the energy model's solution.
 struct Moment {
   Scene scene;
   energy_model::Equilibrium rod;
-  double couples = 0;  ///< by which the zero of their potential has moved since the first frame [J]
+  double couples = 0;  ///< by which the zero of the couples' potential has moved since the first
+                       ///< frame [J]
 };
 
-/// Returns energies whose zeros stay where they are while grippers move: gravity and forces are
-/// zero at the origin, couples where energy_model::couple_zero() is in the first frame.
+/// Returns energies with zeros that do not move with the grippers: those of gravity and forces are
+/// at the origin, that of couples is at energy_model::couple_zero() of the first frame.
 [[nodiscard]] SceneEnergies energies_of(const Moment& moment);
 
-/// How the rod has come to a frame from the one before.
+/// How the rod reached a frame from the one before.
 struct Passage {
-  bool kept = true;      ///< on its branch: next to the shape before, and no energy is missing
-  bool smaller = false;  ///< in smaller steps than a frame
-  bool stands = false;   ///< nothing has moved
-  /// A branch that is not kept: whether it has been seen to end, by its stability or by a contact's
-  /// force that vanishes.
+  bool kept = true;  ///< it stayed on its branch: each shape is close to the one before, and the
+                     ///< energy balances
+  bool smaller = false;  ///< with steps smaller than a frame
+  bool stands = false;   ///< nothing moved
+  /// If the branch was not kept: whether its end was observed, as loss of stability or as a
+  /// vanishing contact force.
   bool ended = false;
-  /// Of the last shape on a branch that is not kept.
+  /// Smallest eigenvalue of the last shape on a branch that was not kept, divided by EI/l [-].
   double last_eigenvalue = std::numeric_limits<double>::quiet_NaN();
-  double work = 0;  ///< of grippers and obstacles on the rod [J]
-  /// That less what the energy has grown by, of a branch that is not kept in its snaps alone, and
-  /// what it may be with forces between those before and after each step [J]. NaN where
+  double work = 0;  ///< work of grippers and obstacles on the rod [J]
+  /// Work minus the increase of the energy, for a branch that was not kept only of its snaps, and
+  /// the bound of its error by forces between those before and after each step [J]. NaN if
   /// Branch::balances() is false.
   double released = 0, released_bound = 0;
 };
 
-/// What of a shape tells whether its branch comes to an end.
+/// Quantities of a shape that show whether its branch is about to end.
 struct BranchWitness {
-  double at = 0;  ///< when, in frames
-  /// Of the second variation, over EI/l [-]; NaN: not known.
+  double at = 0;  ///< time [frames]
+  /// Smallest eigenvalue of the second variation, divided by EI/l [-]; NaN if unknown.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   std::vector<energy_model::ContactPart> contacts;
 };
 
-/// Whether a branch has been seen to end before a step that left it: at a fold the square of the
-/// smallest eigenvalue comes to zero in proportion to the way that is left, at a bifurcation it
-/// does so itself, and where an obstacle lets go of the rod its force.
-/// @param before, last  the last two shapes on it; @param rejected  the step from the last one
-/// [frames]
+/// Whether a branch was observed to end before a step that left it. At a fold the square of the
+/// smallest eigenvalue decreases to zero in proportion to the distance from the fold, at a
+/// bifurcation the eigenvalue itself does, and where an obstacle releases the rod the contact force
+/// does.
+/// @param before, last  the last two shapes on the branch;
+/// @param rejected  size of the step from the last one [frames]
 [[nodiscard]] bool shows_its_end(const BranchWitness& before, const BranchWitness& last,
                                  double rejected);
 
-/// The shapes of a rod at rest in the frames of a motion, each on the branch of the one before as
-/// long as there is one.
+/// The equilibrium shapes of a rod in the frames of a motion, each on the branch of the one before
+/// as long as the branch exists.
 ///
-/// A step keeps it if Newton's method leads to a stable shape next to the one before, the energy
-/// grows by the work that is done, to the bound of forces between those of both shapes, and the rod
-/// goes through no obstacle. Where a whole frame's step does not, smaller ones are made, down to
-/// `smallest_step` of a frame, and beyond them the rod is in the shape that a search finds there;
-/// then it is followed on.
+/// A step keeps the branch if Newton's method converges to a stable shape close to the one before,
+/// the energy increases by the work within the bound for forces between those of both shapes, and
+/// the rod does not pass through an obstacle. If a step of a whole frame does not, smaller steps
+/// are made, down to `smallest_step` of a frame. Beyond the end of the branch the rod takes the
+/// shape that a search finds there, and is followed from it.
 class Branch {
  public:
-  /// Share of a frame to which the end of a branch is looked for.
+  /// Size of a step, in frames, down to which the end of a branch is located.
   static constexpr double smallest_step = 1.0 / 1024;
 
-  /// @param scene  with its motion; it and the clock outlive this
+  /// @param scene  with its motion; scene and clock must outlive this
   Branch(const Scene& scene, const FrameClock& clock, const energy_model::EnergyOptions& options);
 
-  /// Those that are in reach at any of the frames, by their number in the scene.
+  /// Returns the indices of the scene's obstacles that are in reach in any frame.
   [[nodiscard]] const std::vector<std::size_t>& obstacles() const { return obstacles_; }
-  /// Whether work and energy are known: not where obstacles yield, nor out of a plane or with held
-  /// frames where the rod has material directors.
+  /// Whether work and energy are known. They are not with yielding obstacles, nor, for a rod with
+  /// material directors, out of a plane or with held frames.
   [[nodiscard]] bool balances() const { return balances_; }
 
-  /// The lowest shape that is found in the first frame.
-  /// @throws InputError, std::invalid_argument if the frame is impossible
+  /// Solves the first frame: the lowest shape that is found.
+  /// @throws InputError, std::invalid_argument if the frame is invalid
   void begin();
-  /// Goes on to the next frame. Whether a shape has been found: now().rod.status
-  /// @throws InputError, std::invalid_argument if the frame is impossible
+  /// Continues to the next frame. now().rod.status states whether a shape was found.
+  /// @throws InputError, std::invalid_argument if the frame is invalid
   [[nodiscard]] Passage next();
-  /// The last frame.
+  /// Returns the last frame.
   [[nodiscard]] const Moment& now() const { return now_; }
 
  private:
@@ -104,7 +107,7 @@ class Branch {
   double noise_ = 0;
   std::size_t frame_ = 0;
   Moment now_;
-  std::vector<Eigen::Vector3d> changes_;              // of forces, in the last step
+  std::vector<Eigen::Vector3d> changes_;  // rates of change of the forces in the last step
   std::optional<std::array<BranchWitness, 2>> seen_;  // the last two shapes
 };
 

@@ -23,12 +23,12 @@ PartList parts_on(std::size_t obstacle, const std::vector<ContactPart>& contacts
   return parts;
 }
 
-/// Which of `more` are left when each of `fewer` has one, in the same order and nearest in all: by
-/// the least sum of distances.
+/// Pairs each of `fewer` with one of `more` in the same order, with the least sum of distances.
+/// Returns for each of `more` whether it has a partner.
 std::vector<bool> paired(const PartList& fewer, const PartList& more) {
   const std::size_t n = fewer.size();
   const std::size_t m = more.size();
-  // least[i][j]: of the first i among the first j.
+  // least[i][j]: least sum for the first i of `fewer` among the first j of `more`
   std::vector<std::vector<double>> least(
       n + 1, std::vector<double>(m + 1, std::numeric_limits<double>::infinity()));
   for (std::size_t j = 0; j <= m; ++j) least[0][j] = 0;

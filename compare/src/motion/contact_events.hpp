@@ -7,18 +7,18 @@
 
 namespace dlo::compare {
 
-/// A part that touches now and did not before, or the other way round, or in another way.
+/// A contact that begins, ends or changes its kind from one frame to the next.
 struct ContactChange {
-  bool begins = true;              ///< to touch, or to lie where it touched
-  energy_model::ContactPart part;  ///< as it is then; where it ends, as it was before
-  bool goes_on = false;            ///< touched there before, or does so afterwards
+  bool begins = true;              ///< contact begins, or a point contact becomes a line contact
+  energy_model::ContactPart part;  ///< the contact after the change; if it ends, before the change
+  bool goes_on = false;            ///< the contact existed before, or continues to exist
 };
 
-/// What has changed from one frame's contacts to the next one's. Parts on one obstacle are paired
-/// in the order of their arc lengths, the nearest ones where they are not as many. A part that lies
-/// where it touched at a point before begins (to lie) and goes on, and ends and goes on the other
-/// way round; between the rod's tip and its inside it begins and goes on.
-/// @param before, after  by arc length
+/// Returns the changes from the contacts of one frame to those of the next. Contacts on one
+/// obstacle are paired in the order of their arc lengths, the nearest ones if their numbers differ.
+/// If a point contact becomes a line contact, the change begins and goes on; in the opposite case
+/// it ends and goes on. A change between the rod's tip and its inside begins and goes on.
+/// @param before, after  in the order of arc lengths
 [[nodiscard]] std::vector<ContactChange> contact_changes(
     const std::vector<energy_model::ContactPart>& before,
     const std::vector<energy_model::ContactPart>& after);

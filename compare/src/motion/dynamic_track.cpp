@@ -41,7 +41,7 @@ void add_errors(const std::vector<DynamicFrame>& frames, DynamicTrack& result) {
   result.force = force;
 }
 
-/// Of the frames at equal times that have the force model beside them.
+/// Sets the lag of the force model, from the frames at equal times for which it exists.
 void add_lag(const Track& track, double length, double step, DynamicTrack& result) {
   std::vector<Eigen::Matrix3Xd> leader;
   std::vector<Eigen::Matrix3Xd> follower;

@@ -15,77 +15,82 @@ namespace dlo::compare {
 /// The moving rod at the time of a frame of a Track.
 struct DynamicFrame {
   double time = 0;  ///< [s]
-  /// Gravity and loads are zero where the track's are.
+  /// The zeros of gravity and loads are those of the track.
   energy_model::EnergyBalance energy;
   std::vector<GripperLoad> grippers;       ///< in the scene's order
-  std::vector<Eigen::Vector3d> obstacles;  ///< force of each on the rod, in the scene's order [N]
+  std::vector<Eigen::Vector3d> obstacles;  ///< force of each obstacle on the rod, in the scene's
+                                           ///< order [N]
   Eigen::Matrix3Xd points;                 ///< at Track::arc_length [m]
   double quasi_static_error = 0;      ///< RMS distance of the track's shape over the length [-]
-  std::optional<double> force_error;  ///< the same of the force model's, at its own points [-]
+  std::optional<double> force_error;  ///< RMS distance of the force model's shape at its own
+                                      ///< points, over the length [-]
 };
 
-/// What the errors of all frames come to.
+/// Mean and largest error over all frames.
 struct TrackErrors {
   double mean = 0;          ///< over the length [-]
   double largest = 0;       ///< over the length [-]
   double largest_time = 0;  ///< [s]
 };
 
-/// A Track's rod with inertia.
+/// Motion of a Track's rod with inertia.
 struct DynamicTrack {
   RodDamping damping;
-  bool in_motion = false;            ///< at the first frame, where something has a velocity
-  std::vector<DynamicFrame> frames;  ///< of the track's frames, up to where it had to stop
-  std::optional<TrackStop> stopped;  ///< also where the track itself has no more frames
-  int terms = 0;                     ///< of each piece and field
+  bool in_motion = false;            ///< the rod has a velocity at the first frame
+  std::vector<DynamicFrame> frames;  ///< for the track's frames, up to the one at which it stopped
+  std::optional<TrackStop> stopped;  ///< also set if the track itself ended early
+  int terms = 0;                     ///< number of terms per interval and field
   std::optional<TooFewTerms> too_few_terms;
-  long steps = 0;      ///< of the integrator
-  double seconds = 0;  ///< what it took, without the run with fewer terms
-  /// Largest residual of the energy balance, over `largest_energy`, as energy_model::Dynamics has
-  /// it.
+  long steps = 0;      ///< number of integration steps
+  double seconds = 0;  ///< duration of the computation [s], without the run with fewer terms
+  /// Largest residual of the energy balance, divided by `largest_energy`, as in
+  /// energy_model::Dynamics.
   double energy_error = 0;
   double largest_energy = 0;  ///< [J]
   double step_error = 0;      ///< Dynamics::error_estimate, over the length [-]
-  /// Largest depth of the rod in a rigid obstacle in reach, over the length [-]; none: there is
-  /// none.
+  /// Largest depth of the rod in a rigid obstacle in reach, over the length [-]; empty if there is
+  /// no such obstacle.
   std::optional<double> deepest_contact;
-  int fewer_terms = 0;               ///< of a second run, which tells what terms left out change
-  double term_difference = 0;        ///< largest RMS distance of its frames, over the length [-]
-  TrackErrors quasi_static;          ///< of the track's shapes
-  std::optional<TrackErrors> force;  ///< of the force model's
+  int fewer_terms = 0;         ///< terms of a second run, which estimates the truncation error
+  double term_difference = 0;  ///< largest RMS distance between frames of both runs, over the
+                               ///< length [-]
+  TrackErrors quasi_static;    ///< errors of the track's shapes
+  std::optional<TrackErrors> force;  ///< errors of the force model's shapes
   double force_lag = std::numeric_limits<double>::quiet_NaN();  ///< as ForceTrackSummary's [s]
   double force_error_without_lag = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// The rod of a track with inertia: along the same trajectories, whose velocities its grips have
-/// (energy_model::simulate). It begins with the shape at rest of the first frame. Where grips or
-/// obstacles move then, it is in motion as shapes at rest follow them. What the shapes at rest and
-/// the force model's are off is measured against it.
+/// Simulates the rod of a track with inertia, along the same trajectories, whose velocities its
+/// grips have (energy_model::simulate). The rod starts with the equilibrium shape of the first
+/// frame; if grips or obstacles move then, it has the velocities with which equilibrium shapes
+/// follow them. The errors of the equilibrium shapes and of the force model's are measured against
+/// it.
 /// @param track  of the same scene and options
 /// @throws InputError as require_dynamic(), and if the damping is out of range; ConvergenceError if
-/// there is no shape to begin with
+/// there is no initial shape
 [[nodiscard]] DynamicTrack dynamic_track(const Scene& scene, const Track& track,
                                          const TrackOptions& options, const RodDamping& damping);
 
-/// What is asked of a scene that moves.
+/// Request to follow the motion of a scene.
 struct TrackRequest {
-  TrackOptions options;                 ///< but for the rates, which are the scene's
-  std::optional<double> frame_rate;     ///< instead of the scene's [Hz], > 0, up to 1e9
-  std::optional<double> obstacle_rate;  ///< the same [Hz]
-  std::optional<double> step_rate;      ///< the same [Hz]
-  std::optional<RodDamping> damping;    ///< of the rod with inertia; none: it is only at rest
+  TrackOptions options;                 ///< without the rates, which are the scene's
+  std::optional<double> frame_rate;     ///< replaces the scene's [Hz], > 0, up to 1e9
+  std::optional<double> obstacle_rate;  ///< replaces the scene's [Hz]
+  std::optional<double> step_rate;      ///< replaces the scene's [Hz]
+  std::optional<RodDamping> damping;  ///< damping of the rod with inertia; empty: quasi-static only
 };
 
-/// A scene's motion: what `dlo track` says, and Python with it.
+/// Motion of a scene: the result of `dlo track` and of its Python function.
 struct TrackResult {
   TrackOptions options;
-  Track track;                          ///< at rest
+  Track track;                          ///< quasi-static
   std::optional<DynamicTrack> dynamic;  ///< the rod with inertia
 
-  /// The rod with inertia, null without one.
+  /// Returns the rod with inertia, null without one.
   [[nodiscard]] const DynamicTrack* moving() const { return dynamic ? &*dynamic : nullptr; }
 };
 
+/// Follows the motion of a scene.
 /// @throws InputError, ConvergenceError as track() and dynamic_track(), and if a rate is out of
 /// range
 [[nodiscard]] TrackResult follow(const Scene& scene, const TrackRequest& request,

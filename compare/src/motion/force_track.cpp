@@ -19,7 +19,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Its points on the energy model's shape, but for those that grips hold.
+/// Returns the polygon's points on the energy model's shape, except those that grips hold.
 Eigen::Matrix3Xd start_on(const Discretisation& discretisation,
                           const energy_model::Equilibrium& rod) {
   std::vector<double> s = discretisation.arc_length;
@@ -136,11 +136,12 @@ Lag lag_of(const std::vector<Eigen::Matrix3Xd>& leader,
   for (std::size_t shift = 0; shift < count; ++shift) squares.push_back(squares_at(shift));
   const auto best =
       static_cast<std::size_t>(std::min_element(squares.begin(), squares.end()) - squares.begin());
-  // A leader that stands all the time is nearer than one that moves, at any lag.
+  // The best match is the leader at its first shape throughout: no lag can be determined.
   if (best + 1 == count) return {};
   double part = 0;
   double least = squares[best];
-  // Of the parabola through three values; at no shift its mirror image is on the other side.
+  // Minimum of the parabola through three values; at zero shift its mirror image replaces the value
+  // on the other side.
   const double before = best > 0 ? squares[best - 1] : squares[best + 1];
   const double after = squares[best + 1];
   const double bend = before - 2 * least + after;

@@ -13,56 +13,56 @@
 
 namespace dlo::compare {
 
-/// Whether the force model makes its steps beside the energy model.
+/// Whether the force model is simulated besides the energy model.
 enum class ForceBeside { runs, absent };
 
-/// The force model at the end of a frame.
+/// State of the force model at the end of a frame.
 struct ForceFrame {
   double error_over_length = 0;       ///< RMS distance from the energy model's shape [-]
-  std::vector<GripperLoad> grippers;  ///< what each exerts on the rod
-  Eigen::Matrix3Xd points;  ///< at the track's arc lengths, between its points straight [m]
-  Shape shape;              ///< its own points [m]
+  std::vector<GripperLoad> grippers;  ///< force and torque of each gripper on the rod
+  Eigen::Matrix3Xd points;            ///< at the track's arc lengths, interpolated linearly [m]
+  Shape shape;                        ///< its own points [m]
 };
 
-/// What the force model's frames come to.
+/// Summary of the force model's frames.
 struct ForceTrackSummary {
-  std::string none;           ///< why there are no frames; empty: there are
-  long steps_per_frame = 0;   ///< of the stepper
-  double rest_error = 0;      ///< of the first frame, at rest: no lag is in it, over the length [-]
-  double largest = 0;         ///< error over the length [-]
-  double largest_time = 0;    ///< [s]
-  double mean = 0;            ///< of the errors over the length [-]
-  double median_seconds = 0;  ///< of a frame's steps
-  /// Lag of its shapes: the shift of time that brings them nearest to the energy
-  /// model's, and the RMS over all frames that is left then, over the length. NaN where nothing
-  /// moves enough to tell.
+  std::string none;          ///< why there are no frames; empty if there are
+  long steps_per_frame = 0;  ///< of the stepper
+  double rest_error = 0;     ///< error of the first frame, at rest and without lag, over the length
+                             ///< [-]
+  double largest = 0;        ///< error over the length [-]
+  double largest_time = 0;   ///< [s]
+  double mean = 0;           ///< mean error over the length [-]
+  double median_seconds = 0;  ///< median duration of a frame's steps [s]
+  /// Lag of the shapes: the shift of time that brings them nearest to the energy model's, and the
+  /// remaining RMS distance over all frames, over the length. NaN if the motion is too small.
   double lag = std::numeric_limits<double>::quiet_NaN();  ///< [s], >= 0
   double error_without_lag = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::string> neglected;  ///< as Solution::neglected
 };
 
-/// A scene's force model in simulated time, at rest at first.
+/// The force model of a scene in simulated time; it starts at rest.
 class ForceTrack {
  public:
-  /// @param now        the scene at the first frame, standing
-  /// @param rod        its shape
-  /// @param obstacles  of the scene, that are in reach at any time
-  /// @throws InputError if the scene is none for the force model
-  /// @throws ConvergenceError if it does not come to rest
+  /// @param now        the scene at the first frame, without motion
+  /// @param rod        shape of the rod in it
+  /// @param obstacles  indices of the scene's obstacles that are in reach at any time
+  /// @throws InputError if the force model does not support the scene
+  /// @throws ConvergenceError if the force model does not come to rest
   ForceTrack(const Scene& now, const energy_model::Equilibrium& rod,
              const std::vector<std::size_t>& obstacles, const SolveOptions& options);
   ~ForceTrack();
   ForceTrack(const ForceTrack&) = delete;
   ForceTrack& operator=(const ForceTrack&) = delete;
 
-  /// The steps of a frame.
-  /// @param now  the scene at its end, standing
-  /// @return whether no step diverged
+  /// Makes the steps of a frame.
+  /// @param now  the scene at the end of the frame, without motion
+  /// @return false if a step diverged
   [[nodiscard]] bool step(const Scene& now, long steps);
-  /// As it is. @param arc_length  of the points [m]
+  /// Returns the current state. @param arc_length  of the points [m]
   [[nodiscard]] ForceFrame frame(const energy_model::Equilibrium& rod,
                                  const std::vector<double>& arc_length) const;
-  /// What the last step() took [s].
+  /// Returns the duration of the last step() [s].
   [[nodiscard]] double seconds() const;
 
  private:
@@ -70,17 +70,17 @@ class ForceTrack {
   std::unique_ptr<State> state_;
 };
 
-/// The shift of time by which a series of shapes lags behind another one.
+/// Shift of time by which a series of shapes lags behind another one.
 struct Lag {
   double time = std::numeric_limits<double>::quiet_NaN();  ///< [s], >= 0
-  double rms = std::numeric_limits<double>::quiet_NaN();   ///< that is left [m]
+  double rms = std::numeric_limits<double>::quiet_NaN();   ///< remaining RMS distance [m]
 };
 
-/// The lag at which the mean square distance over all frames is least; before its first frame the
-/// leader stands. NaN if the leader does not move, or is nearest where it stands all the time, as
-/// to a follower that goes elsewhere.
-/// @param leader, follower  shapes at equal steps of time [m], as many of each
-/// @param step              of time [s]
+/// Returns the lag with the least mean square distance over all frames; before its first frame the
+/// leader is taken to rest. NaN if the leader does not move, or if its first shape throughout is
+/// the best match, as for a follower that moves elsewhere.
+/// @param leader, follower  shapes at equal time steps [m], the same number of each
+/// @param step              time step [s]
 [[nodiscard]] Lag lag_of(const std::vector<Eigen::Matrix3Xd>& leader,
                          const std::vector<Eigen::Matrix3Xd>& follower, double step);
 

@@ -9,16 +9,18 @@
 
 namespace dlo::compare {
 
-/// A part of a scene's motion.
+/// An interval of a scene's motion.
 struct MotionPart {
-  std::optional<double> from;  ///< [s]; none: the first pose's time
-  std::optional<double> to;    ///< [s]; none: the last pose's
+  std::optional<double> from;  ///< [s]; empty: first time of a recorded start, or else time of
+                               ///< the first pose
+  std::optional<double> to;    ///< [s]; empty: time of the last pose
 };
 
-/// First time of a recording that Scene::start is [s]; none: it is a shape, or there is none.
+/// Returns the first time of the recording in Scene::start [s]; std::nullopt if the start is a
+/// shape, or if there is none.
 [[nodiscard]] std::optional<double> recorded_start_time(const Scene& scene);
 
-/// When the frames of a motion are.
+/// Times of the frames of a motion.
 class FrameClock {
  public:
   /// @throws InputError if nothing moves, no time passes, or there are too many frames
@@ -26,11 +28,13 @@ class FrameClock {
 
   [[nodiscard]] std::size_t frames() const { return steps_ + 1; }
   [[nodiscard]] double time(std::size_t frame) const;  ///< [s]
-  /// When obstacles were moved last [s].
+  /// Returns the time of the last update of the obstacles [s].
   [[nodiscard]] double obstacle_time(std::size_t frame) const;
-  /// As it is then, standing.
+  /// Returns the scene at the time of a frame, with grippers and obstacles at rest.
   [[nodiscard]] Scene scene(const Scene& scene, std::size_t frame) const;
-  /// On the way to a frame from the one before. @param share  of the way, 0 to 1; frame > 0
+  /// Returns the scene between a frame and the one before.
+  /// @param frame  > 0;
+  /// @param share  fraction of the interval, 0 to 1
   [[nodiscard]] Scene scene_before(const Scene& scene, std::size_t frame, double share) const;
 
  private:
@@ -38,11 +42,12 @@ class FrameClock {
   std::size_t steps_ = 0;
 };
 
-/// Those that are in reach at any of the frames.
+/// Returns the indices of the obstacles that are in reach in any frame.
 [[nodiscard]] std::vector<std::size_t> obstacles_ever_in_reach(const Scene& scene,
                                                                const FrameClock& clock);
 
-/// Of the same obstacles in all frames. @throws InputError as energy_problem()
+/// Returns the problem of a frame with the given obstacles, which are the same in all frames.
+/// @throws InputError in the cases of energy_problem()
 [[nodiscard]] energy_model::Problem frame_problem(const Scene& now,
                                                   const std::vector<std::size_t>& obstacles);
 

@@ -12,20 +12,20 @@ namespace dlo::compare {
 namespace {
 
 /// Differences of logarithms, of angles [rad], and of angular rates times the natural time. With
-/// ten times as much, derivatives of combinations of modes that nearly cancel are too inexact for
-/// the least squares to converge.
+/// ten times larger differences, derivatives of combinations of modes that nearly cancel are too
+/// inexact for the least squares to converge.
 constexpr double parameter_difference = 3e-4;
 /// Tolerance of a step of the simulation: a few hundred steps are then off by less than a tenth of
 /// a millimetre per metre.
 constexpr double fit_tolerance = 1e-6;
 /// Smallest standard deviation of a coordinate, divided by the rod length: error of the simulation.
 constexpr double least_noise = 1e-5;
-/// A number is looked for within this factor of where it begins.
+/// Factor by which a number may differ from its first guess.
 constexpr double widest_factor = 1e4;
-/// Standard deviation of a logarithm before anything is simulated.
+/// Prior standard deviation of a logarithm.
 constexpr double prior_log = 10;
 
-/// Rows of each time. @throws InputError as MotionMisfit's constructor
+/// Checks a recording. @throws InputError in the cases of MotionMisfit's constructor
 void require_recording(const Scene& scene, const MarkerMotion& recorded) {
   for (const MarkerPosition& at : recorded.positions) {
     if (on_rod(at.arc_length, scene.length)) continue;
@@ -56,7 +56,7 @@ MotionMisfit::MotionMisfit(const Scene& scene, const std::vector<MarkerMotion>& 
       natural_time_(
           std::sqrt(scene.mass() * std::pow(scene.length, 3) / scene.softer_bending_stiffness())) {
   const double drag = scene.mass() / scene.length / natural_time_;
-  // What vibrates in the natural time then loses some percent in each period.
+  // With this damping, a vibration with the natural time loses a few percent in each period.
   constexpr double light = 0.02;
   const auto usual = [](double given, double otherwise) { return given > 0 ? given : otherwise; };
   for (const MotionParameter what : fitted_) {
@@ -159,7 +159,7 @@ std::optional<MotionStart> MotionMisfit::start(const Eigen::VectorXd& parameters
   const Recorded& recorded = recorded_[recording];
   if (!recorded.deviation) return std::nullopt;
   Eigen::VectorXd modes = parameters.segment(recorded.first_mode, StartDeviation::size());
-  // Rates are counted in the natural time.
+  // Rates are parameters times the natural time.
   modes.tail(StartDeviation::size() / 2) /= natural_time_;
   return recorded.deviation->with(modes);
 }
@@ -227,7 +227,7 @@ Eigen::MatrixXd MotionMisfit::derivatives(const Eigen::VectorXd& parameters,
     return moved;
   };
   for (Eigen::Index i = first; i < physical(); ++i) {
-    // A small damping changes little: the difference is a fraction of the first guess.
+    // A small damping changes little, so the difference is a fraction of the first guess.
     const double relative =
         parameter_difference * (is_damping(i) ? std::max(1.0, std::exp(-parameters[i])) : 1);
     result.col(i) = (residuals(beside(i, std::log1p(relative))) - here) / relative;
@@ -270,13 +270,14 @@ LeastSquares least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start, i
   }
   const auto freedom =
       std::max<double>(1, static_cast<double>(at.residuals.size() - start.size() + free));
-  // A step that changes no parameter by more than a seventh of its standard deviation.
+  // Predicted decrease of a step that changes no parameter by more than a seventh of its standard
+  // deviation.
   constexpr double small = 0.02;
-  // Derivatives are kept as long as the predicted decrease falls by this in a step.
+  // Derivatives are kept as long as the predicted decrease falls by this factor in a step.
   constexpr double kept = 0.25;
   constexpr int most_tries = 8;
-  // Of Marquardt; none at first, because shapes and velocities that no marker tells apart are
-  // damped by the prior alone.
+  // Marquardt's damping. It starts at zero, because shapes and velocities that no marker determines
+  // are damped by the prior alone.
   double damping = 0;
   constexpr double first_damping = 1e-4;
   double before = 0;

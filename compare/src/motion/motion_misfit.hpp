@@ -26,7 +26,7 @@ enum class MotionParameter { stiffness, material, air, quadratic };
 class MotionMisfit {
  public:
   /// @param fitted  physical parameters to fit, may be empty
-  /// @param known   damping, of parameters that are fitted the first guess if > 0
+  /// @param known   damping; the first guess, if > 0, of parameters that are fitted
   /// @throws InputError if a marker is not on the rod, or a recording has one time only
   MotionMisfit(const Scene& scene, const std::vector<MarkerMotion>& recordings,
                std::vector<MotionParameter> fitted, const RodDamping& known,
@@ -43,20 +43,20 @@ class MotionMisfit {
   /// Number of physical parameters, which are the first of all.
   [[nodiscard]] Eigen::Index physical() const { return std::ssize(fitted_); }
   [[nodiscard]] Eigen::Index parameters() const;
-  /// Coordinates of the markers within the restriction.
+  /// Returns the number of coordinates of the markers within the restriction.
   [[nodiscard]] Eigen::Index coordinates() const;
   [[nodiscard]] int simulations() const { return simulations_; }
   [[nodiscard]] int terms() const { return terms_; }
-  /// Whether a recording has the start that is fitted to it.
+  /// Whether the start of a recording is fitted to it.
   [[nodiscard]] bool starts_as_recorded(std::size_t recording) const {
     return recorded_[recording].deviation.has_value();
   }
-  /// Largest distance of a marker of the last simulations from where it started [m].
+  /// Returns the largest displacement of a marker from its start in the last simulations [m].
   [[nodiscard]] double movement() const { return movement_; }
-  /// Why one of the last simulations ended early; empty: none did.
+  /// Returns why one of the last simulations ended early; empty if none did.
   [[nodiscard]] const std::string& stopped() const { return stopped_; }
 
-  /// Returns a physical parameter [SI]; of the stiffness its ratio to the scene's.
+  /// Returns a physical parameter [SI]; for the stiffness its ratio to the scene's.
   [[nodiscard]] double value(std::size_t number, double log) const;
   [[nodiscard]] bool is_damping(Eigen::Index parameter) const {
     return parameter < physical() &&
@@ -64,29 +64,29 @@ class MotionMisfit {
   }
   /// Returns the nearest logarithm in the range of a physical parameter.
   [[nodiscard]] static double within_bounds(double log);
-  /// Whether the logarithm of a physical parameter ends its range.
+  /// Whether the logarithm of a physical parameter is at a bound of its range.
   [[nodiscard]] static bool at_bound(double log);
   [[nodiscard]] RodDamping damping(const Eigen::VectorXd& parameters) const;
-  /// Start of a recording; none: in equilibrium.
+  /// Returns the start of a recording; std::nullopt: it starts in equilibrium.
   [[nodiscard]] std::optional<MotionStart> start(const Eigen::VectorXd& parameters,
                                                  std::size_t recording) const;
 
-  /// Simulated less recorded coordinates [m]; the rod length where a simulation ends early.
+  /// Returns simulated minus recorded coordinates [m]; the rod length if a simulation ends early.
   [[nodiscard]] Eigen::VectorXd residuals(const Eigen::VectorXd& parameters);
-  /// Derivatives of the residuals by differences. @param here  residuals at the parameters
+  /// Computes derivatives of the residuals by differences. @param here  residuals at the parameters
   /// @param first  column from which derivatives are computed; those before are zero
   [[nodiscard]] Eigen::MatrixXd derivatives(const Eigen::VectorXd& parameters,
                                             const Eigen::VectorXd& here, Eigen::Index first = 0);
-  /// Inverse variances of the parameters before anything is simulated: weak of the physical ones,
-  /// of the modes by the errors of the smooth start.
+  /// Returns the prior inverse variances of the parameters: small for the physical ones, and for
+  /// the modes from the errors of the smooth start.
   [[nodiscard]] Eigen::VectorXd prior() const;
-  /// Variance of a coordinate by errors of the simulation alone [m^2].
+  /// Returns the variance of a coordinate by errors of the simulation alone [m^2].
   [[nodiscard]] double least_variance() const;
 
  private:
   struct Frame {
     double time = 0;
-    std::size_t begin = 0, end = 0;  ///< of MarkerMotion::positions
+    std::size_t begin = 0, end = 0;  ///< range in MarkerMotion::positions
   };
   struct Recorded {
     const MarkerMotion* motion = nullptr;
@@ -116,7 +116,7 @@ class MotionMisfit {
   std::string stopped_;
 };
 
-/// Parameters at which a sum of squares is least, with residuals and derivatives there.
+/// Parameters with the least sum of squares, with residuals and derivatives there.
 struct LeastSquares {
   Eigen::VectorXd parameters, residuals;
   Eigen::MatrixXd derivatives;
@@ -124,29 +124,32 @@ struct LeastSquares {
   bool converged = false;  ///< a further step would change the parameters by less than their errors
 };
 
-/// Levenberg's and Marquardt's method; derivatives are kept while steps with them converge fast.
-/// @param free  parameters from this one on are fitted
+/// Minimises the sum of squares by the Levenberg-Marquardt method. Derivatives are kept while steps
+/// with them converge fast.
+/// @param free  index of the first fitted parameter; those before are constant
 [[nodiscard]] LeastSquares least_squares(MotionMisfit& misfit, const Eigen::VectorXd& start,
                                          int most_steps, Eigen::Index free = 0);
 
-/// Fits the start of a recording to its first second, or a natural period if that is longer, with
-/// the scene as it is.
-/// @return none if the recording has too few markers
+/// Fits the start of a recording to its first second, or to a natural period if that is longer,
+/// without changes to the scene.
+/// @return std::nullopt if the recording has too few markers
 [[nodiscard]] std::optional<MotionStart> recorded_start(const Scene& scene,
                                                         const MarkerMotion& recording,
                                                         const RodDamping& damping,
                                                         const SolveOptions& solve);
 
-/// Returns Scene::start: a shape at rest, or recorded_start(); none: the scene has none.
+/// Returns the start that Scene::start defines: a shape at rest, or recorded_start(); std::nullopt
+/// if the scene has none.
 /// @param begin  time at which the rod starts [s]
-/// @throws InputError if its points are too few
+/// @throws InputError if the start has too few points
 [[nodiscard]] std::optional<MotionStart> given_start(const Scene& scene, double begin,
                                                      const RodDamping& damping,
                                                      const SolveOptions& solve);
 
-/// Sum of squares and prior about one point, with the derivatives of that point or an earlier one.
-/// A step is that of a logarithm, but of a damping its change divided by the damping, because the
-/// residuals are nearly linear in a damping and need not determine its logarithm.
+/// Sum of squares and prior, linearised about one point with the derivatives of that point or of an
+/// earlier one. A step is the change of a logarithm; for a damping it is the change divided by the
+/// damping, because the residuals are nearly linear in a damping and need not determine its
+/// logarithm.
 class NormalEquations {
  public:
   NormalEquations(const LeastSquares& at, const MotionMisfit& misfit, Eigen::Index free)
@@ -158,12 +161,12 @@ class NormalEquations {
                 prior_.cwiseProduct(at.parameters);
     gradient_.head(free).setZero();
     normal_.diagonal() += prior_;
-    // The prior's second derivative by the damping itself.
+    // Second derivative of the prior by the damping itself.
     for (Eigen::Index i = 0; i < misfit.physical(); ++i) {
       if (misfit.is_damping(i)) normal_(i, i) += prior_[i] * std::max(0.0, -at.parameters[i]);
     }
   }
-  /// Returns the step that lowers the sum most and reduces no damping more than tenfold.
+  /// Returns the step to the minimum, which reduces no damping more than tenfold.
   [[nodiscard]] Eigen::VectorXd step(double marquardt) const {
     constexpr double lowest = -0.9;
     constexpr double rounding = 1e-9;
@@ -194,12 +197,12 @@ class NormalEquations {
     }
     return parameters;
   }
-  /// Twice the decrease of the sum of squares, in variances, that a full step predicts.
+  /// Returns twice the predicted decrease of the sum of squares by a full step, in variances.
   [[nodiscard]] double decrease() const {
     const Eigen::VectorXd full = step(0);
     return -2 * gradient_.dot(full) - full.dot(normal_ * full);
   }
-  /// Sum of squares of residuals and parameters, in variances.
+  /// Returns the sum of squares of residuals and parameters, in variances.
   [[nodiscard]] double sum(const Eigen::VectorXd& residuals,
                            const Eigen::VectorXd& parameters) const {
     return residuals.squaredNorm() / variance_ + parameters.dot(prior_.cwiseProduct(parameters));

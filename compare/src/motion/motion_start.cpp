@@ -15,7 +15,8 @@
 namespace dlo::compare {
 namespace {
 
-/// Points at which a start is tabulated: linear interpolation is then off by 1e-4 of a half wave.
+/// Number of points at which a start is tabulated: the error of linear interpolation is then 1e-4
+/// of a half wave.
 constexpr Eigen::Index table_points = 129;
 
 /// Values of Legendre's polynomials and their derivatives at x in [-1, 1].
@@ -35,7 +36,8 @@ struct LegendreRow {
   }
 };
 
-/// Sums of products of Legendre's polynomials of arc length and powers of time, by least squares.
+/// A motion as sum of products of Legendre's polynomials of arc length and powers of time, fitted
+/// by least squares.
 class SmoothMotion {
  public:
   SmoothMotion(double length, double begin, double duration, Eigen::Index degree,
@@ -45,7 +47,8 @@ class SmoothMotion {
   void add_point(double s, double time, const Eigen::Vector3d& at, double weight) {
     add(LegendreRow(share(s), degree_).values, time, at, weight);
   }
-  /// Divided by the rod length, so that a direction weighs as a position does.
+  /// Adds a direction. Its row is multiplied by the rod length, so that it has the same weight as a
+  /// position.
   void add_direction(double s, double time, const Eigen::Vector3d& along, double weight) {
     add(LegendreRow(share(s), degree_).slopes * (2 / length_), time, along, weight * length_);
   }
@@ -61,7 +64,7 @@ class SmoothMotion {
         std::max<double>(1, static_cast<double>(matrix.rows() - coefficients_.rows()));
     noise_ = std::sqrt((matrix * coefficients_ - right).squaredNorm() / (3 * freedom));
   }
-  /// Standard deviation of a coordinate from the fit [m].
+  /// Returns the standard deviation of a coordinate from the fit [m].
   [[nodiscard]] double noise() const { return noise_; }
   [[nodiscard]] Eigen::Vector3d tangent(double s) const {
     const Eigen::RowVectorXd slopes = LegendreRow(share(s), degree_).slopes;
@@ -94,7 +97,8 @@ class SmoothMotion {
   double noise_ = 0;
 };
 
-/// Number of the first rows, of at most start_frames times.
+/// Returns the number of leading rows that have at most start_frames times.
+/// @param[out] times  these times
 std::size_t first_rows(const std::vector<MarkerPosition>& rows, std::set<double>& times) {
   std::size_t count = 0;
   for (const MarkerPosition& at : rows) {
@@ -108,7 +112,7 @@ std::size_t first_rows(const std::vector<MarkerPosition>& rows, std::set<double>
   return count;
 }
 
-/// Whether the arc lengths leave no interval of half of the rod without a point.
+/// Whether no interval of half of the rod is without a point.
 bool are_dense(const std::set<double>& arc_lengths, double length) {
   constexpr double widest = 0.5;
   double before = 0;
@@ -119,12 +123,12 @@ bool are_dense(const std::set<double>& arc_lengths, double length) {
   return length - before <= widest * length;
 }
 
-/// At the table's points.
+/// Returns the arc lengths of the table's points.
 std::vector<double> table_arc_lengths(double length) {
   return equal_arc_lengths(length, table_points);
 }
 
-/// Linear interpolation of a table.
+/// Interpolates a table linearly. @param share  fraction of the rod, 0 to 1
 Eigen::Vector3d interpolated(const Eigen::Matrix3Xd& table, double share) {
   const double x = std::clamp(share, 0.0, 1.0) * static_cast<double>(table.cols() - 1);
   const auto i = std::min<Eigen::Index>(static_cast<Eigen::Index>(x), table.cols() - 2);
@@ -148,6 +152,7 @@ energy_model::StartingShape shape_along(Tangent tangent) {
   };
 }
 
+/// Returns the start at the begin of a motion.
 /// @param duration  of the frames [s]; 0: one frame, at rest
 MotionStart start_of(const std::shared_ptr<SmoothMotion>& motion, double duration) {
   MotionStart result;
@@ -180,10 +185,11 @@ std::optional<MotionStart> smooth_start(const Scene& scene, const MarkerMotion& 
   }
   constexpr std::size_t fewest = 4;
   if (known.size() < fewest || !are_dense(known, scene.length)) return std::nullopt;
-  // Beyond twice the root of their number, polynomials through equidistant points oscillate.
+  // Polynomials through equidistant points oscillate if the degree exceeds twice the root of their
+  // number.
   const auto degree = std::min<Eigen::Index>(
       conditions - 1, static_cast<Eigen::Index>(2 * std::sqrt(static_cast<double>(conditions))));
-  // Half as many as there are intervals, so that the residuals show what the powers leave.
+  // Half as many powers as intervals, so that the residuals contain the errors of the powers.
   const Eigen::Index powers = std::clamp<Eigen::Index>((std::ssize(times) - 1) / 2, 1, 3);
   const double duration = times.size() > 1 ? *times.rbegin() - *times.begin() : 1;
   auto motion =
@@ -193,7 +199,8 @@ std::optional<MotionStart> smooth_start(const Scene& scene, const MarkerMotion& 
     const MarkerPosition& at = rows.positions[i];
     motion->add_point(*on_rod(at.arc_length, scene.length), at.time, at.position, 1);
   }
-  constexpr double exact = 30;  // of a gripper, which a marker moves by a thousandth
+  constexpr double exact = 30;  // weight of a gripper, which a marker then displaces by a
+                                // thousandth
   for (const double time : times) {
     const Scene now =
         times.size() > 1 ? scene_at(scene, time, time) : scene_at(scene, begin, begin);
@@ -223,8 +230,9 @@ StartDeviation::StartDeviation(const MotionStart& base, double length, bool clam
 }
 
 Eigen::VectorXd StartDeviation::deviations() const {
-  // The value of a cubic at the end of eleven frames has the error of one of them, its slope 14 to
-  // 45 times as much over the duration; a half wave of the rod turns it into an angle.
+  // The error of a cubic's value at the end of eleven frames is that of one of them; the error of
+  // its slope is 14 to 45 times as large, divided by the duration. A half wave of the rod converts
+  // it to an angle.
   constexpr double of_value = 2;
   constexpr double of_slope = 20;
   constexpr double least_noise = 1e-6;

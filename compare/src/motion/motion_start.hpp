@@ -12,40 +12,43 @@ namespace dlo::compare {
 struct MotionStart {
   energy_model::StartingShape shape;
   energy_model::StartingVelocities velocities;
-  double noise = 0;     ///< standard deviation of a coordinate from a fit of the start [m]
-  double duration = 0;  ///< of the frames that were fitted [s]; 0: one frame
+  double noise = 0;     ///< standard deviation of a coordinate from the fit of the start [m]
+  double duration = 0;  ///< duration of the fitted frames [s]; 0: one frame
 };
 
-/// Number of first frames through which smooth_start() fits a recording: the velocity needs
-/// several, the acceleration keeps them few.
+/// Number of first frames to which smooth_start() fits: the velocity needs several, and the
+/// acceleration allows only few.
 inline constexpr int start_frames = 11;
 
-/// Fits polynomials of arc length and time to the first frames of a recording, or to the only one,
-/// whose rod is then at rest. The grippers hold the polynomials where and how they are.
-/// @param scene  whose grippers may move
+/// Fits polynomials of arc length and time to the first frames of a recording, or to its only
+/// frame, whose rod is then at rest. The polynomials satisfy the positions and directions of the
+/// grippers.
+/// @param scene  its grippers may move
 /// @param begin  time at which the rod starts [s]
-/// @return none if the markers of the first frame are too few for a shape: fewer than four with
-/// those that grippers hold, or an interval of half of the rod has none
+/// @return std::nullopt if the points of the first frames are too few for a shape: fewer than four
+/// including those that grippers hold, or none in an interval of half of the rod
 [[nodiscard]] std::optional<MotionStart> smooth_start(const Scene& scene, const MarkerMotion& rows,
                                                       double begin);
 
-/// Modes by which a start may deviate from another one, for its shape and for its velocities each.
+/// Number of modes by which a start may deviate from another one, for its shape and for its
+/// velocities, in each of two directions.
 inline constexpr int start_modes = 6;
 
-/// A start and the numbers of another one nearby.
+/// Deviations of a start from a given one, as a vector of modes.
 class StartDeviation {
  public:
   /// @param length  of the rod [m];  @param clamped  whether the tangent at s = 0 is known
   StartDeviation(const MotionStart& base, double length, bool clamped);
 
   [[nodiscard]] static Eigen::Index size() { return 4 * start_modes; }
-  /// Returns the start whose tangents are rotated by angles, and whose points have velocities by
-  /// angular rates, across the tangents: sums of Legendre's polynomials of arc length.
-  /// @param modes  angles [rad] across the rod, start_modes in each of two directions, then angular
+  /// Returns the start with rotated tangents, and with the velocities of points due to angular
+  /// rates of the tangents, both across the tangents. Angles and rates are sums of Legendre's
+  /// polynomials of arc length.
+  /// @param modes  angles [rad], start_modes in each of two directions across the rod, then angular
   /// rates [rad/s]
   [[nodiscard]] MotionStart with(const Eigen::VectorXd& modes) const;
-  /// Returns upper estimates of the standard deviations of the modes, as errors of the base's
-  /// points cause them.
+  /// Returns upper estimates of the standard deviations of the modes caused by errors of the base's
+  /// points.
   [[nodiscard]] Eigen::VectorXd deviations() const;
 
  private:

@@ -15,7 +15,8 @@
 namespace dlo::compare {
 namespace {
 
-/// Of each piece: those that are asked for, else what is usual, and more where that stops.
+/// Returns the numbers of terms to try per interval: the requested one, or the usual one and larger
+/// ones in case the integration fails.
 std::vector<int> terms_to_try(int asked) {
   if (asked > 0) return {asked};
   return {12, 16, 24, 32};
@@ -25,7 +26,8 @@ std::vector<int> terms_to_try(int asked) {
   throw InputError(fmt::format("{}: --dynamic: {}", file, why));
 }
 
-/// The scene's rod at the first frame, with its masses and the ways of its grips and obstacles.
+/// Returns the scene's rod at the first frame, with its masses and the motions of its grips and
+/// obstacles.
 energy_model::MovingRod moving_rod(const Scene& scene, const std::vector<std::size_t>& obstacles,
                                    const FrameClock& clock, const RodDamping& damping) {
   const Scene first = clock.scene(scene, 0);
@@ -57,7 +59,7 @@ energy_model::MovingRod moving_rod(const Scene& scene, const std::vector<std::si
   return rod;
 }
 
-/// Whether something has a velocity at the begin.
+/// Whether a grip or an obstacle has a velocity at the start.
 bool begins_in_motion(const energy_model::MovingRod& rod) {
   const auto moves = [](const energy_model::GripMotion& motion) {
     if (!motion) return false;
@@ -68,7 +70,7 @@ bool begins_in_motion(const energy_model::MovingRod& rod) {
          std::ranges::any_of(rod.obstacle_motions, moves);
 }
 
-/// Whether its directions are not all the same.
+/// Whether the directions of a trajectory's poses differ.
 bool changes_direction(const Trajectory& way) {
   return std::ranges::any_of(way.poses(), [&](const Pose& pose) {
     return pose.direction && *pose.direction != *way.poses().front().direction;

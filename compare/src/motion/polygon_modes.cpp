@@ -15,7 +15,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Newton's method from what a solver has found to its own tolerance.
+/// Improves a solver's shape by Newton's method until it is at rest to rounding.
 Eigen::Matrix3Xd rest_of(const Scene& scene, const Discretisation& polygon,
                          Eigen::Matrix3Xd points) {
   for (const force_model::Grip& grip : polygon.rod.grips) {
@@ -36,7 +36,7 @@ Eigen::Matrix3Xd rest_of(const Scene& scene, const Discretisation& polygon,
       scene.file, polygon.rod.points()));
 }
 
-/// Square roots of the masses, as the stiffness is ordered.
+/// Returns the square roots of the masses, in the order of the stiffness matrix.
 Eigen::VectorXd mass_roots(const Eigen::VectorXd& masses) {
   return masses.cwiseSqrt().transpose().replicate<3, 1>().reshaped();
 }
@@ -58,7 +58,7 @@ MovingPolygon polygon_at_rest(const Scene& scene, const SolveOptions& options) {
                     "no modes out of it (allowed: a rod that is intrinsically straight)",
                     scene.file));
   }
-  // The minimiser knows potentials, which the paper's law between unlike segments has not.
+  // The minimiser needs a potential, which the paper's law between unequal segments does not have.
   const Model model = settings.law == BendingLaw::paper ? Model::force : Model::chain;
   const Shape near = solve(scene, model, options).shape;
   result.points = rest_of(scene, polygon, resample(near, polygon.arc_length).points);

@@ -9,38 +9,41 @@
 
 namespace dlo::compare {
 
-/// Most points of a polygon whose modes are worked out, by dense matrices.
+/// Largest number of points of a polygon whose modes are computed, by dense matrices.
 inline constexpr int most_points_of_modes = 300;
 
-/// The polygon of the force model at rest, as one that moves.
+/// The force model's polygon at rest, with its masses and stiffness.
 struct MovingPolygon {
   Discretisation discretisation;
   Eigen::Matrix3Xd points;         ///< at rest [m]
-  std::vector<Eigen::Index> free;  ///< of the points those that move
-  Eigen::VectorXd masses;          ///< of these, with what hangs on them [kg]
-  Eigen::MatrixXd stiffness;       ///< x, y, z of each of these in turn [N/m]
+  std::vector<Eigen::Index> free;  ///< indices of the points that move
+  Eigen::VectorXd masses;          ///< masses of these points, with what hangs on them [kg]
+  Eigen::MatrixXd stiffness;  ///< stiffness matrix of these points, in the order x, y, z of each
+                              ///< point [N/m]
 };
 
+/// Computes the polygon at rest.
 /// @throws InputError if the scene has no such polygon, ConvergenceError if it is not stable at
 /// rest
 [[nodiscard]] MovingPolygon polygon_at_rest(const Scene& scene, const SolveOptions& options);
 
-/// Vibrations of points on springs: K v = square M v.
+/// Vibration modes of points on springs: K v = square M v.
 struct PolygonModes {
   Eigen::VectorXd masses;   ///< by point
-  Eigen::VectorXd squares;  ///< growing
-  Eigen::MatrixXd shapes;   ///< by column, v^T M v = 1
+  Eigen::VectorXd squares;  ///< squared angular frequencies, growing [1/s^2]
+  Eigen::MatrixXd shapes;   ///< modes as columns, v^T M v = 1
 
-  /// The mode, or modes of one frequency together, that move most like a movement.
+  /// Mode, or modes of one frequency together, most similar to a given displacement.
   struct Match {
     double square = 0;
-    double likeness = 0;  ///< share of the movement's kinetic energy that they have [-]
+    double likeness = 0;  ///< their share of the kinetic energy of the displacement [-]
   };
-  /// @param movement  as the stiffness is ordered
+  /// Finds the modes most similar to a displacement.
+  /// @param movement  displacement, in the order of the stiffness matrix
   [[nodiscard]] Match nearest(const Eigen::VectorXd& movement) const;
 };
 
-/// @param masses  > 0 [kg]
+/// Computes the modes. @param masses  > 0 [kg]
 [[nodiscard]] PolygonModes polygon_modes(const Eigen::MatrixXd& stiffness,
                                          const Eigen::VectorXd& masses);
 

@@ -5,7 +5,7 @@
 
 namespace dlo::compare {
 
-/// The masses of a scene's rod, of its sections and of what hangs on it.
+/// Returns the masses of a scene's rod, of its sections and of what hangs on it.
 [[nodiscard]] energy_model::Inertia scene_inertia(const Scene& scene);
 
 }  // namespace dlo::compare

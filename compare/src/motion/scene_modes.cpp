@@ -19,7 +19,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Displacements of the polygon's free points in a mode of the rod.
+/// Returns the displacements of the polygon's free points in a mode of the rod.
 Eigen::VectorXd movement_of(const energy_model::VibrationMode& mode, const Scene& scene,
                             const MovingPolygon& polygon) {
   std::vector<double> on_rod;
@@ -30,8 +30,9 @@ Eigen::VectorXd movement_of(const energy_model::VibrationMode& mode, const Scene
   return mode.shape(on_rod).reshaped();
 }
 
-/// @param stiffest   of the polygon's modes with equal masses, 1 kg each [N/m]
-/// @param slowest    omega_squared of the rod [1/s^2]
+/// Returns the step constants for physical masses.
+/// @param stiffest   largest eigenvalue of the polygon's stiffness, with equal masses of 1 kg [N/m]
+/// @param slowest    omega_squared of the rod's slowest mode [1/s^2]
 PhysicalSteps physical_steps(double point_mass, double stiffest, double slowest,
                              const ModeOptions& options) {
   PhysicalSteps result;
@@ -39,7 +40,7 @@ PhysicalSteps physical_steps(double point_mass, double stiffest, double slowest,
   result.c_F = 1 / (options.rate * options.rate * point_mass);
   const double lost = 2 * options.damping * std::sqrt(std::max(0.0, slowest));
   result.c_h = std::exp(-lost / options.rate);
-  // |z| <= 1 of Formula 19 while c_F k <= 2 (1 + c_h), where c_h is the rate's.
+  // |z| <= 1 in Formula 19 if c_F k <= 2 (1 + c_h), where c_h depends on the rate.
   constexpr int rounds = 20;
   result.least_rate = std::sqrt(stiffest / (4 * point_mass));
   for (int i = 0; i < rounds; ++i) {
@@ -64,7 +65,7 @@ void add_polygon(const Scene& scene, const ModeOptions& options, SceneModes& res
     return;
   }
   const PolygonModes weighed = polygon_modes(polygon.stiffness, polygon.masses);
-  // A step has one c_F, and so one mass, for all points.
+  // A step has one c_F, and so the same mass, for all points.
   const PolygonModes equal =
       polygon_modes(polygon.stiffness, Eigen::VectorXd::Ones(polygon.masses.size()));
   result.physical = physical_steps(polygon.masses.mean(), equal.squares.tail<1>()[0],

@@ -10,58 +10,60 @@
 
 namespace dlo::compare {
 
-/// How many modes, and how a force model would step.
+/// Options of scene_modes(): the number of modes, and the steps of the force model.
 struct ModeOptions {
   int count = 6;          ///< modes, > 0
   double rate = 4000;     ///< steps a second, > 0 (the paper's)
-  double damping = 0.01;  ///< ratio of the slowest mode that the material has [-], > 0 to 1
-  /// Of a rod that clamps hold straight, not identifiable from its shape [N]; none: 0.
+  double damping = 0.01;  ///< damping ratio of the slowest mode in the material [-], > 0 to 1
+  /// Tension of a rod that clamps hold straight, which its shape does not determine [N]; empty: 0.
   std::optional<double> tension = std::nullopt;
   SolveOptions solve;  ///< limits of the solvers
 };
 
-/// What the stepper's c_F and c_h make of a movement of stiffness k, exactly:
-/// z^2 - (1 + c_h - c_F k) z + c_h = 0 from one step to the next (Formula 19).
+/// Motion of a mode with stiffness k under the stepper's c_F and c_h, exactly: z^2 - (1 + c_h - c_F
+/// k) z + c_h = 0 from one step to the next (Formula 19).
 struct SteppedMode {
-  double omega = 0;        ///< [rad/s]; 0 where it is overdamped
-  double damping = 1;      ///< ratio [-]; 1 where it is overdamped
+  double omega = 0;        ///< [rad/s]; 0 if overdamped
+  double damping = 1;      ///< damping ratio [-]; 1 if overdamped
   bool is_stable = false;  ///< both |z| are at most 1
 };
 
-/// @param rate  steps a second
+/// Computes the motion of a mode. @param rate  steps per second
 [[nodiscard]] SteppedMode stepped_mode(double stiffness, double c_F, double c_h, double rate);
 
-/// One mode of the rod, and what becomes of it.
+/// One mode of the rod, and the corresponding modes of the polygon and of the stepper.
 struct SceneMode {
   energy_model::VibrationMode rod;
-  std::optional<double> polygon_omega;  ///< of the points with the rod's masses [rad/s]
-  double polygon_likeness = 0;          ///< how much its movement is the rod's [-]
-  std::optional<SteppedMode> stepped;   ///< by the scene's own c_F and c_h
+  std::optional<double> polygon_omega;  ///< of the polygon with the rod's masses [rad/s]
+  double polygon_likeness = 0;  ///< similarity of its mode with the rod's, see PolygonModes::Match
+                                ///< [-]
+  std::optional<SteppedMode> stepped;  ///< with the scene's own c_F and c_h
 };
 
-/// What would make the mass of each point that of the rod's points in the mean, and the damping
+/// Step constants with which each point has the mean mass of the rod's points, and the damping is
 /// that of the material.
 struct PhysicalSteps {
   double point_mass = 0;  ///< mean of the free points [kg]
   double c_F = 0;         ///< 1 / (rate^2 point_mass) [m/N]
   double c_h = 1;         ///< [-]
-  /// Steps a second below which these masses are unstable, but for what c_s then does.
+  /// Steps per second below which these masses are unstable, without regard to c_s.
   double least_rate = 0;
 };
 
-/// The slowest modes of a scene's rod, of its polygon, and of the force model as it steps.
+/// The slowest modes of a scene's rod, of its polygon, and of the stepping force model.
 struct SceneModes {
-  energy_model::SolveStatus status = energy_model::SolveStatus::not_run;  ///< of the rod's
+  energy_model::SolveStatus status = energy_model::SolveStatus::not_run;  ///< of the rod's modes
   std::string message;
   std::vector<SceneMode> modes;         ///< the slowest first
-  std::optional<double> tension;        ///< of a rod that clamps hold straight [N]
-  std::string no_polygon;               ///< why there are none of the polygon; empty: there are
+  std::optional<double> tension;        ///< tension of a rod that clamps hold straight [N]
+  std::string no_polygon;               ///< why the polygon has no modes; empty if it has
   std::optional<double> mass_of_steps;  ///< m* = dt^2 / c_F of the scene's stepper [kg]
   std::optional<PhysicalSteps> physical;
 };
 
-/// About the equilibrium that the energy model finds, for small movements: obstacles and grips
-/// stand. @throws InputError, ConvergenceError; that too if the rod touches a rigid obstacle
+/// Computes the modes about the equilibrium that the energy model finds, for small displacements;
+/// obstacles and grips are fixed.
+/// @throws InputError, ConvergenceError; also if the rod touches a rigid obstacle
 [[nodiscard]] SceneModes scene_modes(const Scene& scene, const ModeOptions& options = {});
 
 }  // namespace dlo::compare

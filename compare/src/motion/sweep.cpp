@@ -6,7 +6,7 @@
 namespace dlo::compare {
 namespace {
 
-/// What one segment of the polyline sweeps, or a part of it: bilinear between its corners.
+/// Surface swept by a segment of the polyline, or by a part of it: bilinear between its corners.
 struct Patch {
   Eigen::Vector3d begin_before, end_before, begin_after, end_after;
 
@@ -21,7 +21,8 @@ struct Patch {
   }
 };
 
-/// No clearance differs from another one by more than the points are apart.
+/// Whether a patch is deeper in a body than `depth`. Clearances of two points differ by no more
+/// than the distance of the points, so patches far from the body are skipped.
 bool goes_through(const obstacle::Body& body, const Patch& patch, double depth, int halvings) {
   const double clearance = body.clearance(patch.centre());
   if (clearance < -depth) return true;

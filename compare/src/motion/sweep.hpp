@@ -6,11 +6,12 @@
 
 namespace dlo::compare {
 
-/// Radius of the largest ball in a body [m]; infinite of a half-space.
+/// Returns the radius of the largest ball in a body [m]; infinite for a half-space.
 [[nodiscard]] double inner_radius(const obstacle::Body& body);
 
-/// Whether a polyline, each of its points on a straight way, goes through a body deeper than that.
-/// @param before, after  its points at the begin and the end of their ways, 3 x M, M >= 2 [m]
+/// Whether a polyline whose points move on straight lines passes through a body deeper than
+/// `depth`.
+/// @param before, after  its points at the begin and the end of the motion, 3 x M, M >= 2 [m]
 /// @param depth          > 0 [m]
 [[nodiscard]] bool sweeps_through(const obstacle::Body& body, const Eigen::Matrix3Xd& before,
                                   const Eigen::Matrix3Xd& after, double depth);

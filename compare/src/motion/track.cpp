@@ -34,7 +34,7 @@ class Tracker {
   }
 
   [[nodiscard]] Track run(const Progress& progress) {
-    constexpr double most_points = 4e6;  // kept: a document of them takes some 0.5 GB
+    constexpr double most_points = 4e6;  // a document of so many points has some 0.5 GB
     const double points = static_cast<double>(clock_.frames()) * options_.samples;
     if (points > most_points) {
       throw InputError(
@@ -53,7 +53,7 @@ class Tracker {
   }
 
  private:
-  /// @return whether there is such a frame
+  /// Adds a frame. @return false if it has no shape
   bool add(std::size_t index) {
     const double time = clock_.time(index);
     const Timer timer;
@@ -95,7 +95,7 @@ class Tracker {
     return true;
   }
 
-  /// @return whether the shape has the turns that the clamps hold
+  /// Checks the turns. @return whether the shape has the turns that the clamps hold
   bool keeps_turns(const Scene& now, const TrackFrame& frame) {
     const double time = clock_.time(result_.frames.size());
     if (result_.frames.empty()) {
@@ -115,7 +115,8 @@ class Tracker {
     return false;
   }
 
-  /// @return whether the shape is where the work can have brought it
+  /// Adds work and energy, and a snap if there is one.
+  /// @return false if the work done does not allow the energy of the shape
   bool add_balance(const Passage& passage, TrackFrame& frame) {
     frame.work = result_.frames.back().work + passage.work;
     frame.released = passage.released;
@@ -201,7 +202,7 @@ class Tracker {
       summary.largest = error;
       summary.largest_time = frame.time;
     }
-    // The first one is searched for.
+    // The first frame is found by a search, so its duration is used only if there is no other.
     if (seconds_.empty()) seconds_.push_back(result_.frames.front().seconds);
     result_.median_seconds = median(std::move(seconds_));
     if (leader.empty()) return;
@@ -218,7 +219,7 @@ class Tracker {
   FrameClock clock_;
   Branch branch_;
   std::unique_ptr<ForceTrack> force_;
-  std::vector<double> seconds_;  // of frames that are followed
+  std::vector<double> seconds_;  // of frames that follow a branch
   std::vector<double> force_seconds_;
   Track result_;
 };

@@ -10,23 +10,23 @@
 namespace dlo::compare {
 namespace {
 
-/// By which a time may be off the pose that is meant, as the integrator's own units make it; it
-/// asks for what is after a pose at 1e-12 beyond [-].
+/// Relative rounding of times, as the integrator's own units cause it [-]. The integrator requests
+/// values after a pose at 1e-12 beyond it.
 constexpr double time_rounding = 1e-14;
 
-/// A leg, and the turn that its directions begin with.
+/// A leg of a trajectory, and the rotation of its directions at its start.
 struct TurnedLeg {
   TrajectoryLeg leg;
   Eigen::Quaterniond first_turn;
 };
 
-/// A clamp that rolls, at time zero.
+/// Direction and roll of a rolling clamp at time zero.
 struct Rolling {
   Eigen::Vector3d direction;
   double roll;
 };
 
-/// With zero time at `begin`.
+/// Returns the legs of a trajectory, with time zero at `begin`.
 std::vector<TurnedLeg> turned_legs(const Trajectory& way, double begin) {
   std::vector<Pose> poses = way.poses();
   for (Pose& pose : poses) pose.time -= begin;
@@ -60,7 +60,7 @@ energy_model::GripPose pose_on(const TurnedLeg& turned, const std::optional<Roll
   return pose;
 }
 
-/// At rest.
+/// Returns a pose without velocities and accelerations.
 energy_model::GripPose standing_at(const energy_model::GripPose& end) {
   energy_model::GripPose pose;
   pose.position = end.position;

@@ -13,8 +13,8 @@
 namespace dlo::compare {
 namespace {
 
-/// By which a gripper is displaced for the differences, over the length: far above the energy
-/// model's 1e-9, far below what would bend the rod otherwise.
+/// Displacement of a gripper for differences, divided by the length: far above the energy model's
+/// error of 1e-9, and too small to change how the rod bends.
 constexpr double displacement_share = 1e-3;
 
 Scene displaced(Scene scene, std::size_t gripper, const Eigen::Vector3d& by) {
@@ -26,7 +26,7 @@ Scene displaced(Scene scene, std::size_t gripper, const Eigen::Vector3d& by) {
   return scene;
 }
 
-/// Residuals of a scene's rod at rest [m].
+/// Returns the residuals of a scene's rod at rest [m].
 Eigen::Matrix3Xd residuals_at_rest(const Scene& scene, const TrackOptions& options,
                                    const MarkerMotion& recorded) {
   const Track moved = track(scene, options);
@@ -38,7 +38,7 @@ Eigen::Matrix3Xd residuals_at_rest(const Scene& scene, const TrackOptions& optio
   return motion_residuals(recorded, model);
 }
 
-/// Derivatives of all coordinates by a gripper's position, 3 positions x 3 [-].
+/// Returns the derivatives of all coordinates by a gripper's position, 3 positions x 3 [-].
 Eigen::MatrixX3d sensitivity(const Scene& scene, const TrackOptions& options,
                              const MarkerMotion& recorded, std::size_t gripper,
                              const Eigen::Matrix3Xd& here) {
@@ -62,7 +62,8 @@ MotionCause constant_cause(std::size_t gripper, const Eigen::MatrixX3d& design,
           left / std::sqrt(static_cast<double>(residuals.size()) / 3)};
 }
 
-/// None where frames have too few points to tell.
+/// Returns the cause that a gripper has another displacement in each frame; std::nullopt if frames
+/// have too few points.
 std::optional<MotionCause> path_cause(std::size_t gripper, const Eigen::MatrixX3d& design,
                                       const Eigen::VectorXd& residuals,
                                       const MarkerMotion& recorded) {
@@ -107,7 +108,7 @@ std::vector<MotionCause> gripper_causes(const Scene& scene, const TrackOptions& 
       result.push_back(constant_cause(gripper, design, all));
       if (auto path = path_cause(gripper, design, all, recorded)) result.push_back(*path);
     } catch (const ResultError&) {
-      continue;  // such as one that would draw the rod taut
+      continue;  // such as a displacement that pulls the rod taut
     }
   }
   return result;

@@ -9,14 +9,14 @@
 
 namespace dlo::compare {
 
-/// What a gripper that is elsewhere leaves of a recording's residuals: displaced by the same vector
-/// all the time, or by one of each frame's own (least squares). How the rod follows it is that of
-/// shapes at rest, by differences. The RMS of one of each frame's own is corrected for its three
-/// numbers a frame.
-/// @param options    of the track that the rod was made with
-/// @param at_rest    the rod at rest by these options
+/// Fits displacements of each gripper to a recording's residuals (least squares): the same
+/// displacement at all times, and a displacement of each frame. The motion of the rod with a
+/// gripper is computed from equilibrium shapes, by differences. The RMS with a displacement of each
+/// frame is corrected for its three numbers per frame.
+/// @param options    options of the track of the rod
+/// @param at_rest    the rod at rest with these options
 /// @param residuals  as motion_residuals() [m]
-/// @return both for each gripper; none of a gripper that cannot be displaced
+/// @return both causes for each gripper; none for a gripper that cannot be displaced
 [[nodiscard]] std::vector<MotionCause> gripper_causes(const Scene& scene,
                                                       const TrackOptions& options,
                                                       const MarkerMotion& recorded,

@@ -11,12 +11,12 @@
 namespace dlo::compare {
 namespace {
 
-/// Lags that are tried before Brent's method, and the largest number of points that they are tried
-/// with: of a recording of 1e6 points all would take a minute.
+/// Number of lags that are scanned before Brent's method, and largest number of points used for the
+/// scan. With all 1e6 points of a recording it would take a minute.
 constexpr int lag_steps = 200;
 constexpr std::size_t most_tried_points = 20'000;
 
-/// Every so many-th time of a recording, with all markers of that time.
+/// Returns the positions at every n-th time of a recording, with all markers of that time.
 std::vector<MarkerPosition> thinned(const std::vector<MarkerPosition>& positions) {
   const std::size_t stride = 1 + positions.size() / most_tried_points;
   std::vector<MarkerPosition> result;

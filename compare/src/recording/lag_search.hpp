@@ -8,26 +8,26 @@
 
 namespace dlo::compare {
 
-/// What a recording may be off as a whole, beside its lag.
+/// Displacement of a whole recording that is fitted besides its lag.
 enum class Displacement { none, constant };
 
-/// A constant shift of a recording in time, and in space.
+/// A constant shift of a recording in time and in space.
 struct MotionShift {
-  double lag = 0;                                    ///< by which the recording is late [s]
-  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< by which it is displaced [m]
-  double rms_m = 0;                                  ///< that is left [m]
+  double lag = 0;                                    ///< delay of the recording [s]
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< displacement of the recording [m]
+  double rms_m = 0;                                  ///< remaining RMS distance [m]
 };
 
-/// How far a lag is looked for, to either side: a quarter of the recording's duration.
+/// Largest lag that is tried, in both directions, divided by the recording's duration.
 inline constexpr double lag_range_share = 0.25;
 
-/// The mean displacement.
+/// Returns the mean displacement without a lag.
 [[nodiscard]] MotionShift best_offset(const MarkerMotion& recorded, const ModelMotion& model);
 
-/// The shift with the least mean square distance of all points.
-/// @param earliest  before which the rod is not known [s]; points whose shifted time may be before
-/// it are left out
-/// @return nothing if the least one is at an end of the range
+/// Returns the shift with the least mean square distance of all points.
+/// @param earliest  time before which the rod is not known [s]; points whose shifted time may be
+/// earlier are omitted
+/// @return std::nullopt if the least distance is at an end of the range
 [[nodiscard]] std::optional<MotionShift> best_lag(const MarkerMotion& recorded,
                                                   const ModelMotion& model, double earliest,
                                                   Displacement displacement);

@@ -17,16 +17,20 @@
 namespace dlo::compare {
 namespace {
 
-/// Points of the rod in each frame: cubics between them are off by 1e-10 of a smooth rod.
+/// Number of points of the rod in each frame: the error of cubics between them is 1e-10 for a
+/// smooth rod.
 constexpr int model_samples = 201;
-constexpr int fewest_frames = 4;  // that a cubic needs
-/// Frames of the model for each of the recording, which has nothing faster than half its rate.
+constexpr int fewest_frames = 4;  // as many as a cubic needs
+/// Ratio of the model's frame rate to the recording's, which contains nothing faster than half its
+/// own rate.
 constexpr double frames_per_recorded = 4;
-/// The scene's own frame rate is taken up to so many frames.
+/// Number of frames up to which the scene's own frame rate is used.
 constexpr double usual_frames = 2000;
-/// Errors that are none, over the length: of the interpolation where accelerations jump.
+/// Errors, divided by the length, that count as zero: those of the interpolation where
+/// accelerations jump.
 constexpr double no_error = 1e-5;
-/// What a path of a gripper, with three numbers a frame, may leave to be named.
+/// Largest remaining part of the deviation with which another path of a gripper is reported. It is
+/// small because a path has three numbers per frame.
 constexpr double path_may_leave = 0.35;
 
 struct RecordedTimes {
@@ -50,11 +54,11 @@ RecordedTimes times_of(const Scene& scene, const MarkerMotion& recorded) {
   return {first, before, static_cast<double>(times - 1) / (before - first)};
 }
 
-/// The rod by both models, as far as there is one.
+/// The rod by both models, as far as they exist.
 struct Models {
   TrackOptions options;
   std::optional<ModelMotion> at_rest, with_inertia;
-  std::string no_inertia;  // why
+  std::string no_inertia;  // why there is no rod with inertia
 
   [[nodiscard]] const std::optional<ModelMotion>& of(MotionModel model) const {
     return model == MotionModel::at_rest ? at_rest : with_inertia;
@@ -69,7 +73,7 @@ TrackOptions track_options(const Scene& scene, const RecordedTimes& times,
         fmt::format("--from {:g}: after the recording's first time (allowed: up to {:g} s)", from,
                     times.first));
   }
-  // Frames of a recording that is early are those of a later rod.
+  // Frames of an early recording are compared with the rod at a later time.
   const double to = times.last + lag_range_share * (times.last - times.first);
   const double rate = request.frame_rate.value_or(std::max(
       frames_per_recorded * times.rate, std::min(scene.track.frames, usual_frames / (to - from))));
@@ -84,7 +88,7 @@ TrackOptions track_options(const Scene& scene, const RecordedTimes& times,
   return options;
 }
 
-/// None, and why, of frames that do not come to the recording's end.
+/// Returns the model of the frames; std::nullopt if they do not reach the recording's end.
 template <typename Frames, typename Points>
 std::optional<ModelMotion> motion_model(const Frames& frames, const Points& points_of,
                                         const Scene& scene, const TrackOptions& options,
@@ -102,7 +106,7 @@ std::string stop_text(const std::optional<TrackStop>& stop) {
   return stop ? fmt::format("stopped at {:g} s: {}", stop->time, stop->why) : "has too few frames";
 }
 
-/// Adds the rod at rest. Returns why it stopped before its last frame; none: it did not.
+/// Adds the rod at rest. Returns why it stopped before its last frame; std::nullopt if it did not.
 std::optional<TrackStop> add_at_rest(const Scene& scene, double last,
                                      const MotionCheckRequest& request, const Progress& progress,
                                      Models& models) {
@@ -118,9 +122,9 @@ std::optional<TrackStop> add_at_rest(const Scene& scene, double last,
   }
 }
 
-/// Adds the rod with inertia: without a start in the scene, nor a time at which it begins in
-/// equilibrium, from the recording's own start. It needs no equilibria of the rod on its way, which
-/// a fast motion of the grippers may not have.
+/// Adds the rod with inertia. If the scene has no start, and no time at which it begins in
+/// equilibrium is given, the start is fitted to the recording. The rod with inertia needs no
+/// equilibria during the motion, which a fast motion of the grippers may not have.
 void add_inertia(const Scene& scene, const MarkerMotion& recorded,
                  const MotionCheckRequest& request, Models& models) {
   const TrackOptions& options = models.options;
@@ -169,18 +173,19 @@ Models run_models(const Scene& scene, const MarkerMotion& recorded,
   return models;
 }
 
-/// Looks for what brings a recording nearer: the fewer numbers a cause has, the earlier, and one
-/// that has more has to leave less than those before it.
+/// Searches for causes that explain a recording. Causes with fewer numbers are tried first; one
+/// with more numbers must leave a smaller deviation than those before it.
 class CauseSearch {
  public:
   CauseSearch(const MotionCheck& check, const Models& models, const MarkerMotion& recorded)
       : check_(check), models_(models), recorded_(recorded), least_(check.errors.rms_m) {
     const std::optional<TimeSpan> motion = motion_of(check.scene);
-    // What stands before the first pose has stood there before; what moves has come from somewhere.
+    // A rod that rests before the first pose has rested before; the past of a moving rod is not
+    // known.
     if (motion && motion->begin < *models.options.from) earliest_ = *models.options.from;
   }
 
-  /// The lag of the model that is judged.
+  /// Returns the lag of the recording relative to the judged model.
   [[nodiscard]] std::optional<MotionShift> lag() const {
     return best_lag(recorded_, *models_.of(check_.model), earliest_, Displacement::none);
   }
@@ -222,19 +227,20 @@ class CauseSearch {
   void add(MotionCause::Kind kind, std::string words, double left) {
     const double may_leave =
         kind == MotionCause::Kind::gripper_path ? path_may_leave : cause_may_leave;
-    // What is left already is none.
+    // A deviation that counts as zero needs no cause.
     if (!(least_ > no_error * check_.scene.length)) return;
     if (!(left <= may_leave * least_)) return;
     least_ = left;
     causes_.push_back({kind, std::move(words), left});
   }
-  /// By shapes at rest, which the rod with inertia follows where the path is slow.
+  /// Adds displaced grippers, computed from equilibrium shapes. A rod with inertia follows these if
+  /// the path is slow.
   void add_grippers(const ModelMotion& judged) {
     if (!models_.at_rest) return;
     std::vector<MotionCause> found =
         gripper_causes(check_.scene, models_.options, recorded_, *models_.at_rest,
                        motion_residuals(recorded_, judged));
-    // Constant ones first, then the best.
+    // Constant displacements come first, then the smallest remaining deviation.
     std::ranges::sort(found, [](const MotionCause& a, const MotionCause& b) {
       return a.kind != b.kind ? a.kind < b.kind : a.rms_m < b.rms_m;
     });
@@ -249,7 +255,7 @@ class CauseSearch {
   std::vector<MotionCause> causes_;
 };
 
-/// That which is nearer by far.
+/// Returns the model that is clearly nearer; std::nullopt if neither is.
 std::optional<MotionModel> nearer_model(const MotionCheck& check) {
   if (check.at_rest_rms_m <= cause_may_leave * check.with_inertia_rms_m) {
     return MotionModel::at_rest;
@@ -271,7 +277,8 @@ void judge_motion(MotionCheck& check) {
       tolerance.allowed_m / check.scene.length * 100, tolerance.by_default ? ", the default" : "");
 }
 
-/// The errors of frames whose time less the lag is one of the model's.
+/// Returns the errors after removal of the lag, of frames whose time minus the lag is within the
+/// model's frames.
 std::vector<FrameError> errors_without_lag(const MarkerMotion& recorded, const ModelMotion& model,
                                            double lag, double length) {
   std::vector<FrameError> frames =

@@ -18,13 +18,13 @@
 
 namespace dlo::compare {
 
-/// What a recording is held against.
+/// Model with which a recording is compared.
 enum class MotionModel {
-  at_rest,       ///< the rod at rest at every time, as track()
-  with_inertia,  ///< the rod with inertia, as dynamic_track()
+  at_rest,       ///< equilibrium at every time, see track()
+  with_inertia,  ///< rod with inertia, see dynamic_track()
 };
 
-/// In words, for files.
+/// Names of the models in files.
 template <>
 struct Choices<MotionModel> {
   /// In the enumeration's order.
@@ -32,33 +32,34 @@ struct Choices<MotionModel> {
                                                 {MotionModel::with_inertia, "with_inertia", ""}};
 };
 
-/// What is asked of a recorded motion.
+/// Options of the check of a recorded motion.
 struct MotionCheckRequest {
   MotionModel model = MotionModel::at_rest;
   RodDamping damping;                ///< of the rod with inertia
-  std::optional<double> from;        ///< when the rod's motion begins [s]; none: the recording's
-  std::optional<double> frame_rate;  ///< of the model, between whose frames it is interpolated [Hz]
-  std::optional<ShapeTolerance> tolerance;  ///< none: default_tolerance()
+  std::optional<double> from;        ///< start time of the rod's motion [s]; empty: the recording's
+  std::optional<double> frame_rate;  ///< frame rate of the model, which is interpolated between
+                                     ///< frames [Hz]
+  std::optional<ShapeTolerance> tolerance;  ///< empty: default_tolerance()
   Explaining explaining = Explaining::yes;  ///< pass and fail do not depend on it
   SolveOptions solve;
 };
 
-/// What would bring a recording nearer to the rod.
+/// A cause that would bring a recording nearer to the rod.
 struct MotionCause {
-  /// What it is.
+  /// Kinds of causes.
   enum class Kind {
     lag,           ///< the recording is late
-    offset,        ///< all of it is displaced
-    model,         ///< it has no inertia, or the rod has none
+    offset,        ///< the whole recording is displaced
+    model,         ///< the recording has no inertia, or the rod has none
     gripper,       ///< a gripper is displaced
-    gripper_path,  ///< a gripper's path is another one
+    gripper_path,  ///< a gripper has another path
   };
   Kind kind = Kind::lag;
   std::string words;  ///< a clause, with numbers
-  double rms_m = 0;   ///< that is left [m]
+  double rms_m = 0;   ///< remaining RMS distance [m]
 };
 
-/// In words, for files.
+/// Names of the kinds of causes in files.
 template <>
 struct Choices<MotionCause::Kind> {
   /// In the enumeration's order.
@@ -70,46 +71,48 @@ struct Choices<MotionCause::Kind> {
       {MotionCause::Kind::gripper_path, "gripper_path", ""}};
 };
 
-/// A recorded motion against its scene's rod, judged: what `dlo check --motion` says, and Python
-/// with it.
+/// Comparison of a recorded motion with its scene's rod: the result of `dlo check --motion` and of
+/// its Python function.
 struct MotionCheck {
   Scene scene;
-  std::string file;                          ///< the recording's
-  MotionModel model = MotionModel::at_rest;  ///< that it was held against
+  std::string file;                          ///< name of the recording
+  MotionModel model = MotionModel::at_rest;  ///< model that is judged
   RodDamping damping;                        ///< of the rod with inertia
-  double begin = 0;                          ///< of the rod's motion [s]
-  double frame_rate = 0;                     ///< of the model [Hz]
-  std::size_t points = 0;                    ///< of the recording, in all frames
+  double begin = 0;                          ///< start time of the rod's motion [s]
+  double frame_rate = 0;                     ///< frame rate of the model [Hz]
+  std::size_t points = 0;                    ///< number of points of the recording, in all frames
   MotionErrors errors;                       ///< of the recording
-  /// Lag that explains most, and the RMS that is left, where it explains a good part; NaN: none.
+  /// Lag that explains most, and the remaining RMS distance, if it explains a good part; else NaN.
   double lag = std::numeric_limits<double>::quiet_NaN();        ///< [s], > 0: the recording is late
   double lag_rms_m = std::numeric_limits<double>::quiet_NaN();  ///< [m]
-  std::vector<FrameError> frames_without_lag;  ///< as far as the rod is known; empty: no lag
-  FrameShapes worst_shapes;                    ///< of the worst frame
-  double at_rest_rms_m = 0;                    ///< from the rod at rest [m]
-  /// From the rod with inertia [m]; NaN: there is none, and why.
+  std::vector<FrameError> frames_without_lag;  ///< for times at which the rod is known; empty: no
+                                               ///< lag
+  FrameShapes worst_shapes;                    ///< shapes of the frame with the largest RMS
+  double at_rest_rms_m = 0;  ///< RMS distance from the rod at rest [m]; NaN: there is none
+  /// RMS distance from the rod with inertia [m]; NaN: there is none, and no_inertia states why.
   double with_inertia_rms_m = std::numeric_limits<double>::quiet_NaN();
   std::string no_inertia;
-  std::optional<MotionModel> nearer;  ///< that of the two which is nearer by far
+  std::optional<MotionModel> nearer;  ///< the model that is clearly nearer than the other one
   std::vector<MotionCause> causes;    ///< the best first
   ShapeTolerance tolerance;
-  double judged_m = 0;  ///< that was held against the tolerance [m]
+  double judged_m = 0;  ///< deviation that was compared with the tolerance [m]
   bool passes = false;
   std::string reason;  ///< one clause
 
-  /// The frame with the largest RMS.
+  /// Returns the frame with the largest RMS.
   [[nodiscard]] const FrameError& worst() const { return errors.frames[errors.worst_frame]; }
 };
 
-/// A cause is one if it takes at least half of the mean square distance.
+/// Largest part of the RMS distance that a cause may leave: it explains half of the mean square
+/// distance.
 inline constexpr double cause_may_leave = 0.7;
 
-/// Holds a recording, by markers (parse_markers()), against the rod that follows the
-/// scene's grippers. Points are compared at their own times and arc lengths; the rod is
-/// interpolated, not the recording. Both models are run where the scene allows both; one is judged.
-/// @param recorded  by time, then by arc length
-/// @throws InputError if the scene does not move, the recording is not of it, or has less than two
-/// times; ConvergenceError if the model that is judged does not come to the recording's end
+/// Compares a recording, by markers (parse_markers()), with the rod that follows the scene's
+/// grippers. Points are compared at their own times and arc lengths; the rod is interpolated, not
+/// the recording. Both models are computed if the scene allows both; one is judged.
+/// @param recorded  in the order of time, then of arc length
+/// @throws InputError if the scene does not move, the recording does not belong to it, or has fewer
+/// than two times; ConvergenceError if the judged model does not reach the recording's end
 [[nodiscard]] MotionCheck check_motion(const Scene& scene, const MarkerMotion& recorded,
                                        const MotionCheckRequest& request = {},
                                        const Progress& progress = {});

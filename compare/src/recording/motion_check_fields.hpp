@@ -7,7 +7,7 @@
 
 namespace dlo::compare {
 
-/// What is said of a recorded motion as a whole, in JSON.
+/// Returns the fields of a motion check as a whole, in JSON.
 [[nodiscard]] std::span<const Field<MotionCheck>> motion_check_fields();
 
 }  // namespace dlo::compare

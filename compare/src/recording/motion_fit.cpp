@@ -17,22 +17,24 @@
 namespace dlo::compare {
 namespace {
 
-/// Movement of the rod that is none, divided by the rod length: ten times the error of a step of
-/// the simulation.
+/// Movement of the rod, divided by its length, that counts as zero: ten times the error of a step
+/// of the simulation.
 constexpr double no_movement = 1e-6;
-/// Half the logarithm of the interval above which a number is not identified: a factor of ten.
+/// Half the logarithm of the ratio of an interval's ends above which a number is not identified: a
+/// factor of ten to each side.
 constexpr double widest_half = 2.3;
 
-/// First window [s]: a natural period, within which vibrations are not a period late yet, between
-/// these.
+/// Bounds of the first window [s]. The window is a natural period, in which vibrations cannot be a
+/// whole period late.
 constexpr double shortest_window = 1;
 constexpr double longest_window = 2;
-/// Steps of the least squares with a window and with all of a recording.
+/// Largest number of least squares steps with a window, and with all of a recording.
 constexpr int most_window_steps = 12;
 constexpr int most_last_steps = 24;
 
-/// Ratio of the variance of a mean of residuals to that of independent ones: 1 + 2 (rho_1 + rho_2 +
-/// ..) up to the first correlation in time that is not above zero, of all markers together.
+/// Returns the ratio of the variance of a mean of the residuals to that of independent ones: 1 + 2
+/// (rho_1 + rho_2 + ..) up to the first autocorrelation in time that is not positive, of all
+/// markers together.
 double correlated_share(const std::vector<MarkerMotion>& recordings,
                         const Eigen::VectorXd& residuals) {
   std::map<std::pair<std::size_t, double>, std::vector<Eigen::Vector3d>> series;
@@ -63,8 +65,8 @@ double correlated_share(const std::vector<MarkerMotion>& recordings,
   return result;
 }
 
-/// Throws InputError if the rod does not move at the markers: every stiffness and damping then
-/// fits.
+/// Checks that the rod moves at the markers; otherwise every stiffness and damping fits.
+/// @throws InputError
 void require_movement(const Scene& scene, const MotionMisfit& misfit,
                       const std::vector<MarkerMotion>& recordings) {
   if (misfit.movement() > no_movement * scene.length) return;
@@ -80,9 +82,9 @@ void require_movement(const Scene& scene, const MotionMisfit& misfit,
       recorded.positions.back().time, when));
 }
 
-/// Returns the parameters with the nearest of a few stiffnesses.
+/// Returns the parameters with the best of a few stiffnesses.
 Eigen::VectorXd with_nearest_stiffness(MotionMisfit& misfit, const Eigen::VectorXd& start) {
-  constexpr double finest = 0.35;  // of the logarithm
+  constexpr double finest = 0.35;  // step of the logarithm
   constexpr int most = 6;
   Eigen::VectorXd best;
   double least = std::numeric_limits<double>::infinity();
@@ -98,7 +100,7 @@ Eigen::VectorXd with_nearest_stiffness(MotionMisfit& misfit, const Eigen::Vector
   return best;
 }
 
-/// Covariance of all parameters. @param share  correlated_share() of the residuals
+/// Returns the covariance of all parameters. @param share  correlated_share() of the residuals
 Eigen::MatrixXd covariance(const MotionMisfit& misfit, const LeastSquares& nearest, double share) {
   Eigen::MatrixXd normal =
       nearest.derivatives.transpose() * nearest.derivatives / (share * nearest.variance);
@@ -122,7 +124,8 @@ void add_numbers(const Scene& scene, const MotionMisfit& misfit, const LeastSqua
     const double value = misfit.value(i, nearest.parameters[k]);
     MotionNumber number{value, value * std::exp(-half), value * std::exp(half), half < widest_half};
     if (!number.identified && misfit.is_damping(k)) {
-      // From zero to a limit by the curvature in the damping itself: without the logarithm's prior.
+      // From zero to a limit by the curvature in the damping itself, without the prior of its
+      // logarithm.
       const double information = 1 / covariances(k, k) - misfit.prior()[k];
       const double most = misfit.value(i, std::numeric_limits<double>::infinity());
       number.low = 0;
@@ -151,7 +154,7 @@ void add_numbers(const Scene& scene, const MotionMisfit& misfit, const LeastSqua
   }
 }
 
-/// Why the stiffness is not identified; empty: it is.
+/// Returns why the stiffness is not identified; empty if it is.
 std::string not_identified(const MotionMisfit& misfit, const LeastSquares& nearest,
                            const MotionFit& fit) {
   constexpr double rounding = 1e-6;
@@ -170,7 +173,7 @@ std::string not_identified(const MotionMisfit& misfit, const LeastSquares& neare
   return "";
 }
 
-/// Adds what is left of the distances: of each recording, of each marker, and of the worst time.
+/// Adds the remaining distances: of each recording, of each marker, and at the worst time.
 void add_errors(const std::vector<MarkerMotion>& recordings, const Eigen::VectorXd& residuals,
                 const Scene& scene, const MotionMisfit& misfit, MotionFit& result) {
   MarkerMotion joined;

@@ -8,7 +8,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Sums over points that belong together.
+/// Sums over the points of one group.
 struct Sum {
   double squares = 0;
   double largest = 0;

@@ -23,7 +23,7 @@ void require_hinges(const Scene& scene) {
       scene.file));
 }
 
-/// The chain, and its state.
+/// The chain of hinges and its state.
 class Hinges {
  public:
   Hinges(const Scene& scene, const energy_model::StartingShape& start, Eigen::Index segments)
@@ -63,12 +63,12 @@ class Hinges {
 
   [[nodiscard]] const Eigen::Matrix3Xd& points() const { return points_; }
 
-  /// @return whether the lengths could be kept
+  /// Makes a step of Verlet's method. @return false if the constraints did not converge
   [[nodiscard]] bool step(double time) {
     const Eigen::Matrix3Xd along =
         points_.rightCols(mass_.size() - 1) - points_.leftCols(mass_.size() - 1);
     add_forces(along / h_);
-    // From rest the first step is half of what the others are.
+    // The first step, from rest, has half the displacement of the others.
     const double squared = time * time * (begins_ ? 0.5 : 1.0);
     Eigen::Matrix3Xd next = begins_ ? points_ : Eigen::Matrix3Xd(2 * points_ - before_);
     for (Eigen::Index i = 1; i < next.cols(); ++i)
@@ -81,7 +81,7 @@ class Hinges {
   }
 
  private:
-  /// Weight, loads and springs. @param units  directions of the segments
+  /// Sums the forces of weight, loads and springs. @param units  directions of the segments
   void add_forces(const Eigen::Matrix3Xd& units) {
     force_ = dead_;
     if (clamp_) add_spring(*clamp_, units.col(0), 2 * stiffness_ / h_, 0);
@@ -90,7 +90,7 @@ class Hinges {
     }
   }
 
-  /// Of the hinge at a point, between the directions before and after it.
+  /// Adds the forces of the hinge at a point, with the directions before and after it.
   void add_spring(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double k, Eigen::Index i) {
     const double cosine = a.dot(b);
     const double sine = a.cross(b).norm();
@@ -104,11 +104,13 @@ class Hinges {
     force_.col(i - 1) -= before;
   }
 
-  /// Newton's method for the multipliers, whose matrix is tridiagonal.
+  /// Satisfies the constraints of length by Newton's method for the multipliers, whose matrix is
+  /// tridiagonal.
   bool keep_lengths(const Eigen::Matrix3Xd& along, double squared, Eigen::Matrix3Xd& next) {
     constexpr int most = 20;
     const Eigen::Index n = along.cols();
-    // Of h^2: rounding. Points that are n h away are right to half an epsilon of that.
+    // Relative to h^2: rounding. Points at a distance of n h are accurate to half an epsilon of
+    // that.
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     const double allowed = std::max(1e-13, 4 * epsilon * static_cast<double>(n));
     Eigen::VectorXd& l = multipliers_;
@@ -140,7 +142,7 @@ class Hinges {
     return false;
   }
 
-  /// Tensions, over h, of the segments on their points.
+  /// Applies the tensions of the segments, divided by h, to their points.
   void apply(const Eigen::Matrix3Xd& along, const Eigen::VectorXd& tensions, double squared,
              Eigen::Matrix3Xd& next) const {
     for (Eigen::Index j = 0; j < along.cols(); ++j) {
@@ -168,8 +170,8 @@ std::vector<Eigen::Matrix3Xd> hinge_motion(const ReleasedRod& rod, int segments,
                                            const SolveOptions& options) {
   require_hinges(rod.scene);
   Hinges hinges(rod.scene, released_shape(rod, options), segments);
-  // Verlet's method is stable up to omega dt = 2; a chain's fastest zigzag has
-  // omega = 4 / h^2 (EI / m)^(1/2), half a mass at the tip and the clamp's spring some more.
+  // Verlet's method is stable up to omega dt = 2. The fastest zigzag mode of a chain has omega = 4
+  // / h^2 (EI / m)^(1/2), slightly more with half a mass at the tip and the clamp's spring.
   constexpr double phase = 0.7;
   const double h = rod.scene.length / segments;
   const double longest =
