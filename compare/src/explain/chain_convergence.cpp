@@ -15,8 +15,9 @@ namespace {
 
 /// Largest relative difference between d(N) / d(2N) and 2^p of a discretisation error.
 constexpr double ratio_tolerance = 0.3;
-/// A chain whose distance is not halved after this number of bisections of its segments does not
-/// converge to the rod; a discretisation error of first order is an eighth then.
+/// Number of bisections of its segments after which the distance of a chain must be halved;
+/// otherwise the chain does not converge to the rod. A discretisation error of first order is an
+/// eighth then.
 constexpr int most_bisections = 3;
 
 /// Returns the arc lengths of the clamps that are between the points of a chain.

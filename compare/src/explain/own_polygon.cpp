@@ -21,12 +21,12 @@ namespace {
 /// Largest number of segments of a chain that can be distinguished from the rod itself.
 constexpr Eigen::Index most_segments = 200;
 
-/// Largest number of energies for a chain that may be that of the file. A file that is not near
-/// one would take more.
+/// Largest number of energy evaluations for a chain that may be that of the file. A file that is
+/// not near a chain would need more.
 constexpr int most_evaluations_near_file = 2000;
 
-/// Largest number of energies for a chain with the segments of another one bisected, which starts
-/// farther from its equilibrium.
+/// Largest number of energy evaluations for a chain with bisected segments, which starts farther
+/// from its equilibrium.
 constexpr int most_evaluations_refined = 20000;
 
 using energy_model::JointLaw;
@@ -161,7 +161,7 @@ class Chain {
     return gaps;
   }
 
-  /// Gives the chain the paper's joints, and, if it is welded, the paper's points of equal weight.
+  /// Sets the paper's joint law, and, if the chain is welded, the paper's points of equal weight.
   void set_paper_law() {
     problem_.stiffness = paper_stiffness(scene_, inner_.size(), clamp_);
     problem_.stiffnesses.resize(0);
@@ -190,7 +190,7 @@ class Chain {
 
   [[nodiscard]] double rms_of(const Eigen::Matrix3Xd& gaps) const { return rms(s_, gaps); }
 
-  /// Returns the chain from which the file's points have these gaps.
+  /// Returns the chain's points at rest from the gaps between them and the file's points.
   [[nodiscard]] Shape at_rest(const Eigen::Matrix3Xd& gaps) const { return {s_, points_ - gaps}; }
 
  private:

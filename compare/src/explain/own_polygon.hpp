@@ -14,7 +14,7 @@ namespace dlo::compare {
 
 /// Stiffness of the springs in the hinges of a chain.
 enum class Springs {
-  as_the_rod,  ///< EI/h
+  as_the_rod,  ///< stiffness EI/h
   fitted,      ///< the stiffness that fits best
 };
 
@@ -67,7 +67,7 @@ struct OwnPolygon {
     std::optional<energy_model::JointLaw> law = std::nullopt, LastPoint last = LastPoint::there);
 
 /// Returns the points at rest of a chain with the clamps, springs and Hookean law of another one,
-/// found by a local search; nothing if that search finds no equilibrium.
+/// found by a local search; std::nullopt if the search finds no equilibrium.
 /// @param start  initial guess; its arc lengths are those of the chain's points
 [[nodiscard]] std::optional<Shape> chain_at_rest(const Scene& scene, const Shape& start,
                                                  const OwnPolygon& like);

@@ -24,7 +24,7 @@ struct Finding {
 };
 
 /// Evaluates a profile.
-/// @param number  see MaterialErrors;
+/// @param number  see MaterialErrors
 /// @param unit  the scene's value of the number
 Finding finding(LogProfile& profile, const MaterialErrors& errors, std::size_t number, double unit,
                 double identified_within) {

@@ -14,7 +14,7 @@ namespace dlo::compare {
                                              const MaterialProfiles::Search& found);
 
 /// Returns MaterialFit::warning if the residuals are too large; empty if they are not.
-/// @param squares  sum of their squares [m^2];
+/// @param squares  sum of their squares [m^2]
 /// @param noise  given noise, unless the interval already accounts for larger residuals
 [[nodiscard]] std::string warning_of(const MaterialProfiles& material, double squares,
                                      const std::optional<double>& noise);

@@ -61,7 +61,8 @@ class MaterialProfiles {
   /// material.
   [[nodiscard]] std::vector<ResidualSeries> residuals(const MaterialPoint& material);
 
-  /// @param highest  sum of squares that may still fit [m^2]
+  /// Checks that rods that may fit are verified. @param highest  largest sum of squares that may
+  /// fit [m^2]
   /// @throws ConvergenceError if a rod that may fit is not verified on its obstacles
   void refuse_unverified(double highest) const;
 

@@ -54,9 +54,9 @@ double distance_from_line(const Eigen::Matrix3Xd& points) {
   return std::sqrt(std::max(0.0, eigen.eigenvalues()[0] + eigen.eigenvalues()[1]));
 }
 
-/// Returns the number of points that are not where a gripper holds the rod.
+/// Returns the number of points that do not coincide with the position of a gripper.
 long measured_points(const Scene& scene, const Eigen::Matrix3Xd& points) {
-  constexpr double same = 1e-3;  // of the length
+  constexpr double same = 1e-3;  // divided by the length
   long count = 0;
   for (const auto& point : points.colwise()) {
     const bool is_held = std::ranges::any_of(scene.grippers, [&](const Gripper& gripper) {
@@ -271,7 +271,7 @@ std::optional<UnverifiedState> unverified_state(const Aligner& aligner,
   return UnverifiedState{whole.rms_m, whole.max_m, rod.message};
 }
 
-/// Returns the length of the axis of a rod that may be stretched.
+/// Returns the length of the axis of a rod, including its stretch if the scene counts it [m].
 double stretched_length(const Scene& scene, const energy_model::Equilibrium& rod) {
   if (scene.stretch != Stretch::counted) return scene.length;
   constexpr int samples = 1001;

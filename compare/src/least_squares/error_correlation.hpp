@@ -35,7 +35,7 @@ struct ErrorCovariance {
 /// Correlation of the errors as estimated from residuals; see correlation_of().
 struct CorrelationEstimate {
   ErrorCovariance covariance;  ///< the most likely covariance
-  /// Twice the gain in (restricted) log likelihood over independent errors.
+  /// Twice the increase of the restricted log likelihood relative to independent errors.
   double likelihood_gain = 0;
   bool tested = false;       ///< whether there were enough residuals
   bool significant = false;  ///< independent errors gain as much in less than one case of twenty

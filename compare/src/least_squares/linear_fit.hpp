@@ -24,7 +24,7 @@ struct LinearFit {
 
 /// Returns the covariance of the numbers after the fit. For numbers that are unseen() it is that of
 /// the pseudoinverse, which is no variance.
-/// @param variance  of the errors;
+/// @param variance  of the errors
 /// @param before  1 over the prior standard deviation of each number about zero
 [[nodiscard]] Eigen::MatrixXd posterior(const LinearFit& fit, double variance,
                                         const Eigen::VectorXd& before);

@@ -92,7 +92,7 @@ class MeasuredShapes {
   /// frame's coordinates and by the fitted numbers; other columns are zero. There is one series per
   /// coordinate with given arc lengths, else one per direction across the rod; none out of the
   /// plane of a shape that lies in one.
-  /// @param movements  by the fitted numbers, in columns after the frames';
+  /// @param movements  by the fitted numbers, in columns after the frames'
   /// @param numbers  number of fitted numbers
   [[nodiscard]] std::vector<ResidualSeries> residuals(std::size_t shape, const Curve& curve,
                                                       const Alignment& alignment,

@@ -17,7 +17,7 @@ namespace dlo::compare {
 struct Moment {
   Scene scene;
   energy_model::Equilibrium rod;
-  double couples = 0;  ///< by which the zero of the couples' potential has moved since the first
+  double couples = 0;  ///< offset of the zero of the couples' potential since the first
                        ///< frame [J]
 };
 
@@ -30,7 +30,7 @@ struct Passage {
   bool kept = true;  ///< it stayed on its branch: each shape is close to the one before, and the
                      ///< energy balances
   bool smaller = false;  ///< with steps smaller than a frame
-  bool stands = false;   ///< nothing moved
+  bool stands = false;   ///< whether nothing moved
   /// If the branch was not kept: whether its end was observed, as loss of stability or as a
   /// vanishing contact force.
   bool ended = false;
@@ -55,7 +55,7 @@ struct BranchWitness {
 /// smallest eigenvalue decreases to zero in proportion to the distance from the fold, at a
 /// bifurcation the eigenvalue itself does, and where an obstacle releases the rod the contact force
 /// does.
-/// @param before, last  the last two shapes on the branch;
+/// @param before, last  the last two shapes on the branch
 /// @param rejected  size of the step from the last one [frames]
 [[nodiscard]] bool shows_its_end(const BranchWitness& before, const BranchWitness& last,
                                  double rejected);

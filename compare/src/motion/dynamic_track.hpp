@@ -28,9 +28,9 @@ struct DynamicFrame {
 
 /// Mean and largest error over all frames.
 struct TrackErrors {
-  double mean = 0;          ///< over the length [-]
-  double largest = 0;       ///< over the length [-]
-  double largest_time = 0;  ///< [s]
+  double mean = 0;          ///< divided by the length [-]
+  double largest = 0;       ///< divided by the length [-]
+  double largest_time = 0;  ///< time of the largest error [s]
 };
 
 /// Motion of a Track's rod with inertia.
@@ -56,7 +56,7 @@ struct DynamicTrack {
                                ///< length [-]
   TrackErrors quasi_static;    ///< errors of the track's shapes
   std::optional<TrackErrors> force;  ///< errors of the force model's shapes
-  double force_lag = std::numeric_limits<double>::quiet_NaN();  ///< as ForceTrackSummary's [s]
+  double force_lag = std::numeric_limits<double>::quiet_NaN();  ///< see ForceTrackSummary::lag [s]
   double force_error_without_lag = std::numeric_limits<double>::quiet_NaN();
 };
 

@@ -27,7 +27,7 @@ struct ForceFrame {
 /// Summary of the force model's frames.
 struct ForceTrackSummary {
   std::string none;          ///< why there are no frames; empty if there are
-  long steps_per_frame = 0;  ///< of the stepper
+  long steps_per_frame = 0;  ///< number of steps of the stepper
   double rest_error = 0;     ///< error of the first frame, at rest and without lag, over the length
                              ///< [-]
   double largest = 0;        ///< error over the length [-]
@@ -38,7 +38,7 @@ struct ForceTrackSummary {
   /// remaining RMS distance over all frames, over the length. NaN if the motion is too small.
   double lag = std::numeric_limits<double>::quiet_NaN();  ///< [s], >= 0
   double error_without_lag = std::numeric_limits<double>::quiet_NaN();
-  std::vector<std::string> neglected;  ///< as Solution::neglected
+  std::vector<std::string> neglected;  ///< see Solution::neglected
 };
 
 /// The force model of a scene in simulated time; it starts at rest.

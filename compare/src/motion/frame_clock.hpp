@@ -33,7 +33,7 @@ class FrameClock {
   /// Returns the scene at the time of a frame, with grippers and obstacles at rest.
   [[nodiscard]] Scene scene(const Scene& scene, std::size_t frame) const;
   /// Returns the scene between a frame and the one before.
-  /// @param frame  > 0;
+  /// @param frame  > 0
   /// @param share  fraction of the interval, 0 to 1
   [[nodiscard]] Scene scene_before(const Scene& scene, std::size_t frame, double share) const;
 

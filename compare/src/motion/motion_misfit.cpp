@@ -15,8 +15,8 @@ namespace {
 /// ten times larger differences, derivatives of combinations of modes that nearly cancel are too
 /// inexact for the least squares to converge.
 constexpr double parameter_difference = 3e-4;
-/// Tolerance of a step of the simulation: a few hundred steps are then off by less than a tenth of
-/// a millimetre per metre.
+/// Tolerance of a step of the simulation: the error of a few hundred steps is then less than a
+/// tenth of a millimetre per metre.
 constexpr double fit_tolerance = 1e-6;
 /// Smallest standard deviation of a coordinate, divided by the rod length: error of the simulation.
 constexpr double least_noise = 1e-5;
@@ -159,7 +159,7 @@ std::optional<MotionStart> MotionMisfit::start(const Eigen::VectorXd& parameters
   const Recorded& recorded = recorded_[recording];
   if (!recorded.deviation) return std::nullopt;
   Eigen::VectorXd modes = parameters.segment(recorded.first_mode, StartDeviation::size());
-  // Rates are parameters times the natural time.
+  // A parameter of an angular rate is the rate times the natural time.
   modes.tail(StartDeviation::size() / 2) /= natural_time_;
   return recorded.deviation->with(modes);
 }

@@ -16,7 +16,7 @@
 
 namespace dlo::compare {
 
-/// Physical parameter that a fit to a recorded motion finds.
+/// Physical parameters that can be fitted to a recorded motion.
 enum class MotionParameter { stiffness, material, air, quadratic };
 
 /// Simulations of one scene's rod against recordings of its markers. The parameters of the fit are
@@ -34,13 +34,13 @@ class MotionMisfit {
 
   /// Restricts the recordings to so many seconds from their first time.
   void restrict_to(double seconds);
-  /// Largest duration of a recording [s].
+  /// Returns the largest duration of a recording [s].
   [[nodiscard]] double duration() const { return duration_; }
-  /// sqrt(m l^3 / EI) of the scene as given [s].
+  /// Returns the natural time sqrt(m l^3 / EI) of the scene as given [s].
   [[nodiscard]] double natural_time() const { return natural_time_; }
 
   [[nodiscard]] const std::vector<MotionParameter>& fitted() const { return fitted_; }
-  /// Number of physical parameters, which are the first of all.
+  /// Returns the number of physical parameters, which come before all others.
   [[nodiscard]] Eigen::Index physical() const { return std::ssize(fitted_); }
   [[nodiscard]] Eigen::Index parameters() const;
   /// Returns the number of coordinates of the markers within the restriction.
@@ -120,7 +120,7 @@ class MotionMisfit {
 struct LeastSquares {
   Eigen::VectorXd parameters, residuals;
   Eigen::MatrixXd derivatives;
-  double variance = 0;     ///< of a residual, estimated
+  double variance = 0;     ///< estimated variance of a residual
   bool converged = false;  ///< a further step would change the parameters by less than their errors
 };
 

@@ -58,7 +58,7 @@ class MovingScene {
   [[nodiscard]] const std::vector<std::size_t>& obstacles() const { return obstacles_; }
   [[nodiscard]] bool in_motion() const { return in_motion_; }
   /// Simulates the rod.
-  /// @param times  growing, of the scene [s];
+  /// @param times  growing, of the scene [s]
   /// @param terms  0: as many as needed
   [[nodiscard]] SimulatedMotion run(const std::vector<double>& times, int terms,
                                     double tolerance = usual_step_tolerance) const;

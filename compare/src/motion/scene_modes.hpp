@@ -34,7 +34,7 @@ struct SteppedMode {
 /// One mode of the rod, and the corresponding modes of the polygon and of the stepper.
 struct SceneMode {
   energy_model::VibrationMode rod;
-  std::optional<double> polygon_omega;  ///< of the polygon with the rod's masses [rad/s]
+  std::optional<double> polygon_omega;  ///< frequency of the polygon with the rod's masses [rad/s]
   double polygon_likeness = 0;  ///< similarity of its mode with the rod's, see PolygonModes::Match
                                 ///< [-]
   std::optional<SteppedMode> stepped;  ///< with the scene's own c_F and c_h
@@ -52,7 +52,7 @@ struct PhysicalSteps {
 
 /// The slowest modes of a scene's rod, of its polygon, and of the stepping force model.
 struct SceneModes {
-  energy_model::SolveStatus status = energy_model::SolveStatus::not_run;  ///< of the rod's modes
+  energy_model::SolveStatus status = energy_model::SolveStatus::not_run;  ///< rod's modes
   std::string message;
   std::vector<SceneMode> modes;         ///< the slowest first
   std::optional<double> tension;        ///< tension of a rod that clamps hold straight [N]

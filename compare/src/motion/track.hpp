@@ -48,7 +48,7 @@ struct TrackEvent {
   };
   Kind kind = Kind::contact;
   std::size_t frame = 0;                                       ///< first frame after the event
-  std::optional<ContactChange> contact;                        ///< of a contact or a release
+  std::optional<ContactChange> contact;                        ///< for a contact or a release
   double released = std::numeric_limits<double>::quiet_NaN();  ///< energy released by a
                                                                ///< snap-through [J]
   double released_bound = 0;  ///< bound of the error of `released` [J]
@@ -66,7 +66,7 @@ struct Choices<TrackEvent::Kind> {
                                                      {TrackEvent::Kind::lost, "lost", ""}};
 };
 
-/// Why frames are missing.
+/// Reason for missing frames.
 struct TrackStop {
   double time = 0;  ///< time of the first frame without a shape [s]
   std::string why;
@@ -74,7 +74,7 @@ struct TrackStop {
 
 /// Quasi-static motion of a scene's rod.
 struct Track {
-  std::vector<double> arc_length;  ///< of the frames' points [m]
+  std::vector<double> arc_length;  ///< arc lengths of the frames' points [m]
   std::vector<TrackFrame> frames;  ///< up to the one at which it stopped; one or more
   std::vector<TrackEvent> events;  ///< by time
   std::optional<TrackStop> stopped;
@@ -83,7 +83,7 @@ struct Track {
   int lost = 0;  ///< number of frames whose shape was found by a search, on another branch or on
                  ///< the same
   int repeated = 0;                    ///< number of frames that needed smaller steps on the branch
-  std::vector<std::string> neglected;  ///< as Solution::neglected
+  std::vector<std::string> neglected;  ///< see Solution::neglected
   ForceTrackSummary force;
 };
 

@@ -64,9 +64,9 @@ std::vector<ArcPlace> moved_begins(std::vector<ArcPlace> begins, const Arcs& nex
   return begins;
 }
 
-/// Derivatives of the residual by all parameters, without residuals along the rod where arc lengths
-/// are free. Computed by differences for the arc to which a parameter belongs; the arcs behind it
-/// move as a rigid body.
+/// Computes the derivatives of the residual by all parameters, without residuals along the rod
+/// where arc lengths are free. Differences are taken for the arc to which a parameter belongs; the
+/// arcs behind it move as a rigid body.
 Eigen::MatrixXd arc_derivative(const ArcTarget& target, const Arcs& arcs) {
   constexpr double h = 1e-7;  // of a parameter, divided by its unit
   const Index count = arc_parameters(target, arcs.arcs.size());

@@ -41,7 +41,7 @@ class ArcTrace {
 /// Points to fit by arcs, and what is known of their arc lengths.
 struct ArcTarget {
   Eigen::Matrix3Xd points;
-  Eigen::Matrix3Xd d1;  ///< of the frames at the points; empty: arcs have no twist
+  Eigen::Matrix3Xd d1;  ///< first directors of the frames at the points; empty: arcs have no twist
   std::vector<double> s;
   bool knows_s = false;  ///< false: the arc length of an inner point is that of the nearest point
                          ///< of the arcs
@@ -52,9 +52,9 @@ struct ArcTarget {
 
   /// Whether arcs may have a twist, which only frames determine.
   [[nodiscard]] bool twists() const { return d1.cols() > 0 && !planar; }
-  /// Rows of the residual for each point.
+  /// Returns the number of rows of the residual for each point.
   [[nodiscard]] Eigen::Index rows() const { return twists() ? 4 : 3; }
-  /// Number of independent residuals per point, since the residual along the rod is not
+  /// Returns the number of independent residuals per point, since the residual along the rod is not
   /// independent. It is also the number of strains of an arc.
   [[nodiscard]] Eigen::Index numbers() const { return planar ? 1 : rows() - 1; }
 

@@ -30,7 +30,7 @@ namespace dlo::compare {
 /// rest angles are defined.
 class PlaneTurn {
  public:
-  /// @param normal  normal of the scene's plane, becomes +z;
+  /// @param normal  normal of the scene's plane, becomes +z
   /// @param origin  a point of the plane [m]
   PlaneTurn(const Eigen::Vector3d& normal, Eigen::Vector3d origin);
 

@@ -101,7 +101,7 @@ void require_enough_points(const Scene& scene, const ForceModelSettings& setting
 /// Distributes `segments` over the gaps, one at a time, each to the gap whose segments are longest.
 void share_segments(std::vector<Gap>& gaps, Eigen::Index segments, double L) {
   const auto longer = [L](const Gap& a, const Gap& b) {
-    // Of lengths that differ only by rounding, the first gap counts as the longest.
+    // If lengths differ only by rounding, the first gap counts as the longest.
     return a.free_length(L) / static_cast<double>(a.segments) * (1 + 1e-9) <
            b.free_length(L) / static_cast<double>(b.segments);
   };

@@ -53,7 +53,7 @@ Scan scan(const Function& function, double low, double high, int steps) {
 Minimum minimum_near(const Function& function, const Scan& scan, double tolerance) {
   const std::size_t best = scan.best();
   Minimum result{scan.x[best], scan.value[best]};
-  // Of equal values the first is the best, and it may be an end.
+  // The first of several equal values is the best, and it may be an end.
   if (!scan.is_bracketed()) return result;
   silence_gsl();
   Watched watched{&function};

@@ -33,7 +33,7 @@ struct Minimum {
 
 /// Finds the argument at which a function crosses `level`, to `tolerance`, by GSL's Brent root
 /// finder.
-/// @param inside  where the function is below `level`;
+/// @param inside  where the function is below `level`
 /// @param outside  where it is above
 [[nodiscard]] double crossing(const Function& function, double inside, double outside, double level,
                               double tolerance = 1e-5);

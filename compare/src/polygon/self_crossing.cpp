@@ -134,7 +134,7 @@ class Crossings {
         (points_.col(i) + at.along_a * along_a - points_.col(j) - at.along_b * along_b).norm()};
     if (!(here.second - here.first >= apart_) || !(here.distance <= near_)) return;
     const std::pair segments{i, j};
-    // Of several pairs with the same distance, the first along the rod counts.
+    // If several pairs have the same distance, the first along the rod counts.
     if (found_ && here.distance == near_ && !(segments < segments_)) return;
     found_ = here;
     segments_ = segments;

@@ -35,7 +35,7 @@ struct Choices<MotionModel> {
 /// Options of the check of a recorded motion.
 struct MotionCheckRequest {
   MotionModel model = MotionModel::at_rest;
-  RodDamping damping;                ///< of the rod with inertia
+  RodDamping damping;                ///< damping of the rod with inertia
   std::optional<double> from;        ///< start time of the rod's motion [s]; empty: the recording's
   std::optional<double> frame_rate;  ///< frame rate of the model, which is interpolated between
                                      ///< frames [Hz]
@@ -77,11 +77,11 @@ struct MotionCheck {
   Scene scene;
   std::string file;                          ///< name of the recording
   MotionModel model = MotionModel::at_rest;  ///< model that is judged
-  RodDamping damping;                        ///< of the rod with inertia
+  RodDamping damping;                        ///< damping of the rod with inertia
   double begin = 0;                          ///< start time of the rod's motion [s]
   double frame_rate = 0;                     ///< frame rate of the model [Hz]
   std::size_t points = 0;                    ///< number of points of the recording, in all frames
-  MotionErrors errors;                       ///< of the recording
+  MotionErrors errors;                       ///< distances of the recording
   /// Lag that explains most, and the remaining RMS distance, if it explains a good part; else NaN.
   double lag = std::numeric_limits<double>::quiet_NaN();        ///< [s], > 0: the recording is late
   double lag_rms_m = std::numeric_limits<double>::quiet_NaN();  ///< [m]

@@ -31,7 +31,7 @@ struct MotionNumber {
 /// Distance of one marker of a recorded motion from the moving rod.
 struct MarkerError {
   double at = 0;   ///< arc length [m]
-  double rms = 0;  ///< distance from the moving rod [m]
+  double rms = 0;  ///< RMS distance from the moving rod [m]
 };
 
 /// A recording to which a moving rod was fitted, with its distances.
@@ -55,9 +55,9 @@ struct MotionFit {
   std::string not_identified;
   MotionNumber stiffness;        ///< EI / (rho A), outside sections [m^4/s^2]
   MotionNumber scene_stiffness;  ///< Scene::stiffness() for the scene's mass
-  std::optional<MotionNumber> material, air, quadratic;  ///< as in RodDamping, for the scene's mass
+  std::optional<MotionNumber> material, air, quadratic;  ///< see RodDamping, for the scene's mass
   RodDamping damping;                                    ///< the whole damping, fitted and known
-  double noise = 0;      ///< of a coordinate, estimated from the residuals [m]
+  double noise = 0;      ///< standard deviation of a coordinate, from the residuals [m]
   double rms = 0;        ///< RMS distance between markers and rod [m]
   double given_rms = 0;  ///< RMS distance of the scene as given [m]
   std::size_t coordinates = 0;

@@ -68,8 +68,8 @@ Aligner::Aligner(const MeasuredShape& shape, double length, const AlignOptions& 
     along.arc_length = lengths_along(along.points);
     const double total = along.arc_length.back();
     is_whole_ = total >= (1 - whole_slack) * length;
-    // A chain's polyline is as long as the rod, a curve through points on it by its arcs. Measured
-    // points, which have equal weights, show their ends only up to their noise.
+    // The polyline of a chain is as long as the rod; for points of a curve the arcs are. Measured
+    // points, which have equal weights, determine the ends only up to their noise.
     has_rod_ends_ = options.weights == PointWeights::by_length &&
                     total >= (1 - end_slack) * length &&
                     polyline_length(along.points) <= (1 + end_slack) * length;

@@ -19,7 +19,7 @@ namespace dlo::compare {
 
 /// Distances of the points of an aligned shape from the rod.
 struct Measured {
-  std::vector<double> arc_length;  ///< of the rod, with which each point is compared [m], M
+  std::vector<double> arc_length;  ///< arc length with which each point is compared [m], M
   Eigen::Matrix3Xd reference;      ///< points of the rod at these arc lengths [m], 3 x M
   double excess_at_start_m = 0;    ///< length by which the points extend past arc length 0 [m]
   double excess_at_end_m = 0;      ///< length by which they extend past arc length l [m]

@@ -23,8 +23,7 @@ namespace dlo::compare {
                                                  Eigen::Index last_segment,
                                                  const Eigen::Matrix3Xd& points);
 
-/// Returns a scene's clamps that hold frames, in the order of their arc lengths, by their places in
-/// the scene.
+/// Returns the indices of a scene's clamps that hold frames, in the order of their arc lengths.
 [[nodiscard]] std::vector<std::size_t> framed_grippers(const Scene& scene);
 
 /// Returns the rod of a discretisation with the frames of the scene's clamps. Twist::angles are the

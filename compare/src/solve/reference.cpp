@@ -95,9 +95,9 @@ std::optional<energy_model::Equilibrium> stretched_shape(const Scene& scene,
   }
 }
 
-/// Solves by the exact model. Where an obstacle is in reach, the energy model detects the contacts,
-/// and the exact model confirms or corrects them.
-/// @throws std::invalid_argument, ConvergenceError if the energy model finds none
+/// Solves a scene by the exact model. If an obstacle is in reach, the energy model detects the
+/// contacts, and the exact model confirms or corrects them.
+/// @throws std::invalid_argument, ConvergenceError if the energy model does not converge
 energy_model::Equilibrium exact_shape(const Scene& scene, const energy_model::Problem& problem,
                                       const SolveOptions& options) {
   const TimeLimit limit(options.time_limit);

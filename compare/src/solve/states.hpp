@@ -19,19 +19,21 @@ namespace dlo::compare {
 /// RMS distance between shapes, divided by the length, below which they are the same.
 inline constexpr double same_shape = 1e-4;
 
-/// Distance of a known equilibrium from a shape, as a share of the length, below which a search
-/// from the shape's points is left out. Other equilibria are at least `same_shape` from the known
-/// one, and so at least as far from the shape as the known one is (triangle inequality).
+/// Distance of a known equilibrium from a shape, divided by the length, below which a search from
+/// the shape's points is omitted. The distance of other equilibria from the known one is at least
+/// `same_shape`, so they are at least as far from the shape as the known one (triangle inequality).
 inline constexpr double surely_nearest = same_shape / 2;
 
-/// Returns what a search from the points of a shape finds (reference_near), whatever its status;
-/// std::nullopt if the scene's reference_model() is not energy, which alone searches.
+/// Returns the equilibrium that a search from the points of a shape finds (reference_near),
+/// whatever its status; std::nullopt if the scene's reference_model() is not energy, since no other
+/// model searches.
 /// @param shape   in the scene's frame
 [[nodiscard]] std::optional<energy_model::Equilibrium> state_near(const Scene& scene,
                                                                   const Shape& shape,
                                                                   const SolveOptions& options);
 
-/// Adds an equilibrium to the states in their order, if it is proven stable and none of them.
+/// Inserts an equilibrium into the ordered states, if it is proven stable and differs from all of
+/// them.
 /// @param[in,out] states  result of all_states()
 /// @return the index of the added state, std::nullopt if none was added
 [[nodiscard]] std::optional<std::size_t> add_state(const Scene& scene,

@@ -78,7 +78,7 @@ void look_at_longer_rod(const Scene& scene, const Solution& own, double EA,
   } catch (const ConvergenceError&) {
     // The effect remains unknown.
   } catch (const InputError&) {
-    // As above.
+    // The effect remains unknown.
   }
 }
 

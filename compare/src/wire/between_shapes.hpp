@@ -43,8 +43,8 @@ struct AcrossRod {
 };
 
 /// Computes the distances across the rod.
-/// @param normal  of the plane;
-/// @param shape  aligned with the rod;
+/// @param normal  of the plane
+/// @param shape  aligned with the rod
 /// @param rod  sampled at many arc lengths
 [[nodiscard]] AcrossRod across_rod(const Shape& shape, const Shape& rod,
                                    const Eigen::Vector3d& normal);

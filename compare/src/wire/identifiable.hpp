@@ -24,7 +24,7 @@ namespace dlo::compare {
 
 /// Returns half the width of a 95 % interval in standard deviations: of the normal distribution if
 /// the noise is given, otherwise of Student's t distribution.
-/// @param noise  given noise [m];
+/// @param noise  given noise [m]
 /// @param freedom  degrees of freedom of the residuals from which noise is estimated
 [[nodiscard]] double interval_quantile(const std::optional<double>& noise, double freedom);
 

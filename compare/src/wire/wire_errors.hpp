@@ -12,7 +12,7 @@ namespace dlo::compare {
 struct WireErrors {
   bool tested = false;  ///< whether correlation was tested; false with too few residuals or none
   ErrorCovariance correlation;  ///< independent, unless correlation is significant
-  double variance = 0;          ///< of a coordinate; given, or from the residuals [m^2]
+  double variance = 0;          ///< variance of a coordinate; given, or from the residuals [m^2]
   double freedom = 0;           ///< degrees of freedom of the residuals
   /// Sum of squares of the residuals divided by the variance, and its degrees of freedom. For
   /// correlated errors these are Satterthwaite's, since residuals determine the correlation length

@@ -37,8 +37,9 @@ PredictedScene predicted(const WireProblem& problem, const WireOptimum& all, std
   return {problem.scene_at(left, values), all.rods()[left]};
 }
 
-/// Returns the term of natural curvature that the shapes determine least, of those that they
-/// determine less than what was known before does; none: they determine all that are not zero.
+/// Returns the index of the term of natural curvature that the shapes determine least, among the
+/// nonzero terms that they determine less than the prior does; std::nullopt if there is no such
+/// term.
 std::optional<std::size_t> undetermined_term(const WireProblem& problem, const MaterialFit& fit) {
   const auto first = static_cast<std::size_t>(problem.first_of_others());
   std::optional<std::size_t> result;

@@ -15,7 +15,7 @@ namespace dlo::compare {
 class WireOptimum {
  public:
   /// Finds the most likely values.
-  /// @param problem  must outlive this, as must the rods with all its numbers;
+  /// @param problem  must outlive this, as must the rods with all its numbers
   /// @param start  initial values
   /// @throws ConvergenceError if the iteration does not converge, or the time limit is exceeded
   WireOptimum(const WireProblem& problem, FittedRods& rods, const Eigen::VectorXd& start);

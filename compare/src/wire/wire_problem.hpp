@@ -19,7 +19,7 @@ struct WireProblem {
   WireProblem(const std::vector<Scene>& said, const std::vector<MeasuredShape>& of,
               MeasuredShapes& against, const MaterialFitOptions& asked, bool with_density);
 
-  const std::vector<Scene>& scenes;  ///< as given, one per shape
+  const std::vector<Scene>& scenes;  ///< scenes as given, one per shape
   const std::vector<MeasuredShape>& shapes;
   MeasuredShapes& measured;  ///< the shapes, with their time limit
   const MaterialFitOptions& options;
