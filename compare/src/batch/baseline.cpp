@@ -49,7 +49,8 @@ BaselineCase read_case(StrictTable& table) {
   return result;
 }
 
-/// TOML wants a point or an exponent in what is no integer; zero is written as 0.0.
+/// Formats a number as a TOML float: with a decimal point or an exponent, so that 0 is written as
+/// 0.0.
 std::string toml_number(double value) { return fmt::format("{:#.6g}", value); }
 
 }  // namespace
@@ -94,7 +95,7 @@ std::vector<BaselineCase> load_baseline(const std::string& path) {
 }
 
 std::vector<BaselineCase> present_baseline(const std::string& path) {
-  std::error_code unknown;  // writing tells what is wrong with a name
+  std::error_code unknown;  // ignored: an unusable name is reported when the file is written
   if (!std::filesystem::exists(path, unknown)) return {};
   return load_baseline(path);
 }

@@ -10,49 +10,52 @@
 
 namespace dlo::compare {
 
-/// How far a shape is from the energy model's, each as a share of the rod's length [-].
+/// Distances of a shape from the energy model's, divided by the rod's length [-].
 struct ShapeErrors {
-  double rms = 0;             ///< along the rod
-  std::optional<double> max;  ///< of any point; nothing from dlo suite, which measures rms alone
-  std::optional<double> tip;  ///< nothing if both ends are held
+  double rms = 0;  ///< root mean square along the rod
+  /// Largest distance of any point; empty from dlo suite, which measures rms alone
+  std::optional<double> max;
+  std::optional<double> tip;  ///< distance of the free tip; empty if both ends are held
 };
 
-/// Errors of one scene with one choice of model, law, bookkeeping and N, or of one program and N.
+/// Errors of one scene with one choice of model, law, bookkeeping and N, or with one foreign
+/// program and N.
 struct BaselineCase {
-  std::string scene;                                  ///< its name
-  std::string program;                                ///< name of somebody else's, or empty
-  Model model = Model::force;                         ///< force or chain, without a program
-  BendingLaw law = BendingLaw::hooke;                 ///< of bending
-  Bookkeeping bookkeeping = Bookkeeping::consistent;  ///< of the polygon
-  int points = 0;                                     ///< N
-  ShapeErrors errors;                                 ///< those of this case
-  /// 16 hexadecimal digits that stand for the rest of the scene; empty: not known.
+  std::string scene;           ///< name of the scene
+  std::string program;         ///< name of the foreign program; empty if `model` was measured
+  Model model = Model::force;  ///< force or chain; not used if `program` is set
+  BendingLaw law = BendingLaw::hooke;                 ///< joint law
+  Bookkeeping bookkeeping = Bookkeeping::consistent;  ///< end and mass convention of the polygon
+  int points = 0;                                     ///< number of points N
+  ShapeErrors errors;                                 ///< errors of the shape of this case
+  /// Hash of the scene data that the name does not contain, 16 hexadecimal digits; empty if
+  /// unknown.
   std::string fingerprint;
 
-  /// "copper wire (force, law hooke, bookkeeping consistent, N = 16)": two cases with the same name
-  /// are the same case.
+  /// Returns a name such as "copper wire (force, law hooke, bookkeeping consistent, N = 16)". Two
+  /// cases with equal names are the same case.
   [[nodiscard]] std::string name() const;
-  /// "force", or the name of the program.
+  /// Returns the model, such as "force", or the name of the foreign program.
   [[nodiscard]] std::string solver() const;
 };
 
-/// Reads a baseline: TOML with schema = "dlo/baseline/1" and a [[case]] for each.
-/// @throws InputError naming file, line, key, value and what is allowed, also if a case comes twice
+/// Reads a baseline: TOML with schema = "dlo/baseline/1" and one [[case]] per case.
+/// @throws InputError with file, line, key, value and what is allowed, also if a case occurs twice
 [[nodiscard]] std::vector<BaselineCase> read_baseline(const std::string& text,
                                                       const std::string& file);
-/// Reads a baseline file. @throws InputError as read_baseline, or if it cannot be read
+/// Reads a baseline file. @throws InputError as read_baseline, or if the file cannot be read
 [[nodiscard]] std::vector<BaselineCase> load_baseline(const std::string& path);
 
-/// The same of a file that may not be there yet: no cases.
+/// Reads a baseline file as load_baseline does, or returns no cases if the file does not exist.
 [[nodiscard]] std::vector<BaselineCase> present_baseline(const std::string& path);
 
-/// Replaces a baseline file that is still as it was read.
-/// @throws OutputError if another process has changed it, or it cannot be written
+/// Replaces a baseline file if its content is still `read`.
+/// @throws OutputError if another process has changed the file, or if it cannot be written
 void replace_baseline(const std::string& path, const std::vector<BaselineCase>& read,
                       const std::vector<BaselineCase>& cases);
 
-/// A baseline's text, sorted by name, errors with 6 significant digits: what does not change reads
-/// the same.
+/// Returns the text of a baseline: cases sorted by name, errors with 6 significant digits.
+/// Unchanged cases therefore give unchanged text.
 [[nodiscard]] std::string baseline_text(std::vector<BaselineCase> cases);
 
 }  // namespace dlo::compare

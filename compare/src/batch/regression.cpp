@@ -27,7 +27,7 @@ RegressionVerdict verdict_of(double expected, double measured,
                              const RegressionTolerance& tolerance) {
   const double margin = tolerance.absolute + tolerance.relative * expected;
   if (measured < expected - margin) return RegressionVerdict::better;
-  // The negation makes a NaN worse.
+  // The negated comparison classifies a NaN as worse.
   return measured <= expected + margin ? RegressionVerdict::same : RegressionVerdict::worse;
 }
 
@@ -59,7 +59,8 @@ void compare_errors(RegressionResult& result, const RegressionTolerance& toleran
   }
 }
 
-/// What a scene says, as text. Twelve digits, so that "2 mm" is 0.002.
+/// Collects the content of a scene as text. Numbers have twelve digits, so that "2 mm" equals
+/// 0.002.
 class ContentText {
  public:
   void add_words(std::string_view words) { text_ += words; }
@@ -68,7 +69,8 @@ class ContentText {
     for (const double component : vector) add(component);
   }
   void add(const std::optional<double>& value) { value ? add(*value) : add_words("- "); }
-  // What few scenes have is named, so that others keep the fingerprints of their baselines.
+  // Fields that few scenes have are added with their name, so that the fingerprints of other scenes
+  // stay the same.
   void add_named(const char* name, const std::optional<double>& value) {
     if (!value) return;
     add_words(name);
@@ -185,7 +187,8 @@ void add_force_model(ContentText& text, const ForceModelSettings& settings) {
   }
 }
 
-/// All that a scene's shape depends on and the case's name does not say.
+/// Returns all content of a scene on which its shape depends and that the case's name does not
+/// contain.
 std::string content_of(const Scene& scene) {
   ContentText text;
   add_rod(text, scene);
@@ -197,8 +200,8 @@ std::string content_of(const Scene& scene) {
   return text.take();
 }
 
-/// Of measured cases, by name, the case of the baseline whose place they take: the only other one
-/// of the same scene and model.
+/// Returns, by name of a measured case, the case of the baseline that it replaces. A case replaces
+/// another if both are the only unmatched cases of the same scene and solver.
 std::map<std::string, const BaselineCase*> replaced_cases(
     const std::vector<BaselineCase>& baseline, const std::vector<MeasuredCase>& measured) {
   std::map<std::string, const BaselineCase*> before;
@@ -223,7 +226,8 @@ std::map<std::string, const BaselineCase*> replaced_cases(
   return replaced;
 }
 
-/// "law hooke, N = 16" where the settings of two cases of one scene differ.
+/// Returns the settings in which a case differs from another one of its scene, such as "law hooke,
+/// N = 16".
 std::string settings_of(const BaselineCase& entry, const BaselineCase& other) {
   std::string text;
   const auto add = [&](bool differs, const std::string& setting) {
@@ -236,7 +240,7 @@ std::string settings_of(const BaselineCase& entry, const BaselineCase& other) {
   return text;
 }
 
-/// What a case is other than the baseline's in; empty if it is the same.
+/// Describes how a case differs from the baseline's in settings or scene; empty if it does not.
 std::string change_between(const BaselineCase& before, const BaselineCase& now) {
   if (before.name() != now.name()) {
     return fmt::format("{} (baseline {})", settings_of(now, before), settings_of(before, now));
@@ -246,7 +250,7 @@ std::string change_between(const BaselineCase& before, const BaselineCase& now) 
                                                         : "";
 }
 
-/// The cases of a baseline, by the names that this run has for them.
+/// Returns the cases of a baseline, keyed by the names that they have in this run.
 std::map<std::string, const BaselineCase*> expected_cases(
     const std::vector<BaselineCase>& baseline, const std::vector<MeasuredCase>& measured) {
   std::map<std::string, const BaselineCase*> expected;
@@ -258,7 +262,7 @@ std::map<std::string, const BaselineCase*> expected_cases(
   return expected;
 }
 
-/// Of a case of the baseline as long as none of the measured ones is it.
+/// Returns the result of a case of the baseline that no measured case matches.
 RegressionResult not_measured(const BaselineCase& entry,
                               const std::vector<MeasuredCase>& measured) {
   RegressionResult result;
@@ -274,7 +278,8 @@ RegressionResult not_measured(const BaselineCase& entry,
   return result;
 }
 
-/// @param known  the baseline's case that it is; null if there is none
+/// Compares a measured case with the baseline. @param known  the baseline's case that it matches or
+/// replaces; null if there is none
 void judge_case(RegressionResult& result, const MeasuredCase& measurement,
                 const BaselineCase* known, const RegressionTolerance& tolerance) {
   result.message.clear();
@@ -355,7 +360,7 @@ std::vector<RegressionResult> judge_regression(const std::vector<BaselineCase>& 
         fmt::format("judge_regression: tolerance relative = {}, absolute = {}, must be >= 0",
                     tolerance.relative, tolerance.absolute));
   }
-  // By the name that this run has for it.
+  // keyed by the case's name in this run
   const std::map<std::string, const BaselineCase*> expected = expected_cases(baseline, measured);
   std::map<std::string, RegressionResult> results;
   for (const auto& [name, entry] : expected) results[name] = not_measured(*entry, measured);

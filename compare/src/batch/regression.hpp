@@ -11,29 +11,30 @@
 
 namespace dlo::compare {
 
-/// The case that a scene is, before it is solved: without errors.
+/// Returns the case of a scene and model, before it is solved: without errors.
 [[nodiscard]] BaselineCase case_of(const Scene& scene, Model model);
 
-/// Solves a scene with `model` (chain or force) and with the energy model.
+/// Solves a scene with `model` (chain or force) and with the energy model, and returns the distance
+/// between both shapes.
 /// @throws InputError, ConvergenceError
 [[nodiscard]] BaselineCase measure_case(const Scene& scene, Model model,
                                         const SolveOptions& options = {});
 
-/// What became of a case's errors.
+/// Comparison of a case's errors with the baseline.
 enum class RegressionVerdict {
   same,
   better,
   worse,
-  changed,          ///< of the same name, but its scene or settings are not the baseline's
-  not_in_baseline,  ///< measured, but the baseline does not know it
+  changed,          ///< same name, but its scene or settings differ from the baseline's
+  not_in_baseline,  ///< measured, but not contained in the baseline
   not_measured,     ///< in the baseline, but not measured
   not_solved,       ///< a solver did not converge
 };
 
-/// In words, for tables.
+/// Names of the verdicts in tables.
 template <>
 struct Choices<RegressionVerdict> {
-  /// In the enumeration's order.
+  /// All verdicts, in the order of the enumeration.
   static constexpr Choice<RegressionVerdict> all[] = {
       {RegressionVerdict::same, "same", ""},
       {RegressionVerdict::better, "better", ""},
@@ -44,50 +45,54 @@ struct Choices<RegressionVerdict> {
       {RegressionVerdict::not_solved, "not solved", ""}};
 };
 
-/// Everything but same and better.
+/// Whether a verdict is a failure: all but same and better are.
 [[nodiscard]] bool failed(RegressionVerdict verdict);
 
-/// A share e of the rod's length has changed if it is off by more than absolute + relative * e.
+/// Tolerance of a regression. An error e, divided by the rod's length, has changed if it differs
+/// from the baseline by more than absolute + relative * e.
 struct RegressionTolerance {
-  double relative = 0.01;      ///< share of the error
-  double absolute = 1e-6;      ///< share of the rod's length
-  bool of_deflection = false;  ///< `absolute` is a share of the deflection (TrivialShape) instead
+  double relative = 0.01;  ///< fraction of the error, >= 0
+  double absolute = 1e-6;  ///< fraction of the rod's length, >= 0
+  /// `absolute` is a fraction of the deflection (TrivialShape) instead
+  bool of_deflection = false;
 };
 
-/// One case against its baseline.
+/// Comparison of one case with its baseline.
 struct RegressionResult {
-  std::string name;  ///< of the case, BaselineCase::name(); of a changed one that of this run
-  RegressionVerdict verdict = RegressionVerdict::not_solved;  ///< on all its errors
-  std::optional<ShapeErrors> expected;  ///< of the baseline, if it knows the case
-  std::optional<ShapeErrors> measured;  ///< of this run, if it was solved
-  std::string message;                  ///< one line, in % of the rod's length
+  std::string name;  ///< BaselineCase::name() of the case; for a changed case, its name in this run
+  /// Verdict over all errors of the case
+  RegressionVerdict verdict = RegressionVerdict::not_solved;
+  std::optional<ShapeErrors> expected;  ///< baseline errors, if the baseline contains the case
+  std::optional<ShapeErrors> measured;  ///< errors of this run, if the case was solved
+  std::string message;                  ///< one line, errors in % of the rod's length
 };
 
-/// A scene and model that were asked for: its errors, or why there are none.
+/// Requested scene and model: its errors, or the reason why there are none.
 struct MeasuredCase {
-  BaselineCase entry;   ///< without errors if it was not solved
-  std::string problem;  ///< of the solver; empty if there is none
-  /// TrivialShape::deflection_m over the length, for a tolerance of it; else 1.
+  BaselineCase entry;   ///< has no errors if the case was not solved
+  std::string problem;  ///< message of the solver; empty if there is none
+  /// TrivialShape::deflection_m divided by the length if the tolerance is a fraction of it, else 1.
   double deflection_share = 1;
 };
 
-/// Runs somebody else's program on a scene, with as many points as that says, and measures its
-/// shape against the energy model's. @throws ConvergenceError, InputError of the energy model
+/// Runs a foreign program on a scene, with the scene's number of points, and measures the distance
+/// of its shape from the energy model's. @throws ConvergenceError, InputError of the energy model
 [[nodiscard]] MeasuredCase measure_program(const Scene& scene, const ForeignProgram& program,
                                            const SolveOptions& options = {});
 
-/// Every case of either side, sorted by name. A case is worse if any of its errors is, better if
-/// none is worse and any is better; an error that only one side has is worse. A case is changed,
-/// whatever its errors, if its scene's fingerprint is another, or if it is the only one of its
-/// scene and model that the baseline lacks, and the baseline has one of them that was not measured.
+/// Compares the cases of the baseline and of this run, sorted by name. A case is worse if any of
+/// its errors is worse, and better if none is worse and any is better. An error that only one side
+/// has is worse. A case is changed, whatever its errors, in two cases: its scene's fingerprint
+/// differs, or it is the only case of its scene and model that the baseline lacks, and the baseline
+/// has exactly one case of them that was not measured.
 /// @throws InputError if two measured cases have the same name, std::invalid_argument if a
 /// tolerance is negative or not finite
 [[nodiscard]] std::vector<RegressionResult> judge_regression(
     const std::vector<BaselineCase>& baseline, const std::vector<MeasuredCase>& measured,
     const RegressionTolerance& tolerance = {});
 
-/// JUnit XML: a `failure` for what is worse or on one side only, an `error` for what was not
-/// solved.
+/// Returns JUnit XML: an `error` for each case that was not solved, a `failure` for each other case
+/// that failed().
 [[nodiscard]] std::string junit_xml(const std::vector<RegressionResult>& results);
 
 }  // namespace dlo::compare

@@ -8,28 +8,30 @@
 
 namespace dlo::compare {
 
-/// What is measured of scenes, and how much of it may change.
+/// Models and programs to measure, and the tolerance of their errors.
 struct RegressRequest {
   Model model = Model::force;            ///< force or chain
-  std::vector<ForeignProgram> programs;  ///< whose shapes are measured too
+  std::vector<ForeignProgram> programs;  ///< foreign programs whose shapes are measured too
   RegressionTolerance tolerance;
   SolveOptions solve;
 };
 
-/// Scenes against a baseline: what `dlo regress` says.
+/// Comparison of scenes with a baseline, as `dlo regress` prints it.
 struct Regression {
   std::vector<RegressionResult> results;  ///< sorted by name
-  std::vector<BaselineCase> cases;        ///< as measured, for a baseline of these scenes
+  /// measured cases, to be written as a new baseline of these scenes
+  std::vector<BaselineCase> cases;
 
-  /// Whether every case was.
+  /// Whether every case was solved.
   [[nodiscard]] bool solved() const;
-  /// Whether none has failed().
+  /// Whether no case has failed().
   [[nodiscard]] bool passes() const;
 };
 
-/// Measures scenes and judges them. A solver that does not converge is a result.
-/// @param progress  of the cases
-/// @throws InputError of a scene that a model cannot have, and as judge_regression()
+/// Measures scenes and compares them with the baseline. A solver that does not converge gives the
+/// verdict not_solved, no exception.
+/// @param progress  counts the cases
+/// @throws InputError if a model does not accept a scene, and as judge_regression()
 [[nodiscard]] Regression regress(const std::vector<Scene>& scenes,
                                  const std::vector<BaselineCase>& baseline,
                                  const RegressRequest& request, const Progress& progress = {});

@@ -26,7 +26,7 @@
 namespace dlo::compare {
 namespace {
 
-/// So many rows may wait for a slow one before them.
+/// Number of finished rows per thread that may wait for a slower row before them.
 constexpr std::size_t rows_per_thread = 256;
 
 bool compares(SweepModel model) {
@@ -60,7 +60,7 @@ struct CsvCell {
   std::string operator()(const std::string& text) const { return csv_field(text); }
 };
 
-/// Makes rows on several threads and hands them over in order.
+/// Computes rows on several threads and passes them to `take` in order.
 template <typename Make, typename Take>
 void run_rows(RowRange rows, int threads, const Make& make, const Take& take) {
   using Row = decltype(make(rows.first));
@@ -114,8 +114,8 @@ Sweep::Sweep(SceneTemplate scene, Grid grid, SweepModel model, const SolveOption
 void Sweep::require_one_scene() {
   constexpr std::int64_t most_tries = 1000;
   const std::int64_t tries = std::min(grid_.size(), most_tries);
-  // A step near the golden section of the grid that has no divisor in common with it visits every
-  // part of it before it comes back.
+  // The step is close to the golden section of the grid and has no common divisor with its size. It
+  // therefore visits every part of the grid before it returns to its start.
   std::int64_t step = std::max<std::int64_t>(1, grid_.size() / 1000 * 618);
   while (std::gcd(step, grid_.size()) != 1) ++step;
   std::string first_problem;
@@ -180,7 +180,7 @@ std::string Sweep::header() const {
 
 std::vector<SweepCell> Sweep::solved(const Scene& scene) const {
   const Model model = solver_of(model_);
-  // A comparison and numbers of a shape need all points, a tip does not.
+  // A comparison and shape_numbers() need all points, the tip needs only the end of the rod.
   const bool is_whole = compares(model_) || !numbers_.empty();
   const std::vector<double> samples = is_whole ? std::vector<double>{} : std::vector{scene.length};
   const Solution solution = solve(scene, model, options_, samples);
@@ -230,7 +230,7 @@ std::vector<SweepCell> Sweep::results(std::int64_t row) const {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::system_error&) {
-    throw;  // no threads: the machine's, not the scene's
+    throw;  // no threads available: a failure of the machine, not of the scene
   } catch (const InputError& error) {
     return without_results(error.what());
   } catch (const ConvergenceError& error) {

@@ -17,7 +17,7 @@ constexpr std::int64_t most_rows = 1'000'000'000'000'000;
 
 struct NumberWithUnit {
   double number = 0;
-  std::string digits;  ///< the number as it was written
+  std::string digits;  ///< the number as it is written in the text
   std::string unit;
 };
 
@@ -27,8 +27,9 @@ std::string_view without_spaces(std::string_view text) {
   return text.substr(begin, text.find_last_not_of(' ') - begin + 1);
 }
 
-/// Nothing if the text does not begin with a finite number. What follows it counts as its unit;
-/// whether a field knows it is for the scene's reader to say.
+/// Splits a text into a finite number and its unit, which is all that follows the number. Returns
+/// std::nullopt if the text does not begin with a finite number. The scene's reader judges the
+/// unit.
 std::optional<NumberWithUnit> split_number(std::string_view text) {
   const auto [number, length, error] = leading_number<double>(text);
   if (error != std::errc() || !std::isfinite(number)) return std::nullopt;
@@ -39,7 +40,7 @@ std::optional<NumberWithUnit> split_number(std::string_view text) {
   return result;
 }
 
-/// Parts between separators; those inside brackets do not count.
+/// Splits a text at separators outside brackets.
 std::vector<std::string> split_values(std::string_view text, char separator) {
   std::vector<std::string> parts;
   int depth = 0;

@@ -20,8 +20,8 @@
 namespace dlo::compare {
 namespace {
 
-/// What posix_spawn is told: a group of its own, standard descriptors, signals as they are by
-/// default (this program ignores SIGXFSZ).
+/// Attributes for posix_spawn: a new process group, redirected standard descriptors, and default
+/// signal handling (this program ignores SIGXFSZ).
 class SpawnSettings {
  public:
   explicit SpawnSettings(const ChildFiles& files) {
@@ -50,7 +50,7 @@ class SpawnSettings {
   SpawnSettings(const SpawnSettings&) = delete;
   SpawnSettings& operator=(const SpawnSettings&) = delete;
 
-  /// 0, or the error.
+  /// Starts the program. Returns 0 or the error number.
   int spawn(const std::vector<std::string>& words, pid_t& process) const {
     std::vector<std::string> copies = words;  // argv is not const
     std::vector<char*> arguments;
@@ -66,8 +66,9 @@ class SpawnSettings {
   posix_spawn_file_actions_t actions_{};
 };
 
-/// Waits until a child has ended, which it keeps as it is; false at the time limit. Looks often at
-/// first, then every hundredth of the time so far, so that the wall time is right to a percent.
+/// Waits until a child has ended, and leaves it as a zombie; returns false at the time limit. The
+/// interval between two checks is short at first and then a hundredth of the elapsed time, so that
+/// the wall time is accurate to 1 %.
 bool ended_within(pid_t process, double time_limit, double& seconds) {
   const Timer timer;
   while (true) {
@@ -107,7 +108,7 @@ ChildOutcome run_child(const std::vector<std::string>& words, const ChildFiles& 
     group.emplace(process);
   }
   result.too_long = !ended_within(process, time_limit, result.seconds);
-  // Before the child is waited for, so that its number is still its own.
+  // The group is killed before waitpid() releases the process id, which could be reused afterwards.
   ::kill(-process, SIGKILL);
   int status = 0;
   while (::waitpid(process, &status, 0) < 0 && errno == EINTR) continue;

@@ -80,7 +80,7 @@ class Splitter {
   const std::string& command_;
   const std::string& what_;
   std::size_t at_ = 0;
-  bool open_ = false;  // within a word, which may be empty: ''
+  bool open_ = false;  // inside a word, which may be empty: ''
   std::string word_;
   std::vector<std::string> words_;
 };

@@ -40,17 +40,17 @@ bool is_mentioned(const std::vector<std::string>& words, std::string_view place)
   });
 }
 
-/// A new folder that nobody else reads, gone with all that is in it at the end.
+/// New private folder; the destructor removes it with all its content.
 class ProgramFolder {
  public:
   [[nodiscard]] std::string file(const char* name) const { return folder_.path() / name; }
 
-  /// What is named `shape`, or the only thing whose name begins with "shape."; empty if there is
-  /// none. @throws InputError if the program has made away with the folder
+  /// Returns the file named `shape`, or the only one whose name begins with "shape."; empty if
+  /// there is none. @throws InputError if the program has removed the folder
   [[nodiscard]] std::string shape_file() const {
     namespace fs = std::filesystem;
     std::error_code error;
-    // The name itself: a link that leads nowhere is told when it is read.
+    // The link itself is checked: a dangling link is reported when it is read.
     if (fs::symlink_status(file("shape"), error).type() != fs::file_type::not_found) {
       return file("shape");
     }
@@ -69,7 +69,7 @@ class ProgramFolder {
   TemporaryFolder folder_{temporary_directory().string()};
 };
 
-/// The last line that is not blank, as a message shows it.
+/// Returns the last line that is not blank, as a message shows it.
 std::string last_line(const std::string& text) {
   constexpr std::size_t most = 200;
   std::size_t end = text.find_last_not_of(" \t\r\n");
@@ -79,7 +79,8 @@ std::string last_line(const std::string& text) {
   return display(text.substr(begin, std::min(end + 1 - begin, most)));
 }
 
-/// A program may have written anything, of any size.
+/// Returns ": " and the last line of a program's standard error, or an empty string if the file
+/// cannot be read: a program may have written anything, of any size.
 std::string last_words(const std::string& file) {
   try {
     const std::string line = last_line(read_regular_file(file, "stderr"));
@@ -151,10 +152,11 @@ std::vector<ForeignProgram> parse_foreign_programs(const std::vector<std::string
 
 namespace {
 
-/// The folder's name is gone when a message is read.
+/// Name of the shape's file in messages. The folder does not exist any more when a message is read.
 constexpr const char* shape_name = "its shape";
 
-/// Runs it. @param read  takes the file that it wrote; may throw InputError
+/// Runs a program on a scene's document. @param read  reads the file that the program wrote; may
+/// throw InputError
 ForeignRun run_on_document(
     const ForeignProgram& program, const std::string& document, int points, double time_limit,
     const std::function<void(const std::string& file, ForeignRun& result)>& read) {
@@ -199,7 +201,7 @@ ForeignRun run_on_document(
   return result;
 }
 
-/// Whether a text is one shape, without times.
+/// Whether a text contains one shape, without times.
 bool is_shape(const std::string& text) {
   if (text.substr(0, text.find('\n')).find("time") != std::string::npos) return false;
   try {

@@ -11,58 +11,61 @@
 
 namespace dlo::compare {
 
-/// Somebody else's simulator, as --with names it: NAME=COMMAND (doc/protocol.md).
+/// Foreign simulator, as --with names it: NAME=COMMAND (doc/protocol.md).
 struct ForeignProgram {
-  std::string name;                ///< letters, digits and "_.-+"; none of our models
-  std::vector<std::string> words;  ///< of its command, with {scene}, {points} and {shape}
+  std::string name;  ///< letters, digits and "_.-+"; none of the names of dlo's models
+  std::vector<std::string> words;  ///< words of its command, with {scene}, {points} and {shape}
 };
 
-/// Whether a name is of letters, digits and "_.-+", so that a folder may have it.
+/// Whether a name consists of letters, digits and "_.-+", so that a folder may have it.
 [[nodiscard]] bool is_program_name(const std::string& name);
 
-/// @param text  "NAME=COMMAND", split as command_words() does
+/// Reads a foreign program. @param text  "NAME=COMMAND"; the command is split by command_words()
 /// @throws InputError, also if {shape} is missing
 [[nodiscard]] ForeignProgram parse_foreign_program(const std::string& text);
 
-/// All of a command line. @throws InputError as above, or if two have the same name
+/// Reads all programs of a command line. @throws InputError as parse_foreign_program(), or if two
+/// programs have the same name
 [[nodiscard]] std::vector<ForeignProgram> parse_foreign_programs(
     const std::vector<std::string>& texts);
 
-/// Its shape of a scene, or why there is none.
+/// Result of a foreign program on a scene, or the reason why there is none.
 struct ForeignRun {
-  std::optional<MeasuredShape> shape;  ///< as it wrote it
-  std::optional<MarkerMotion> motion;  ///< the same, where that was asked for
+  std::optional<MeasuredShape> shape;  ///< the shape as written; empty for a motion
+  std::optional<MarkerMotion> motion;  ///< the motion as written, if a motion was requested
   double seconds = 0;                  ///< wall time of the process [s]
-  std::string problem;                 ///< one line; empty if there is a shape
-  bool too_long = false;               ///< it was killed at the time limit
-  /// It has no such scene: exit status 3, or no shape and a last line of standard error that begins
-  /// with "not supported".
+  std::string problem;                 ///< one line; empty if there is a shape or a motion
+  bool too_long = false;               ///< killed at the time limit
+  /// The program does not support the scene: its exit status is 3, or it wrote no shape and the
+  /// last line of its standard error begins with "not supported", or it wrote one shape instead of
+  /// a motion.
   bool not_supported = false;
 };
 
-/// Runs a program on a scene in a folder of its own in the system's temporary one, which is gone
-/// afterwards: {scene} is a file there with the scene's document for that many points, {points}
-/// their number, {shape} where it has to write; {shape}.csv and the like are found too. The working
-/// directory is ours.
+/// Runs a program on a scene. {scene} is replaced by a file with the scene's document for `points`
+/// points, {points} by their number, and {shape} by the file that the program has to write;
+/// {shape}.csv and similar names are found too. Both files are in a new temporary folder, which is
+/// removed afterwards. The working directory is that of this process.
 /// @param time_limit  [s], > 0
 /// @throws OutputError if that folder cannot be made or written
 [[nodiscard]] ForeignRun run_foreign(const ForeignProgram& program, Scene scene, int points,
                                      double time_limit);
 
-/// The same of a motion: {scene} has the document, and the program writes frames as
-/// parse_markers() takes them. One shape that it writes is no failure: it has no motion.
+/// Runs a program on the document of a motion, as run_foreign() does. The program writes frames
+/// that parse_markers() reads. If it writes one shape instead, the result is not_supported.
 [[nodiscard]] ForeignRun run_foreign_motion(const ForeignProgram& program,
                                             const std::string& document, int points,
                                             double time_limit);
 
-/// An end that a gripper holds is where that is: to 1 % of the length, and to what a file says that
-/// it has less than the rod.
-/// @param told  whether the arc lengths are those of a file;  @throws InputError naming the gripper
+/// Checks that each end that a gripper holds is at the gripper: within 1 % of the length, plus the
+/// part of the rod that the file's arc lengths leave out at that end.
+/// @param told  whether the arc lengths were read from the file
+/// @throws InputError naming the gripper
 void require_held_ends(const Scene& scene, const Shape& laid, bool told);
 
-/// Distances of a foreign shape from a reference, as `dlo check` measures a file that is the whole
-/// rod, in the scene's frame. @throws InputError as require_held_ends(), or if the shape is less
-/// than half of the rod
+/// Measures the distances of a foreign shape from a reference, in the scene's frame, as `dlo check`
+/// measures a file that contains the whole rod. @throws InputError as require_held_ends(), or if
+/// the shape is less than half of the rod
 [[nodiscard]] Deviation foreign_deviation(const Scene& scene, const MeasuredShape& shape,
                                           const Reference& reference);
 

@@ -48,7 +48,8 @@ std::string setting_of(const BenchmarkRun& run) {
   const ForceVariant& variant = *run.variant;
   std::string result =
       fmt::format("{}, {}", to_string(variant.law), to_string(variant.bookkeeping));
-  if (run.model == Model::chain) return result;  // no steps, and rigid or nearly so
+  // A chain has no steps, and is inextensible or nearly so.
+  if (run.model == Model::chain) return result;
   const double share = variant.stretch_share;
   return fmt::format("{}, {}, c_c = {}", result, to_string(variant.stepper),
                      share == 1 ? "AE" : fmt::format("AE/{:g}", 1 / share));
@@ -114,7 +115,8 @@ BenchmarkReport run_benchmark(const std::vector<Scene>& scenes, const BenchmarkO
   Stopwatch watch(options, report.skipped);
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     if (progress) progress(scenes[i].name);
-    // What one scene leaves over, the others may use.
+    // Each scene may use an equal part of the remaining budget, so that time saved on one scene is
+    // available to the next ones.
     watch.allow((options.budget_s - watch.seconds()) / static_cast<double>(scenes.size() - i));
     SceneBenchmark scene;
     scene.scene = scenes[i].name;
@@ -122,9 +124,10 @@ BenchmarkReport run_benchmark(const std::vector<Scene>& scenes, const BenchmarkO
     ReferenceShape reference = benchmark_reference(scenes[i]);
     scene.reference = reference.model;
     StaticRuns static_runs(scenes[i], reference, options, watch);
-    // The cheapest of every model first, whatever the tracking runs leave over for the others.
+    // The cheapest run of every model comes first, so that it does not depend on the time of the
+    // tracking runs.
     (void)static_runs.next_round();
-    // The time of a median tells more than that of the first solution.
+    // The median time predicts later solutions better than the time of the first solution.
     for (const BenchmarkRun& run : static_runs.runs()) {
       if (is_run_of(run, Model::exact)) reference.rod.seconds = run.time.median_s;
     }

@@ -60,7 +60,8 @@ bool Stopwatch::run_once(const std::string& name, double predicted_s,
 
 std::optional<Timing> Stopwatch::time(const std::string& name, double predicted_s,
                                       const std::function<void()>& work) {
-  constexpr double quick = 0.02;  // what is quicker in total is repeated more often
+  // Runs that are faster than this in total are repeated more often [s].
+  constexpr double quick = 0.02;
   if (!fits(name, predicted_s)) return std::nullopt;
   std::vector<double> times;
   double total = 0;
@@ -176,14 +177,15 @@ void StaticRuns::run_continuous(StaticSeries& series, int terms) {
                                                 : error_of(scene_, result, reference_.rod)});
 }
 
-/// Each is predicted from the one before; what does not fit in, larger ones do not either.
+/// Runs a polygon model with N points. Its time is predicted from the previous, smaller N. If a run
+/// does not fit into the budget, larger ones do not fit either.
 void StaticRuns::run_polygon(StaticSeries& series, int points) {
   const Model model = series.model;
   const std::string name = name_of({.model = model, .size = points, .variant = series.variant});
   const ForceModelSettings settings = series.variant.settings(scene_, points);
-  // Longer than most series: what takes more steps is said to be skipped.
+  // The limit exceeds what most series need. A series that needs more steps is reported as skipped.
   SolveOptions options{.max_steps = 60'000'000 / points};
-  // A tenth of the hooke polygon's error at this N, about 0.1 / N^2.
+  // A tenth of the discretisation error of the polygon with law hooke, which is about 0.1 / N^2.
   options.rest_tolerance = std::clamp(0.01 / (points * points), 1e-7, 1e-4);
   const double growth = series.last_points > 0 ? std::pow(1.0 * points / series.last_points, 3) : 1;
   Solution solution;
@@ -208,7 +210,8 @@ void StaticRuns::run_polygon(StaticSeries& series, int points) {
        .rms_over_length = error_of(scene_, solution.shape, reference_.rod)});
 }
 
-/// A failure says nothing of larger N, but one at the time limit does.
+/// Runs a foreign program with N points. After a failure larger N are still tried, but not after a
+/// run that reached the time limit.
 void StaticRuns::run_program(StaticSeries& series, int points) {
   BenchmarkRun run{.scene = scene_.name, .program = series.program->name, .size = points};
   const double growth = series.last_points > 0 ? 1.0 * points / series.last_points : 1;

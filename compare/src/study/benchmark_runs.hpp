@@ -12,22 +12,24 @@
 
 namespace dlo::compare {
 
-/// Times runs within what is left of the budget.
+/// Times runs within the remaining budget.
 class Stopwatch {
  public:
   Stopwatch(const BenchmarkOptions& options, std::vector<std::string>& skipped)
       : options_(options), skipped_(skipped) {}
 
-  [[nodiscard]] double seconds() const { return timer_.seconds(); }  ///< since construction
+  /// Elapsed time since construction.
+  [[nodiscard]] double seconds() const { return timer_.seconds(); }
   void allow(double seconds) { until_ = this->seconds() + seconds; }
   [[nodiscard]] double left() const { return until_ - seconds(); }
 
-  /// Runs `work` repeatedly. Nothing if it is predicted to take more than a quarter of what is
-  /// left, or does not converge.
+  /// Runs `work` repeatedly and returns its times. Returns std::nullopt if one run is predicted to
+  /// take more than a quarter of the remaining budget, or if `work` throws.
   [[nodiscard]] std::optional<Timing> time(const std::string& name, double predicted_s,
                                            const std::function<void()>& work);
 
-  /// The same for a run that times its own parts; false if it was skipped.
+  /// Runs `work` once, which times its own parts, under the conditions of time(). @return false if
+  /// it was skipped or has thrown
   [[nodiscard]] bool run_once(const std::string& name, double predicted_s,
                               const std::function<void()>& work);
 
@@ -46,36 +48,37 @@ class Stopwatch {
 struct ReferenceShape {
   Model model = Model::exact;
   energy_model::Equilibrium rod;
-  /// Of `exact` and `energy` from each other, RMS over the length; NaN without exact.
+  /// RMS distance between the shapes of `exact` and `energy`, divided by the length; NaN without
+  /// exact.
   double agreement = 0;
 };
 
 [[nodiscard]] ReferenceShape benchmark_reference(const Scene& scene);
 
-/// One model of the static runs over its sizes, the cheapest first.
+/// Static runs of one model over its sizes, in the order of their cost.
 struct StaticSeries {
   Model model = Model::exact;
-  ForceVariant variant;                     ///< of chain and force
-  const ForeignProgram* program = nullptr;  ///< in place of a model
-  std::vector<int> sizes;                   ///< K or N, not yet run
+  ForceVariant variant;                     ///< settings of chain and force
+  const ForeignProgram* program = nullptr;  ///< foreign program in place of a model
+  std::vector<int> sizes;                   ///< K or N of the runs that are left
   std::vector<BenchmarkRun> runs;
-  double last_s = 0;    ///< time of the run before
-  int last_points = 0;  ///< its N
+  double last_s = 0;    ///< time of the previous run [s]
+  int last_points = 0;  ///< N of the previous run
 };
 
-/// The static runs, in rounds: the first size of every model, then the second and so on, so that a
-/// small budget leaves some runs of each.
+/// Static runs in rounds: the first size of every model, then the second and so on, so that a small
+/// budget leaves some runs of each.
 class StaticRuns {
  public:
-  /// All are kept by reference.
+  /// Keeps references to all arguments.
   StaticRuns(const Scene& scene, const ReferenceShape& reference, const BenchmarkOptions& options,
              Stopwatch& watch);
 
-  /// One round; false if nothing is left to run.
+  /// Runs one round; returns false if no run is left.
   bool next_round();
-  /// All so far, by model and size.
+  /// Returns all runs so far, ordered by model and size.
   [[nodiscard]] std::vector<BenchmarkRun> runs() const;
-  /// Of programs, so far.
+  /// Returns the failed runs of programs so far.
   [[nodiscard]] const std::vector<BenchmarkFailure>& failures() const { return failures_; }
 
  private:

@@ -22,11 +22,11 @@ namespace {
 
 constexpr double frame_s = 1e-3;
 
-/// The frames of one run.
+/// Times and errors of the frames of one run.
 struct Frames {
   std::vector<double> seconds;
   long evaluations = 0;
-  double squares = 0;  // of the errors over the length
+  double squares = 0;  // sum of the squared errors, each divided by the length
   int errors = 0;
 
   void add_error(double square) {
@@ -42,8 +42,8 @@ struct Frames {
   }
 };
 
-/// The scene with its grips moved along +x and turned about z, as one body, until the end of a
-/// frame: what turns changes the shape, what moves does not.
+/// Returns the scene with its grippers at the end of a frame: moved along +x and rotated about z as
+/// one body. The rotation changes the shape, the translation does not.
 Scene moved(const Scene& scene, const BenchmarkOptions& options, int frame) {
   const double way = (frame + 1) * frame_s * options.gripper_speed;
   const Eigen::AngleAxisd turn(way / scene.length, Eigen::Vector3d::UnitZ());
@@ -57,7 +57,7 @@ Scene moved(const Scene& scene, const BenchmarkOptions& options, int frame) {
   return result;
 }
 
-/// The quasi-static shapes at the frames at which errors are looked at.
+/// Quasi-static shapes at the frames at which errors are measured.
 struct ReferenceTrack {
   static constexpr int stride = 10;
   std::vector<energy_model::Equilibrium> rods;
@@ -100,8 +100,8 @@ BenchmarkRun track_energy(const Scene& scene, int terms, const ReferenceTrack& t
   return run;
 }
 
-/// Steps that fit into a frame, from a copy that is thrown away; a median, since a busy machine may
-/// hold up any trial.
+/// Returns the number of steps that fit into a frame, measured on a copy of the simulation. The
+/// median of several trials is used, since other load on the machine may delay any one of them.
 long frame_steps(force_model::Simulation simulation) {
   constexpr int trials = 15;
   constexpr int steps = 200;
@@ -121,7 +121,8 @@ BenchmarkRun track_force(const Scene& scene, const ForceVariant& variant, int po
   Discretisation discretisation = discretise(scene, settings);
   std::vector<std::size_t> all(scene.obstacles.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  set_obstacles(scene, all, discretisation);  // the gripper will move
+  // All obstacles are included, because the gripper will move.
+  set_obstacles(scene, all, discretisation);
   force_model::Simulation simulation(discretisation.rod, discretisation.starts.front(),
                                      step_options(settings, discretisation));
   (void)simulation.relax({.tolerance = 1e-5});
@@ -164,7 +165,7 @@ std::vector<BenchmarkRun> tracking_runs(const Scene& scene, const ReferenceShape
     }
   };
   const auto add_energy = [&](int terms) {
-    // Each is about as fast as the one before; the first is short.
+    // Each run is about as fast as the previous one; the first is short.
     const double predicted = runs.empty() ? 0 : runs.back().time.median_s * options.frames;
     add(name_of({.model = Model::energy, .size = terms}), predicted, runs,
         [&] { return track_energy(scene, terms, track, options); });
@@ -179,7 +180,7 @@ std::vector<BenchmarkRun> tracking_runs(const Scene& scene, const ReferenceShape
           [&] { return track_force(scene, variants[i], points, track, options); });
     }
   };
-  // The cheapest of both models first.
+  // The cheapest run of both models comes first.
   add_energy(3);
   add_force(8);
   for (const int terms : {6, 12, 0}) add_energy(terms);

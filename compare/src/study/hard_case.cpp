@@ -23,7 +23,7 @@ using std::numbers::pi;
 /// Load at which an upright clamped rod buckles under its own weight (a zero of a Bessel function).
 constexpr double self_buckling = 7.8373474389;
 
-/// The paper's rod (Table 5) under as much gravity as a Gamma asks for.
+/// Returns the paper's rod (Table 5), with gravity scaled to the given Gamma.
 Scene steel_rod(double gamma, const Eigen::Vector3d& direction) {
   Scene scene;
   scene.name = "hard case";
@@ -40,14 +40,14 @@ Scene steel_rod(double gamma, const Eigen::Vector3d& direction) {
 
 Scene horizontal(double gamma) { return steel_rod(gamma, {1, 0, 0}); }
 
-/// c_c by the rule of hard_cases.
+/// Returns c_c by the rule that hard_cases() states.
 double soft_stretch_stiffness(const Scene& scene) {
   const double load = scene.weight_per_length().norm() * scene.length;
   return std::max(scene.axial_stiffness() / 1000, 1000 * load);
 }
 
 enum class CaseStretch {
-  soft,      // as hard_cases says
+  soft,      // the rule of hard_cases()
   physical,  // c_c = AE
 };
 
@@ -86,7 +86,7 @@ Eigen::Matrix3Xd rest_shape(const HardCase& hard) {
   return result.points;
 }
 
-/// The free points on a circle that turns up by `angle` in all.
+/// Places the free points on a circular arc that rotates the tangent by `angle` in all [rad].
 Eigen::Matrix3Xd arc(const HardCase& hard, double angle) {
   Eigen::Matrix3Xd points = hard.discretisation.starts.front();
   const Eigen::Vector3d along = (points.col(1) - points.col(0)).normalized();
@@ -129,7 +129,7 @@ std::vector<HardCase> hard_starts() {
     std::mt19937 engine(seed);
     Eigen::Matrix3Xd& crumpled = cases.back().start;
     for (Eigen::Index k = 6; k < crumpled.size(); ++k) {
-      // Not uniform_real_distribution, whose numbers are the library's choice
+      // uniform_real_distribution is not used because its numbers depend on the standard library.
       const double share = static_cast<double>(engine()) / 4294967296.0;
       crumpled.data()[k] = 0.5 * (share - 0.5);
     }
@@ -156,7 +156,7 @@ HardCase unequal_segments() {
   return result;
 }
 
-/// Table 5 with the paper's own law and bookkeeping, under its own weight.
+/// Returns the rod of Table 5 with the paper's own law and convention, under its own weight.
 HardCase papers_rod() {
   constexpr double orientation = -175 * pi / 180;
   Scene scene = steel_rod(1, {std::cos(orientation), std::sin(orientation), 0});
@@ -217,7 +217,7 @@ std::vector<HardCase> hard_surroundings() {
   HardCase& wall = cases.back();
   wall.start = rest_shape(wall);
   const double height = wall.start(1, 8);
-  // As stiff as discretise makes a rigid obstacle
+  // The stiffness is the one that discretise() gives a rigid obstacle.
   const Parameters& parameters = wall.discretisation.parameters;
   wall.discretisation.rod.walls = {{.point = {0, height, 0},
                                     .normal = {0, 1, 0},
@@ -225,7 +225,7 @@ std::vector<HardCase> hard_surroundings() {
   return cases;
 }
 
-/// Two clamps 20 % further apart than the rod between them is long.
+/// Returns rods between two clamps whose distance is 20 % larger than the rod's length.
 std::vector<HardCase> torn_rods() {
   Scene scene = horizontal(2);
   Gripper far = scene.grippers.front();

@@ -8,44 +8,46 @@
 
 namespace dlo::compare {
 
-/// How the first gripper moves before the rod is left to itself, by equal shares a step.
+/// Motion of the first gripper before the rod is left to itself, in equal increments per step.
 struct GripMotion {
-  long steps = 0;                                      ///< over which the motion is spread
-  Eigen::Vector3d movement = Eigen::Vector3d::Zero();  ///< of the whole motion [m]
-  double turn = 0;                                     ///< of the whole motion, about +z [rad]
+  long steps = 0;                                      ///< number of steps of the motion
+  Eigen::Vector3d movement = Eigen::Vector3d::Zero();  ///< translation over the whole motion [m]
+  double turn = 0;  ///< rotation about +z over the whole motion [rad]
 };
 
-/// A rod and a start that a stepper may stumble over.
+/// Rod and initial shape that are difficult for a stepper.
 struct HardCase {
-  std::string name;               ///< short, for --case
-  std::string what;               ///< one line: what is hard about it
-  Discretisation discretisation;  ///< of the rod, before the motion
+  std::string name;               ///< short name, for --case
+  std::string what;               ///< one line: the difficulty of the case
+  Discretisation discretisation;  ///< the rod before the motion
   Eigen::Matrix3Xd start;         ///< [m], 3 x N
-  GripMotion motion;              ///< of the first gripper
-  /// Steps from the rest shape on, in which nothing may happen; 0: the rod is to come to rest.
+  GripMotion motion;              ///< motion of the first gripper
+  /// Number of steps from the rest shape during which the rod must stay at rest; 0: the rod has to
+  /// come to rest.
   long steps_at_rest = 0;
-  /// Why there is no physical answer, as discretise says it; empty where there is one.
+  /// Message of discretise() that refuses the case because it has no physical solution; empty if it
+  /// has one.
   std::string refusal;
 
-  /// Points [m] that move with the first gripper through a share (0 to 1) of the motion.
+  /// Moves points [m] with the first gripper through a fraction (0 to 1) of the motion.
   [[nodiscard]] Eigen::Matrix3Xd moved(const Eigen::Matrix3Xd& points, double share) const;
 
-  /// The rod after that share.
+  /// Returns the rod after that fraction of the motion.
   [[nodiscard]] force_model::Rod rod(double share) const;
 };
 
-/// The rod of the hard cases, see hard_cases.
+/// Returns the scene of the rod that hard_cases() describes.
 [[nodiscard]] Scene hard_case_scene();
 
-/// The hard cases of `dlo stability`, in the order of its table.
+/// Returns the hard cases of `dlo stability`, in the order of its table.
 ///
-/// Unless a case says otherwise it is the paper's spring steel rod (0.5 m long, 2 mm thick), N =
-/// 16, law hooke, bookkeeping consistent, clamped horizontally, gravity such that Gamma = 2. Its
-/// c_c lets the loads stretch it by a thousandth at most and is no lower than AE / 1000, the
-/// paper's own choice for this rod; the cases with c_c = AE show what that choice saves. Starts
-/// that are the rest shape of something else, as before a gripper jumps, come from solve_polygon;
-/// random ones have fixed seeds.
-/// @param steps_at_rest  of the case that stays at rest, > 0
+/// Unless a case states otherwise, the rod is the paper's spring steel rod (0.5 m long, 2 mm thick)
+/// with N = 16, law hooke and convention consistent. It is clamped horizontally, and gravity is
+/// scaled such that Gamma = 2. Its c_c is so large that the loads stretch it by at most a
+/// thousandth, and at least AE / 1000, the paper's own choice for this rod. The cases with c_c = AE
+/// show the cost that this choice saves. Initial shapes that are the rest shape of another problem,
+/// as before a gripper jumps, are computed by solve_polygon; random ones have fixed seeds.
+/// @param steps_at_rest  HardCase::steps_at_rest of the case that starts at rest, > 0
 /// @throws ConvergenceError if solve_polygon finds no start
 [[nodiscard]] std::vector<HardCase> hard_cases(long steps_at_rest);
 

@@ -22,7 +22,7 @@ bool goes_to_and_fro(const std::vector<Eigen::Matrix3Xd>& shapes, double thresho
 
 Outcome classify(const SimulationEnd& trajectory, const Eigen::Matrix3Xd& reference, double length,
                  double tolerance) {
-  constexpr double reach = 10;  // lengths
+  constexpr double reach = 10;  // in lengths
   if (!trajectory.finite || trajectory.late.empty()) return Outcome::diverges;
   if (!(largest_distance(trajectory.late.back(), reference) < reach * length)) {
     return Outcome::diverges;

@@ -20,9 +20,11 @@
 namespace dlo::compare {
 namespace {
 
-constexpr int samples = 64;            // at a run, and consecutive steps at its end
-constexpr double rest_drift = 1e-6;    // what a rod at rest may move, in lengths
-constexpr double rest_energy = 1e-12;  // what its energy may grow, of its size: rounding only
+// Shapes sampled during a run, and number of consecutive steps sampled at its end.
+constexpr int samples = 64;
+constexpr double rest_drift = 1e-6;  // allowed movement of a rod at rest, in lengths
+// Allowed growth of its energy, divided by the energy: rounding only.
+constexpr double rest_energy = 1e-12;
 
 force_model::StepOptions options_for(const HardCase& hard, Stepper stepper) {
   ForceModelSettings settings;
@@ -30,7 +32,7 @@ force_model::StepOptions options_for(const HardCase& hard, Stepper stepper) {
   return step_options(settings, hard.discretisation);
 }
 
-/// Drives the gripper through its motion.
+/// Moves the gripper through its motion; returns false if a step diverges.
 bool move_gripper(const HardCase& hard, force_model::Simulation& simulation) {
   for (long step = 1; step <= hard.motion.steps; ++step) {
     const double share = static_cast<double>(step) / static_cast<double>(hard.motion.steps);
@@ -41,7 +43,7 @@ bool move_gripper(const HardCase& hard, force_model::Simulation& simulation) {
   return true;
 }
 
-/// Leaves the rod to itself until it rests or the steps are used up.
+/// Steps the rod until it is at rest or max_steps is reached.
 SimulationEnd come_to_rest(force_model::Simulation& simulation, long max_steps) {
   SimulationEnd trajectory{.finite = true};
   const force_model::RelaxOptions part{.tolerance = 1e-6,
@@ -60,7 +62,7 @@ SimulationEnd come_to_rest(force_model::Simulation& simulation, long max_steps) 
   return trajectory;
 }
 
-/// Steps on from rest; every look counts.
+/// Makes steps from the rest shape; all sampled shapes are classified.
 SimulationEnd stay_at_rest(force_model::Simulation& simulation, long steps) {
   SimulationEnd trajectory{.finite = true};
   for (long step = 1; step <= steps && trajectory.finite; ++step) {
@@ -82,7 +84,8 @@ energy_model::PolygonResult reference_of(const HardCase& hard) {
   return result;
 }
 
-/// A stable equilibrium that is not the reference is as good: says so if this is one.
+/// Changes the result to a pass, with a note, if the final shape is a stable equilibrium other than
+/// the reference.
 void try_other_equilibrium(const force_model::Rod& rod, const SimulationEnd& trajectory,
                            double reference_energy, double tolerance, StabilityResult& result) {
   const Eigen::Matrix3Xd& end = trajectory.late.back();
@@ -90,7 +93,8 @@ void try_other_equilibrium(const force_model::Rod& rod, const SimulationEnd& tra
                               .colwise()
                               .squaredNorm()
                               .minCoeff();
-  if (!(shortest > 0)) return;  // no start for solve_polygon
+  // solve_polygon needs an initial guess without segments of zero length.
+  if (!(shortest > 0)) return;
   const energy_model::PolygonResult other = energy_model::solve_polygon(polygon_problem(rod), end);
   if (!energy_model::succeeded(other.status)) return;
   if (classify(trajectory, other.points, rod.length(), tolerance) != Outcome::pass) return;
@@ -117,7 +121,7 @@ StabilityResult run_against(const energy_model::PolygonResult& reference, const 
   const bool tells = stepper == Stepper::automatic || stepper == Stepper::implicit;
   const long budget = tells ? options.max_steps_auto : options.max_steps;
   const bool rests = hard.steps_at_rest > 0;
-  // An implicit step costs as much as a hundred others.
+  // An implicit step costs about as much as a hundred explicit ones.
   const long at_rest_steps =
       stepper == Stepper::implicit ? std::max(1L, hard.steps_at_rest / 100) : hard.steps_at_rest;
   SimulationEnd trajectory;

@@ -23,26 +23,27 @@
 namespace dlo::compare {
 namespace {
 
-constexpr double disturbance = 1e-6;     // RMS over the points, of the length
-constexpr double unstable_growth = 100;  // of a disturbance that is not stable
-constexpr long map_looks = 16;           // at each rod
+constexpr double disturbance = 1e-6;  // RMS over the points, divided by the length
+// Growth factor of a disturbance from which a rod is unstable.
+constexpr double unstable_growth = 100;
+constexpr long map_looks = 16;  // samples of each rod
 constexpr int bisections = 12;
 
-/// A rod at rest and what is predicted for it.
+/// Rod at rest with its predicted limits.
 struct RodAtRest {
   force_model::Rod rod;
   Eigen::Matrix3Xd points;
   MapColumn column;
 };
 
-/// From `first` to `last` by equal factors.
+/// Returns value `index` of a geometric sequence of `count` values from `first` to `last`.
 double geometric(double first, double last, int index, int count) {
   if (count == 1) return first;
   return first * std::pow(last / first, static_cast<double>(index) / (count - 1));
 }
 
-/// The force model's own rest shape: between unequal segments the paper's law has another than the
-/// minimiser.
+/// Returns the force model's own rest shape. With unequal segments the paper's law has a rest shape
+/// that differs from the chain's minimum.
 Eigen::Matrix3Xd rest_points(const Scene& scene, const Discretisation& discretisation) {
   const energy_model::PolygonResult chain = energy_model::solve_polygon(
       polygon_problem(discretisation.rod), discretisation.starts.front());
@@ -95,13 +96,13 @@ Eigen::Matrix3Xd disturbed(const RodAtRest& rest) {
   std::mt19937 engine(1);
   Eigen::Matrix3Xd movement(3, rest.points.cols());
   for (double& x : movement.reshaped()) x = static_cast<double>(engine()) / 2147483648.0 - 1;
-  // Joints that are bent at rest have no sign out of their plane.
+  // Natural joint angles have a sign only in the plane of the rod, so the disturbance stays in it.
   if (rest.rod.bending.natural_turns.size() > 0) movement.row(2).setZero();
   const double rms = movement.norm() / std::sqrt(static_cast<double>(movement.cols()));
   return rest.points + disturbance * rest.rod.length() / rms * movement;
 }
 
-/// What becomes of each rod with its c_F.
+/// Simulates rods, each with its c_F, and classifies whether they are stable.
 class Trials {
  public:
   Trials(const std::vector<RodAtRest>& rods, const StabilityMapOptions& options)
@@ -111,7 +112,8 @@ class Trials {
         counter_(options.progress, blocks_of(rods.size() * static_cast<std::size_t>(options.rows)) +
                                        bisections * blocks_of(rods.size())) {}
 
-  /// @param which  index of each trial's rod; @param c_F  of each trial [m/N]
+  /// Returns the outcome of each trial. @param which  index of each trial's rod; @param c_F  of
+  /// each trial [m/N]
   std::vector<Outcome> run(const std::vector<std::size_t>& which, const std::vector<double>& c_F) {
     std::vector<force_model::BatchRod> starts;
     starts.reserve(which.size());
@@ -185,7 +187,8 @@ void run_grid(const std::vector<RodAtRest>& rods, const StabilityMapOptions& opt
   }
 }
 
-/// The limit of each column, between the last stable and the first unstable c_F of its grid.
+/// Returns the limit of each column, by bisection between the last stable and the first unstable
+/// c_F of its grid; NaN if the grid does not bracket it.
 std::vector<double> measured_limits(const StabilityMap& map, std::size_t columns, Trials& trials) {
   const std::size_t rows = map.points.size() / columns;
   std::vector<double> stable(columns, std::numeric_limits<double>::quiet_NaN());
@@ -197,7 +200,8 @@ std::vector<double> measured_limits(const StabilityMap& map, std::size_t columns
     const auto last = first + static_cast<std::ptrdiff_t>(rows);
     const auto limit = std::find_if(
         first, last, [](const MapPoint& point) { return point.outcome != Outcome::pass; });
-    // No bracket: a limit more than four times off its prediction.
+    // The grid has no bracket if the limit differs from its prediction by more than a factor of
+    // four.
     if (limit == first || limit == last) continue;
     unstable[column] = limit->c_F;
     stable[column] = (limit - 1)->c_F;

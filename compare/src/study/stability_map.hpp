@@ -9,57 +9,63 @@
 
 namespace dlo::compare {
 
-/// What varies beside c_F.
+/// Parameter that is varied in addition to c_F.
 enum class MapAxis { c_c, c_h };
 
-/// Which map, and how fine.
+/// Axis and resolution of the map.
 struct StabilityMapOptions {
-  MapAxis axis = MapAxis::c_c;  ///< what varies beside c_F
-  int columns = 16;             ///< values of c_c or c_h, >= 1
-  int rows = 32;                ///< values of c_F, >= 2
-  long steps = 20'000;  ///< of each rod, >= 1; a limit is found to about 10 / steps of itself
-  int threads = 1;      ///< at most; 0: as many as the machine has
-  Progress progress;    ///< over blocks of rods; may be empty
+  MapAxis axis = MapAxis::c_c;  ///< parameter that is varied in addition to c_F
+  int columns = 16;             ///< number of values of c_c or c_h, >= 1
+  int rows = 32;                ///< number of values of c_F, >= 2
+  /// Steps of each rod, >= 1; the relative error of a limit is about 10 / steps.
+  long steps = 20'000;
+  int threads = 1;    ///< number of threads at most; 0: as many as the machine has
+  Progress progress;  ///< counts blocks of rods; may be empty
 };
 
-/// One rod of the grid.
+/// Stability of one rod of the grid.
 struct MapPoint {
   double c_c = 0;  ///< [N]
   double c_h = 0;  ///< [-]
   double c_F = 0;  ///< [m/N]
-  /// `pass`: the disturbance did not grow; `oscillates`: it did, within bounds; else `diverges`.
+  /// `pass`: the disturbance did not grow; `oscillates`: it grew, but within bounds; else
+  /// `diverges`.
   Outcome outcome = Outcome::diverges;
 };
 
-/// Limit of c_F for one c_c and c_h.
+/// Limit of c_F for one pair of c_c and c_h.
 struct MapColumn {
-  double c_c = 0;           ///< [N]
-  double c_h = 0;           ///< [-]
-  double fastest_mode = 0;  ///< bound at rest, see force_model::mode_bounds [N/m]
-  double predicted = 0;     ///< largest stable c_F, see force_model::largest_step_factor [m/N]
-  double measured = 0;      ///< NaN if the grid has no bracket for it [m/N]
-  double table_1 = 0;       ///< the paper's own choice, see table_1_step_share [m/N]
+  double c_c = 0;  ///< [N]
+  double c_h = 0;  ///< [-]
+  /// Bound of the largest eigenvalue at rest, see force_model::mode_bounds [N/m].
+  double fastest_mode = 0;
+  /// Largest stable c_F by linear stability, see force_model::largest_step_factor [m/N].
+  double predicted = 0;
+  double measured = 0;  ///< limit measured by simulation; NaN if the grid does not bracket it [m/N]
+  double table_1 = 0;   ///< the paper's own choice of c_F, see table_1_step_share [m/N]
 };
 
 /// Measured and predicted limits of c_F.
 struct StabilityMap {
-  std::string scene;               ///< its name
-  MapAxis axis = MapAxis::c_c;     ///< what varies beside c_F
-  std::vector<MapColumn> columns;  ///< one per value on the axis
-  std::vector<MapPoint> points;    ///< columns x rows, c_F growing, one column after the other
+  std::string scene;               ///< name of the scene
+  MapAxis axis = MapAxis::c_c;     ///< parameter that is varied in addition to c_F
+  std::vector<MapColumn> columns;  ///< one per value of that parameter
+  std::vector<MapPoint> points;    ///< columns x rows, with growing c_F, column by column
 };
 
-/// Where steps dP = c_F F + c_h dP_last, neither limited nor damped, stop being stable (what the
-/// paper's Formula 15 asks for), predicted and measured.
+/// Computes the largest c_F for which steps dP = c_F F + c_h dP_last, neither limited nor damped,
+/// are stable (the condition of the paper's Formula 15), predicted by linear stability and measured
+/// by simulation.
 ///
 /// Every rod starts at its rest shape, disturbed in space by 1e-6 of its length (RMS, the same
-/// disturbance for all), and is stepped, eight in lockstep, on as many threads as allowed. It is
-/// stable if no look at it finds the disturbance a hundredfold. `measured` is then refined by
-/// bisection between the last stable and the first unstable c_F of the grid.
+/// disturbance for all). Rods are stepped in vectorised batches of eight, on as many threads as
+/// allowed. A rod is stable if the disturbance has grown by less than a factor of a hundred at
+/// every sample. `measured` is then refined by bisection between the last stable and the first
+/// unstable c_F of the grid.
 ///
-/// c_c runs from EI/L^2, where bending is stiffer than contraction, to AE at c_h = 0; c_h from 0 to
-/// 0.99 at the scene's c_c. c_F runs from a quarter of the smallest predicted limit to four times
-/// the largest. Results are the same for any number of threads.
+/// c_c ranges from EI/L^2, where bending is stiffer than contraction, to AE at c_h = 0; c_h ranges
+/// from 0 to 0.99 at the scene's c_c. c_F ranges from a quarter of the smallest predicted limit to
+/// four times the largest. Results do not depend on the number of threads.
 /// @throws InputError, ConvergenceError if a rest shape is not found, std::invalid_argument if an
 /// option is out of range
 [[nodiscard]] StabilityMap stability_map(const Scene& scene,
