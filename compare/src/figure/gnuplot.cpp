@@ -15,10 +15,10 @@
 namespace dlo::compare {
 namespace {
 
-/// Minutes beyond what the largest figure takes, also on a busy machine [s].
+/// Time limit of gnuplot, minutes above the time of the largest figure on a busy machine [s].
 constexpr double drawing_limit = 300;
 
-/// Its start-up files, which are the user's, are not read.
+/// Runs gnuplot without the user's start-up files.
 ChildOutcome run_gnuplot(const std::string& argument, const ChildFiles& files) {
   return run_child({"gnuplot", "--default-settings", argument}, files, drawing_limit);
 }

@@ -7,28 +7,29 @@
 
 namespace dlo::compare {
 
-/// Version of the gnuplot that would draw, as it says it; empty if there is none.
-/// @param folder  where nobody else has files, to run it in
+/// Returns the version that the installed gnuplot reports; empty if there is none.
+/// @param folder  private working directory
 [[nodiscard]] std::string gnuplot_version(const std::filesystem::path& folder);
 
-/// Runs a script in the folder of its CSV files, where it draws a file.
-/// @return why not, in one line; empty if it is drawn
+/// Runs a script in the folder of its CSV files, where it writes a picture file.
+/// @return one line that states why the file was not drawn; empty on success
 [[nodiscard]] std::string run_script(const std::string& script, const std::string& output,
                                      const std::filesystem::path& folder);
 
 /// Returns an SVG file as an element of a page: without prolog, with a title.
-/// @param name  begins all identifiers, unique in the page
+/// @param name  prefix of all identifiers, unique in the page
 /// @throws std::invalid_argument if there is no svg element
 [[nodiscard]] std::string inline_svg(const std::string& svg, const std::string& name,
                                      const std::string& title);
 
-/// The endings of files that a picture can be drawn into.
+/// File formats of a picture.
 enum class PictureFormat { svg, png, pdf };
 
-/// A text as a gnuplot string that nothing in it can end or run.
+/// Returns a text as a gnuplot string that is quoted so that its content cannot end it or be
+/// executed.
 [[nodiscard]] std::string gnuplot_string(const std::string& text);
 
-/// The script that draws a picture with its figures' titles, numbers and all.
+/// Returns the script that draws a picture. It contains all titles and numbers.
 [[nodiscard]] std::string picture_script(const Picture& picture, PictureFormat format,
                                          const std::string& output);
 

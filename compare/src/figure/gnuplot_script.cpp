@@ -15,7 +15,7 @@ constexpr const char* zero_width_space = "\xe2\x80\x8b";
 
 constexpr int title_line_pixels = 22;
 
-/// A title in lines that fit above a figure.
+/// Divides a title into lines that fit above a figure.
 std::vector<std::string> title_lines(const std::string& title) {
   constexpr std::size_t most = 50;
   std::vector<std::string> lines = {""};
@@ -30,7 +30,7 @@ std::vector<std::string> title_lines(const std::string& title) {
   return lines;
 }
 
-/// Height of a panel [pixels]; the first one of a figure has its title.
+/// Returns the height of a panel [pixels]; that of the first panel includes the figure's title.
 int height_of(const Figure& figure, std::size_t panel) {
   const int title =
       panel > 0 ? 0 : title_line_pixels * static_cast<int>(title_lines(figure.title).size());
@@ -55,7 +55,7 @@ int height_of(const PictureRow& row) {
   return height;
 }
 
-/// gnuplot's numbers of the marks, in their order.
+/// gnuplot's point types of the marks, in the order of Mark.
 constexpr int point_types[] = {0, 2, 4, 5, 6, 7, 8, 10, 12};
 
 std::string line_style(const Look& look) {
@@ -90,7 +90,7 @@ struct Canvas {
   int legend_font = 13;  ///< smaller than other text, so that no title is cut off [points]
 };
 
-/// A script in the making. gnuplot places tics and legends.
+/// Builds a script. gnuplot places tics and legends.
 class Script {
  public:
   explicit Script(const Canvas& canvas) : canvas_(canvas) {}
@@ -161,7 +161,7 @@ class Script {
     }
   }
 
-  /// A block of numbers. @return its name
+  /// Adds a data block. @return its name
   std::string add_numbers(const PlottedCurve& curve) {
     std::string name = fmt::format("$numbers_{}", ++blocks_);
     if (!curve.id.empty()) add("# {}\n", curve.id);
@@ -174,7 +174,7 @@ class Script {
     return name;
   }
 
-  /// Boxes with borders of their own colour, which leave no stripes between them.
+  /// Adds boxes with borders in their fill colour, which leaves no gaps between them.
   std::string add_cells(const Cells& cells) {
     const std::string name = fmt::format("$numbers_{}", ++blocks_);
     const auto [least, most] = cells.range();
@@ -216,9 +216,9 @@ class Script {
   int blocks_ = 0;
 };
 
-/// The same picture in every format, as the SVG has it: in PDF a pixel is 0.75 points, and a line
-/// of width 1 half a point; cairo's symbols are half as large. Its ends are round: where they are
-/// not, cairo begins wide lines with a spike.
+/// Returns the terminal command, with sizes such that all formats look like the SVG. In PDF a pixel
+/// is 0.75 points, a line of width 1 is half a point wide, and cairo's symbols are half as large.
+/// Line ends are round, because cairo begins wide lines with a spike otherwise.
 std::string terminal(PictureFormat format, const Canvas& canvas) {
   switch (format) {
     case PictureFormat::svg:
@@ -227,13 +227,13 @@ std::string terminal(PictureFormat format, const Canvas& canvas) {
           "background "
           "'#ffffff'\n",
           canvas.width, canvas.height);
-    case PictureFormat::png:  // twice as fine, for screens and print
+    case PictureFormat::png:  // twice the resolution, for screens and print
       return fmt::format(
           "set terminal pngcairo size {},{} noenhanced font 'sans-serif,12' fontscale 2 rounded "
           "linewidth "
           "2.6 pointscale 4 background '#ffffff'\n",
           2 * canvas.width, 2 * canvas.height);
-    case PictureFormat::pdf:  // 96 pixels an inch
+    case PictureFormat::pdf:  // 96 pixels per inch
       return fmt::format(
           "set terminal pdfcairo size {:.4f}in,{:.4f}in noenhanced font 'sans-serif,12' fontscale "
           "0.75 rounded linewidth 1.95 pointscale 1.5 background '#ffffff'\n",
@@ -245,13 +245,13 @@ std::string terminal(PictureFormat format, const Canvas& canvas) {
 }  // namespace
 
 std::string gnuplot_string(const std::string& text) {
-  // gnuplot writes texts into an SVG's CDATA sections, which "]]>" would end.
+  // gnuplot writes texts into CDATA sections of the SVG, which "]]>" would end.
   std::string shown = xml_text(text);
   for (std::size_t at = 0; (at = shown.find("]]>", at)) != std::string::npos;) {
     shown.insert(at + 2, zero_width_space);
   }
-  // In single quotes an apostrophe is doubled, which gnuplot mistakes at the beginning; and a
-  // backtick runs a command. As octal numbers in double quotes neither is seen before it is drawn.
+  // In single quotes an apostrophe has to be doubled, which gnuplot misreads at the beginning of a
+  // string, and a backtick runs a command. Octal escapes in double quotes avoid both.
   if (shown.find_first_of("'`") == std::string::npos) return "'" + shown + "'";
   std::string result = "\"";
   for (const char c : shown) {
@@ -263,7 +263,7 @@ std::string gnuplot_string(const std::string& text) {
 
 std::string picture_script(const Picture& picture, PictureFormat format,
                            const std::string& output) {
-  // The other formats' text is 12 points high where that of SVG is 16 pixels.
+  // Text of 16 pixels in SVG corresponds to 12 points in the other formats.
   Canvas canvas{.legend_font = format == PictureFormat::svg ? 13 : 10};
   for (const PictureRow& row : picture.rows) {
     canvas.width = std::max(canvas.width, figure_width * static_cast<int>(row.size()));

@@ -8,8 +8,9 @@
 namespace dlo::compare {
 namespace {
 
-/// Colours after Okabe and Ito, darker, so that they stand out inverted as well, each with its own
-/// dashes and marks, so that none is told by colour alone.
+/// Style of a curve. The colours follow Okabe and Ito, but are darker, so that they are visible
+/// inverted as well. Each has its own dashes and marks, so that curves can be distinguished without
+/// colour.
 struct CurveLook {
   const char* colour;
   Mark mark;
@@ -33,7 +34,7 @@ void widen(PlotRange& range, const std::vector<double>& values) {
   }
 }
 
-/// What is drawn, and a little more.
+/// Sets missing limits of an axis to the range of the drawn values plus a margin.
 void set_limits(PlotAxis& axis, const PlotRange& drawn) {
   PlotRange range = drawn[0] <= drawn[1] ? drawn
                     : axis.logarithmic   ? PlotRange{1, 10}
@@ -41,7 +42,7 @@ void set_limits(PlotAxis& axis, const PlotRange& drawn) {
   if (axis.logarithmic) range = {std::log10(range[0]), std::log10(range[1])};
   constexpr double margin = 0.05;
   double more = margin * (range[1] - range[0]);
-  // Of one value: what surrounds it.
+  // The range of a single value is extended around it.
   if (!(more > 1e-12 * std::abs(range[1]))) {
     more = axis.logarithmic ? 0.5 : range[1] == 0 ? 1 : 0.1 * std::abs(range[1]);
   }
@@ -62,7 +63,7 @@ void lay_out(PlotAxis& axis, std::vector<PlottedCurve>& curves,
   PlotRange drawn = nothing;
   for (PlottedCurve& curve : curves) {
     for (double& value : curve.*values) {
-      // What a logarithmic axis has no place for.
+      // A logarithmic axis cannot show it.
       if (axis.logarithmic && std::isfinite(value) && value <= 0) value = NAN;
     }
     widen(drawn, curve.*values);
@@ -106,7 +107,8 @@ std::pair<double, double> Cells::range() const {
 }
 
 int Panel::full_height() const {
-  constexpr int axes = 90;  // the numbers and the name of the level axis, and space above the plot
+  // Pixels of the labels and title of the horizontal axis, and of the space above the plot.
+  constexpr int axes = 90;
   constexpr int legend_row = 20;
   const auto rows = std::count_if(curves.begin(), curves.end(),
                                   [this](const PlottedCurve& curve) { return shows_title(curve); });

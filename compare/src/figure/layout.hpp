@@ -7,63 +7,63 @@
 
 namespace dlo::compare {
 
-/// What a point of a curve looks like.
+/// Symbol at the points of a curve.
 enum class Mark { none, cross, open_square, square, circle, dot, triangle, down_triangle, diamond };
 
-/// How a line is broken.
+/// Dash pattern of a line.
 enum class Dashes { solid, dashed, dotted, dash_dotted, dash_dot_dotted };
 
-/// How a curve is drawn.
+/// Style of a curve.
 struct Look {
   std::string colour = "#000000";  ///< "#RRGGBB"
-  double width = 1;                ///< of its line; 0: none
+  double width = 1;                ///< line width; 0: no line
   Dashes dashes = Dashes::solid;
   Mark mark = Mark::none;
   double mark_size = 1;
-  std::string fill;  ///< colour of what the line surrounds; empty: nothing
+  std::string fill;  ///< colour of the area that the line encloses; empty: not filled
 };
 
-/// How many colours curves have.
+/// Number of different colours of curves.
 inline constexpr std::size_t curve_colours = 6;
 
-/// The look of the i-th curve, line and marks, in a colour that colour-blind readers tell apart,
-/// with dashes and marks of its own; they come again.
+/// Returns the style of the i-th curve, with a line and marks. Its colour can be distinguished by
+/// colour-blind readers, and its dashes and marks differ too. Styles repeat after curve_colours.
 [[nodiscard]] Look curve_look(std::size_t i);
-/// The same without marks.
+/// Returns curve_look(i) without marks.
 [[nodiscard]] Look curve_line(std::size_t i);
-/// The same without a line.
+/// Returns curve_look(i) without a line.
 [[nodiscard]] Look curve_marks(std::size_t i);
 
-/// What is drawn in one look. Coordinates that are infinite are at the plot's edge; at NaN a line
-/// ends, and the next begins after it.
+/// Points of one style in a plot. Infinite coordinates are drawn at the plot's edge. At NaN a line
+/// is interrupted.
 struct PlottedCurve {
-  std::string id;     ///< its name in the script
-  std::string title;  ///< in the legend; empty: not there
+  std::string id;     ///< name of the curve in the script
+  std::string title;  ///< text in the legend; empty: no entry
   Look look;
   std::vector<double> x, y;
-  std::vector<double> z;  ///< in a plot in space
+  std::vector<double> z;  ///< only for a plot in space
 };
 
-/// Words in a plot.
+/// Text in a plot.
 struct Text {
   double x, y;
   std::string words;
-  double dx = 0, dy = 0;  ///< of their left end's middle, from there [pixels]
+  double dx = 0, dy = 0;  ///< offset of the text's left centre from (x, y) [pixels]
 };
 
-/// Values on a grid, as colours from light to dark: rectangles that meet.
+/// Values on a rectangular grid, drawn as adjacent rectangles with colours from light to dark.
 struct Cells {
-  std::vector<double> x, y;    ///< their edges, rising
-  std::vector<double> values;  ///< row by row from the lowest; NaN: none
+  std::vector<double> x, y;    ///< edges of the rectangles, increasing
+  std::vector<double> values;  ///< row by row from the lowest; NaN: not drawn
 
-  /// Least and largest value.
+  /// Returns the smallest and the largest value.
   [[nodiscard]] std::pair<double, double> range() const;
 };
 
-/// The colours of cells, from the least value to the largest.
+/// Colours of cells, from the smallest value to the largest.
 inline constexpr const char* cell_colours[] = {"#F2F0E6", "#5B9BC8", "#0B2D5B"};
 
-/// A number or word at an axis.
+/// Label at a position of an axis.
 struct Tic {
   double at;
   std::string label;
@@ -72,51 +72,52 @@ struct Tic {
 /// An axis of a plot.
 struct PlotAxis {
   std::string label;
-  std::optional<double> from, to;  ///< none: what is drawn needs it
+  std::optional<double> from, to;  ///< limits; empty: those of the drawn data
   bool logarithmic = false;
-  std::optional<std::vector<Tic>> tics;  ///< none: those that the plotting program chooses
+  std::optional<std::vector<Tic>> tics;  ///< empty: chosen by the plotting program
 };
 
-/// A plot of a figure. gnuplot or matplotlib places its tics, and its legend below it.
+/// Plot of a figure. gnuplot or matplotlib chooses its tics and places its legend below it.
 struct Panel {
-  int height = 330;  ///< of the plot itself [pixels]
+  int height = 330;  ///< height of the plot without axes and legend [pixels]
   PlotAxis x, y;
-  std::optional<PlotAxis> z;  ///< of a plot in space
-  int upright = 2;            ///< the axis that is upright in space
+  std::optional<PlotAxis> z;  ///< only for a plot in space
+  int upright = 2;            ///< vertical axis of a plot in space
   std::vector<PlottedCurve> curves;
   std::vector<Text> texts;
   std::optional<Cells> cells;
-  bool equal_aspect = false;  ///< as many pixels a metre on all axes
-  bool has_legend = true;     ///< or its curves' titles are in another one's
+  bool equal_aspect = false;  ///< the same number of pixels per metre on all axes
+  bool has_legend = true;     ///< false if another panel's legend contains the titles of its curves
 
-  /// Whether the legend shows a curve.
+  /// Whether the legend contains a curve.
   [[nodiscard]] bool shows_title(const PlottedCurve& curve) const {
     return has_legend && !curve.title.empty();
   }
-  /// Height of the plot with its axes and legend [pixels].
+  /// Returns the height of the plot with its axes and legend [pixels].
   [[nodiscard]] int full_height() const;
 };
 
-/// Returns a panel as it is drawn: with limits, without infinite coordinates and curves of nothing.
+/// Returns a panel as it is drawn: with limits on all axes, infinite coordinates moved to the edge,
+/// and without curves that have no point.
 [[nodiscard]] Panel laid_out(Panel panel);
 
-/// A figure: plots below each other.
+/// Figure with plots below each other.
 struct Figure {
   std::string title;  ///< one line
   std::vector<Panel> panels;
 };
 
-/// Figures beside each other, each column with figures below each other.
+/// Figures next to each other; each column contains figures below each other.
 using PictureRow = std::vector<std::vector<Figure>>;
 
-/// Rows of figures below each other, for one file.
+/// Picture in one file: rows of figures below each other.
 struct Picture {
   std::vector<PictureRow> rows;
 };
 
 /// Width of every figure [pixels], small enough for its text to be read on a page of 375.
 inline constexpr int figure_width = 460;
-/// Width of a plot in its figure, about [pixels].
+/// Approximate width of a plot in its figure [pixels].
 inline constexpr int plot_width = 358;
 
 }  // namespace dlo::compare

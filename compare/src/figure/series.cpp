@@ -18,15 +18,15 @@ namespace {
 
 constexpr int curve_samples = 201;
 
-/// Sense of turning, where there is one: the plane's normal.
+/// Returns the curvature with a sign about the normal, or its magnitude without a normal.
 double signed_curvature(const std::optional<Eigen::Vector3d>& normal,
                         const Eigen::Vector3d& binormal) {
   return normal ? binormal.dot(*normal) : binormal.norm();
 }
 
-/// Normal of the plane that the scene has, if the points lie in it.
+/// Returns the normal of the scene's plane if all points are in it.
 std::optional<Eigen::Vector3d> plane_through(const Scene& scene, const Eigen::Matrix3Xd& points) {
-  constexpr double thick = 1e-6;  // of the length
+  constexpr double thick = 1e-6;  // in lengths
   std::optional<Eigen::Vector3d> normal = scene.plane_normal();
   if (!normal) return std::nullopt;
   const Eigen::Vector3d held = scene.grippers.front().position;
@@ -36,8 +36,8 @@ std::optional<Eigen::Vector3d> plane_through(const Scene& scene, const Eigen::Ma
   return normal;
 }
 
-/// The plane's normal towards the reader of a plot: positive curvature turns to the left. None
-/// where the points leave it.
+/// Returns the plane's normal with the sign that points to the viewer of a plot, so that positive
+/// curvature bends to the left; std::nullopt if the points leave the plane.
 std::optional<Eigen::Vector3d> normal_to_reader(const Scene& scene, const View& view,
                                                 const Eigen::Matrix3Xd& points) {
   std::optional<Eigen::Vector3d> normal = plane_through(scene, points);
@@ -48,7 +48,7 @@ std::optional<Eigen::Vector3d> normal_to_reader(const Scene& scene, const View& 
   return normal;
 }
 
-/// The part of a convex outline within limits of one of its coordinates (Sutherland and Hodgman).
+/// Clips a convex outline at a limit of one of its coordinates (Sutherland and Hodgman).
 Eigen::Matrix3Xd clipped(const Eigen::Matrix3Xd& outline, int axis, double limit, double sign) {
   std::vector<Eigen::Vector3d> kept;
   const Eigen::Index count = outline.cols();
@@ -146,7 +146,7 @@ std::optional<Series> unbent_series(const Scene& scene) {
 }
 
 std::vector<Series> gripper_series(const Scene& scene) {
-  constexpr double stub = 0.04;  // of the length
+  constexpr double stub = 0.04;  // in lengths
   std::vector<Series> all;
   Series grips{.id = "gripper",
                .title = scene.grippers.size() == 1 ? "gripper" : "grippers",
@@ -170,7 +170,7 @@ std::vector<Series> gripper_series(const Scene& scene) {
 
 std::optional<Series> contact_series(const std::vector<energy_model::ContactPart>& contacts,
                                      const RodPoints& rod, double length) {
-  constexpr double between = 1.0 / 150;  // of the length
+  constexpr double between = 1.0 / 150;  // largest distance of drawn points, in lengths
   Series series{.id = "contact",
                 .title = "where the rod itself touches",
                 .look = {.colour = "#207A34", .width = 0, .mark = Mark::dot, .mark_size = 0.45}};
@@ -191,12 +191,12 @@ std::vector<Series> obstacle_series(const Scene& scene, const std::vector<View>&
   std::vector<Series> all;
   const Eigen::Vector3d middle = rod.rowwise().mean();
   for (std::size_t v = 0; v < views.size(); ++v) {
-    bool titled = false;  // in each view: one of them has the key
+    bool titled = false;  // only one outline per view has a legend entry
     const Eigen::Vector3d right = Eigen::Vector3d::Unit(views[v].right);
     const Eigen::Vector3d up = Eigen::Vector3d::Unit(views[v].up);
     for (const std::size_t i : obstacles_in_reach(scene, scene.force_model)) {
       const obstacle::Body& body = scene.obstacles[i].body;
-      // Past every edge of a plot, which shows no more than what the rod could fill.
+      // The outline extends beyond every edge of a plot, which is no larger than the rod's reach.
       const double far = 10 * (scene.length + (body.centre() - middle).norm());
       const Eigen::Matrix2Xd seen = obstacle::outline(body, right, up, far);
       if (seen.cols() == 0) continue;

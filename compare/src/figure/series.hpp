@@ -15,85 +15,87 @@
 
 namespace dlo::compare {
 
-/// Names of a plot's axes, by the numbers that View has.
+/// Names of the axes of a plot, indexed by the numbers in View.
 inline constexpr const char* axis_names = "xyz";
 
 /// One shape of a figure.
 struct Series {
-  std::string id;     ///< its name in the script
-  std::string title;  ///< in the key; empty: not there
+  std::string id;     ///< name of the curve in the script
+  std::string title;  ///< text in the legend; empty: no entry
   Look look;
-  Eigen::Matrix3Xd points;  ///< [m]; a column of NaN: a line ends before it, the next begins after
+  Eigen::Matrix3Xd points;  ///< [m]; a column of NaN interrupts the line
   std::vector<double> arc_length;
-  std::vector<double> curvature;  ///< empty: none to show; NaN at the ends of polygons
-  int view = -1;                  ///< the only one that shows it, which it does not widen; or all
+  std::vector<double> curvature;  ///< empty if not shown; NaN at the ends of polygons
+  /// Index of the only view that shows the series, without extending its limits; -1: all views.
+  int view = -1;
 };
 
-/// Which axes a plot has, to the right and up.
+/// Coordinate axes that a plot shows to the right and upwards.
 struct View {
   int right = 0;
   int up = 1;
 };
 
-/// Shapes, and from where they are seen.
+/// Shapes and the views in which they are drawn.
 struct Drawing {
   std::vector<View> views;
-  std::vector<Series> series;  ///< those behind first
+  std::vector<Series> series;  ///< in drawing order, the rearmost first
 };
 
-/// The part of a convex outline that is in a rectangle of a view: of one that goes on past a plot,
-/// gnuplot draws no border.
+/// Returns the part of a convex outline within a rectangle of a view. It is needed because gnuplot
+/// draws no border of an outline that extends beyond the plot.
 [[nodiscard]] Series within(Series outline, const View& view, const std::array<double, 2>& low,
                             const std::array<double, 2>& high);
 
-/// The points of all of them.
+/// Returns the points of all parts in one matrix.
 [[nodiscard]] Eigen::Matrix3Xd side_by_side(const std::vector<const Eigen::Matrix3Xd*>& parts);
 
-/// Whether points lie in a plane that the scene has: rods leave it where they buckle out of it.
-/// @param points  of the rod [m]
+/// Whether points are in the plane that the scene has. A rod may have left it by buckling.
+/// @param points  points of the rod [m]
 [[nodiscard]] bool stays_in_plane(const Scene& scene, const Eigen::Matrix3Xd& points);
 
-/// The plane that the points stay in if it is a coordinate plane; else two projections that share
-/// an axis, the first with gravity upright.
-/// @param points  of the rod [m]
+/// Returns one view of the plane that contains the points if it is a coordinate plane. Otherwise it
+/// returns two projections with a common axis, the first with gravity vertical.
+/// @param points  points of the rod [m]
 [[nodiscard]] std::vector<View> views_of(const Scene& scene, const Eigen::Matrix3Xd& points);
 
-/// A rod as a line, with its curvature; where it stays in a plane that turns to the left is
+/// Returns a rod as a line, with its curvature. If the rod is planar, curvature to the left is
 /// positive.
 [[nodiscard]] Series rod_series(const Reference& rod, const Scene& scene, const View& view);
 
-/// A polygon, with the curvature of its joints.
+/// Returns a polygon with the curvature of its joints.
 [[nodiscard]] Series polygon_series(const Shape& shape, const Scene& scene, const View& view);
 
-/// The straight rod of a scene with a single clamp; of another nothing.
+/// Returns the straight rod of a scene with a single clamp; std::nullopt for other scenes.
 [[nodiscard]] std::optional<Series> unbent_series(const Scene& scene);
 
-/// Grippers as points, and of each clamp a stub along its direction.
+/// Returns grippers as points, and for each clamp a short line along its direction.
 [[nodiscard]] std::vector<Series> gripper_series(const Scene& scene);
 
-/// Points of a rod at arc lengths [m], 3 x M.
+/// Function that returns the points of a rod at arc lengths [m], 3 x M.
 using RodPoints = std::function<Eigen::Matrix3Xd(const std::vector<double>&)>;
 
-/// What touches a rod: points of what lies, and single ones; nothing if nothing does.
-/// @param rod  its points at arc lengths;  @param length  of the rod [m]
+/// Returns the contacts of a rod: points along each contact interval, and single points;
+/// std::nullopt if there is none.
+/// @param rod  gives its points at arc lengths;  @param length  length of the rod [m]
 [[nodiscard]] std::optional<Series> contact_series(
     const std::vector<energy_model::ContactPart>& contacts, const RodPoints& rod, double length);
 
-/// Outlines of the obstacles in reach in each view, to be drawn behind everything: what the rod's
-/// axis stays out of.
-/// @param rod  points of what else is drawn
+/// Returns outlines of the obstacles in reach in each view, to be drawn behind everything: the
+/// regions that the rod's axis cannot enter.
+/// @param rod  points of the shapes that are drawn
 [[nodiscard]] std::vector<Series> obstacle_series(const Scene& scene,
                                                   const std::vector<View>& views,
                                                   const Eigen::Matrix3Xd& rod);
 
-/// Shapes in one or two views at equal aspect, by construction: both axes have the same number of
-/// pixels a metre.
+/// Returns panels of the shapes in one or two views. Both axes of a panel have the same number of
+/// pixels per metre by construction.
 [[nodiscard]] std::vector<Panel> shape_panels(const Drawing& drawing);
 
-/// The same in space, in one plot.
+/// Returns one panel with the shapes in space.
 [[nodiscard]] Panel spatial_panel(const Drawing& drawing);
 
-/// Curvature of the series that have one against arc length.
+/// Returns a panel of curvature against arc length, for the series that have curvature.
 [[nodiscard]] Panel curvature_panel(const std::vector<Series>& all, bool planar);
 
 }  // namespace dlo::compare

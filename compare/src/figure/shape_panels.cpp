@@ -13,7 +13,7 @@ constexpr double highest_plot = 460;   // [pixels]
 constexpr double flattest_plot = 110;  // [pixels]
 constexpr int curvature_plot = 280;    // height [pixels]
 
-/// Least and largest coordinate of all series.
+/// Returns the smallest and the largest coordinate of all series that are shown in all views.
 std::array<double, 2> range_of(const std::vector<Series>& all, int axis) {
   std::array<double, 2> range = {HUGE_VAL, -HUGE_VAL};
   for (const Series& series : all) {
@@ -28,7 +28,7 @@ std::array<double, 2> range_of(const std::vector<Series>& all, int axis) {
 
 double extent(const std::array<double, 2>& range) { return range[1] - range[0]; }
 
-/// Widened about its middle.
+/// Extends a range about its middle to the size `to`.
 std::array<double, 2> widened(const std::array<double, 2>& range, double to) {
   const double middle = (range[0] + range[1]) / 2;
   const double half = std::max(extent(range), to) / 2;
@@ -63,7 +63,7 @@ std::vector<Panel> shape_panels(const Drawing& drawing) {
   for (std::size_t i = 0; i < views.size(); ++i) {
     const View& view = views[i];
     const std::array<double, 2> own = range_of(all, view.up);
-    // Whole pixels: the range is what fits them.
+    // The height is rounded up to whole pixels, and the range is extended accordingly.
     const int height = static_cast<int>(
         std::ceil(std::max(extent(own) * margin * pixels_per_metre, flattest_plot)));
     const std::array<double, 2> up = widened(own, height / pixels_per_metre);
@@ -89,7 +89,7 @@ std::vector<Panel> shape_panels(const Drawing& drawing) {
 
 Panel spatial_panel(const Drawing& drawing) {
   const std::vector<Series>& all = drawing.series;
-  constexpr double flattest = 0.6;  // of the longest side: its numbers have room
+  constexpr double flattest = 0.6;  // of the longest side, so that the tic labels fit
   Panel panel{.upright = drawing.views.front().up, .equal_aspect = true};
   double longest = 0;
   for (const int axis : {0, 1, 2}) longest = std::max(longest, extent(range_of(all, axis)));
@@ -100,7 +100,7 @@ Panel spatial_panel(const Drawing& drawing) {
   panel.y = limited(1);
   panel.z = limited(2);
   for (const Series& series : all) {
-    if (series.view >= 0) continue;  // outlines are flat
+    if (series.view >= 0) continue;  // outlines of obstacles belong to one flat view
     panel.curves.push_back({.id = series.id,
                             .title = series.title,
                             .look = series.look,
@@ -127,7 +127,7 @@ Panel curvature_panel(const std::vector<Series>& all, bool planar) {
                             .x = series.arc_length,
                             .y = series.curvature});
   }
-  constexpr double rounding = 1e-9;  // of one over the length
+  constexpr double rounding = 1e-9;  // of the curvature times the length
   if (largest * panel.x.to.value_or(0) < rounding) {
     panel.y.from = -1;
     panel.y.to = 1;

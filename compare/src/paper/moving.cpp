@@ -43,7 +43,7 @@ Eigen::Matrix3Xd start_points(const MovingPose& start, const MovingChoices& choi
   return points;
 }
 
-/// Adds the gripper's force on the rod to the run's averages. @return the sum of its springs'
+/// Adds the gripper's forces on the rod to the run's averages. @return sum of the spring forces [N]
 Eigen::Vector3d add_force(const force_model::Simulation& simulation, MovingRun& run) {
   const force_model::Grip& grip = simulation.rod().grips.front();
   Eigen::Vector3d net = Eigen::Vector3d::Zero();
@@ -111,7 +111,7 @@ force_model::StepOptions moving_step_options(MovingVariant variant, const Moving
 
 MovingRun run_moving_experiment(const MovingExperiment& experiment, const MovingChoices& choices,
                                 const MovingObserver& observe) {
-  constexpr long most_steps = nominal_moving_steps * 5 / 4;  // the paper prints up to 128770
+  constexpr long most_steps = nominal_moving_steps * 5 / 4;  // the largest printed number is 128770
   const MovingPose start = moving_pose(experiment, choices, 0);
   force_model::Simulation simulation(moving_rod(start, choices), start_points(start, choices),
                                      moving_step_options(experiment.variant, choices));

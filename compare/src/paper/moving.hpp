@@ -10,14 +10,14 @@
 
 namespace dlo::compare {
 
-/// What the gripper does from 5 s to 13 s of 28 s (paper, Section III).
+/// Motion of the gripper from 5 s to 13 s of the 28 s of an experiment (paper, Section III).
 enum class Movement {
-  rotation,    ///< about the third point, in the vertical plane, at a constant rate
-  uniform,     ///< sideways at a constant speed, stopped at once
-  accelerated  ///< sideways at a constant acceleration from rest, stopped at once
+  rotation,    ///< rotation about the third point, in the vertical plane, at a constant rate
+  uniform,     ///< translation along +x at a constant speed, stopped at once
+  accelerated  ///< translation along +x at a constant acceleration from rest, stopped at once
 };
 
-/// How the rod is stepped.
+/// Step formula of an experiment.
 enum class MovingVariant {
   basic,             ///< Formula 7
   relative,          ///< Formula 18: the tables' rows without "dynamic"
@@ -27,19 +27,19 @@ enum class MovingVariant {
   automatic          ///< Formula 20 with c_F and c_h from linear stability
 };
 
-/// In words, for tables.
+/// Names of the movements in tables.
 template <>
 struct Choices<Movement> {
-  /// In the enumeration's order.
+  /// All movements, in the order of the enumeration.
   static constexpr Choice<Movement> all[] = {{Movement::rotation, "rotation", ""},
                                              {Movement::uniform, "uniform", ""},
                                              {Movement::accelerated, "accelerated", ""}};
 };
 
-/// In words, for tables.
+/// Names of the step formulas in tables.
 template <>
 struct Choices<MovingVariant> {
-  /// In the enumeration's order.
+  /// All step formulas, in the order of the enumeration.
   static constexpr Choice<MovingVariant> all[] = {
       {MovingVariant::basic, "basic", ""},
       {MovingVariant::relative, "relative", ""},
@@ -51,69 +51,73 @@ struct Choices<MovingVariant> {
 
 /// One row of Tables 2 to 4.
 struct MovingExperiment {
-  Movement movement = Movement::rotation;  ///< of the gripper
-  bool horizontal = false;                 ///< direction of the rod at the start; else it hangs
-  MovingVariant variant = MovingVariant::relative;  ///< of the step
+  Movement movement = Movement::rotation;  ///< movement of the gripper
+  bool horizontal = false;  ///< the rod is horizontal at the start; otherwise it hangs
+  MovingVariant variant = MovingVariant::relative;  ///< step formula
 
-  /// Equal in every choice.
+  /// Whether all members are equal.
   bool operator==(const MovingExperiment&) const = default;
 };
 
-/// What the paper leaves open. The defaults are the nearest choice that was found by hand; a report
-/// varies them one at a time.
+/// Parameters of the experiments that the paper does not print. The defaults are the values that
+/// were found by hand to be closest to the printed rows; a report varies them one at a time.
 struct MovingChoices {
-  /// What Table 1's c_F (per newton) and l_s are lengths in [m]; every force of the model is a
-  /// stiffness times a ratio, so nothing else in the table would tell.
+  /// Unit of the lengths in Table 1's c_F (length per newton) and l_s [m]. Every force of the model
+  /// is a stiffness times a ratio, so no other entry of the table determines it.
   double length_unit = 0.01;
-  /// Force that moves a gripped point by 5 % of a segment, l/(N-1) [N]: c_e as printed.
+  /// Force that displaces a gripped point by 5 % of a segment, l/(N-1) [N]: c_e as printed.
   double grip_force = table_1().grip_force;
-  double angle = 110 * std::numbers::pi / 180;  ///< of the rotation [rad]
-  double distance = 0.1;                        ///< of the sideways movements [m]
-  double c_h = 0.95;        ///< share of the last movement that is kept, the variants `dynamic` [-]
-  double c_s_change = 0.1;  ///< force_model::StepOptions
-  /// How many segments the rod starts behind its place in the gripper, which pulls it there.
+  double angle = 110 * std::numbers::pi / 180;  ///< angle of the rotation [rad]
+  double distance = 0.1;                        ///< distance of the translations [m]
+  double c_h = 0.95;  ///< fraction of the previous step that is kept by the variants `dynamic` [-]
+  double c_s_change = 0.1;  ///< see force_model::StepOptions
+  /// Number of segments by which the rod starts behind its position in the gripper, which then
+  /// pulls it forward.
   double start_offset = 0;
 
-  /// Equal in every choice.
+  /// Whether all members are equal.
   bool operator==(const MovingChoices&) const = default;
 };
 
 /// How an experiment ended.
 enum class MovingStatus { diverged, too_many_steps, finished };
 
-/// Indicators of Tables 2 to 4.
+/// Results of one experiment: the indicators of Tables 2 to 4.
 struct [[nodiscard]] MovingRun {
-  MovingStatus status = MovingStatus::diverged;  ///< how it ended
-  long steps = 0;          ///< evaluations of the model; 112000 if none was scaled down
-  long damped_steps = 0;   ///< with c_s != 1
-  long limited_steps = 0;  ///< with d_m > l_s
+  MovingStatus status = MovingStatus::diverged;  ///< how the experiment ended
+  long steps = 0;          ///< evaluations of the model; 112000 if no step was scaled down
+  long damped_steps = 0;   ///< steps with c_s != 1
+  long limited_steps = 0;  ///< steps with d_m > l_s
   /// Sum of the magnitudes of the spring forces on the gripped points, averaged over the 1 kHz
   /// frames [N]. The springs of a gripper that holds a horizontal rod pull against each other, so
   /// this is more than the net force.
   double average_force = 0;
-  double average_net_force = 0;  ///< magnitude of the spring forces' sum [N]
-  double final_force = 0;        ///< as average_force, in the last frame [N]
-  double final_net_force = 0;    ///< as average_net_force, in the last frame [N]
-  double c_F = 0;                ///< of the last step [m/N]
-  double c_h = 0;                ///< of the last step; 0 without dynamics [-]
+  /// Magnitude of the sum of the spring forces, averaged likewise [N].
+  double average_net_force = 0;
+  double final_force = 0;      ///< average_force of the last frame alone [N]
+  double final_net_force = 0;  ///< average_net_force of the last frame alone [N]
+  double c_F = 0;              ///< c_F of the last step [m/N]
+  double c_h = 0;              ///< c_h of the last step; 0 without dynamics [-]
 };
 
-/// Nominal steps of every experiment: 28 s at 4000 steps/s.
+/// Nominal number of steps of every experiment: 28 s at 4000 steps/s.
 inline constexpr long nominal_moving_steps = 112000;
 
-/// Where the gripper is, and along which direction it holds the rod, with rates by time.
+/// Pose of the gripper in the rod's plane, with its time derivatives.
 struct MovingPose {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();      ///< of the third point [m]
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();      ///< [m/s]
-  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  ///< [m/s^2]
-  double angle = 0;                                        ///< of the direction, from +x [rad]
-  double angle_rate = 0;                                   ///< [rad/s]
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< position of the third point [m]
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< velocity of the third point [m/s]
+  /// Acceleration of the third point [m/s^2].
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();
+  double angle = 0;       ///< angle of the direction, from +x [rad]
+  double angle_rate = 0;  ///< rate of the angle [rad/s]
 
-  /// Along growing arc length, unit [-].
+  /// Returns the direction of the rod in the gripper, with growing arc length, a unit vector [-].
   [[nodiscard]] Eigen::Vector3d direction() const;
 };
 
-/// The gripper's pose; at the begin and the end of the movement with the rates after them.
+/// Returns the gripper's pose. At the beginning and the end of the movement its rates are those
+/// just after.
 /// @param time  [s]
 [[nodiscard]] MovingPose moving_pose(const MovingExperiment& experiment,
                                      const MovingChoices& choices, double time);
@@ -123,22 +127,23 @@ inline constexpr double movement_ends = 13;   ///< [s]
 inline constexpr int moving_frames = 28000;   ///< at 1 kHz, Section II.B
 inline constexpr int gripped_point = 2;       ///< index of the third point
 
-/// The rod's loads and masses, Table 1's: w l [N], as N points of the printed weight.
+/// Returns the weight w l [N] by Table 1: N points of the printed weight.
 [[nodiscard]] double moving_weight();
 
-/// A frame of a run: its number, points [m] (3 x N), and the spring forces' sum [N].
+/// Receives a frame of a run: its number, the points [m] (3 x N), and the sum of the spring forces
+/// [N].
 using MovingObserver =
     std::function<void(int frame, const Eigen::Matrix3Xd& points, const Eigen::Vector3d& force)>;
 
-/// Constants of one step for a variant: Table 1's, with what the choices fill in.
+/// Returns the constants of a step of a variant: Table 1's, completed by the choices.
 [[nodiscard]] force_model::StepOptions moving_step_options(MovingVariant variant,
                                                            const MovingChoices& choices);
 
 /// Simulates the rod of Table 1 (N = 10, law `paper`) through one experiment, with the catch-up
-/// loop of Text 1. A spring grip holds the third and the fourth point: the third alone could not
-/// turn the rod. A run that needs 5/4 of the nominal steps is given up; its averages are over the
-/// frames that it reached.
-/// @param observe  sees every frame after its steps; null: nothing
+/// loop of Text 1. A spring grip holds the third and the fourth point, since the third alone could
+/// not rotate the rod. A run that needs 5/4 of the nominal steps is stopped; its averages are over
+/// the frames that it has computed.
+/// @param observe  called after the steps of each frame; may be empty
 /// @throws std::invalid_argument if a choice is out of range
 MovingRun run_moving_experiment(const MovingExperiment& experiment, const MovingChoices& choices,
                                 const MovingObserver& observe = {});

@@ -12,12 +12,12 @@ namespace dlo::compare {
 namespace {
 
 constexpr double time_step = 28.0 / nominal_moving_steps;
-/// Frames that are looked at. Where the gripper starts or stops at once the force on a rod has no
-/// bound, so none is at the begin or the end of the movement.
+/// Interval between compared frames. If the gripper starts or stops abruptly, the force on a rod is
+/// unbounded, so no frame is at the beginning or the end of the movement.
 constexpr int frame_stride = 50;
 constexpr int first_seen_frame = static_cast<int>(movement_begins * 1000) + frame_stride / 2;
 
-/// The clamp is half a segment ahead of the third point.
+/// Distance of the clamp from the third point, half a segment along the rod [m].
 double clamp_lead() { return table_1().segment() / 2; }
 
 energy_model::GripPose clamp_pose(const MovingExperiment& experiment, const MovingChoices& choices,
@@ -51,7 +51,7 @@ energy_model::MovingRod reference_rod(const MovingExperiment& experiment,
   rod.inertia.mass_per_length = table.mass / table.length;
   rod.motions = {[=](double time) { return clamp_pose(experiment, choices, time); }};
   rod.breaks = {movement_begins, movement_ends};
-  // The first mode of the longer part, a cantilever: zeta = tau omega / 2.
+  // First mode of the longer part, a cantilever: zeta = tau omega / 2.
   constexpr double first_root = 1.8751040687119612;
   const double omega = std::pow(first_root / (table.length - at), 2) *
                        std::sqrt(rod.problem.bending_stiffness / rod.inertia.mass_per_length);

@@ -14,7 +14,7 @@
 namespace dlo::compare {
 namespace {
 
-/// A row's experiment from its table and label.
+/// Returns the experiment of a row from its table and label.
 MovingExperiment experiment_of(const std::string& table, const std::string& label) {
   const auto says = [&](const char* word) { return label.find(word) != std::string::npos; };
   MovingExperiment experiment;
@@ -48,7 +48,8 @@ std::vector<MovingRow> read_printed_rows() {
 
 bool near(long computed, long printed) { return 10 * std::abs(computed - printed) <= printed; }
 
-/// Runs experiments, each pair of an experiment and the choices that matter to it only once.
+/// Runs experiments and stores the results. Each combination of an experiment and the choices that
+/// affect it is run only once.
 class Runs {
  public:
   void fill(std::vector<MovingRow>& rows, const MovingChoices& choices) {
@@ -89,8 +90,8 @@ Variation vary(const char* name, double MovingChoices::*member, double value, do
           [=](MovingChoices& choices) { choices.*member = value * unit; }};
 }
 
-/// What Tables 2 and 4 are scanned over. Of the grip's forces, 0.07848 N is what the printed c_c
-/// and c_b follow from, and 0.4905 N is Formula 14's m g at 1 % of a segment.
+/// Variations of the choices for Tables 2 and 4. Among the forces of the grip, 0.07848 N is the one
+/// from which the printed c_c and c_b follow, and 0.4905 N is Formula 14's m g at 1 % of a segment.
 std::vector<Variation> variations() {
   constexpr double degree = std::numbers::pi / 180;
   return {{"nothing", [](MovingChoices&) {}},
@@ -133,7 +134,8 @@ std::vector<MovingScanEntry> scan(const std::vector<MovingRow>& rows,
   return result;
 }
 
-/// Of every row against the moving energy model, which does not know a variant.
+/// Computes the distance of every row from the dynamic energy model, whose motion does not depend
+/// on the variant.
 void add_errors(MovingReport& report) {
   std::vector<std::pair<MovingExperiment, MovingReference>> references;
   for (MovingRow& row : report.rows) {

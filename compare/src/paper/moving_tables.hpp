@@ -8,62 +8,64 @@
 
 namespace dlo::compare {
 
-/// A row of Tables 2 to 4 as printed.
+/// Printed row of Tables 2 to 4.
 struct PrintedMovingRow {
   std::string table;         ///< "2", "3" or "4"
   std::string label;         ///< as the paper names the row
-  long steps = 0;            ///< of all kinds
-  long damped_steps = 0;     ///< c_s != 1; of Tables 3 and 4 the text says that it was none
-  long limited_steps = 0;    ///< d_m > l_s
+  long steps = 0;            ///< steps of all kinds
+  long damped_steps = 0;     ///< steps with c_s != 1; 0 in Tables 3 and 4, as the text states
+  long limited_steps = 0;    ///< steps with d_m > l_s
   double average_force = 0;  ///< [N]
 };
 
-/// An experiment as run, beside its printed row.
+/// Experiment with its result and its printed row.
 struct MovingRow {
-  MovingExperiment experiment;              ///< what was run
-  std::optional<PrintedMovingRow> printed;  ///< none of variants without a row
-  MovingRun run;                            ///< what came out
-  std::optional<MovingError> error;  ///< against the moving energy model; none: not looked at
+  MovingExperiment experiment;              ///< the experiment
+  std::optional<PrintedMovingRow> printed;  ///< empty for variants without a printed row
+  MovingRun run;                            ///< result of the experiment
+  /// Distance from the dynamic energy model; empty if not computed.
+  std::optional<MovingError> error;
 };
 
-/// How near runs come to the printed rows.
+/// Agreement of runs with the printed rows.
 struct MovingDistance {
-  /// exp of the RMS of ln(computed / printed) of the average forces: 1 is equal, 2 is off by two.
-  /// Infinite if a run diverged or was given up.
+  /// exp of the RMS of ln(computed / printed) of the average forces: 1 means equal, 2 a typical
+  /// factor of two. Infinite if a run diverged or was stopped.
   double force_factor = 0;
-  /// Counters (steps beyond the nominal ones, c_s != 1, d_m > l_s) within 10 % of the print, where
-  /// a printed 0 has to be a 0.
+  /// Number of counters (steps beyond the nominal ones, c_s != 1, d_m > l_s) within 10 % of the
+  /// printed value; a printed 0 requires 0.
   int counters_near = 0;
-  int counters = 0;  ///< how many of them are printed
+  int counters = 0;  ///< number of printed counters
 };
 
-/// Counted over the rows that are printed.
+/// Compares the rows that have a printed row.
 [[nodiscard]] MovingDistance moving_distance(const std::vector<MovingRow>& rows);
 
-/// Rows for choices that differ in one thing from the defaults.
+/// Rows for choices that differ from the defaults in one parameter.
 struct MovingScanEntry {
-  std::string varied;           ///< "none" for the defaults
-  MovingChoices choices;        ///< that these rows were run with
+  std::string varied;           ///< the varied parameter, "nothing" for the defaults
+  MovingChoices choices;        ///< the choices of these rows
   std::vector<MovingRow> rows;  ///< one per experiment
-  MovingDistance distance;      ///< of these rows from the print
+  MovingDistance distance;      ///< agreement of these rows with the printed ones
 };
 
 /// Tables 2 to 4, and how they depend on what the paper leaves open.
 struct MovingReport {
-  MovingChoices choices;              ///< of `rows`
-  std::vector<MovingRow> rows;        ///< one per experiment
-  MovingDistance distance;            ///< of `rows` from the print
-  double reference_energy_error = 0;  ///< largest of the moving energy model, of its largest energy
-  std::vector<MovingScanEntry> scan;  ///< rows of Tables 2 and 4
-  std::vector<MovingScanEntry> table_3_scan;  ///< rows of Table 3 against the distance
-  std::vector<std::string> findings;  ///< what can be reproduced, what cannot, what was filled in
+  MovingChoices choices;        ///< the choices of `rows`
+  std::vector<MovingRow> rows;  ///< one per experiment
+  MovingDistance distance;      ///< agreement of `rows` with the printed rows
+  /// Largest energy error of the dynamic energy model, divided by its largest energy.
+  double reference_energy_error = 0;
+  std::vector<MovingScanEntry> scan;          ///< rows of Tables 2 and 4
+  std::vector<MovingScanEntry> table_3_scan;  ///< rows of Table 3 for several distances
+  std::vector<std::string> findings;  ///< what can be reproduced, what cannot, and what was assumed
 };
 
-/// Every experiment of Section III, not yet run: the printed rows, and for each movement the
-/// variants that have no row of their own.
+/// Returns every experiment of Section III, not yet run: the printed rows, and for each movement
+/// the variants that have no printed row.
 [[nodiscard]] std::vector<MovingRow> moving_rows();
 
-/// Runs them with the default choices, and the printed ones with each choice varied.
+/// Runs moving_rows() with the default choices, and the printed rows with each choice varied.
 [[nodiscard]] MovingReport moving_report();
 
 }  // namespace dlo::compare

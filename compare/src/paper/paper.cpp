@@ -13,7 +13,8 @@
 namespace dlo::compare {
 namespace {
 
-/// E*/E of the chain's rest shape: no steps, so no creep and no stretch.
+/// Computes E*/E of the chain's rest shape, which has no time steps and so neither creep nor
+/// stretch.
 ModulusVariant variant(const Scene& original, const std::string& what,
                        const std::function<void(ForceModelSettings&)>& change,
                        double load_factor = 1) {

@@ -11,38 +11,41 @@
 
 namespace dlo::compare {
 
-/// One orientation of Figs. 12 and 13, with one choice of the points' weight.
+/// One orientation of Figs. 12 and 13, with one choice of the weight of the points.
 struct PaperCase {
-  Comparison rest;                               ///< at rest, c_c as the paper used it
-  std::vector<ModulusAtTime> creep;              ///< on the way to rest, by time
-  PaperWeight weight = PaperWeight::of_the_rod;  ///< of every point
+  Comparison rest;                   ///< comparison at rest, with the paper's c_c
+  std::vector<ModulusAtTime> creep;  ///< samples before the rod is at rest, in the order of time
+  PaperWeight weight = PaperWeight::of_the_rod;  ///< weight of every point
 
-  /// Simulated time at which E*/E passes the paper's 1/3, see time_at_ratio [s].
+  /// Returns the simulated time at which E*/E decreases below the paper's 1/3, see time_at_ratio
+  /// [s].
   [[nodiscard]] double time_at_one_third() const { return time_at_ratio(creep, 1. / 3); }
 };
 
-/// E*/E at rest for other loads, points, laws, rules and bookkeeping.
+/// E*/E at rest for another load, number of points, law, stiffness rule or convention.
 struct ModulusVariant {
-  std::string what;             ///< what is varied, and to what
-  ForceModelSettings settings;  ///< of the force model
-  double load_factor = 1;       ///< on gravity
+  std::string what;             ///< the varied setting and its value
+  ForceModelSettings settings;  ///< settings of the force model
+  double load_factor = 1;       ///< factor on gravity
   double gamma = 0;             ///< w l^3 / (EI) [-]
-  EffectiveModulus modulus;     ///< at rest
-  double rms_over_length = 0;   ///< against the energy model at E
+  EffectiveModulus modulus;     ///< fitted modulus at rest
+  double rms_over_length = 0;   ///< RMS distance from the energy model at E, divided by the length
 };
 
-/// What dlo paper prints of shapes and tables.
+/// Results of dlo paper on shapes and tables.
 struct PaperReport {
   std::vector<TableRow> tables;          ///< Tables 1 and 5
   std::vector<PaperCase> cases;          ///< Figs. 12 and 13
-  std::vector<ModulusVariant> variants;  ///< away from the paper's own choices
-  std::vector<std::string> assumptions;  ///< what the paper leaves open and how it was filled in
-  double c_c = 0;                        ///< used for the cases [N]
-  double c_F = 0;                        ///< used on the way to rest [m/N]
-  double steps_per_second = 0;           ///< of simulated time [1/s]
+  std::vector<ModulusVariant> variants;  ///< settings other than the paper's own
+  /// Details that the paper does not state, each with the assumption that was made instead.
+  std::vector<std::string> assumptions;
+  double c_c = 0;               ///< c_c of the cases [N]
+  double c_F = 0;               ///< c_F of the runs before rest [m/N]
+  double steps_per_second = 0;  ///< steps per second of simulated time [1/s]
 };
 
-/// The paper's comparison on its own rod. @param progress  called with what is being done
+/// Compares both models on the paper's own rod. @param progress  called with the name of the
+/// current stage
 /// @throws ConvergenceError
 [[nodiscard]] PaperReport paper_report(const Stages& progress = {});
 

@@ -50,7 +50,7 @@ double printed_contraction_stiffness() { return printed("table_5", "c_c_used"); 
 
 namespace {
 
-/// The rows of one table.
+/// Collects the recomputed rows of one table.
 class PrintedTable {
  public:
   explicit PrintedTable(std::string name) : name_(std::move(name)) {}
@@ -74,7 +74,7 @@ class PrintedTable {
   std::string name_;
 };
 
-constexpr double gravity = 9.81;  // [m/s^2]; the paper names no value
+constexpr double gravity = 9.81;  // [m/s^2]; the paper does not state a value
 
 void add_table_1(std::vector<TableRow>& rows) {
   using force_model::Formula13;

@@ -12,7 +12,7 @@
 namespace dlo::compare {
 namespace {
 
-constexpr int row_pixels = 42;  // a line of text and a bar
+constexpr int row_pixels = 42;  // pixels of a line of text and a bar
 
 }  // namespace
 

@@ -19,24 +19,24 @@
 
 namespace dlo::compare {
 
-/// What a picture shows of their shapes.
+/// Returns the shapes of solutions as a picture shows them.
 [[nodiscard]] Drawing solution_drawing(const Scene& scene, const std::vector<Solution>& solutions);
 
-/// Solutions of one scene: shapes at equal aspect with grippers, obstacles and contact, beside
-/// their curvature. Unstable ones are dashed.
+/// Draws solutions of one scene: shapes at equal aspect with grippers, obstacles and contact, and
+/// next to them their curvature. Unstable solutions are dashed.
 /// @param solutions  one or more, of one model
 [[nodiscard]] Picture solution_picture(const Scene& scene, const std::vector<Solution>& solutions);
 
-/// "law paper, bookkeeping paper, N = 16".
+/// Returns the settings in words, such as "law paper, bookkeeping paper, N = 16".
 [[nodiscard]] std::string setting_name(const ForceModelSettings& settings);
 
-/// What a picture shows of a scene's shapes.
+/// Returns the shapes of a comparison as a picture shows them.
 [[nodiscard]] Drawing comparison_drawing(const Scene& scene, const Comparison& comparison);
 
 /// Figures of a comparison.
 struct ComparisonFigures {
-  Figure shapes;     ///< of both models, at equal aspect
-  Figure curvature;  ///< along the rod
+  Figure shapes;     ///< shapes of both models, at equal aspect
+  Figure curvature;  ///< curvature along the rod
   Figure deviation;  ///< distance of the force model from the rod, along the rod
 };
 
@@ -44,27 +44,28 @@ struct ComparisonFigures {
 [[nodiscard]] ComparisonFigures comparison_figures(const Scene& scene,
                                                    const Comparison& comparison);
 
-/// Points of a file, joined.
+/// Returns the points of a file, connected by lines.
 [[nodiscard]] Series file_series(const Shape& file);
 
-/// From each point of the rod to the file's. @param rod  at the same arc lengths
+/// Returns lines from points of the rod to points of the file. @param rod  at the same arc lengths
 [[nodiscard]] Series distance_series(const Shape& file, const Shape& rod);
 
-/// How the worst point or frame is marked.
+/// Returns the style of the mark at the worst point or frame.
 [[nodiscard]] Look worst_look();
 
-/// Levels of distances in a plot against what is along x: the RMS, and a tolerance. One far above
-/// all distances would flatten them: it is then in words only. The plot's axis begins at 0.
-/// @param largest_m  of what is drawn;  @param length  of the rod [m]
+/// Adds horizontal lines at the RMS and at a tolerance to a plot of distances. A tolerance far
+/// above all distances is named only in the legend, since the plot would have to be extended to it.
+/// The y axis begins at 0.
+/// @param largest_m  largest drawn distance [m];  @param length  length of the rod [m]
 void add_levels(Panel& panel, double rms_m, std::optional<double> allowed_m, double largest_m,
                 double length);
 
-/// What a picture shows of a check's shapes.
+/// Returns the shapes of a check as a picture shows them.
 [[nodiscard]] Drawing check_drawing(const Scene& scene, const ShapeCheck& check);
 
-/// A measured shape on the rod of its scene, distances as whiskers from the rod to the points, the
-/// worst point circled; beside it the distances along the rod.
-/// @param allowed_m  a tolerance, drawn as a level
+/// Draws a measured shape on the rod of its scene, with lines from the rod to the measured points
+/// and a circle at the worst point, and next to it the distances along the rod.
+/// @param allowed_m  tolerance, drawn as a line [m]
 [[nodiscard]] Picture check_picture(const Scene& scene, const ShapeCheck& check,
                                     std::optional<double> allowed_m = std::nullopt);
 
@@ -72,70 +73,71 @@ void add_levels(Panel& panel, double rms_m, std::optional<double> allowed_m, dou
 /// with sign, and its RMS in words. Parts of less than 0.005 % are omitted.
 [[nodiscard]] Figure budget_figure(const Comparison& comparison);
 
-/// A fitted material: each shape's points on the rod that was fitted, and the profile likelihood
-/// of the stiffness with its interval.
+/// Draws a fitted material: each shape's points on the fitted rod, and the profile likelihood of
+/// the stiffness with its interval.
 /// @param scenes  one for each of the fit's shapes
-/// @param fit     with MaterialFitOptions::profile_points
+/// @param fit     computed with MaterialFitOptions::profile_points
 [[nodiscard]] Picture fit_picture(const std::vector<Scene>& scenes, const MaterialFit& fit);
 
-/// Error against time of a scene's static runs, and the line of those that no other run beats in
-/// both. For scenes that have runs.
+/// Draws the error of a scene's static runs against their time, and the line of those that no other
+/// run beats in both. The scene must have runs.
 [[nodiscard]] Figure front_figure(const SceneBenchmark& scene);
 
-/// The grid of a map, each point by what became of the rod, and its limits.
+/// Draws the grid of a stability map, each point by its outcome, and the limits of c_F.
 [[nodiscard]] Figure map_figure(const StabilityMap& map);
 
-/// The frame of a recording that is the farthest from the rod, where grippers and obstacles are
-/// then; where the recording is late or early, also the rod at the time that it shows.
+/// Returns the frame of a recording that is farthest from the rod, with grippers and obstacles at
+/// its time. If the recording has a lag, the rod at the shifted time is included.
 [[nodiscard]] Drawing worst_frame_drawing(const MotionCheck& check);
 
-/// That frame, and beside it the distance of each frame from the rod against time, the worst one
-/// circled, and what is left of it without a lag.
+/// Draws the worst frame, and next to it the distance of each frame from the rod against time, with
+/// the worst frame circled, and the distance that remains without the lag.
 [[nodiscard]] Picture motion_check_picture(const MotionCheck& check);
 
-/// A field of a sweep.
+/// Varied field of a sweep.
 struct SweptField {
-  std::string column;               ///< its name in the table
-  std::vector<std::string> values;  ///< as the table spells them, in the sweep's order
-  bool logarithmic = false;         ///< the values are spread so
+  std::string column;               ///< name of its column in the table
+  std::vector<std::string> values;  ///< values as the table spells them, in the sweep's order
+  bool logarithmic = false;         ///< the values are spaced logarithmically
 };
 
-/// What can be told of a picture before the sweep is computed.
-/// @throws InputError if there are other than one or two fields, or the first of two and a single
-/// one has values that are no numbers
+/// Checks whether a picture can be drawn, before the sweep is computed.
+/// @throws InputError if there are other than one or two fields, or if a value of the first field
+/// is no number
 void require_drawable(const std::vector<SweptField>& fields);
 
-/// A sweep over one field as lines, over two as lines for each value of the second where these are
-/// few or no numbers, else as maps.
-/// @param fields   one or two;  @param header, rows  of the table (CSV), with their line ends
-/// @param results  columns that are drawn, a figure each
+/// Draws a sweep. Over one field, results are lines; over two fields, lines for each value of the
+/// second field if it has few values or values that are no numbers, else maps.
+/// @param fields   one or two;  @param header, rows  lines of the table (CSV), with their line ends
+/// @param results  columns that are drawn, each in one figure
 /// @throws InputError as require_drawable(), or if there is no such column
 [[nodiscard]] Picture sweep_picture(const std::vector<SweptField>& fields,
                                     const std::string& header, const std::vector<std::string>& rows,
                                     const std::vector<std::string>& results);
 
-/// What is drawn of a motion.
+/// Shapes of a motion that are drawn.
 struct TrackShapes {
   const Track& track;
-  const DynamicTrack* moving = nullptr;  ///< its rod with inertia, or null
+  const DynamicTrack* moving = nullptr;  ///< the motion with inertia, or null
 
-  /// Whether that has a frame, too: it may have had to stop earlier.
+  /// Whether the motion with inertia has this frame; it may have ended earlier.
   [[nodiscard]] bool has_moving(std::size_t frame) const {
     return moving != nullptr && frame < moving->frames.size();
   }
 };
 
-/// What figures show of a scene's motion.
+/// Figures of a scene's motion.
 struct TrackFigures {
-  Figure strip;   ///< nine shapes, or all if they are fewer, equally far apart in time
-  Figure forces;  ///< and torques of up to three grippers against time, with contacts and snaps
+  Figure strip;  ///< nine shapes at about equal intervals of time, or all shapes if there are fewer
+  /// Forces and torques of up to three grippers against time, with contacts and snaps.
+  Figure forces;
 };
 
-/// @param options  that the track was made with
+/// Draws the figures of a motion. @param options  those with which the track was computed
 [[nodiscard]] TrackFigures track_figures(const Scene& scene, const TrackShapes& shapes,
                                          const TrackOptions& options);
 
-/// Both beside each other.
+/// Draws both track_figures() next to each other.
 [[nodiscard]] Picture track_picture(const Scene& scene, const TrackShapes& shapes,
                                     const TrackOptions& options);
 

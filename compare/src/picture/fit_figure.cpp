@@ -29,7 +29,7 @@ Figure shape_figure(const Scene& scene, const FittedShape& shape, std::size_t nu
 
 Figure profile_figure(const NamedValue& stiffness, const MaterialFit& fit) {
   const FittedValue& value = fit.youngs_modulus;
-  // Open sides reach to the plot's edge.
+  // An open side of the interval extends to the plot's edge.
   const double low = value.low.value_or(-HUGE_VAL);
   const double high = value.high.value_or(HUGE_VAL);
   PlottedCurve interval{
@@ -44,7 +44,7 @@ Figure profile_figure(const NamedValue& stiffness, const MaterialFit& fit) {
     profile.x.push_back(point.stiffness);
     profile.y.push_back(point.excess_over_limit);
   }
-  constexpr double top = 4;  // of the excess at the interval's ends
+  constexpr double top = 4;  // in units of the excess at the ends of the interval
   Panel panel{
       .height = 300,
       .x = {.label = fmt::format("{} [{}]", stiffness.name, stiffness.unit),

@@ -11,7 +11,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Runs that share a curve of the front.
+/// Runs that one curve of the front connects.
 struct FrontCurve {
   const char* title;
   bool (*holds)(const BenchmarkRun&);

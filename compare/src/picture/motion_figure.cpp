@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* green = "#207A34";
 
-/// A lag in words.
+/// Returns the lag in words.
 std::string lag_words(const MotionCheck& check) {
   return fmt::format("{:.4g} ms {}", std::abs(check.lag) * 1e3, check.lag > 0 ? "late" : "early");
 }

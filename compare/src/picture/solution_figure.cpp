@@ -12,12 +12,13 @@
 namespace dlo::compare {
 namespace {
 
-/// Amounts of curvature with the sense of turning that the points have, where there is one.
+/// Gives magnitudes of curvature the sign of the curvature of the polygon of points, if that has
+/// one.
 std::vector<double> signed_as_points(const Solution& solution, const Series& turning) {
   std::vector<double> curvature = solution.curvature;
   const std::size_t count = curvature.size();
   for (std::size_t i = 0; i < count && count > 2; ++i) {
-    // An end has no turning of its own.
+    // The curvature of the polygon is not defined at its ends.
     const std::size_t inner = std::clamp<std::size_t>(i, 1, count - 2);
     if (turning.curvature[inner] < 0) curvature[i] = -curvature[i];
   }
@@ -33,7 +34,7 @@ std::string title_of(const Solution& solution, std::size_t number, std::size_t c
 Look look_of(const Solution& solution, std::size_t i, std::size_t count) {
   const bool polygon = solution.model == Model::chain || solution.model == Model::force;
   const bool stable = is_stable(solution);
-  // Where the colours come again there are dots between the dashes.
+  // When colours repeat, dots are added between the dashes.
   const Dashes dashes = i < curve_colours ? Dashes::dashed : Dashes::dash_dotted;
   return {.colour = count == 1 ? Look().colour : curve_look(i).colour,
           .width = stable ? 2 : 1.5,
@@ -58,7 +59,7 @@ Drawing solution_drawing(const Scene& scene, const std::vector<Solution>& soluti
   std::vector<Series> all = obstacle_series(scene, views, *points.front());
   if (auto unbent = unbent_series(scene)) all.push_back(std::move(*unbent));
   const bool planar = are_planar(scene, solutions);
-  // The stable ones, which come first, on top.
+  // The stable solutions come first in the list and are drawn on top.
   for (std::size_t k = solutions.size(); k-- > 0;) {
     const Solution& solution = solutions[k];
     Series series = polygon_series(solution.shape, scene, views.front());

@@ -12,7 +12,7 @@
 namespace dlo::compare {
 namespace {
 
-constexpr std::size_t most_lines = 6;  // as many as curves have looks
+constexpr std::size_t most_lines = 6;  // number of different curve styles
 
 bool is_numeric(const SweptField& field) {
   return std::all_of(field.values.begin(), field.values.end(),
@@ -21,7 +21,7 @@ bool is_numeric(const SweptField& field) {
 
 double number_of(const std::string& text) { return as_number<double>(text).value_or(NAN); }
 
-/// Fields of a line of CSV; in quotes a comma is none.
+/// Returns the fields of a line of CSV. A comma in quotes does not separate fields.
 std::vector<std::string> fields_of(const std::string& line) {
   std::vector<std::string> fields(1);
   bool quoted = false;
@@ -36,7 +36,7 @@ std::vector<std::string> fields_of(const std::string& line) {
   return fields;
 }
 
-/// A column of the table.
+/// Returns the values of a column of the table.
 std::vector<double> column_of(const std::string& header, const std::vector<std::string>& rows,
                               const std::string& name) {
   const std::vector<std::string> names = fields_of(header);
@@ -51,7 +51,8 @@ std::vector<double> column_of(const std::string& header, const std::vector<std::
   return values;
 }
 
-/// Lines for each value of the second field, whose rows are every `count`-th.
+/// Draws one line for each value of the second field. The rows of such a value are `count` rows
+/// apart.
 Panel lines_panel(const std::vector<SweptField>& fields, const std::string& result,
                   const std::vector<double>& values) {
   Panel panel{.x = {.label = fields[0].column, .logarithmic = fields[0].logarithmic},
@@ -69,7 +70,7 @@ Panel lines_panel(const std::vector<SweptField>& fields, const std::string& resu
   return panel;
 }
 
-/// Where a field's values stand on an axis, rising, with edges half way between them.
+/// Order of a field's values on an axis, increasing, and the edges of cells half way between them.
 struct CellAxis {
   explicit CellAxis(const SweptField& field) : order(field.values.size()) {
     std::vector<double> at;
@@ -90,7 +91,7 @@ struct CellAxis {
     for (double& edge : edges) edge = field.logarithmic ? std::exp(edge) : edge;
   }
 
-  std::vector<std::size_t> order;  ///< the values' numbers
+  std::vector<std::size_t> order;  ///< indices of the values in increasing order
   std::vector<double> edges;
 };
 

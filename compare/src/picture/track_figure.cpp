@@ -15,13 +15,13 @@ namespace dlo::compare {
 namespace {
 
 constexpr std::size_t most_shapes = 9;
-constexpr double highest_strip = 420;           // [pixels]
-constexpr double label_pixels = 20;             // of a cell's time, above its shape
-constexpr double air_pixels = 10;               // around its shape
-constexpr std::size_t most_drawn_grippers = 3;  // twice as many curves have looks of their own
+constexpr double highest_strip = 420;  // [pixels]
+constexpr double label_pixels = 20;    // height of the time label of a cell, above its shape
+constexpr double air_pixels = 10;      // margin around the shape of a cell
+constexpr std::size_t most_drawn_grippers = 3;  // half the number of different curve styles
 constexpr int load_plot = 190;                  // height [pixels]
 
-/// Frames equally far apart, the first and the last among them.
+/// Returns the indices of frames at about equal intervals, including the first and the last.
 std::vector<std::size_t> shown_frames(std::size_t count) {
   const std::size_t shown = std::min(count, most_shapes);
   std::vector<std::size_t> frames;
@@ -31,7 +31,7 @@ std::vector<std::size_t> shown_frames(std::size_t count) {
   return frames;
 }
 
-/// Of all that is drawn of some frames.
+/// Returns all points that are drawn in some frames.
 Eigen::Matrix3Xd points_of(const TrackShapes& shapes, const std::vector<std::size_t>& frames) {
   std::vector<const Eigen::Matrix3Xd*> parts;
   for (const std::size_t i : frames) {
@@ -43,19 +43,19 @@ Eigen::Matrix3Xd points_of(const TrackShapes& shapes, const std::vector<std::siz
   return side_by_side(parts);
 }
 
-/// Cells of one size, row by row, each with one shape at one scale.
+/// Grid of cells of equal size, each with one shape, all at the same scale.
 struct Cells {
   std::array<double, 2> least = {0, 0};  ///< coordinates at the lower left corner of a cell [m]
   std::array<double, 2> size = {1, 1};   ///< [m]
   double pixels_per_metre = 1;
   int columns = 1, rows = 1;
 
-  /// What is added to coordinates in a cell [m]: the lowest row begins at 0.
+  /// Returns the translation of coordinates into a cell [m]; the lowest row begins at 0.
   [[nodiscard]] std::array<double, 2> shift(int cell) const {
     const int row_above_lowest = rows - 1 - cell / columns;
     return {cell % columns * size[0] - least[0], row_above_lowest * size[1] - least[1]};
   }
-  /// With lines between the cells, but no numbers.
+  /// Returns an axis with lines between the cells, but without numbers.
   [[nodiscard]] PlotAxis axis(std::size_t i, std::string label) const {
     const int count = i == 0 ? columns : rows;
     PlotAxis axis{.label = std::move(label), .from = 0, .to = count * size[i], .tics = {{}}};
@@ -64,7 +64,7 @@ struct Cells {
   }
 };
 
-/// As many in a row as lets the shapes be largest.
+/// Returns the grid with the number of columns for which the scale is largest.
 Cells cells_for(const Eigen::Matrix3Xd& points, const View& view, int count) {
   const std::array<int, 2> axes = {view.right, view.up};
   std::array<double, 2> least{};
@@ -74,7 +74,7 @@ Cells cells_for(const Eigen::Matrix3Xd& points, const View& view, int count) {
     extent[i] = points.row(axes[i]).maxCoeff() - least[i];
   }
   const double largest = std::max(extent[0], extent[1]);
-  for (std::size_t i = 0; i < 2; ++i) {  // a straight rod has room too
+  for (std::size_t i = 0; i < 2; ++i) {  // a straight rod gets some height too
     const double wanted = std::max(extent[i], 0.2 * largest);
     least[i] -= (wanted - extent[i]) / 2;
     extent[i] = wanted;
@@ -88,7 +88,7 @@ Cells cells_for(const Eigen::Matrix3Xd& points, const View& view, int count) {
     if (!(scale > best.pixels_per_metre)) continue;
     best = {.pixels_per_metre = scale, .columns = columns, .rows = rows};
   }
-  // The whole width is used; the height is what is needed.
+  // The cells fill the whole width; their height is what the shapes need.
   best.size = {plot_width / (best.columns * best.pixels_per_metre),
                extent[1] + (2 * air_pixels + label_pixels) / best.pixels_per_metre};
   best.least = {least[0] - (best.size[0] - extent[0]) / 2,
@@ -96,7 +96,7 @@ Cells cells_for(const Eigen::Matrix3Xd& points, const View& view, int count) {
   return best;
 }
 
-/// What a cell shows.
+/// Returns the series that a cell shows.
 std::vector<Series> series_of(const Scene& now, const TrackShapes& shapes, std::size_t index,
                               const View& view, const Cells& cells) {
   const std::vector<double>& arc_length = shapes.track.arc_length;
@@ -132,7 +132,7 @@ std::vector<Series> series_of(const Scene& now, const TrackShapes& shapes, std::
     all.push_back(std::move(*contact));
   }
   for (Series& gripper : gripper_series(now)) {
-    // Thinner than in a plot of one shape.
+    // Clamps are thinner than in a plot of a single shape.
     if (gripper.look.width > 0) gripper.look.width = 3;
     gripper.look.mark_size = 0.7;
     all.push_back(std::move(gripper));
@@ -176,8 +176,8 @@ Figure strip_figure(const Scene& scene, const TrackShapes& shapes, const TrackOp
   return {.title = scene.name + ": shapes over time", .panels = {std::move(panel)}};
 }
 
-/// Of all grippers against time.
-/// @param load  of a gripper
+/// Draws the magnitude of the load of up to three grippers against time, and marks events.
+/// @param load  force or torque of a gripper
 Panel load_panel(const Scene& scene, const TrackShapes& shapes, const char* label,
                  Eigen::Vector3d GripperLoad::*load) {
   Panel panel{.height = load_plot,

@@ -14,7 +14,7 @@ std::string millimetres(double metres) { return page_number(metres * 1e3) + "\u0
 
 std::string page_percent(double share) { return page_number(share * 100) + "\u00a0%"; }
 
-/// What would explain a shape that fails; empty if nothing does.
+/// Returns the best explanation of a shape that fails the check; empty if there is none.
 std::string cause_of(const CheckResult& result) {
   if (result.passes() || result.explanations.empty()) return {};
   const Explanation& best = result.explanations.front();

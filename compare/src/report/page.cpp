@@ -11,7 +11,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Returns escape_markup() of each line; lines stay lines.
+/// Returns escape_markup() of each line, with line breaks unchanged.
 std::string escape_lines(const std::string& text) {
   std::string out;
   for (std::size_t at = 0; at < text.size();) {

@@ -12,18 +12,18 @@ namespace dlo::compare {
 /// Returns a number with 4 significant digits; a dash for NaN.
 [[nodiscard]] std::string page_number(double value);
 
-/// A picture of a page.
+/// Picture on a page.
 struct PagePicture {
-  std::string svg;      ///< an element of the page (inline_svg()); empty: it could not be drawn
-  std::string failure;  ///< why it could not be drawn
+  std::string svg;      ///< element of the page (inline_svg()); empty if it could not be drawn
+  std::string failure;  ///< reason why it could not be drawn
 };
 
-/// A number that is shown large.
+/// Number that is shown in large type.
 struct PageNumber {
   std::string name, value, note;
 };
 
-/// A table of texts. The first cell of each row is its head.
+/// Table of texts. The first cell of each row is its header.
 struct PageTable {
   std::string caption;
   std::vector<std::string> head;
@@ -34,25 +34,26 @@ struct PageTable {
 struct PageResult {
   std::string title;
   bool passes = false;
-  std::string verdict;  ///< words of the badge, such as "pass"
-  std::string summary;  ///< what was compared and how far it is away
-  std::string cause;    ///< the best cause, in bold; empty: none is known
+  std::string verdict;  ///< text of the badge, such as "pass"
+  std::string summary;  ///< compared quantities and their distance
+  std::string cause;    ///< the best cause, in bold; empty if none is known
   std::vector<PageNumber> numbers;
   std::vector<PagePicture> pictures;
-  PageTable table;           ///< below; empty: none
-  std::string details = {};  ///< folded: all that the command prints
+  PageTable table;           ///< below the pictures; empty: no table
+  std::string details = {};  ///< folded text: the full output of the command
 };
 
-/// Returns results as one HTML file that loads nothing and has no script: of each its verdict,
-/// cause, numbers and pictures on one screen, and the rest folded below.
-/// @param command  that writes it, such as "dlo check";  @param version  of dlo
+/// Returns results as one HTML file that loads no other file and has no script. Verdict, cause,
+/// numbers and pictures of each result fit on one screen; the rest is folded below.
+/// @param command  command that writes the page, such as "dlo check";  @param version  version of
+/// dlo
 [[nodiscard]] std::string page_html(const std::vector<PageResult>& results,
                                     const std::string& command, const std::string& version);
 
-/// Returns a judged shape for a page, without pictures and details.
+/// Returns the result of a shape check for a page, without pictures and details.
 [[nodiscard]] PageResult page_result(const CheckResult& result);
 
-/// Returns a judged motion for a page, without pictures and details.
+/// Returns the result of a motion check for a page, without pictures and details.
 [[nodiscard]] PageResult page_result(const MotionCheck& check);
 
 /// Returns a comparison for a page, without pictures and details. It passes if the RMS is within

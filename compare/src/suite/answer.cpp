@@ -20,7 +20,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Segments of the chain that a rod that stretches is held against.
+/// Number of points of the chain with which a rod that stretches is compared.
 constexpr int fine_chain = 1024;
 
 double or_zero(double estimate) { return std::isfinite(estimate) ? estimate : 0; }
@@ -44,7 +44,8 @@ AnswerBounds bounds_between(const Solution& a, const Solution& b) {
   return bounds;
 }
 
-/// Every equilibrium that the energy model finds; its eigenvalue is the answer's too.
+/// Adds every other equilibrium that the energy model finds to the answer, and sets the smallest
+/// eigenvalue of the answer itself.
 void look_for_others(Answer& answer, const SolveOptions& options) {
   const std::vector<double>& s = answer.first.shape.arc_length;
   const AllSolutions all = solve_all(answer.of.scene, options, s);
@@ -113,10 +114,10 @@ std::vector<Answer> certified_answers(const std::vector<BatteryScene>& scenes, i
 
 namespace {
 
-/// Terms of the energy model, and of a run that shows what those left out change.
+/// Terms of the energy model, and of a second run that measures the truncation error.
 constexpr int fine_terms = 16;
 constexpr int fewer_terms = 12;
-/// Of the coarsest chain: what motion_points lie on.
+/// Number of segments of the coarsest chain: its points are the motion_points.
 constexpr int segments = motion_points - 1;
 
 }  // namespace

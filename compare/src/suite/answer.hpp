@@ -13,100 +13,104 @@
 
 namespace dlo::compare {
 
-/// An equilibrium of a scene beside the answer.
+/// Equilibrium of a scene other than its answer.
 struct OtherEquilibrium {
-  double energy_J = 0;             ///< of all of it
-  bool stable = false;             ///< as far as that is known
+  double energy_J = 0;             ///< total energy [J]
+  bool stable = false;             ///< whether it is stable, as far as known
   double smallest_eigenvalue = 0;  ///< Solution::smallest_eigenvalue
   double apart_m = 0;              ///< RMS distance from the answer [m]
 };
 
-/// What the two methods' results are apart, and what they say of themselves: each number is within
-/// its bound of that of the other method.
+/// Bounds of the differences between the results of two methods. The bound of the points includes
+/// the error estimates of both.
 struct AnswerBounds {
-  double points_m = 0;              ///< largest distance of a point, and the error estimates
-  std::vector<double> forces_N;     ///< of each gripper
-  std::vector<double> torques_Nm;   ///< of each gripper
-  double energy_J = 0;              ///< of the total energy
-  std::vector<double> obstacles_N;  ///< of the force of each obstacle
+  double points_m = 0;              ///< largest distance of a point plus the error estimates [m]
+  std::vector<double> forces_N;     ///< difference of the force of each gripper [N]
+  std::vector<double> torques_Nm;   ///< difference of the torque of each gripper [N m]
+  double energy_J = 0;              ///< difference of the total energy [J]
+  std::vector<double> obstacles_N;  ///< difference of the force of each obstacle [N]
 };
 
-/// A scene's equilibrium, by two methods.
+/// Equilibrium of a scene, computed by two methods.
 struct Answer {
-  BatteryScene of;                       ///< the scene
-  Solution first;                        ///< the answer: of `energy`, or `exact` if it stretches
-  Solution second;                       ///< that it was held against
-  std::string second_method;             ///< in words: "exact", "chain, N = 1024"
-  AnswerBounds bounds;                   ///< how far these are apart
-  std::vector<OtherEquilibrium> others;  ///< that a search has found, by energy
-  bool is_lowest = true;                 ///< no other stable one has less energy
+  BatteryScene of;            ///< the scene
+  Solution first;             ///< the answer: by `energy`, or by `exact` if the rod stretches
+  Solution second;            ///< the solution with which it was compared
+  std::string second_method;  ///< name of the second method: "exact", "chain, N = 1024"
+  AnswerBounds bounds;        ///< differences between both solutions
+  /// Other equilibria that a search has found, in the order of energy.
+  std::vector<OtherEquilibrium> others;
+  bool is_lowest = true;  ///< no other stable equilibrium was found with less energy
 };
 
-/// Arc lengths of an answer's points.
+/// Number of points of an answer, at equal arc lengths.
 inline constexpr int answer_points = 101;
 
-/// How far two methods may be apart, of the length: farther they do not agree.
+/// Largest allowed AnswerBounds::points_m, divided by the length. If it is larger, the methods do
+/// not agree.
 inline constexpr double methods_agree = 1e-6;
-/// The same where the second is a chain, which has an error of its own.
+/// Largest allowed AnswerBounds::points_m, divided by the length, if the second method is a chain,
+/// which has a discretisation error.
 inline constexpr double chain_agrees = 2e-4;
 
-/// Solves a scene by both methods and looks for other equilibria.
-/// @throws ConvergenceError if one does not solve it, or if they do not agree
+/// Solves a scene by both methods, compares them, and searches for other equilibria.
+/// @throws ConvergenceError if a method does not converge, or if they do not agree
 [[nodiscard]] Answer certified_answer(const BatteryScene& scene, const SolveOptions& options = {});
 
-/// Of several scenes, in order. @param threads  0: all cores
+/// Computes certified_answer() of several scenes, in order. @param threads  0: all cores
 [[nodiscard]] std::vector<Answer> certified_answers(const std::vector<BatteryScene>& scenes,
                                                     int threads, const SolveOptions& options = {});
 
-/// The model of the first method.
+/// Returns the model of the first method.
 [[nodiscard]] Model answer_model(const Scene& scene);
 
-/// How far a shape is from balance.
+/// Result of the balance of moments along a shape.
 struct MomentBalance {
-  double imbalance = 0;  ///< share of its bending moments that nothing explains [-]
-  double stiffness = 1;  ///< c, over EI
-  double weight = 1;     ///< a, over the scene's; 1 unless there is weight and another load
-  /// Share of the moments that is not identifiable from points at such distances: curvatures of a
-  /// rod in which forces F bend layers of sqrt(EI / F) are found to a quarter of h^2 F / EI, EI
-  /// being the scene's or, if that is less, the shape's [-]
+  /// Norm of the moments that nothing balances, divided by that of the bending moments [-].
+  double imbalance = 0;
+  double stiffness = 1;  ///< fitted factor c of EI
+  double weight = 1;  ///< fitted factor a of the weight; 1 unless there is weight and another load
+  /// Relative error of the moments due to the distance h of the points: in a rod with bending
+  /// layers of length sqrt(EI / F), due to forces F, curvatures are accurate to a quarter of h^2 F
+  /// / EI. EI is the scene's stiffness or, if it is less, the fitted one [-]
   double resolution = 0;
 };
 
-/// The share of a shape's bending moments that neither its loads nor forces and torques of the
-/// grippers at its ends explain, whatever the stiffness and the weight are,
-///     min over c, a, M, F of |c EI kappa_i - a w_i - m_i - M - (P_n - P_i) x F| / |c EI kappa_i|,
-/// w_i and m_i the moments about P_i of the weight and of the loads beyond it. At rest it is an
-/// error of discretisation. Nothing where the scene has more than a round, straight rod of one
-/// section, held at its ends alone.
-/// @param shape  in the scene's frame, along the whole rod
-/// @param power  of springs whose moments go with a power of 2 sin(angle / 2), > 0; 1: EI kappa
+/// Computes the fraction of a shape's bending moments that is balanced neither by its loads nor by
+/// forces and torques of the grippers at its ends, for any stiffness and weight,
+///     min over c, a, M, F of |c EI kappa_i - a w_i - m_i - M - (P_n - P_i) x F| / |c EI kappa_i|.
+/// w_i and m_i are the moments about P_i of the weight and of the other loads beyond it. At rest
+/// this fraction is a discretisation error. Returns std::nullopt unless the rod is round, straight,
+/// of one section, held only at its ends, and subject to nothing else.
+/// @param shape  shape of the whole rod, in the scene's frame
+/// @param power  exponent of 2 sin(angle / 2) in the moments of the springs, > 0; 1: EI kappa
 [[nodiscard]] std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& shape,
                                                           double power = 1);
 
-/// A scene's motion, by two methods.
+/// Motion of a scene, computed by two methods.
 struct MotionAnswer {
   BatteryScene of;                       ///< the scene, which has a motion
   std::vector<double> times;             ///< [s]
   std::vector<double> arc_length;        ///< [m]
-  std::vector<Eigen::Matrix3Xd> frames;  ///< the answer: points by time, of `energy` [m]
-  std::string second_method;             ///< in words
-  /// Largest distance of a point from that of the second method, and what both say of their own
-  /// errors [m].
+  std::vector<Eigen::Matrix3Xd> frames;  ///< points of the answer at each time, by `energy` [m]
+  std::string second_method;             ///< name of the second method
+  /// Largest distance of a point from the second method's, plus the error estimates of both [m].
   double points_bound_m = 0;
 };
 
-/// Arc lengths of such an answer's points.
+/// Number of points of a motion's answer, at equal arc lengths.
 inline constexpr int motion_points = 25;
 
-/// How far its two methods may be apart, of the length: farther they do not agree.
+/// Largest allowed MotionAnswer::points_bound_m, divided by the length. If it is larger, the
+/// methods do not agree.
 inline constexpr double motions_agree = 2e-4;
 
-/// By the energy model, and by chains of 24, 48 and 96 hinges (hinge_limit()).
-/// @throws ConvergenceError if one does not come to the end, or if they do not agree
+/// Computes a motion by the energy model, and by chains of 24, 48 and 96 hinges (hinge_limit()).
+/// @throws ConvergenceError if a method does not reach the end, or if they do not agree
 [[nodiscard]] MotionAnswer certified_motion(const BatteryScene& scene,
                                             const SolveOptions& options = {});
 
-/// Of several scenes, in order. @param threads  0: all cores
+/// Computes certified_motion() of several scenes, in order. @param threads  0: all cores
 [[nodiscard]] std::vector<MotionAnswer> certified_motions(const std::vector<BatteryScene>& scenes,
                                                           int threads,
                                                           const SolveOptions& options = {});

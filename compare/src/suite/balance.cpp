@@ -8,13 +8,13 @@
 namespace dlo::compare {
 namespace {
 
-/// Points with what acts on each, from an end that is held.
+/// Points with the load on each, in an order that begins at a held end.
 struct LoadedPoints {
   Shape shape;
   Eigen::Matrix3Xd weights;
-  Eigen::Matrix3Xd forces;  // all others
+  Eigen::Matrix3Xd forces;  // all loads except weight
 
-  /// The same from the other end.
+  /// Returns the points in the opposite order.
   [[nodiscard]] LoadedPoints reversed(double length) const {
     LoadedPoints result = *this;
     for (Eigen::Matrix3Xd* each : {&result.shape.points, &result.weights, &result.forces}) {
@@ -38,7 +38,7 @@ LoadedPoints loaded_points(const Scene& scene, const Shape& shape) {
     result.forces.col(i) = scene.distributed_between(begin, end);
   }
   for (const PointLoad& load : scene.loads) {
-    // Between two points by the lever.
+    // A load between two points is distributed by the lever rule.
     const auto after = std::upper_bound(s.begin() + 1, s.end() - 1, load.at);
     const Eigen::Index i = after - s.begin();
     const double share = std::clamp((load.at - at(i - 1)) / (at(i) - at(i - 1)), 0.0, 1.0);
@@ -48,7 +48,7 @@ LoadedPoints loaded_points(const Scene& scene, const Shape& shape) {
   return result;
 }
 
-/// Moments about the points inside of what acts beyond them, one below the other.
+/// Returns the moments about the inner points of all forces beyond them, as one column.
 Eigen::VectorXd moments_beyond(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& forces) {
   const Eigen::Index n = points.cols() - 1;
   Eigen::VectorXd moments = Eigen::VectorXd::Zero(3 * (n - 1));
@@ -61,7 +61,8 @@ Eigen::VectorXd moments_beyond(const Eigen::Matrix3Xd& points, const Eigen::Matr
   return moments;
 }
 
-/// What acts at the far end: nothing, a force, or a force and a torque, as columns.
+/// Returns the moments about the inner points of unit reactions at the far end, one column per
+/// component: none, of a force, or of a force and a torque.
 Eigen::MatrixXd moments_of_end(const Eigen::Matrix3Xd& points, Eigen::Index unknown) {
   const Eigen::Index n = points.cols() - 1;
   Eigen::MatrixXd columns(3 * (n - 1), unknown);
@@ -76,9 +77,10 @@ Eigen::MatrixXd moments_of_end(const Eigen::Matrix3Xd& points, Eigen::Index unkn
   return columns;
 }
 
-/// EI kappa of the joints inside, those beside the ends without: springs differ there by where a
-/// clamp is thought to be. Of another power they go with that of 2 sin(angle / 2), and are EI kappa
-/// where the rod turns most.
+/// Returns EI kappa of the inner joints, without the joints adjacent to the ends: there discrete
+/// springs depend on the assumed position of the clamp. With another power the moments are
+/// proportional to that power of 2 sin(angle / 2), and equal EI kappa at the joint with the largest
+/// angle.
 Eigen::VectorXd bending_moments(const Scene& scene, const Shape& shape, double power) {
   const Eigen::Index n = shape.points.cols() - 1;
   Eigen::VectorXd moments = Eigen::VectorXd::Zero(3 * (n - 1));
@@ -100,7 +102,7 @@ Eigen::VectorXd bending_moments(const Scene& scene, const Shape& shape, double p
   return moments;
 }
 
-/// MomentBalance::resolution with the scene's stiffness.
+/// Returns MomentBalance::resolution for the scene's stiffness.
 double resolution(const Scene& scene, const LoadedPoints& rod) {
   constexpr double of_second_order = 0.25;
   const double h = scene.length / static_cast<double>(rod.shape.points.cols() - 1);
@@ -142,8 +144,9 @@ std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& sha
   const bool has_weight = of_weight.norm() > no_load * bending.norm();
   const bool has_loads = of_loads.norm() > no_load * bending.norm();
   if (!has_weight && !has_loads && unknown == 0) return MomentBalance{.imbalance = 1};
-  // Columns of what is found, and what stands on the other side; without loads any stiffness is as
-  // good, and without weight or without other loads one factor is the other's inverse.
+  // The unknowns are the columns, and the right-hand side contains the rest. Without loads the
+  // moments do not depend on the stiffness. With only weight or only other loads, the factors of
+  // stiffness and load are inverse to each other, so that only the stiffness is fitted.
   Eigen::MatrixXd columns = inside(moments_of_end(rod.shape.points, unknown));
   const auto append_column = [&](const Eigen::VectorXd& column) {
     columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);

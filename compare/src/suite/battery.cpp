@@ -32,7 +32,7 @@ ClosedForm read_closed_form(StrictTable table, double length) {
 
 BatteryMotion read_motion(StrictTable table,
                           const std::function<Scene(const std::string& name)>& scene_of) {
-  constexpr int fewest = 4;  // what cubics between frames need
+  constexpr int fewest = 4;  // cubic interpolation between frames needs four
   constexpr int most = 1000;
   table.only({"begin", "frames", "until"});
   BatteryMotion motion;
@@ -43,7 +43,7 @@ BatteryMotion read_motion(StrictTable table,
   return motion;
 }
 
-/// @param scene_of  the scene of a file's name
+/// Reads a benchmark set. @param scene_of  returns the scene of a file name
 Battery read_battery(const std::string& text, const std::string& file,
                      const std::function<Scene(const std::string& name)>& scene_of) {
   const toml::table root = parse_toml(text, file);

@@ -28,9 +28,9 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
-/// The points of a whole rod in the scene's frame, from its begin: at the file's arc lengths, or at
-/// lengths along a curve through the points, over its length.
-/// @throws InputError if these leave the rod, or an end is not where a gripper holds it
+/// Returns the points of a whole rod in the scene's frame, in the order of arc length: the file's
+/// arc lengths, or lengths along a curve through the points, scaled to the rod's length.
+/// @throws InputError if an arc length is not on the rod, or a held end is not at its gripper
 Shape laid_shape(const Scene& scene, const MeasuredShape& measured) {
   const double length = scene.length;
   const bool told = !measured.arc_length.empty();
@@ -39,7 +39,7 @@ Shape laid_shape(const Scene& scene, const MeasuredShape& measured) {
   if (!told) {
     const double whole = shape.arc_length.back();
     for (double& s : shape.arc_length) s *= length / whole;
-    shape.arc_length.back() = length;  // not beyond it by rounding
+    shape.arc_length.back() = length;  // avoids a rounding error beyond the end
   }
   if (shape.arc_length.front() > shape.arc_length.back()) {
     std::reverse(shape.arc_length.begin(), shape.arc_length.end());
@@ -64,7 +64,7 @@ Shape laid_shape(const Scene& scene, const MeasuredShape& measured) {
   return shape;
 }
 
-/// The error of a run, and its shape in the scene's frame.
+/// Computes the error of a run, and its shape in the scene's frame.
 void measure_run(const Scene& scene, const energy_model::Equilibrium& reference,
                  const SimulatorRun& run, CardRun& result, std::vector<CardShape>& shapes) {
   if (!run.shape) return;
@@ -79,7 +79,7 @@ void measure_run(const Scene& scene, const energy_model::Equilibrium& reference,
 }
 
 /// Runs a simulator with N, 2N and 4N points.
-/// @param measure  takes each run and its entry
+/// @param measure  called with each run and its entry
 CardScene run_scene(const BatteryScene& scene, const Simulator& simulator,
                     const CardOptions& options,
                     const std::function<void(const SimulatorRun&, CardRun&)>& measure) {
@@ -91,7 +91,8 @@ CardScene run_scene(const BatteryScene& scene, const Simulator& simulator,
     CardRun& entry =
         result.runs.emplace_back(CardRun{points, run.status, run.problem, none, run.seconds});
     measure(run, entry);
-    if (entry.status == RunStatus::not_supported) break;  // nor with more points
+    // More points would not be supported either.
+    if (entry.status == RunStatus::not_supported) break;
   }
   return result;
 }
@@ -110,8 +111,8 @@ CardScene card_scene(const BatteryScene& scene, const energy_model::Equilibrium&
   return result;
 }
 
-/// Motions that converge with about second order have no cause, nor those that are off by a tenth
-/// of what is right.
+/// Order of convergence and error up to which a motion has no cause: motions that converge with
+/// about second order, or whose error is at most 1e-3 of their travel.
 constexpr double converges = 1.5;
 constexpr double hardly_off = 1e-3;
 
@@ -208,9 +209,9 @@ CardGroup Card::total() const {
 
 namespace {
 
-/// One shape on its way to rest may be that of a stiffer rod. Several are not that of one rod:
-/// where a simulator does not come to rest in some scenes, and elsewhere seems to have stiffnesses
-/// that are not the same, it does not rest there either.
+/// Renames causes. A single shape that has not come to rest may resemble that of a stiffer rod, but
+/// several such shapes give different stiffnesses. If a simulator is not at rest in some scenes and
+/// has different apparent stiffnesses in others, it is not at rest in these either.
 void join_causes(Card& card) {
   constexpr const char* stiffness = "bending stiffness wrong";
   constexpr const char* unrest = "not at rest";
@@ -237,7 +238,7 @@ void join_causes(Card& card) {
   }
 }
 
-/// Solves the reference of a scene. @return a function that makes the entry of a simulator
+/// Solves the reference of a scene. @return a function that computes the results of a simulator
 std::function<CardScene(const Simulator&)> scene_judge(const BatteryScene& scene,
                                                        const CardOptions& options) {
   try {

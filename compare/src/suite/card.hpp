@@ -13,72 +13,74 @@
 
 namespace dlo::compare {
 
-/// A run of a card.
+/// Run of a simulator with N points.
 struct CardRun {
   int points = 0;                        ///< N
-  RunStatus status = RunStatus::failed;  ///< how it ended
+  RunStatus status = RunStatus::failed;  ///< how the run ended
   std::string problem;                   ///< one line; empty if there is a shape
-  /// RMS distance over the length, of a motion over how far the rod moves [-]; NaN without a shape
+  /// RMS distance from the reference, divided by the length, or for a motion by
+  /// MotionReference::travel [-]; NaN without a shape
   double error = 0;
   double seconds = 0;  ///< wall time of the simulator [s]
 };
 
-/// A simulator on one scene.
+/// Results of a simulator on one scene.
 struct CardScene {
-  std::string id;             ///< of the scene
-  std::string group;          ///< its class
-  std::vector<CardRun> runs;  ///< by growing N
-  double order = 0;           ///< convergence_order(); NaN: not known
-  std::vector<Cause> causes;  ///< what is wrong, if that can be told
+  std::string id;             ///< id of the scene
+  std::string group;          ///< class of the scene
+  std::vector<CardRun> runs;  ///< in the order of N
+  double order = 0;           ///< convergence_order(); NaN if unknown
+  std::vector<Cause> causes;  ///< identified causes of the error
 
-  /// Of all runs: solved if all are, else what the first one that is not says.
+  /// Returns `solved` if all runs are solved, else the status of the first run that is not.
   [[nodiscard]] RunStatus status() const;
-  /// Why it is not solved; empty if it is.
+  /// Returns the problem of the first run that is not solved; empty if all are.
   [[nodiscard]] std::string problem() const;
-  /// Solved, without a defect, and no farther from the rod at the largest N than `dlo check` allows
-  /// by default, 1 % of the length.
+  /// Whether all runs are solved, no cause is a defect, and the error at the largest N is at most
+  /// the default tolerance of `dlo check`, 1 % of the length.
   [[nodiscard]] bool right() const;
 };
 
-/// A simulator on all scenes of a class.
+/// Results of a simulator on all scenes of a class.
 struct CardGroup {
-  std::string name;             ///< of the class
-  int scenes = 0;               ///< of it
-  int solved = 0;               ///< of these
-  int right = 0;                ///< of these, CardScene::right()
-  int not_supported = 0;        ///< of these
-  int failed = 0;               ///< of these
-  int not_judged = 0;           ///< of these, their reference did not converge
-  std::vector<double> largest;  ///< error at each N, of the scenes that are solved; NaN: of none
-  double order = 0;             ///< the smallest of these scenes; NaN: not known
-  double seconds = 0;           ///< wall time of all runs [s]
-  std::vector<std::pair<std::string, int>> causes;  ///< by name, and of how many scenes
+  std::string name;       ///< name of the class
+  int scenes = 0;         ///< number of scenes
+  int solved = 0;         ///< number of scenes that are solved
+  int right = 0;          ///< number of scenes with CardScene::right()
+  int not_supported = 0;  ///< number of scenes that are not supported
+  int failed = 0;         ///< number of scenes that failed
+  int not_judged = 0;     ///< number of scenes whose reference did not converge
+  /// Largest error at each N of the solved scenes; NaN if there is none.
+  std::vector<double> largest;
+  double order = 0;    ///< smallest order of the solved scenes; NaN if unknown
+  double seconds = 0;  ///< wall time of all runs [s]
+  std::vector<std::pair<std::string, int>> causes;  ///< names of causes, with the number of scenes
 };
 
-/// A simulator's score card.
+/// Results table of a simulator.
 struct Card {
-  std::string simulator;          ///< its name
-  std::string battery_version;    ///< of the battery
+  std::string simulator;          ///< name of the simulator
+  std::string battery_version;    ///< version of the benchmark set
   std::vector<int> points;        ///< N, 2N, 4N
-  std::vector<CardScene> scenes;  ///< in the battery's order
+  std::vector<CardScene> scenes;  ///< in the order of the benchmark set
 
-  /// By classes, in the battery's order.
+  /// Returns the results by classes, in the order of the benchmark set.
   [[nodiscard]] std::vector<CardGroup> groups() const;
-  /// All of these in one, without a name.
+  /// Returns the results of all scenes as one group without a name.
   [[nodiscard]] CardGroup total() const;
 };
 
-/// How cards are made.
+/// Settings of make_cards().
 struct CardOptions {
-  int points = 16;         ///< N of the first run; the others have 2N and 4N
+  int points = 16;         ///< N of the first run; the others have 2N and 4N points
   int threads = 0;         ///< 0: all cores
-  double time_limit = 60;  ///< of each run of a simulator, not of references [s], > 0
-  std::string state;       ///< folder that keeps finished runs; empty: none
-  std::string version;     ///< of dlo; runs that another version has kept are run again
-  Progress progress;       ///< of scenes, all simulators
+  double time_limit = 60;  ///< limit of each run of a simulator, not of references [s], > 0
+  std::string state;       ///< folder that stores finished runs; empty: not stored
+  std::string version;     ///< version of dlo; runs that another version has stored are repeated
+  Progress progress;       ///< counts scenes of all simulators
 };
 
-/// Runs simulators on scenes. Except for times, the card does not depend on the number of threads.
+/// Runs simulators on scenes. Except for times, the results do not depend on the number of threads.
 /// A scene whose reference does not converge is RunStatus::not_judged.
 /// @throws OutputError
 [[nodiscard]] std::vector<Card> make_cards(const std::string& battery_version,
@@ -86,12 +88,12 @@ struct CardOptions {
                                            const std::vector<Simulator>& simulators,
                                            const CardOptions& options = {});
 
-/// Cards as a document with schema dlo/card/1; an error or order that is not known is NaN.
+/// Returns results tables as a document with schema dlo/card/1; an unknown error or order is NaN.
 [[nodiscard]] nlohmann::ordered_json cards_json(const std::vector<Card>& cards);
 
-/// Compares the errors of cards with a baseline of `dlo regress`: a case for each scene, simulator
-/// and N, without the scenes that a simulator does not support. Cases of the baseline of other
-/// scenes or simulators are not compared, and stay in Regression::cases.
+/// Compares the errors of results tables with a baseline of `dlo regress`. There is a case for each
+/// scene, simulator and N, except for scenes that a simulator does not support. Cases of the
+/// baseline of other scenes or simulators are not compared, and stay in Regression::cases.
 [[nodiscard]] Regression judge_cards(const std::vector<BaselineCase>& baseline,
                                      const std::vector<Card>& cards,
                                      const RegressionTolerance& tolerance = {});

@@ -21,29 +21,34 @@ namespace dlo::compare {
 namespace {
 
 constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
-/// What a chain of hinges may leave of the error that it explains.
+/// Largest fraction of the error that a chain of hinges may leave to be accepted as its cause.
 constexpr double chain_may_leave = 0.05;
-/// What another equilibrium may leave.
+/// Largest fraction of the error that another equilibrium may leave.
 constexpr double may_be_left = 0.1;
-/// What the scene without one of its things may leave: a shape that has hardly moved is near it.
+/// Largest fraction of the error that the scene without one of its properties may leave. It is
+/// small because a shape that has hardly moved is also close to that scene's.
 constexpr double may_be_left_without = 0.03;
-/// The same of shapes that converge to it.
+/// Largest such fraction for shapes that converge to the scene without the property.
 constexpr double may_be_left_of_way = 0.3;
-/// What one that has a fitted number may leave: a number takes away more by itself.
+/// Largest fraction of the error that a cause with a fitted number may leave. It is small because
+/// any fitted number reduces the error.
 constexpr double may_be_left_fitted = 0.02;
-/// And of the coarsest shape where it leaves as little of the finest: the rest is of
-/// discretisation.
+/// Largest such fraction for the coarsest shape, if the finest one satisfies the smaller limit. The
+/// rest is discretisation error.
 constexpr double may_be_left_coarse = 0.3;
-/// The same of a cause beside a shape that is out of balance.
+/// Largest fraction of the error that a cause may leave if the shape is out of balance.
 constexpr double nothing_left = 2e-3;
-/// Orders of convergence of a simulator that is right, and of one that has a limit of its own.
+/// Order from which a simulator is considered to converge, and order up to which it does not
+/// converge to the rod.
 constexpr double second_order = 1.6;
 constexpr double no_order = 0.4;
-/// And of one that still is on its way to the rod, with boundary layers that are hardly resolved.
+/// Order from which shapes are considered to approach another rod; it is smaller since boundary
+/// layers may hardly be resolved.
 constexpr double some_order = 1.2;
-/// Share of its moments by which a shape that does not rest is out of balance.
+/// Imbalance of the moments above which a shape is not at rest.
 constexpr double out_of_balance = 0.02;
-/// An error that is a thousandth of what is right: a rod that has a thickness is as far away.
+/// Error that needs no cause, divided by the length: 1e-3 of the default tolerance. The thickness
+/// of a real rod causes errors of this size.
 constexpr double negligible_error = 1e-5;
 
 class Diagnosis {
@@ -56,7 +61,8 @@ class Diagnosis {
     const double order = convergence_order(shapes_);
     const bool converges = !(finest().error > error_floor) || order > second_order;
     if (look_at_chains(converges) || converges || finest().error <= negligible_error) return found_;
-    if (order > no_order && !stays()) return found_;  // of discretisation, without a name
+    // Discretisation error without a specific cause.
+    if (order > no_order && !stays()) return found_;
     if (look_at_neglected() || look_at_states() ||
         look_at_springs(coarsest(), may_be_left_fitted) || look_at_rest() || look_at_stiffness()) {
       return found_;
@@ -73,7 +79,7 @@ class Diagnosis {
   }
   [[nodiscard]] double error_m(const CardShape& shape) const { return shape.error * scene_.length; }
 
-  /// Whether the error is not small and does not fall any more.
+  /// Whether the error is not small and no longer decreases with N.
   [[nodiscard]] bool stays() const {
     constexpr double small = 5e-3;
     if (shapes_.size() < 3 || finest().error < small) return false;
@@ -84,16 +90,17 @@ class Diagnosis {
     found_.push_back({std::move(name), factor, std::move(words)});
   }
 
-  /// @return whether the shapes are those of a chain of hinges with springs EI/h
+  /// Searches for a chain that fits the shapes. @return whether they are those of a chain of hinges
+  /// with springs EI/h
   bool look_at_chains(bool converges) {
-    // The chains do not stretch.
+    // The chains are inextensible.
     if (scene_.stretch != Stretch::none || !(coarsest().error > error_floor)) return false;
     std::optional<OwnPolygon> best;
     for (const OwnPolygon& chain : own_polygons(scene_, coarsest().shape, Springs::as_the_rod)) {
       if (!best || chain.rms_m < best->rms_m) best = chain;
     }
     if (!best || !(best->rms_m <= chain_may_leave * error_m(coarsest()))) return false;
-    // What coarse shapes have by accident the finest one has not.
+    // The finest shape excludes an accidental fit of the coarsest one.
     const std::vector<OwnPolygon> fine = own_polygons(scene_, finest().shape, Springs::as_the_rod);
     const auto same = std::find_if(fine.begin(), fine.end(), [&](const OwnPolygon& chain) {
       return chain.clamp == best->clamp;
@@ -118,7 +125,7 @@ class Diagnosis {
     return true;
   }
 
-  /// Of the springs of a chain that fits the shape best, over EI/h.
+  /// Returns the stiffness of the springs of the chain that fits the shape best, divided by EI/h.
   [[nodiscard]] std::optional<double> spring_factor(const CardShape& shape,
                                                     double may_leave) const {
     std::optional<OwnPolygon> best;
@@ -147,7 +154,7 @@ class Diagnosis {
     found_.push_back(cause_of_factors(scene_, {coarser.points, coarse}, {finest().points, fine}));
   }
 
-  /// @param may_leave  share of the coarser shape's error
+  /// Compares fitted springs of two shapes. @param may_leave  fraction of the coarser shape's error
   bool look_at_springs(const CardShape& coarser, double may_leave) {
     if (scene_.stretch != Stretch::none) return false;
     const std::optional<double> coarse = spring_factor(coarser, may_leave);
@@ -170,7 +177,7 @@ class Diagnosis {
     return coarse.has_value();
   }
 
-  /// Whether the shape is that of a scene that has less.
+  /// Whether the shape is that of a scene without one of its properties.
   bool look_at_one_neglected(const Scene& without, const std::string& name) {
     try {
       const energy_model::Equilibrium rod =
@@ -180,7 +187,8 @@ class Diagnosis {
       };
       const double fine = left(finest());
       const bool is_near = fine <= may_be_left_without * finest().error;
-      // Or they converge to that rod, and the finest one has come most of the way.
+      // The shapes may also converge to that rod, if the finest one is much closer to it than to
+      // the reference.
       const bool comes_near = fine <= may_be_left_of_way * finest().error &&
                               convergence_order({{coarsest().points, {}, left(coarsest())},
                                                  {finest().points, {}, fine}}) > some_order;
@@ -241,7 +249,8 @@ class Diagnosis {
     return false;
   }
 
-  /// Whether the shape is at rest with springs of another power than 1.
+  /// Whether the shape is at rest if the moments of the springs are a power other than 1 of the
+  /// angle.
   bool look_at_power() {
     constexpr double least = 0.25;
     constexpr double most = 5;
@@ -278,7 +287,7 @@ class Diagnosis {
     }
     if (look_at_power()) return true;
     if (balance->imbalance <= balance->resolution) return false;
-    // Loads that are not the scene's are out of balance too.
+    // A shape with loads other than the scene's is out of balance too.
     if (look_at_scene(nothing_left)) return true;
     add("not at rest", balance->imbalance,
         fmt::format("no forces at its ends balance {:.2g} % of its bending moments, whatever the "
@@ -287,8 +296,8 @@ class Diagnosis {
     return true;
   }
 
-  /// What `check` finds of the scene.
-  /// @param left  share of the error that it may leave
+  /// Searches the explanations of `dlo check` for a cause.
+  /// @param left  fraction of the error that it may leave
   bool look_at_scene(double left) {
     if (scene_.stretch != Stretch::none) return false;
     try {

@@ -14,72 +14,76 @@
 
 namespace dlo::compare {
 
-/// Why a simulator's shapes are not the rod's.
+/// Cause of the difference between a simulator's shapes and the rod's.
 struct Cause {
-  std::string name;    ///< the same for all scenes: "first element welded"
-  double factor = 0;   ///< its size; NaN: it has none
-  std::string words;   ///< a clause, with numbers
-  bool defect = true;  ///< the shapes do not converge to the rod because of it
+  std::string name;    ///< name, equal for all scenes, such as "first element welded"
+  double factor = 0;   ///< magnitude of the cause; NaN if it has none
+  std::string words;   ///< clause with numbers
+  bool defect = true;  ///< true if the shapes do not converge to the rod because of it
 };
 
-/// A simulator's shape of a scene with so many points.
+/// Shape of a scene by a simulator, with N points.
 struct CardShape {
   int points = 0;    ///< N
-  Shape shape;       ///< in the scene's frame, along the whole rod
-  double error = 0;  ///< RMS over length [-]
+  Shape shape;       ///< shape of the whole rod, in the scene's frame
+  double error = 0;  ///< RMS distance from the reference, divided by the length [-]
 };
 
-/// How an error falls with the number of points: p of e ~ N^-p, from the first shape to the last;
-/// NaN where there are less than two or an error is below what the reference itself is off.
+/// Returns the order of convergence: p of e ~ N^-p, from the first shape to the last; NaN if there
+/// are fewer than two shapes, or if an error is at most error_floor.
 [[nodiscard]] double convergence_order(const std::vector<CardShape>& shapes);
 
-/// An error that is none, as a share of the length.
+/// Error that is indistinguishable from the reference's own error, divided by the length.
 inline constexpr double error_floor = 1e-7;
 
-/// Names what is wrong with shapes that do not converge to the rod with second order, as far as it
-/// can be told: a cause is named if it leaves little of the error. Of shapes that do
-/// converge only springs that are linear in the angle are named, where that shows.
-/// @param reference  the scene's equilibrium
-/// @param shapes     by growing N, at least one
+/// Identifies causes of the error of shapes that do not converge to the rod with second order. A
+/// cause is accepted if it leaves only a small fraction of the error. For shapes that converge, the
+/// only possible cause is springs that are linear in the angle, if the difference is observable.
+/// @param reference  equilibrium of the scene
+/// @param shapes     in the order of N, at least one
 [[nodiscard]] std::vector<Cause> causes_of(const Scene& scene,
                                            const energy_model::Equilibrium& reference,
                                            const std::vector<CardShape>& shapes,
                                            const SolveOptions& options = {});
 
-/// The bending stiffness that fits a shape with so many points best.
+/// Bending stiffness that fits a shape with N points best.
 struct StiffnessFactor {
   int points = 0;     ///< N
-  double factor = 0;  ///< over the scene's [-], > 0
+  double factor = 0;  ///< divided by the scene's stiffness [-], > 0
 };
 
-/// What a stiffness is that depends on the number of points, or does not: a power of the element's
-/// length, or a weight to which each element's ends add, as those of capsules do.
+/// Returns the cause that explains how the fitted stiffness depends on the number of points: a
+/// constant factor, a power of the element's length, or a weight that increases with the number of
+/// elements, as that of capsules does.
 /// @param coarse, fine  of the smallest and the largest N
 [[nodiscard]] Cause cause_of_factors(const Scene& scene, const StiffnessFactor& coarse,
                                      const StiffnessFactor& fine);
 
-/// What a simulator's motion is held against.
+/// Reference with which a simulator's motion is compared.
 struct MotionReference {
-  ModelMotion motion;   ///< of the energy model, beyond `until`
-  double length = 0;    ///< of the rod [m]
-  double until = 0;     ///< [s]
-  int frames = 0;       ///< that are asked for
-  double travel = 0;    ///< RMS distance of its points from where they begin, of these frames [m]
-  ModelMotion at_rest;  ///< the scene's equilibrium, at all times
+  ModelMotion motion;  ///< motion by the energy model, longer than `until`
+  double length = 0;   ///< length of the rod [m]
+  double until = 0;    ///< end time of the scene [s]
+  int frames = 0;      ///< number of requested frames
+  /// RMS distance of its points from their positions at time 0, over the requested frames [m].
+  double travel = 0;
+  ModelMotion at_rest;  ///< equilibrium of the scene, as a motion
 };
 
-/// Of a scene that has a motion. @throws InputError, ConvergenceError as release_rod()
+/// Computes the reference of a scene that has a motion. @throws InputError, ConvergenceError as
+/// release_rod()
 [[nodiscard]] MotionReference motion_reference(const BatteryScene& scene,
                                                const SolveOptions& options = {});
 
-/// RMS distance of all its points, at their own times and arc lengths, over the reference's travel.
-/// @throws InputError if it leaves the rod or the time, has less than half of the frames, or none
-/// near the first and the last time
+/// Returns the RMS distance of all recorded points from the reference at their times and arc
+/// lengths, divided by the reference's travel. @throws InputError if a point is not on the rod, a
+/// time is out of range, fewer than half of the frames exist, or none is near the first or the last
+/// time
 [[nodiscard]] double motion_error(const MotionReference& reference, const MarkerMotion& recorded);
 
-/// What is wrong with a motion, as far as it leaves little of its error: it stays where it begins,
-/// follows without inertia, is late or early, has another frequency, or is damped.
-/// @return one, or none
+/// Identifies the cause of a motion's error, if one leaves only a small fraction of it: the rod
+/// does not move, follows without inertia, is late or early, has another frequency, or is damped.
+/// @return one cause or none
 [[nodiscard]] std::vector<Cause> motion_causes(const MotionReference& reference,
                                                const MarkerMotion& recorded);
 

@@ -19,16 +19,17 @@ namespace dlo::compare {
 namespace {
 
 constexpr int points_along = 101;
-/// Frames of the model for each that is asked for: cubics between them.
+/// Frames of the model per requested frame; cubics interpolate between them.
 constexpr int frames_per_asked = 8;
-/// How far the model goes on, for recordings that are faster.
+/// End time of the model divided by that of the scene, so that recordings that are faster can be
+/// compared.
 constexpr double beyond = 1.5;
 constexpr int terms = 12;
-/// What a cause may leave of the error: without a number of its own, and with one.
+/// Largest fraction of the error that a cause may leave: without a fitted number, and with one.
 constexpr double may_leave_plain = 0.1;
 constexpr double may_leave_fitted = 0.3;
 
-/// Where the rod would be with a cause.
+/// Position of the rod with a cause.
 using RodAt = std::function<Eigen::Vector3d(double time, double arc_length)>;
 
 double rms_from(const MarkerMotion& recorded, const RodAt& rod) {
@@ -39,7 +40,7 @@ double rms_from(const MarkerMotion& recorded, const RodAt& rod) {
   return std::sqrt(squares / static_cast<double>(recorded.positions.size()));
 }
 
-/// A number of a cause, and what it leaves [m].
+/// Fitted number of a cause, and the RMS error that it leaves [m].
 struct Fitted {
   double value = 0;
   double left = std::numeric_limits<double>::infinity();
@@ -55,7 +56,7 @@ Fitted best_of(const MarkerMotion& recorded, double low, double high,
   return {found.x, found.value};
 }
 
-/// Causes without a number.
+/// Returns the causes without a fitted number, with the error that each leaves [m].
 std::vector<std::pair<Cause, double>> plain_causes(const MotionReference& reference,
                                                    const MarkerMotion& recorded) {
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -90,7 +91,7 @@ std::vector<std::pair<Cause, double>> fitted_causes(const MotionReference& refer
                             .factor = faster.value,
                             .words = fmt::format("all goes {:.4g} times as fast", faster.value)},
                       faster.left);
-  constexpr double most = 10;  // e-foldings in all of the time
+  constexpr double most = 10;  // e-foldings over the whole time
   const Fitted damped = best_of(recorded, 0, most / reference.until, [&](double rate) -> RodAt {
     return [&, rate](double time, double s) -> Eigen::Vector3d {
       const Eigen::Vector3d rest = reference.at_rest.at(0, s);

@@ -22,8 +22,8 @@ constexpr const char* answer_schema_name = "dlo/answer/1";
 constexpr const char* motion_schema_name = "dlo/motion/1";
 constexpr const char* pack_schema_name = "dlo/pack/1";
 
-/// With ten significant digits, none of rounding.
-/// @param large  how large its kind can be in the scene
+/// Rounds to ten significant digits, and rounding errors to 0.
+/// @param large  magnitude of such quantities in the scene
 double rounded(double value, double large) {
   constexpr double rounding = 1e-11;
   if (!std::isfinite(value)) return value;
@@ -31,34 +31,35 @@ double rounded(double value, double large) {
   return as_number<double>(fmt::format("{:.10g}", value)).value();
 }
 
-/// A bound, with two digits. @param rounding  of what is written, which it holds too
+/// Rounds a bound to two digits. @param rounding  rounding error of the written values, which the
+/// bound includes
 double bound(double value, double rounding) {
   return as_number<double>(fmt::format("{:.1e}", value + rounding)).value();
 }
 
-/// Of a vector's length, or a number's, with what ten digits round of it.
+/// Returns the bound of a number, or of a vector, including the rounding to ten digits.
 double bound_of_digits(double value, double size, double large) {
-  constexpr double rounding = 1e-10;  // half a unit of the last digit in each of three directions
+  constexpr double rounding = 1e-10;  // half a unit of the last digit in each of three components
   return bound(value, rounding * std::max(size, large));
 }
 
-/// Of points, with what decimals round of each of three coordinates.
+/// Rounding error of points, each coordinate rounded to twelve (nine) decimals [m].
 constexpr double place_rounding = 1e-12;
 constexpr double motion_place_rounding = 1e-9;
 
-/// A length, with twelve decimals, never -0.
+/// Returns a length with twelve decimals, without -0.
 std::string decimals(double metres) {
   std::string text = fmt::format("{:.12f}", metres);
   if (text.find_first_not_of("-0.") == std::string::npos) text = "0.000000000000";
   return text;
 }
 
-/// The same as a number; adding zero makes zero of -0.
+/// Rounds a length to twelve decimals; adding zero avoids -0.
 double place(double metres) {
   return as_number<double>(fmt::format("{:.12f}", metres)).value() + 0.0;
 }
 
-/// Of a motion, whose bounds are larger.
+/// Rounds a length or time of a motion to nine decimals, which suffice for its larger bounds.
 double motion_place(double value) {
   return as_number<double>(fmt::format("{:.9f}", value)).value() + 0.0;
 }
@@ -120,7 +121,7 @@ Json answer_closed_form(const Answer& answer) {
   return {{"is", form.is}, {"at_m", form.at}, {"point_m", answer_point(form.point)}};
 }
 
-/// A line for each key, and for each row of a list of lists or objects.
+/// Writes one line for each key, and for each row of a list of lists or objects.
 void write_document(const std::filesystem::path& file, const Json& document) {
   std::string text;
   for (const auto& [key, value] : document.items()) {
@@ -136,7 +137,7 @@ void write_document(const std::filesystem::path& file, const Json& document) {
   write_file(file, text + "\n}\n");
 }
 
-/// Whether a JSON file has the name of a schema, as "schema" or at the begin of "title".
+/// Whether a JSON file names a schema, as "schema" or at the beginning of "title".
 bool has_schema(const std::filesystem::path& file, std::string_view schema) {
   try {
     const Json document = Json::parse(read_regular_file(file, file));

@@ -8,43 +8,45 @@
 
 namespace dlo::compare {
 
-/// An answer as a document with schema dlo/answer/1, in SI units: numbers that are rounding are 0,
-/// lengths have twelve decimals, others ten significant digits.
+/// Returns an answer as a document with schema dlo/answer/1, in SI units. Numbers that are only
+/// rounding errors are 0, lengths have twelve decimals, and other numbers ten significant digits.
 [[nodiscard]] nlohmann::ordered_json answer_json(const Answer& answer);
 
-/// Its points: x,y,z,s, as `dlo check` reads a shape.
+/// Returns the points of an answer as x,y,z,s, which `dlo check` reads as a shape.
 [[nodiscard]] std::string answer_csv(const Answer& answer);
 
-/// Its points as VTK's XML, for ParaView.
+/// Returns the points of an answer in VTK's XML format, for ParaView.
 [[nodiscard]] std::string answer_vtu(const Answer& answer);
 
-/// A motion as a document with schema dlo/motion/1; its lengths and times have nine decimals.
+/// Returns a motion as a document with schema dlo/motion/1. Its lengths and times have nine
+/// decimals.
 [[nodiscard]] nlohmann::ordered_json motion_json(const MotionAnswer& answer);
 
-/// Its frames: time,s,x,y,z, as `dlo check --motion` reads a recording.
+/// Returns the frames of a motion as time,s,x,y,z, which `dlo check --motion` reads as a recording.
 [[nodiscard]] std::string motion_csv(const MotionAnswer& answer);
 
-/// What is certified of a battery.
+/// Certified answers of a benchmark set.
 struct Pack {
-  std::string version;                ///< of the battery
-  std::vector<Answer> answers;        ///< of scenes at rest
-  std::vector<MotionAnswer> motions;  ///< of those that move
+  std::string version;                ///< version of the benchmark set
+  std::vector<Answer> answers;        ///< answers of scenes at rest
+  std::vector<MotionAnswer> motions;  ///< answers of scenes that move
 };
 
-/// Of scenes of both kinds. @param threads  0: all cores;  @throws as their answers
+/// Computes the answers of scenes of both kinds. @param threads  0: all cores;  @throws as
+/// certified_answer() and certified_motion()
 [[nodiscard]] Pack certified_pack(const std::string& version,
                                   const std::vector<BatteryScene>& scenes, int threads,
                                   const SolveOptions& options = {});
 
-/// Requires that a folder has no file that write_pack() would replace, other than those that it
-/// wrote itself. @throws InputError that names the file
+/// Checks that a folder contains no file that write_pack() would replace but did not write itself.
+/// @throws InputError that names the file
 void require_own_pack(const std::string& folder, const std::vector<BatteryScene>& scenes);
 
-/// Writes a pack that needs no dlo to be used: ID.json and ID.csv of each answer and ID.vtu of one
-/// at rest, the schemas, and in the end suite.json, the index. Each file is made under another name
-/// and renamed. Nothing in it depends on the time or on the machine, so that a pack is the same
-/// when it is written again.
-/// @param folder  made if it is not there
+/// Writes reference data that can be used without dlo: ID.json and ID.csv of each answer, ID.vtu of
+/// each answer at rest, the schemas, and at the end the index suite.json. Each file is written
+/// under another name and then renamed. The content does not depend on time or machine, so writing
+/// it again gives the same files.
+/// @param folder  created if it does not exist
 /// @throws OutputError
 void write_pack(const std::string& folder, const Pack& pack);
 

@@ -22,7 +22,7 @@
 namespace dlo::compare {
 namespace {
 
-/// One of our own polygon models.
+/// One of dlo's own polygon models.
 struct OwnSimulator {
   const char* name;
   Model model;
@@ -60,7 +60,8 @@ void solve_own(Model model, const Scene& scene, double time_limit, SimulatorRun&
   run.shape = shape_of(solution.shape.points, solution.shape.arc_length, to_string(model));
 }
 
-/// `chain` is the chain of hinges with masses in its points.
+/// Computes a motion by one of dlo's models. Only `chain` has motion: the chain of hinges with
+/// point masses.
 void move_own(Model model, const BatteryScene& scene, int points, double time_limit,
               SimulatorRun& run) {
   if (model != Model::chain || scene.scene.force_model.law != BendingLaw::hooke) {
@@ -86,7 +87,7 @@ void move_own(Model model, const BatteryScene& scene, int points, double time_li
 SimulatorRun run_own(Model model, BatteryScene scene, int points, double time_limit) {
   SimulatorRun run;
   const Timer timer;
-  scene.scene.file = "scene";  // scenes of one problem have one message
+  scene.scene.file = "scene";  // so that messages do not depend on the name of the scene
   try {
     if (scene.motion) {
       move_own(model, scene, points, time_limit, run);
@@ -121,7 +122,7 @@ SimulatorRun run_program(const ForeignProgram& program, const BatteryScene& scen
   return result;
 }
 
-/// Returns size and time of change of the files that a command names, such as its script.
+/// Returns size and modification time of the files that a command names, such as its script.
 std::string files_of_command(const std::vector<std::string>& words) {
   std::string text;
   std::error_code none;
@@ -133,7 +134,7 @@ std::string files_of_command(const std::vector<std::string>& words) {
   return text;
 }
 
-/// Rows of time, arc length and position.
+/// Returns rows of time, arc length and position.
 Json motion_rows(const MarkerMotion& motion) {
   return json_list(motion.positions, [](const MarkerPosition& at) -> Json {
     return {at.time, at.arc_length, at.position.x(), at.position.y(), at.position.z()};
@@ -168,7 +169,7 @@ std::optional<SimulatorRun> read_run(const std::filesystem::path& file, const st
       run.shape = parse_shape(document.at("shape").dump(), "its shape");
     return run;
   } catch (const nlohmann::json::exception&) {
-    return std::nullopt;  // of another program: run again
+    return std::nullopt;  // file of another version: the simulator is run again
   } catch (const InputError&) {
     return std::nullopt;
   }

@@ -14,50 +14,53 @@
 
 namespace dlo::compare {
 
-/// How a run ended.
+/// Status of a run.
 enum class RunStatus {
-  solved,         ///< there is a shape
-  not_supported,  ///< the simulator says that it has no such scene
-  failed,         ///< anything else
+  solved,         ///< there is a shape or a motion
+  not_supported,  ///< the simulator reports that it does not support the scene
+  failed,         ///< any other outcome
   not_judged,     ///< the reference of the scene did not converge; the simulator was not run
 };
 
-/// In words, for files.
+/// Names of the statuses in files.
 template <>
 struct Choices<RunStatus> {
-  /// In the enumeration's order.
+  /// All statuses, in the order of the enumeration.
   static constexpr Choice<RunStatus> all[] = {{RunStatus::solved, "solved", ""},
                                               {RunStatus::not_supported, "not supported", ""},
                                               {RunStatus::failed, "failed", ""},
                                               {RunStatus::not_judged, "not judged", ""}};
 };
 
-/// A shape or a motion of a scene with so many points, or why there is none.
+/// Shape or motion of a scene with N points, or the reason why there is none.
 struct SimulatorRun {
   int points = 0;                        ///< N
-  RunStatus status = RunStatus::failed;  ///< how it ended
-  std::string problem;                   ///< one line; empty if there is a shape
+  RunStatus status = RunStatus::failed;  ///< how the run ended
+  std::string problem;                   ///< one line; empty if there is a shape or a motion
   double seconds = 0;                    ///< wall time [s]
-  std::optional<MeasuredShape> shape;    ///< of a run that is solved
-  std::optional<MarkerMotion> motion;    ///< in place of it, of a scene that moves
+  std::optional<MeasuredShape> shape;    ///< shape of a solved run of a scene at rest
+  std::optional<MarkerMotion> motion;    ///< motion of a solved run of a scene that moves
 };
 
-/// What is run on the battery: a program, one of our own polygon models, or a function.
+/// Simulator that is run on the benchmark set: a foreign program, one of dlo's polygon models, or a
+/// function.
 struct Simulator {
-  std::string name;          ///< of the program or function, or as parse_simulators() has it
-  std::optional<Model> own;  ///< none: `program`
-  BendingLaw law = BendingLaw::hooke;  ///< of an own one
-  ForeignProgram program;              ///< its command
-  /// A function of this process, from any thread. None: one of those.
+  /// Name of the program or function, or the name of a model that parse_simulators() reads.
+  std::string name;
+  std::optional<Model> own;            ///< one of dlo's models; empty: `program` or `function`
+  BendingLaw law = BendingLaw::hooke;  ///< joint law of `own`
+  ForeignProgram program;              ///< command of the program
+  /// Function of this process, called from any thread; empty: `own` or `program`.
   std::function<SimulatorRun(const Scene& scene, int points)> function = {};
 
-  /// What its results depend on, in words.
+  /// Returns a text that identifies the simulator in stored results.
   [[nodiscard]] std::string identity() const;
 };
 
-/// @param texts  each NAME=COMMAND as parse_foreign_program() takes it, or "chain" or "force" with
-///               the law `hooke`, or "chain_paper" or "force_paper"
-/// @throws InputError as that, or if two have the same name
+/// Reads simulators.
+/// @param texts  each NAME=COMMAND as parse_foreign_program() reads it, or "chain" or "force" with
+///               the law `hooke`, or "chain_paper" or "force_paper" with the law `paper`
+/// @throws InputError as parse_foreign_program(), or if two have the same name
 [[nodiscard]] std::vector<Simulator> parse_simulators(const std::vector<std::string>& texts);
 
 /// Runs a simulator. @param time_limit  [s], > 0
@@ -65,19 +68,19 @@ struct Simulator {
 [[nodiscard]] SimulatorRun run_simulator(const Simulator& simulator, const BatteryScene& scene,
                                          int points, double time_limit);
 
-/// Returns the result that a folder keeps of an earlier run with the same version of dlo, program,
+/// Returns the result that a folder stores of an earlier run with the same version of dlo, program,
 /// time limit and scene; otherwise runs the simulator. Results that are solved or not supported are
-/// kept, each in a file of its own. A failed run is not kept, because its cause may be gone: dlo
-/// may have ended it.
-/// @param folder   is made if it does not exist; empty: nothing is kept
-/// @param version  of dlo
+/// stored, each in a file of its own. A failed run is not stored, because its cause may be
+/// temporary: dlo may have stopped it.
+/// @param folder   created if it does not exist; empty: nothing is stored
+/// @param version  version of dlo
 [[nodiscard]] SimulatorRun kept_run(const std::string& folder, const std::string& version,
                                     const Simulator& simulator, const BatteryScene& scene,
                                     int points, double time_limit);
 
-/// What a program reads of a scene: scene_document(), and of one that moves also `motion`, with
-/// the times of frames that are asked for, the shape that it begins with at equal arc lengths, and
-/// the masses that hang on the rod.
+/// Returns the document of a scene that a program reads: scene_document(), and for a scene that
+/// moves also `motion`, with the times of the requested frames, the initial shape at equal arc
+/// lengths, and the point masses on the rod.
 [[nodiscard]] std::string battery_document(const BatteryScene& scene, int points);
 
 }  // namespace dlo::compare

@@ -13,8 +13,9 @@ bool has_weight_only(const Scene& scene) {
          scene.weight_per_length().norm() > 0;
 }
 
-/// Whether what the weight is more than the scene's goes with the number of elements. Above twice
-/// the weight it is rather springs that do, whose stiffness goes to zero.
+/// Whether the excess of the apparent weight over the scene's is proportional to the number of
+/// elements. Above twice the weight the cause is rather springs whose stiffness depends on N and
+/// tends to zero.
 bool grows_with_elements(const StiffnessFactor& coarse, const StiffnessFactor& fine) {
   constexpr double least = 0.01;
   constexpr double most = 1;
@@ -38,7 +39,7 @@ Cause cause_of_factors(const Scene& scene, const StiffnessFactor& coarse,
       fmt::format("bending stiffness is {:.3g} times EI with N = {} and {:.3g} times with N = {}",
                   coarse.factor, coarse.points, fine.factor, fine.points);
   if (has_weight_only(scene) && grows_with_elements(coarse, fine)) {
-    // A ball of the caps' radius r at each element of length h: 4 r / (3 h) of its weight.
+    // A ball of the caps' radius r on each element of length h adds 4 r / (3 h) of its weight.
     const double h = scene.length / (fine.points - 1);
     return {"weight with caps", 1 / fine.factor,
             fmt::format("the weight is {:.3g} times the scene's with N = {} and {:.3g} times with "
