@@ -28,12 +28,12 @@ constexpr double frame_budget = 1e-3;       // [s]
 struct Settings {
   double seconds = 60;  // simulated
   int steps_per_frame =
-      30;  // 30 kHz, the most that the paper asks for; of `implicit` one is enough
+      30;  // 30 kHz, the highest rate in the paper; one step suffices for `implicit`
   Stepper stepper = Stepper::automatic;
 };
 
-/// A steel wire of 0.5 mm, 30 cm long: soft enough for a hand. Steel's own stretch stiffness,
-/// 41 kN, is not felt at these forces and would only ask for smaller steps.
+/// Steel wire of 0.5 mm, 30 cm long, which is soft enough for a hand. The stretch stiffness of
+/// steel, 41 kN, has no effect at these forces and would only require smaller steps.
 struct Wire {
   static constexpr double length = 0.3;           // [m]
   static constexpr double EI = 6.44e-4;           // [N m^2]
@@ -43,7 +43,7 @@ struct Wire {
   static constexpr double wall_stiffness = 100;   // [N/m]
 };
 
-/// Where the hand holds the gripper: a smooth path, up to 0.35 m/s and 125 deg/s.
+/// Computes the targets of the gripper in the hand: a smooth path, up to 0.35 m/s and 125 deg/s.
 void follow_hand(double time, double segment, Eigen::Matrix3Xd& targets) {
   const double turn = 2 * std::numbers::pi * time;
   const Eigen::Vector3d position(0.1 * std::sin(0.5 * turn), 0.05 * std::sin(0.37 * turn),
@@ -56,7 +56,7 @@ void follow_hand(double time, double segment, Eigen::Matrix3Xd& targets) {
                                            std::cos(pitch) * std::sin(yaw));
 }
 
-/// A table below the hand that heaves and tilts, and a wall in front of it.
+/// Returns a table below the hand that moves and tilts, and a wall in front of it.
 std::array<Wall, 2> walls_at(double time) {
   const double turn = 2 * std::numbers::pi * time;
   const double tilt = 0.2 * std::sin(0.1 * turn);
@@ -89,7 +89,7 @@ Simulation make_simulation(int points, double segment, const Eigen::Matrix3Xd& t
   return {rod, straight, options};
 }
 
-/// Time that this thread has computed [s]: time that the system gave to others is not in it.
+/// Returns the computing time of this thread [s], without the time of other processes.
 double computing_time() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
@@ -112,7 +112,7 @@ void print_times(const char* what, std::vector<double>& times) {
               percentile(99.9), 1e6 * times.back(), static_cast<long>(misses));
 }
 
-/// @return false if the simulation diverged
+/// Runs the loop. @return false if the simulation diverged
 bool run(int points, const Settings& settings) {
   const double segment = Wire::length / (points - 1);
   Eigen::Matrix3Xd targets(3, 2);

@@ -6,9 +6,10 @@
 namespace dlo::force_model {
 namespace {
 
-/// Whether a symmetric block is positive definite by more than rounding, by its leading minors.
+/// Inverts a symmetric block. @return whether it is positive definite by more than rounding, by its
+/// leading minors
 bool invert(const Eigen::Matrix3d& block, Eigen::Matrix3d& inverse) {
-  // Share of a pivot of its own diagonal below which subtractions have left no digit.
+  // Fraction of a diagonal element below which its pivot consists of rounding errors only.
   constexpr double rounding = 1e-14;
   const double a = block(0, 0);
   if (!(a > 0)) return false;
@@ -66,8 +67,8 @@ void BandMatrix::multiply(const Eigen::Matrix3Xd& vectors, Eigen::Matrix3Xd& res
 BandFactor::BandFactor(Eigen::Index points) : rows_(static_cast<std::size_t>(points)) {}
 
 bool BandFactor::compute(const BandMatrix& matrix, const std::vector<char>& is_free, double shift) {
-  // Schur complements, of this point's diagonal block, of the next one's, and of the block between
-  // this and the next: what the points before have left of them.
+  // Schur complements after elimination of the previous points: of this point's diagonal block, of
+  // the next one's, and of the block between both.
   const Eigen::Index count = matrix.points();
   Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d next = Eigen::Matrix3d::Zero();

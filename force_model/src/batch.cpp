@@ -12,7 +12,7 @@
 namespace dlo::force_model {
 namespace {
 
-/// Throws unless all rods can go through the same kernel.
+/// Throws unless all rods can share one kernel.
 void require_alike(const std::vector<BatchRod>& rods) {
   require(!rods.empty(), "Batch", "number of rods", 0, ">= 1");
   const BatchRod& first = rods.front();

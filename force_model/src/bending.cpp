@@ -12,7 +12,7 @@ namespace {
 
 using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
 
-/// Relative length below which a chord has lost its direction to rounding.
+/// Relative length below which the direction of a chord is determined by rounding.
 constexpr double fold_chord = 1e-12;
 
 void require_joint(const char* function, const Bending& bending, double segment_length,
@@ -22,7 +22,7 @@ void require_joint(const char* function, const Bending& bending, double segment_
   require(alpha >= 0 && alpha <= std::numbers::pi, function, "alpha", alpha, "in [0, pi]");
 }
 
-/// The part of `force` that is orthogonal to the unit vector `direction`.
+/// Returns the component of `force` that is orthogonal to the unit vector `direction`.
 Eigen::Vector3d orthogonal_part(const Eigen::Vector3d& force, const Eigen::Vector3d& direction) {
   return force - force.dot(direction) * direction;
 }
@@ -51,7 +51,8 @@ JointForces hooke_forces(double EI_over_L, const Eigen::Vector3d& u, double a,
     const double k = 2 * EI_over_L / (1 + cosine);
     return {-k / a * (v - cosine * u), k / b * (u - cosine * v)};
   }
-  // Constant moment beyond the fold angle, along the directions in which the joint opens.
+  // Beyond the fold angle the moment is constant, and acts along the directions in which the joint
+  // opens.
   const double moment = 2 * EI_over_L * std::tan(hooke_fold_angle / 2);
   const Eigen::Vector3d opening = u + v;
   const Eigen::Vector3d e = opening.norm() > fold_chord ? Eigen::Vector3d(opening.normalized())
@@ -60,12 +61,12 @@ JointForces hooke_forces(double EI_over_L, const Eigen::Vector3d& u, double a,
           moment / b * orthogonal_part(e, v).normalized()};
 }
 
-/// From a to b, seen from the side of +z.
+/// Returns the angle from a to b, seen from +z [rad].
 double signed_turn(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.x() * b.y() - a.y() * b.x(), a.x() * b.x() + a.y() * b.y());
 }
 
-/// A vector of the plane z = 0 turned to the left.
+/// Returns a vector of the plane z = 0, rotated to the left by a right angle.
 Eigen::Vector3d left_of(const Eigen::Vector3d& vector) { return {-vector.y(), vector.x(), 0}; }
 
 double turning_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
@@ -116,7 +117,7 @@ double joint_moment(const Bending& bending, double segment_length, double alpha)
 double joint_potential(const Bending& bending, double segment_length, double alpha) {
   require_joint("joint_potential", bending, segment_length, alpha);
   if (bending.law == BendingLaw::paper) {
-    // (8/3 - 4 cos + 4/3 cos^3)(alpha/2), written so that it does not cancel for small angles
+    // (8/3 - 4 cos + 4/3 cos^3)(alpha/2), in a form without cancellation for small angles
     const double s = std::sin(alpha / 4);
     const double one_minus_cos = 2 * s * s;
     return bending.stiffness * segment_length * 4 * one_minus_cos * one_minus_cos *

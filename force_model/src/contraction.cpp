@@ -7,7 +7,7 @@ namespace {
 
 using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
 
-/// The direction in which a segment of zero length is pushed apart.
+/// Returns the direction in which a segment of zero length is pushed apart.
 Eigen::Vector3d neighbour_direction(const Points& points, Eigen::Index i) {
   const Eigen::Index before = std::max<Eigen::Index>(i - 1, 0);
   const Eigen::Index after = std::min<Eigen::Index>(i + 2, points.cols() - 1);

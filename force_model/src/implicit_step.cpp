@@ -12,35 +12,36 @@
 namespace dlo::force_model {
 namespace {
 
-/// Newton steps to follow a gripper in one step; then its points are put where it is.
+/// Largest number of Newton steps to follow a gripper in one step; after them its points are set to
+/// its targets.
 constexpr int most_newton_steps = 64;
-/// Largest turn of a segment by one Newton step, as the tangent of the angle [-].
+/// Largest rotation of a segment in one Newton step, as the tangent of the angle [-].
 constexpr double largest_turn = 1;
-/// Share of its rest length below which a segment's turn is counted as that of one so long: it has
-/// no direction to speak of.
+/// A segment shorter than this fraction of its rest length has no reliable direction. Its rotation
+/// is computed as if it had this length.
 constexpr double shortest_turned = 0.25;
-/// Segments without a length are opened by this share of their rest length, so that they have a
+/// Fraction of the rest length to which segments of zero length are opened, so that they have a
 /// direction.
 constexpr double opened = 1e-3;
-/// Of c_c / L: more compression than this is a start's, not a rod's, and has no part in the
-/// stiffness across the segment, which it would make indefinite.
+/// Limit of compression in the transverse stiffness, in units of c_c / L. More compression occurs
+/// only in initial shapes, and would make the stiffness indefinite.
 constexpr double most_pressed = 0.01;
-/// Armijo's share of the decrease that the slope promises.
+/// Required fraction of the decrease that the slope predicts (Armijo).
 constexpr double sufficient = 0.05;
-/// Solves for which points touch walls; a set that is not found is left as it is, for the next
-/// step.
+/// Largest number of solves in the search for the points that touch walls. If the set is not found,
+/// the last one is used until the next step.
 constexpr int most_looks = 30;
-/// Halvings of a movement before a larger shift is tried.
+/// Number of halvings of a movement before a larger shift is tried.
 constexpr int most_halvings = 6;
-/// Shifts that are tried, each shift_growth times the last, from the stiffness of the slowest mode:
-/// 8^40 = 1e36 times that is beyond any segment's.
+/// Number of shifts that are tried. Each is shift_growth times the previous one, beginning with the
+/// stiffness of the slowest mode; 8^40 = 1e36 times that exceeds any segment's stiffness.
 constexpr int most_shifts = 40;
-/// By which the shift grows when it was not enough, and falls after each step that it was.
+/// Factor by which the shift grows if it was too small, and decreases after each successful step.
 constexpr double shift_growth = 8;
-/// Rounding of an energy of stiff segments, as a share of its parts.
+/// Rounding error of the energy of stiff segments, divided by the energy's parts.
 constexpr double energy_rounding = 1e-12;
 
-/// Points that grips hold, on springs too.
+/// Returns 1 for points that grips hold rigidly or by springs, else 0.
 std::vector<char> anchors_of(const Rod& rod) {
   std::vector<char> anchors(static_cast<std::size_t>(rod.points()), 0);
   for (const Grip& grip : rod.grips) {
@@ -85,8 +86,8 @@ ImplicitStep::ImplicitStep(const Rod& rod, const Eigen::Matrix3Xd& points,
   inertia_ = masses_ * (1 + damping_rate_ * time_step_) / time_step_;
 }
 
-/// Along the chord of its neighbours, as contraction forces push; what follows comes along, to the
-/// next point that is held.
+/// Opens a segment of zero length along the chord of its neighbours, in the direction of
+/// contraction forces. The points after it, up to the next held point, move along.
 void ImplicitStep::open_segments(const Rod& rod) {
   const Eigen::Index last = points_.cols() - 1;
   for (Eigen::Index i = 0; i < last; ++i) {
@@ -102,7 +103,8 @@ void ImplicitStep::open_segments(const Rod& rod) {
   }
 }
 
-/// With inertia: E + sum of m (1 + c dt) |P - P_0|^2 / (2 dt^2) - m v.(P - P_0) / dt.
+/// Returns the potential energy E; with inertia E + sum of m (1 + c dt) |P - P_0|^2 / (2 dt^2) - m
+/// v.(P - P_0) / dt.
 double ImplicitStep::potential(const Rod& rod, const Eigen::Matrix3Xd& points) const {
   double result = energy(rod, points).total();
   for (Eigen::Index i = 0; i < inertia_.size(); ++i) {
@@ -113,7 +115,7 @@ double ImplicitStep::potential(const Rod& rod, const Eigen::Matrix3Xd& points) c
   return result;
 }
 
-/// Walls are left to solve().
+/// Computes forces and stiffness, except those of walls, which solve() adds.
 void ImplicitStep::assemble(const Rod& rod) {
   total_forces(rod, points_, forces_);
   for (const Wall& wall : rod.walls) {
@@ -133,7 +135,7 @@ void ImplicitStep::assemble(const Rod& rod) {
   }
 }
 
-/// With the way of the held points in movement_, solves for that of the others.
+/// Solves for the movement of the free points, given that of the held points in movement_.
 bool ImplicitStep::solve_linear() {
   product_ = movement_;
   stiffness_.multiply(product_, movement_);  // K_fh dP_h
@@ -150,8 +152,9 @@ bool ImplicitStep::solve_linear() {
   return movement_.allFinite();
 }
 
-/// A wall's energy is c_e s^2 / 2 where the depth s = d - n.dP of a point is > 0, d where it is
-/// now. Which points those are is found by an active set: solve, look, solve again.
+/// Solves for the movement with walls. The energy of a wall is c_e s^2 / 2 for each point whose
+/// depth s = d - n.dP is > 0, where d is the present depth. An active-set iteration finds these
+/// points.
 bool ImplicitStep::solve(const Rod& rod) {
   walls_energy_ = 0;
   for_each_wall_point(rod, [this](const Wall& wall, Eigen::Index i, char& touches) {
@@ -178,7 +181,7 @@ bool ImplicitStep::solve(const Rod& rod) {
   return true;
 }
 
-/// Adds a wall's part in the quadratic model of a point, or takes it away (sign = -1).
+/// Adds the contribution of a wall on a point to the quadratic model, or removes it (sign = -1).
 void ImplicitStep::press(const Wall& wall, Eigen::Index i, double depth, double sign) {
   const double stiffness = sign * wall.stiffness;
   stiffness_.add(i, i, stiffness * wall.normal * wall.normal.transpose());
@@ -187,7 +190,7 @@ void ImplicitStep::press(const Wall& wall, Eigen::Index i, double depth, double 
 }
 
 double ImplicitStep::search(const Rod& rod, bool gripper_moves) {
-  // The quadratic model: E + walls_energy - share slope + share^2 curvature / 2.
+  // Quadratic model: E + walls_energy - share slope + share^2 curvature / 2.
   stiffness_.multiply(movement_, product_);
   const double slope = forces_.cwiseProduct(movement_).sum();
   const double curvature = movement_.cwiseProduct(product_).sum();
@@ -207,8 +210,8 @@ double ImplicitStep::search(const Rod& rod, bool gripper_moves) {
     const double moved = potential(rod, trial_);
     const double promised = energy_ + share * (walls_energy_ - slope + share / 2 * curvature);
     const double rounding = energy_rounding * (std::abs(energy_) + energy_unit_);
-    // Without a gripper's movement the model's decrease is half of `decrease`; walls, where it is
-    // exact at 0 and 1 only, make it a convex function, whose chord is above it.
+    // If no gripper moves, the model's decrease is half of `decrease`. With walls, where the model
+    // is exact only at 0 and 1, it is a convex function, so that its chord is an upper bound.
     const double decrease = slope - walls_energy_ - share / 2 * curvature;
     const double slack = gripper_moves ? std::abs(curvature) / 2 * share + 1e-3 * energy_unit_
                                        : share * (1 - sufficient) * decrease;

@@ -10,36 +10,39 @@
 
 namespace dlo::force_model {
 
-/// The steps of Integration::implicit_euler, which says what they solve. Only the constructor
-/// allocates.
+/// Computes the steps of Integration::implicit_euler, where the equations are stated. Only the
+/// constructor allocates.
 class ImplicitStep {
  public:
-  /// @param rod  checked
-  /// @throws std::invalid_argument if it is twisted, or the options ask for masses that it lacks
+  /// Creates the stepper. @param rod  checked
+  /// @throws std::invalid_argument if the rod is twisted, or the options require masses that it
+  /// lacks
   ImplicitStep(const Rod& rod, const Eigen::Matrix3Xd& points, const StepOptions& options);
 
-  /// One step to the rod's targets. Its points, and how many Newton steps it took, are
-  /// points() and newton_steps().
-  /// @param rod  the constructor's, with whatever targets and walls it has now
+  /// Makes one step with the rod's present targets and walls. points() and newton_steps() return
+  /// its results.
+  /// @param rod  the constructor's rod, with any targets and walls
   [[nodiscard]] StepResult step(const Rod& rod);
 
   [[nodiscard]] const Eigen::Matrix3Xd& points() const { return points_; }  ///< [m]
-  /// Moves the points without a step, as a nudge does.
+  /// Moves the points without a step, for a small displacement from an unstable equilibrium.
   void set_points(const Eigen::Matrix3Xd& points) { points_ = points; }
-  /// Linear solves of the last step.
+  /// Returns the number of linear solves of the last step.
   [[nodiscard]] int newton_steps() const { return newton_steps_; }
-  /// Whether the last step was Newton's own, of a positive definite stiffness and in full length.
+  /// Whether the last step was a full Newton step with a positive definite stiffness.
   [[nodiscard]] bool pure() const { return pure_; }
-  /// RMS of the last step's movements [m].
+  /// Returns the RMS movement of the points in the last step [m].
   [[nodiscard]] double movement() const { return movement_rms_; }
-  /// RMS of what the velocities still bring about [m]; infinite without damping.
+  /// Returns the RMS movement that the present velocities still cause [m]; infinite without
+  /// damping.
   [[nodiscard]] double momentum() const;
 
  private:
   void open_segments(const Rod& rod);
-  /// movement_ of the held points: to where the grips are now; 0 of the others.
+  /// Sets movement_: of held points to the present targets of their grips, of others to 0.
   void lead_held_points(const Rod& rod);
-  /// Into trial_. @return the share of Newton's movement that was made; 0: none, nothing helps
+  /// Makes a Newton step into trial_. @return fraction of the Newton step that was made; 0 if none
+  /// reduces the energy
   [[nodiscard]] double newton_step(const Rod& rod, bool gripper_moves);
   void assemble(const Rod& rod);
   [[nodiscard]] bool solve(const Rod& rod);
@@ -55,7 +58,8 @@ class ImplicitStep {
       }
     }
   }
-  /// As far along the movement as it is worth, into trial_. @return the share; 0: not at all
+  /// Searches along the movement, into trial_. @return fraction of the movement; 0 if none reduces
+  /// the energy enough
   [[nodiscard]] double search(const Rod& rod, bool gripper_moves);
   [[nodiscard]] double potential(const Rod& rod, const Eigen::Matrix3Xd& points) const;
 
@@ -63,26 +67,27 @@ class ImplicitStep {
 
   std::vector<char> is_free_;
   bool in_plane_ = false;
-  double unit_ = 0;         // stiffness of the slowest mode, about [N/m]
-  double energy_unit_ = 0;  // EI / l and what the loads do over l, about [J]
+  double unit_ = 0;         // approximate stiffness of the slowest mode [N/m]
+  double energy_unit_ = 0;  // approximate magnitude of energies: EI / l plus the loads times l [J]
   double time_step_ = 0;
   double damping_rate_ = 0;
   Eigen::VectorXd inertia_;  // m (1 + c dt) / dt^2 [N/m]; empty without time
-  Eigen::VectorXd masses_;   // over dt [kg/s]
+  Eigen::VectorXd masses_;   // masses divided by dt [kg/s]
   Eigen::Matrix3Xd points_;
-  Eigen::Matrix3Xd start_;  // of this step
+  Eigen::Matrix3Xd start_;  // points at the beginning of this step
   Eigen::Matrix3Xd velocities_;
   Eigen::Matrix3Xd trial_;
-  Eigen::Matrix3Xd forces_;  // of potential(), on all points
+  Eigen::Matrix3Xd forces_;  // forces on all points, of potential()
   Eigen::Matrix3Xd movement_;
   Eigen::Matrix3Xd product_;
   BandMatrix stiffness_;
   BandFactor factor_;
   Retraction retraction_;
-  std::vector<char> touches_;  // 1 for points that a wall presses in the quadratic model
-  double walls_energy_ = 0;    // of that model at no movement, less what it is [J]
-  double shift_ = 0;           // [N/m]
-  double energy_ = 0;          // of points_
+  std::vector<char> touches_;  // 1 for points that touch a wall in the quadratic model
+  // Energy of the walls in that model at zero movement, minus the present one [J].
+  double walls_energy_ = 0;
+  double shift_ = 0;   // [N/m]
+  double energy_ = 0;  // energy of points_ [J]
   bool energy_known_ = false;
   int newton_steps_ = 0;
   bool pure_ = false;

@@ -10,7 +10,7 @@ namespace dlo::force_model {
 
 using KernelOfSet = const StepKernel& (*)(const KernelChoice& choice, std::ptrdiff_t stride);
 
-// One for each time that step_kernel.cpp is compiled.
+// One declaration for each compilation of step_kernel.cpp.
 namespace kernel_baseline {
 const StepKernel& step_kernel(const KernelChoice& choice, std::ptrdiff_t stride);
 }
@@ -25,7 +25,7 @@ const StepKernel& step_kernel(const KernelChoice& choice, std::ptrdiff_t stride)
 
 namespace {
 
-/// Null if this machine cannot run the set.
+/// Returns the kernel function of a set; null if this machine cannot run the set.
 KernelOfSet kernel_of(InstructionSet set) {
   switch (set) {
     case InstructionSet::baseline:
@@ -48,7 +48,7 @@ KernelOfSet kernel_of(InstructionSet set) {
 
 constexpr const char* variable = "DLO_INSTRUCTION_SET";
 
-/// As the variable has it.
+/// Returns the name of a set as DLO_INSTRUCTION_SET spells it.
 const char* name_of(InstructionSet set) {
   switch (set) {
     case InstructionSet::avx2:

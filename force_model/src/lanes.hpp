@@ -16,10 +16,10 @@ inline constexpr int lane_count = 4;
 inline constexpr int lane_count = 2;
 #endif
 
-/// A register; + - * / and comparisons act on each lane (GCC and Clang vector extension).
+/// Vector register; + - * / and comparisons act on each lane (GCC and Clang vector extension).
 using Lanes [[gnu::vector_size(lane_count * sizeof(double))]] = double;
 
-/// A register as stored in an array of doubles, at any element.
+/// Vector register in an array of doubles, at any element.
 using StoredLanes [[gnu::vector_size(lane_count * sizeof(double)), gnu::aligned(sizeof(double)),
                     gnu::may_alias]] = double;
 
@@ -39,7 +39,7 @@ inline Lanes max(Lanes a, Lanes b) { return a > b ? a : b; }
 inline Lanes min(Lanes a, Lanes b) { return a < b ? a : b; }
 inline Lanes sum(Lanes a, Lanes b) { return a + b; }
 
-/// Lanes `shift` to `shift` + lane_count - 1 of two registers in a row.
+/// Returns lanes `shift` to `shift` + lane_count - 1 of two consecutive registers.
 template <int shift, int... lane>
 Lanes window(Lanes first, Lanes second, std::integer_sequence<int, lane...> /*all*/) {
   return __builtin_shufflevector(first, second, (shift + lane)...);
@@ -49,7 +49,7 @@ Lanes window(Lanes first, Lanes second) {
   return window<shift>(first, second, std::make_integer_sequence<int, lane_count>());
 }
 
-/// One number out of all lanes: their max, min or sum.
+/// Reduces all lanes to one number: their maximum, minimum or sum.
 template <Lanes combine(Lanes, Lanes), int half = lane_count / 2>
 double reduce(Lanes a) {
   if constexpr (half == 0) {

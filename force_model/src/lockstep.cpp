@@ -12,10 +12,10 @@
 namespace dlo::force_model {
 namespace {
 
-// Movements below this share of the coordinates are rounding, which turns back and forth at rest.
+// Movements below this fraction of the coordinates are rounding errors, which oscillate at rest.
 constexpr double rounding_share = 1024 * std::numeric_limits<double>::epsilon();
 
-/// Natural turns have a sign in the plane z = 0 only.
+/// Whether a rod must stay in the plane z = 0: natural angles have a sign only there.
 bool is_bound_to_plane(const Rod& rod) { return rod.bending.natural_turns.size() > 0; }
 
 Eigen::Index count_twisted(const Rod& rod) {
@@ -178,7 +178,7 @@ MovingShape Lockstep::shape(std::size_t rod) {
 }
 
 void Lockstep::nudge(std::size_t rod, const Eigen::Matrix3Xd& direction) {
-  constexpr double share = 1e-6;  // of the length: far below any tolerance
+  constexpr double share = 1e-6;  // in lengths, far below any tolerance
   block_.set(positions, rod, block_.view(positions, rod) + share * rods_[rod].length() * direction);
   block_.update_dimension(rods_);
   if (!implicit_) return;
@@ -193,9 +193,9 @@ RelaxResult Lockstep::relax_implicitly(const RelaxOptions& options) {
     compute_forces();
     return shape(0);
   };
-  // Newton's step squares the distance d: of a rod, about 2 d^2 / l are left, measured from
-  // straight to Gamma = 18. What that promises too early is promised again after a step ten times
-  // shorter.
+  // A Newton step squares the distance d from rest: about 2 d^2 / l remain, measured on rods from
+  // straight to Gamma = 18. If this predicts rest too early, the next prediction requires a step
+  // that is ten times shorter.
   const double length = rods_.front().length();
   double promising = std::sqrt(options.tolerance / 4) * length;
   while (search.open()) {
@@ -242,8 +242,8 @@ std::vector<RelaxResult> Lockstep::relax(const RelaxOptions& options) {
       compute_forces();
       for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
         if (!due[rod]) continue;
-        // An equilibrium that does not hold, as an upright rod's: whatever disturbs it lets it
-        // fall.
+        // The equilibrium is unstable, as that of an upright rod: it is displaced, as any
+        // disturbance would do.
         const Eigen::Matrix3Xd descent = searches[rod].look(shape(rod));
         if (descent.cols() > 0) nudge(rod, descent);
         controls_[rod].correct_slowest_mode(searches[rod].slowest_mode());

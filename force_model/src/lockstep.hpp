@@ -14,27 +14,28 @@
 
 namespace dlo::force_model {
 
-/// One rod, or up to eight of the same size, bending law and step policy that step together: what
-/// Simulation and Batch share.
+/// One rod, or up to eight rods of the same size, bending law and step policy that are stepped in a
+/// vectorised batch. Simulation and Batch share this class.
 class Lockstep {
  public:
   /// @param together  false: one rod, vectorised over its points; true: 1 to 8, one per lane
   /// @throws std::invalid_argument if rods, points or options are out of range
   Lockstep(std::span<const BatchRod> start, bool together);
 
-  /// A step of each active rod. Allocates nothing.
-  /// @param[out] results  one per rod; those of others are left alone
+  /// Makes a step of each active rod. Does not allocate.
+  /// @param[out] results  one per rod; those of inactive rods are unchanged
   void step(std::span<StepResult> results);
 
-  /// Steps until each active rod rests, see Simulation::relax. Allocates.
+  /// Steps until each active rod is at rest, see Simulation::relax. Allocates.
   std::vector<RelaxResult> relax(const RelaxOptions& options);
 
-  /// As Simulation::move_grip. @param d1  null: the frame, if there is one, comes along
+  /// Moves a grip of a rod, see Simulation::move_grip. @param d1  null: a held frame follows the
+  /// segment
   void move_grip(std::size_t rod, std::size_t grip,
                  const Eigen::Ref<const Eigen::Matrix3Xd>& targets,
                  const Eigen::Vector3d& reference, const Eigen::Vector3d* d1 = nullptr);
 
-  /// As Simulation::move_wall.
+  /// Replaces a wall of a rod, see Simulation::move_wall.
   void move_wall(std::size_t rod, std::size_t wall, const Wall& moved);
 
   [[nodiscard]] const Rod& rod(std::size_t rod) const { return rods_[rod]; }
@@ -48,7 +49,7 @@ class Lockstep {
 
   [[nodiscard]] std::size_t size() const { return rods_.size(); }
 
-  /// Rods that are not active stand still.
+  /// Activates or deactivates a rod; inactive rods do not move.
   void set_active(std::size_t rod, bool active);
   [[nodiscard]] bool active(std::size_t rod) const { return active_.lane[rod] != 0; }
   [[nodiscard]] bool any_active() const;
@@ -67,15 +68,15 @@ class Lockstep {
   RodBlock block_;
   std::vector<StepControl> controls_;
   PerLane c_F_;
-  PerLane c_m_;   // of the last step: its movements were c_m times the proposed ones
+  PerLane c_m_;   // c_m of the last step, the factor of its proposed movements
   PerLane kept_;  // c_h c_m
   PerLane active_;
-  PerLane rounding_squared_;  // of the smallest movement that counts as oscillation [m^2]
-  std::optional<ImplicitStep> implicit_;  // a single rod's, as its policy asks for
+  PerLane rounding_squared_;  // square of the smallest movement that counts as oscillation [m^2]
+  std::optional<ImplicitStep> implicit_;  // of a single rod, if its policy uses it
   std::optional<VerletStep> verlet_;
   ProposedStep proposed_;
   ModeLook look_;
-  Eigen::Matrix3Xd points_;  // of the rod that is looked at
+  Eigen::Matrix3Xd points_;  // points of the rod that is examined
   Eigen::Matrix3Xd forces_;
 };
 

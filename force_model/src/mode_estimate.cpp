@@ -9,8 +9,8 @@ namespace {
 
 constexpr double memory = 0.8;  // weight of older blocks
 
-/// Estimate over true stiffness [-]: with less, heavy_ball's steps are at most half as fast in the
-/// slowest mode as they could be, which is not worth another beginning.
+/// Ratio of estimate to true stiffness up to which the estimate is kept [-]. Below it, heavy_ball's
+/// steps move the slowest mode at least half as fast as possible, which does not justify a restart.
 constexpr double misled = 2;
 
 }  // namespace

@@ -6,10 +6,10 @@
 
 namespace dlo::force_model {
 
-/// 1 for points that no rigid grip holds, else 0.
+/// Returns 1 for points that no rigid grip holds, else 0.
 [[nodiscard]] std::vector<char> free_points(const Rod& rod);
 
-/// Calls action(grip, k) for each point, the k-th of its grip, that is held rigidly.
+/// Calls action(grip, k) for each rigidly held point, the k-th of its grip.
 template <typename Action>
 void for_each_held_point(const Rod& rod, const Action& action) {
   for (const Grip& grip : rod.grips) {
@@ -18,7 +18,7 @@ void for_each_held_point(const Rod& rod, const Action& action) {
   }
 }
 
-/// @throws std::invalid_argument unless each free point has a mass > 0
+/// Checks the masses of a rod. @throws std::invalid_argument unless each free point has a mass > 0
 void require_masses(const Rod& rod, const std::vector<char>& is_free);
 
 }  // namespace dlo::force_model

@@ -7,13 +7,13 @@
 
 namespace dlo::force_model::DLO_KERNEL {
 
-/// The elements of a block as registers. Those of a single rod (`stride` 1) hold neighbouring
-/// points; those of rods in lockstep (`stride` 8) hold the same point of several rods, and a block
-/// has a column for each register that its eight rods fill.
+/// Elements of a block as vector registers. The registers of a single rod (`stride` 1) contain
+/// neighbouring points. Those of a vectorised batch (`stride` 8) contain the same point of several
+/// rods, and a block has one column for each register that its eight rods fill.
 template <int dimension, std::ptrdiff_t stride>
 struct Registers {
   static constexpr std::ptrdiff_t columns = stride == 1 ? 1 : block_lanes / lane_count;
-  /// From one register of a column to the next.
+  /// Distance between consecutive registers of a column.
   static constexpr std::ptrdiff_t next = stride == 1 ? lane_count : block_lanes;
 
   using Vector = LaneVector<dimension>;
@@ -34,7 +34,7 @@ struct Registers {
     for (int i = 0; i < dimension; ++i) store(array + i, k, value.axis[i]);
   }
 
-  /// A rod's number in all lanes that belong to it, and back.
+  /// Copies a number of each rod to all lanes of that rod, and back.
   static Lanes of_rods(const PerLane& values, std::ptrdiff_t column) {
     return stride == 1 ? all_lanes(values.lane[0]) : read_lanes(values.lane + column * lane_count);
   }
@@ -47,11 +47,11 @@ struct Registers {
     }
   }
 
-  /// What belongs to the points before those of a register, given the register before it.
+  /// Returns the elements of the points before those of a register, given the previous register.
   static Lanes before(Lanes previous, Lanes here) {
     return stride == 1 ? window<lane_count - 1>(previous, here) : previous;
   }
-  /// And to the points after.
+  /// Returns the elements of the points after those of a register, given the following register.
   static Lanes after(Lanes here, Lanes following) {
     return stride == 1 ? window<1>(here, following) : following;
   }

@@ -30,12 +30,12 @@ inline void require_not_negative(std::string_view function, std::string_view arg
   require(value >= 0 && std::isfinite(value), function, argument, value, "finite and >= 0");
 }
 
-/// Shapes and finiteness that every function over points asks for.
+/// Checks shapes and finiteness, which every function of points requires.
 template <typename Points, typename Lengths>
 void require_polygon(std::string_view function, const Points& points, const Lengths& rest_lengths) {
   const auto segments = rest_lengths.size();
   require(segments >= 1, function, "number of segments", static_cast<double>(segments), ">= 1");
-  // The message is built only when it is needed: steps may not allocate.
+  // The message is built only on failure, because steps must not allocate.
   if (points.cols() != segments + 1) {
     reject(function, "number of points", static_cast<double>(points.cols()),
            std::to_string(segments + 1) + ", one more than segments");

@@ -11,8 +11,8 @@
 namespace dlo::force_model {
 namespace {
 
-constexpr long unconditional_after = 50'000;  // steps; looks are cheap against so many
-constexpr long clock_steps = 64;  // between two looks at the clock, which costs as much as one
+constexpr long unconditional_after = 50'000;  // steps between measurements without signs of rest
+constexpr long clock_steps = 64;  // steps between readings of the clock (cost: one step)
 
 }  // namespace
 
@@ -90,15 +90,15 @@ EquilibriumCheck RestSearch::measure(const MovingShape& shape) {
 }
 
 Eigen::Matrix3Xd RestSearch::look(const MovingShape& shape) {
-  // Cheap signs first; what proves rest is Newton's step and the stiffness behind it.
+  // Simple signs are checked first. The proof of rest is the Newton step and the stiffness.
   const double root_points = std::sqrt(static_cast<double>(shape.points.cols()));
   const double distance = shape.forces.norm() / estimate_.modes().slowest / root_points;
   const bool seems_at_rest = std::max(distance, shape.momentum) < target_;
   bounces_ = false;
   slowest_mode_ = std::numeric_limits<double>::infinity();
-  // Rounding of many stiff points' positions makes forces that hide rest from these signs for good.
-  // Where there is no force at all, no step will ever tell more (the paper's law has no stiffness
-  // where the rod is straight, so its modes say nothing of the distance).
+  // Rounding of many stiff points' positions causes forces that hide rest from these signs
+  // permanently. If there is no force at all, further steps give no more information: the paper's
+  // law has no stiffness where the rod is straight, so its modes do not determine the distance.
   const double rounding = 64 * std::numeric_limits<double>::epsilon() * rod_.c_c *
                           shape.points.cwiseAbs().maxCoeff() / rod_.rest_lengths.minCoeff();
   const bool forceless = shape.forces.cwiseAbs().maxCoeff() <= rounding;
@@ -111,13 +111,13 @@ Eigen::Matrix3Xd RestSearch::look(const MovingShape& shape) {
     result_.status = RelaxStatus::at_rest;
     return {};
   }
-  // While contacts open and close, the stiffness of one moment is not that of the next; where the
-  // signs were wrong, it is better than what they came from.
+  // While contacts open and close, the stiffness of one shape is not that of the next. If the signs
+  // were wrong, however, it is better than the estimate that caused them.
   if (check.stable && (check.proven || seems_at_rest)) slowest_mode_ = check.slowest_mode;
-  // The chord of a contact that opens and closes proves nothing; calm it all the same.
+  // Without a proof, as with a contact that opens and closes, the motion is damped all the same.
   const double nearly = rod_.touches_anything() ? 100 : 1;
-  // What only creeps without momentum needs it back: no descent after one that did not halve the
-  // distance.
+  // Shapes that only creep without momentum need it: there is no new descent after one that did not
+  // halve the distance.
   constexpr double helps = 0.5;
   bounces_ = due && check.stable && check.remaining_error < nearly * target_ &&
              check.remaining_error < helps * descended_from_;

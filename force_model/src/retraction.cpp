@@ -8,14 +8,14 @@
 namespace dlo::force_model {
 namespace {
 
-/// Newton steps (2). What they leave, the next solve sees as stretch.
+/// Number of Newton steps (2). The next solve treats remaining errors of length as stretch.
 constexpr int most_corrections = 4;
-/// Share of a length to which they are made.
+/// Relative accuracy of the lengths.
 constexpr double length_tolerance = 1e-13;
-/// Added to the diagonal of J J^T, which is 2: a straight part between two anchors has no movement
-/// that changes all lengths alike, and this one's y is left alone.
+/// Added to the diagonal of J J^T, which is 2. If a part between two anchors is straight, no
+/// movement changes all its lengths equally; the corresponding y is then suppressed.
 constexpr double straight_share = 1e-9;
-/// A segment may not become shorter than this share of itself at once.
+/// Smallest factor by which one movement may shorten a segment.
 constexpr double most_shortened = 0.1;
 
 }  // namespace
@@ -40,7 +40,7 @@ void Retraction::move(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& mo
         length > 0 ? std::max(length + a.dot(d) / length, most_shortened * length) : moved_length;
     segments_.col(i) = moved_length > 0 ? Eigen::Vector3d(lengths_[i] / moved_length * sum) : a;
   }
-  Eigen::Index anchor = -1;  // the last one
+  Eigen::Index anchor = -1;  // index of the last anchor
   for (Eigen::Index i = 0; i <= segments; ++i) {
     if (anchors_[static_cast<std::size_t>(i)] == 0) continue;
     moved.col(i) = points.col(i) + share * movement.col(i);
@@ -78,7 +78,7 @@ void Retraction::restore_lengths(Eigen::Index first, Eigen::Index last, Eigen::M
     }
     if (!(worst > length_tolerance) || !(worst < before)) return;
     before = worst;
-    // Tridiagonal: a length grows with its two ends, and each end is shared with a neighbour.
+    // Tridiagonal system: each length depends on its two ends, and neighbours share an end.
     const auto free_ends = [&](Eigen::Index k) {
       return (k > first ? 1 : 0) + (k + 1 < last ? 1 : 0);
     };

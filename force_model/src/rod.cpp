@@ -24,7 +24,8 @@ void check_grip(const Grip& grip, Eigen::Index points) {
   require(held == 2 && grip.hold == GripHold::rigid, "Rod", "points held by a grip with d1", held,
           "2, rigidly: the frame of a point or of a segment on springs is not held");
   require(grip.d1->allFinite(), "Rod", "|d1| of a grip", grip.d1->norm(), "finite");
-  // Below this share of its length rounding decides where the part across points.
+  // Below this fraction of its length, the direction of the transverse component is determined by
+  // rounding.
   constexpr double least_across = 1e-6;
   const Eigen::Vector3d along = (grip.targets.col(1) - grip.targets.col(0)).normalized();
   const double across = along.cross(*grip.d1).norm();
@@ -32,7 +33,7 @@ void check_grip(const Grip& grip, Eigen::Index points) {
           "> 0");
 }
 
-/// Of rods with two grips or more that hold the frame.
+/// Checks the twist parameters of rods with two or more grips that hold the frame.
 void check_twist(const Rod& rod) {
   const Twist& twist = rod.twist;
   require_not_negative("Rod", "torsional stiffness", twist.stiffness);
@@ -68,7 +69,7 @@ void check_twist(const Rod& rod) {
           "0 or 1 of a rod with natural turns, which is bound to a plane");
 }
 
-/// A rigid grip exerts all that acts on its points, so no two may hold the same one.
+/// Checks that no two rigid grips hold the same point, since each exerts all forces on its points.
 void require_own_points(std::string_view function, const std::vector<Grip>& grips) {
   for (std::size_t i = 0; i < grips.size(); ++i) {
     if (grips[i].hold == GripHold::spring) continue;
@@ -207,7 +208,7 @@ void grip_reactions(const Rod& rod, const Points& points, Eigen::Ref<Eigen::Matr
     }
     reactions[g] = reaction;
   }
-  // A held frame bears the twisting moment, about the segment that it belongs to.
+  // A grip that holds the frame carries the twisting moment about its segment.
   const auto direction = [&points](Eigen::Index k) -> Eigen::Vector3d {
     return (points.col(k + 1) - points.col(k)).normalized();
   };

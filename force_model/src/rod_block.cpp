@@ -36,7 +36,8 @@ RodBlock::RodBlock(std::span<const Rod> rods, bool lockstep, InstructionSet set)
                           [](const Rod& rod) { return !rod.solids.empty(); })),
       plain_points_(axes, points_),
       plain_forces_(axes, points_) {
-  // An odd number of cache lines from array to array, so that they do not share cache sets.
+  // The distance between arrays is an odd number of cache lines, so that they do not share cache
+  // sets.
   if (pitch_ / block_lanes % 2 == 0) pitch_ += block_lanes;
   memory_.resize(static_cast<std::size_t>(point_array_count * pitch_ / block_lanes));
   set_padding();
@@ -77,7 +78,7 @@ void RodBlock::set(PointArray array, std::size_t rod, const Eigen::Matrix3Xd& ve
 }
 
 void RodBlock::set_padding() {
-  // Points far away, a metre from each other, that neither move nor pull.
+  // Padding: points far away, a metre from each other, that neither move nor exert forces.
   for (std::ptrdiff_t k = 0; k < size_ + block_lanes; ++k) {
     const std::ptrdiff_t point = k / stride_;
     at(positions, k) = 1000 + static_cast<double>(point);
@@ -137,7 +138,7 @@ void RodBlock::follow_twist(Eigen::VectorXd& angles) {
   for (std::size_t number = 0; number < twisted_spans_.size(); ++number) {
     TwistedSpan& span = twisted_spans_[number];
     const double angle = followed_twist(span, points);
-    // A rod that diverges goes on from where it was.
+    // A rod that diverges continues from its previous shape.
     if (!std::isfinite(angle)) continue;
     span.angle = angles[static_cast<Eigen::Index>(number)] = angle;
     const double moment = angle / span.compliance;
@@ -157,7 +158,7 @@ void RodBlock::update_dimension(std::span<const Rod> rods) {
   };
   const bool planar = std::all_of(rods.begin(), rods.end(), is_planar) && flat(positions) &&
                       flat(proposals) && flat(proposals + axes);
-  // In space there is no kernel with natural turns; Lockstep lets no such rod leave the plane.
+  // There is no kernel in space with natural angles; Lockstep keeps such rods in the plane.
   kernel_ = &step_kernel(set_,
                          {.law = law_,
                           .dimension = planar ? 2 : 3,
@@ -223,7 +224,7 @@ void RodBlock::compute_plain_forces(std::size_t lane, const Rod& rod) {
   total_forces(rod, plain_points_, plain_forces_);
   for (Eigen::Index i = 0; i < points_; ++i) plain_forces_.col(i) *= at(is_free, element(i, lane));
   set(forces, lane, plain_forces_);
-  // Padding next to a segment without direction may hold what is not a number.
+  // Padding next to a segment without direction may contain NaN.
   for (int axis = 0; axis < axes; ++axis) {
     for (std::ptrdiff_t k = points_ * stride_; k < size_; ++k) at(forces + axis, k) = 0;
   }

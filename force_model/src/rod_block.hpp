@@ -9,19 +9,19 @@
 
 namespace dlo::force_model {
 
-/// The points of one rod, or of up to eight of the same size and bending law in lockstep, as the
-/// step kernel wants them. Lanes without a rod of their own repeat the first one's. Only the
-/// constructor allocates.
+/// Points of one rod, or of up to eight rods of the same size and bending law, in the memory layout
+/// of the step kernel. Unused lanes repeat the first rod. Only the constructor allocates.
 class RodBlock {
  public:
   /// Positions or forces of one rod, as a matrix.
   using View = Eigen::Map<const Eigen::Matrix3Xd, Eigen::Unaligned,
                           Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>>;
 
-  /// @param rods  1 to 8, checked; @param lockstep  false: one rod, vectorised over its points
+  /// Creates the block. @param rods  1 to 8, checked; @param lockstep  false: one rod, vectorised
+  /// over its points
   RodBlock(std::span<const Rod> rods, bool lockstep, InstructionSet set);
 
-  /// An array with three axes, of one rod; 3 x points.
+  /// Returns an array with three axes, of one rod; 3 x points.
   [[nodiscard]] View view(int array, std::size_t rod) const;
   void set(PointArray array, std::size_t rod, const Eigen::Matrix3Xd& vectors);
 
@@ -30,35 +30,36 @@ class RodBlock {
     return at(is_free, element(point, rod)) == 0;
   }
 
-  /// Takes over the rods' walls; as many as the constructor saw, lest it allocate.
+  /// Copies the rods' walls. Their number must not exceed that in the constructor, so that nothing
+  /// is allocated.
   void set_walls(std::span<const Rod> rods);
 
-  /// Takes over what the grips of a single rod twist, and where it has been counted to; as many
-  /// parts as the constructor saw, lest it allocate.
+  /// Copies the spans between grips that hold the frame of a single rod, and their twist angles.
+  /// Their number must not exceed that in the constructor, so that nothing is allocated.
   void set_twist(const Rod& rod);
   [[nodiscard]] bool twisted() const { return !twisted_spans_.empty(); }
-  /// Counts the twist of the present shape on, into `angles` too, and the joints' moments with it.
+  /// Updates the twist angles to the present shape, also in `angles`, and the moments of the
+  /// joints.
   void follow_twist(Eigen::VectorXd& angles);
 
-  /// Finds out whether all rods stay in the plane z = 0 that they lie in. To be called when
+  /// Determines whether all rods stay in the plane z = 0 in which they lie. Must be called after
   /// positions, loads, targets or walls have changed.
   void update_dimension(std::span<const Rod> rods);
 
-  /// Total forces on the free points; rods that are not `active` may be left out.
+  /// Computes the total forces on the free points; rods that are not `active` may be omitted.
   void compute_forces(std::span<const Rod> rods, const PerLane& active);
 
-  /// Looks at the modes of the present shape; its forces have been computed.
+  /// Measures the modes of the present shape, whose forces must have been computed.
   void look_at_modes(ModeLook& look) { kernel_->look_at_modes(block(), look); }
 
-  /// Proposes movements, c_F forces + `kept` times the last ones proposed, and says what they look
-  /// like.
+  /// Proposes movements, c_F forces + `kept` times the last proposed ones, and measures them.
   void propose(const PerLane& c_F, const PerLane& kept, const PerLane& rounding_squared,
                bool relative, ProposedStep& step);
 
   /// Moves the points of each rod by c_m times its proposed movements.
   void move(const PerLane& c_m);
 
-  /// The proposed movements of a rod's last step.
+  /// Returns the proposed movements of a rod in the last step.
   [[nodiscard]] View last_proposals(std::size_t rod) const;
 
  private:
@@ -89,7 +90,7 @@ class RodBlock {
   std::vector<WallLanes> walls_;
   bool spring_grips_ = false;
   bool solids_ = false;
-  int turn_ = 0;  // which set of proposals the next step writes
+  int turn_ = 0;  // set of proposals that the next step writes
   PerLane regular_;
   Eigen::Matrix3Xd plain_points_;
   Eigen::Matrix3Xd plain_forces_;

@@ -9,7 +9,8 @@
 namespace dlo::force_model {
 namespace {
 
-/// The c_m sum to whole numbers up to rounding, which is not worth another step [steps].
+/// The sum of c_m reaches whole numbers only up to rounding. A difference below this needs no
+/// further step [steps].
 constexpr double rounding_of_sum = 5e-7;
 
 }  // namespace
@@ -41,7 +42,7 @@ StepResult Simulation::advance(double steps, long max_steps) {
   require_positive("Simulation::advance", "steps", steps);
   owed_steps_ += steps;
   StepResult result{.status = StepStatus::good};
-  // Text 1 makes a step even when none is owed; calls for less than one step would run ahead.
+  // Text 1 makes a step even when none is due. Calls for less than one step would then run ahead.
   for (long i = 0; i < max_steps && owed_steps_ > rounding_of_sum; ++i) {
     result = step();
     if (result.status == StepStatus::diverged) break;

@@ -6,16 +6,16 @@
 
 namespace dlo::force_model {
 
-/// What a solid does at one look.
+/// Force of a solid at one sample of the rod.
 struct SolidPush {
-  Eigen::Index point = 0;  ///< before it
-  double share = 0;        ///< of the way from there to the next point
+  Eigen::Index point = 0;  ///< index of the point before the sample
+  double share = 0;        ///< position of the sample between that point and the next, 0 to 1
   obstacle::Gap gap;
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N]
 };
 
-/// Calls action(SolidPush) for each look that finds the rod within a solid.
-/// @param at  position of a point by its index;  @param count  of points
+/// Calls action(SolidPush) for each sample inside a solid.
+/// @param at  returns the position of a point by its index;  @param count  number of points
 template <typename Position, typename Action>
 void for_each_push(const Solid& solid, Eigen::Index count, const Position& at,
                    const Action& action) {

@@ -7,46 +7,48 @@
 
 namespace dlo::force_model {
 
-/// Steps between two looks at the modes.
+/// Number of steps between two measurements of the modes.
 inline constexpr long block_steps = 16;
 
-/// Steps of a descent without momentum.
+/// Number of steps of a descent without momentum.
 inline constexpr long descent_steps = 64 * block_steps;
 
-/// What one rod's steps decide on and count: everything about them but the points.
+/// Step constants, mode estimate and counters of one rod, without its points.
 class StepControl {
  public:
   /// @throws std::invalid_argument if the options are out of range
   StepControl(const Rod& rod, const Eigen::Matrix3Xd& points, const StepOptions& options);
 
-  /// Whether this step begins with a look at the modes.
+  /// Whether this step begins with a measurement of the modes.
   [[nodiscard]] bool looks_at_modes() const { return steps_ % block_steps == 0; }
 
   /// Updates the modes and, for the automatic policy, c_F and c_h. Arguments as ModeEstimate's.
   void update_modes(double inner_mode, double force_change, double point_change);
 
-  /// After a change of the rod's walls: the modes' bound is that of the new ones, and forces before
-  /// and after are not compared.
+  /// Updates the bound of the modes after a change of the rod's walls; forces before and after it
+  /// are not compared.
   void change_environment(const Rod& rod, const Eigen::Matrix3Xd& points);
 
   /// With the automatic policy, makes the next descent_steps without momentum and with c_F =
-  /// 1/fastest, so that the potential energy falls with each.
+  /// 1/fastest, so that the potential energy decreases with each.
   void descend();
 
-  /// @param slowest  stiffness of the slowest mode where the rod is; infinity: not known [N/m]
+  /// Corrects the estimate of the slowest mode. @param slowest  stiffness of the slowest mode in
+  /// the present shape; infinity: unknown [N/m]
   void correct_slowest_mode(double slowest);
 
-  /// Scaling of a proposed step.
-  /// @param largest_squared  of the movements that the limit compares [m^2]
+  /// Determines the scaling of a proposed step.
+  /// @param largest_squared  largest square of the movements that the limit compares [m^2]
   /// @param sum_squared      not finite if a movement is not [m^2]
-  /// @param oscillating      points that turned back in two consecutive steps
-  /// @param[out] result      of the step
+  /// @param oscillating      number of points that reversed their direction in two consecutive
+  /// steps
+  /// @param[out] result      result of the step
   void decide(double largest_squared, double sum_squared, double oscillating, StepResult& result);
 
-  /// Takes note of a step that was decided elsewhere. @param evaluations  that it took
+  /// Counts a step that was computed elsewhere. @param evaluations  number of its evaluations
   void count(const StepResult& result, long evaluations);
 
-  /// c_h, or 0 for policies without momentum.
+  /// Returns c_h, or 0 for policies without momentum.
   [[nodiscard]] double kept() const { return options_.policy.momentum ? options_.c_h : 0; }
   [[nodiscard]] bool relative() const { return options_.policy.limit == StepLimit::relative; }
 

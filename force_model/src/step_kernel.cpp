@@ -3,12 +3,12 @@
 #include "registers.hpp"
 
 // Compiled once for each instruction set, DLO_KERNEL naming the namespace (see CMakeLists.txt).
-// Nothing inline from a library may be used in here: of such a function the linker keeps one copy,
-// perhaps one with instructions that the machine lacks.
+// This file must not use inline functions of a library: the linker keeps one copy of such a
+// function, possibly one with instructions that the machine lacks.
 //
-// This is what total_forces and Formulas 7 to 20 say, arranged so that neighbours meet once. With
-// s_k the segment from P_k to P_{k+1}, u_k its direction, a = |s_{k-1}|, b = |s_k| and c the cosine
-// of the joint's angle, both bending laws have the form
+// It implements total_forces and Formulas 7 to 20, arranged so that each pair of neighbours is
+// processed once. With s_k the segment from P_k to P_{k+1}, u_k its direction, a = |s_{k-1}|,
+// b = |s_k| and c the cosine of the joint's angle, both bending laws have the form
 //     on P_{k+1}:   m_k (s_{k-1} - (s_{k-1}.u_k) u_k)
 //     on P_{k-1}:  -m_k (s_k - (s_k.u_{k-1}) u_{k-1})
 //     hooke:  m_k = (2 EI/L) / (a b (1 + c))                      (a)
@@ -28,12 +28,12 @@
 namespace dlo::force_model::DLO_KERNEL {
 namespace {
 
-/// cos(hooke_fold_angle): joints folded further are left to the plain implementation, and so are
-/// those next to segments so short that a b is below `no_area` [m^2].
+/// cos(hooke_fold_angle). Joints that are folded further, and joints next to segments so short that
+/// a b is below `no_area` [m^2], are left to the plain implementation.
 constexpr double fold_cosine = -0.98999249660044546;
 constexpr double no_area = 1e-60;
 
-/// Segments k and the joints at P_k where they begin.
+/// Segments k and the joints at P_k, where they begin.
 template <int dimension>
 struct Segments {
   LaneVector<dimension> s = {};
@@ -43,7 +43,7 @@ struct Segments {
   Lanes m = {};
 };
 
-/// What joints have besides their bending law.
+/// Moments of joints in addition to their bending law.
 enum class JointExtra { nothing, couples, twist };
 
 inline LaneVector<3> cross(const LaneVector<3>& a, const LaneVector<3>& b) {
@@ -52,10 +52,10 @@ inline LaneVector<3> cross(const LaneVector<3>& a, const LaneVector<3>& b) {
            a.axis[0] * b.axis[1] - a.axis[1] * b.axis[0]}};
 }
 
-/// Of vectors in the plane z = 0.
+/// Rotates vectors of the plane z = 0 to the left by a right angle.
 inline LaneVector<2> left(const LaneVector<2>& s) { return {{-s.axis[1], s.axis[0]}}; }
 
-/// What joints bear besides, added to the force through segment k.
+/// Adds the forces of these additional moments to the force through segment k.
 template <JointExtra extra, int dimension, std::ptrdiff_t stride>
 void add_extra(const Registers<dimension, stride>& all, std::ptrdiff_t k,
                const Segments<dimension>& here, const Segments<dimension>& following,
@@ -95,7 +95,7 @@ void compute_forces(const PointBlock& block, PointArray applied, PerLane& regula
       const Lanes product = all.load(is_joint, k) * dot(here.s_before, here.s);
       const Lanes opening = ab + product;  // a b (1 + c)
       good = opening >= (1 + fold_cosine) * ab + no_area ? good : Lanes{};
-      // One division serves both 1/b and m.
+      // One division gives both 1/b and m.
       if constexpr (law == BendingLaw::hooke) {
         const Lanes inverse = 1 / (here.length * opening);
         here.inverse_length = opening * inverse;
@@ -132,9 +132,9 @@ void compute_forces(const PointBlock& block, PointArray applied, PerLane& regula
   }
 }
 
-/// (16 M' + 4 M) / lever^2 of joints that rotate by alpha, with ab = |s_{k-1}| |s_k|,
-/// product = s_{k-1}.s_k = ab cos(alpha) and L their mean rest length. A joint next to a segment
-/// without direction counts as straight.
+/// Returns (16 M' + 4 M) / lever^2 of joints with the angle alpha, with ab = |s_{k-1}| |s_k|,
+/// product = s_{k-1}.s_k = ab cos(alpha) and their mean rest length L. A joint next to a segment
+/// without direction is treated as straight.
 template <BendingLaw law>
 Lanes joint_mode(Lanes stiffness, Lanes ab, Lanes product, Lanes L, Lanes lever) {
   const Lanes cosine = ab > no_area ? product / ab : all_lanes(1);
@@ -284,7 +284,7 @@ void move(const PointBlock& block, int turn, const PerLane& c_m) {
     const Lanes scale = All::of_rods(c_m, column);
     for (std::ptrdiff_t k = column * lane_count; k < block.size; k += All::next) {
       Vector movement = scale * all.load_vector(proposals + 3 * turn, k);
-      // A rod that diverged among others proposes what may not be a number.
+      // The proposals of a rod that has diverged in a batch may be NaN.
       if constexpr (stride != 1) {
         for (Lanes& axis : movement.axis) axis = scale > 0 ? axis : Lanes{};
       }

@@ -5,23 +5,23 @@
 #include "dlo/force_model/bending_law.hpp"
 #include "dlo/force_model/instruction_set.hpp"
 
-// The step's arithmetic on plain arrays, compiled once per instruction set.
+// Arithmetic of a step on plain arrays, compiled once per instruction set.
 
 namespace dlo::force_model {
 
-/// Elements are handled eight at a time, however many a register holds.
+/// Number of elements that are processed together, independent of the register size.
 inline constexpr std::ptrdiff_t block_lanes = 8;
 
-/// One number for each of eight rods; that of a single rod stands in lane 0.
+/// One number for each of eight rods; lane 0 for a single rod.
 struct alignas(64) PerLane {
   double lane[block_lanes] = {};
 };
 
-/// The arrays of a PointBlock by number; those with three axes take three numbers.
+/// Index of each array of a PointBlock; arrays with three axes have three consecutive indices.
 enum PointArray : int {
   positions = 0,         ///< P [m], 3 axes
   proposals = 3,         ///< movements before scaling [m], 3 axes, of this step and of the last
-  forces = 9,            ///< on free points, 0 on rigidly held ones [N], 3 axes
+  forces = 9,            ///< forces on free points, 0 on rigidly held ones [N], 3 axes
   loads = 12,            ///< constant forces [N], 3 axes
   external_forces = 15,  ///< loads, walls and spring grips [N], 3 axes
   rest_lengths = 18,     ///< L_k of the segment from P_k to P_{k+1} [m]
@@ -30,20 +30,21 @@ enum PointArray : int {
   is_joint = 21,         ///< 1 where two segments meet, else 0
   is_segment = 22,       ///< 1 where a segment begins, else 0
   is_free = 23,          ///< 1 for points that move, 0 for rigidly held ones and padding
-  turned_back = 24,      ///< 1 where a step goes against the one before; of this step and the last
-  last_positions = 26,   ///< when the modes were last looked at [m], 3 axes
-  last_forces = 29,      ///< then [N], 3 axes
-  natural = 32,          ///< couple of a joint that is bent at rest [N m], from x to y
-  twist_share = 33,      ///< twisting moment at a joint over its `bend` [-]; 0 where there is none
+  turned_back = 24,  ///< 1 where a step is opposite to the previous one; of this step and the last
+  last_positions = 26,  ///< positions at the last measurement of the modes [m], 3 axes
+  last_forces = 29,     ///< forces at the last measurement of the modes [N], 3 axes
+  natural = 32,         ///< couple of a joint that is bent at rest [N m], from x to y
+  /// Twisting moment at a joint divided by its `bend` [-]; 0 where there is none.
+  twist_share = 33,
   point_array_count = 34
 };
 
-/// Structure of arrays. Element k of a single rod is point k (`stride` 1); of eight rods in
-/// lockstep it is point k / 8 of rod k % 8 (`stride` 8). `size` is a multiple of eight. What is
-/// left of it, and eight elements more, is padding: points that lie apart and do nothing.
+/// Structure of arrays. Element k of a single rod is point k (`stride` 1); element k of eight rods
+/// is point k / 8 of rod k % 8 (`stride` 8). `size` is a multiple of eight. Elements beyond the
+/// points, and eight more, are padding: points far away that exert no forces.
 struct PointBlock {
   double* first = nullptr;   ///< element 0 of array 0
-  std::ptrdiff_t pitch = 0;  ///< from one array to the next
+  std::ptrdiff_t pitch = 0;  ///< distance between consecutive arrays
   std::ptrdiff_t size = 0;
 };
 
@@ -54,55 +55,56 @@ struct WallLanes {
   PerLane stiffness;
 };
 
-/// What a proposed step looks like.
+/// Measures of a proposed step.
 struct ProposedStep {
-  PerLane largest_squared;  ///< of the movements that the limit compares [m^2]
-  PerLane sum_squared;      ///< of them; not finite if any movement is not [m^2]
-  PerLane oscillating;      ///< points that turn back for the second time
+  PerLane largest_squared;  ///< largest square of the movements that the limit compares [m^2]
+  PerLane sum_squared;      ///< sum of their squares; not finite if any movement is not [m^2]
+  PerLane oscillating;      ///< number of points that reverse their direction for the second time
 };
 
-/// What a look at the modes finds, see mode_bounds and ModeEstimate.
+/// Results of a measurement of the modes, see mode_bounds and ModeEstimate.
 struct ModeLook {
-  PerLane contraction;   ///< 4 c_c / L, the largest [N/m]
-  PerLane bending;       ///< (16 M' + 4 M) / L^2, the largest [N/m]
-  PerLane force_change;  ///< -dF.dP since the last look [N m]
-  PerLane point_change;  ///< dP.dP [m^2]
+  PerLane contraction;   ///< largest 4 c_c / L [N/m]
+  PerLane bending;       ///< largest (16 M' + 4 M) / L^2 [N/m]
+  PerLane force_change;  ///< -dF.dP since the last measurement [N m]
+  PerLane point_change;  ///< dP.dP since the last measurement [m^2]
 };
 
-/// What a kernel is made for.
+/// Properties of a rod that select its kernel.
 struct KernelChoice {
-  BendingLaw law = BendingLaw::hooke;  ///< of all joints
+  BendingLaw law = BendingLaw::hooke;  ///< law of all joints
   int dimension = 3;                   ///< 2 (z stays 0) or 3
-  bool natural = false;                ///< joints have couples; law hooke and dimension 2 only
-  bool twisted = false;                ///< joints bear twist; law hooke, dimension 3, stride 1 only
+  bool natural = false;  ///< joints have natural couples; law hooke and dimension 2 only
+  bool twisted = false;  ///< joints carry twist; law hooke, dimension 3, stride 1 only
 };
 
-/// The parts of a step for one choice, stride and instruction set.
+/// Functions of a step for one choice, stride and instruction set.
 struct StepKernel {
-  /// external_forces = loads + walls
+  /// Computes external_forces = loads + walls.
   void (*add_walls)(const PointBlock& block, const WallLanes* walls, std::ptrdiff_t count);
-  /// forces = contraction + bending + `applied` (loads or external_forces). `regular` is 1 for
-  /// rods where the formulas hold for every joint, 0 where a segment has no direction or a joint is
-  /// folded beyond hooke_fold_angle: there `forces` means nothing.
+  /// Computes forces = contraction + bending + `applied` (loads or external_forces). `regular` is
+  /// set to 1 for rods for which the formulas hold at every joint. It is set to 0 if a segment has
+  /// no direction or a joint is folded beyond hooke_fold_angle: then `forces` is undefined.
   void (*compute_forces)(const PointBlock& block, PointArray applied, PerLane& regular);
-  /// Compares positions and forces with the last look's and takes their place.
+  /// Compares positions and forces with those of the last measurement and replaces the latter.
   void (*look_at_modes)(const PointBlock& block, ModeLook& look);
-  /// proposals = c_F forces + kept * those of the last step, compared with their neighbours (18).
-  /// @param turn  which of the two sets is this step's, 0 or 1; the other is the last step's
-  /// @param rounding_squared  a point turns back if its proposals' scalar product is below minus
-  ///                          this [m^2]
+  /// Computes proposals = c_F forces + kept * those of the last step, compared with their
+  /// neighbours (18).
+  /// @param turn  set of proposals of this step, 0 or 1; the other is the last step's
+  /// @param rounding_squared  a point reverses its direction if the scalar product of its proposals
+  /// is below minus this [m^2]
   void (*propose_relative)(const PointBlock& block, int turn, const PerLane& c_F,
                            const PerLane& kept, const PerLane& rounding_squared,
                            ProposedStep& step);
-  /// The same, each on its own (16).
+  /// Computes the same proposals, each compared on its own (16).
   void (*propose_absolute)(const PointBlock& block, int turn, const PerLane& c_F,
                            const PerLane& kept, const PerLane& rounding_squared,
                            ProposedStep& step);
-  /// positions += c_m proposals; rods with c_m = 0 stay where they are.
+  /// Computes positions += c_m proposals; rods with c_m = 0 do not move.
   void (*move)(const PointBlock& block, int turn, const PerLane& c_m);
 };
 
-/// @param stride  1 or 8
+/// Returns the kernel for a choice. @param stride  1 or 8
 /// @throws std::invalid_argument if the machine lacks the instruction set
 [[nodiscard]] const StepKernel& step_kernel(InstructionSet set, const KernelChoice& choice,
                                             std::ptrdiff_t stride);

@@ -12,7 +12,7 @@ namespace {
 
 using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
 
-/// First root of cos x cosh x = -1: the first mode of a clamped-free rod.
+/// First root of cos x cosh x = -1, of the first mode of a clamped-free rod.
 constexpr double clamped_free_root = 1.8751040687119611;
 
 double fastest_inner_mode(const Rod& rod, const Points& points) {
@@ -23,8 +23,8 @@ double fastest_inner_mode(const Rod& rod, const Points& points) {
   Eigen::Vector3d previous = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < L.size(); ++i) {
     const Eigen::Vector3d segment = points.col(i + 1) - points.col(i);
-    // A segment that is nearly gone would ask for steps of nearly nothing; what keeps its points
-    // from jumping is the limit l_s.
+    // A segment of almost zero length would require steps of almost zero length. The limit l_s
+    // prevents its points from jumping.
     const double length = std::max(segment.norm(), 0.1 * L[i]);
     contraction = std::max(contraction, 4 * rod.c_c / std::min(L[i], length));
     if (i > 0) {
@@ -46,7 +46,7 @@ double fastest_inner_mode(const Rod& rod, const Points& points) {
   return contraction + bending;
 }
 
-/// EI of a Hookean rod that would bend as far under these loads.
+/// Returns the EI of a Hookean rod with the same deflection under these loads.
 double equivalent_rigidity(const Rod& rod) {
   const bool alike = rod.bending.stiffnesses.size() == 0;
   const double stiffness =

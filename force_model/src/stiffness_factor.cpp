@@ -9,7 +9,7 @@
 namespace dlo::force_model {
 namespace {
 
-/// The matrix with its border below and to the right; only the lower half of the latter.
+/// Returns the matrix with its border; the upper part of the border is omitted.
 Eigen::SparseMatrix<double> with_border(const BorderedMatrix& K) {
   const Eigen::Index rows = K.A.rows();
   const Eigen::Index columns = K.B.cols();
@@ -29,7 +29,7 @@ Eigen::SparseMatrix<double> with_border(const BorderedMatrix& K) {
   return result;
 }
 
-/// Gram and Schmidt's, twice for nearly parallel columns.
+/// Gram-Schmidt orthonormalisation, repeated once for nearly parallel columns.
 void orthonormalise(Eigen::MatrixX3d& block) {
   for (Eigen::Index i = 0; i < SlowModes::most; ++i) {
     block.col(i).normalize();
@@ -87,8 +87,8 @@ Eigen::MatrixXd StiffnessFactor::solve(const Eigen::MatrixXd& right) const {
 
 Eigen::VectorXd StiffnessFactor::negative_curvature(const BorderedMatrix& K) const {
   if (columns_ == 0) {
-    // With K = L D L^T and D_j < 0, the d with L^T d = e_j has d^T K d = D_j. The first of equals,
-    // as an upright rod has: it buckles in the plane of x.
+    // With K = L D L^T and D_j < 0, the vector d with L^T d = e_j satisfies d^T K d = D_j. Of equal
+    // pivots the first is used, so that an upright rod buckles in the plane of x.
     const Eigen::VectorXd pivots = factor_.vectorD();
     const double lowest = pivots.minCoeff();
     if (!(lowest < 0)) return {};
@@ -96,8 +96,8 @@ Eigen::VectorXd StiffnessFactor::negative_curvature(const BorderedMatrix& K) con
     while (!(pivots[pivot] <= 0.999 * lowest)) ++pivot;
     return factor_.matrixU().solve(Eigen::VectorXd::Unit(pivots.size(), pivot));
   }
-  // A pivot of the bordered matrix says nothing of K. The lowest mode, by inverse iteration with
-  // the least power of four as a shift that makes K positive.
+  // The pivots of the bordered matrix do not give directions of K. The lowest mode is found by
+  // inverse iteration, with the smallest power of four as a shift that makes K positive definite.
   const double largest = K.largest_eigenvalue();
   for (double share = std::numeric_limits<double>::epsilon(); share < 2; share *= 4) {
     const BorderedMatrix shifted = K.shifted(share * largest);
@@ -109,7 +109,8 @@ Eigen::VectorXd StiffnessFactor::negative_curvature(const BorderedMatrix& K) con
 
 SlowModes slow_modes(const BorderedMatrix& K, const StiffnessFactor& factor) {
   constexpr int iterations = 8;
-  Eigen::MatrixX3d block(K.A.rows(), 3);  // of no symmetry that a mode could be orthogonal to
+  // Without any symmetry to which a mode could be orthogonal.
+  Eigen::MatrixX3d block(K.A.rows(), 3);
   for (Eigen::Index i = 0; i < block.size(); ++i) {
     block.reshaped()[i] = std::sin(1 + 2.3999632 * static_cast<double>(i));
   }

@@ -12,14 +12,13 @@
 
 namespace dlo::force_model {
 
-/// Contraction: c_c/L along the segment, and across it what its tension resists.
-/// @param most_pressed  compression takes no more than this share of c_c/L from the stiffness
-/// across
-///                      a segment [-]
+/// Adds contraction: c_c/L along each segment, and the transverse stiffness due to its tension.
+/// @param most_pressed  largest reduction of the transverse stiffness by compression, as a fraction
+///                      of c_c/L [-]
 template <typename Stiffness>
 void add_segments(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                   double most_pressed, Stiffness& stiffness) {
-  // A segment without length is pushed apart in any direction: it gives way to all.
+  // A segment of zero length has no direction: all directions then have the transverse stiffness.
   constexpr double no_length = 1e-9;
   for (Eigen::Index i = 0; i < rod.rest_lengths.size(); ++i) {
     const double L = rod.rest_lengths[i];
@@ -40,8 +39,8 @@ void add_segments(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& poin
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-/// Both laws' forces by the two segments a, b of a joint are S dc/d(a, b), with c the cosine of
-/// its angle. S and its derivative by (a, b):
+/// Common factor of a joint's forces. In both laws the forces by its two segments a, b are S
+/// dc/d(a, b), with the cosine c of its angle. S and its derivative by (a, b):
 ///     hooke:  S = 2 (EI/L) / (1 + c),              beyond the fold angle M / sin(alpha)
 ///     paper:  S = c_b (1 - c) |a| |b| / |a + b|
 struct JointFactor {
@@ -53,10 +52,10 @@ struct JointFactor {
                                        const Eigen::Vector3d& b, double c,
                                        const Vector6d& slope_of_c);
 
-/// Second derivative by s of the angle of s in the plane z = 0.
+/// Returns the second derivative by s of the angle of s in the plane z = 0.
 [[nodiscard]] Eigen::Matrix3d second_of_direction_angle(const Eigen::Vector3d& s);
 
-/// A joint's second derivatives by its segments a = P_i - P_{i-1} and b = P_{i+1} - P_i.
+/// Adds a joint's second derivatives by its segments a = P_i - P_{i-1} and b = P_{i+1} - P_i.
 template <typename Stiffness>
 void add_joint(Eigen::Index i, const Eigen::Matrix3d& A, const Eigen::Matrix3d& AB,
                const Eigen::Matrix3d& B, Stiffness& stiffness) {
@@ -68,7 +67,7 @@ void add_joint(Eigen::Index i, const Eigen::Matrix3d& A, const Eigen::Matrix3d& 
   stiffness.add(i, i + 1, AB - B);
 }
 
-/// Bending, with a natural turn's couple.
+/// Adds bending, including the couples of natural angles.
 template <typename Stiffness>
 void add_joints(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                 Stiffness& stiffness) {
@@ -103,7 +102,7 @@ void add_joints(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points
     Eigen::Matrix3d A = by_segments.topLeftCorner<3, 3>();
     Eigen::Matrix3d B = by_segments.bottomRightCorner<3, 3>();
     if (rod.bending.natural_turns.size() > 0) {
-      // Its potential is -C (angle of b - angle of a).
+      // The potential of a natural couple is -C (angle of b - angle of a).
       const double couple = natural_moment(rod.bending, i, L);
       A += couple * second_of_direction_angle(a);
       B -= couple * second_of_direction_angle(b);
@@ -113,7 +112,7 @@ void add_joints(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points
   }
 }
 
-/// Walls.
+/// Adds walls.
 template <typename Stiffness>
 void add_walls(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                Stiffness& stiffness) {
@@ -125,7 +124,7 @@ void add_walls(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
   }
 }
 
-/// Solids and spring grips.
+/// Adds solids and spring grips.
 template <typename Stiffness>
 void add_springs(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                  Stiffness& stiffness) {

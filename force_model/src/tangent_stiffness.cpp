@@ -15,10 +15,11 @@
 namespace dlo::force_model {
 namespace {
 
-/// A second Newton step shorter than this share of the rod is rounding of the positions and forces.
+/// A second Newton step shorter than this fraction of the rod's length is due to rounding of
+/// positions and forces.
 constexpr double step_rounding_share = 1e-12;
 
-/// Index of each point among the free ones, -1 for rigidly held points.
+/// Returns the index of each point among the free ones, -1 for rigidly held points.
 std::vector<Eigen::Index> free_indices(const Rod& rod, Eigen::Index& count) {
   std::vector<Eigen::Index> indices(static_cast<std::size_t>(rod.points()), 0);
   for (const Grip& grip : rod.grips) {
@@ -34,9 +35,10 @@ std::vector<Eigen::Index> free_indices(const Rod& rod, Eigen::Index& count) {
   return indices;
 }
 
-/// Minus the derivative of the total forces by the positions of the free points, symmetric: the
-/// paper's law between unequal segments has no potential, half of what is off goes to either side.
-/// With x the points that a term depends on and f its force on them, each adds -df/dx.
+/// Collects minus the derivative of the total forces by the positions of the free points. The
+/// matrix is symmetric: since the paper's law has no potential between unequal segments, its
+/// antisymmetric part is dropped there. Each term depends on points x, exerts forces f on them, and
+/// adds -df/dx.
 class TangentStiffness {
  public:
   explicit TangentStiffness(const Rod& rod)
@@ -47,7 +49,7 @@ class TangentStiffness {
   }
 
   [[nodiscard]] Eigen::Index free_points() const { return count_; }
-  /// Of the rod's points those that are free.
+  /// Returns the indices of the free points.
   [[nodiscard]] std::vector<Eigen::Index> point_indices() const {
     std::vector<Eigen::Index> points;
     for (std::size_t i = 0; i < index_.size(); ++i) {
@@ -70,7 +72,7 @@ class TangentStiffness {
     }
   }
 
-  /// Adds g g^T. @param g  of all points
+  /// Adds g g^T. @param g  vectors of all points
   void add_column(const Eigen::Matrix3Xd& g) {
     columns_.conservativeResize(3 * count_, columns_.cols() + 1);
     columns_.rightCols<1>() = gathered(g);
@@ -106,12 +108,14 @@ class TangentStiffness {
  private:
   Eigen::Index count_ = 0;
   std::vector<Eigen::Index> index_;
-  double across_plane_ = 0;  // of points that stay in the plane z = 0, else 0 [N/m]
+  // Stiffness across the plane z = 0 for points that stay in it, else 0 [N/m].
+  double across_plane_ = 0;
   std::vector<Eigen::Triplet<double>> entries_;
   Eigen::MatrixXd columns_;
 };
 
-/// Of all points, the furthest by 1, and on the whole towards +x, else +y, else +z.
+/// Returns a direction of negative curvature of all points. Its largest displacement is 1, and the
+/// sum of its displacements points towards +x, else +y, else +z.
 Eigen::Matrix3Xd negative_curvature_direction(const Eigen::VectorXd& movement,
                                               const TangentStiffness& stiffness) {
   Eigen::Matrix3Xd direction = stiffness.scattered(movement);
@@ -125,9 +129,9 @@ Eigen::Matrix3Xd negative_curvature_direction(const Eigen::VectorXd& movement,
   return direction;
 }
 
-/// Second derivative of E = theta^2 / (2 C) by the points: with g that of theta, g g^T / C and M
-/// times that of theta, whose first one (TwistedSpan) is of neighbours only. Of a joint's part of
-/// it
+/// Adds the second derivative of E = theta^2 / (2 C) by the points: g g^T / C with the gradient g
+/// of theta, and M times the second derivative of theta, which couples neighbours only
+/// (TwistedSpan). The contribution of a joint to the latter is
 ///     aa: -(kb (t + u)^T + (t + u) kb^T) / (4 a^2),   t = (u + v) / (1 + u.v)
 ///     ab: (2 [u]x / (1 + u.v) - kb t^T) / (2 a b)
 /// and bb as aa (Bergou et al., Discrete viscous threads, SIGGRAPH 2010). The skew parts of aa and
@@ -163,7 +167,7 @@ void add_twist(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
   for_each_twisted_span(rod, of_span);
 }
 
-/// Of all that makes forces.
+/// Adds all terms of the rod.
 void add_all(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
              TangentStiffness& stiffness) {
   add_segments(rod, points, std::numeric_limits<double>::infinity(), stiffness);
@@ -173,7 +177,7 @@ void add_all(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
   add_twist(rod, points, stiffness);
 }
 
-/// Of all points that are free.
+/// Returns the total forces on the free points.
 Eigen::VectorXd free_forces(const Rod& rod, const Eigen::Matrix3Xd& points,
                             const TangentStiffness& stiffness) {
   Eigen::Matrix3Xd forces(3, points.cols());
@@ -187,15 +191,16 @@ void set_stable_without_error(EquilibriumCheck& result) {
   result.remaining_error = 0;
 }
 
-/// What Newton's steps with one K need.
+/// Data of Newton steps with a fixed K.
 struct NewtonMatrix {
   const TangentStiffness& stiffness;
   const StiffnessFactor& factor;
   const SlowModes& slow;
-  double rounding_of_force;  // [N]
+  double rounding_of_force;  // rounding error of the forces [N]
 };
 
-/// Newton's step across the neutral modes. Nothing is finite where a force acts along them.
+/// Returns the minimum-norm Newton step without neutral modes. It is not finite if a force acts
+/// along one of them.
 Eigen::VectorXd newton_step(const Rod& rod, const Eigen::Matrix3Xd& at, const NewtonMatrix& K,
                             Eigen::Index neutral_modes) {
   const Eigen::MatrixXd neutral = K.slow.modes.leftCols(neutral_modes);
@@ -205,7 +210,7 @@ Eigen::VectorXd newton_step(const Rod& rod, const Eigen::Matrix3Xd& at, const Ne
   return K.factor.solve(force - neutral * along);
 }
 
-/// Newton's step from the points to the equilibrium, and a bound of the way.
+/// Computes the Newton step to the equilibrium, and a bound of the distance.
 void bound_error(const Rod& rod, const Eigen::Matrix3Xd& points, const NewtonMatrix& K,
                  EquilibriumCheck& result) {
   const Eigen::VectorXd step = newton_step(rod, points, K, result.neutral_modes);
@@ -219,8 +224,8 @@ void bound_error(const Rod& rod, const Eigen::Matrix3Xd& points, const NewtonMat
   result.rounding_error = std::numeric_limits<double>::epsilon() * rod.c_c *
                           points.cwiseAbs().maxCoeff() / rod.rest_lengths.minCoeff() /
                           result.slowest_mode;
-  // The step is evaluated: by Kantorovich's theorem the equilibrium exists, and its distance is
-  // bounded by the step's, if a second step with the same K is at most a quarter of the first.
+  // A second step with the same K is evaluated. If it is at most a quarter of the first, the
+  // equilibrium exists by Kantorovich's theorem, and its distance is bounded by the step.
   const Eigen::Matrix3Xd stepped = points + result.step;
   const double second = newton_step(rod, stepped, K, result.neutral_modes).norm() / root_points;
   const double share = second / error;
@@ -264,13 +269,13 @@ EquilibriumCheck check_equilibrium(const Rod& rod,
   const BorderedMatrix K = stiffness.matrix();
   StiffnessFactor factor(K);
   if (!factor.succeeded()) return result;
-  // Rounding of K, which is banded, leaves no sign to a mode below this.
+  // Rounding of K, which is banded, makes the sign of modes below this undefined.
   const double rounding = 64 * std::numeric_limits<double>::epsilon() * K.largest_eigenvalue();
   SlowModes slow;
   const bool positive = factor.is_positive();
   if (positive) slow = slow_modes(K, factor);
   if (!(slow.eigenvalues[0] > rounding)) {
-    // A rod that rotates freely about its grips has zero modes: they are taken out.
+    // A rod that rotates freely about its grips has zero modes, which are excluded.
     Eigen::Matrix3Xd descent;
     const Eigen::VectorXd movement = positive ? Eigen::VectorXd() : factor.negative_curvature(K);
     if (movement.size() > 0) descent = negative_curvature_direction(movement, stiffness);
@@ -281,15 +286,15 @@ EquilibriumCheck check_equilibrium(const Rod& rod,
     }
     slow = slow_modes(K, factor);
     result.neutral_modes = static_cast<int>((slow.eigenvalues.array() <= rounding).count());
-    // So many points that rounding hides the rod's own first mode too, and the loads of each of
-    // them: which movements have no stiffness, and no force, cannot be told.
+    // With so many points, rounding exceeds the rod's own first mode and the loads on each point.
+    // It is then impossible to determine which movements have neither stiffness nor force.
     if (rounding > mode_bounds(rod, points).slowest && !rod.loads.isZero(0)) {
       result.neutral_modes = 0;
       return result;
     }
     if (result.neutral_modes == SlowModes::most) {
-      // Of how many more? Where no point feels a force none of them moves (the paper's law has no
-      // stiffness where the rod is straight); else nothing is known of them.
+      // There may be further neutral modes. If no point has a force, none of them moves (the
+      // paper's law has no stiffness where the rod is straight); else the error is unknown.
       const double largest = free_forces(rod, points, stiffness).cwiseAbs().maxCoeff();
       if (largest <= rounding * points.cwiseAbs().maxCoeff()) set_stable_without_error(result);
       return result;

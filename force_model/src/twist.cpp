@@ -22,7 +22,7 @@ void require_segments(const char* function, const TwistedSpan& span, const Point
   require_positive(function, "compliance", span.compliance);
 }
 
-/// A joint of a span, as (2) needs it.
+/// Quantities of a joint of a span that (2) contains.
 struct TwistedJoint {
   Eigen::Vector3d half_binormal = Eigen::Vector3d::Zero();  // kb / 2
   double a = 1;                                             // lengths of its segments [m]
@@ -96,7 +96,7 @@ double twist_mode_bound(const TwistedSpan& span,
   require_segments("twist_mode_bound", span, points);
   require(rest_lengths.size() + 1 == points.cols(), "twist_mode_bound", "size of rest_lengths",
           static_cast<double>(rest_lengths.size()), "one less than points");
-  // A point's part of the gradient is the difference of its segments' parts.
+  // The gradient at a point is the difference of contributions of its two segments.
   Eigen::Vector3d by_previous = Eigen::Vector3d::Zero();  // segment
   TwistedJoint joint;
   double squared = 0;
@@ -120,7 +120,7 @@ double twist_mode_bound(const TwistedSpan& span,
 }
 
 double fastest_twist_mode(const Rod& rod, const Points& points) {
-  // A grip that ends two spans holds both of its points, so none that is free belongs to two.
+  // A grip that ends two spans holds both of its points, so no free point belongs to two spans.
   double fastest = 0;
   for_each_twisted_span(
       rod, [&](const TwistedSpan& span, const Grip& /*first*/, const Grip& /*last*/) {

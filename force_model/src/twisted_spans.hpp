@@ -9,18 +9,19 @@
 
 namespace dlo::force_model {
 
-/// 1 + cos(alpha) below which a joint is folded back on itself: no shortest turn, no binormal.
+/// Value of 1 + cos(alpha) below which a joint is folded back on itself and has neither a smallest
+/// rotation nor a binormal.
 inline constexpr double no_opening = 1e-12;
 
-/// The next grip along the rod that holds the frame, after one or (null) from the beginning; null
-/// if there is none.
+/// Returns the next grip along the rod that holds the frame, after `after` or (null) from the
+/// beginning; null if there is none.
 [[nodiscard]] const Grip* next_framed_grip(const Rod& rod, const Grip* after);
 
-/// The part of the rod between two such grips.
+/// Returns the part of the rod between two such grips.
 [[nodiscard]] TwistedSpan span_between(const Rod& rod, const Grip& first, const Grip& last,
                                        Eigen::Index number);
 
-/// Calls action(span, first grip, last grip) for each, along the rod. Allocates nothing.
+/// Calls action(span, first grip, last grip) for each span along the rod. Does not allocate.
 template <typename Action>
 void for_each_twisted_span(const Rod& rod, const Action& action) {
   const Grip* first = next_framed_grip(rod, nullptr);
@@ -33,11 +34,11 @@ void for_each_twisted_span(const Rod& rod, const Action& action) {
   }
 }
 
-/// The largest twist_mode_bound of a rod's spans [N/m]; 0 if there are none.
+/// Returns the largest twist_mode_bound of a rod's spans [N/m]; 0 if there are none.
 [[nodiscard]] double fastest_twist_mode(const Rod& rod,
                                         const Eigen::Ref<const Eigen::Matrix3Xd>& points);
 
-/// twist_angle of points in any storage.
+/// Returns twist_angle of points in any storage.
 template <typename Points>
 double followed_twist(const TwistedSpan& span, const Points& points) {
   const auto segment = [&points](Eigen::Index k) -> Eigen::Vector3d {
@@ -51,7 +52,7 @@ double followed_twist(const TwistedSpan& span, const Points& points) {
     if (!(length > 0)) continue;
     const Eigen::Vector3d next = s / length;
     const double opening = 1 + t.dot(next);
-    // The shortest turn of what is across t.
+    // Smallest rotation of the component across t.
     if (opening > no_opening) d -= d.dot(next) / opening * (t + next);
     t = next;
   }

@@ -7,17 +7,17 @@
 
 namespace dlo::force_model {
 
-/// The steps of Integration::verlet. Only the constructor allocates.
+/// Computes the steps of Integration::verlet. Only the constructor allocates.
 class VerletStep {
  public:
   /// @throws std::invalid_argument if a free point has no mass
   VerletStep(const Rod& rod, const StepOptions& options);
 
-  /// @param forces  on the free points, 0 on rigidly held ones [N]
-  /// @param[in,out] points  left alone if the step diverges [m]; both 3 x N
+  /// Makes a step. @param forces  forces on the free points, 0 on rigidly held ones [N]
+  /// @param[in,out] points  unchanged if the step diverges [m]; both 3 x N
   void step(const Eigen::Matrix3Xd& forces, Eigen::Matrix3Xd& points, StepResult& result);
 
-  /// RMS of the movements that the velocities still bring about, v/c [m].
+  /// Returns the RMS of the movements that the velocities still cause, v/c [m].
   [[nodiscard]] double momentum() const;
 
  private:
@@ -25,7 +25,7 @@ class VerletStep {
   double damping_rate_ = 0;
   bool started_ = false;
   Eigen::VectorXd inverse_masses_;  // 0 of rigidly held points [1/kg]
-  Eigen::Matrix3Xd velocities_;     // half a step before the points' time [m/s]
+  Eigen::Matrix3Xd velocities_;     // velocities half a step before the time of the points [m/s]
   Eigen::Matrix3Xd next_;
 };
 

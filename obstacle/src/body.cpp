@@ -7,7 +7,7 @@
 namespace dlo::obstacle {
 namespace {
 
-/// Axes of which one is this direction.
+/// Returns orthonormal axes, one of which has the given direction.
 Eigen::Matrix3d axes_with(Eigen::Index axis, const Eigen::Vector3d& direction) {
   Eigen::Matrix3d axes;
   axes.col(axis) = direction.normalized();
@@ -16,13 +16,13 @@ Eigen::Matrix3d axes_with(Eigen::Index axis, const Eigen::Vector3d& direction) {
   return axes;
 }
 
-/// From the nearest point of a block to this one; zero within it.
+/// Returns the vector from the nearest point of a block to a point; zero inside the block.
 Eigen::Vector3d beyond(const Eigen::Vector3d& local, const Eigen::Vector3d& lower,
                        const Eigen::Vector3d& upper) {
   return local - local.cwiseMax(lower).cwiseMin(upper);
 }
 
-/// The face that is nearest to a point of a block.
+/// Face of a block that is nearest to a point.
 struct Face {
   Eigen::Index axis = 0;
   double sign = 1;
@@ -120,8 +120,8 @@ Gap Body::gap(const Eigen::Vector3d& point) const {
   Gap gap;
   gap.value = distance - radius_;
   gap.gradient = axes_ * (out / distance);
-  // Of a face, which one axis leads away from, the surface is flat. A core without width on an axis
-  // is left along it both ways, from right above it too.
+  // Above a face, where only one axis leads out of the core, the surface is flat. If the core has
+  // no width along an axis, points are outside of it along this axis, even directly above it.
   const Eigen::Array3d leaves =
       (out.array() != 0 || lower_.array() == upper_.array()).cast<double>();
   if (leaves.sum() > 1) {
@@ -156,7 +156,7 @@ int Body::feature(const Eigen::Vector3d& point) const {
   }
   int number = 0;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    // Either side of what has no length is the same.
+    // Both sides of an axis without width are the same feature.
     const bool flat = upper_[axis] == lower_[axis];
     const int side = flat || out[axis] == 0 ? 0 : out[axis] > 0 ? 1 : 2;
     number = 3 * number + side;

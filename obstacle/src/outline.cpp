@@ -8,17 +8,17 @@
 namespace dlo::obstacle {
 namespace {
 
-constexpr int directions = 120;        // of an arc all around
-constexpr double seen_on_edge = 1e-9;  // of a unit vector: what is less is rounding
+constexpr int directions = 120;        // number of points on a full circle
+constexpr double seen_on_edge = 1e-9;  // components of a unit vector below this are rounding
 
-/// Body's core as it is seen: a middle and three edges, any of them zero.
+/// Projected core of a body: its middle and three edges, any of them zero.
 struct SeenCore {
   Eigen::Vector2d middle;
   Eigen::Matrix<double, 2, 3> axes;
   Eigen::Vector3d lower;
   Eigen::Vector3d upper;
 
-  /// Its corner farthest in a direction.
+  /// Returns the corner that is farthest in a direction.
   [[nodiscard]] Eigen::Vector2d corner(const Eigen::Vector2d& direction) const {
     Eigen::Vector2d result = middle;
     for (Eigen::Index k = 0; k < 3; ++k) {
@@ -40,7 +40,7 @@ SeenCore seen(const Body& body, const Eigen::Matrix<double, 2, 3>& view, double 
   return core;
 }
 
-/// At which a rounded outline turns, those across its edges among them.
+/// Returns the angles of the points of a rounded outline, including those normal to its edges.
 std::vector<double> angles_of(const SeenCore& core) {
   std::vector<double> angles;
   angles.reserve(directions + 6);
@@ -71,7 +71,7 @@ Eigen::Matrix2Xd outline(const Body& body, const Eigen::Vector3d& right, const E
   };
   for (const double angle : angles_of(core)) {
     const Eigen::Vector2d direction(std::cos(angle), std::sin(angle));
-    // Across an edge the farthest corner changes; both of them end the edge.
+    // The farthest corner changes at the normal of an edge; both corners are ends of the edge.
     constexpr double beside = 1e-7;
     for (const double side : {-beside, beside}) {
       const Eigen::Vector2d near(std::cos(angle + side), std::sin(angle + side));

@@ -12,52 +12,55 @@ namespace dlo::force_model {
 
 class Lockstep;
 
-/// A rod, where its points start, and how it steps.
+/// Rod, initial points and step settings of one rod of a batch.
 struct BatchRod {
-  Rod rod;                  ///< what makes forces
+  Rod rod;                  ///< the rod
   Eigen::Matrix3Xd points;  ///< [m], 3 x rod.points()
-  StepOptions options;      ///< how it steps
+  StepOptions options;      ///< step settings
 };
 
-/// Many rods of the same number of points, bending law and step policy, eight to a block and the
-/// eight in lockstep: one instruction moves the same point of all. For sweeps, calibration and
-/// stability maps; lengths, stiffnesses, loads, walls, grips, starts and step constants may differ
-/// from rod to rod. Each rod does what its own Simulation would do, up to rounding. Rods between
-/// grips that hold their frame are refused: their twist is counted by a Simulation only.
+/// Vectorised batch of rods with equal number of points, bending law and step policy. A block
+/// contains eight rods, and one instruction moves the same point of all of them. Batches are meant
+/// for sweeps, calibration and stability maps. Lengths, stiffnesses, loads, walls, grips, initial
+/// points and step constants may differ from rod to rod. Each rod moves as in its own Simulation,
+/// up to rounding. Rods between grips that hold their frame are refused, because only a Simulation
+/// counts their twist.
 ///
-/// Blocks share nothing. Different threads may work on different blocks at the same time:
+/// Blocks share no data. Different threads may work on different blocks at the same time:
 ///     tbb::parallel_for(std::size_t{0}, batch.blocks(), [&](auto b) { batch.step_block(b, 1000);
 ///     });
 class Batch {
  public:
-  /// Size of a block; the last one may have fewer.
+  /// Number of rods in a block; the last block may have fewer.
   static constexpr std::size_t rods_per_block = 8;
 
-  /// @throws std::invalid_argument if there are no rods, if they differ in what they have to share,
-  ///         or as Simulation
+  /// Creates the batch.
+  /// @throws std::invalid_argument if there are no rods, if they differ in what must be equal, or
+  /// as Simulation
   explicit Batch(const std::vector<BatchRod>& rods);
   Batch(const Batch& other) = delete;
   Batch& operator=(const Batch& other) = delete;
-  /// Takes the rods over.
+  /// Moves the rods; `other` is left empty.
   Batch(Batch&& other) noexcept;
-  Batch& operator=(Batch&& other) noexcept;  ///< Takes the rods over.
+  Batch& operator=(Batch&& other) noexcept;  ///< Moves the rods; `other` is left empty.
   ~Batch();
 
-  /// How many rods.
+  /// Returns the number of rods.
   [[nodiscard]] std::size_t size() const { return size_; }
-  /// How many blocks.
+  /// Returns the number of blocks.
   [[nodiscard]] std::size_t blocks() const;
 
-  /// Steps the rods of one block, or of all blocks one after another, `count` times. A rod that
-  /// diverges stays where it was before that step, for good. Allocates nothing.
+  /// Makes `count` steps of each rod of one block. A rod whose step diverges permanently stays
+  /// where it was before that step. Does not allocate.
   void step_block(std::size_t block, long count);
-  /// Every block in turn.
+  /// Makes `count` steps of all rods, block by block.
   void step(long count);
 
-  /// Steps until each rod rests, see Simulation::relax; those that rest wait for the others.
-  /// Results in the order of the rods, of one block or of all. Allocates.
+  /// Steps the rods of one block until each is at rest, see Simulation::relax; rods at rest wait
+  /// for the others. Returns results in the order of the rods. Allocates.
   std::vector<RelaxResult> relax_block(std::size_t block, const RelaxOptions& options);
-  /// Every block in turn.
+  /// Steps all rods until each is at rest, block by block, and returns results in the order of the
+  /// rods.
   std::vector<RelaxResult> relax(const RelaxOptions& options = {});
 
   /// Moves a gripper of a rod, see Simulation::move_grip.
@@ -65,15 +68,15 @@ class Batch {
                  const Eigen::Ref<const Eigen::Matrix3Xd>& targets,
                  const Eigen::Vector3d& reference);
 
-  // Of each rod, 0 <= index < size().
-  /// As moved.
+  // Properties of each rod, 0 <= index < size().
+  /// Returns the rod with its moved grips.
   [[nodiscard]] const Rod& rod(std::size_t index) const;
   [[nodiscard]] Eigen::Matrix3Xd points(std::size_t index) const;  ///< positions now [m], a copy
-  /// It stays where it was.
+  /// Whether a step has diverged; the rod stays where it was.
   [[nodiscard]] bool diverged(std::size_t index) const;
-  /// As given; automatic constants filled in.
+  /// Returns the given options with automatic constants filled in.
   [[nodiscard]] const StepOptions& options(std::size_t index) const;
-  /// Made since construction.
+  /// Returns the number of steps since construction.
   [[nodiscard]] long steps(std::size_t index) const;
 
  private:

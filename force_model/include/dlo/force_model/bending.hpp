@@ -6,40 +6,42 @@
 
 namespace dlo::force_model {
 
-/// What resists bending.
+/// Bending law and stiffness of the joints, and their angles at rest.
 ///
-/// A joint that is bent by alpha_0 at rest has the moment M(alpha) - M(alpha_0), M that of
-/// joint_moment: the stress-free shape's constant couple M(alpha_0) against the same joint, as a
-/// rod's EI (kappa - kappa_0) is. Turns have a sign in a plane only (in space a rod's frame would
-/// have to say where they point, and points have none), so such a rod lies in the plane z = 0, with
-/// all that holds it and acts on it; nothing is said of its stability across that plane.
+/// A joint that is bent by alpha_0 at rest has the moment M(alpha) - M(alpha_0), with M from
+/// joint_moment. The natural shape thus adds a constant couple M(alpha_0), as in a rod with the
+/// moment EI (kappa - kappa_0). Natural angles have a sign only in a plane: in space they would
+/// need the rod's frame, which points do not have. Such a rod therefore lies in the plane z = 0,
+/// with all that holds it and acts on it. Its stability out of that plane is not examined.
 struct Bending {
-  BendingLaw law = BendingLaw::hooke;  ///< how the moment grows with the angle
+  BendingLaw law = BendingLaw::hooke;  ///< dependence of the moment on the angle
   double stiffness = 0;                ///< c_b [N] for `paper`, EI [N m^2] for `hooke`; >= 0
-  /// Of each joint P_1 .. P_{n-1}, as `stiffness`; empty: all have that.
+  /// Stiffness of each joint P_1 .. P_{n-1}, in the unit of `stiffness`; empty: all have
+  /// `stiffness`.
   Eigen::VectorXd stiffnesses = {};
-  /// Turn of each joint P_1 .. P_{n-1} at rest, from x to y [rad], |alpha_0| < hooke_fold_angle,
+  /// Angle of each joint P_1 .. P_{n-1} at rest, from x to y [rad], |alpha_0| < hooke_fold_angle,
   /// law hooke only; empty: the rod is intrinsically straight.
   Eigen::VectorXd natural_turns = {};
 };
 
-/// Law and stiffness of the joint at P_i, 1 <= i <= n-1, without its natural turn.
+/// Returns law and stiffness of the joint at P_i, 1 <= i <= n-1, without its natural angle.
 [[nodiscard]] Bending bending_at(const Bending& bending, Eigen::Index i);
 
-/// The couple M(alpha_0) of the joint at P_i [N m], from x to y; zero of a straight one.
-/// @param segment_length  the mean of its two segments' rest lengths [m]
+/// Returns the couple M(alpha_0) of the joint at P_i [N m], from x to y; zero for a straight joint.
+/// @param segment_length  mean rest length of its two segments [m]
 [[nodiscard]] double natural_moment(const Bending& bending, Eigen::Index i, double segment_length);
 
-/// @throws std::invalid_argument if a number is out of range or there are not as many as joints
+/// Checks bending parameters. @throws std::invalid_argument if a number is out of range, or if a
+/// vector does not have one entry per joint
 void check(const Bending& bending, Eigen::Index segments);
 
-/// Moment of one joint [N m] at turning angle `alpha` [rad], 0 <= alpha <= pi.
+/// Returns the moment of one joint [N m] at the joint angle `alpha` [rad], 0 <= alpha <= pi.
 [[nodiscard]] double joint_moment(const Bending& bending, double segment_length, double alpha);
 
-/// Potential of one joint [J]; its derivative by alpha is joint_moment.
+/// Returns the potential of one joint [J]; its derivative by alpha is joint_moment.
 [[nodiscard]] double joint_potential(const Bending& bending, double segment_length, double alpha);
 
-/// Derivative of joint_moment by alpha [N m].
+/// Returns the derivative of joint_moment by alpha [N m].
 [[nodiscard]] double joint_stiffness(const Bending& bending, double segment_length, double alpha);
 
 /// Adds the inner force of bending on every point.
@@ -68,10 +70,10 @@ void add_bending_forces(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                         const Eigen::Ref<const Eigen::VectorXd>& rest_lengths,
                         const Bending& bending, Eigen::Ref<Eigen::Matrix3Xd> forces);
 
-/// Sum over the inner points [J]: joint_potential P(alpha), or with a natural turn
-/// P(alpha) - P(alpha_0) - M(alpha_0) (alpha - alpha_0), which is least, and zero, at rest. Its
-/// turn alpha has a sign, and jumps where the joint is folded back on itself. Arguments and errors
-/// as above.
+/// Returns the potential energy of bending [J], a sum over the inner points: joint_potential
+/// P(alpha), or with a natural angle P(alpha) - P(alpha_0) - M(alpha_0) (alpha - alpha_0), whose
+/// minimum is zero, at rest. That angle alpha has a sign, and jumps where the joint is folded back
+/// on itself. Arguments and errors as for add_bending_forces.
 [[nodiscard]] double bending_energy(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                                     const Eigen::Ref<const Eigen::VectorXd>& rest_lengths,
                                     const Bending& bending);

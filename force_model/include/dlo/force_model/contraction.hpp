@@ -18,7 +18,7 @@ void add_contraction_forces(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                             const Eigen::Ref<const Eigen::VectorXd>& rest_lengths, double c_c,
                             Eigen::Ref<Eigen::Matrix3Xd> forces);
 
-/// The potential of these forces, sum of c_c (|P_{i+1} - P_i| - L_i)^2 / (2 L_i) [J].
+/// Returns the potential of these forces, the sum of c_c (|P_{i+1} - P_i| - L_i)^2 / (2 L_i) [J].
 /// Arguments and errors as for add_contraction_forces.
 [[nodiscard]] double contraction_energy(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                                         const Eigen::Ref<const Eigen::VectorXd>& rest_lengths,

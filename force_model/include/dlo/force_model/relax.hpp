@@ -5,37 +5,37 @@
 
 namespace dlo::force_model {
 
-/// When a simulation is at rest.
+/// Conditions that end Simulation::relax.
 struct RelaxOptions {
-  /// Stop when the RMS distance of the points to the rest shape, bounded by Newton's steps, falls
-  /// below this share of the rod's length [-], > 0.
+  /// Tolerance: the simulation is at rest when the RMS distance of the points from the rest shape,
+  /// bounded by Newton steps, is below this fraction of the rod's length [-], > 0.
   double tolerance = 1e-7;
-  long max_steps = 2'000'000;                                   ///< gives up after so many
-  double time_limit = std::numeric_limits<double>::infinity();  ///< gives up after so long [s], > 0
+  long max_steps = 2'000'000;                                   ///< largest number of steps
+  double time_limit = std::numeric_limits<double>::infinity();  ///< largest computing time [s], > 0
   bool (*interrupted)() =
-      nullptr;  ///< asked every so many steps; yes ends it as the time limit does
+      nullptr;  ///< called at intervals of steps; true ends the search like the time limit
 };
 
-/// How a search for rest ended.
+/// Way in which a search for rest ended.
 enum class RelaxStatus {
   diverged,    ///< a step was not finite
   step_limit,  ///< RelaxOptions::max_steps
   time_limit,  ///< RelaxOptions::time_limit
   at_rest,     ///< proved
-  stalled,     ///< implicit steps only: none lowers the energy, nor proves rest
+  stalled,     ///< implicit steps only: no step lowers the energy, but rest is not proved
 };
 
-/// In words, for messages.
+/// Returns the status in words, for messages.
 [[nodiscard]] const char* to_string(RelaxStatus status);
 
-/// Outcome of a simulation that was to come to rest.
+/// Result of a search for rest.
 struct [[nodiscard]] RelaxResult {
   RelaxStatus status = RelaxStatus::diverged;  ///< how it ended
-  std::string message = "never ran";           ///< the same in words
-  long steps = 0;                              ///< made by this call
+  std::string message = "never ran";           ///< the status in words
+  long steps = 0;                              ///< steps of this call
   double residual_force = -1;                  ///< largest force on a free point [N]
-  double remaining_error = -1;                 ///< RMS distance of the points to rest; a bound if
-                                               ///< at rest, else an estimate [m]
+  /// RMS distance of the points from the rest shape [m]; a bound if at rest, else an estimate.
+  double remaining_error = -1;
 };
 
 }  // namespace dlo::force_model

@@ -12,72 +12,78 @@ namespace dlo::force_model {
 
 class Lockstep;
 
-/// A rod and its points in simulated time. Steps allocate nothing; they run on a kernel that is
+/// Rod whose points move in simulated time. Steps do not allocate. They run on a kernel that is
 /// vectorised over the points and agrees with total_forces to rounding.
 class Simulation {
  public:
-  /// @param points  start [m], 3 x rod.points(); rigidly held points are set to their targets
+  /// Creates a simulation. @param points  initial positions [m], 3 x rod.points(); rigidly held
+  /// points are set to their targets
   /// @throws std::invalid_argument if rod, points or options are out of range
   Simulation(Rod rod, Eigen::Matrix3Xd points, const StepOptions& options);
-  /// Copies time and counters as well.
+  /// Copies the simulation with its time and counters.
   Simulation(const Simulation& other);
-  Simulation& operator=(const Simulation& other);  ///< Copies time and counters as well.
-  /// Leaves the other without a rod: assign to it or destroy it.
+  /// Copies the simulation with its time and counters.
+  Simulation& operator=(const Simulation& other);
+  /// Leaves `other` without a rod: it may only be assigned to or destroyed.
   Simulation(Simulation&& other) noexcept;
-  Simulation& operator=(Simulation&& other) noexcept;  ///< As the constructor.
+  /// Leaves `other` as the move constructor does.
+  Simulation& operator=(Simulation&& other) noexcept;
   ~Simulation();
 
-  /// One simulation step.
+  /// Makes one simulation step.
   [[nodiscard]] StepResult step();
 
-  /// The catch-up loop of Text 1: steps until the sum of c_m has grown by `steps`, so that a force
-  /// goes on meaning a displacement per second while movements are scaled down.
-  /// @param steps  nominal steps, > 0; @param max_steps  gives up after so many evaluations
-  /// @return the last step's result (c_m = 0 if none was owed); `diverged` if one diverged,
-  ///         `behind` if max_steps were not enough: owed_steps() are left to the next call
+  /// Runs the catch-up loop of Text 1: makes steps until the sum of c_m has grown by `steps`. A
+  /// force thus corresponds to a displacement per second even while movements are scaled down.
+  /// @param steps  nominal steps, > 0; @param max_steps  largest number of evaluations
+  /// @return the result of the last step (c_m = 0 if none was due); `diverged` if one diverged,
+  /// `behind` if max_steps did not suffice: owed_steps() then remain for the next call
   [[nodiscard]] StepResult advance(double steps, long max_steps = 10'000'000);
 
-  /// What advance() still owes: nominal steps asked for minus the sum of c_m; below 0 after an
-  /// overshoot, which is less than a step.
+  /// Returns the nominal steps that advance() has still to make: requested steps minus the sum of
+  /// c_m. It is negative after an overshoot, which is less than a step.
   [[nodiscard]] double owed_steps() const;
 
-  /// Steps until the rod rests. A shape is at rest when its tangent stiffness is positive definite
-  /// and both Newton's step to the equilibrium and the momentum that is left are below the
-  /// tolerance: a small force or movement alone proves nothing, as the paper's creeping shapes
-  /// show. A rod that balances in an unstable equilibrium is nudged by 1e-6 of
-  /// its length in the direction in which it gives way.
+  /// Steps until the rod is at rest. A shape is at rest if its tangent stiffness is positive
+  /// definite, and both the Newton step to the equilibrium and the remaining momentum are below the
+  /// tolerance. A small force or movement alone proves nothing, as the paper's creeping shapes
+  /// show. A rod in an unstable equilibrium is displaced by 1e-6 of its length in a direction of
+  /// negative curvature.
   /// Allocates.
   RelaxResult relax(const RelaxOptions& options = {});
 
-  /// Moves a gripper; a frame that it holds comes along by the shortest turn of its segment.
+  /// Moves a gripper; a frame that it holds follows by the smallest rotation of its segment.
   /// @throws std::invalid_argument if the grip or the shape does not exist
   void move_grip(std::size_t grip, const Eigen::Ref<const Eigen::Matrix3Xd>& targets,
                  const Eigen::Vector3d& reference);
-  /// Moves and turns a gripper that holds the rod's frame. Whole turns are counted from call to
-  /// call where a step lies between them and each turns it by less than half a turn.
-  /// @param d1  Grip::d1
-  /// @throws std::invalid_argument as above, or if the grip holds no frame or d1 points along it
+  /// Moves and rotates a gripper that holds the rod's frame. Full rotations are counted from call
+  /// to call, provided that there is a step between calls and each call rotates the frame by less
+  /// than half a rotation.
+  /// @param d1  see Grip::d1
+  /// @throws std::invalid_argument as the function above, or if the grip holds no frame or d1 is
+  /// parallel to its segment
   void move_grip(std::size_t grip, const Eigen::Ref<const Eigen::Matrix3Xd>& targets,
                  const Eigen::Vector3d& reference, const Eigen::Vector3d& d1);
 
-  /// Replaces a wall, whatever it does to the rod: a wall that is not there yet has stiffness 0.
-  /// Automatic steps suit it from the next step on.
+  /// Replaces a wall, without a check of the resulting change of the rod. A wall that is to appear
+  /// later has stiffness 0 until then. Automatic steps are adapted to it from the next step on.
   /// @throws std::invalid_argument if there is no such wall or the new one is out of range
   void move_wall(std::size_t wall, const Wall& moved);
 
-  /// As moved, with the twist of the last step in Twist::angles.
+  /// Returns the rod with moved grips and walls, and the twist of the last step in Twist::angles.
   [[nodiscard]] const Rod& rod() const;
   [[nodiscard]] Eigen::Matrix3Xd points() const;  ///< positions now [m], a copy
-  /// The same without an allocation. @param[out] points  3 x rod().points(), as it is
+  /// Copies the present positions without allocation. @param[out] points  3 x rod().points(),
+  /// already of this size
   void copy_points(Eigen::Matrix3Xd& points) const;
-  /// As given; automatic constants filled in.
+  /// Returns the given options with automatic constants filled in.
   [[nodiscard]] const StepOptions& options() const;
 
   // Counters since construction (paper, Tables 2 to 4).
-  /// Model evaluations; of implicit steps linear solves.
+  /// Returns the number of model evaluations; of implicit steps the number of linear solves.
   [[nodiscard]] long steps() const;
-  [[nodiscard]] long damped_steps() const;   ///< c_s was not 1
-  [[nodiscard]] long limited_steps() const;  ///< d_m was above l_s, or StepResult::limited
+  [[nodiscard]] long damped_steps() const;   ///< steps with c_s != 1
+  [[nodiscard]] long limited_steps() const;  ///< steps with d_m > l_s, or StepResult::limited
 
  private:
   std::unique_ptr<Lockstep> lockstep_;

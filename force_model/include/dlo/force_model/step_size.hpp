@@ -6,18 +6,18 @@
 
 namespace dlo::force_model {
 
-/// Stiffness [N/m] of the fastest and the slowest mode: the extreme eigenvalues of minus the
-/// derivative of the total force by the positions of the points that are free to move.
+/// Stiffness [N/m] of the fastest and the slowest mode: extreme eigenvalues of minus the derivative
+/// of the total forces by the positions of the free points.
 struct ModeBounds {
-  double fastest = 0;  ///< upper bound in this shape
+  double fastest = 0;  ///< upper bound for this shape
   double slowest = 0;  ///< estimate, > 0
 };
 
-/// The slowest mode is not taken for less than this share of the fastest: heavy ball steps keep
-/// 1 - 4 sqrt(share) of a movement, and rounding has to leave that apart from 1.
+/// Smallest accepted ratio of the slowest mode to the fastest. Heavy-ball steps keep 1 - 4
+/// sqrt(ratio) of a movement, which rounding must not make equal to 1.
 inline constexpr double smallest_mode_ratio = 1e-15;
 
-/// Bounds for a rod in a given shape.
+/// Returns bounds for a rod in a given shape.
 ///
 /// `fastest` adds up what can act on one point: 4 c_c / L of contraction, 16 M'(alpha) / L^2 of
 /// bending (hooke: 16 EI / L^3 when straight; paper: 48 c_b sin^2(alpha/2) cos(alpha/2) / L), what
@@ -33,14 +33,16 @@ inline constexpr double smallest_mode_ratio = 1e-15;
 [[nodiscard]] ModeBounds mode_bounds(const Rod& rod,
                                      const Eigen::Ref<const Eigen::Matrix3Xd>& points);
 
-/// What walls, solids and spring grips add to the bound of the fastest mode [N/m].
+/// Returns the contribution of walls, solids and spring grips to the bound of the fastest mode
+/// [N/m].
 [[nodiscard]] double constraint_stiffness(const Rod& rod);
 
-/// Largest stable c_F [m/N] for a fastest mode [N/m]: Formula 15 solved by linear stability,
-/// 2 (1 + c_h) / fastest. Points oscillate above it; `c_h` = 0 means no dynamics.
+/// Returns the largest stable c_F [m/N] for a fastest mode [N/m]: Formula 15 solved by linear
+/// stability, 2 (1 + c_h) / fastest. Above it points oscillate; `c_h` = 0 means no dynamics.
 [[nodiscard]] double largest_step_factor(double fastest, double c_h);
 
-/// The constants of Formula 19 for these modes. It is Polyak's heavy ball, fastest with
+/// Constants of Formula 19 for these modes. The formula is Polyak's heavy ball, which converges
+/// fastest with
 ///     c_F = 4 / (sqrt(fastest) + sqrt(slowest))^2,
 ///     c_h = ((sqrt(fastest) - sqrt(slowest)) / (sqrt(fastest) + sqrt(slowest)))^2
 struct HeavyBall {
@@ -48,7 +50,7 @@ struct HeavyBall {
   double c_h = 0;  ///< [-]
 };
 
-/// @throws std::invalid_argument unless both are > 0
+/// Returns the constants for these modes. @throws std::invalid_argument unless both are > 0
 [[nodiscard]] HeavyBall heavy_ball(const ModeBounds& modes);
 
 }  // namespace dlo::force_model

@@ -6,23 +6,25 @@
 
 namespace dlo::force_model {
 
-/// The paper's variants of one simulation step, and ours.
+/// Variants of one simulation step: five of the paper and three of dlo. The paper's build on each
+/// other.
 enum class Stepper {
   basic,      ///< dP = c_F F (Formula 7)
   limited,    ///< and no point moves further than l_s (Formulas 16, 17)
   relative,   ///< and no point moves further than l_s against its neighbour (Formula 18)
-  dynamic,    ///< `relative`, with a part c_h of the last movement added (Formulas 19, 20)
+  dynamic,    ///< `relative`, with a fraction c_h of the last movement added (Formulas 19, 20)
   automatic,  ///< `dynamic` with c_F and c_h chosen from the stiffness of the modes, no damping c_s
   verlet,     ///< velocities and real masses, see Integration::verlet
   implicit    ///< Newton's step on the tangent stiffness, see Integration::implicit_euler
 };
 
-/// What bounds the movement of one step.
+/// Limit of the movement of one step: none, of each point, or of each point relative to its
+/// neighbour.
 enum class StepLimit { none, absolute, relative };
 
-/// What a step solves, F the total forces on the points.
+/// Equation that a step solves. F are the total forces on the points.
 enum class Integration {
-  /// A movement along F (Formula 7) and what the other policies make of it.
+  /// Movement along F (Formula 7), modified by the other policies.
   along_force,
   /// The paper's alternative (last paragraph of its section II): each point has a velocity v, which
   /// the forces change, and v moves it. It leaves open what divides the force and how the damping
@@ -52,44 +54,48 @@ enum class Integration {
   implicit_euler,
 };
 
-/// A step as policies; the steppers above are the combinations that the paper tries.
+/// Step settings as independent policies; the steppers above are the combinations that the paper
+/// uses.
 struct StepPolicy {
-  StepLimit limit = StepLimit::none;                   ///< with l_s
-  bool momentum = false;                               ///< adds c_h times the last movement
-  bool damping = false;                                ///< divides by c_s once points oscillate
-  bool automatic = false;                              ///< overwrites c_F and c_h
-  Integration integration = Integration::along_force;  ///< others leave the policies above unused
+  StepLimit limit = StepLimit::none;  ///< limit of the movement, l_s
+  bool momentum = false;              ///< adds c_h times the last movement
+  bool damping = false;               ///< divides by c_s once points oscillate
+  bool automatic = false;             ///< overwrites c_F and c_h
+  /// Values other than along_force ignore the policies above.
+  Integration integration = Integration::along_force;
 
-  /// Equal in every part.
+  /// Whether all members are equal.
   bool operator==(const StepPolicy&) const = default;
 };
 
-/// The policy of a stepper.
+/// Returns the policy of a stepper.
 [[nodiscard]] StepPolicy policy(Stepper stepper);
 
-/// Constants of a step. The paper leaves open how c_s grows; what is filled in is said here.
+/// Constants of a step. The paper does not state how c_s grows; the assumption is described at
+/// c_s_change.
 struct StepOptions {
-  StepPolicy policy = force_model::policy(Stepper::automatic);  ///< what the step does
+  StepPolicy policy = force_model::policy(Stepper::automatic);  ///< policies of the step
   double c_F = 0;  ///< scaling factor [m/N], > 0 unless automatic
-  double c_h = 0;  ///< share of the last movement that is kept [-], 0 <= c_h < 1 with momentum
+  double c_h = 0;  ///< fraction of the last movement that is kept [-], 0 <= c_h < 1 with momentum
   double l_s = 0;  ///< largest movement [m], > 0 with a limit; 0 and automatic: 1/4 of the shortest
                    ///< rest length
-  /// c_s grows by this for each point that turned back in two consecutive steps, and falls by it
-  /// after each step without such a point, to no less than 1 [-]. Movements of rounding size do not
-  /// count: a rod at rest would seem to oscillate.
+  /// Change of c_s [-]. c_s grows by this for each point that has reversed its direction in two
+  /// consecutive steps. It decreases by this after each step without such a point, to no less than
+  /// 1. Movements of the size of rounding errors do not count, since a rod at rest would otherwise
+  /// seem to oscillate.
   double c_s_change = 0.1;
-  /// dt of a step in real time [s], > 0; infinity: without masses and time, Integration's
-  /// implicit_euler only.
+  /// Time step dt in real time [s], > 0; infinity: without masses and time, for
+  /// Integration::implicit_euler only.
   double time_step = std::numeric_limits<double>::infinity();
-  double damping_rate = 0;  ///< c of a step in real time [1/s], >= 0
-  /// What the steps run on; any other than the fastest serves tests and measurements only.
+  double damping_rate = 0;  ///< damping rate c of a step in real time [1/s], >= 0
+  /// Instruction set of the steps; sets other than the fastest are for tests and measurements only.
   InstructionSet instruction_set = fastest_instruction_set();
 };
 
-/// How a step ended.
+/// Way in which a step ended.
 enum class StepStatus {
-  diverged,  ///< a force or movement was not finite; the points were left as they were
-  behind,    ///< Simulation::advance only: all good, but fewer steps than were asked for
+  diverged,  ///< a force or movement was not finite; the points were left unchanged
+  behind,    ///< Simulation::advance only: no error, but fewer steps than requested
   good,
 };
 
@@ -97,8 +103,8 @@ enum class StepStatus {
 struct StepResult {
   StepStatus status = StepStatus::diverged;  ///< how it ended
   double c_m = 0;                            ///< scaling of this step (Formulas 17, 18, 20) [-]
-  double movement = 0;                       ///< d_m: largest movement compared with l_s [m]
-  bool limited = false;  ///< d_m was larger than l_s; of implicit steps: dP was shortened
+  double movement = 0;   ///< d_m: largest movement, which is compared with l_s [m]
+  bool limited = false;  ///< d_m was larger than l_s; implicit steps: dP was shortened
 };
 
 }  // namespace dlo::force_model

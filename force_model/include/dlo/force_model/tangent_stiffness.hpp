@@ -7,45 +7,49 @@
 
 namespace dlo::force_model {
 
-/// Minus the derivative of the total forces on the free points by their positions, symmetric.
+/// Symmetric matrix: minus the derivative of the total forces on the free points by their
+/// positions.
 struct StiffnessMatrix {
-  std::vector<Eigen::Index> points;  ///< that no rigid grip holds
-  Eigen::MatrixXd entries;           ///< x, y, z of each of these points in turn [N/m]
+  std::vector<Eigen::Index> points;  ///< indices of the points that no rigid grip holds
+  Eigen::MatrixXd entries;  ///< three rows and columns x, y, z for each of these points [N/m]
 };
 
-/// Of a rod without natural turns, with what tension, pressure and twist add. O(N^2) in memory.
+/// Computes the tangent stiffness of a rod without natural angles, including the contributions of
+/// tension, pressure and twist. Needs O(N^2) memory.
 /// @param points  [m], 3 x rod.points()
 /// @throws std::invalid_argument if a shape or number is out of range, or the rod has natural turns
 [[nodiscard]] StiffnessMatrix tangent_stiffness(const Rod& rod,
                                                 const Eigen::Ref<const Eigen::Matrix3Xd>& points);
 
-/// What a shape's tangent stiffness says about its distance from equilibrium.
+/// Distance of a shape from equilibrium, and its stability, from the tangent stiffness.
 struct [[nodiscard]] EquilibriumCheck {
-  /// The stiffness of the free points is positive definite, by more than rounding, but for
+  /// The stiffness of the free points is positive definite by more than rounding, except for
   /// `neutral_modes`.
   bool stable = false;
-  /// Movements with neither stiffness nor force, at most two: a rod between two pins rotates about
-  /// their line. What follows is without them.
+  /// Number of modes with neither stiffness nor force, at most two: a rod between two pins can
+  /// rotate about the line through them. The other members exclude these modes.
   int neutral_modes = 0;
-  /// Newton's step, evaluated, leads to an equilibrium: a second one is at most a quarter of it
-  /// (Kantorovich), or rounding. Without it `remaining_error` is no bound.
+  /// The Newton step leads to an equilibrium, as a second step shows: it is at most a quarter of
+  /// the first (Kantorovich), or only rounding. Otherwise `remaining_error` is no bound.
   bool proven = false;
-  double remaining_error = -1;  ///< RMS distance of the points to that equilibrium, bounded from
-                                ///< both steps [m]
-  /// What the rounding of the points' positions, as a force in stiff segments (eps c_c |P| / L),
-  /// moves the slowest mode by, RMS over the points [m]: no stepping gets below.
+  /// RMS distance of the points from that equilibrium, bounded by both steps [m].
+  double remaining_error = -1;
+  /// RMS displacement of the points along the slowest mode due to the rounding of positions, which
+  /// changes the forces of stiff segments by eps c_c |P| / L [m]. No stepping can reduce the error
+  /// below it.
   double rounding_error = 0;
   double slowest_mode = 0;  ///< estimate of the smallest eigenvalue, 0 unless stable [N/m]
   Eigen::Matrix3Xd step;    ///< Newton's step [m], 3 x rod.points()
-  /// A direction of negative curvature of the free points, the furthest by 1 and on the
-  /// whole towards +x, else +y, else +z [-], 3 x rod.points(); empty if there is none.
+  /// Direction of negative curvature of the free points, 3 x rod.points(): its largest displacement
+  /// is 1 [-], and the sum of its displacements points towards +x, else +y, else +z. Empty if there
+  /// is none.
   Eigen::Matrix3Xd negative_curvature_direction;
 };
 
-/// Solves K dx = F twice, K minus the derivative of the total forces by the free points' positions,
-/// with what tension and pressure add to it, and F the total forces on them, here and after the
-/// first step. A rod with natural turns is asked about movements in its plane only. O(N) in time
-/// and memory; allocates.
+/// Solves K dx = F twice. K is minus the derivative of the total forces by the positions of the
+/// free points, including the contributions of tension and pressure. F are the total forces on
+/// these points, in the given shape and after the first step. For a rod with natural angles only
+/// movements in its plane are examined. Needs O(N) time and memory; allocates.
 /// @param points  [m], 3 x rod.points()
 /// @throws std::invalid_argument if a shape or number is out of range
 EquilibriumCheck check_equilibrium(const Rod& rod,

@@ -4,19 +4,19 @@
 
 namespace dlo::force_model {
 
-/// What resists twist. It does between two neighbouring grips that hold the rod's frame (Grip::d1);
-/// elsewhere the rod rotates about itself freely.
+/// Torsional stiffness and twist angles. They are used between two neighbouring grips that hold the
+/// rod's frame (Grip::d1); elsewhere the rod can rotate about its tangent freely.
 struct Twist {
   double stiffness = 0;  ///< GJ [N m^2], >= 0; > 0 where two grips hold frames
-  /// Of the rod at each joint P_1 .. P_{n-1} [N m^2], each > 0; empty: all have `stiffness`.
+  /// GJ of the rod at each joint P_1 .. P_{n-1} [N m^2], each > 0; empty: `stiffness` everywhere.
   Eigen::VectorXd stiffnesses = {};
-  /// For each pair of neighbouring grips that hold frames, along the rod, its last twist [rad]:
-  /// frames say what it is but for whole turns, and it is the one nearest to this. A Simulation
-  /// counts on from step to step. Empty: all 0.
+  /// Last twist angle between each pair of neighbouring grips that hold frames, along the rod
+  /// [rad]. The frames determine the angle up to full rotations; the value nearest to this one is
+  /// used. A Simulation updates it in each step. Empty: all 0.
   Eigen::VectorXd angles = {};
 };
 
-/// The part of a rod between two segments whose material frames are held.
+/// Part of a rod between two segments whose material frames are held.
 ///
 /// The twist theta is the angle about the last segment's direction from the first d1, transported
 /// along the polygon without twist (from segment to segment by the shortest turn), to the last d1,
@@ -28,20 +28,22 @@ struct Twist {
 /// Discrete elastic rods, SIGGRAPH 2008, with the sign of theta instead of the transported
 /// frame's).
 struct TwistedSpan {
-  Eigen::Index first_segment = 0;                       ///< from P_k to P_{k+1}
-  Eigen::Index last_segment = 0;                        ///< > first_segment
-  Eigen::Vector3d first_d1 = Eigen::Vector3d::UnitX();  ///< its part across the segment counts
-  Eigen::Vector3d last_d1 = Eigen::Vector3d::UnitX();   ///< as `first_d1`
-  double compliance = 0;                                ///< C [1/(N m)], > 0
-  double angle = 0;                                     ///< theta is the branch nearest to it [rad]
+  Eigen::Index first_segment = 0;  ///< from P_k to P_{k+1}
+  Eigen::Index last_segment = 0;   ///< > first_segment
+  /// Only its component across the segment is used.
+  Eigen::Vector3d first_d1 = Eigen::Vector3d::UnitX();
+  /// Only its component across the segment is used.
+  Eigen::Vector3d last_d1 = Eigen::Vector3d::UnitX();
+  double compliance = 0;  ///< C [1/(N m)], > 0
+  double angle = 0;       ///< theta is the branch nearest to it [rad]
 };
 
-/// theta [rad]. @param points  of the whole rod [m], 3 x (n+1)
+/// Returns theta [rad]. @param points  points of the whole rod [m], 3 x (n+1)
 /// @throws std::invalid_argument if the segments do not exist
 [[nodiscard]] double twist_angle(const TwistedSpan& span,
                                  const Eigen::Ref<const Eigen::Matrix3Xd>& points);
 
-/// E of (1) [J]. Arguments and errors as above.
+/// Returns E of (1) [J]. Arguments and errors as for twist_angle.
 [[nodiscard]] double twist_energy(const TwistedSpan& span,
                                   const Eigen::Ref<const Eigen::Matrix3Xd>& points);
 
@@ -55,14 +57,15 @@ struct TwistedSpan {
 void add_twist_forces(const TwistedSpan& span, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                       Eigen::Ref<Eigen::Matrix3Xd> forces);
 
-/// Derivative of theta by the points (2), overwritten [rad/m], 3 x (n+1). Errors as above.
+/// Computes the derivative of theta by the points (2), overwritten [rad/m], 3 x (n+1). Errors as
+/// for twist_angle.
 void twist_gradient(const TwistedSpan& span, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                     Eigen::Ref<Eigen::Matrix3Xd> gradient);
 
-/// Bound of what E adds to the stiffness of the fastest mode [N/m]:
+/// Returns a bound of the contribution of E to the stiffness of the fastest mode [N/m]:
 ///     |grad theta|^2 / C + 8 |M| (1 + tan(alpha/2) + tan^2(alpha/2)) / L^2
-/// The first part is exact. The second is of the largest alpha, followed to hooke_fold_angle, and
-/// the shortest segment L, no less than a tenth of its rest length. Errors as above.
+/// The first term is exact. The second uses the largest alpha, at most hooke_fold_angle, and the
+/// shortest segment L, at least a tenth of its rest length. Errors as for twist_angle.
 [[nodiscard]] double twist_mode_bound(const TwistedSpan& span,
                                       const Eigen::Ref<const Eigen::VectorXd>& rest_lengths,
                                       const Eigen::Ref<const Eigen::Matrix3Xd>& points);

@@ -6,12 +6,13 @@
 
 namespace dlo::obstacle {
 
-/// Outline of a body seen from far: its points in a plot, around it counter-clockwise, where the
-/// first does not come again. In a plane about which the body is symmetric it is the body's cut
-/// too, since it is convex: with a point and its mirror image what is midway is within it.
-/// @param right, up  the plot's axes, unit and at right angles
-/// @param far  what is endless ends so far from its middle [m], > 0
-/// @return 2 x M [m]; empty of a half-space whose edge is not seen, which is behind all of a plot
+/// Returns the outline of a body in parallel projection: its points in a plot, counter-clockwise,
+/// without a repetition of the first. If the body is symmetric about the plane of the plot, the
+/// outline is also its cross-section there, since the body is convex: the midpoint between a point
+/// and its mirror image is inside.
+/// @param right, up  axes of the plot, orthonormal
+/// @param far  distance from the body's middle at which infinite dimensions end [m], > 0
+/// @return 2 x M [m]; empty for a half-space whose edge is not visible, which fills the whole plot
 [[nodiscard]] Eigen::Matrix2Xd outline(const Body& body, const Eigen::Vector3d& right,
                                        const Eigen::Vector3d& up, double far);
 
