@@ -17,14 +17,14 @@ namespace {
 
 using dlo::cli::ExitStatus;
 
-/// Nobody reads the output: as other programs, gone without a word.
+/// Ends the process without a message, like other programs whose output nobody reads.
 [[noreturn]] void end_with_broken_pipe() {
   (void)std::signal(SIGPIPE, SIG_DFL);
   (void)std::raise(SIGPIPE);
   ::_exit(dlo::cli::broken_pipe_status);  // if the caller has blocked the signal
 }
 
-/// The exit status of what is being handled, unless that ends the process.
+/// Returns the exit status of the exception that is being handled, unless it ends the process.
 ExitStatus status_of_exception() {
   try {
     return dlo::cli::report_exception();
@@ -33,19 +33,19 @@ ExitStatus status_of_exception() {
   }
 }
 
-/// Memory that is freed stays with the process. A solve takes and frees some megabytes of matrices;
-/// to return them to the system and take them again costs up to three times what is computed with
-/// them.
+/// Keeps freed memory in the process. A solve allocates and frees some megabytes of matrices.
+/// Returning them to the system and allocating them again costs up to three times as much as the
+/// computation.
 void keep_freed_memory() {
 #ifdef __GLIBC__
-  constexpr int largest_threshold = 32 << 20;  // bytes, of those that malloc takes
+  constexpr int largest_threshold = 32 << 20;  // bytes, the largest value that malloc accepts
   (void)mallopt(M_MMAP_THRESHOLD, largest_threshold);
   (void)mallopt(M_TRIM_THRESHOLD, INT_MAX);
 #endif
 }
 
-/// What no caller could catch, such as memory that a thread of the scheduler does not get, ends
-/// like anything else: with a line and a status.
+/// Ends the process with a message and an exit status after an exception that no caller can catch,
+/// such as a lack of memory in a thread of the scheduler.
 [[noreturn]] void end_uncaught() {
   ExitStatus status = ExitStatus::no_resources;
   if (std::current_exception()) {
@@ -63,7 +63,7 @@ int main(int argc, char** argv) {
   keep_freed_memory();
   dlo::cli::reserve_standard_descriptors();
   dlo::compare::end_groups_at_signals();
-  // A limit of a file's size is an error of its write.
+  // A write beyond the file size limit is reported as an error.
   (void)std::signal(SIGXFSZ, SIG_IGN);
   std::set_terminate(end_uncaught);
   try {

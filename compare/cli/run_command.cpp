@@ -35,9 +35,9 @@
 namespace dlo::cli {
 namespace {
 
-/// Seconds of the steady clock at which the command has to end; infinite: never.
+/// Time of the steady clock at which the command has to end [s]; infinite: never.
 std::atomic<double> command_end = std::numeric_limits<double>::infinity();
-std::string over_message;  // of the signal handler, written before the timer starts
+std::string over_message;  // message of the signal handler, written before the timer starts
 
 double steady_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -47,19 +47,19 @@ bool is_command_over() { return steady_seconds() > command_end; }
 
 extern "C" void end_command_over_time(int /*number*/) {
   compare::end_groups();
-  // If standard error is gone, the exit status still tells it.
+  // If standard error cannot be written, the exit status still reports it.
   [[maybe_unused]] const ssize_t written =
       ::write(STDERR_FILENO, over_message.data(), over_message.size());
   ::_exit(static_cast<int>(ExitStatus::not_converged));
 }
 
-/// Holds --time-limit for a whole command: solvers of this thread stop when it is over. A process
-/// whose computation does not stop soon after that ends with a message.
+/// Enforces --time-limit for a whole command: solvers of this thread stop when the time is over. If
+/// the computation does not stop soon after that, the process ends with a message.
 class CommandTimeLimit {
  public:
   CommandTimeLimit(const std::string& command, double seconds) : interruption_(is_command_over) {
     command_end = steady_seconds() + seconds;
-    if (RedirectedOutput::current() != nullptr) return;  // a library call does not end its process
+    if (RedirectedOutput::current() != nullptr) return;  // a library call must not end its process
     over_message = fmt::format(
         "dlo: {}: not finished within --time-limit {:g} s (allowed: a longer time limit, or a "
         "smaller scene)\n",
@@ -92,8 +92,8 @@ class CommandTimeLimit {
   energy_model::Interruption interruption_;
 };
 
-/// Returns the limit that --time-limit sets for the whole command; empty if it is not given, or if
-/// it limits each of many runs.
+/// Returns the limit that --time-limit sets for the whole command. Returns std::nullopt if the
+/// option is not given, or if it limits each of many runs.
 std::optional<double> whole_time_limit(const CLI::App& command) {
   constexpr std::string_view of_each_run[] = {"bench", "regress", "suite", "sweep"};
   if (std::ranges::find(of_each_run, command.get_name()) != std::end(of_each_run)) return {};
@@ -147,7 +147,7 @@ int run_command(std::vector<std::string> words) {
     return static_cast<int>(ExitStatus::good);
   }
   if (words.front() == "help") {
-    // "help solve" is "solve --help".
+    // "help solve" is equivalent to "solve --help".
     words.erase(words.begin());
     words.emplace_back("--help");
   }
@@ -157,7 +157,7 @@ int run_command(std::vector<std::string> words) {
     require_known_command(app, words.front());
   }
   require_values(words);
-  std::reverse(words.begin(), words.end());  // as CLI11 takes them
+  std::reverse(words.begin(), words.end());  // CLI11 expects the reverse order
   try {
     app.parse(words);
   } catch (const CLI::RuntimeError& status) {
@@ -200,7 +200,7 @@ ExitStatus report_exception() {
     say("{}", error.what());
     return ExitStatus::bad_input;
   } catch (const std::invalid_argument& error) {
-    // The models name what is out of range.
+    // The message of the model names the value that is out of range.
     say("{}", error.what());
     return ExitStatus::bad_input;
   } catch (const std::filesystem::filesystem_error& error) {
@@ -210,7 +210,7 @@ ExitStatus report_exception() {
     write_standard_error("dlo: out of memory\n");
     return ExitStatus::no_resources;
   } catch (const std::length_error&) {
-    // A container that is asked for more than it can ever hold.
+    // A container was requested that exceeds its largest size.
     write_standard_error("dlo: out of memory\n");
     return ExitStatus::no_resources;
   } catch (const std::system_error& error) {

@@ -8,28 +8,27 @@
 
 namespace dlo::cli {
 
-/// As a shell calls the status of a program whose output nobody reads.
+/// Exit status that a shell reports for a program whose output nobody reads.
 inline constexpr int broken_pipe_status = 128 + SIGPIPE;
 
-/// The command `dlo`, without what belongs to a process (main.cpp): its signals, its descriptors,
-/// its end. Nothing of it is left for the next call.
-/// @param words  behind the program's name
+/// Runs the command `dlo`, without the parts that belong to a process (main.cpp): signals,
+/// descriptors, termination. A call leaves no state for the next call.
+/// @param words  words after the program's name
 /// @return the exit status
-/// @throws what the command is refused with, or fails with, and nothing has been said of; see
-///     report_exception()
+/// @throws any exception that has not been reported; see report_exception()
 [[nodiscard]] int run_command(std::vector<std::string> words);
 
-/// The same with standard output and standard error in two texts. What it throws becomes the
-/// message and the status of the process; an -o that is a pipe which nobody reads raises SIGPIPE,
-/// and where the caller ignores that, it becomes broken_pipe_status. One call at a time: where
-/// output goes holds for all threads. What names the process's own descriptors, such as -o
-/// /dev/stdout, is written there.
+/// Runs the command with standard output and standard error redirected to two texts. Exceptions
+/// become the message and the exit status of the process. If -o is a pipe that nobody reads,
+/// SIGPIPE is raised; if the caller ignores it, the result is broken_pipe_status. Only one call at
+/// a time is allowed, because the redirection applies to all threads. Files that are descriptors of
+/// the process, such as -o /dev/stdout, are written directly.
 /// @param[out] out, err  appended to, not overwritten
 [[nodiscard]] int run_command(std::vector<std::string> words, std::string& out, std::string& err);
 
-/// Says on standard error what is being handled, and what that means for the exit status. It takes
-/// as little memory as it can.
-/// @throws compare::BrokenPipe if that is what is being handled: of it nothing is said
+/// Reports the exception that is being handled on standard error, and returns its exit status. Uses
+/// as little memory as possible.
+/// @throws compare::BrokenPipe if that is the exception; it is not reported
 [[nodiscard]] ExitStatus report_exception();
 
 }  // namespace dlo::cli

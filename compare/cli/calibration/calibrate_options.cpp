@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* measured = "Young's modulus from measured shapes";
 
-/// A quantity > 0 that an option has, if it is given.
+/// Reads the quantity > 0 of an option, if it is given.
 std::optional<double> quantity_of(const char* option, const std::string& text,
                                   compare::Dimension dimension) {
   if (text.empty()) return std::nullopt;
@@ -30,7 +30,7 @@ bool is_number(const std::string& text) {
   return !text.empty() && text.find_first_not_of("+-0123456789") == std::string::npos;
 }
 
-/// "" if it is a file, or a number in range.
+/// Returns an empty string for a file or for a number in range, else the error.
 std::string check_segments(const std::string& text) {
   if (!is_number(text)) return "";
   std::string copy = text;
@@ -72,7 +72,7 @@ compare::MaterialFitOptions CalibrateOptions::material_options() const {
           .solve = overrides.solve()};
 }
 
-/// What is found beside E.
+/// Adds the options of quantities that are fitted in addition to E.
 void CalibrateOptions::add_numbers_of_wire(CLI::App& command, CLI::Option* shape) {
   const OptionGroup group(command, measured);
   const auto of_shapes = [shape](CLI::Option* option) { option->needs(shape); };

@@ -13,13 +13,13 @@
 
 namespace dlo::cli {
 
-/// What --segments says of a chain.
+/// Segments of a chain that --segments gives.
 struct ChainLayout {
-  int segments = 0;                     // equal ones
-  std::vector<double> segment_lengths;  // else [m]
+  int segments = 0;                     // number of equal segments
+  std::vector<double> segment_lengths;  // lengths of unequal segments [m]
 };
 
-/// What `dlo calibrate` is asked for.
+/// Arguments and options of `dlo calibrate`.
 struct CalibrateOptions {
   std::vector<std::string> scenes;
   std::vector<std::string> shapes;
@@ -28,7 +28,7 @@ struct CalibrateOptions {
   std::string noise;
   int natural_curvature_terms = 0;
   std::vector<std::string> motions;
-  std::string segments;  // a number, or a file
+  std::string segments;  // a number, or the name of a file
   std::string clamp_angles;
   std::string clamp_positions;
   std::string clamp_rolls;
@@ -36,7 +36,7 @@ struct CalibrateOptions {
   std::string clamp_scatter;
   std::string camera_tilt;
   bool predict = false;
-  std::string chosen;  // empty: as calibrate() has it
+  std::string chosen;  // empty: the default of calibrate()
   std::vector<std::string> holdouts;
   std::optional<double> target;
   ShapeOptions shape_options;
@@ -46,7 +46,7 @@ struct CalibrateOptions {
 
   void add_to(CLI::App& command);
 
-  /// @throws compare::InputError naming the option, as below
+  /// Check and convert the options. @throws compare::InputError naming the option
   [[nodiscard]] ChainLayout chain_layout() const;
   [[nodiscard]] compare::MaterialFitOptions material_options() const;
 

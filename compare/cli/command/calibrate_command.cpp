@@ -31,15 +31,17 @@ std::vector<compare::Scene> load_all(const std::vector<std::string>& paths,
   return scenes;
 }
 
-/// Without --format a .toml file gets what can be read again, and the text is shown as well.
+/// Writes the result. Without --format, a .toml file gets the document that can be read again, and
+/// the text is shown as well.
 void write_calibration(const OutputOptions& output, bool format_is_given, const Formats& formats) {
   const bool to_toml_file = !format_is_given && output.format == "toml";
-  // What was found is said even if it is nothing to write.
+  // The text is shown even if there is nothing to write.
   if (to_toml_file) write_output({}, formats.text());
   write_output(output, formats);
 }
 
-/// @param scenes  of all shapes; @param first  of the first shape, if each has its own
+/// Loads shapes. @param scenes  scenes of all shapes; @param first  index of the first shape, if
+/// each has its own scene
 std::vector<compare::MeasuredShape> load_shapes(const std::vector<std::string>& files,
                                                 const CalibrateOptions& options,
                                                 const std::vector<compare::Scene>& scenes,
@@ -76,7 +78,7 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
   options.plot.draw([&] { return compare::fit_picture(found.scenes, found.fit); });
 }
 
-/// Springs for chains of the scenes' own rods, nothing measured.
+/// Calibrates the springs of chains for the scenes' own rods, without measured shapes.
 void run_chains(const CalibrateOptions& options, bool format_is_given) {
   const ChainLayout layout = options.chain_layout();
   const compare::SolveOptions solve = options.overrides.solve();
@@ -143,7 +145,7 @@ void run_force_model(const CalibrateOptions& options, bool points_are_given, boo
                      .json = [&] { return json_text(force_model_json(fit)); },
                      .csv = [&] { return force_model_csv(fit); },
                      .toml = [&] { return force_model_toml(fit); }});
-  // Nobody asked for the default.
+  // The default target was not requested by the user.
   if (!fit.reached() && options.target) end_with(ExitStatus::outside_tolerance);
 }
 

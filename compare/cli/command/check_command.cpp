@@ -50,7 +50,7 @@ compare::Picture picture_of(const compare::CheckResult& report) {
   return compare::check_picture(report.scene, report.check, report.tolerance.allowed_m);
 }
 
-/// Writes the page that --report asks for.
+/// Writes the page of --report.
 template <typename Result>
 void write_page(const CheckOptions& options, const Result& result,
                 const std::function<compare::Picture()>& picture, const std::string& text) {
@@ -116,7 +116,7 @@ void run_motion(const CheckOptions& options) {
   if (options.tolerance.allowed && !result.passes) end_with(ExitStatus::outside_tolerance);
 }
 
-/// A recorded motion instead of a shape.
+/// Adds the options for a recorded motion instead of a shape.
 void add_motion_to(CLI::App& command, CheckOptions& options) {
   const OptionGroup group(command, "Recorded motion");
   CLI::Option* motion =
@@ -130,7 +130,7 @@ void add_motion_to(CLI::App& command, CheckOptions& options) {
                 "with --motion: hold it against the rod with its inertia, not at rest")
       ->needs(motion);
   options.damping.add_to(command, motion);
-  constexpr double most = 1e12;  // s, as times in files
+  constexpr double most = 1e12;  // [s], the limit of times in files
   command
       .add_option("--from", options.moving.from,
                   "with --motion: when the rod's motion begins [s], default the recording's first "

@@ -5,9 +5,9 @@
 
 namespace dlo::cli {
 
-// Each adds its command to the application and runs it when it is chosen. Errors are exceptions;
-// report_exception() turns them into messages and exit statuses. A result outside a tolerance is
-// printed, then end_with(ExitStatus::outside_tolerance) called.
+// Each function adds its command to the application, which runs it when it is chosen. Errors are
+// exceptions; report_exception() turns them into messages and exit statuses. A result outside a
+// tolerance is printed first, then end_with(ExitStatus::outside_tolerance) is called.
 void add_init(CLI::App& app);
 void add_materials(CLI::App& app);
 void add_solve(CLI::App& app);
@@ -24,13 +24,13 @@ void add_modes(CLI::App& app);
 void add_suite(CLI::App& app);
 void add_track(CLI::App& app);
 
-/// Commands by what a user wants to do.
+/// Commands for one kind of task.
 struct Task {
   const char* what;
   std::vector<void (*)(CLI::App&)> commands;
 };
 
-/// All commands, in the order of the help.
+/// Returns all commands, in the order of the help.
 [[nodiscard]] const std::vector<Task>& tasks();
 
 }  // namespace dlo::cli

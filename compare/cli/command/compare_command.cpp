@@ -28,7 +28,7 @@ struct CompareOptions {
   std::string report;
 };
 
-/// Returns a row of figures: shapes and budget, beside curvature and deviation along the rod.
+/// Returns a row of figures: shapes and budget, next to curvature and deviation along the rod.
 compare::PictureRow comparison_row(const compare::Scene& scene,
                                    const compare::Comparison& comparison) {
   compare::ComparisonFigures figures = compare::comparison_figures(scene, comparison);
@@ -45,7 +45,7 @@ compare::Picture comparison_picture(const std::vector<compare::Scene>& scenes,
   return picture;
 }
 
-/// Writes the page that --report asks for.
+/// Writes the page of --report.
 void write_page(const std::string& file, const std::vector<compare::Scene>& scenes,
                 const std::vector<compare::Comparison>& comparisons) {
   if (file.empty()) return;

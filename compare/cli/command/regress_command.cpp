@@ -23,7 +23,7 @@ struct RegressOptions {
   std::string junit;
   std::string model = "force";
   bool update = false;
-  std::string growth;  // of --tolerance
+  std::string growth;  // value of --tolerance
   compare::RegressionTolerance tolerance;
   SceneOptions overrides;
   OutputOptions output;
@@ -31,7 +31,7 @@ struct RegressOptions {
 
 void run(RegressOptions options) {
   if (!options.growth.empty()) set_growth("--tolerance", options.growth, options.tolerance);
-  // An unreadable baseline is told before minutes of solving.
+  // An unreadable baseline is reported before minutes of solving.
   const std::vector<compare::BaselineCase> baseline =
       options.update ? compare::present_baseline(options.baseline)
                      : compare::load_baseline(options.baseline);

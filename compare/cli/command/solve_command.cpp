@@ -25,7 +25,7 @@ struct SolveOptions {
   std::string model;  // empty: reference_model()
   int samples = 0;
   bool all = false;
-  int equilibrium = 0;  // by its number in the list of --all; 0: that of the model
+  int equilibrium = 0;  // number in the list of --all; 0: the equilibrium of the model
   std::string near;
   SceneOptions overrides;
   PlanOptions plan;
@@ -33,7 +33,7 @@ struct SolveOptions {
   PlotOptions plot;
 };
 
-/// What a format cannot say is not dropped in silence.
+/// Reports properties that the model neglects, for formats that do not contain them.
 void warn_of_neglected(const SolveOptions& options, const compare::Solution& solution,
                        const compare::Scene& scene) {
   if (options.output.is(Format::text) || options.output.is(Format::json)) return;
@@ -52,9 +52,9 @@ void require_model_of_all(const char* option, compare::Model model, const compar
           : ""));
 }
 
-/// A shape that is not verified, at a singular point or, as the first of all that are found,
-/// unstable has been shown, which is no success. Where loads have no potential nothing more could
-/// be.
+/// Fails for a shape that was shown but is no success: not verified, at a singular point, or
+/// unstable although it is the first of all. Loads without a potential are excepted, since their
+/// equilibria cannot be verified further.
 void require_verified(const compare::Solution& solution, const compare::Scene& scene) {
   if (energy_model::succeeded(solution.status)) return;
   if (compare::is_balance_alone(scene, solution)) return;
@@ -62,8 +62,8 @@ void require_verified(const compare::Solution& solution, const compare::Scene& s
       "{}: the {} model: {}", scene.file, compare::to_string(solution.model), solution.message));
 }
 
-/// The shape of one model, of the energy model from the points of a file or by its number in the
-/// list of all equilibria if the options have one.
+/// Solves once: by one model, or by the energy model from the points of a file, or by its number in
+/// the list of all equilibria.
 compare::Solution solved_once(const SolveOptions& options, const compare::SolveOptions& solve,
                               const compare::Scene& scene, compare::Model model,
                               const std::vector<double>& arc_lengths) {
@@ -75,7 +75,7 @@ compare::Solution solved_once(const SolveOptions& options, const compare::SolveO
   return compare::solve_near(scene, compare::load_shape(options.near), solve, arc_lengths);
 }
 
-/// What is drawn: what was solved, of a rod at enough points for a smooth line.
+/// Returns the solutions to draw, with enough points of a rod for a smooth line.
 std::vector<compare::Solution> drawn_solutions(const SolveOptions& options,
                                                const compare::SolveOptions& solve,
                                                const compare::Scene& scene,

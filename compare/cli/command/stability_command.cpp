@@ -37,7 +37,8 @@ struct StabilityOptions {
   PlotOptions plot;
 };
 
-/// The paper's steppers may fail, `auto` and `implicit` may not.
+/// Whether a result is a failure of the command: `auto` and `implicit` must not fail, the paper's
+/// steppers may.
 bool fails(const StabilityResult& result) {
   const bool may_not =
       result.stepper == compare::Stepper::automatic || result.stepper == compare::Stepper::implicit;

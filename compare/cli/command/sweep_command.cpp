@@ -36,7 +36,7 @@ struct SweepOptions {
   PlotOptions plot;
 };
 
-/// What a sweep's picture shows of its results.
+/// Returns the result columns that the picture of a sweep shows.
 std::vector<std::string> drawn_results(const std::string& model) {
   if (model.starts_with("compare")) return {"rms_over_length", "effective_modulus_ratio"};
   return {"tip_x_m", "tip_y_m", "energy_J"};
@@ -62,7 +62,7 @@ void plot(const SweepOptions& options, const compare::Sweep& sweep,
   });
 }
 
-/// Rows I, I + N, ... of --part I/N, counted from 1; all rows without it.
+/// Returns the rows I, I + N, ... of --part I/N, counted from 1; all rows without --part.
 compare::RowRange chosen_rows(const std::string& part, std::int64_t rows) {
   if (part.empty()) return {0, rows};
   constexpr std::int64_t most_parts = 1'000'000'000;
@@ -86,8 +86,8 @@ compare::Sweep sweep_of(const SweepOptions& options) {
           options.scene.solve()};
 }
 
-/// By the first scene of the grid of which the model leaves something out, of its two ends; one
-/// that cannot be read says so in its row.
+/// Reports the properties that a model neglects, for the first or the last scene of the grid that
+/// has any. A scene that cannot be read is reported in its row.
 void warn_of_polygons_in(const compare::Sweep& sweep, const std::string& model) {
   const bool is_rod = model == "energy" || model == "exact";
   for (const std::int64_t row : {std::int64_t{0}, sweep.grid().size() - 1}) {
@@ -103,7 +103,7 @@ void warn_of_polygons_in(const compare::Sweep& sweep, const std::string& model) 
   }
 }
 
-/// Computes rows and writes them, each as soon as those before it are written.
+/// Computes and writes rows, each as soon as the previous ones are written.
 void write_rows(const SweepOptions& options, const compare::Sweep& sweep,
                 const compare::RowRange& rows) {
   std::optional<compare::OutputFile> file;
@@ -138,7 +138,8 @@ void write_rows(const SweepOptions& options, const compare::Sweep& sweep,
   plot(options, sweep, drawn);
 }
 
-/// One --vary may be followed by several fields; what has a "=" is one of them, not a file.
+/// Separates fields from files. One --vary may be followed by several fields; a word with "=" is a
+/// field.
 void sort_words(SweepOptions& options) {
   const auto fields = std::stable_partition(
       options.files.begin(), options.files.end(),
@@ -147,7 +148,7 @@ void sort_words(SweepOptions& options) {
   options.files.erase(fields, options.files.end());
 }
 
-/// @throws InputError if the picture cannot be drawn, before anything is computed
+/// Checks the picture before anything is computed. @throws InputError if it cannot be drawn
 void require_drawable(const SweepOptions& options) {
   options.plot.require_drawable();
   if (!options.plot.draws()) return;
@@ -209,7 +210,7 @@ void add_sweep(CLI::App& app) {
       ->type_name("I/N");
   options->plot.add_to(*command, "the results over one field, or over two,");
   options->scene.add_solvers_to(*command);
-  // It varies what a file says, before that is a scene.
+  // --calibrated cannot be applied: sweep varies the file's content before it becomes a scene.
   command->remove_option(command->get_option("--calibrated"));
   command->footer(
       "Exit status is 0 also if rows have no result: a line on standard error counts them, their\n"

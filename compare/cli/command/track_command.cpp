@@ -86,7 +86,7 @@ void add_track(CLI::App& app) {
                         const std::string& what) {
     command->add_option(name, value, what)->check(number_between(1e-6, 1e9))->type_name("HZ");
   };
-  constexpr double most = 1e12;  // s, as times in files
+  constexpr double most = 1e12;  // [s], the limit of times in files
   command
       ->add_option("--from", options->request.options.from,
                    "first time [s], default the first pose's")

@@ -25,8 +25,8 @@ struct InitOptions {
   compare::SceneChoices choices;
 };
 
-/// "my cable" is a scene of this name in my_cable.toml, a FILE.toml is a scene with the file's
-/// name.
+/// Returns the file and the scene's name: "my cable" is written to my_cable.toml, and a FILE.toml
+/// gives its name to the scene.
 std::filesystem::path file_of(const std::string& target, std::string& name) {
   const std::filesystem::path path(target);
   name = path.extension() == ".toml" ? path.stem().string() : path.filename().string();
@@ -53,7 +53,8 @@ std::string next_steps(const compare::Scene& scene, const std::string& file) {
          "  dlo check {0} --shape mine.csv      is your simulator's shape right?\n"
          "  dlo calibrate {0} -o params.toml    parameters of the force model\n",
          compare::shell_word(file));
-  constexpr double stiff = 1;  // Gamma; a level cantilever then sags by Gamma / 8 of its length
+  // Limit of Gamma; a horizontal cantilever sags by Gamma / 8 of its length.
+  constexpr double stiff = 1;
   if (scene.gamma() < stiff) {
     append(
         out,
@@ -64,7 +65,7 @@ std::string next_steps(const compare::Scene& scene, const std::string& file) {
   return out;
 }
 
-/// The scene's text; what is wrong with a value is said of the option that gave it.
+/// Returns the scene's text. Errors name the option that gave the value.
 std::string text_of(const compare::SceneChoices& choices,
                     const std::vector<compare::Material>& known) {
   try {
@@ -78,7 +79,7 @@ std::string text_of(const compare::SceneChoices& choices,
         {"rod.material.density", "--density"},
         {"gripper.direction", "--direction"}};
     for (const auto& [key, option] : options) {
-      // A material of one's own has no name.
+      // A custom material has no name.
       const bool is_given = option != std::string("--material") || choices.youngs_modulus.empty();
       if (error.key() == key && is_given) throw compare::InputError(option + error.problem());
     }
@@ -88,7 +89,7 @@ std::string text_of(const compare::SceneChoices& choices,
 
 void run(InitOptions options) {
   const std::string file = file_of(options.target, options.choices.name).string();
-  std::error_code unknown;  // writing tells what is wrong with a name
+  std::error_code unknown;  // ignored: an unusable name is reported when the file is written
   if (!options.force && std::filesystem::exists(std::filesystem::symlink_status(file, unknown))) {
     throw compare::InputError(
         fmt::format("{}: exists (allowed: another name, or --force to replace it)", file));

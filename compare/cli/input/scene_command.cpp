@@ -19,7 +19,7 @@
 namespace dlo::cli {
 namespace {
 
-/// Units as they end the names of keys, longer ends first, and as people read them.
+/// Units as suffixes of keys, longer suffixes first, and as text.
 using KeyUnit = std::pair<std::string_view, std::string_view>;
 constexpr KeyUnit key_units[] = {{"_kg_per_m3", "kg/m^3"},
                                  {"_kg_per_m2", "kg/m^2"},
@@ -37,7 +37,7 @@ constexpr KeyUnit key_units[] = {{"_kg_per_m3", "kg/m^3"},
                                  {"_N", "N"},
                                  {"_m", "m"}};
 
-/// Numbers with six digits, lists of them in brackets, words as they are.
+/// Returns a value as text: numbers with six digits, lists in brackets, strings unchanged.
 std::string json_value_text(const Json& value) {
   if (value.is_string()) return compare::display(value.get<std::string>());
   if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
@@ -47,8 +47,8 @@ std::string json_value_text(const Json& value) {
   return "[" + out + "]";
 }
 
-/// "NAME VALUE UNIT", or nothing for what the scene does not have.
-/// @param quantity  a key, whose end is the unit; or "name=key"; or "name=key:unit"
+/// Returns "NAME VALUE UNIT", or an empty string if the scene does not have the quantity.
+/// @param quantity  a key, whose suffix is the unit; or "name=key"; or "name=key:unit"
 std::string quantity_text(const Json& table, const std::string& quantity) {
   const std::size_t equals = quantity.find('=');
   const std::size_t colon = quantity.find(':');
@@ -70,7 +70,7 @@ std::string quantity_text(const Json& table, const std::string& quantity) {
          std::string(unit);
 }
 
-/// @param quantities  of quantity_text(), with commas between
+/// Returns several quantities. @param quantities  arguments of quantity_text(), separated by commas
 std::string quantities_text(const Json& table, const std::string& quantities) {
   std::string out;
   for (const std::string& quantity : CLI::detail::split(quantities, ',')) {
@@ -84,7 +84,7 @@ void add_line(std::string& out, const std::string& name, const std::string& text
   if (!text.empty()) append(out, "{:<14} {}\n", name, text);
 }
 
-/// A list's entries, counted from 1.
+/// Adds the entries of a list, counted from 1.
 void add_entries(std::string& out, const char* name, const Json& entries,
                  const std::string& quantities) {
   for (std::size_t i = 0; i < entries.size(); ++i) {
@@ -92,7 +92,7 @@ void add_entries(std::string& out, const char* name, const Json& entries,
   }
 }
 
-/// With one EI where both are the same.
+/// Returns the table with a single EI if both are equal.
 Json one_stiffness(Json table) {
   Json& EI = table["bending_stiffness_Nm2"];
   if (EI.at(0) == EI.at(1)) EI = Json(EI.at(0));
@@ -177,7 +177,7 @@ void add_force_model(std::string& out, const Json& model) {
   range_of("  joints", "joint_stiffness_Nm", "N m (EI/h)");
 }
 
-/// A scene's document (compare::scene_document) for people.
+/// Returns a scene's document (compare::scene_document) as text.
 std::string scene_text(const Json& document) {
   std::string out;
   add_line(out, "scene", json_value_text(document.at("scene")));

@@ -131,12 +131,12 @@ const std::vector<IneffectiveOptions> ineffective = {
     {"suite", {"--relative", "--absolute"}, {if_absent("--baseline")}, "--baseline FILE"},
 };
 
-/// The value of an option, or its default; the format that the output file's name asks for.
+/// Returns the value of an option or its default; for --format also the output file's extension.
 std::string value_of(const CLI::App& command, const std::string& name) {
   const CLI::Option* const option = command.get_option_no_throw(name);
   if (option == nullptr) return "";
   if (option->count() > 0) return option->results().back();
-  // A default that depends on the scene is followed by a comma and the other value.
+  // A default that depends on the scene is followed by a comma and the alternative.
   const std::string value = option->get_default_str();
   return value.substr(0, value.find(','));
 }
@@ -146,7 +146,8 @@ bool is_given(const CLI::App& command, const std::string& name) {
   return option != nullptr && (option->count() > 0 || name == "--format");
 }
 
-/// "with --model chain", "without --shape"; empty: the condition does not hold.
+/// Returns the condition in words, such as "with --model chain" or "without --shape"; empty if it
+/// does not hold.
 std::string words_of(const OptionCondition& condition, const CLI::App& command,
                      const compare::ForceModelSettings* settings) {
   const auto contains = [&](const std::string& value) {
@@ -168,7 +169,7 @@ std::string words_of(const OptionCondition& condition, const CLI::App& command,
   return fmt::format("with {} {}", condition.option, value);
 }
 
-/// Why the options of a row have no effect; empty: they have one.
+/// Returns the reason why the options of a row have no effect; empty if they have one.
 std::string why_no_effect(const IneffectiveOptions& row, const CLI::App& command,
                           const compare::ForceModelSettings* settings) {
   std::string why;
@@ -194,7 +195,7 @@ std::span<const IneffectiveOptions> ineffective_options() { return ineffective; 
 void check_effects(const CLI::App& command, const compare::ForceModelSettings* settings) {
   for (const IneffectiveOptions& row : ineffective) {
     if (!row.command.empty() && row.command != command.get_name()) continue;
-    // A statement waits until the scene is read, so that an error stays the only line.
+    // A notice is given only after the scene has been read, so that an error remains the only line.
     const bool at_scene = is_of_scene(row) || row.response == NoEffect::stated;
     if (at_scene != (settings != nullptr)) continue;
     Names named;

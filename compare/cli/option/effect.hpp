@@ -11,31 +11,31 @@ namespace dlo::cli {
 
 /// A condition on the value of an option.
 struct OptionCondition {
-  std::string option;  ///< its long name; "law": the law of the scene's force model
-  /// Values with which the condition holds; none: the option is not given. `any_value`: it is
+  std::string option;  ///< long name of the option; "law": the law of the scene's force model
+  /// Values for which the condition holds; empty: the option is not given; `any_value`: it is
   /// given.
   std::vector<std::string> values;
 };
 inline constexpr const char* any_value = "*";
-/// Stands for every value that is a whole number.
+/// Placeholder for every value that is an integer.
 inline constexpr const char* whole_number = "N";
 
 enum class NoEffect { refused, stated };
 
 /// Options of a command that have no effect if all conditions hold.
 struct IneffectiveOptions {
-  std::string command;  ///< empty: of every command
-  /// Long names. "--format" stands for its value, which the command then cannot write.
+  std::string command;  ///< empty: every command
+  /// Long names. "--format" stands for its value, a format that the command cannot write then.
   std::vector<std::string> options;
   std::vector<OptionCondition> conditions;
   std::string allowed;
   NoEffect response = NoEffect::refused;
 };
 
-/// All options that have no effect under some condition.
+/// Returns all options that have no effect under some condition.
 [[nodiscard]] std::span<const IneffectiveOptions> ineffective_options();
 
-/// Refuses or reports the options of a command that have no effect, before anything is computed.
+/// Refuses or reports given options of a command that have no effect, before anything is computed.
 /// @param settings  force model of the loaded scene: rows with a condition on "law" and rows that
 ///                  are stated are checked; null: all other rows are
 /// @throws compare::InputError with the options, the conditions and what is allowed

@@ -4,13 +4,13 @@
 
 namespace dlo::cli {
 
-/// What the command ends with.
+/// Exit status of a command.
 enum class ExitStatus : int {
   good = 0,
   outside_tolerance = 1,
   bad_input = 2,
   not_converged = 3,
-  no_resources = 4,  ///< and our own mistakes
+  no_resources = 4,  ///< also for internal errors
   not_written = 5,
 };
 

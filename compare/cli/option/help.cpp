@@ -15,8 +15,8 @@ namespace {
 constexpr std::size_t name_width = 28;
 constexpr std::size_t command_width = 14;
 
-/// CLI11's type name is TYPE, then :VALIDATOR for each; the validators that we use are {a,b,c} and
-/// "TYPE in [low - high]".
+/// Reads CLI11's type name, which is TYPE, followed by :VALIDATOR for each validator. The
+/// validators in use are {a,b,c} and "TYPE in [low - high]".
 void read_type(const std::string& type, OptionText& text) {
   std::istringstream parts(type);
   std::getline(parts, text.value, ':');
@@ -27,7 +27,7 @@ void read_type(const std::string& type, OptionText& text) {
     } else if (range != std::string::npos) {
       const std::string limits = part.substr(range + 5, part.size() - range - 6);
       const std::size_t dash = limits.find(" - ");
-      // The largest double: whatever is finite is allowed.
+      // The largest double means that every finite number is allowed.
       const std::string largest = fmt::format("{:g}", std::numeric_limits<double>::max());
       const std::string low = limits.substr(0, dash);
       const std::string high = limits.substr(dash + 3);
@@ -40,7 +40,7 @@ void read_type(const std::string& type, OptionText& text) {
   }
 }
 
-/// "  name      description", the description wrapped.
+/// Returns "  name      description" with the description wrapped.
 std::string entry(const std::string& name, const std::string& description, std::size_t width) {
   std::string line = fmt::format("  {:<{}}", name, width - 2);
   if (name.size() + 3 > width) line = fmt::format("  {}\n{:{}}", name, "", width);
@@ -78,7 +78,7 @@ class HelpFormatter : public CLI::Formatter {
     return entry(name, text.full_description(), name_width);
   }
 
-  /// CLI11 ends every group but the last with an empty line.
+  /// Omits the empty line with which CLI11 ends every group but the last.
   [[nodiscard]] std::string make_group(std::string group, bool is_argument,
                                        std::vector<const CLI::Option*> options) const override {
     std::string text = is_argument ? "\nArguments:\n" : group + ":\n";
@@ -101,7 +101,8 @@ class HelpFormatter : public CLI::Formatter {
   }
 };
 
-/// What CLI11 did not expect: a word such as --modle, or an argument too many.
+/// Returns a message for words that CLI11 did not expect: an unknown option such as --modle, or an
+/// additional argument.
 std::string unexpected(const CLI::App& command, const std::vector<std::string>& words) {
   const auto option = std::find_if(words.begin(), words.end(),
                                    [](const std::string& word) { return word.starts_with('-'); });
@@ -113,7 +114,7 @@ std::string unexpected(const CLI::App& command, const std::vector<std::string>& 
   const std::string written = word.substr(0, word.find('='));
   for (const CLI::Option* known : options_of(command)) {
     const OptionText text = option_text(*known);
-    // Such a flag takes its value behind "=" only.
+    // Such a flag takes its value only after "=".
     const bool is_its_value =
         text.optional_value &&
         std::find(text.choices.begin(), text.choices.end(), word) != text.choices.end();
@@ -202,7 +203,8 @@ std::string parse_message(const CLI::App& app, const CLI::ParseError& error) {
   if (chosen.empty()) return error.what();
   const CLI::App& command = *chosen.front();
   const std::vector<std::string> unexpected_words = app.remaining(true);
-  // An option that there is not explains more than an argument that is then missing.
+  // An unknown option explains the error better than an argument that is missing as its
+  // consequence.
   const bool unknown_option =
       std::any_of(unexpected_words.begin(), unexpected_words.end(),
                   [](const std::string& word) { return word.starts_with('-'); });

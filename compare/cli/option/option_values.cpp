@@ -29,7 +29,7 @@ void refuse_empty_values(CLI::App& app) {
   };
   for (CLI::App* command : app.get_subcommands({})) {
     for (CLI::Option* option : command->get_options()) {
-      // A transformation comes before all checks; this one changes nothing.
+      // Transformations precede all checks; this one does not change the value.
       if (option->get_type_size() > 0) option->transform(CLI::Validator(not_empty, ""));
     }
   }

@@ -6,14 +6,14 @@
 
 namespace dlo::cli {
 
-/// While it lives, options that a command gets are in a group of its help.
+/// Adds the options that a command gets during its lifetime to a group of the help.
 class OptionGroup {
  public:
   OptionGroup(CLI::App& command, const std::string& name)
       : defaults_(*command.option_defaults()), before_(defaults_.get_group()) {
     defaults_.group(name);
   }
-  // CLI11 refuses names with newlines, and this one was a group's.
+  // CLI11 refuses names with newlines; this one was already the name of a group.
   ~OptionGroup() { defaults_.group(before_); }  // NOLINT(bugprone-exception-escape)
   OptionGroup(const OptionGroup&) = delete;
   OptionGroup& operator=(const OptionGroup&) = delete;
@@ -23,19 +23,19 @@ class OptionGroup {
   std::string before_;
 };
 
-/// For an option that takes a number: in [low, high], so neither NaN nor, unless `high` is,
+/// Returns a check for numbers in [low, high]. NaN is refused, and infinity unless `high` is
 /// infinite.
 [[nodiscard]] CLI::Validator number_between(double low, double high);
 
-/// Of all commands, lets no option and no argument take an empty value, which a variable that is
-/// not set leaves in a script. Call when all options are there.
+/// Makes all commands refuse empty values of options and arguments, which result from unset
+/// variables in scripts. Must be called after all options have been added.
 void refuse_empty_values(CLI::App& app);
 
-/// The same of an option that ends with "=", behind which CLI11 would take the next word.
+/// Refuses options that end with "=", because CLI11 would take the next word as their value.
 /// @throws compare::InputError
 void require_values(const std::vector<std::string>& words);
 
-/// --with NAME=COMMAND, which may be given again; compare::parse_foreign_programs() takes them.
+/// Adds --with NAME=COMMAND, which may be repeated; compare::parse_foreign_programs() reads them.
 void add_program_options(CLI::App& command, std::vector<std::string>& programs);
 
 }  // namespace dlo::cli

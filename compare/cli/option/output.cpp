@@ -25,10 +25,10 @@ namespace {
 
 constexpr const char* standard_output = "standard output";
 
-// Of the process, as its descriptors are.
+// One for the process, as its descriptors are.
 std::atomic<RedirectedOutput*> redirected = nullptr;
 
-/// While it lives, a pipe that nobody reads does not end the process.
+/// During its lifetime, writing to a pipe that nobody reads does not end the process.
 class WithoutBrokenPipes {
  public:
   WithoutBrokenPipes() {
@@ -60,13 +60,13 @@ bool has_long_name(const CLI::Option& option, std::initializer_list<std::string>
   });
 }
 
-/// Whether the option names a file or folder to write, whatever its value.
+/// Whether the option names an output file or folder, whatever its value.
 bool is_written_file(const CLI::Option& option) {
   return has_long_name(option,
                        {"output", "junit", "paraview", "plot", "report", "markdown", "write"});
 }
 
-/// Whether the option names files that are read, as far as its help says so.
+/// Whether the option names input files, according to its help.
 bool is_read(const CLI::Option& option) {
   if (is_written_file(option)) return false;
   const OptionText text = option_text(option);
@@ -76,7 +76,7 @@ bool is_read(const CLI::Option& option) {
   return names_files(text.value) || names_files(text.names.front());
 }
 
-/// Files that are read, without those of one option.
+/// Returns the input files, except those of one option.
 std::vector<std::string> input_files_but(const CLI::App& command, const CLI::Option* omitted) {
   std::vector<std::string> files;
   for (const CLI::Option* option : command.get_options()) {
@@ -98,7 +98,7 @@ bool is_written(const CLI::App& command, const CLI::Option& option) {
 void refuse_two_outputs(const std::string& option, const std::string& file,
                         const std::vector<std::string>& others) {
   for (const std::string& other : others) {
-    // Files that are not there yet are told apart by where their names lead.
+    // Files that do not exist yet are compared by the targets of their names.
     const bool same = compare::same_file(file, other) ||
                       compare::output_target(file).path == compare::output_target(other).path;
     if (!same) continue;
@@ -108,7 +108,8 @@ void refuse_two_outputs(const std::string& option, const std::string& file,
   }
 }
 
-/// How many frames a series has, and so which files it writes, is known only when it is computed.
+/// Refuses files that might be frames of a series. The number of frames, and so the names of all
+/// its files, is unknown before the computation.
 void refuse_among_frames(const std::string& series, const std::vector<std::string>& inputs,
                          const std::vector<std::string>& outputs) {
   for (const std::vector<std::string>* files : {&inputs, &outputs}) {
@@ -174,7 +175,7 @@ void write_standard_output(std::string_view text) {
 }
 
 void close_standard_output() {
-  // One that was closed from the beginning has only been missed if something was written.
+  // A standard output that was closed from the beginning is an error only if something was written.
   if (::close(STDOUT_FILENO) == 0 || errno == EBADF || errno == EINTR) return;
   throw compare::OutputError(
       fmt::format("{}: cannot be written ({})", standard_output, std::strerror(errno)));
@@ -186,7 +187,7 @@ void write_standard_error(std::string_view text) {
   try {
     compare::write_all(STDERR_FILENO, text, "standard error");
   } catch (const compare::OutputError&) {
-    // There is nowhere left to say so, and what it is about is not worse for it.
+    // There is no other place to report this error, and the result is not affected.
     return;
   }
 }
@@ -198,7 +199,8 @@ void say_line(const std::string& message) {
 void reserve_standard_descriptors() {
   for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
     if (::fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
-    // The lowest free descriptor is this one. Standard output can then be read only.
+    // The descriptor has the lowest free number. Standard output is opened for reading only, so
+    // that writing to it fails.
     const int mode = descriptor == STDOUT_FILENO ? O_RDONLY : O_RDWR;
     if (::open("/dev/null", mode) != descriptor) return;  // without /dev there is no more to do
   }
@@ -243,7 +245,7 @@ void check_outputs(const CLI::App& command) {
             fmt::format("{} \"\": empty (allowed: the name of a folder)", name));
       }
       if (folder) continue;
-      // --update writes the baseline anew that it has read.
+      // --update rewrites the baseline that it has read.
       check_output(name, file, input_files_but(command, option));
       if (std::filesystem::is_regular_file(file, unknown) ||
           !std::filesystem::exists(file, unknown)) {
@@ -257,7 +259,7 @@ void check_outputs(const CLI::App& command) {
   for (const std::string& file : series) refuse_among_frames(file, inputs, outputs);
   if (RedirectedOutput::current() != nullptr) return;
   compare::declare_output("/dev/fd/1", standard_output);
-  // A shell that appends to an input with ">>" would let the command write behind what it reads.
+  // If a shell appends to an input by ">>", the command would write to the file that it reads.
   for (const std::string& input : inputs) {
     struct stat open {};
     struct stat read {};

@@ -33,60 +33,63 @@ struct dlo::compare::Choices<dlo::cli::Format> {
 
 namespace dlo::cli {
 
-/// --format and -o, which every command has.
+/// Options --format and -o, which every command has.
 struct OutputOptions {
   std::string format = "text";
   std::string file;
 
-  /// Whether it is one that every command has; `vtk`, `toml` and `markdown` are none of them.
+  /// Whether the format is one that every command has; `vtk`, `toml` and `markdown` are not.
   [[nodiscard]] bool is(Format wanted) const { return format == compare::to_string(wanted); }
 };
 
-/// A result in each of its formats, made when it is asked for.
+/// Functions that return a result in each of its formats, called only if needed.
 struct Formats {
   std::function<std::string()> text, json;
-  std::function<std::string()> csv = {};       ///< of a command that has it
-  std::function<std::string()> toml = {};      ///< of a command that has it
-  std::function<std::string()> markdown = {};  ///< of a command that has it
+  std::function<std::string()> csv = {};       ///< only for commands with this format
+  std::function<std::string()> toml = {};      ///< only for commands with this format
+  std::function<std::string()> markdown = {};  ///< only for commands with this format
 };
 
-/// The format of a file's extension: "csv" of shape.csv; empty unless it is one of `formats`.
+/// Returns the format of a file's extension: "csv" for shape.csv; empty unless it is one of
+/// `formats`.
 [[nodiscard]] std::string format_of_file(const std::string& file,
                                          const std::vector<std::string>& formats);
 
-/// Writes to standard output, or to the file as compare::OutputFile does.
-/// @throws compare::OutputError naming what cannot be written
+/// Writes to standard output, or to a file as compare::OutputFile does.
+/// @throws compare::OutputError naming the output that cannot be written
 void write_output(const OutputOptions& options, const std::string& content);
 
-/// The same in the format that was asked for.
+/// Writes a result in the requested format.
 void write_output(const OutputOptions& options, const Formats& formats);
 
-/// @throws compare::OutputError if it cannot be written, compare::BrokenPipe if nobody reads it
+/// Writes to standard output. @throws compare::OutputError if it cannot be written,
+/// compare::BrokenPipe if nobody reads it
 void write_standard_output(std::string_view text);
-/// The last chance to learn that something was not written. @throws compare::OutputError
+/// Closes standard output, which reports delayed write errors. @throws compare::OutputError
 void close_standard_output();
 
-/// A line of the program's own on standard error, behind "dlo: ". Where nothing can be written
-/// there, nothing happens.
+/// Writes a line to standard error, after "dlo: ". Errors of this write are ignored.
 void say_line(const std::string& message);
 template <typename... Arguments>
 void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   say_line(fmt::format(format, std::forward<Arguments>(arguments)...));
 }
-/// A text on standard error as it is; where it cannot be written nothing happens, not even SIGPIPE.
+/// Writes a text to standard error unchanged. Errors of this write are ignored, and SIGPIPE is not
+/// raised.
 void write_standard_error(std::string_view text);
 
-/// While it lives, what goes to standard output and standard error is appended to two texts, of all
-/// threads: one may live at a time, or one within another. Nothing is a terminal then.
+/// During its lifetime, output of all threads to standard output and standard error is appended to
+/// two texts, and neither counts as a terminal. Only one object may exist at a time, or one nested
+/// in another.
 class RedirectedOutput {
  public:
-  /// @param out, err  have to outlive it; nobody else touches them meanwhile
+  /// @param out, err  must outlive the object, and must not be used by others meanwhile
   RedirectedOutput(std::string& out, std::string& err);
   ~RedirectedOutput();
   RedirectedOutput(const RedirectedOutput&) = delete;
   RedirectedOutput& operator=(const RedirectedOutput&) = delete;
 
-  /// The one that is in force, null if there is none.
+  /// Returns the innermost object, or null if there is none.
   [[nodiscard]] static RedirectedOutput* current();
 
   void append_out(std::string_view text);
@@ -95,26 +98,26 @@ class RedirectedOutput {
  private:
   std::string& out_;
   std::string& err_;
-  std::mutex writing_;  ///< threads of a scheduler write warnings
+  std::mutex writing_;  ///< threads of a scheduler may write warnings
   RedirectedOutput* before_;
 };
 
-/// Descriptors 0 to 2 that the caller has closed: nothing that is opened later may take their
-/// place. Writing to a standard output that was closed stays an error.
+/// Opens descriptors 0 to 2 if the caller has closed them, so that no file opened later gets their
+/// numbers. Writing to a standard output that was closed remains an error.
 void reserve_standard_descriptors();
 
-/// Refuses an output before anything is computed: one that cannot be written, or that is an input.
-/// @param option  that named it, for messages
+/// Refuses an output that cannot be written, or that is an input, before anything is computed.
+/// @param option  name of the option, for messages
 /// @param inputs  files that are read
 /// @throws compare::InputError
 void check_output(const std::string& option, const std::string& file,
                   const std::vector<std::string>& inputs);
 
-/// check_output() for every file that the command's options name, standard output included.
-/// A folder is its command's own business.
+/// Calls check_output() for every file that the command's options name, including standard output.
+/// Commands check folders themselves.
 void check_outputs(const CLI::App& command);
 
-/// Files that the command's arguments and options name for reading.
+/// Returns the files that the command's arguments and options name for reading.
 [[nodiscard]] std::vector<std::string> input_files(const CLI::App& command);
 
 }  // namespace dlo::cli

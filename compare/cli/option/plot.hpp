@@ -11,33 +11,33 @@
 
 namespace dlo::cli {
 
-/// A picture drawn by gnuplot, as the bytes of its file.
-/// @throws compare::OutputError, which says `option`
+/// Returns a picture drawn by gnuplot, as the content of its file.
+/// @throws compare::OutputError naming `option`
 [[nodiscard]] std::string drawn_picture(const compare::Picture& picture,
                                         compare::PictureFormat format, const std::string& option);
 
-/// Draws each figure of a picture for a page; one that cannot be drawn has the reason.
-/// @param name  begins the pictures' identifiers, unique in the page
+/// Draws each figure of a picture for a page; a figure that cannot be drawn has the reason instead.
+/// @param name  prefix of the pictures' identifiers, unique in the page
 [[nodiscard]] std::vector<compare::PagePicture> page_pictures(const compare::Picture& picture,
                                                               const std::string& name,
                                                               const std::string& option);
 
-/// --plot FILE: a picture of the result, beside the result itself.
+/// Option --plot FILE: a picture of the result, in addition to the result.
 class PlotOptions {
  public:
-  /// @param what  is drawn, for the help
-  /// @return the option
+  /// Adds the option. @param what  content of the picture, for the help
+  /// @return the new option
   CLI::Option* add_to(CLI::App& command, const std::string& what);
 
-  /// Whether a file is asked for.
+  /// Whether a picture is requested.
   [[nodiscard]] bool draws() const { return !file_.empty(); }
 
-  /// Checks before anything is computed that the ending is one that can be drawn, and that gnuplot
-  /// is installed. @throws compare::InputError
+  /// Checks that the file name extension is a supported format and that gnuplot is installed,
+  /// before anything is computed. @throws compare::InputError
   void require_drawable() const;
 
-  /// Draws into the file, which is replaced when the picture is whole; nothing if none is asked
-  /// for. @throws compare::OutputError
+  /// Draws into the file, which is replaced once the picture is complete. Does nothing if no
+  /// picture is requested. @throws compare::OutputError
   void draw(const std::function<compare::Picture()>& picture) const;
 
  private:

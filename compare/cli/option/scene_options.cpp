@@ -30,7 +30,7 @@ constexpr double unbounded = std::numeric_limits<double>::infinity();
 constexpr const char* solvers_group = "Solvers";
 constexpr const char* force_model_group = "Force model (override the scene)";
 
-/// A quantity of an option: with a unit, or a bare number in SI.
+/// Reads a quantity of an option: with a unit, or a number in SI units.
 double option_quantity(const std::string& option, const std::string& text, Dimension dimension,
                        double below) {
   double value = 0;
@@ -132,7 +132,7 @@ void SceneOptions::add_moving_to(CLI::App& command) {
 }
 
 void SceneOptions::add_time_to(CLI::App& command) {
-  constexpr double most = 1e12;  // s, as times in files
+  constexpr double most = 1e12;  // [s], the limit of times in files
   command
       .add_option("--time", time_,
                   "of a scene that moves: as it is at this time [s], default the first pose's")

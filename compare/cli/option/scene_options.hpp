@@ -15,23 +15,23 @@
 
 namespace dlo::cli {
 
-/// Whether a command steps the force model, and so has the options that limit its steps.
+/// Whether a command makes steps of the force model, and so has the options that limit them.
 enum class Steps { made, none };
 
-/// Options that override a scene's [force_model] and steer the solvers.
+/// Options that override a scene's [force_model] and control the solvers.
 class SceneOptions {
  public:
   void add_to(CLI::App& command, Steps steps = Steps::made);
-  /// The same for a scene that is looked at while it moves: no --time.
+  /// Adds the options for a scene that is examined while it moves: without --time.
   void add_moving_to(CLI::App& command);
-  /// Only those that override [force_model], --materials and --calibrated.
+  /// Adds only --materials, --calibrated and the options that override [force_model].
   void add_settings_to(CLI::App& command);
-  /// Only those that steer the solvers, --materials and --calibrated.
+  /// Adds only --materials, --calibrated and the options that control the solvers.
   void add_solvers_to(CLI::App& command, Steps steps = Steps::made);
 
   /// Loads a scene and applies the options. @throws compare::InputError
   [[nodiscard]] compare::Scene load(const std::string& path) const;
-  /// Returns the rod of --calibrated; without that option it replaces nothing.
+  /// Returns the rod of --calibrated; without that option, a rod that replaces nothing.
   /// @throws compare::InputError
   [[nodiscard]] compare::CalibratedRod calibrated() const;
   [[nodiscard]] const compare::SolveOptions& solve() const { return solve_; }
@@ -46,13 +46,13 @@ class SceneOptions {
   const CLI::App* command_ = nullptr;
   std::string materials_, calibrated_, parameters_;
   int points_ = 0;
-  /// What the options given change, after --parameters.
+  /// Changes by the given options, applied after --parameters.
   std::vector<std::function<void(compare::ForceModelSettings&)>> changes_;
   std::optional<double> time_;
   compare::SolveOptions solve_;
 };
 
-/// --explain and --target-error.
+/// Options --explain and --target-error.
 class PlanOptions {
  public:
   void add_to(CLI::App& command);
@@ -65,24 +65,26 @@ class PlanOptions {
   compare::PlanOptions plan_;
 };
 
-/// Says on standard error what a scene that was made from a simulator's model takes for what.
+/// Reports on standard error the assumptions that were made to read a scene from a simulator's
+/// model.
 void say_assumptions(const compare::Scene& scene);
 
-/// Says on standard error that no model has the friction of an obstacle in reach.
+/// Reports on standard error that the models neglect the friction of an obstacle in reach.
 void warn_of_friction(const compare::Scene& scene);
 
-/// Says on standard error what models chain and force neglect that a scene has: twist that its
-/// grippers hold, natural curvature, friction.
+/// Reports on standard error the properties of a scene that the models chain and force neglect:
+/// twist between its grippers, natural curvature, friction.
 void warn_of_polygons(const compare::Scene& scene);
 
-/// The same of a study that has no twist where models chain and force have it.
+/// Reports on standard error that a study neglects twist, for a scene whose twist the models chain
+/// and force include.
 void warn_of_no_twist(const compare::Scene& scene, const std::string& study);
 
-/// @param formats  those that the command writes
+/// Adds --format and -o. @param formats  formats that the command writes
 void add_output_options(CLI::App& command, OutputOptions& options,
                         const std::vector<std::string>& formats = compare::names<Format>());
 
-/// Makes the extension of the output file the format of the command unless --format is given.
+/// Sets the format to the extension of the output file unless --format is given.
 void take_format_of_file(CLI::App& command, OutputOptions& options,
                          const std::vector<std::string>& formats);
 

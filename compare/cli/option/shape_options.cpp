@@ -53,7 +53,7 @@ std::string ShapeOptions::unit_hint(double polyline_m, double length) const {
   for (const std::string& unit : compare::unit_names(compare::Dimension::length)) {
     const double value = compare::parse_quantity("1 " + unit, compare::Dimension::length);
     const double share = ratio * value / given;
-    // Whole rod or a good part of it, and noise may lengthen the polyline.
+    // The shape may be a large part of the rod, and noise may lengthen the polyline.
     if (unit != unit_ && share > 0.2 && share < 2) return hint + fmt::format("--unit {}?", unit);
   }
   return hint + (short_one ? "a small piece, or --unit?" : "noise between points, or --unit?");

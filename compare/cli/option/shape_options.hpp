@@ -7,20 +7,22 @@
 
 namespace dlo::cli {
 
-/// Whether a command takes arc lengths from the chords between points, known to 1e-4 l.
+/// Whether a command accepts arc lengths from the chords between points, which are accurate to 1e-4
+/// l.
 enum class ChordLengths { offered, not_exact_enough };
 
-/// Options that say what a shape file's numbers mean.
+/// Options that define the meaning of the numbers in a shape file.
 class ShapeOptions {
  public:
-  /// @param chord  chord lengths of a whole rod are good enough for the command
+  /// Adds the options. @param chord  whether chord lengths of a whole rod are accurate enough
   void add_to(CLI::App& command, ChordLengths chord);
 
-  /// Reads a shape file in the unit that was given. @throws compare::InputError
+  /// Reads a shape file in the given unit. @throws compare::InputError
   [[nodiscard]] compare::MeasuredShape load(const std::string& path) const;
-  /// "polyline is 1/998 of the rod: --unit m?", or nothing if the unit may be right.
+  /// Returns a hint such as "polyline is 1/998 of the rod: --unit m?", or an empty string if the
+  /// unit may be right.
   [[nodiscard]] std::string unit_hint(double polyline_m, double length) const;
-  /// @throws compare::InputError with the hint if another unit is as good as certain
+  /// Checks the unit. @throws compare::InputError with the hint if another unit is almost certain
   void require_likely_unit(const compare::MeasuredShape& shape, double length) const;
   [[nodiscard]] compare::PoseFreedom pose() const {
     return compare::from_name<compare::PoseFreedom>(pose_);

@@ -16,15 +16,15 @@
 namespace dlo::cli {
 namespace {
 
-/// @throws compare::InputError if the text is no number
+/// Reads a fraction such as "1%" or 0.01. @throws compare::InputError if the text is no number
 double share_from(const std::string& text) {
   const bool percent = text.ends_with('%');
   const std::string number = percent ? text.substr(0, text.size() - 1) : text;
   return compare::parse_quantity(number, compare::Dimension::number) / (percent ? 100 : 1);
 }
 
-/// @param of       " of what", or nothing
-/// @param allowed  in words
+/// Returns a check for fractions. @param of       " of ...", or an empty string
+/// @param allowed  allowed values, in words
 CLI::Validator share_that(std::function<bool(double)> holds, std::string of, std::string allowed) {
   const auto read = [holds = std::move(holds), of = std::move(of),
                      allowed = std::move(allowed)](std::string& text) {
@@ -43,7 +43,7 @@ CLI::Validator share_that(std::function<bool(double)> holds, std::string of, std
   return {read, "SHARE"};
 }
 
-/// In m. @throws compare::InputError if it is neither a share nor a length
+/// Returns a tolerance in m. @throws compare::InputError if it is neither a fraction nor a length
 double tolerance_m(const std::string& name, const std::string& text, double length) {
   double value = 0;
   try {
@@ -85,7 +85,7 @@ std::optional<double> deflection_share(const std::string& name, const std::strin
     const double share = share_from(text.substr(0, text.size() - suffix.size()));
     if (share > 0 && share < 1) return share;
   } catch (const compare::InputError&) {
-    // Said below, as of a share that is out of range.
+    // The error is thrown below, as for a fraction that is out of range.
   }
   throw compare::InputError(fmt::format(
       "{} = {}: no share of the deflection (allowed: such as \"5% of deflection\", above 0, below "

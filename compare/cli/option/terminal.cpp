@@ -14,7 +14,7 @@
 namespace dlo::cli {
 namespace {
 
-/// The value of a variable of the environment, empty if it is not set.
+/// Returns the value of an environment variable, empty if it is not set.
 std::string_view environment(const char* name) {
   const char* value = std::getenv(name);
   return value != nullptr ? value : "";
@@ -58,7 +58,7 @@ void ProgressBar::stage(const std::string& text) {
 }
 
 void ProgressBar::draw(const std::string& line) {
-  // A line that wraps could not be erased.
+  // A wrapped line could not be erased.
   std::string shown = compare::valid_utf8(line.substr(0, columns_of_terminal(STDERR_FILENO) - 1));
   if (shown == drawn_) return;
   drawn_ = std::move(shown);

@@ -49,7 +49,7 @@ std::string summary(const Card& card) {
   return text;
 }
 
-/// What is wrong with a scene, or why it has no result; empty if it is right.
+/// Returns the causes or the problem of a scene; empty if it is right.
 std::string what_is_wrong(const CardScene& scene) {
   if (scene.status() != RunStatus::solved) {
     return fmt::format("{}: {}", compare::to_string(scene.status()),
@@ -72,7 +72,7 @@ std::string what_is_wrong(const CardScene& scene) {
   return text;
 }
 
-/// The scenes that are not right, those of one reason together, and what that is.
+/// Returns the scenes that are not right, grouped by their reason, with that reason.
 std::vector<std::pair<std::string, std::string>> wrong_scenes(const Card& card) {
   std::vector<std::pair<std::string, std::string>> reasons;
   for (const CardScene& scene : card.scenes) {
@@ -106,7 +106,7 @@ std::vector<std::string> head_of(const Card& card) {
   return head;
 }
 
-/// As a cell of Markdown has it.
+/// Escapes a text for a cell of a Markdown table.
 std::string markdown_text(const std::string& text) {
   std::string result;
   for (const char c : text) {

@@ -9,19 +9,20 @@
 
 namespace dlo::cli {
 
-/// A table of classes for each simulator, then what is wrong in which scene.
+/// Returns a table of classes for each simulator, followed by the causes of wrong scenes.
 [[nodiscard]] std::string cards_text(const std::vector<compare::Card>& cards);
 
-/// The same for a pull request.
+/// Returns the tables in Markdown, for a pull request.
 [[nodiscard]] std::string cards_markdown(const std::vector<compare::Card>& cards);
 
-/// A test case for each scene: a failure unless it is right, skipped if it is not supported.
+/// Returns JUnit XML with one test case per scene: a failure unless it is right, skipped if it is
+/// not supported.
 [[nodiscard]] std::string cards_junit(const std::vector<compare::Card>& cards);
 
 /// Draws the largest error of each class against N.
 [[nodiscard]] compare::Figure card_figure(const compare::Card& card);
 
-/// Returns a card for a page, without pictures: the causes of its wrong scenes, its numbers by
+/// Returns results of a simulator for a page, without pictures: causes of wrong scenes, numbers by
 /// class, and the wrong scenes as details.
 [[nodiscard]] compare::PageResult card_page(const compare::Card& card);
 

@@ -43,7 +43,7 @@ void write_pack(const SuiteOptions& options, const std::string& version,
   say("{} answers in {}", scenes.size(), options.pack);
 }
 
-/// Writes the page that --report asks for.
+/// Writes the page of --report.
 void write_page(const std::string& file, const std::vector<compare::Card>& cards) {
   if (file.empty()) return;
   std::vector<compare::PageResult> results;
@@ -58,7 +58,7 @@ void write_page(const std::string& file, const std::vector<compare::Card>& cards
 void write_cards(const SuiteOptions& options, const std::string& version,
                  const std::vector<compare::BatteryScene>& scenes) {
   const std::vector<compare::Simulator> simulators = compare::parse_simulators(options.simulators);
-  // An unreadable baseline is told before minutes of runs.
+  // An unreadable baseline is reported before minutes of runs.
   std::vector<compare::BaselineCase> baseline;
   if (!options.baseline.empty()) {
     baseline = options.update ? compare::present_baseline(options.baseline)

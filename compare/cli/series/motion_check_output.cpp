@@ -23,7 +23,7 @@ Json frame_error_json(const FrameError& frame) {
           {"largest_at_m", frame.largest_at_m}};
 }
 
-/// A distance in mm; 0 where it is below what the rod's own points are off.
+/// Returns a distance in mm; 0 if it is below the error of the rod's own points.
 std::string mm(const MotionCheck& check, double value) {
   return fmt::format("{:.4g} mm", compare::shown(value, check.scene.length) * 1e3);
 }
@@ -45,7 +45,7 @@ std::string model_text(const MotionCheck& check) {
                      damping.material, damping.air, damping.quadratic);
 }
 
-/// Both models, and which of them it is.
+/// Returns the errors against both models, and which model was chosen.
 std::string both_text(const MotionCheck& check) {
   std::string out = std::isfinite(check.at_rest_rms_m)
                         ? fmt::format("RMS {} from the rod at rest", mm(check, check.at_rest_rms_m))

@@ -58,7 +58,7 @@ void add_rows(std::string& out, const std::vector<MovingRow>& rows) {
   }
 }
 
-/// Against the moving energy model, and what the points are, read as physics.
+/// Adds the errors against the dynamic energy model, and the physical parameters of the points.
 void add_errors(std::string& out, const compare::MovingReport& report) {
   append(out,
          "\nAgainst the moving energy model, and Formula 19 read as points of mass m* = dt^2/c_F\n"

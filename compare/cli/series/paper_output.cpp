@@ -54,7 +54,7 @@ void add_shapes(std::string& out, const PaperReport& report) {
   }
 }
 
-/// E*/E against time for one choice of the points' weight.
+/// Adds E*/E over time for one choice of the points' weight.
 void add_creep(std::string& out, const PaperReport& report, PaperWeight weight) {
   std::vector<const compare::PaperCase*> cases;
   for (const compare::PaperCase& entry : report.cases) {

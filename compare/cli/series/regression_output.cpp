@@ -62,7 +62,7 @@ std::string baseline_update_text(const std::vector<RegressionResult>& results) {
       done = "changed";
     }
     append(out, "{:<20} {}\n", done, compare::display(result.name));
-    // Of a case that is new or gone the message says what to do, which has been done.
+    // For a new or removed case the message describes the action that --update has just taken.
     if (result.expected && result.measured)
       append(out, "{:<20} {}\n", "", compare::display(result.message));
   }

@@ -16,7 +16,7 @@ using compare::MapColumn;
 using compare::Outcome;
 using compare::StabilityResult;
 
-/// 3 significant digits at most: 812, 20k, 1.5M.
+/// Returns a count with at most 3 significant digits: 812, 20k, 1.5M.
 std::string short_count(long count) {
   const auto value = static_cast<double>(count);
   if (count < 1000) return fmt::format("{}", count);
@@ -76,7 +76,7 @@ std::string hard_cases_text(const std::vector<StabilityResult>& results, std::si
         error.empty() ? outcome_text(result) : fmt::format("{:<11}{}", outcome_text(result), error);
     append(outcomes, "{:<{}}{}", cell, last ? 0 : outcome_width, last ? "\n" : "");
     append(steps, "{:<{}}{}", short_count(result.steps), last ? 0 : steps_width, last ? "\n" : "");
-    // A refusal is the case's, not the stepper's.
+    // A refusal applies to the case, so it is printed for the first stepper only.
     const bool repeated = result.outcome == Outcome::refused && i % steppers > 0;
     if (result.note.empty() || creeping(result) || repeated) continue;
     append(notes, "    {}: {}\n",

@@ -14,17 +14,17 @@
 
 namespace dlo::cli {
 
-/// A benchmark as a person reads it.
+/// Returns a benchmark as text.
 [[nodiscard]] std::string benchmark_text(const compare::BenchmarkReport& report);
 
 [[nodiscard]] Json benchmark_json(const compare::BenchmarkReport& report);
 
 [[nodiscard]] std::string benchmark_csv(const compare::BenchmarkReport& report);
 
-/// The section on Tables 2 to 4 as a person reads it.
+/// Returns the section on Tables 2 to 4 as text.
 [[nodiscard]] std::string moving_text(const compare::MovingReport& report);
 
-/// Its lines of the CSV output: section, scene, item, quantity, value.
+/// Returns the lines of Tables 2 to 4 in the CSV output: section, scene, item, quantity, value.
 [[nodiscard]] std::string moving_csv(const compare::MovingReport& report);
 
 [[nodiscard]] Json moving_json(const compare::MovingReport& report);
@@ -33,30 +33,31 @@ namespace dlo::cli {
 
 [[nodiscard]] Json paper_json(const compare::PaperReport& report);
 
-/// One number a line: section, scene, item, quantity, value.
+/// Returns one number per line: section, scene, item, quantity, value.
 [[nodiscard]] std::string paper_csv(const compare::PaperReport& report);
 
-/// What --update did to each case of the baseline.
+/// Returns the effect of --update on each case of the baseline.
 [[nodiscard]] std::string baseline_update_text(
     const std::vector<compare::RegressionResult>& results);
 
-/// @param file  that the text goes to; empty: standard output, which may be a terminal
+/// Returns a regression as text. @param file  output file; empty: standard output, which may be a
+/// terminal
 [[nodiscard]] std::string regression_text(const std::vector<compare::RegressionResult>& results,
                                           const std::string& file);
 
-/// The same without the cases whose errors are the same.
+/// Returns a regression as text, without the cases whose errors have not changed.
 [[nodiscard]] std::string regression_changes_text(
     const std::vector<compare::RegressionResult>& results, const std::string& file);
 
-/// @param good  no case fails
+/// Returns a regression as JSON. @param good  whether no case fails
 [[nodiscard]] Json regression_json(const std::vector<compare::RegressionResult>& results,
                                    bool good);
 
 [[nodiscard]] std::string regression_csv(const std::vector<compare::RegressionResult>& results);
 
-/// The hard cases as a person reads them.
-/// @param results  of each case those of all steppers, one after the other
-/// @param steppers  how many of them
+/// Returns the hard cases as text.
+/// @param results  for each case the results of all steppers in turn
+/// @param steppers  number of steppers
 [[nodiscard]] std::string hard_cases_text(const std::vector<compare::StabilityResult>& results,
                                           std::size_t steppers);
 
@@ -64,7 +65,7 @@ namespace dlo::cli {
 
 [[nodiscard]] std::string hard_cases_csv(const std::vector<compare::StabilityResult>& results);
 
-/// The largest stable c_F, measured and predicted.
+/// Returns the largest stable c_F, measured and predicted, as text.
 [[nodiscard]] std::string stability_map_text(const compare::StabilityMap& map);
 
 [[nodiscard]] Json stability_map_json(const compare::StabilityMap& map);

@@ -40,7 +40,7 @@ std::string part_text(const ContactPart& part) {
   return fmt::format("obstacle {}, {} at s = {:.4g} m", part.obstacle + 1, kind, part.begin);
 }
 
-/// "1 touching, 2 lying"; "-" if nothing touches.
+/// Returns the contacts in words, such as "1 touching, 2 lying"; "-" if there is none.
 std::string state_text(const TrackFrame& frame, const char* separator) {
   std::string text;
   for (const ContactPart& part : frame.contacts) {
@@ -181,7 +181,8 @@ Json frame_json(const TrackFrame& frame, const compare::Scene& scene, bool point
   return result;
 }
 
-/// Columns of what grippers and obstacles exert. @param name, path  that theirs begin with
+/// Adds columns of the loads of grippers and obstacles. @param name, path  prefixes of their names
+/// and paths
 void add_forces(compare::CsvTable& table, const std::string& name, const std::string& path,
                 const compare::Scene& scene) {
   const auto add = [&](const std::string& what, const char* unit, const std::string& of,

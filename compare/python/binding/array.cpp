@@ -21,10 +21,11 @@ std::string shape_text(const py::array& array) {
   return fmt::format("({}{})", text, array.ndim() == 1 ? "," : "");
 }
 
-/// More than any function takes, asked of what is an array before it is copied.
+/// Largest number of elements that any function accepts, checked before an array is copied.
 constexpr py::ssize_t most_numbers = 3'000'000;
 
-/// Where a file is read, its name has been taken before.
+/// Refuses the name of a file in place of an array. Functions that read files have accepted it
+/// before.
 void refuse_file_name(py::handle values, const std::string& name) {
   if (!py::isinstance<py::str>(values) && !py::hasattr(values, "__fspath__")) return;
   throw compare::InputError(fmt::format(

@@ -11,32 +11,34 @@ namespace dlo::python {
 
 namespace py = pybind11;
 
-/// View of M rows of 3 numbers that `owner` keeps alive, read only. @param stride  of rows, in
-/// numbers
+/// Returns a read-only view of M rows of 3 numbers, which keeps `owner` alive. @param stride
+/// distance of rows, in numbers
 [[nodiscard]] py::array rows_view(const double* first, py::ssize_t rows, py::handle owner,
                                   py::ssize_t stride = 3);
 
-/// M x 3 view of a 3 x M matrix, read only.
+/// Returns a read-only M x 3 view of a 3 x M matrix, which keeps `owner` alive.
 [[nodiscard]] py::array points_view(const Eigen::Matrix3Xd& points, py::handle owner);
 
-/// The same of a row of numbers.
+/// Returns a read-only view of a list of numbers, which keeps `owner` alive.
 [[nodiscard]] py::array values_view(const std::vector<double>& values, py::handle owner);
 
-/// A vector of three numbers, a copy.
+/// Returns a copy of a vector of three numbers.
 [[nodiscard]] py::array vector_copy(const Eigen::Vector3d& vector);
 
-/// Points from anything that NumPy makes an array of M x 3 or M x 2 numbers of (z is then 0).
-/// @throws compare::InputError that says `name` otherwise
+/// Reads points from anything that NumPy converts to an array of M x 3 or M x 2 numbers (z is then
+/// 0).
+/// @throws compare::InputError naming `name` otherwise
 [[nodiscard]] Eigen::Matrix3Xd points_from(py::handle values, const std::string& name);
 
-/// Numbers from anything that NumPy makes an array of M numbers of. @throws compare::InputError
+/// Reads numbers from anything that NumPy converts to an array of M numbers. @throws
+/// compare::InputError
 [[nodiscard]] std::vector<double> values_from(py::handle values, const std::string& name);
 
-/// Three numbers. @throws compare::InputError
+/// Reads three numbers. @throws compare::InputError
 [[nodiscard]] Eigen::Vector3d vector_from(py::handle values, const std::string& name);
 
-/// Where to write: the user's array, which has to be writable, of float64, without gaps and of this
-/// shape, or a new one for None. @throws compare::InputError
+/// Returns the array to write to: the user's array, which must be writable, contiguous, of float64
+/// and of this shape, or a new one for None. @throws compare::InputError
 [[nodiscard]] py::array_t<double> output_array(const py::object& out,
                                                const std::vector<py::ssize_t>& shape);
 

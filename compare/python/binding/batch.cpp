@@ -22,7 +22,7 @@
 namespace dlo::python {
 namespace {
 
-/// Many rods that threads of Python share: each call has them to itself.
+/// Batch of rods that threads of Python share; calls exclude each other.
 class Batch : public MadeByItsClass {
  public:
   Batch(const std::vector<SharedScene>& scenes, int threads)

@@ -15,28 +15,28 @@
 
 namespace dlo::python {
 
-/// A scene as the reader has it, and never changed: a call that works on it without the GIL has it
-/// to itself.
+/// Scene as read, which never changes. Calls that use it without the GIL therefore need no lock.
 struct SceneData {
   compare::Scene scene;
-  /// By which each obstacle's body is larger than what its point says: the rod's radius, or 0 where
-  /// the axis touches [m].
+  /// Difference between each obstacle's body and the surface that its point defines [m]: the rod's
+  /// radius, or 0 if the axis touches.
   std::vector<double> obstacle_offsets;
-  /// Rod that the scene has in the place of its own, whose damping counts for a rod in motion.
+  /// Rod that replaces the scene's own, and whose damping applies to a rod in motion.
   compare::CalibratedRod calibrated = {};
 };
 
 using SharedScene = std::shared_ptr<SceneData>;
 
-/// Text and name of a file of materials; none: the built-in one.
+/// Text and name of a file of materials; empty: the built-in file.
 using MaterialsFile = std::optional<std::pair<std::string, std::string>>;
 
-/// What it has. @throws compare::InputError
+/// Returns the materials of the file. @throws compare::InputError
 [[nodiscard]] std::vector<compare::Material> materials_of(const MaterialsFile& file);
-/// Copies.
+/// Returns copies of the scenes.
 [[nodiscard]] std::vector<compare::Scene> scenes_of(const std::vector<SharedScene>& shared);
-/// A shape from an array of points or, as bytes, the name of a file.
-/// @param arc_length  of the points, or none;  @param name  what messages call the points
+/// Reads a shape from an array of points or, given as bytes, from the name of a file.
+/// @param arc_length  arc lengths of the points, or None;  @param name  name of the points in
+/// messages
 /// @throws compare::InputError
 [[nodiscard]] compare::MeasuredShape measured_shape(const pybind11::object& points,
                                                     const pybind11::object& arc_length,

@@ -40,7 +40,7 @@ compare::Plan plan_of(const compare::Scene& scene, double time_limit) {
   return compare::make_plan(scene, options);
 }
 
-/// A solution, and what its document needs besides.
+/// Solution with the data that its document needs.
 struct SolvedScene : Result {
   SolvedScene(SharedScene from, Solution found, double limit)
       : scene(std::move(from)), solution(std::move(found)), time_limit(limit) {}
@@ -60,7 +60,7 @@ struct SolvedScene : Result {
 
   SharedScene scene;
   Solution solution;
-  double time_limit;  ///< of the solve [s]
+  double time_limit;  ///< limit of the solve [s]
 };
 
 struct SolvedStates : Result {
@@ -82,17 +82,18 @@ struct SolvedStates : Result {
 
   SharedScene scene;
   compare::AllSolutions all;
-  double time_limit;  ///< of each solve [s]
+  double time_limit;  ///< limit of each solve [s]
 };
 
-/// Returns equal arc lengths; none for 0, so that the model chooses them.
+/// Returns equal arc lengths; for 0 an empty list, so that the model chooses them.
 std::vector<double> samples_of(const SharedScene& scene, int count) {
   return count > 0 ? compare::equal_arc_lengths(scene->scene.length, count) : std::vector<double>{};
 }
 
-/// @param model_name  empty: the scene's reference_model()
-/// @param number  of an equilibrium in the list of solve_all(), from 1; none: that of the model
-/// @param near  none, or points, a pair of points and arc lengths, or as bytes the name of a file
+/// Solves a scene. @param model_name  empty: the scene's reference_model()
+/// @param number  number of an equilibrium in the list of solve_all(), from 1; empty: the
+/// equilibrium of the model
+/// @param near  None, or points, a pair of points and arc lengths, or as bytes the name of a file
 std::shared_ptr<SolvedScene> solve(const SharedScene& scene, const std::string& model_name,
                                    int samples, const std::optional<int>& number,
                                    const py::object& near, const py::dict& limits) {
@@ -139,8 +140,8 @@ std::shared_ptr<SolvedStates> solve_all(const SharedScene& scene, int samples,
                                         options.time_limit);
 }
 
-/// Binds a view of vectors, one of each of the solution's grippers or obstacles.
-/// @param vector  of one of them
+/// Binds a view of vectors, one for each of the solution's grippers or obstacles.
+/// @param vector  member of one of them
 template <typename Class, typename Loads, typename Vector>
 void bind_rows(Class& bound, const char* name, Loads Solution::*loads, const Vector& vector,
                const char* words) {

@@ -27,7 +27,8 @@ namespace {
 using compare::RunStatus;
 using compare::SimulatorRun;
 
-/// The shape that a function of Python returns. @param made  points, and arc lengths or None
+/// Returns the shape that a Python function has returned. @param made  points, and arc lengths or
+/// None
 compare::MeasuredShape shape_from(const py::object& made) {
   const auto pair = made.cast<py::tuple>();
   return compare::shape_of(
@@ -37,11 +38,11 @@ compare::MeasuredShape shape_from(const py::object& made) {
 
 std::string one_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
-/// A function of Python as a simulator: one call at a time, whatever thread it is from, because it
-/// need not be made for several.
+/// Python function as a simulator. Only one call is made at a time, from any thread, because the
+/// function need not be thread-safe.
 class PythonSimulator {
  public:
-  /// @param function  of a scene's text, its file and the number of points
+  /// @param function  receives a scene's text, its file and the number of points
   explicit PythonSimulator(py::object function) : function_(std::move(function)) {}
 
   [[nodiscard]] SimulatorRun run(const compare::Scene& scene, int points) {
@@ -61,7 +62,7 @@ class PythonSimulator {
       result.shape = shape_from(function_(text, file, points));
       result.status = RunStatus::solved;
     } catch (py::error_already_set& error) {
-      // What is no Exception is an end, as Ctrl-C.
+      // An exception that is no Exception, such as KeyboardInterrupt, ends the call.
       if (!error.matches(PyExc_Exception)) throw;
       if (error.matches(PyExc_NotImplementedError)) result.status = RunStatus::not_supported;
       result.problem = one_line(error.what());
@@ -75,7 +76,7 @@ class PythonSimulator {
   std::mutex calling_;
 };
 
-/// @throws compare::InputError naming what is out of range
+/// Reads card options. @throws compare::InputError naming the value that is out of range
 compare::CardOptions card_options(const py::dict& what, const std::string& name) {
   compare::CardOptions options{.points = what["points"].cast<int>(),
                                .threads = what["threads"].cast<int>(),
@@ -96,7 +97,7 @@ compare::CardOptions card_options(const py::dict& what, const std::string& name)
   return options;
 }
 
-/// A baseline, and how much an error may grow.
+/// Baseline with the tolerance of an error's growth.
 struct Gate {
   std::string file;
   bool update;
@@ -104,7 +105,8 @@ struct Gate {
   compare::RegressionTolerance tolerance;
 };
 
-/// @throws compare::InputError naming what is out of range, or the baseline's file
+/// Reads the baseline and its tolerance. @throws compare::InputError naming the value that is out
+/// of range, or the baseline's file
 std::optional<Gate> gate_of(const py::dict& what) {
   const auto file = what["baseline"].cast<std::string>();
   if (file.empty()) return std::nullopt;
@@ -118,14 +120,14 @@ std::optional<Gate> gate_of(const py::dict& what) {
               tolerance};
 }
 
-/// @param what  scenes, points, threads, time_limit, state, baseline, update, relative,
-/// absolute
-/// @param make_result  of text, JSON, Markdown, JUnit XML, HTML, what has changed, whether it
+/// Runs the benchmark set with a function.
+/// @param what  scenes, points, threads, time_limit, state, baseline, update, relative, absolute
+/// @param make_result  function of text, JSON, Markdown, JUnit XML, HTML, changes, and whether it
 /// passes
 py::object suite(const py::object& function, const std::string& name, const py::dict& what,
                  const py::object& make_result) {
   compare::CardOptions options = card_options(what, name);
-  // An unreadable baseline is told before minutes of runs.
+  // An unreadable baseline is reported before minutes of runs.
   const std::optional<Gate> gate = gate_of(what);
   PythonSimulator python(function);
   const compare::Simulator simulator{.name = name,

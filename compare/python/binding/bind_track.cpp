@@ -26,7 +26,7 @@
 namespace dlo::python {
 namespace {
 
-/// Damping of a rod in motion: of the arguments, where they are none that of `calibrated`.
+/// Returns the damping of a rod in motion: the arguments, and for None the values of `calibrated`.
 compare::RodDamping damping_of(const SharedScene& shared, const py::dict& what) {
   const auto given = [&what](const char* key) { return what[key].cast<std::optional<double>>(); };
   return cli::DampingOptions{given("damping"), given("drag"), given("quadratic_drag")}.of(
@@ -69,7 +69,7 @@ py::object track(const SharedScene& shared, const py::dict& what, const py::obje
   return result;
 }
 
-/// Rows of time, arc length, x, y, z, or the name of a file.
+/// Rows of time, arc length, x, y, z, or as bytes the name of a file.
 using RecordedRows = std::variant<py::bytes, std::vector<std::vector<double>>>;
 
 compare::MarkerMotion recorded_motion(const RecordedRows& rows, const std::string& name) {

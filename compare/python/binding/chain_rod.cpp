@@ -86,7 +86,7 @@ Eigen::Matrix3Xd moved_targets(const force_model::Rod& rod, std::size_t gripper,
   if (direction && !(direction->norm() > 0)) {
     throw InputError("direction: must not be the zero vector");
   }
-  // Not grip_targets(), which allows no more behind a gripper than a segment's half.
+  // grip_targets() is not used because it allows at most half a segment behind a gripper.
   const Eigen::Vector3d along = direction ? direction->normalized() : held.normalized();
   Eigen::Matrix3Xd targets(3, 2);
   targets.col(0) = position - behind * along;

@@ -13,12 +13,12 @@ namespace {
 
 using compare::InputError;
 
-/// How far a value is within others, and how many there have been: lists that hold themselves, or
-/// each other many times, would have no end.
+/// Depth of a value and number of values so far. Both are limited, because lists that contain
+/// themselves, or each other many times, would not end.
 struct Place {
   static constexpr long most_values = 1'000'000;
 
-  std::string path;  ///< for messages
+  std::string path;  ///< path in messages
   int depth;
   long& values;
 
@@ -58,7 +58,7 @@ std::int64_t integer_from(const py::handle& number, const std::string& path) {
 toml::table table_from(const py::dict& document, const Place& place);
 toml::array list_from(const py::handle& list, const Place& place);
 
-/// Puts a value where `put(value)` wants it.
+/// Passes a converted value to `put(value)`.
 template <typename Put>
 void place_value(const py::handle& value, const Place& place, const Put& put) {
   require_within_limits(place);
@@ -68,7 +68,7 @@ void place_value(const py::handle& value, const Place& place, const Put& put) {
     return put(table_from(py::reinterpret_borrow<py::dict>(value), place));
   }
   if (py::isinstance<py::float_>(value)) return put(value.cast<double>());
-  const bool is_array = py::hasattr(value, "tolist");  // of NumPy, and its single numbers
+  const bool is_array = py::hasattr(value, "tolist");  // arrays and scalars of NumPy
   if (is_array) return place_value(value.attr("tolist")(), place.within(), put);
   if (PyIndex_Check(value.ptr()) != 0) return put(integer_from(value, place.path));
   if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value)) {
@@ -89,7 +89,7 @@ toml::array list_from(const py::handle& list, const Place& place) {
 
 toml::table table_from(const py::dict& document, const Place& place) {
   toml::table table;
-  // What a value's tolist() does to the original is not seen.
+  // The loop uses a copy, so that a value's tolist() cannot change the dict during iteration.
   const auto items = py::reinterpret_steal<py::dict>(PyDict_Copy(document.ptr()));
   if (!items) throw py::error_already_set();
   for (const auto& [key, value] : items) {

@@ -9,12 +9,13 @@ namespace dlo::python {
 
 namespace py = pybind11;
 
-/// A scene's document as TOML. Keys that are None are left out; arrays of NumPy are lists.
-/// @param path  of the table, for messages. @throws compare::InputError for values that TOML has
-/// not
+/// Converts a scene's document to TOML. Keys whose value is None are omitted; arrays of NumPy
+/// become lists.
+/// @param path  path of the table, for messages. @throws compare::InputError for values that TOML
+/// cannot represent
 [[nodiscard]] toml::table to_toml(const py::dict& document, const std::string& path);
 
-/// The same the other way round.
+/// Converts a TOML table to a dict.
 [[nodiscard]] py::dict to_python(const toml::table& table);
 
 }  // namespace dlo::python

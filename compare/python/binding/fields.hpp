@@ -17,15 +17,15 @@ namespace dlo::python {
 
 namespace py = pybind11;
 
-/// Numbers as a dict.
+/// Returns numbers as a dict.
 [[nodiscard]] inline py::dict dict_of(const compare::Numbers& numbers) {
   py::dict dict;
   for (const auto& [name, value] : numbers) dict[py::str(name)] = value;
   return dict;
 }
 
-/// An array as an attribute: a view into the object, which it keeps alive.
-/// @param of  the array's numbers or points, of an object of the class
+/// Binds an array as an attribute: a view into the object, which it keeps alive.
+/// @param of  returns the numbers or points of an object of the class
 template <typename Object, typename... Options, typename Of>
 void bind_array(py::class_<Object, Options...>& bound, const char* name, const Of& of,
                 const char* words) {
@@ -43,7 +43,7 @@ void bind_array(py::class_<Object, Options...>& bound, const char* name, const O
 }
 
 /// Binds the fields of a record as attributes.
-/// @param of  a result of the record's type, of an object of the class
+/// @param of  returns the record of an object of the class
 template <typename Object, typename... Options, typename T, typename Of>
 void bind_fields(py::class_<Object, Options...>& bound, std::span<const compare::Field<T>> fields,
                  const Of& of) {

@@ -18,7 +18,7 @@
 namespace dlo::python {
 namespace {
 
-/// A simulation that threads of Python share: each call has it to itself.
+/// Simulation that threads of Python share; calls exclude each other.
 class ForceModel : public MadeByItsClass {
  public:
   ForceModel(SharedScene scene, const py::object& points, std::optional<double> grip_stiffness)
@@ -127,14 +127,15 @@ class ForceModel : public MadeByItsClass {
   }
 
  private:
-  /// Of a thread that has the GIL, which another one may be waiting for that has the simulation.
+  /// Lock for a thread that holds the GIL. It releases the GIL while it waits, because the thread
+  /// that uses the simulation may need it.
   class Lock {
    public:
     explicit Lock(CallMutex& mutex) : lock_(mutex, std::try_to_lock) {
       if (lock_.owns_lock()) return;
       GilReleased released;
       lock_.lock();
-      // What waits for the end of the process keeps nothing from others.
+      // A thread that waits for the end of the process must not block others.
       if (!released.take_back()) lock_.unlock();
     }
 

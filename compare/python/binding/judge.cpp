@@ -41,7 +41,7 @@ struct Check : Result {
   compare::CheckResult result;
 };
 
-/// With the scene, for its picture.
+/// Comparison with its scene, which its picture needs.
 struct Comparison : Result {
   Comparison(compare::Comparison found, SharedScene from)
       : result(std::move(found)), of(std::move(from)) {}
@@ -109,7 +109,8 @@ std::shared_ptr<Comparison> compare_scene(const SharedScene& scene, bool modulus
 
 using FitDocuments = std::tuple<std::string, std::string, std::string>;  // text, JSON, TOML
 
-/// @param pairs  of points, or a file's name, and arc lengths;  @param name  of the argument
+/// Reads shapes. @param pairs  points or a file's name, and arc lengths;  @param name  name of the
+/// argument
 std::vector<compare::MeasuredShape> shapes_of(const py::list& pairs, const char* name) {
   std::vector<compare::MeasuredShape> shapes;
   for (const py::handle& entry : pairs) {
@@ -160,7 +161,7 @@ FitDocuments calibrate_material(const std::vector<SharedScene>& scenes, const py
   try {
     toml = cli::material_toml(found);
   } catch (const compare::InputError&) {
-    // The rest of the fit is worth having without it.
+    // The rest of the fit is useful without the document.
   }
   return {compare::to_text(found), compare::to_json(found), std::move(toml)};
 }

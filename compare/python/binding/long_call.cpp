@@ -10,9 +10,9 @@ constexpr std::chrono::milliseconds between_looks(100);
 
 thread_local Signals* current = nullptr;
 
-/// Threads with a GilReleased that have not been stopped in it.
+/// Number of threads inside a GilReleased that have not been stopped there.
 std::atomic<int> calls = 0;
-/// The thread that ends the interpreter, which may still compute; none before.
+/// Thread that ends the interpreter, which may still compute; empty until then.
 std::atomic<std::thread::id> ending_thread{};
 
 bool is_at_exit(std::thread::id thread) {
@@ -20,16 +20,16 @@ bool is_at_exit(std::thread::id thread) {
   return ending != std::thread::id() && ending != thread;
 }
 
-/// A thread of a daemon, which ends with the process.
+/// Blocks a daemon thread, which ends with the process.
 [[noreturn]] void wait_for_exit() {
   for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
 void stop_calls() {
-  // One that does not look in that time does not notice the end either.
+  // A thread that does not check for signals within this time does not notice the end either.
   constexpr std::chrono::seconds longest(5);
   ending_thread = std::this_thread::get_id();
-  // Those that already wait for the GIL get it, and go on in Python.
+  // Threads that already wait for the GIL get it, and continue in Python.
   const py::gil_scoped_release released;
   const auto begin = std::chrono::steady_clock::now();
   while (calls > 0 && std::chrono::steady_clock::now() - begin < longest) {
@@ -102,7 +102,7 @@ bool Signals::stop() {
   next_look_ = now + between_looks;
   const py::gil_scoped_acquire gil;
   if (PyErr_CheckSignals() == 0) return false;
-  error_.emplace();  // takes what was raised
+  error_.emplace();  // stores the exception that was raised
   stopped_.store(true, std::memory_order_relaxed);
   return true;
 }
@@ -116,7 +116,7 @@ void Signals::rethrow() const {
 }
 
 long steps_between_looks(long points) {
-  constexpr long steps_of_a_point = 400'000;  // at some 10 ns each
+  constexpr long steps_of_a_point = 400'000;  // at about 10 ns each
   return std::max(1L, steps_of_a_point / std::max(1L, points));
 }
 

@@ -15,9 +15,9 @@ namespace dlo::python {
 
 namespace py = pybind11;
 
-/// No GIL in its scope. At the end of the interpreter Python ends a thread that asks for the GIL in
-/// a way that no destructor lets through: such a thread is stopped here instead, and waits for the
-/// end of the process.
+/// Releases the GIL during its lifetime. At the end of the interpreter, Python ends threads that
+/// request the GIL in a way that skips destructors. Such a thread is stopped here instead, and
+/// waits for the end of the process.
 class GilReleased {
  public:
   GilReleased();
@@ -25,24 +25,25 @@ class GilReleased {
   GilReleased(const GilReleased&) = delete;
   GilReleased& operator=(const GilReleased&) = delete;
 
-  /// Takes the GIL before the scope's end; false if this thread will be stopped at that.
+  /// Takes the GIL before the end of the scope; returns false if this thread will be stopped there.
   [[nodiscard]] bool take_back();
 
  private:
   PyThreadState* state_;
 };
 
-/// Has the interpreter's end stop the calls of other threads, those of daemons, and wait for that.
-/// @param module  the one that is being imported
+/// Makes the end of the interpreter stop the calls of other threads, which are daemons, and wait
+/// for it.
+/// @param module  the module that is being imported
 void stop_calls_at_exit(py::module_& module);
 
-/// What one call uses at a time. A handler of a signal, which runs within a call of its own thread,
-/// would wait for itself: it is refused.
+/// Mutex of data that one call uses at a time. A signal handler runs within a call of its own
+/// thread and would deadlock: it is refused.
 class CallMutex {
  public:
-  /// @throws std::runtime_error if this thread has it
+  /// @throws std::runtime_error if this thread owns the mutex
   void lock();
-  /// @throws std::runtime_error if this thread has it
+  /// @throws std::runtime_error if this thread owns the mutex
   [[nodiscard]] bool try_lock();
   void unlock();
 
@@ -53,8 +54,8 @@ class CallMutex {
   std::atomic<std::thread::id> owner_{};
 };
 
-/// Looks whether a signal has come, as Ctrl-C, while a computation holds no GIL. Python handles
-/// signals on its main thread only: on others it is never told to stop.
+/// Checks for signals, such as Ctrl-C, during a computation without the GIL. Python handles signals
+/// on its main thread only: on other threads stop() is always false.
 class Signals {
  public:
   Signals();
@@ -62,14 +63,15 @@ class Signals {
   Signals& operator=(const Signals&) = delete;
   ~Signals();
 
-  /// Whether a handler has raised an exception; looks ten times a second. From any thread.
+  /// Whether a handler has raised an exception; checks ten times per second. May be called from any
+  /// thread.
   [[nodiscard]] bool stop();
-  /// Throws if stop(): out of a callback.
+  /// Throws an exception if stop(), to leave a callback.
   void throw_if_stopped();
-  /// Raises what the handler has raised. With the GIL.
+  /// Raises the exception that the handler has raised. Requires the GIL.
   void rethrow() const;
 
-  /// stop() of the call that this thread is in.
+  /// Returns stop() of the call in which this thread is.
   [[nodiscard]] static bool asked();
 
  private:
@@ -80,12 +82,12 @@ class Signals {
   Signals* before_;
 };
 
-/// Steps of a force model of so many points, of all its rods together, between two looks whether a
-/// signal has come: some milliseconds, whatever the size of the model.
+/// Returns the number of steps between two checks for signals: some milliseconds for any size of
+/// the model. @param points  points of all its rods together
 [[nodiscard]] long steps_between_looks(long points);
 
-/// Runs what may take long, with the GIL released: other threads of Python go on, and Ctrl-C ends
-/// it. @param function  of the call's Signals; must not touch Python
+/// Runs a long computation with the GIL released, so that other threads of Python continue and
+/// Ctrl-C ends it. @param function  receives the call's Signals; must not use Python
 template <typename Function>
 auto run_long(const Function& function) {
   Signals signals;

@@ -7,7 +7,7 @@
 namespace dlo::python {
 namespace {
 
-/// Tics that the figure asks for; None: those that the axes choose.
+/// Returns an axis as a dict, with the figure's tics; None: tics that the axes choose.
 py::dict axis_dict(const compare::PlotAxis& laid_out, const compare::PlotAxis& described) {
   py::object tics = py::none();
   if (described.tics) {
@@ -38,7 +38,7 @@ py::dict curve_dict(const compare::PlottedCurve& curve) {
   return result;
 }
 
-/// A function of Python that is called with the result, and more.
+/// Returns a function that calls a Python function with the result and further arguments.
 auto in_python(const char* module, const char* function) {
   return [module, function](const py::args& arguments) {
     return py::module_::import(module).attr(function)(*arguments);
@@ -52,7 +52,7 @@ void bind_result(py::module_& module) {
   refuse_pickle(bound, "pickled", "its to_json(), its arrays");
   refuse_new(bound, "the functions of dlo");
   bound
-      // Never changed, so that one is as good as two.
+      // A result never changes, so a copy is the object itself.
       .def("__copy__", [](const py::object& self) { return self; })
       .def("__deepcopy__", [](const py::object& self, const py::dict& /*memo*/) { return self; })
       .def("to_json", &Result::json, "The command's document, as text.")

@@ -12,8 +12,9 @@ namespace dlo::python {
 
 namespace py = pybind11;
 
-/// Pickle's older ways would make an object without the C++ object in it, which ends the
-/// interpreter. @param what  cannot be done with it  @param instead  what is allowed
+/// Refuses pickling. Older protocols of pickle would make an object without its C++ object, whose
+/// use ends the interpreter. @param what  the refused operation  @param instead  the allowed
+/// alternative
 template <typename Class>
 void refuse_pickle(Class& bound, const char* what, const char* instead) {
   const auto refuse = [what, instead](const py::object& self,
@@ -25,9 +26,9 @@ void refuse_pickle(Class& bound, const char* what, const char* instead) {
   bound.def("__reduce_ex__", refuse).def("__reduce__", refuse);
 }
 
-/// A base of what Python makes by calling its class: an object of Class.__new__(Class) alone has no
-/// C++ object, for which pybind11 would take memory and leave it as it is when it is first used.
-/// Whoever makes one says ::new.
+/// Base of classes whose objects Python makes by calling the class. An object of
+/// Class.__new__(Class) alone has no C++ object; pybind11 would allocate it and leave it
+/// uninitialised at its first use. Bindings use ::new.
 struct MadeByItsClass {
   static void* operator new(std::size_t /*size*/) {
     throw py::type_error("not made by its class (allowed: to call the class)");
@@ -35,9 +36,9 @@ struct MadeByItsClass {
   static void operator delete(void* memory) { ::operator delete(memory); }
 };
 
-/// Of a class whose objects only functions make: an object without the C++ object in it, which
-/// Class.__new__(Class) would be, ends the interpreter when it is used.
-/// @param maker  what makes one
+/// Refuses Class.__new__ for a class whose objects are made by functions only. An object without
+/// its C++ object would end the interpreter when it is used.
+/// @param maker  function that makes one
 template <typename Class>
 void refuse_new(Class& bound, const char* maker) {
   const py::cpp_function refuse(
@@ -49,10 +50,10 @@ void refuse_new(Class& bound, const char* maker) {
       py::reinterpret_steal<py::object>(PyStaticMethod_New(py::object(refuse).ptr()));
 }
 
-/// What _plot.py draws of a panel.
+/// Returns a panel as _plot.py draws it.
 [[nodiscard]] py::dict panel_dict(const compare::Panel& described);
 
-/// A result with a shape. Never changed once it is made.
+/// Result with a shape. It never changes after its construction.
 struct Result {
   virtual ~Result() = default;
 

@@ -33,22 +33,22 @@ namespace {
 
 using compare::CellKind;
 
-/// A sweep's table, column by column.
+/// Table of a sweep, column by column.
 class Table {
  public:
   explicit Table(const std::vector<compare::SweepColumn>& columns);
 
-  /// @param cells  of a row, one for each column
+  /// Adds a row. @param cells  one for each column
   void add(const std::vector<compare::SweepCell>& cells);
 
-  /// A dict of arrays: int64 of what is whole, float64 of numbers (NaN where there is none), str of
-  /// text ("" there). With the GIL.
+  /// Returns a dict of arrays: int64 for integers, float64 for numbers (NaN if empty), str for text
+  /// ("" if empty). Requires the GIL.
   [[nodiscard]] py::dict arrays() const;
 
  private:
   struct Column {
     compare::SweepColumn is;
-    std::vector<std::int64_t> whole;  // only the one that `is` says is filled
+    std::vector<std::int64_t> whole;  // only the vector of the type `is` is used
     std::vector<double> numbers;
     std::vector<std::string> words;
   };
@@ -109,15 +109,15 @@ py::dict Table::arrays() const {
 
 using StudyDocuments = std::pair<std::string, std::string>;  // text and JSON
 
-/// Rows of a table, which is kept in memory as a whole: about half a gigabyte.
+/// Largest number of rows of a table, which is stored in memory: about half a gigabyte.
 constexpr std::int64_t largest_table = 1'000'000;
 
-/// Fields and their values.
+/// Varied fields and their values.
 using Axes =
     std::vector<std::pair<std::string, std::variant<std::vector<std::string>, std::string>>>;
 
-/// @param fields  of each axis the field, and either its values as a scene file spells them or what
-/// --vary takes
+/// Makes the grid of a sweep. @param fields  for each axis the field, and either its values as a
+/// scene file spells them or a range of --vary
 compare::Grid grid_of(const Axes& fields) {
   std::vector<compare::Axis> axes;
   for (const auto& [field, values] : fields) {
@@ -231,8 +231,8 @@ py::object modes(const SharedScene& scene, const py::dict& what, const py::objec
   return result;
 }
 
-/// @param what  model, programs, relative, absolute, tolerance  @param make_result  of text, JSON,
-/// JUnit XML
+/// Compares scenes with a baseline. @param what  model, programs, relative, absolute, tolerance
+/// @param make_result  function of text, JSON, JUnit XML
 py::object regress(const std::vector<SharedScene>& scenes, const std::string& file, bool update,
                    const py::dict& what, const py::object& make_result, const py::dict& limits) {
   const auto model = what["model"].cast<std::string>();
@@ -248,7 +248,7 @@ py::object regress(const std::vector<SharedScene>& scenes, const std::string& fi
   }
   bool written = false;
   const compare::Regression found = run_long([&](Signals& signals) {
-    // An unreadable baseline is told before minutes of solving.
+    // An unreadable baseline is reported before minutes of solving.
     const auto baseline = update ? compare::present_baseline(file) : compare::load_baseline(file);
     compare::Regression measured = compare::regress(
         scenes_of(scenes), baseline, request, [&](auto, auto) { signals.throw_if_stopped(); });
