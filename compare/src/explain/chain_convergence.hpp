@@ -19,8 +19,7 @@ enum class ChainError {
 struct ChainConvergence {
   ChainError error = ChainError::another_shape;
   double coarse_m = 0;  ///< d(N): distance of the chain [m]
-  double fine_m = 0;    ///< d(2N): distance with twice as many segments [m]; NaN if that chain did
-                        ///< not come to rest
+  double fine_m = 0;    ///< d(2N): with twice as many segments [m]; NaN if it is not at rest
   int order = 0;        ///< p: d(N) / d(2N) tends to 2^p for short segments
 };
 

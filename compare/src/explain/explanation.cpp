@@ -350,8 +350,7 @@ class Search {
   AlignOptions align_;
   double before_ = 0;
   int most_numbers_ = std::numeric_limits<int>::max();      // limit of fitted numbers
-  std::vector<std::pair<Explanation, std::string>> found_;  // with the group of which it is the
-                                                            // best
+  std::vector<std::pair<Explanation, std::string>> found_;  // with their groups
   std::optional<Explanation> best_;
   /// The shape of a file after correction of the file's errors.
   struct SaidRightly {

@@ -54,10 +54,8 @@ constexpr double same_middle = 0.1;
 
 /// Position at which a gripper holds a chain.
 struct HeldAt {
-  Eigen::Index point = 0;  ///< index of the point that it holds, or of the first point of the
-                           ///< segment
-  bool segment = false;    ///< whether a clamp holds the middle of the segment that begins at the
-                           ///< point
+  Eigen::Index point = 0;  ///< index of the held point, or of the first point of the segment
+  bool segment = false;    ///< a clamp holds the middle of the segment after the point
 };
 
 /// Returns the position at which a gripper holds the chain; std::nullopt if it holds neither a

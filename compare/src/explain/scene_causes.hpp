@@ -13,8 +13,7 @@ namespace dlo::compare {
 /// A possible error of a scene, described by numbers that are zero without the error.
 struct SceneCause {
   Eigen::VectorXd start;    ///< start of the fit
-  Eigen::VectorXd stride;   ///< strides of differences; zero: nothing is fitted, and the start is
-                            ///< the result
+  Eigen::VectorXd stride;   ///< strides of differences; zero: the start is not fitted
   double longest_step = 0;  ///< longest step of any number
   std::function<Scene(const Eigen::VectorXd&)> changed;
   std::function<std::string(const Eigen::VectorXd&)> words;

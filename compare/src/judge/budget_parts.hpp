@@ -16,8 +16,7 @@ struct NamedPart {
   const char* name;
   const char* words;  ///< name in a sentence
   BudgetPart Budget::*of;
-  bool is_neglected = false;  ///< the part only exists if the force model neglects the property of
-                              ///< this name
+  bool is_neglected = false;  ///< only present if the force model neglects this property
 };
 
 /// Returns all parts.

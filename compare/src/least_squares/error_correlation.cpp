@@ -24,8 +24,7 @@ constexpr double significant_gain = 5;
 struct Stacked {
   Eigen::VectorXd residual;
   Eigen::MatrixXd design;
-  std::vector<double> step;  // arc length since the previous row [m]; infinite where a series
-                             // begins
+  std::vector<double> step;  // arc length since the row before [m]; infinite at first rows
 };
 
 Stacked stacked(const std::vector<ResidualSeries>& series) {

@@ -14,8 +14,7 @@ namespace dlo::compare {
 /// A number that is fitted to measured shapes.
 struct Unknown {
   double stride = 0;  ///< stride of differences, in the number's unit; 0: no shape depends on it
-  std::optional<std::size_t> shape;  ///< index of the only shape that has it; empty: all shapes
-                                     ///< have it
+  std::optional<std::size_t> shape;  ///< index of the only shape that has it; empty: all have
   /// Prior standard deviation about zero; infinite: no prior.
   double known_before = std::numeric_limits<double>::infinity();
   double longest_step = std::numeric_limits<double>::infinity();  ///< longest step for which the

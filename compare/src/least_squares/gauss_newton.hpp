@@ -10,16 +10,14 @@ namespace dlo::compare {
 
 /// Options of the Gauss-Newton iteration.
 struct GaussNewtonOptions {
-  std::optional<double> noise;  ///< standard deviation of a coordinate [m]; empty: estimated from
-                                ///< the residuals
+  std::optional<double> noise;  ///< standard deviation of a coordinate [m]; empty: estimated
   double least_noise = 0;       ///< lower bound of the estimated noise [m]
   double lowest = -std::numeric_limits<double>::infinity();  ///< lower bound of the first number
   double highest = std::numeric_limits<double>::infinity();  ///< upper bound of the first number
   /// Largest step of any number, divided by its standard deviation, at which the iteration ends.
   /// With the default, four digits of numbers and intervals are final.
   double last_step = 1e-5;
-  double least_gain = 0;  ///< smallest predicted relative decrease of the deviance for which a step
-                          ///< is made
+  double least_gain = 0;  ///< smallest predicted relative decrease of the deviance in a step
 };
 
 /// Minimises the deviance of measured shapes over numbers that change their scenes: least squares

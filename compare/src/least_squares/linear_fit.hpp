@@ -10,8 +10,7 @@ namespace dlo::compare {
 /// Generalised least squares, linearised about some values of the fitted numbers, some of which
 /// have priors. All matrices are in the order of the numbers.
 struct LinearFit {
-  Eigen::MatrixXd design;    ///< innovations by the numbers, with the part that the shapes' frames
-                             ///< explain removed
+  Eigen::MatrixXd design;    ///< innovations by the numbers, minus the part that frames explain
   Eigen::VectorXd residual;  ///< innovations of points minus rod, with the frames' part removed
   Eigen::Index freedom = 0;  ///< number of rows minus rank of the frames' columns
 };

@@ -52,8 +52,7 @@ struct DynamicTrack {
   /// no such obstacle.
   std::optional<double> deepest_contact;
   int fewer_terms = 0;         ///< terms of a second run, which estimates the truncation error
-  double term_difference = 0;  ///< largest RMS distance between frames of both runs, over the
-                               ///< length [-]
+  double term_difference = 0;  ///< largest RMS distance between both runs, over the length [-]
   TrackErrors quasi_static;    ///< errors of the track's shapes
   std::optional<TrackErrors> force;  ///< errors of the force model's shapes
   double force_lag = std::numeric_limits<double>::quiet_NaN();  ///< see ForceTrackSummary::lag [s]

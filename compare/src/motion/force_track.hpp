@@ -28,8 +28,7 @@ struct ForceFrame {
 struct ForceTrackSummary {
   std::string none;          ///< why there are no frames; empty if there are
   long steps_per_frame = 0;  ///< number of steps of the stepper
-  double rest_error = 0;     ///< error of the first frame, at rest and without lag, over the length
-                             ///< [-]
+  double rest_error = 0;     ///< error of the first frame, at rest without lag, over the length [-]
   double largest = 0;        ///< error over the length [-]
   double largest_time = 0;   ///< [s]
   double mean = 0;           ///< mean error over the length [-]

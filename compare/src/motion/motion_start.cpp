@@ -199,8 +199,7 @@ std::optional<MotionStart> smooth_start(const Scene& scene, const MarkerMotion& 
     const MarkerPosition& at = rows.positions[i];
     motion->add_point(*on_rod(at.arc_length, scene.length), at.time, at.position, 1);
   }
-  constexpr double exact = 30;  // weight of a gripper, which a marker then displaces by a
-                                // thousandth
+  constexpr double exact = 30;  // weight of a gripper; a marker moves it by a thousandth
   for (const double time : times) {
     const Scene now =
         times.size() > 1 ? scene_at(scene, time, time) : scene_at(scene, begin, begin);

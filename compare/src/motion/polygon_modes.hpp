@@ -18,8 +18,7 @@ struct MovingPolygon {
   Eigen::Matrix3Xd points;         ///< at rest [m]
   std::vector<Eigen::Index> free;  ///< indices of the points that move
   Eigen::VectorXd masses;          ///< masses of these points, with what hangs on them [kg]
-  Eigen::MatrixXd stiffness;  ///< stiffness matrix of these points, in the order x, y, z of each
-                              ///< point [N/m]
+  Eigen::MatrixXd stiffness;       ///< their stiffness matrix; x, y, z of each in turn [N/m]
 };
 
 /// Computes the polygon at rest.

@@ -35,9 +35,8 @@ struct SteppedMode {
 struct SceneMode {
   energy_model::VibrationMode rod;
   std::optional<double> polygon_omega;  ///< frequency of the polygon with the rod's masses [rad/s]
-  double polygon_likeness = 0;  ///< similarity of its mode with the rod's, see PolygonModes::Match
-                                ///< [-]
-  std::optional<SteppedMode> stepped;  ///< with the scene's own c_F and c_h
+  double polygon_likeness = 0;          ///< see PolygonModes::Match::likeness [-]
+  std::optional<SteppedMode> stepped;   ///< with the scene's own c_F and c_h
 };
 
 /// Step constants with which each point has the mean mass of the rod's points, and the damping is

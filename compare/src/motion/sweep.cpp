@@ -21,8 +21,8 @@ struct Patch {
   }
 };
 
-/// Whether a point of a patch is deeper in a body than `depth`. Clearances of two points differ by no more
-/// than the distance of the points, so patches far from the body are skipped.
+/// Whether a point of a patch is deeper in a body than `depth`. Clearances of two points differ by
+/// no more than the distance of the points, so patches far from the body are skipped.
 bool goes_through(const obstacle::Body& body, const Patch& patch, double depth, int halvings) {
   const double clearance = body.clearance(patch.centre());
   if (clearance < -depth) return true;

@@ -43,12 +43,10 @@ struct ArcTarget {
   Eigen::Matrix3Xd points;
   Eigen::Matrix3Xd d1;  ///< first directors of the frames at the points; empty: arcs have no twist
   std::vector<double> s;
-  bool knows_s = false;  ///< false: the arc length of an inner point is that of the nearest point
-                         ///< of the arcs
+  bool knows_s = false;  ///< false: inner points have the arc length of the nearest point
   double length = 0;
   bool planar = false;
-  Eigen::Vector3d normal;  ///< unit normal of the points' plane, or of the plane nearest to the
-                           ///< points
+  Eigen::Vector3d normal;  ///< unit normal of the plane of the points, or nearest to them
 
   /// Whether arcs may have a twist, which only frames determine.
   [[nodiscard]] bool twists() const { return d1.cols() > 0 && !planar; }

@@ -50,8 +50,7 @@ void require_fit(const Scene& scene, const ForceModelSettings& settings, const L
 /// Masses of the points of a scene's polygon, by point [kg].
 struct PointMasses {
   std::vector<double> rod;      ///< mass of the rod
-  std::vector<double> hanging;  ///< mass that hangs on the rod (PointLoad::mass), distributed by
-                                ///< the lever rule
+  std::vector<double> hanging;  ///< mass hanging on it (PointLoad::mass), by the lever rule
 };
 
 /// Returns the masses of the points. @throws InputError in the cases of discretise()

@@ -85,8 +85,7 @@ struct MotionCheck {
   /// Lag that explains most, and the remaining RMS distance, if it explains a good part; else NaN.
   double lag = std::numeric_limits<double>::quiet_NaN();        ///< [s], > 0: the recording is late
   double lag_rms_m = std::numeric_limits<double>::quiet_NaN();  ///< [m]
-  std::vector<FrameError> frames_without_lag;  ///< for times at which the rod is known; empty: no
-                                               ///< lag
+  std::vector<FrameError> frames_without_lag;  ///< where the rod is known; empty: no lag
   FrameShapes worst_shapes;                    ///< shapes of the frame with the largest RMS
   double at_rest_rms_m = 0;  ///< RMS distance from the rod at rest [m]; NaN: there is none
   /// RMS distance from the rod with inertia [m]; NaN: there is none, and no_inertia states why.

@@ -64,8 +64,7 @@ struct LowestPolygon {
   energy_model::PolygonResult result;
   /// Rod of the discretisation; if the scene's clamps twist it, with their frames and the twist.
   force_model::Rod rod;
-  Eigen::Matrix3Xd untwisted;  ///< shape at rest without twist [m]; 3 x 0 if clamps do not twist
-                               ///< the rod
+  Eigen::Matrix3Xd untwisted;  ///< shape at rest without twist [m]; 3 x 0 if nothing twists it
   int evaluations = 0;         ///< sum over all starts
   double seconds = 0;
 };
