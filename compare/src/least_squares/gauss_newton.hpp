@@ -47,19 +47,13 @@ class GaussNewton {
   [[nodiscard]] const std::vector<ResidualSeries>& series() const { return series_; }
   [[nodiscard]] const LinearFit& linear() const { return linear_; }
   [[nodiscard]] const Eigen::MatrixXd& covariance_of_numbers() const { return posterior_; }
-  [[nodiscard]] double variance() const {
-    return variance_;
-  }  ///< variance of a coordinate's error
-     ///< [m^2]
+  /// Returns the variance of a coordinate's error [m^2].
+  [[nodiscard]] double variance() const { return variance_; }
   [[nodiscard]] double weight() const { return given_weight_.value_or(variance_); }
-  [[nodiscard]] double freedom() const {
-    return freedom_;
-  }  ///< degrees of freedom of the
-     ///< residuals
-  [[nodiscard]] const Eigen::VectorXd& before() const {
-    return before_;
-  }  ///< 1 over the prior deviations,
-     ///< see posterior()
+  /// Returns the degrees of freedom of the residuals.
+  [[nodiscard]] double freedom() const { return freedom_; }
+  /// Returns 1 over the prior standard deviations, see posterior().
+  [[nodiscard]] const Eigen::VectorXd& before() const { return before_; }
   /// Returns the sum of squares divided by the weight, plus the priors' terms.
   [[nodiscard]] double deviance() const;
 
