@@ -23,7 +23,7 @@
 
 namespace dlo::test {
 
-/// What a command left.
+/// Result of a command.
 struct Outcome {
   int status = -1;
   std::string out;
@@ -53,7 +53,7 @@ class Command : public Folder {
     return result;
   }
 
-  /// What a command writes to standard output; it has to end well.
+  /// Returns the standard output of a command, which must succeed.
   [[nodiscard]] std::string said(const std::string& arguments) const {
     const Outcome result = run(arguments);
     EXPECT_EQ(result.status, 0) << arguments << "\n" << result.err;

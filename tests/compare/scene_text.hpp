@@ -20,7 +20,7 @@ inline const std::string first_pin = gripper_text("hold = \"pin\"");
 inline const std::string steel_rod =
     "[rod]\nlength = \"50 cm\"\ndiameter = \"2 mm\"\nmaterial = \"spring_steel\"\n";
 
-/// What is wrong with a scene's text, or "no error".
+/// Returns the error in a scene's text, or "no error".
 inline std::string scene_error(const std::string& text) {
   return error_of<compare::InputError>([&] { return compare::parse_scene(text, "my.toml"); });
 }

@@ -209,7 +209,7 @@ TEST(Balance, IsRequiredOfWhatBothModelsReturn) {
   EXPECT_EQ(solve_exact(hanging).status, SolveStatus::converged);
 }
 
-// What is no equilibrium by its status keeps its message, and a saddle is one.
+// A shape whose status is not that of an equilibrium keeps its message; a saddle is an equilibrium.
 TEST(Balance, IsAskedOfEquilibriaAlone) {
   const Problem problem = heavy_cantilever(5, 10);
   Equilibrium shape = test::converged(solve_energy(problem));

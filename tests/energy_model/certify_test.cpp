@@ -211,7 +211,8 @@ TEST(Certify, RejectsGripsThatPullWithoutBound) {
   EXPECT_EQ(solution.message, "the grips would have to pull without bound");
 }
 
-// What Newton's method has left undetermined, or has not found, stays so whatever its shape is.
+// A status by which Newton's method has not determined or not found an equilibrium is kept,
+// whatever the shape.
 TEST(Certify, ClaimsNoMoreThanTheSearch) {
   SpanWorkspace workspace;
   const SpanSolution solution = arch_at_rest(workspace);

@@ -214,7 +214,7 @@ Problem with_contacts_as_loads(const Problem& problem, const Equilibrium& shape)
   return loaded;
 }
 
-/// What `converged` claims of a rod on obstacles, from its samples and forces alone.
+/// Checks the claims of `converged` for a rod on obstacles, from its samples and forces alone.
 void expect_rests(const Problem& problem, const Equilibrium& shape, double panel) {
   const double l = problem.length;
   const Samples dense = shape.sample(equal_arc_lengths(l, 7919));
@@ -240,13 +240,14 @@ void expect_rests(const Problem& problem, const Equilibrium& shape, double panel
   const BalanceDefects defects =
       test::balance_of(with_contacts_as_loads(problem, shape), shape, panel);
   EXPECT_LT(defects.force, 1e-8);
-  // What is concentrated at the end of what lies is the end of a series.
+  // Forces concentrated at the ends of a contact interval are at the end of a series, which is less
+  // accurate.
   EXPECT_LT(defects.worst(), 1e-5)
       << "force " << defects.force << ", torque " << defects.torque << ", moment " << defects.moment
       << ", grips " << defects.grips << ", integral " << defects.integral;
 }
 
-// What converges is an equilibrium with obstacles that only push, weighed from its samples; hardly
+// A converged shape is an equilibrium on obstacles that only push, checked by its samples. Hardly
 // any scene is refused, and none without a reason.
 TEST(Contact, RandomScenesRestOrSayWhyNot) {
   constexpr int scenes = test::draws(40);

@@ -21,7 +21,7 @@ using Eigen::MatrixXd;
 /// Rounding of sums of up to fifty products of numbers up to one.
 constexpr double rounding = 1e-13;
 
-/// Of the sets that this machine has.
+/// Returns the kernels of the instruction sets that this machine has.
 std::vector<const DenseKernel*> available_kernels() {
   std::vector<const DenseKernel*> available;
   for (const char* name : {"baseline", "avx2", "avx512"}) {
@@ -127,7 +127,7 @@ TEST(DenseProducts, ReflectOnBothSides) {
 }
 
 TEST(DenseProducts, TurnAnglesAsTheLibraryDoes) {
-  // Of one unit in the last place of numbers up to one, and half of one.
+  // One and a half units in the last place of numbers up to one.
   constexpr double last_place = 1.7e-16;
   Eigen::VectorXd angles(203);
   for (Index i = 0; i < angles.size(); ++i) {

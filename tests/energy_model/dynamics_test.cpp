@@ -181,14 +181,14 @@ TEST(Dynamics, SmallMotionsAreVibrationsThatDecay) {
   }
 }
 
-// Of a straight beam every mode has zeta = tau omega / 2.
+// Every mode of a straight beam has zeta = tau omega / 2.
 TEST(Dynamics, MaterialDampingIsKelvinsAndVoigts) {
   MovingRod rod = moving_cantilever(0.001);
   rod.material_damping = 0.01;
   const double omega = first_beta * first_beta;
   const double zeta = rod.material_damping * omega / 2;
   const double period = first_period / std::sqrt(1 - zeta * zeta);
-  // What else there is of modes has gone by then.
+  // The higher modes have decayed by then.
   const Dynamics result = run(rod, straight_rod(Vector3d::UnitX()), {2 * period, 4 * period});
   const double rest = test::point_at(solve_energy(rod.problem), 1).y();
   const double ratio = (tip(result.frames[1]).y() - rest) / (tip(result.frames[0]).y() - rest);
@@ -480,7 +480,8 @@ TEST(Dynamics, BothSidesOfAClampMoveAlike) {
   }
 }
 
-// Of the sampled shape, by Simpson's rule: the second span hangs at a clamp of its own.
+// The integrals over the sampled shape are computed by Simpson's rule; the second span hangs from
+// its own clamp.
 TEST(Dynamics, GravityAndLoadsAreZeroWherePointsSitAtTheFirstGrip) {
   MovingRod rod = moving_cantilever(5);
   rod.problem.grips[0].position = Vector3d(0.1, 0.3, 0);

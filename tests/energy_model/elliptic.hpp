@@ -4,8 +4,8 @@
 
 namespace dlo::energy_model {
 
-/// What a dead force at the tip does to a weightless rod that is clamped at the origin along +x.
-/// Lengths in l, energies in EI/l.
+/// Deflection of a weightless rod by a dead force at its tip; the rod is clamped at the origin
+/// along +x. Lengths are in l, energies in EI/l.
 struct TipDeflection {
   Eigen::Vector2d tip = Eigen::Vector2d::Zero();  ///< in l
   double tip_angle = 0;                           ///< of the tangent, from +x [rad]

@@ -162,8 +162,8 @@ TEST(ExactContact, ConfirmsRandomRodsOverBodies) {
   }
 }
 
-// What is wrapped around a peg has its curvature; in space, where the tension is not square to the
-// axis, it is a part of a coil.
+// The part of a rod that is wrapped around a peg has the peg's curvature. In space, where the
+// tension is not perpendicular to the axis, it is a helix.
 TEST(ExactContact, ConfirmsTautRodsAroundAPeg) {
   Confirmed seen;
   constexpr double radius = 0.05;

@@ -206,8 +206,9 @@ TEST(MultipleShooting, FindsTheArchThatLeansOutOfThePlane) {
 }
 
 TEST(MultipleShooting, FindsBothArchesBetweenClampsNearlyInLine) {
-  // Nothing but a small weight and the directions holds an arch from turning about the line of its
-  // clamps; one stable arch is on each side of the plane through it that the directions lean to.
+  // Only a small weight and the directions of the clamps determine the rotation of an arch about
+  // the line through its clamps. There is one stable arch on either side of the plane through this
+  // line to which the directions lean.
   for (const double distance : {0.3, 0.4, 0.5}) {
     for (const double aside : {0.1, 0.2, 0.3}) {
       Problem problem = two_clamps(1, distance);

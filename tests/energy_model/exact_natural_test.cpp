@@ -45,7 +45,8 @@ struct FreeHelix {
   }
 };
 
-/// Of unit length and bending stiffness, clamped at the origin in the axes' frame.
+/// Returns a rod of unit length and bending stiffness, clamped at the origin in the frame of the
+/// axes.
 Problem curved_rod(const Eigen::Vector3d& strain, double torsion = 0.8) {
   Problem problem;
   problem.length = 1;

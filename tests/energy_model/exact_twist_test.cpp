@@ -132,7 +132,7 @@ struct FramedCurve {
     return parts * rotation.angle() * rotation.axis();
   }
 
-  /// Of the frames exp(hat(spin)) R, against R.
+  /// Returns the energy of the frames exp(hat(spin)) R minus that of the frames R.
   [[nodiscard]] double cost(const std::function<Eigen::Vector3d(double)>& spin) const {
     double energy = 0;
     for (int i = 0; i < parts; ++i) {

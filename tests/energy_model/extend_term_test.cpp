@@ -96,7 +96,8 @@ TEST(ExtendTerm, DerivativesAreThoseOfTheValue) {
   }
 }
 
-// What rests with the spring rests with the force that it then has, by solve_energy().
+// A rod at rest with the spring is also at rest under the force that the spring then exerts, by
+// solve_energy().
 TEST(ExtendTerm, RestsAsUnderItsForce) {
   Problem problem = test::heavy_cantilever(5, 20);
   TetheredRod rod(problem);

@@ -1,5 +1,5 @@
-// What is said of shapes that come near a fold, against the elastica shot from its tip in long
-// double.
+// Tests of the results for shapes near a fold, against the elastica computed by shooting from its
+// tip in long double.
 
 #include <gtest/gtest.h>
 
@@ -171,7 +171,7 @@ TEST(Fold, BelowItNothingOfTheBranchIsCalledConverged) {
   for (int exponent = 4; exponent <= 15; ++exponent) {
     const Real gamma = fold.gamma * (1 - std::pow(10.0L, -exponent));
     const Equilibrium found = solve_energy(ribbon(gamma), {.start = &start});
-    // What hangs on the other side is the only one there is.
+    // The shape that hangs on the other side is the only equilibrium there.
     const bool thrown_back = tip_of(found).x() < 0;
     EXPECT_FALSE(thrown_back && succeeded(found.status)) << exponent << ": " << found.message;
   }

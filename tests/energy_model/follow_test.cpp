@@ -127,8 +127,8 @@ TEST(Keep, FollowsAPointUntilItLiesAndBack) {
     if (!rod) return ContactKind::tip;
     EXPECT_EQ(rod->status, SolveStatus::converged);
     EXPECT_EQ(rod->contacts.size(), 1U);
-    // What may be behind an obstacle. Beside a point it is so nearer than a grid of 1000 points
-    // tells.
+    // Allowed depth behind an obstacle, checked near the point of contact more closely than a grid
+    // of 1000 points does.
     EXPECT_GT(clearance_beside(*rod, rod->contacts.at(0), problem.obstacles[0].body), -1.001e-9);
     return rod->contacts.at(0).kind;
   };

@@ -92,7 +92,7 @@ TEST(FreeDirections, EigenvectorNearestZeroIsThatOnWhatIsFree) {
     const std::optional<Eigen::VectorXd> softest = free.lowest_mode_of_definite();
     ASSERT_TRUE(softest);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(free.matrix());
-    // As near as the residual over the distance to the next eigenvalue.
+    // The error is the residual divided by the distance to the next eigenvalue.
     EXPECT_NEAR(std::abs(softest->dot(eigen.eigenvectors().col(0))), 1, 1e-9) << m;
     EXPECT_NEAR(softest->norm(), 1, 1e-12);
     EXPECT_LT((jacobian * direction_by_size(free, 0)).norm(), 1e-12);

@@ -278,7 +278,7 @@ TEST(HighLoad, LowestStateIsRightAtEveryAngle) {
   }
 }
 
-// Of a rod that clamps cut into spans, wherever they are: both models and the points themselves.
+// Checks a rod that clamps divide into spans, by both models and by the points themselves.
 TEST(Clamps, LiftTheWeightOfEverySpan) {
   Problem problem = heavy_cantilever(6, 0);
   problem.grips.push_back({0.5, {0.4, 0.15, 0.05}, Eigen::Vector3d(1, 0.3, 0)});

@@ -36,7 +36,7 @@ TEST(Minimise, ThrowsWhatTheObjectiveThrowsAndStops) {
   EXPECT_EQ(objective.calls, 3);
 }
 
-/// As many steps as unknowns would be more numbers than NLopt can count.
+/// Storing as many steps as there are unknowns would need more numbers than NLopt can count.
 TEST(Minimise, OfManyUnknownsRemembersAsManyStepsAsFit) {
   constexpr Eigen::Index unknowns = 50'000;
   const Eigen::VectorXd weights = Eigen::VectorXd::LinSpaced(unknowns, 1, 100);

@@ -242,7 +242,7 @@ TEST(Sections, ObeyKirchhoffsEquationsInThePlaneAndInSpace) {
 }
 
 TEST(Sections, OfAStiffSleeveStaysStraightAndCarriesTwistOnly) {
-  // What is a thousand times as stiff bends a thousand times less.
+  // A section that is a thousand times as stiff has a thousandth of the curvature.
   Problem problem = clamped_rod();
   problem.weight_per_length = {0, -10, 0};
   problem.sections = {{0.4, 0.6, 1e3, 1e3, {0, -10, 0}}};
@@ -375,7 +375,8 @@ TEST(SectionsOfTheirOwnShape, ObeyKirchhoffsEquationsInBothModels) {
       problem.sections[1].weight_per_length = {0, -2, spatial ? 1.0 : 0};
       problem.grips[0].frame = FrameHold{Vector3d::UnitY(), 0};
       if (spatial) {
-        // What the series has there is replaced, and what a section does not say is not.
+        // A section's own natural strain replaces the series there; a strain that it does not
+        // define does not.
         problem.natural_strains = {{1, -0.5, 0.4}, {0.5, 0.3, -1}};
         problem.sections[0].natural_twist = 2;
         problem.sections[1].natural_curvature.reset();

@@ -138,9 +138,9 @@ TEST(NeutralDirections, RigidBodyModesAreNotCounted) {
   expect_determined(solve_energy(heavy_cantilever(3, -90)));
 }
 
-// Of a rod without an end cos(theta) = M / (2 (B T)^(1/2)) gives the homoclinic helix a slack
-// D = 4 sin(theta) (B / T)^(1/2) and ends that are rotated by M L / C + 4 theta (Coyne 1990). The
-// curvature falls by exp(2 sin(theta)^2 / D) from the middle to the ends.
+// For an infinite rod, cos(theta) = M / (2 (B T)^(1/2)) gives the homoclinic helix a slack D = 4
+// sin(theta) (B / T)^(1/2) and ends that are rotated by M L / C + 4 theta (Coyne 1990). The
+// curvature decreases by exp(2 sin(theta)^2 / D) from the middle to the ends.
 void expect_sliding_helix(double slack, const char* message) {
   SCOPED_TRACE(slack);
   constexpr double theta = 0.4;

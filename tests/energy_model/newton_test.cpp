@@ -24,7 +24,8 @@ Span leaning_arch(double lean) {
 
 class NewtonBesideAShape : public testing::Test {
  protected:
-  /// That of clamps which lean a little otherwise, with the unknowns of `before_`.
+  /// Returns a start for clamps with a slightly different inclination, with the unknowns of
+  /// `before_`.
   [[nodiscard]] SpanSolution beside() {
     SpanSolution solution;
     solution.terms = before_.terms;
@@ -75,7 +76,7 @@ TEST_F(NewtonBesideAShape, AFactorThatIsBorrowedStaysWhatItIs) {
   EXPECT_EQ(before_.factor->x, x);
 }
 
-// Nothing of a call is left for the next one, not even where its limit of time has passed.
+// A call leaves no state for the next one, not even after its time limit.
 TEST_F(NewtonBesideAShape, AMethodLastsForOneCall) {
   SpanSolution first = beside();
   newton_solve(first, options(NewtonMethod::newton), workspace_.newton());

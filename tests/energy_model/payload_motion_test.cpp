@@ -24,7 +24,7 @@ constexpr double carried_way = 0.6;  // m
 constexpr double carrying_time = 2;  // s
 constexpr double last_time = 4;      // s
 
-/// Of the pin: from rest to rest, smooth in its acceleration.
+/// Motion of the pin from rest to rest, with a smooth acceleration.
 struct CarriedPin {
   double place = carried_way;
   double velocity = 0;

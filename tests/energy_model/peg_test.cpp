@@ -73,8 +73,8 @@ TEST(Table, OverhangLiftsTheRodBehindTheEdge) {
     problem.obstacles = {{Body::box(centre, Eigen::Matrix3d::Identity(), size, radius)}};
     const Equilibrium rod = test::converged(solve_energy(problem));
     ASSERT_EQ(rod.contacts.size(), 2);
-    // What lies is carried by the table, not by the clamp on it, which only keeps the rod from
-    // sliding off the edge, across which it is pushed.
+    // The table carries the part of the rod that lies on it. The clamp there only prevents sliding
+    // off the edge, where the contact force is perpendicular to the rod.
     EXPECT_NEAR(rod.grips[0].force.y(), 0, 1e-6 * gamma);
     const Eigen::Vector3d weight(0, gamma, 0);
     const Eigen::Vector3d pushed = rod.contacts[0].force + rod.contacts[1].force;
@@ -131,8 +131,8 @@ TEST(Peg, RopeHasTheTensionOfTheFrictionlessCapstan) {
   EXPECT_NEAR(before - after, gamma * (ends.points(1, 0) - ends.points(1, 1)), 1e-7 * gamma);
 }
 
-// What converges is clear of the body, is pushed only, and keeps its first integral; hardly any
-// does not converge.
+// A converged shape does not penetrate the body, is only pushed by it, and conserves its first
+// integral. Hardly any scene does not converge.
 TEST(Peg, RandomRodsRestOnBodiesOrSayWhyNot) {
   int looked = 0;
   int converged = 0;

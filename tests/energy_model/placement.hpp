@@ -12,8 +12,8 @@
 
 namespace dlo::test {
 
-/// The same rod in other units and elsewhere: its lengths and stiffnesses times these, all of it
-/// turned and shifted.
+/// Similarity transformation of a rod: factors of its lengths and stiffnesses, a rotation and a
+/// translation.
 struct Placement {
   double length = 1;
   double stiffness = 1;

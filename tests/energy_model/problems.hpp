@@ -29,7 +29,7 @@ inline energy_model::Problem heavy_cantilever(double gamma, double degrees) {
   return problem;
 }
 
-/// The same, horizontal, its end clamped in the same direction `span` away.
+/// Returns a horizontal rod whose end is clamped in the same direction at the distance `span`.
 inline energy_model::Problem two_clamps(double gamma, double span) {
   energy_model::Problem problem = heavy_cantilever(gamma, 0);
   problem.grips.push_back({1, {span, 0, 0}, Eigen::Vector3d(1, 0, 0)});

@@ -66,7 +66,8 @@ inline energy_model::Problem loaded_problem(std::uint64_t number) {
   return problem;
 }
 
-/// The same rods for exact alone: they stretch, or are in a stream, or a load follows them.
+/// Returns random rods that only exact solves: they stretch, are in a stream, or have a follower
+/// load.
 inline energy_model::Problem problem_of_exact(std::uint64_t number) {
   energy_model::Problem problem =
       random_problem(number, number % 2 == 0 ? RandomSpace::plane : RandomSpace::space);

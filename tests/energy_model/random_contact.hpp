@@ -134,7 +134,7 @@ inline bool put_below(std::mt19937& random, bool space, energy_model::Problem& p
   const double lowest = (normal.transpose() * free.sample(s).points).minCoeff();
   double grips = INFINITY;
   for (const energy_model::Grip& grip : problem.grips) {
-    // What the clamp holds next to it is clear too.
+    // The parts of the rod next to the clamp are clear of the floor too.
     for (const double way : {-0.03, 0.0, 0.03}) {
       grips = std::min(grips, normal.dot(grip.position + way * *grip.direction));
     }

@@ -175,18 +175,19 @@ inline energy_model::Problem random_rod_held(RandomNumbers& random, RandomSpace 
 /// at random, in one of three moved towards each other. The same number always gives the same
 /// problem.
 ///
-/// What is twisted is one of those in space with two grips or more, all of them clamps that hold
-/// frames, turned by up to three turns, with GJ of 0.4 to 1.2 EI.
+/// A twisted problem is in space with two grips or more, all of them clamps that hold frames,
+/// rotated by up to three turns, with GJ of 0.4 to 1.2 EI.
 ///
-/// What is curved by nature has strains of up to 5/l about each axis, in one of two cases a section
-/// of another kind, a clamp at its begin and in three of four cases a clamp or a pin besides; Gamma
-/// is between 0.1 and 300. Every other one lies in the x-y plane.
+/// A curved problem has natural strains of up to 5/l about each axis, in one of two cases a section
+/// of another kind, a clamp at its beginning, and in three of four cases another clamp or pin.
+/// Gamma is between 0.1 and 300. Every other one is in the x-y plane.
 ///
-/// A strip is what is curved by nature, or in one of two cases straight, with EI about d2 of a
-/// tenth to ten times that about d1; its section is round in one of two cases.
+/// A strip is a curved problem, or in one of two cases straight, whose EI about d2 is a tenth to
+/// ten times that about d1. Its section is round in one of two cases.
 ///
-/// What is mixed is straight, has 1 to 4 grips and Gamma up to 1e5; every other one lies in the x-y
-/// plane, and of the others' clamps every other one holds a frame, turned by up to three turns.
+/// A mixed problem is straight, has 1 to 4 grips and Gamma up to 1e5. Every other one is in the x-y
+/// plane, and of the clamps of the others every other one holds a frame, rotated by up to three
+/// turns.
 inline energy_model::Problem random_problem(std::uint64_t number, RandomSpace space) {
   if (space == RandomSpace::twisted) return twisted_problem(number);
   if (space == RandomSpace::curved) return curved_problem(number);

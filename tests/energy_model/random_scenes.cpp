@@ -87,7 +87,7 @@ Options read_options(int argc, char** argv) {
   return options;
 }
 
-/// What happened to one model in all scenes of a kind.
+/// Results of one model in all scenes of a kind.
 struct Tally {
   int converged = 0;
   std::map<std::string, int> refused;  // messages

@@ -99,7 +99,8 @@ inline bool passes_torque(const energy_model::Problem& problem) {
   return first < last && !std::all_of(first, last, holds);
 }
 
-/// What exact refuses has not converged in it.
+/// Solves a problem by both models and compares the results. A problem that exact refuses counts as
+/// not converged in it.
 /// @param time_limit  of each solve [s]
 inline ComparedScene compare_models(std::uint64_t number, const energy_model::Problem& problem,
                                     double time_limit, ExactFrom from = ExactFrom::search) {

@@ -22,7 +22,7 @@ TEST_P(RandomScenes, HoldTheEnergyModelAgainstMultipleShooting) {
   const bool twisted = GetParam() == RandomSpace::twisted || GetParam() == RandomSpace::mixed;
   const std::uint64_t many = curved ? 10 : twisted ? 20 : 50;
   const std::uint64_t count = test::sanitized ? 5 : many;
-  // Of `count`, as measured: these must not grow.
+  // Numbers of refused scenes among `count`, as measured: they must not grow.
   constexpr int most_refused_by_energy = 0;
   constexpr int most_refused_by_exact = 2;
   // Multiple shooting gives up on rods that grips pull harder, even from the shape.

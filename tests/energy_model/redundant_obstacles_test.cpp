@@ -150,7 +150,7 @@ TEST(RedundantObstacles, ABlockSunkToItsTopIsNoWall) {
   EXPECT_LT(found.evaluations, 2 * alone.evaluations);
 }
 
-// What is pushed out of a block by its lower face is caught between that and the floor.
+// A rod that the lower face of a block pushes out would be caught between the block and the floor.
 TEST(RedundantObstacles, ABlockThatStandsOnTheFloorCarriesARodAsADeeperOne) {
   struct Scene {
     double gamma, pitch, depth;  // of the block's top

@@ -57,7 +57,8 @@ GripMotion evenly(const Vector3d& from, const Vector3d& velocity) {
   };
 }
 
-/// What holds of all: nothing within the obstacle, pushes only, what is lost grows, the balance.
+/// Checks what all motions satisfy: no penetration beyond `depth`, contact forces that only push,
+/// losses that grow, and the energy balance.
 void expect_contact(const MovingRod& rod, const Dynamics& result, double depth, double balance) {
   EXPECT_EQ(result.status, SolveStatus::converged) << result.message;
   EXPECT_LE(result.deepest_contact, depth);

@@ -8,7 +8,7 @@
 
 namespace dlo::test {
 
-/// What takes energy from a RigidPolygon, and what it falls on.
+/// Damping of a RigidPolygon, and the floor below it.
 struct PolygonSurroundings {
   double material_damping = 0;
   double floor = -std::numeric_limits<double>::infinity();  ///< its y
@@ -33,7 +33,7 @@ class RigidPolygon {
     for (Eigen::Index i = 0; i < points_.cols(); ++i) {
       points_(0, i) = (static_cast<double>(i) - 0.5) * segment_;
     }
-    // Of the fastest vibration, omega = 4 / segment^2, tau omega^2 dt stays below 1.
+    // For the fastest vibration, omega = 4 / segment^2, tau omega^2 dt stays below 1.
     if (around_.material_damping > 0) {
       step_ = std::min(step_, std::pow(segment_, 4) / (16 * around_.material_damping));
     }

@@ -35,7 +35,7 @@ Equilibrium near_line(const Problem& problem, const Corners& corners) {
   return energy_near(problem, s, test::start_along(corners).sample(s).points);
 }
 
-/// What `exact` makes of an equilibrium and its contacts.
+/// Returns the solution of `exact` from an equilibrium with its contacts.
 Equilibrium confirmed(const Problem& problem, const Equilibrium& rod) {
   return test::converged(solve_exact(problem, {.start = &rod}));
 }

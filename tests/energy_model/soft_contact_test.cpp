@@ -145,7 +145,7 @@ Equilibrium after_a_push(const Problem& problem, const Equilibrium& shape) {
 // back from a push out of the plane, in which a round obstacle lets it down.
 TEST(SoftContact, RandomScenesListEachEquilibriumOnceWithTheForceOfItsEnergy) {
   constexpr int scenes = 10;
-  // What shapes are off by moves energies by some 1e-9.
+  // The errors of the shapes change energies by about 1e-9.
   constexpr double h = 1e-5;
   const Eigen::Vector3d way(0, 1, 0);
   int pressed = 0;

@@ -42,7 +42,7 @@ Problem between_clamps(double stiffness) {
   return problem;
 }
 
-/// What points of two shapes are apart at most, over l = 1.
+/// Returns the largest distance of two shapes at equal arc lengths, for l = 1.
 double lines_apart(const Equilibrium& a, const Equilibrium& b) {
   return test::gap_between(a, b, equal_arc_lengths(1, 501));
 }
@@ -71,7 +71,7 @@ TEST(SoftLine, OutlivesItsProblem) {
 }
 
 TEST(SoftLine, HasTheTensionOfTheCatenary) {
-  // Of a = 0.4 from -0.3 to 0.7 of arc length.
+  // End of a catenary with the parameter a = 0.4, for arc lengths from -0.3 to 0.7.
   const double a = 0.4;
   const Vector3d end((std::asinh(0.7 / a) + std::asinh(0.3 / a)) * a, 0,
                      std::hypot(a, 0.7) - std::hypot(a, 0.3));

@@ -29,7 +29,7 @@ template <typename Result>
   return result;
 }
 
-/// What a shape, such as an equilibrium or a frame of a motion, is at one arc length [m].
+/// Samples a shape, such as an equilibrium or a frame of a motion, at one arc length [m].
 template <typename Shape>
 auto sample_at(const Shape& shape, double s) {
   return shape.sample(std::span<const double>(&s, 1));

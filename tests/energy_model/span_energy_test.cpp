@@ -71,7 +71,7 @@ Span touching_span(bool planar) {
   return span;
 }
 
-/// The same on a peg; beyond the load it is held at a point.
+/// Returns the span in contact with a peg; beyond the load a point contact holds it.
 Span span_on_peg(bool planar) {
   const double z = planar ? 0 : 0.3;
   Span span = gripped_span(planar);
@@ -210,7 +210,7 @@ TEST_P(Objective, OfAnotherSpanIsNotTheOneBefore) {
   EXPECT_EQ(point.gradient, expected.gradient);
 }
 
-// What was evaluated at one point is of that point, whatever the model is asked of others.
+// The values at a point do not change when the model is evaluated at other points.
 TEST_P(Objective, APointStaysWhatItIs) {
   SpanEnergy model(GetParam().span(), 6);
   const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(model.size(), -0.5, 0.5);

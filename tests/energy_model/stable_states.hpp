@@ -81,7 +81,8 @@ class StableStates {
     return std::atan2(v.y(), v.x());
   }
 
-  /// Of the segments: straight from end to end in angle, with up to a turn more, and waves.
+  /// Returns angles of the segments: linear from end to end, with up to one additional turn, plus
+  /// waves.
   [[nodiscard]] Eigen::VectorXd random_angles(const energy_model::Problem& problem) {
     const double begin = angle_of(*problem.grips[0].direction);
     double end = begin + unit(-2 * pi, 2 * pi);
@@ -173,7 +174,8 @@ class StableStates {
     });
   }
 
-  /// As a start: points and tangents between the segments' middles.
+  /// Returns an initial guess: points and tangents, interpolated between the middles of the
+  /// segments.
   [[nodiscard]] static energy_model::Equilibrium shape_of(const Eigen::VectorXd& angles) {
     energy_model::Equilibrium shape;
     shape.status = energy_model::SolveStatus::not_verified;

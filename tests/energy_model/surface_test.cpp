@@ -1,4 +1,5 @@
-// What keeps a rod on a surface, against differences, closed forms and the equations themselves.
+// Tests of the reactions that keep a rod on a surface, against differences, closed forms and the
+// equations themselves.
 
 #include "kirchhoff/surface.hpp"
 
@@ -98,7 +99,7 @@ TEST(Surface, ARodThatBeginsToLieStaysThere) {
   }
 }
 
-// What ends differs as the linearised equations say.
+// Differences of the end states agree with the linearised equations.
 TEST(Surface, LinearisedEquationsAreThoseOfTheRod) {
   std::mt19937 random(5);
   constexpr double h = 1e-6;

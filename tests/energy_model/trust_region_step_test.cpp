@@ -53,7 +53,8 @@ TEST(TrustRegionStep, IsTheLowestWithinTheRadius) {
           (step(middle).norm() > z.norm() ? low : high) = middle;
         }
         Eigen::VectorXd lowest = step(high);
-        // What mu cannot tell for rounding, where nothing pulls along the smallest one.
+        // Rounding leaves this component undetermined by mu if no force acts along the smallest
+        // eigenvector.
         const double others = lowest.tail(n - 1).squaredNorm();
         lowest[0] = std::copysign(std::sqrt(std::max(0.0, z.squaredNorm() - others)), lowest[0]);
         const double wanted = lowest.dot(eigenvalues.cwiseProduct(lowest)) / 2 - pull.dot(lowest);

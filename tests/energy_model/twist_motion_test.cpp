@@ -53,8 +53,8 @@ GripMotion rolling(const Grip& grip, double angle, double until) {
   return moving(grip.position, {}, {}, *grip.direction, smooth_step(0, until, angle));
 }
 
-/// What a rod comes to once a clamp has been rolled and drag has stilled it, against an
-/// equilibrium.
+/// Compares the state of a rod, after a clamp has been rolled and drag has stopped the motion, with
+/// an equilibrium.
 void expect_comes_to(const MovingRod& rod, const Problem& rolled, const char* what) {
   const Equilibrium before = solve_energy(rod.problem);
   ASSERT_TRUE(succeeded(before.status)) << what;
@@ -138,7 +138,7 @@ class SpringingLinks {
   }
 
  private:
-  /// Of the joint before a link.
+  /// Returns the moment of the joint before a link.
   template <class Angles>
   [[nodiscard]] double moment(const Angles& angle, const Angles& rate, Eigen::Index link) const {
     const double h = link > 0 ? h_ : h_ / 2;

@@ -121,8 +121,8 @@ TEST(Twist, MakesARingUnstableAtMichellsAngle) {
   EXPECT_NEAR(root(second_smallest, 0.9 * critical, 1.1 * critical), critical, 1e-7 * critical);
 }
 
-// The same by the solver: beyond that angle the ring passes through itself and loses two turns. Its
-// writhe is one turn of those that the clamps hold.
+// The solver reaches the same result: beyond that angle the ring passes through itself and loses
+// two turns. Its writhe is one of the turns that the clamps hold.
 TEST(Twist, LeavesTheRingThatItMakesUnstable) {
   const double critical = 2 * pi * std::sqrt(3.0) / 0.75;
   const Equilibrium ring = solved(turned_rod(0, critical - 0.1 + 2 * pi, 0));
@@ -156,7 +156,7 @@ TEST(Twist, OfOppositeSignGivesTheMirrorImage) {
   EXPECT_NEAR(axial_torque(left), -axial_torque(right), 1e-9);
 }
 
-// What the gripper does when it turns the end a little more is stored.
+// The work of the gripper during a small rotation of the end is stored as energy.
 TEST(Twist, TorqueIsTheDerivativeOfTheEnergyByTheTurn) {
   constexpr double h = 1e-4;
   for (const double roll : {0.5, 2.0, 4.0}) {
@@ -210,7 +210,7 @@ TEST(Twist, HoldsAHelixUnderItsWrench) {
       const Eigen::AngleAxisd ahead((twist - torsion) * grip.at, point.t);
       grip.frame->d1 = ahead * point.normal;
     }
-    // What is more than half a turn wants to be said.
+    // A rotation of more than half a turn must be stated explicitly.
     Eigen::Matrix3Xd points(3, 200);
     for (Eigen::Index i = 0; i < 200; ++i) {
       points.col(i) = helix(curvature, torsion, static_cast<double>(i) / 199).r;

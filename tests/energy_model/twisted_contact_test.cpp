@@ -43,7 +43,8 @@ Equilibrium solved_touching(const Problem& problem) {
   return result;
 }
 
-/// Of the energy by a number of the problem, by differences of solutions next to each other.
+/// Returns the derivative of the energy by a parameter of the problem, by differences of
+/// neighbouring solutions.
 template <typename Make>
 double energy_rate(const Make& make, double at) {
   constexpr double h = 1e-4;
@@ -52,7 +53,7 @@ double energy_rate(const Make& make, double at) {
          (2 * h);
 }
 
-/// What touches at points pushes as loads do.
+/// Checks the balance with contacts at points replaced by loads.
 test::BalanceDefects balance_with_contacts(Problem problem, const Equilibrium& shape) {
   for (const ContactPart& contact : shape.contacts) {
     EXPECT_NE(contact.kind, ContactKind::lying);

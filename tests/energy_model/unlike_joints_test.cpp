@@ -44,7 +44,7 @@ ChainProblem bent_chain() {
   return problem;
 }
 
-/// The same with elastic segments; it holds the first segment's points.
+/// Returns the chain with elastic segments; the points of the first segment are held.
 PolygonProblem bent_polygon() {
   const ChainProblem chain = bent_chain();
   PolygonProblem problem;
@@ -130,7 +130,7 @@ TEST(UnlikeJoints, TheStiffPolygonComesToRestWhereTheRigidChainDoes) {
     const PolygonResult polygon = test::usable(solve_polygon(problem, straight_start(problem)));
     EXPECT_TRUE(polygon.points.row(2).isZero(0));
     const double apart = (polygon.points.topRows<2>() - chain.points).cwiseAbs().maxCoeff();
-    // What is left is stretch, which falls with its stiffness: some 2 N over it.
+    // The remaining difference is stretch, about 2 N divided by the stretch stiffness.
     EXPECT_LT(apart, 20 / stretch);
     if (before > 0) {
       EXPECT_NEAR(before / apart, 10, 0.5);

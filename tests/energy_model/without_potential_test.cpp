@@ -85,7 +85,7 @@ Eigen::Vector3d followed_tip(const TipRod& rod, const Eigen::Matrix3d& clamp,
   return clamp * frame_at(y).transpose() * -y.head<3>();
 }
 
-/// The same under loads on the tangent, by Newton's method on the tip's tangent.
+/// Returns the tip under loads on the tangent, by Newton's method on the direction of the tip.
 Eigen::Vector3d dragged_tip(const TipRod& rod, const Eigen::Vector3d& direction,
                             Eigen::Vector3d tangent) {
   const auto reached = [&](const Eigen::Vector3d& t) {

@@ -1,4 +1,4 @@
-// What stops reading a file is told, whatever it is; what a file may hold is bounded.
+// Every failure to read a file is reported, and the size of a file is limited.
 
 #include "base/input_file.hpp"
 
@@ -41,7 +41,7 @@ std::string input_error_of(const std::function<void()>& read) {
 
 class Reading : public dlo::test::Folder {};
 
-/// Of every reader of a file the message for this one.
+/// Returns the messages of all readers of files for this file.
 std::vector<std::string> messages_of_all_readers(const std::string& file) {
   using namespace dlo::compare;
   return {input_error_of([&] { (void)load_scene(file); }),
@@ -155,7 +155,7 @@ TEST(TextLimits, NothingIsNestedSoDeepThatAParserOverflows) {
   const std::string brackets = "s.toml:2: brackets within brackets (allowed: 32 levels)";
   EXPECT_EQ(scene("\na = " + repeated("[", many) + repeated("]", many)), brackets);
   EXPECT_EQ(scene("\na = " + repeated("{a = ", many) + "1" + repeated("}", many)), brackets);
-  // As deep as allowed goes through the parser.
+  // The largest allowed depth reaches the parser.
   const std::string unknown = ": unknown key (allowed: distributed_load, ";
   EXPECT_TRUE(says(scene("a" + repeated(".a", 31) + " = 1"), {unknown}));
   EXPECT_TRUE(says(scene("a = " + repeated("[", 32) + repeated("]", 32)), {unknown}));

@@ -169,13 +169,13 @@ TEST(Regression, ACaseWithOtherSettingsIsChangedWithBothErrors) {
   const RegressionResult other = judge_regression({entry("a", 0.1)}, {{law, ""}}).front();
   EXPECT_EQ(other.verdict, RegressionVerdict::changed);
   EXPECT_EQ(other.message.find("law paper (baseline law hooke): RMS 20 %"), 0U) << other.message;
-  // Of several nobody knows which was which.
+  // With several candidates the replaced case is unknown.
   const std::vector<RegressionResult> several =
       judge_regression({entry("a", 0.1)}, {{entry("a", 0.1, 17), ""}, {entry("a", 0.1, 18), ""}});
   ASSERT_EQ(several.size(), 3U);
   EXPECT_EQ(several[0].verdict, RegressionVerdict::not_measured);
   EXPECT_EQ(several[1].verdict, RegressionVerdict::not_in_baseline);
-  // What is not solved is not one more that is missing.
+  // A case that is not solved does not also count as missing.
   const std::vector<RegressionResult> unsolved =
       judge_regression({entry("a", 0.1)}, {{entry("a", 0, 17), "stuck"}});
   ASSERT_EQ(unsolved.size(), 1U);

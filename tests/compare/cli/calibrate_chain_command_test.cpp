@@ -1,4 +1,4 @@
-// What the command calibrate fits of a chain and of the force model, as a user runs it.
+// Tests of calibrate for a chain and for the force model, as a user runs it.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ TEST_F(CalibrateCommand, TellsTheJointsOfAChain) {
                           " N m/rad a joint of discrete elastic rods)"}));
   expect_error(words({"calibrate", a, "--shape", path("a.csv"), "--segments 3"}), 2,
                {"--segments", "3"});
-  // Of the scene's own rod, which is that of the shape.
+  // The chain of the scene's own rod, which is also the rod of the shape.
   const std::string own = words({"calibrate", a, "--segments 12"});
   const json bare = json_of(own).at("chains");
   ASSERT_EQ(bare.size(), 3U);
@@ -40,7 +40,7 @@ TEST_F(CalibrateCommand, TellsTheJointsOfAChain) {
     EXPECT_NEAR(bare[i].at(joint).get<double>() / chains[i].at(joint).get<double>(), 1, 1e-3);
   }
   expect_error(own + " --format csv", 2, {"--segments", "csv"});
-  // Of unequal segments, as a file has them, each joint has its own.
+  // With unequal segments from a file, each joint has its own stiffness.
   std::ofstream(path("joints.csv")) << "0,0,0\n0.2,0,0\n0.5,0,0\n0.6,0,0\n0.8,0,0\n1,0,0\n";
   for (const std::string& unequal :
        {words({"calibrate", a, "--segments", path("joints.csv")}),
@@ -75,7 +75,7 @@ TEST_F(CalibrateCommand, WritesParametersThatTheOtherCommandsRead) {
     EXPECT_EQ(compared.at("points"), fit.at("parameters").at("points"));
     EXPECT_NEAR(compared.at("deviation").at("rms_over_length"),
                 fit.at("deviation").at("worst_holdout_rms_over_length"), 1e-7);
-    // What is printed of every scene is what its printed parameters give.
+    // The printed results of every scene are those of the printed parameters.
     const json fitted = json_of(words({"compare", a, "--parameters", file})).at("cases")[0];
     EXPECT_NEAR(fitted.at("deviation").at("rms_over_length"),
                 fit.at("scenes")[0].at("rms_over_length"), 1e-7);
@@ -85,7 +85,7 @@ TEST_F(CalibrateCommand, WritesParametersThatTheOtherCommandsRead) {
     EXPECT_NEAR(compared.at("parameters").at("c_F").get<double>() /
                     fit.at("parameters").at("c_F").get<double>(),
                 1, 1e-8);
-    // What the command line says goes before the file.
+    // An option on the command line overrides the file.
     EXPECT_EQ(json_of(words({"solve", a, "--model chain --parameters", file, "--points 9"}))
                   .at("points_m")
                   .size(),

@@ -63,7 +63,8 @@ TEST_F(CalibrateCommand, FindsWhatElseAWireHas) {
                {"--clamp-positions", "allowed: > 0"});
 }
 
-// The same wire taken for straight: what would remove its residuals is told.
+// A curved wire that is assumed to be straight: the message names the parameter that removes the
+// residuals.
 TEST_F(CalibrateCommand, NamesWhatSystematicResidualsAskFor) {
   std::vector<std::string> scenes;
   std::vector<std::string> shapes;
@@ -90,7 +91,7 @@ TEST_F(CalibrateCommand, NamesWhatSystematicResidualsAskFor) {
   ASSERT_NE(named, all.end());
   EXPECT_NEAR(named->at("youngs_modulus_Pa"), 5e9, 5e6);
   EXPECT_LT(named->at("rms_m").get<double>(), 1e-5);
-  // Of three shapes it is chosen.
+  // With three shapes this parameter is chosen.
   const json chosen = json_of(command);
   EXPECT_EQ(chosen.at("tried")[0].at("options"), "--natural-curvature 1");
   EXPECT_NEAR(chosen.at("youngs_modulus_Pa"), 5e9, 5e6);

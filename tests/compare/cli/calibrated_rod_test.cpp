@@ -1,4 +1,4 @@
-// What a calibration writes, put into scenes.
+// Tests of scenes that use the file of a calibration.
 
 #include "dlo/compare/calibrated_rod.hpp"
 

@@ -1,4 +1,4 @@
-// What the command says of rods that touch: an obstacle, or themselves.
+// Tests of the output for rods that touch an obstacle or themselves.
 
 #include <gtest/gtest.h>
 
@@ -130,7 +130,7 @@ TEST_F(ContactCommand, AllModelsTouchTheSameBodies) {
 }
 
 TEST_F(ContactCommand, SolveSaysWhereARodCrossesItself) {
-  // Nothing but its own nature bends it, round by more than once.
+  // Only its natural curvature bends it, by more than one turn.
   const std::string loop =
       write("loop.toml",
             "gravity = [0, 0, 0]\n[rod]\nlength = 1\ndiameter = \"2 mm\"\nmaterial = \"nitinol\"\n"

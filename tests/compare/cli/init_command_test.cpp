@@ -88,7 +88,7 @@ TEST_F(Command, InitTakesANameAndAMaterialOfOnesOwn) {
   expect_error("init " + path("a") + " --material copper " + arguments, 2, {"--material"});
 }
 
-// The same rod in a world whose z is up, with every optional part that it may have.
+// Writes the same rod for a world with z upwards, with all optional parts.
 TEST_F(Command, InitWritesASceneWithZUp) {
   const std::string rod = " --direction '-30 deg' --length '0.5 m' --up ";
   succeeds("init " + path("y.toml") + rod + "y");

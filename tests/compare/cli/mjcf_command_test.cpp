@@ -70,7 +70,7 @@ Eigen::Matrix3Xd chain_at_rest(const dlo::compare::Scene& scene) {
   return rest.points;
 }
 
-/// As numpy.save writes an array of doubles.
+/// Writes an array of doubles in the format of numpy.save.
 void save_npy(const Eigen::Matrix3Xd& points, const std::string& file) {
   std::string header = "{'descr': '<f8', 'fortran_order': False, 'shape': (" +
                        std::to_string(points.cols()) + ", 3), }";

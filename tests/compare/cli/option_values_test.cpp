@@ -39,7 +39,7 @@ std::vector<std::string> commands_in(const std::string& help) {
   return commands;
 }
 
-/// Of the options that take a value the long name, from a command's help.
+/// Returns the long names of the options that take a value, from the help of a command.
 std::vector<std::string> options_with_value(const std::string& help) {
   std::vector<std::string> options;
   for (const std::string& line : first_words(help, "  -")) {
@@ -107,7 +107,7 @@ TEST_F(Command, ContradictoryGripsNameFileLineAndKeyWithEveryModel) {
     expect_error("solve " + with_pin("0", "0.1") + " --model " + model, 2,
                  {"scene.toml:10: gripper.at", "two grippers hold this arc length"});
   }
-  // Of a rod that does not stretch some has to be left over.
+  // A rod that does not stretch must be longer than the distance of its grippers.
   const std::string taut = with_pin("0.5", "0.5");
   expect_error("solve " + taut, 2,
                {"scene.toml:10: gripper.position", "less than the 0.5 m", "chain and force"});

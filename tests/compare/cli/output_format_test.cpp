@@ -1,4 +1,4 @@
-// What leaves the command: no name or number breaks a format.
+// Tests of the output formats: no name or number breaks one.
 
 #include <gtest/gtest.h>
 
@@ -70,8 +70,8 @@ std::string wrong_word(const std::string& text) {
   return "";
 }
 
-/// What a user may run on the scene that `dlo init` wrote; of some scenes everything, of others in
-/// one format, since soft rods take long.
+/// Returns commands that a user may run on the scene that `dlo init` has written: for some scenes
+/// all formats, for others one, since soft rods take long.
 std::vector<std::string> commands_for_new_scene(const std::string& folder, std::size_t index) {
   const std::string s = folder + "s.toml";
   const std::string shape = " --shape " + folder + "f.csv";
@@ -142,7 +142,7 @@ TEST_F(Output, NoNumberIsNanOrInfinity) {
     EXPECT_EQ(wrong_word(text.out + text.err), "") << command << "\n" << text.out;
   }
   EXPECT_GT(empty, 10);  // or nothing of this was tried
-  // What a new user does first, with any material: thin rods are soft, thick ones stiff.
+  // The first commands of a new user, with any material: thin rods are soft, thick ones stiff.
   std::size_t index = 0;
   for (const dlo::compare::Material& material : dlo::compare::materials()) {
     for (const std::string diameter : {"25mm", "6mm", "3mm"}) {

@@ -1,5 +1,4 @@
-// What leaves the command: every byte is written or its loss is told, and nothing is destroyed on
-// the way.
+// Tests of writing: every byte is written or its loss is reported, and no other file is destroyed.
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -159,7 +158,7 @@ TEST_F(Output, AnInputIsNeverWrittenOver) {
                    {"--baseline", same, "is read too"});
     EXPECT_EQ(read(scene), text) << name;
   }
-  // What else is read: shapes, parameters, materials, baselines.
+  // Other files that are read: shapes, parameters, materials, baselines.
   succeeds("solve " + scene + " --format csv -o " + path("shape"));
   succeeds("calibrate " + scene + " -o " + path("params.toml"));
   succeeds("regress " + scene + " --update --baseline " + path("base.toml"));

@@ -1,4 +1,4 @@
-// What `dlo paper` writes of a report, without the minutes that it takes to make one.
+// Tests of the output of `dlo paper`, from reports that take no time to compute.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -156,7 +156,7 @@ compare::MovingReport hand_made_moving_report() {
 
 TEST(MovingOutput, TextJsonAndCsvTellTheSameNumbers) {
   const compare::MovingReport report = hand_made_moving_report();
-  // What was given up has no factor.
+  // An experiment that was stopped has no factor.
   EXPECT_TRUE(std::isinf(report.distance.force_factor));
   const std::string text = moving_text(report);
   for (const char* expected : {"(given up)", "diverged", "no end", "1.25 %", "5.00 %", "0.0312 N",

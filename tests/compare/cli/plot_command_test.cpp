@@ -66,7 +66,7 @@ TEST_F(PlotCommand, DrawsASceneOfAnyName) {
     const std::string drawn = said("solve " + scene(key + rest) + " --plot " + path("n.svg"));
     std::string picture = read(path("n.svg"));
     for (const std::string around : {"<![CDATA[", "]]>"}) {
-      // What is left of them is none of a section's own.
+      // Removes the delimiters of CDATA sections.
       for (std::size_t at = 0; (at = picture.find(around, at)) != std::string::npos;) {
         picture.erase(at, around.size());
       }

@@ -48,7 +48,7 @@ TEST_F(ProgramCommand, BenchPutsAProgramBesideOurModels) {
     errors[one.at("size")] = one.at("rms_over_length");
     EXPECT_GT(one.at("time_s").get<double>(), 0);
   }
-  // The same hinges, and the same measure.
+  // The program computes the same hinges, and its error is measured in the same way.
   ASSERT_GE(program.size(), 2U) << result.out;
   for (const auto& [points, error] : program) EXPECT_NEAR(error, chain.at(points), 1e-7) << points;
   EXPECT_LT(program.at(16), program.at(8) / 3);  // second order

@@ -71,7 +71,8 @@ TEST_F(RegressCommand, MayTolerateAShareOfTheDeflection) {
   EXPECT_EQ(run(arguments_ + steel() + " --tolerance 1% --absolute 1%").status, 2);
 }
 
-// What another process writes in the meantime stays; so of two updates at once one is told.
+// A change by another process in the meantime is preserved, so one of two concurrent updates is
+// refused.
 TEST_F(RegressCommand, UpdateLeavesABaselineThatHasChangedSinceItWasRead) {
   const std::string other = std::string(DLO_DATA) + "/scenes/spring_steel_135.toml";
   const std::string dlo = DLO_COMMAND;

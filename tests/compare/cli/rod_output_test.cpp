@@ -1,4 +1,4 @@
-// What the command says of rods as they are: given by EI, curved by nature.
+// Tests of the output for rods given by EI and for intrinsically curved rods.
 
 #include <gtest/gtest.h>
 

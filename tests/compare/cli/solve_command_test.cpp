@@ -296,7 +296,7 @@ TEST_F(Command, SolveNearAFileIsTheEquilibriumBesideThatFile) {
   const double held = std::abs(near.at("grippers")[0].at("force_N")[0].get<double>());
   EXPECT_NEAR(held, 9.81 * (1.5 + 0.06 * (0.06 - tip)), 0.05);
   EXPECT_TRUE(json_of("solve " + path).at("contacts").empty());
-  // Of the two in the list it is the second.
+  // It is the second of the two in the list.
   const json all = json_of("solve " + path + " --all").at("equilibria");
   ASSERT_GE(all.size(), 2);
   EXPECT_NEAR(all[1].at("energy_J").get<double>(), near.at("energy_J").at("total").get<double>(),

@@ -99,7 +99,7 @@ TEST_F(SweepCommand, GnuParallelResumesParts) {
   expect_merged();
 }
 
-// As the shell of a task of sbatch --array=1-2 has it.
+// The command is run by a shell as in a task of sbatch --array=1-2.
 TEST_F(SweepCommand, TasksOfASlurmArrayComputeParts) {
   for (const char* task : {"1", "2"}) {
     const std::string line = std::string("SLURM_ARRAY_TASK_COUNT=2 SLURM_ARRAY_TASK_ID=") + task +

@@ -13,7 +13,7 @@ using dlo::test::says_none;
 
 class Terminal : public Command {
  protected:
-  /// What a terminal shows of a command, which has to be good.
+  /// Returns the output of a successful command on a terminal.
   [[nodiscard]] std::string seen(const std::string& environment, const std::string& arguments) {
     const std::string line = "env " + environment + " script -qec '" + std::string(DLO_COMMAND) +
                              " " + arguments + "' " + path("typescript") + " >/dev/null </dev/null";
@@ -39,7 +39,7 @@ TEST_F(Terminal, ProgressIsShownAndErased) {
   const std::string grid = "sweep " + steel() + " --vary gamma=log:0.1:1:40 --threads 2 -o ";
   const std::string text = seen("TERM=xterm", grid + path("a.csv"));
   EXPECT_TRUE(says(text, {"sweep [", "100 %, 40 of 40", erased}));
-  // Nothing is left behind the last erasure but script's own last line.
+  // After the last erasure there is only script's own last line.
   const std::string rest = text.substr(text.rfind(erased) + 4);
   EXPECT_TRUE(says_none(rest, {"sweep"}));
   // The result is the same without a terminal, where there is no progress.

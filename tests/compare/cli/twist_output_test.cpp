@@ -1,4 +1,4 @@
-// What is said of a rod that grippers twist: by models that have twist and by those that have not.
+// Tests of the output for a rod that grippers twist, by models with and without twist.
 
 #include <gtest/gtest.h>
 

@@ -237,7 +237,7 @@ TEST(Explanation, NoCauseIsListedTwice) {
   hooked.rightCols<1>() = hooked.col(39) + Vector3d(-0.02, 0.1, 0);
   const Matrix3Xd moved = shape_of(clamped()).points.colwise() + Vector3d(0, 0.03, 0);
   const Matrix3Xd mirrored = Vector3d(-1, 1, 1).asDiagonal() * shape_of(clamped()).points;
-  // Nothing explains it, and several directions of gravity explain half of it.
+  // No cause explains the shape, and several directions of gravity explain half of the error.
   const Matrix3Xd right = shape_of(clamped()).points;
   Matrix3Xd wavy = Eigen::AngleAxisd(0.6, Vector3d::UnitZ()).toRotationMatrix() * right;
   wavy.row(2) += 0.05 * right.row(0);

@@ -68,7 +68,7 @@ Matrix3d random_axes(std::mt19937& random) {
     for (int i = 0; i < 3; ++i) {
       axes(i, order[static_cast<std::size_t>(i)]) = random() % 2 == 0 ? 1 : -1;
     }
-    // Of points in the scene's plane the third axis's sign is nothing.
+    // The sign of the third axis has no effect on points in the scene's plane.
   } while (axes.topLeftCorner<2, 2>().isIdentity());
   return axes;
 }
@@ -153,8 +153,8 @@ TEST(JointCauses, AMovedFileWithZUpIsCalledThat) {
   }
 }
 
-// What is no fault of the file is not called one, however many ways there are to say a file
-// wrongly.
+// An error that is not the file's is not attributed to the file, however many possible errors of a
+// file there are.
 TEST(JointCauses, AnotherSceneIsNoFaultOfTheFile) {
   for (const int kind : {0, 1, 2}) {
     const Scene scene = scene_of(kind);
@@ -172,7 +172,7 @@ TEST(JointCauses, AnotherSceneIsNoFaultOfTheFile) {
   }
 }
 
-/// As hinged_chain() is of it.
+/// Returns the scene of hinged_chain().
 Scene hinged_scene(const std::string& more = "") {
   return parse_scene(
       "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0.5\n[[gripper]]\nat = 0\n"
@@ -204,7 +204,7 @@ TEST(JointCauses, AChainOfBodiesWhoseLastEndIsMissingIsCalledThat) {
   EXPECT_TRUE(says(both.front().cause, {"z is up in the file", "a chain of 8 segments", "xpos"}));
 }
 
-// What a floor does to the end of a chain is a force on it: as large as keeps it on the floor.
+// A floor acts on the end of a chain like the force that keeps it on the floor.
 TEST(JointCauses, AChainOnAFloorIsRightInItsOwnWay) {
   const auto chain = [](double lift) {
     return test::hinged_chain(std::vector<double>(10, 0.1), 0.1, 1, false, lift);

@@ -29,7 +29,7 @@ inline compare::MeasuredShape made(Eigen::Matrix3Xd points) {
   return shape;
 }
 
-/// What is said of a shape, and what would explain it.
+/// Judgement of a shape, and its explanations.
 struct JudgedShape {
   compare::ShapeJudgement judgement;
   std::vector<compare::Explanation> explanations;

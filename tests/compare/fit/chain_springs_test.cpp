@@ -48,8 +48,8 @@ TEST(ChainSprings, OfAStiffRodWithALoadAtItsTipTheyAreThoseOfBeamTheory) {
   }
 }
 
-// What a hinge at the clamp is too soft a welded segment is too stiff, both with the first order of
-// h; a clamp in the middle of a segment is right to the second.
+// A hinge at the clamp is too soft by as much as a welded segment is too stiff, both with first
+// order in h. A clamp in the middle of a segment has second order.
 TEST(ChainSprings, TheOrderInTheSegmentIsThatOfTheClamp) {
   const Scene scene = test::heavy_scene(8, 20);
   const auto coarse = springs_of(scene, 16);
@@ -88,8 +88,8 @@ const std::vector<double>& unequal_lengths() {
   return lengths;
 }
 
-// As of beam theory above, with hinges where the segments begin: each bends by its moment over its
-// spring, EI / half of both segments, at the clamp EI / h.
+// Reference by beam theory with hinges at the beginnings of the segments. Each bends by its moment
+// divided by its spring stiffness, EI / half of both segments, at the clamp EI / h.
 TEST(ChainSprings, OfUnequalSegmentsTheyAreThoseOfBeamTheory) {
   Scene scene = test::heavy_scene(1e-9, 0);
   scene.loads = {{.at = 1, .force = {0, -0.001 * scene.bending_stiffness(), 0}}};
@@ -184,8 +184,8 @@ TEST(ChainSprings, OfSegmentsOfAnotherRodThereAreNone) {
   }
 }
 
-// Of a rope that bends by large angles each law wants another stiffness: less the faster its moment
-// grows, a (1 + a^2/3) of discrete elastic rods beside a.
+// For a rope with large angles each law needs another stiffness. It is smaller the faster the
+// moment grows: that of discrete elastic rods is a (1 + a^2/3), compared with a.
 TEST(ChainSprings, OfASoftRopeEachLawHasItsOwnStiffness) {
   const Scene rope = test::heavy_scene(200, 0);
   const auto chains = springs_of(rope, 20);

@@ -28,7 +28,7 @@ using test::random_pose;
 using test::uneven_arc_lengths;
 using test::with_noise;
 
-/// Of fits to one rod.
+/// Statistics of fits to one rod.
 struct Tally {
   int held = 0;         // intervals that hold the truth
   int told = 0;         // fits that tell E
@@ -158,7 +158,7 @@ TEST(MaterialFit, TheCorrelationIsMeasured) {
   // 50 lengths in each of two directions: known to about a fifth.
   EXPECT_NEAR(std::log(smooth.correlation->length_m / 0.02), 0, std::log(1.8));
   EXPECT_GE(smooth.correlation->share, 0.95);
-  // Of about 100 independent errors: 14 %.
+  // The standard deviation from about 100 independent errors: 14 %.
   EXPECT_NEAR(smooth.noise_m / 1e-3, 1, 0.4);
   shape.points = with_noise(shape.points, 1e-3, random);
   const MaterialFit half = fit_material({scene}, {shape});

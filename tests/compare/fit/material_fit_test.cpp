@@ -149,7 +149,8 @@ TEST(MaterialFit, IntervalHasTheWidthOfLinearTheory) {
   EXPECT_NEAR(estimated.noise_m / sigma, 1, 0.27);
 }
 
-// The same with a frame to be found: what it can take over of a change of E is taken out of it.
+// The interval with an unknown frame: the part of a change of E that the frame can compensate is
+// removed.
 TEST(MaterialFit, IntervalHasTheWidthOfLinearTheoryInAnUnknownFrame) {
   const Scene scene = heavy_scene(2, 0);
   const std::vector<double> s = equal_arc_lengths(1, 21);

@@ -1,4 +1,4 @@
-// What a fit to some shapes says of another one.
+// Tests of the prediction of a shape from a fit to other shapes.
 
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ struct Hangings {
     const std::vector<double> s = equal_arc_lengths(1, 40);
     Eigen::Matrix3Xd errors = test::correlated_noise(s, noise, 0.2, random);
     errors.row(2).setZero();
-    // What is photographed in its plane was there.
+    // A shape that is photographed in its plane was in that plane.
     energy_model::Problem problem = energy_problem(truth);
     problem.confined_to_plane = true;
     scenes.push_back(said);
@@ -215,11 +215,12 @@ TEST(Prediction, RepeatabilityIsTheDistanceToTheMeanOfTheOthers) {
     shape.points.row(1).setConstant(height);
     shapes.push_back(shape);
   }
-  // Of three at 0, d and -d: 0, 3/2 d and 3/2 d.
+  // Distances of three shapes at 0, d and -d from the mean of the others: 0, 3/2 d and 3/2 d.
   EXPECT_NEAR(repeatability(shapes, ArcLengths::file).value_or(0), 0.01 * std::sqrt(4.5 / 3),
               1e-12);
   EXPECT_FALSE(repeatability({shapes.front()}, ArcLengths::file).has_value());
-  // What slid along the rod is not seen by nearest points, what is across it as before.
+  // A displacement along the rod is not visible to nearest points, one across the rod is, as
+  // before.
   for (std::size_t i = 0; i < shapes.size(); ++i) {
     const Eigen::ArrayXd along = Eigen::Map<const Eigen::ArrayXd>(s.data(), 30);
     shapes[i].points.row(0).array() +=

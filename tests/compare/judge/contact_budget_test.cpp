@@ -1,5 +1,5 @@
-// What of a deviation is the force model's rigid obstacles', which give way by a stiffness that is
-// c_c's, and that it is nothing where nothing rigid is touched.
+// Tests of the part of a deviation that is due to the force model's rigid obstacles, whose contact
+// stiffness is proportional to c_c. The part is zero if nothing rigid is touched.
 
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ FloorBudget floor_budget(const Scene& scene) {
                        b.bookkeeping.share + b.discretisation.share + b.stretch.share +
                        b.contact.share + b.not_at_rest.share;
   EXPECT_NEAR(parts + b.interaction.share, 1, 1e-9);
-  // Of the better law and bookkeeping only not being at rest has a second order.
+  // With the better law and convention, only the part `not_at_rest` has a second-order interaction.
   EXPECT_LT(b.interaction.rms_m, 1e-9 * scene.length);
   return {b, force.parameters.segment_length};
 }
@@ -66,8 +66,8 @@ TEST(ContactBudget, IsWhatABeamSinksIntoAnElasticFoundation) {
   }
 }
 
-// As 1/c_c - 1/(100 AE), but for the second order in the depth, which a tenth of the depth makes a
-// tenth: where the rod lifts off moves.
+// Proportional to 1/c_c - 1/(100 AE), except for a second-order term in the depth due to the moving
+// point of lift-off; with a tenth of the depth it is a tenth.
 TEST(ContactBudget, IsInverseToTheStiffnessOfObstacles) {
   Scene scene = over_a_floor(200, 0.02);
   const double stiffest = scene.axial_stiffness() / 10;
@@ -79,7 +79,7 @@ TEST(ContactBudget, IsInverseToTheStiffnessOfObstacles) {
     soft.force_model.c_c = stiffest / softer;
     EXPECT_NEAR(floor_budget(soft).budget.contact.rms_m / first, softer, 2e-3 * softer) << softer;
   }
-  // As stiff as what stands for rigid: the depth is none of the model's.
+  // With the stiffness that represents a rigid obstacle, the depth is not an error of the model.
   scene.force_model.c_c = 100 * scene.axial_stiffness();
   EXPECT_LT(floor_budget(scene).budget.contact.rms_m, 1e-9 * scene.length);
 }
@@ -89,7 +89,7 @@ TEST(ContactBudget, IsNothingWhereNothingRigidIsTouched) {
   EXPECT_EQ(floor_budget(out_of_reach).budget.contact.rms_m, 0);
   const Scene above = over_a_floor(0.1, 0.9);
   EXPECT_EQ(floor_budget(above).budget.contact.rms_m, 0);
-  // What yields does so to the rod itself.
+  // An obstacle that yields does so for the rod itself.
   Scene yielding = over_a_floor(200, 0.02);
   yielding.obstacles.front().stiffness = 1e3 * yielding.weight_per_length().norm();
   EXPECT_EQ(floor_budget(yielding).budget.contact.rms_m, 0);

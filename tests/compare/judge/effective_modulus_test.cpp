@@ -54,8 +54,8 @@ TEST(EffectiveModulus, ARodThatHangsStraightHasNone) {
   }
 }
 
-// What no modulus takes away lies across the plane: of the mean square that E could explain, a
-// share of 1 - 0.72^2 = 0.48 lets the RMS fall by 28 %.
+// The error that no modulus explains is out of the plane. If E explains a fraction of 1 - 0.72^2 =
+// 0.48 of the mean square, the RMS decreases by 28 %.
 TEST(EffectiveModulus, IsClearOnlyIfItExplainsTheDeviation) {
   const Scene scene = heavy_scene(2, 15);
   Scene soft = scene;

@@ -31,7 +31,8 @@ namespace {
 using test::exact_shape;
 using test::heavy_scene;
 
-// What `compare` says of the force model's shape, `check` says of the file that `solve` writes.
+// `compare` for the force model's shape and `check` for the file that `solve` writes report the
+// same.
 TEST(ShapeCheck, AgreesWithCompareOnTheSameShape) {
   Scene scene = heavy_scene(3, 10);
   scene.force_model.law = BendingLaw::paper;
@@ -105,7 +106,8 @@ TEST(ShapeCheck, AFrameByNearestPointsIsNeverWorseThanByLengthsAlongThePoints) {
   }
 }
 
-// Of a file that is cut off, nothing of that: where its points are the rod's, so is its frame.
+// A file that is cut off is compared in the rod's frame: its points coincide with a part of the
+// rod.
 TEST(ShapeCheck, AFileThatIsCutOffKeepsItsFrame) {
   const Scene scene = heavy_scene(140, 0);
   for (const double seen : {0.99, 0.975, 0.9, 0.5}) {
@@ -261,7 +263,8 @@ TEST(Significance, OfARodThatBendsAPassIsSignificant) {
   EXPECT_GT(passed.deflection_m, 0.1);
 }
 
-// What weight and loads do not deflect has no share of it, and they say nothing of the stiffness.
+// Without a deflection by weight and loads there is no fraction of it, and weight and loads do not
+// determine the stiffness.
 TEST(Significance, OfARodThatHangsStraightThereIsNoDeflection) {
   const Scene scene = heavy_scene(10, -90);
   const Eigen::Matrix3Xd points = exact_shape(scene, equal_arc_lengths(1, 21)).points;
@@ -322,7 +325,7 @@ TEST(ShapeCheck, TheReferenceIsTheStableEquilibriumNearThePoints) {
     EXPECT_NEAR(check.rod.grips[0].force.norm(), 9.81 * (1.5 + 0.06 * fall), 1e-5);
     EXPECT_EQ(check.rod.contacts.size(), 1);
   }
-  // What a search of the scene does not find, one from the points does.
+  // An equilibrium that a search of the scene does not find is found by a search from the points.
   std::erase_if(states, [](const auto& state) { return !state.contacts.empty(); });
   ASSERT_EQ(states.size(), 1);
   const Shape laid = laid_by_grippers({"rope", points, {}}, scene, ArcLengths::nearest);

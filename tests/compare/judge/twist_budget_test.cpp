@@ -1,5 +1,5 @@
-// What of a deviation is twist that the force model leaves out, and that it is nothing where the
-// force model has it.
+// Tests of the part of a deviation that is due to twist that the force model neglects. The part is
+// zero if the force model includes twist.
 
 #include <gtest/gtest.h>
 
@@ -38,10 +38,10 @@ TEST(Budget, TellsWhatTwistThatIsLeftOutCosts) {
   const Comparison c = compare(scene, {}, {}, ModulusSearch::no);
   EXPECT_EQ(c.force.neglected, std::vector<std::string>{"twist"});
   const Budget& b = c.budget;
-  // The same as the plan tells, but for what 16 points see of it.
+  // The result equals that of the plan, except for the discretisation by 16 points.
   const double apart = make_plan(scene).bound("twist");
   EXPECT_NEAR(b.twist.rms_m, apart, 0.03 * apart);
-  // What is the polygon's fault is what it is without twist.
+  // The polygon's discretisation error is the same without twist.
   const double alone =
       compare(scene.without_twist(), {}, {}, ModulusSearch::no).budget.discretisation.rms_m;
   EXPECT_NEAR(b.discretisation.rms_m, alone, 1e-3 * alone);

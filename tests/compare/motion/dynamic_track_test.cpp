@@ -102,7 +102,8 @@ TEST(TrajectoryMotion, RollsAboutTheDirectionAtEachTime) {
   }
 }
 
-// What a step's end asks for, and what its begin asks for.
+// The accelerations just before and just after a pose are those that the end and the beginning of a
+// step need.
 TEST(TrajectoryMotion, AccelerationsJumpJustAfterAPose) {
   const energy_model::GripMotion motion = trajectory_motion(corners(), 2);
   for (const double time : trajectory_breaks(corners(), 2)) {
@@ -139,7 +140,7 @@ TEST(DynamicTrack, ComesToTheTrackAtSecondOrderWithoutDamping) {
   EXPECT_NEAR(order, 2, 0.15);
 }
 
-// Of the frames, whose gravity is zero where the track's is.
+// The balance of the frames, whose gravity potential is zero at the same point as the track's.
 TEST(DynamicTrack, KeepsTheBalanceOfEnergyAndWork) {
   const Scene scene = swung(1);
   const TrackOptions options = frames_at(50);
@@ -428,7 +429,7 @@ double deflection_of_tip(double weight, double time) {
   return sum;
 }
 
-// Of the deflection the modes left out are 1e-5, and the large rotation its square.
+// The neglected modes are 1e-5 of the deflection, and the effect of large rotations is its square.
 TEST(DynamicTrack, ReleasesTheRodFromAGivenShape) {
   constexpr double weight = 0.01;
   TrackOptions options = frames_at(40);

@@ -33,8 +33,8 @@ struct Recording {
   MarkerMotion motion;
 };
 
-/// Of so many seconds, in which one gripper or two swing the rod from the time 0; the recording
-/// begins at 0.8 s.
+/// Returns a recording of `seconds` seconds, in which one or two grippers swing the rod from the
+/// time 0. The recording begins at 0.8 s.
 Recording recording(unsigned seed, double seconds, double rate) {
   std::mt19937 random(seed);
   const auto between = [&](double low, double high) {
@@ -86,7 +86,7 @@ Recording recording(unsigned seed, double seconds, double rate) {
   return result;
 }
 
-/// What the fit is off, over what is right.
+/// Relative errors of a fit.
 struct FitError {
   double stiffness = 0, material = 0, quadratic = 0;
   double misfit = 0;  // residual over the noise

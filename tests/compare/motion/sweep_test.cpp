@@ -42,7 +42,7 @@ TEST(Sweep, KnowsThePlate) {
   EXPECT_FALSE(falls_past(plate, 0.3, 0.01));
 }
 
-// What slides along a surface goes through it by its chord only.
+// A rod that slides along a surface passes through it only by its chords.
 TEST(Sweep, SlidingIsNoWayThrough) {
   const Body ball = Body::sphere({0, 0, 0}, 1);
   const auto touching = [](double turn) {

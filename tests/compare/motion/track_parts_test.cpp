@@ -1,5 +1,4 @@
-// What a track is made of: the instants of its frames, how late a series is, which contacts
-// changed.
+// Tests of the parts of a track: times of its frames, lag of a series, changes of contacts.
 
 #include <gtest/gtest.h>
 

@@ -350,7 +350,7 @@ TEST(Track, RunsTheForceModelBesideIt) {
   EXPECT_LT(patient.mean, 2 * patient.rest_error + 1e-3);
 }
 
-// Of a rod of 40 cm, by the distances of points at equal arc lengths.
+// A rod of 40 cm; the errors are distances of points at equal arc lengths.
 TEST(Track, ErrorsOfTheForceModelAreSharesOfTheLength) {
   const Scene scene = load_scene(std::string(DLO_DATA) + "/scenes/swung_rod.toml");
   TrackOptions options = at_rate(50);
@@ -373,8 +373,9 @@ TEST(Track, ErrorsOfTheForceModelAreSharesOfTheLength) {
   EXPECT_LT(result.force.error_without_lag, mean);
 }
 
-/// By which time the leader has to be late to be nearest to the follower: the least of the squares
-/// over shifts of a hundredth of a frame, between whose frames the leader goes straight.
+/// Returns the delay of the leader at which it is nearest to the follower: the minimum of the
+/// squares over shifts of a hundredth of a frame, with linear interpolation between the leader's
+/// frames.
 double nearest_delay(const std::vector<Eigen::Matrix3Xd>& leader,
                      const std::vector<Eigen::Matrix3Xd>& follower, double frame_time) {
   double least = std::numeric_limits<double>::infinity();
@@ -396,7 +397,7 @@ double nearest_delay(const std::vector<Eigen::Matrix3Xd>& leader,
   return delay;
 }
 
-// Of the summary, in seconds whatever the frame rate.
+// The lag in the summary is in seconds, for any frame rate.
 TEST(Track, TheForceModelsLagIsTheDelayAtWhichItIsNearest) {
   Scene scene = load_scene(std::string(DLO_DATA) + "/scenes/swung_rod.toml");
   scene.track.steps = 6000;

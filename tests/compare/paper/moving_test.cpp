@@ -178,7 +178,7 @@ TEST(MovingReport, PutsPrintedNumbersBesideItsOwn) {
   EXPECT_EQ(rows.size(), 26U);
   EXPECT_EQ(rows[0].printed->steps, 116121);
   EXPECT_EQ(rows[2].experiment.variant, MovingVariant::dynamic_absolute);
-  // What is printed is at no distance from itself.
+  // The printed rows have no distance from themselves.
   for (MovingRow& row : rows) {
     if (!row.printed) continue;
     row.run = {.status = MovingStatus::finished,

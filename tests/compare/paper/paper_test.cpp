@@ -36,7 +36,8 @@ TEST(PaperTables, ComeOutToAllPrintedDigits) {
 
 TEST(PaperReport, MeasuresTheEffectiveModulusAtRestAndOnTheWay) {
   const PaperReport report = paper_report();
-  // As the README prints them: -135, -175 and -215 deg with rho A g, then with Table 5's weight.
+  // Values as the README prints them: -135, -175 and -215 deg with rho A g, then with Table 5's
+  // weight.
   struct Printed {
     double ratio;     // E*/E at rest
     double residual;  // [% of l]; a cubic law leaves one

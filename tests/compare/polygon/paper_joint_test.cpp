@@ -1,4 +1,4 @@
-// What the paper's cubic law stands for: closed forms against the chain model.
+// Tests of the equivalent stiffness of the paper's cubic law: closed forms against the chain model.
 
 #include "dlo/compare/paper_joint.hpp"
 

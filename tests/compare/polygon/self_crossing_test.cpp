@@ -26,7 +26,7 @@ Shape curve(double length, int count, const std::function<Eigen::Vector3d(double
   return shape;
 }
 
-/// Of radius 1, rising by `rise` a turn.
+/// Returns a helix of radius 1 that rises by `rise` per turn.
 Shape coil(double turns, double rise) {
   const double length = turns * std::hypot(2 * pi, rise);
   return curve(length, 401, [=](double s) {
@@ -133,8 +133,8 @@ TEST(SelfCrossing, OfRandomPolygonsItIsTheNearestOfAllPairs) {
   EXPECT_LE(crossed, 55);
 }
 
-// Of places that are as near the first one counts: rungs of a ladder that the rod climbs to and
-// fro.
+// If several pairs are equally near, the first along the rod is reported: rungs of a ladder that
+// the rod climbs in zigzag.
 TEST(SelfCrossing, OfEqualDistancesTheFirstAlongTheRodCounts) {
   Shape shape;
   shape.arc_length = equal_arc_lengths(20, 21);

@@ -44,7 +44,7 @@ std::vector<Section> two_sections() {
           {.from = 0.45, .to = 0.6, .bending_stiffness = 0.1, .mass_per_length = 0.05}};
 }
 
-/// The same rod as a boundary value problem in the plane: with the angle a of the tangent,
+/// The rod as a boundary value problem in the plane: with the angle a of the tangent,
 ///     a' = k + M / EI,  M' = W cos a,  M(l) = 0,
 /// W the weight beyond s. Runge and Kutta's method, of which no step passes the end of a section,
 /// and bisection over M(0).

@@ -99,7 +99,8 @@ TEST_F(Record, OneDescriptionMakesRowKeyAndColumn) {
   EXPECT_EQ(dlo::compare::csv_value(dlo::compare::value_of(fields[0], shape)), "1.75");
   EXPECT_EQ(fields[0].name, "mean_tension");
   EXPECT_EQ(fields[0].python_words(), "Mean of the tension along the rod [N].");
-  // What is rounding beside the scene's own forces is 0, what is unknown has no row.
+  // A value that is only rounding compared with the scene's forces is 0, and an unknown value has
+  // no row.
   solution.tension = {1e-30};
   EXPECT_EQ(dlo::compare::text_rows(fields, shape, scene), "mean tension 0 N\n");
   solution.tension.clear();

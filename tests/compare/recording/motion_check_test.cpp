@@ -96,7 +96,8 @@ void add_noise(MarkerMotion& motion, double deviation) {
 
 const std::vector<double> five = {0.07, 0.15, 0.23, 0.31, 0.39};
 constexpr double close_to_rod = 1e-5;  // what is between frames [m]
-/// Of a rod with inertia that is next to the one at rest, in few steps: where it is not the claim.
+/// Damping that makes a rod with inertia nearly quasi-static, in few steps, for tests of other
+/// properties.
 constexpr RodDamping slow{.material = 0.2};
 
 TEST(MotionCheck, TheRodAtRestPassesAtTimesBetweenTheModelsFrames) {
@@ -181,8 +182,9 @@ TEST(MotionCheck, FindsTheLagOfARodWithInertia) {
   EXPECT_LT(check.lag_rms_m, 10 * close_to_rod);
 }
 
-// Of so many rows that they are thinned: the marker at the end of the rod, with amplitude 1 against
-// 0.1, is 0.05 s late, the other one is not. The least squares of small lags are at 0.05 / 1.01.
+// The recording has so many rows that they are thinned. The marker at the end of the rod, with
+// amplitude 1 compared with 0.1, has a lag of 0.05 s, the other one has none. The least squares
+// solution for small lags is 0.05 / 1.01.
 TEST(LagSearch, ThinsTimesAndNoMarkers) {
   const auto at = [](double time, double s) { return Eigen::Vector3d(0, s * std::sin(time), 0); };
   std::vector<Eigen::Matrix3Xd> frames;
@@ -209,7 +211,7 @@ TEST(MotionCheck, MeasuresNoiseAndFindsNoCauseInIt) {
   add_noise(motion, deviation);
   const MotionCheck check = check_motion(
       scene, motion, {.damping = slow, .tolerance = ShapeTolerance{.allowed_m = 1e-3}});
-  // Of 1215 coordinates: three standard deviations of their RMS are 6 %.
+  // Three standard deviations of the RMS of 1215 coordinates are 6 %.
   EXPECT_NEAR(check.errors.rms_m, deviation * std::sqrt(3), 0.06 * deviation * std::sqrt(3));
   EXPECT_FALSE(check.passes);
   EXPECT_TRUE(check.causes.empty()) << check.causes.front().words;

@@ -53,8 +53,8 @@ TEST(RectangleTorsion, IsThatOfTheTables) {
 }
 
 TEST(RectangleTorsion, IsTwiceTheIntegralOfPrandtlsStressFunction) {
-  // As a double sine series: 256 a b / pi^6 times the sum of 1 / (m^2 n^2 (m^2/a^2 + n^2/b^2)), odd
-  // m and n; beyond M it lacks some 1 / M^3.
+  // Double sine series: 256 a b / pi^6 times the sum of 1 / (m^2 n^2 (m^2/a^2 + n^2/b^2)) over odd
+  // m and n; the truncation error beyond M is about 1 / M^3.
   constexpr int most = 1001;
   for (const double a : {1.0, 1.7, 3.0}) {
     double sum = 0;

@@ -138,7 +138,7 @@ TEST(MakeScene, SaysWhichElementIsMissing) {
   EXPECT_TRUE(says(refusal_of([] { return make_scene({}); }), {"rod"}));
 }
 
-// As a sum of segments rounds it.
+// Arc lengths beyond an end by the rounding error of a sum of segments.
 TEST(ArcLengths, ARoundingBeyondAnEndAreThatEnd) {
   std::vector<SceneField> rounded = fields;
   rounded.push_back({"gripper.1.at", 0.30000001});

@@ -41,7 +41,7 @@ std::string changed(std::string text, const std::string& piece, const std::strin
   return text;
 }
 
-/// Of what files are rounded to.
+/// Compares with the accuracy to which files are rounded.
 void expect_near(double value, double expected) {
   EXPECT_NEAR(value, expected, 1e-5 * std::abs(expected));
 }
@@ -84,7 +84,7 @@ TEST(Mjcf, HingesFramesAndRadiansAreRead) {
   const Eigen::Vector3d upwards(std::cos(pi / 6), 0, std::sin(pi / 6));
   EXPECT_LT((*scene.grippers[0].direction - upwards).norm(), 1e-9);
   EXPECT_TRUE(scene.obstacles.empty());
-  // What the geoms collide with is an obstacle.
+  // A geom with which the rod's geoms collide is an obstacle.
   std::string text = mjcf_text("hinges.xml");
   for (std::size_t at = text.find(" contype=\"0\""); at != std::string::npos;
        at = text.find(" contype=\"0\"")) {
@@ -136,7 +136,7 @@ TEST(Mjcf, CapsCountAsMassAndNotAsLength) {
   EXPECT_EQ(scene.gravity, Eigen::Vector3d(2, 0, -9.6));
 }
 
-/// As MuJoCo 3.14 has left the chain of data/mujoco/chain.xml: data/shapes/mujoco_right.csv.
+/// The points of data/mujoco/chain.xml as computed by MuJoCo 3.14: data/shapes/mujoco_right.csv.
 TEST(Mjcf, MuJoCosOwnPointsPassWithoutTheirLastEnd) {
   const Scene scene = mjcf_model("chain.xml");
   MeasuredShape shape = load_shape(DLO_DATA "/shapes/mujoco_right.csv");

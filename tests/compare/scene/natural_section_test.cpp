@@ -40,7 +40,7 @@ const std::string wire_clamp = test::level_clamp;
 
 Scene guide_wire() { return parse_scene(wire_head + wire_arcs + wire_clamp, "my.toml"); }
 
-/// Of a shaft of 0.2 m, an arc of 80 1/m and one of 40 1/m, 0.02 m each.
+/// Returns the tip of a straight shaft of 0.2 m followed by arcs of 80 1/m and 40 1/m, 0.02 m each.
 Eigen::Vector3d tip_of_arcs() {
   const double a = 80 * 0.02;
   const double b = a + 40 * 0.02;
@@ -81,7 +81,7 @@ TEST(NaturalSection, ThePolygonApproachesTheArcs) {
     scene.force_model.points = points;
     const Solution chain = solve(scene, Model::chain);
     const double error = (chain.shape.points.rightCols<1>() - tip_of_arcs()).norm();
-    // Of a joint that a boundary cuts the bend is in one place: first order at worst.
+    // If a boundary divides a joint, its bend is concentrated in one point: first order at worst.
     EXPECT_LT(error, 0.2 * 0.24 / points);
     if (before > 0) EXPECT_LT(error, 0.6 * before);
     before = error;

@@ -134,7 +134,7 @@ TEST(RestShape, NoiseIsSmoothed) {
   for (double& number : points.points.reshaped()) number += noise(random);
   const RestShape shape = fit_rest_shape(points, shaft_length);
   EXPECT_LT(shape.arcs.size(), 12);
-  // Of two directions across the rod; what lies along it is not seen.
+  // Errors in the two directions across the rod; those along it are not visible.
   EXPECT_NEAR(shape.rms_error, std::sqrt(2) * 1e-4, 2e-5);
   const Scene scene = resting_scene(shape, shaft_length);
   EXPECT_LT(farthest(scene, Model::energy, on_shaft), 5e-4);

@@ -60,7 +60,7 @@ TEST(ScenesRod, IsGivenByItsStiffnessAndItsMass) {
 TEST(ScenesRod, WithADiameterHasTheAxialStiffnessOfARoundRod) {
   const Scene thick = scene_of(by_stiffness + "diameter = \"8 mm\"\n" + clamp);
   EXPECT_DOUBLE_EQ(thick.axial_stiffness(), 16 * 1.2e-3 / 64e-6);
-  // Of a solid rod of one material that is E A.
+  // For a solid rod of one material this equals E A.
   const Scene steel = scene_of(by_material + clamp);
   EXPECT_NEAR(16 * steel.bending_stiffness() / std::pow(steel.diameter, 2), steel.axial_stiffness(),
               1e-9 * steel.axial_stiffness());
@@ -203,7 +203,7 @@ TEST(ScenesNaturalCurvature, AboutAnotherAxisThanThePlanesIsSpatial) {
   EXPECT_FALSE(curved("natural_curvature = [1, 2]\n", "").planar());
   EXPECT_TRUE(curved("natural_curvature = [0, -2]\n", "").planar());
   EXPECT_FALSE(curved("natural_curvature = 2\nnatural_twist = \"90 deg/m\"\n", "").planar());
-  // Of a straight rod that is free to turn, twist shows nowhere.
+  // If a straight rod is free to rotate about its tangent, twist has no effect.
   EXPECT_TRUE(curved("natural_twist = \"90 deg/m\"\n", "").planar());
   const Scene rolled = curved("natural_curvature = 2\n", "roll = \"30 deg\"\n");
   EXPECT_FALSE(rolled.planar());

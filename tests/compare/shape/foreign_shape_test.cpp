@@ -30,7 +30,7 @@ void expect_file_points(const std::string& name, double rounding = 0, double uni
   EXPECT_LE((shape.points - expected).cwiseAbs().maxCoeff(), rounding) << name;
 }
 
-/// Of a binary32 near 0.5, half a unit in the last place.
+/// Half a unit in the last place of a binary32 number near 0.5.
 constexpr double rounding_of_float = 3e-8;
 
 TEST(ForeignShape, ReadsNumPyArraysOfAnyTypeAndOrder) {

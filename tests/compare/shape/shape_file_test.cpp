@@ -188,8 +188,8 @@ TEST(ShapeFile, RefusesMorePointsThanAllowed) {
   expect_refused({{text, {"mine:100001: 100001 points", "2 to 100000"}}});
 }
 
-// What a fuzzer does at length: pieces of good files put together at random give a shape or an
-// InputError, and nothing else.
+// Short version of a fuzz test: randomly combined parts of valid files give a shape or an
+// InputError.
 TEST(ShapeFile, AnyBytesAreAShapeOrAnInputError) {
   const std::vector<std::string> pieces = {vtk_head,
                                            vtk_points,

@@ -1,5 +1,5 @@
-// What a check sees: whatever is done to a right shape has to show in its deviation, or to be
-// named.
+// Tests of the sensitivity of a check: any change of a correct shape must appear in its deviation,
+// or be reported.
 
 #include <gtest/gtest.h>
 
@@ -60,8 +60,8 @@ struct Right {
   }
 };
 
-/// What 20 chords are shorter than their arcs: the sum of k^2 h^3 / 24, for Gamma = 20 with its
-/// layer of length Gamma^(-1/2) and curvature Gamma^(1/2) at the clamp.
+/// Difference in length between 20 chords and their arcs: the sum of k^2 h^3 / 24, for Gamma = 20
+/// with its boundary layer of length Gamma^(-1/2) and curvature Gamma^(1/2) at the clamp.
 constexpr double bow = 20.0 / 24 * 0.05 * 0.05 * 0.25;
 
 /// Whether it passes as the whole rod, RMS and largest deviation held against the same length.

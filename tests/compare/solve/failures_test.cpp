@@ -16,7 +16,7 @@ namespace {
 using test::says;
 using test::says_none;
 
-/// What a run has to give.
+/// Required result of a run.
 enum class Demand {
   end,       ///< an equilibrium, or one line of an error with status 2 or 3
   converge,  ///< an equilibrium
@@ -68,7 +68,7 @@ TEST_P(FormerFailure, EndsWithAnEquilibriumOrACleanError) {
     // Not -1, a signal; not 4, a mistake of ours.
     EXPECT_TRUE(result.status == 2 || result.status == 3) << result.status << "\n" << result.err;
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-    // Of a failure there is nothing to see but a shape that says what is wrong with it.
+    // The only output of a failed run is a shape that states its error.
     if (!result.out.empty()) {
       EXPECT_TRUE(says(result.out, {"not verified"}));
       const bool says = result.out.find("the contacts did not converge") != std::string::npos ||

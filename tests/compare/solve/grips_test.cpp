@@ -89,8 +89,8 @@ Scene tip_on_floor() {
   return scene;
 }
 
-/// Of a scene in the plane z = 0 the image of a shape that leaves it is as low: the one that is on
-/// the side of the others' points.
+/// Replaces a shape that leaves the plane z = 0 of its scene by its mirror image, which has the
+/// same energy, if that is on the side of the given points.
 void take_image_beside(const Eigen::Matrix3Xd& points, Solution& solution) {
   if (solution.shape.points.row(2).dot(points.row(2)) >= 0) return;
   solution.shape.points.row(2) *= -1;
@@ -511,7 +511,7 @@ TEST(Torque, IsAboutTheGrippersOwnPositionInEveryModelThatBalancesIt) {
         }
       } else {
         const Solution chain = solve_chain(moved, moved.force_model);
-        // Of the polygon's own points; those inside a gripper weigh nothing.
+        // The torque at the polygon's own points; points inside a gripper have no weight.
         for (Eigen::Index k = 0; k < chain.shape.points.cols(); ++k) {
           torque += Vector3d(chain.shape.points.col(k)).cross(Vector3d(d.rod.loads.col(k)));
         }
@@ -551,8 +551,8 @@ TEST(Comparison, OfTwoClampsHasNoTipAndNoStraightRod) {
   EXPECT_NE(comparison.effective_modulus.optimum, Optimum::clear);
 }
 
-// Of chains without and with stretch, and of the force model at rest; each reaction and load
-// counts.
+// Tests chains with and without stretch, and the force model at rest. The balance depends on each
+// reaction and load.
 TEST(PolygonBalance, HoldsAndIsLostWithEveryForce) {
   for (const Scene& scene : {heavy_scene(8, 20), spatial_clamps(), clamp_and_pin()}) {
     for (const Model model : {Model::chain, Model::force}) {

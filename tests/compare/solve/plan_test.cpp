@@ -311,7 +311,7 @@ TEST(Plan, NoBoundIsGivenWhereTheRodTouches) {
   EXPECT_EQ(plan.bound("stretch"), std::numeric_limits<double>::infinity());
 }
 
-// Of EI and mass alone nothing says how thick the rod is.
+// EI and mass alone do not determine the thickness of the rod.
 TEST(Plan, BoundsStretchAndShearOnlyIfTheSectionOrEAIsGiven) {
   Scene scene;
   scene.length = 0.3;

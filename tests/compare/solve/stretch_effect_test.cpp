@@ -1,4 +1,4 @@
-// What solve() says of the stretch that its model leaves out, against the elastic catenary.
+// Tests of the reported effect of stretch that a model neglects, against the elastic catenary.
 
 #include <gtest/gtest.h>
 
@@ -50,7 +50,7 @@ double tension_of(double EA, double w, double l, double apart) {
 }
 
 TEST(StretchEffect, IsTheElasticCatenarysToFirstOrder) {
-  // What is left out is of second order.
+  // The neglected terms are of second order.
   for (const double EA : {4e6, 1e6}) {
     const Scene scene = line(EA, 98);
     const Solution solution = solve(scene, Model::energy);
@@ -243,7 +243,7 @@ TEST(AutomaticStretch, IsThatOfALineThatGripsHoldTaut) {
     const Solution decided = with(scene, Stretch::automatic, Model::exact);
     EXPECT_EQ(decided.stretch_decision, StretchDecision::counted);
     expect_same(decided, with(scene, Stretch::counted, Model::exact));
-    // What its EI bears is less than a permille.
+    // Its EI carries less than a thousandth of the force.
     const double tension = tension_of(4e5, 20, 100, apart);
     EXPECT_NEAR(decided.grippers[1].force.norm() / tension, 1, 1e-3);
   }

@@ -61,7 +61,8 @@ TEST(Benchmark, RunsEveryModelOrSaysThatItDidNotAndItsAnswersFitTheRows) {
         const bool beaten =
             other.time.median_s < run.time.median_s && other.rms_over_length < run.rms_over_length;
         EXPECT_FALSE(run.front && beaten);
-        // Of one chain, more points are nearer: second order, or first with the paper's books.
+        // For one chain more points are more accurate: second order, or first order with the
+        // paper's convention.
         if (run.model == Model::chain && other.model == Model::chain &&
             run.variant == other.variant && run.variant->law == BendingLaw::hooke &&
             run.size == 2 * other.size) {

@@ -1,4 +1,4 @@
-// What a score card is made of: order of convergence, balance of moments, causes.
+// Tests of the parts of a results table: order of convergence, balance of moments, causes.
 
 #include "suite/cause.hpp"
 
@@ -41,7 +41,7 @@ Shape rod_shape(const Scene& scene, int points = 65) {
       .shape;
 }
 
-/// Of shapes at 16, 32 and 64 segments that are those of another scene.
+/// Returns the causes for shapes with 16, 32 and 64 segments of another scene.
 std::vector<Cause> causes_of_other(const Scene& scene, const Scene& other) {
   std::vector<CardShape> shapes;
   const auto reference = dlo::compare::solve_reference(scene, dlo::compare::answer_model(scene));
@@ -177,7 +177,7 @@ TEST(CauseOfFactors, IsWhatTheyAreAtBothNumbersOfPoints) {
   const auto cause = [](const Scene& scene, double coarse, double fine) {
     return dlo::compare::cause_of_factors(scene, {17, coarse}, {65, fine});
   };
-  // Of 16 and 64 elements.
+  // Factors with 16 and 64 elements.
   const Cause caps = cause(weight, 1 / 1.1, 1 / 1.4);
   EXPECT_EQ(caps.name, "weight with caps");
   EXPECT_NEAR(caps.factor, 1.4, 1e-12);

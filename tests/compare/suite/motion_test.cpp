@@ -70,7 +70,8 @@ TEST(MotionAnswers, TheVibrationHasTheFrequencyOfItsClosedForm) {
   }
 }
 
-/// Of the reference itself, as it is at other times and with other motion about what is at rest.
+/// Returns a recording of the reference with a faster time, a lag, and damped motion about the rest
+/// shape.
 MarkerMotion recorded(const MotionReference& reference, double faster, double late, double decay) {
   MarkerMotion motion{.file = "made", .positions = {}};
   for (const double time : dlo::compare::equal_arc_lengths(reference.until, reference.frames)) {

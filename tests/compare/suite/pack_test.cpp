@@ -113,7 +113,7 @@ TEST(Pack, CommittedAnswersAreThoseOfFreshOnesWithinTheirBounds) {
   }
 }
 
-// What is written has ten digits, points twelve decimals, whatever two methods agree to.
+// Written numbers have ten digits and points twelve decimals, however well both methods agree.
 TEST(Pack, BoundsHoldTheRoundingOfWhatIsWritten) {
   for (const BatteryScene& scene :
        chosen_scenes(builtin_battery(), {"clamps_space", "clamps_taut", "floor"})) {

@@ -258,7 +258,7 @@ TEST_F(SuiteCommand, HoldsErrorsAgainstABaselineOfRegress) {
   const Outcome same = run("suite --with chain" + scenes + gate);
   EXPECT_EQ(same.status, 0) << same.out;
   EXPECT_THAT(same.out, HasSubstr("\n3 same\n"));  // a strip is not supported
-  // As if the errors of one simulator had been a tenth.
+  // The baseline is changed as if the errors of one simulator had been a tenth.
   std::vector<dlo::compare::BaselineCase> cases = dlo::compare::load_baseline(file);
   ASSERT_EQ(cases.size(), 6U);
   for (dlo::compare::BaselineCase& one : cases) {

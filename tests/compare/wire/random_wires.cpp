@@ -4,9 +4,10 @@
 //     dlo_random_wires WIRES SEED
 //     dlo_random_wires --write FOLDER SEED
 //
-// Of each wire: what was chosen, the prediction over how well the mountings repeat, and whether the
-// interval of EI holds the truth. The shares come last. Or one wire's mountings are written, one
-// more than are fitted (data/mountings is of seed 11).
+// Prints for each wire the choice, the prediction error divided by the repeatability of the
+// mountings, and whether the interval of E contains the true value; the fractions follow at the
+// end. With --write the mountings of one wire are written, one more than are fitted (data/mountings
+// has seed 11).
 
 #include <fmt/format.h>
 

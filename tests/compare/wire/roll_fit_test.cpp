@@ -88,8 +88,8 @@ Scene hung_wire(const Vector3d& direction, const Vector3d& force) {
       "hung.toml");
 }
 
-/// The same, intrinsically curved and turned in its clamp from where the fit has roll 0: d1 in the
-/// plane of the scene if it is in one, else level.
+/// Returns an intrinsically curved wire that is rotated in its clamp from the position in which the
+/// fit has roll 0: d1 is in the plane of the scene if there is one, else horizontal.
 Scene curved_wire(Scene truth, double roll) {
   const Vector3d& direction = *truth.grippers[0].direction;
   const Vector3d level = truth.gravity.cross(direction).normalized();

@@ -30,7 +30,8 @@ Scene turned_wire(double roll) {
   return scene;
 }
 
-/// What is said of E is 1.3 times what it is, of GJ / EI 1.5 times.
+/// Fits from scenes whose E is 1.3 times the true value, and whose GJ / EI is 1.5 times the true
+/// value.
 MaterialFit fit_of_turns(const std::vector<double>& rolls, double noise, std::mt19937& random) {
   std::vector<Scene> said;
   std::vector<MeasuredShape> seen;
@@ -83,7 +84,8 @@ TEST(TorsionFit, OfAWireThatIsNotTwistedIsNotIdentifiable) {
   EXPECT_TRUE(test::holds(found.youngs_modulus, turned_wire(0).material.youngs_modulus));
 }
 
-// The same energy times any factor has the same shapes: they tell GJ / EI, and neither of the two.
+// Energies that differ by a factor have the same shapes: these determine GJ / EI, but neither of
+// the two.
 TEST(TorsionFit, WithoutWeightOnlyTheRatioIsTold) {
   Scene truth = turned_wire(half_turn);
   truth.gravity.setZero();

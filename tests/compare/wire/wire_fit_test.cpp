@@ -261,7 +261,7 @@ TEST(WireFit, SystematicResidualsNameWhatWouldRemoveThem) {
         });
     ASSERT_NE(named, bent.alternatives.end());
     EXPECT_LT(named->rms_m, 2e-3);
-    // What has that and more leaves hardly less.
+    // Alternatives with more terms are not listed, because their residuals are hardly smaller.
     EXPECT_TRUE(
         std::none_of(bent.alternatives.begin(), bent.alternatives.end(),
                      [](const FitAlternative& one) { return one.natural_curvature_terms > 1; }));
@@ -427,7 +427,7 @@ TEST(WireFit, ANoiseThatIsTooSmallWidensTheIntervalAndWarns) {
   if (!test::sanitized) EXPECT_LE(warned, 3);
 }
 
-// What is fitted with the wire's own numbers has what is left of the time.
+// A fit with the wire's own numbers gets the time that remains.
 TEST(WireFit, ItsTimeBeganBeforeIt) {
   std::mt19937 random(14);
   const Scene scene = test::heavy_scene(20, 0);
@@ -446,7 +446,7 @@ TEST(WireFit, ItsTimeBeganBeforeIt) {
   EXPECT_THROW((void)fit_within(timer.seconds()), ConvergenceError);
 }
 
-// Of more rows than are needed every so many-th stays, with what belongs to it.
+// If there are more rows than needed, rows at equal intervals are kept, with their data.
 TEST(WireFit, CorrelationIsEstimatedFromFewEnoughRows) {
   ResidualSeries many{.arc_length = equal_arc_lengths(1, 1001),
                       .residual = Eigen::VectorXd::LinSpaced(1001, 0, 1000),
