@@ -19,7 +19,7 @@ import tomllib
 import zipfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-# What the loader and the C++ compiler bring, and every Python has.
+# Libraries of the loader and the C++ compiler, which every Python installation has.
 EVERYWHERE = re.compile(
     r"^(ld-linux.*|linux-vdso|lib(c|m|dl|rt|pthread|stdc\+\+|gcc_s))\.so"
 )
@@ -57,15 +57,15 @@ def _wheel():
 
 
 def _run(*command):
-    # To standard error: pip reads standard output.
+    # Output goes to standard error, because pip reads standard output.
     subprocess.run([str(word) for word in command], check=True, stdout=sys.stderr)
 
 
 def _build(folder, settings):
-    """Compiles the module into the folder; what an earlier call has compiled is kept."""
+    """Compiles the module into the folder; results of earlier calls are reused."""
     build = (settings or {}).get("build-dir")
     if build is None:
-        # The folder of the command's build: its libraries are not compiled a second time.
+        # The build folder of the command is used, so that its libraries are not compiled again.
         build = ROOT / "build/release"
         _run(
             "cmake", "--preset", "build", "-S", ROOT, "-DDLO_PYTHON=ON",
@@ -79,7 +79,7 @@ def _build(folder, settings):
 
 
 def _bring_libraries(folder):
-    """Copies the shared libraries of the extension beside it, where it looks first."""
+    """Copies the shared libraries of the extension to its folder, which it searches first."""
     (extension,) = (folder / "dlo").glob("_dlo.*.so")
     listed = subprocess.run(["ldd", extension], check=True, capture_output=True, text=True).stdout
     for name, path in re.findall(r"^\s*(\S+) => (/\S+)", listed, re.MULTILINE):

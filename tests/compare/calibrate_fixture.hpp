@@ -7,7 +7,7 @@
 
 namespace dlo::test {
 
-/// Rods and what is seen of them, for the command calibrate.
+/// Fixture for the command calibrate: rods and their observed shapes.
 class CalibrateCommand : public Command {
  protected:
   std::string scene_of(const std::string& name, const std::string& modulus, double angle,
@@ -21,7 +21,7 @@ class CalibrateCommand : public Command {
                               << more;
     return path(name);
   }
-  /// The exact shape of a scene, without arc lengths.
+  /// Writes the exact shape of a scene, without arc lengths, and returns the file's name.
   std::string seen(const std::string& scene, const std::string& name) {
     return write_table(name, "x,y,z", solved_points(scene + " --model exact --samples 9"));
   }

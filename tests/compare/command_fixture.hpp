@@ -33,7 +33,7 @@ struct Outcome {
 /// Runs the command in a folder of its own.
 class Command : public Folder {
  protected:
-  /// Words with blanks between them.
+  /// Returns words joined by blanks.
   static std::string words(std::initializer_list<std::string> list) {
     std::string line;
     for (const std::string& word : list) line.append(word).append(" ");
@@ -44,7 +44,8 @@ class Command : public Folder {
     return write("scene.toml", text);
   }
 
-  /// The command within this process, which is faster; arguments that need a shell bring a process.
+  /// Runs the command within this process, which is faster; arguments that need a shell start a
+  /// process.
   [[nodiscard]] Outcome run(const std::string& arguments) const {
     std::optional<std::vector<std::string>> list = shell_words(arguments);
     if (!list) return run_process(arguments);
@@ -63,14 +64,14 @@ class Command : public Folder {
   /// Runs a command for the files that it writes; it has to end well.
   void succeeds(const std::string& arguments) const { (void)said(arguments); }
 
-  /// The document of a command.
+  /// Returns the document that a command writes.
   [[nodiscard]] nlohmann::json json_of(const std::string& arguments, int status = 0) const {
     const Outcome result = run(arguments + " --format json");
     EXPECT_EQ(result.status, status) << arguments << "\n" << result.err;
     return nlohmann::json::parse(result.out);
   }
 
-  /// Rows x, y, z, s [m] of the shape that `dlo solve` finds with these arguments.
+  /// Returns rows x, y, z, s [m] of the shape that `dlo solve` finds with these arguments.
   [[nodiscard]] std::vector<std::vector<double>> solved_points(const std::string& arguments) const {
     return csv_numbers(csv_rows(said("solve " + arguments + " --format csv")), 1);
   }
@@ -94,7 +95,7 @@ class Command : public Folder {
     return path(name);
   }
 
-  /// The largest difference of a coordinate of two documents' points [m].
+  /// Returns the largest difference of a coordinate of two documents' points [m].
   static double points_apart(const nlohmann::json& a, const nlohmann::json& b) {
     EXPECT_EQ(a.at("points_m").size(), b.at("points_m").size());
     double apart = 0;
@@ -107,12 +108,12 @@ class Command : public Folder {
     return apart;
   }
 
-  /// A process of the command: for what is about processes.
+  /// Runs the command as a process, for tests of processes.
   [[nodiscard]] Outcome run_process(const std::string& arguments) const {
     return run_line(std::string(DLO_COMMAND) + " " + arguments);
   }
 
-  /// Any line of a shell, a single command.
+  /// Runs any line of a shell that is a single command.
   [[nodiscard]] Outcome run_line(const std::string& command) const {
     const std::string line = command + " 2>" + path("stderr");
     std::FILE* pipe = ::popen(line.c_str(), "r");
@@ -128,7 +129,8 @@ class Command : public Folder {
     return result;
   }
 
-  /// Bad input: this status, nothing on standard output, one line that names all of `names`.
+  /// Expects bad input: this status, nothing on standard output, and one line that contains all of
+  /// `names`.
   void expect_error(const std::string& arguments, int status,
                     const std::vector<std::string>& names) const {
     const Outcome result = run(arguments);

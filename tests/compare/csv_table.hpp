@@ -14,7 +14,7 @@ namespace dlo::test {
 
 using CsvRow = std::vector<std::string>;
 
-/// Fields of a line of CSV without line ends in its fields; quotes stay.
+/// Returns the fields of a line of CSV without line ends in its fields; quotes are kept.
 inline CsvRow csv_fields(const std::string& line) {
   CsvRow fields(1);
   bool quoted = false;
@@ -29,7 +29,7 @@ inline CsvRow csv_fields(const std::string& line) {
   return fields;
 }
 
-/// Rows of CSV text, its header first; empty lines are left out.
+/// Returns the rows of CSV text, its header first; empty lines are omitted.
 inline std::vector<CsvRow> csv_rows(const std::string& text) {
   std::vector<CsvRow> rows;
   std::istringstream lines(text);
@@ -47,12 +47,12 @@ inline bool is_table(const std::string& text) {
          });
 }
 
-/// The number of a field; NaN if it is empty.
+/// Returns the number of a field; NaN if it is empty.
 inline double csv_number_of(const std::string& field) {
   return field.empty() ? NAN : std::strtod(field.c_str(), nullptr);
 }
 
-/// The numbers of rows from one on. @param skip  columns before them
+/// Returns the numbers of all rows from a given one on. @param skip  number of columns before them
 inline std::vector<std::vector<double>> csv_numbers(const std::vector<CsvRow>& rows,
                                                     std::size_t first, std::size_t skip = 0) {
   std::vector<std::vector<double>> numbers;

@@ -12,7 +12,7 @@
 
 namespace dlo::test {
 
-/// A test with a folder of its own, which is gone with it.
+/// Fixture with a private folder, which is removed with it.
 class Folder : public testing::Test {
  protected:
   void SetUp() override { std::filesystem::create_directories(folder_); }
@@ -33,7 +33,7 @@ class Folder : public testing::Test {
     return text.str();
   }
 
-  /// Names of what is in the folder, in order.
+  /// Returns the names of the entries of the folder, in order.
   [[nodiscard]] std::vector<std::string> files() const {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder_)) {

@@ -14,7 +14,7 @@
 
 namespace dlo::test {
 
-/// `count` uneven arc lengths on a rod [m], no two nearer than 2 % of its length.
+/// Returns `count` uneven arc lengths on a rod [m], no two closer than 2 % of its length.
 inline std::vector<double> uneven_arc_lengths(std::mt19937& random, int count, double length) {
   std::uniform_real_distribution<double> anywhere(0, length);
   std::vector<double> s;
@@ -28,7 +28,7 @@ inline std::vector<double> uneven_arc_lengths(std::mt19937& random, int count, d
   return s;
 }
 
-/// Any rotation, all equally likely, and a shift of about a metre.
+/// Returns a uniformly distributed random rotation and a translation of about a metre.
 inline compare::RigidMotion random_pose(std::mt19937& random) {
   std::normal_distribution<double> normal;
   const Eigen::Quaterniond turn(normal(random), normal(random), normal(random), normal(random));
@@ -36,7 +36,7 @@ inline compare::RigidMotion random_pose(std::mt19937& random) {
           Eigen::Vector3d(normal(random), normal(random), normal(random))};
 }
 
-/// The motion back.
+/// Returns the inverse motion.
 inline compare::RigidMotion inverse(const compare::RigidMotion& pose) {
   return {pose.rotation.transpose(), -pose.rotation.transpose() * pose.translation};
 }
@@ -49,7 +49,7 @@ inline Eigen::Matrix3Xd with_noise(Eigen::Matrix3Xd points, double sigma, std::m
   return points;
 }
 
-/// Noise whose neighbours belong together over an arc length: a first-order autoregression.
+/// Returns noise that is correlated over an arc length: a first-order autoregression.
 inline Eigen::Matrix3Xd correlated_noise(const std::vector<double>& s, double sigma, double length,
                                          std::mt19937& random) {
   std::normal_distribution<double> normal(0, sigma);
@@ -76,7 +76,7 @@ inline compare::MeasuredShape reversed(const compare::MeasuredShape& shape) {
   return result;
 }
 
-/// The exact shape of a scene at these arc lengths.
+/// Returns the exact shape of a scene at these arc lengths.
 inline compare::MeasuredShape exact_shape(const compare::Scene& scene,
                                           const std::vector<double>& s) {
   const energy_model::Equilibrium exact = compare::solve_reference(scene, compare::Model::exact);

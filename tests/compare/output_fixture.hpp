@@ -12,7 +12,7 @@ namespace dlo::test {
 /// Runs lines of bash in a folder of its own, for what leaves the command.
 class Output : public Command {
  protected:
-  /// A line of bash that may be more than one command; its standard error is what they write there.
+  /// Runs a line of bash, possibly with several commands; its standard error is theirs.
   [[nodiscard]] Outcome bash(const std::string& script) const {
     std::ofstream(path("script")) << "cd " << path("") << "\ndlo=" << DLO_COMMAND << "\n"
                                   << script << "\n";
@@ -31,7 +31,7 @@ class Output : public Command {
     return std::count(text.begin(), text.end(), '\n') == 1 && text.ends_with('\n');
   }
 
-  /// Refused with status 2 before the scene is solved, which would end with status 3.
+  /// Expects a refusal with status 2 before the scene is solved, which would end with status 3.
   void expect_refused(const std::string& arguments, const std::vector<std::string>& names) const {
     expect_error(arguments + " --max-evaluations 1", 2, names);
   }

@@ -7,7 +7,7 @@
 
 namespace dlo::test {
 
-/// Moment of a joint over its spring constant, and its derivative, by the angle.
+/// Moment of a joint divided by its spring constant, and its derivative by the angle.
 struct JointMoment {
   double value, slope;
 };

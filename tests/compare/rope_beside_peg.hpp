@@ -2,8 +2,8 @@
 
 namespace dlo::test {
 
-/// The file of a scene: a rope from a pin to the left of a peg, with a load at its end. The rope
-/// may hang beside the peg or lie over it.
+/// Text of a scene file: a rope from a pin to the left of a peg, with a load at its end. The rope
+/// may hang next to the peg or lie over it.
 inline constexpr const char* rope_beside_peg = R"(
 gravity = [0, -9.81, 0]
 [rod]

@@ -8,7 +8,8 @@
 
 namespace dlo::test {
 
-/// A gripper at the rod's begin and the origin. @param held  a direction or `hold = "pin"`
+/// Returns a gripper at the beginning of the rod and the origin. @param held  a direction or `hold
+/// = "pin"`
 inline std::string gripper_text(const std::string& held) {
   return "[[gripper]]\nat = 0\nposition = [0, 0, 0]\n" + held + "\n";
 }
@@ -16,7 +17,7 @@ inline std::string gripper_text(const std::string& held) {
 inline const std::string level_clamp = gripper_text("direction = \"0 deg\"");
 inline const std::string first_pin = gripper_text("hold = \"pin\"");
 
-/// A steel wire of half a metre, without what holds it.
+/// Steel wire of half a metre, without grippers.
 inline const std::string steel_rod =
     "[rod]\nlength = \"50 cm\"\ndiameter = \"2 mm\"\nmaterial = \"spring_steel\"\n";
 

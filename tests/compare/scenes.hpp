@@ -7,7 +7,7 @@
 
 namespace dlo::test {
 
-/// A rod 1 m long under its weight along -y, clamped at the origin.
+/// Returns a rod of 1 m under its weight along -y, clamped at the origin.
 inline compare::Scene heavy_scene(double gamma, double degrees) {
   compare::Scene scene;
   scene.name = "heavy";

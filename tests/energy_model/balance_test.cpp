@@ -45,14 +45,14 @@ TEST(Imbalance, IsTheSumOfForcesAndOfMomentsAboutTheFirstPoint) {
   EXPECT_TRUE(std::isnan(imbalance_of({{{0, 0, 0}, {1, 0, 0}, {0, NAN, 0}}}, no_least).share()));
 }
 
-/// A rod at rest, by the model that takes it.
+/// Rod at rest, solved by a model that accepts it.
 struct BalancedRod {
   std::string name;
   Problem problem;
   Equilibrium shape;
 };
 
-/// One of each kind of what may act on a rod.
+/// Returns one rod for each kind of load and constraint.
 std::vector<BalancedRod> balanced_rods() {
   using obstacle::Body;
   std::vector<BalancedRod> rods;

@@ -48,7 +48,7 @@ TEST(Certify, TakesAShapeThatNothingIsFreeIn) {
   EXPECT_EQ(solution.neutral_directions, 0);
 }
 
-/// Between clamps that lean out of the plane, at 0.8 of the length.
+/// Returns a span between clamps that lean out of the plane, at 0.8 of the length.
 Span spatial_arch(double lean) {
   Span span;
   span.planar = false;

@@ -20,7 +20,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Held against the way it is bent by nature: free, it turns over.
+/// Returns a rod that is held against its natural curvature: without confinement it turns over.
 Problem bent_the_wrong_way(double gamma, double span) {
   Problem problem = test::two_clamps(gamma, span);
   problem.torsional_stiffness = 0.4;

@@ -13,7 +13,7 @@
 
 namespace dlo::test {
 
-/// How far a shape is from what defines an equilibrium, from its samples and reactions alone.
+/// Violations of the conditions of equilibrium by a shape, from its samples and reactions alone.
 struct BalanceDefects {
   double force = 0;     ///< |sum of all forces on the rod| over the largest of them
   double torque = 0;    ///< of all torques about a section, the largest of all sections, over
@@ -30,7 +30,7 @@ struct BalanceDefects {
   }
 };
 
-/// Force and torque of a part of the rod on the point where it begins.
+/// Force and torque of a part of the rod on its initial point.
 struct CarriedLoad {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   Eigen::Vector3d torque_about_origin = Eigen::Vector3d::Zero();
@@ -41,7 +41,7 @@ struct CarriedLoad {
   }
 };
 
-/// The rod's section at an arc length.
+/// Returns the rod's section at an arc length.
 inline energy_model::Section section_at(const energy_model::Problem& problem, double at) {
   for (const energy_model::Section& section : problem.sections) {
     if (section.begin < at && at < section.end) return section;
@@ -54,7 +54,7 @@ inline energy_model::Section section_at(const energy_model::Problem& problem, do
           problem.bending_stiffness_2};
 }
 
-/// Strains of the stress-free shape at an arc length.
+/// Returns the strains of the stress-free shape at an arc length.
 inline Eigen::Vector3d natural_at(const energy_model::Problem& problem, double at) {
   Eigen::Vector3d natural = Eigen::Vector3d::Zero();
   for (std::size_t j = 0; j < problem.natural_strains.size(); ++j) {
@@ -64,7 +64,8 @@ inline Eigen::Vector3d natural_at(const energy_model::Problem& problem, double a
   return natural;
 }
 
-/// Bending moment of a rod with material directors, from the tangent's rate and d1.
+/// Returns the bending moment of a rod with material directors, from the derivative of the tangent
+/// and d1.
 inline Eigen::Vector3d bending_moment(const energy_model::Problem& problem, double at,
                                       const Eigen::Vector3d& t, const Eigen::Vector3d& rate,
                                       const Eigen::Vector3d& d1) {
@@ -78,8 +79,8 @@ inline Eigen::Vector3d bending_moment(const energy_model::Problem& problem, doub
   return first * d1 + second * d2;
 }
 
-/// The arc lengths where something happens: ends, grips, loads, sections, where line loads begin
-/// and end; growing, each once.
+/// Returns the arc lengths of ends, grips, loads, sections, and of the ends of line loads;
+/// increasing and unique.
 inline std::vector<double> events_of(const energy_model::Problem& problem) {
   std::vector<double> events = {0, problem.length};
   for (const energy_model::Grip& grip : problem.grips) events.push_back(grip.at);
@@ -97,9 +98,10 @@ inline std::vector<double> events_of(const energy_model::Problem& problem) {
   return events;
 }
 
-/// Weighs a shape: cuts it at panels of Gauss-Legendre quadrature no longer than `panel`, goes from
-/// the far end to the near one and adds up what pulls and turns beyond each cut.
-/// @param panel  of arc length [m]; a quarter of the length over which the rod's shape changes
+/// Computes the balance of a shape. The shape is divided into panels of Gauss-Legendre quadrature
+/// no longer than `panel`; forces and moments beyond each cut are summed from the far end to the
+/// near one.
+/// @param panel  in arc length [m]; a quarter of the length over which the rod's shape changes
 inline BalanceDefects balance_of(const energy_model::Problem& problem,
                                  const energy_model::Equilibrium& shape, double panel) {
   // Nodes and weights of the six-point rule on [-1, 1] (Abramowitz and Stegun, table 25.4).

@@ -87,7 +87,7 @@ TEST(ExactContact, ConfirmsARodThatALoadTakesOutOfThePlane) {
   }
 }
 
-/// How many shapes that converged and touch have been confirmed from where they are, by kind.
+/// Numbers of shapes with contact that were confirmed from themselves, by kind.
 struct Confirmed {
   int touching = 0;
   int confirmed = 0;

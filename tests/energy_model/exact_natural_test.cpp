@@ -60,7 +60,7 @@ Problem curved_rod(const Eigen::Vector3d& strain, double torsion = 0.8) {
   return problem;
 }
 
-/// Clamped at its top, hanging, in units of its length and stiffness.
+/// Returns a rod that hangs from a clamp at its top, in units of its length and stiffness.
 Problem hanging_rod(double curvature, double gamma) {
   Problem problem = heavy_cantilever(gamma, -90);
   problem.torsional_stiffness = 2.0 / 3;
@@ -173,7 +173,7 @@ struct KirchhoffHelix {
     return mu * helix.u + lambda * Eigen::Vector3d::UnitZ();
   }
   [[nodiscard]] Eigen::Vector3d force() const { return lambda * helix.u; }
-  /// With errors that a start may have.
+  /// Returns the helix as an initial guess with errors.
   [[nodiscard]] Equilibrium shape(double error) const {
     Equilibrium shape;
     shape.grips = {{-force(), -own_moment()}, {force(), helix.frame(1) * own_moment()}};

@@ -43,8 +43,8 @@ SpanStates states_of(const std::function<RodState(double)>& state) {
   };
 }
 
-/// Where a smooth function is zero: of the inverse polynomial through its values at x + k h, k = 1
-/// .. 5.
+/// Returns the zero of a smooth function, by the inverse polynomial through its values at x + k h,
+/// k = 1 .. 5.
 double extrapolated_root(double x, double h, const std::function<double(double)>& value) {
   constexpr int count = 5;
   std::array<double, count> at{};

@@ -18,7 +18,7 @@ namespace {
 using test::heavy_cantilever;
 using Real = long double;
 
-/// Clamped along x and stiff out of the plane of its weight.
+/// Returns a rod that is clamped along x and stiff out of the plane of its weight.
 Problem ribbon(Real gamma) {
   Problem problem = heavy_cantilever(static_cast<double>(gamma), 0);
   problem.bending_stiffness = 50;
@@ -37,7 +37,7 @@ State rate(Real gamma, Real s, const State& u) {
           std::cos(u[0]), std::sin(u[0])};
 }
 
-/// By Runge and Kutta's method, at equally spaced s from the tip to the clamp.
+/// Integrates by the Runge-Kutta method, at equally spaced s from the tip to the clamp.
 std::vector<State> shot(Real gamma, Real tip_angle, int steps) {
   const Real h = Real(1) / static_cast<Real>(steps);
   std::vector<State> states = {{tip_angle, 0, 1, 0, 0, 0}};
@@ -58,7 +58,7 @@ std::vector<State> shot(Real gamma, Real tip_angle, int steps) {
   return states;
 }
 
-/// At the clamp, extrapolated twice: to 1e-15.
+/// Returns the state at the clamp, extrapolated twice: accurate to 1e-15.
 State at_clamp(Real gamma, Real tip_angle) {
   constexpr int steps = 200;
   const State a = shot(gamma, tip_angle, steps).back();
@@ -77,7 +77,8 @@ struct Fold {
   Real gamma, tip_angle;
 };
 
-/// Where the angle at the clamp and its derivative by that at the tip are zero, by Newton's method.
+/// Returns the fold at which the angle at the clamp and its derivative by that at the tip are zero,
+/// by Newton's method.
 Fold thrown_back_fold() {
   Fold fold = {41.4L, 4.0L};
   for (int i = 0; i < 8; ++i) {

@@ -5,7 +5,7 @@
 
 namespace dlo::test {
 
-/// Orthonormal basis of what constraints leave free.
+/// Returns an orthonormal basis of the directions that constraints leave free.
 inline Eigen::MatrixXd free_basis(const Eigen::MatrixXd& jacobian, Eigen::Index size) {
   if (jacobian.rows() == 0) return Eigen::MatrixXd::Identity(size, size);
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(jacobian.transpose());

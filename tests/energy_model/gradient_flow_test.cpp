@@ -23,8 +23,8 @@ Problem rolled(const Eigen::Vector3d& end, const Eigen::Vector3d& direction, dou
   return problem;
 }
 
-/// How far a shape between level clamps 0.8 apart is from itself after half a turn about the
-/// upright line halfway, end for end.
+/// Returns the distance of a shape between horizontal clamps 0.8 apart from itself after half a
+/// rotation about the vertical line halfway, which exchanges the ends.
 double asymmetry(const Equilibrium& shape) {
   const Eigen::Matrix3Xd points = shape.sample(equal_arc_lengths(1, 21)).points;
   Eigen::Matrix3Xd turned = points.rowwise().reverse();

@@ -11,23 +11,23 @@
 
 namespace dlo::test {
 
-/// hat(u) v = u x v
+/// Returns the matrix with hat(u) v = u x v.
 inline Eigen::Matrix3d hat_of(const Eigen::Vector3d& u) {
   Eigen::Matrix3d hat;
   hat << 0, -u.z(), u.y(), u.z(), 0, -u.x(), -u.y(), u.x(), 0;
   return hat;
 }
 
-/// Where a rod ends up that leaves its first grip and carries on what all exert: its end, what is
-/// left of force and moment there, which is nothing of an equilibrium, and the largest distance on
-/// the way from the points that are returned.
+/// Result of the integration of a rod from its first grip under all forces: the final point, the
+/// remaining force and moment there, which are zero for an equilibrium, and the largest distance
+/// from the points of the shape.
 struct RodEnd {
   Eigen::Vector3d point, force, moment;
   double apart = 0;
 };
 
-/// Kirchhoff's equations r' = t, R' = R hat(u), m' = n x t, n' = -w along a rod by the classical
-/// method of Runge and Kutta, from what its grips are said to exert and the loads.
+/// Integrates Kirchhoff's equations r' = t, R' = R hat(u), m' = n x t, n' = -w along a rod by the
+/// classical Runge-Kutta method, with the reactions of its grips and the loads.
 /// @param frame  directors (d1, d2, t) at the first grip, at s = 0
 inline RodEnd carried_along(const energy_model::Problem& problem,
                             const energy_model::Equilibrium& shape, const Eigen::Matrix3d& frame) {

@@ -153,7 +153,8 @@ double hanging_curvature(double natural, double gamma) {
   return result.smallest_eigenvalue;
 }
 
-/// Where a parabola through the eigenvalue at three weights on the stable side of `gamma` vanishes.
+/// Returns the weight at which a parabola through the eigenvalue at three weights on the stable
+/// side of `gamma` is zero.
 double extrapolated_loss(double natural, double gamma, double side) {
   const double h = side * 2e-3 * gamma;
   const double a = hanging_curvature(natural, gamma + h);

@@ -10,7 +10,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Between clamps that lean out of the plane, at 0.8 of the length.
+/// Returns a span between clamps that lean out of the plane, at 0.8 of the length.
 Span leaning_arch(double lean) {
   Span span;
   span.planar = false;

@@ -49,7 +49,7 @@ struct Placement {
     return problem;
   }
 
-  /// Largest differences of two results, in the first one's units.
+  /// Largest differences of two results, in the units of the first one.
   struct Differences {
     double points = 0, curvature = 0, energy = 0, force = 0, torque = 0;
   };

@@ -11,9 +11,9 @@
 
 namespace dlo::test {
 
-/// A round rod that two clamps at its ends hold with their frames as an elastic polygon, whose
-/// obstacles are stiff springs: an opinion that shares neither unknowns nor contacts with the
-/// rod's. Clamps hold the middles of the end segments.
+/// Elastic polygon of a round rod whose ends two clamps hold with their frames, with stiff springs
+/// as obstacles. It shares neither unknowns nor contacts with the energy model. Clamps hold the
+/// middles of the end segments.
 struct PolygonOfRod {
   energy_model::PolygonProblem problem;
   Eigen::Matrix3Xd points;  ///< where the rod has them [m]

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int terms = 8;
 
-/// With a pin at 0.3, where its anchor is, and a load beside it.
+/// Returns a span with a pin at 0.3, which is its anchor, and a load next to it.
 Span anchored_span() {
   Span span;
   span.planar = false;

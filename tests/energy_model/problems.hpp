@@ -15,7 +15,8 @@ namespace dlo::test {
 /// the first root of sqrt(3) Ai(-z) + Bi(-z). The digits are those of reference_values.json.
 constexpr double self_buckling_gamma = 7.837347438943483;
 
-/// A rod of unit length and stiffness under its weight Gamma along -y, clamped at the origin.
+/// Returns a rod of unit length and stiffness under its weight Gamma along -y, clamped at the
+/// origin.
 inline energy_model::Problem heavy_cantilever(double gamma, double degrees) {
   energy_model::Problem problem;
   problem.length = 1;
@@ -36,7 +37,7 @@ inline energy_model::Problem two_clamps(double gamma, double span) {
   return problem;
 }
 
-/// data/reference/reference_values.json, which says where its numbers come from.
+/// Returns data/reference/reference_values.json, which states the sources of its numbers.
 inline nlohmann::json reference_values() {
   std::ifstream stream(std::string(DLO_DATA) + "/reference/reference_values.json");
   if (!stream) throw std::runtime_error("reference_values.json is missing");

@@ -17,7 +17,7 @@
 
 namespace dlo::test {
 
-/// The largest imbalance of one model's equilibria.
+/// Largest imbalance of the equilibria of one model.
 struct LargestImbalance {
   const char* model;
   double share = 0;
@@ -84,7 +84,7 @@ inline energy_model::Problem problem_of_exact(std::uint64_t number) {
   return problem;
 }
 
-/// Rods that touch floors and bodies, rigid ones and every third time such that yield.
+/// Returns rods that touch floors and bodies: rigid ones, and in every third problem yielding ones.
 inline std::optional<energy_model::Problem> touching_problem(std::uint64_t number) {
   const auto seed = static_cast<unsigned>(number);
   const bool space = number % 2 == 0;
@@ -103,7 +103,7 @@ inline std::optional<energy_model::Problem> touching_problem(std::uint64_t numbe
   return problem;
 }
 
-/// Chain and force model on the scene of a problem that a scene file can have.
+/// Adds chain and force model for a problem that a scene file can describe.
 inline void add_polygons(const std::string& name, const energy_model::Problem& problem,
                          double time_limit, std::array<LargestImbalance, 2>& polygons) {
   compare::Scene scene = compare::parse_scene(scene_text(problem, name), name + ".toml");

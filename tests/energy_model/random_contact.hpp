@@ -12,7 +12,7 @@
 
 namespace dlo::test {
 
-/// One to three grips above or beside a half-space, as drawn by a seed.
+/// Returns a problem with one to three grips above or next to a half-space, drawn by a seed.
 inline energy_model::Problem random_touching_problem(unsigned seed, bool space,
                                                      double largest_gamma) {
   std::mt19937 random(seed);
@@ -59,7 +59,8 @@ inline energy_model::Problem random_touching_problem(unsigned seed, bool space,
   return problem;
 }
 
-/// A body that the shape without it would enter, clear of the grips. @return whether there is one
+/// Adds a body that the shape without it would penetrate, clear of the grips. @return whether there
+/// is one
 inline bool put_in_the_way(std::mt19937& random, bool space, energy_model::Problem& problem) {
   const auto uniform = [&random](double low, double high) {
     return low + (high - low) * std::generate_canonical<double, 53>(random);
@@ -119,8 +120,8 @@ inline std::optional<energy_model::Problem> random_problem_with_body(unsigned se
   return problem;
 }
 
-/// A half-space that the shape without it would enter, clear of the grips. @return whether there is
-/// one
+/// Adds a half-space that the shape without it would penetrate, clear of the grips. @return whether
+/// there is one
 inline bool put_below(std::mt19937& random, bool space, energy_model::Problem& problem) {
   const auto uniform = [&random](double low, double high) {
     return low + (high - low) * std::generate_canonical<double, 53>(random);

@@ -42,7 +42,7 @@ class RandomNumbers {
   double uniform(double low = 0, double high = 1) {
     return low + (high - low) * static_cast<double>(bits() >> 11U) * 0x1p-53;
   }
-  /// In [0, count).
+  /// Returns an integer in [0, count).
   int below(int count) { return static_cast<int>(uniform() * count); }
   bool chance(double probability) { return uniform() < probability; }
 
@@ -105,12 +105,13 @@ class RandomCurve {
   Eigen::Matrix3Xd points_;
 };
 
-/// A multiple of 1/1000 in [low, high], so that a scene can be written down.
+/// Returns a multiple of 1/1000 in [low, high], so that a scene file can contain it.
 inline double random_arc_length(RandomNumbers& random, double low, double high) {
   return std::round(1000 * random.uniform(low, high)) / 1000;
 }
 
-/// Arc lengths of `count` grips, at least 0.05 l apart, the first and the last one often at an end.
+/// Returns arc lengths of `count` grips, at least 0.05 l apart, the first and the last one often at
+/// an end.
 inline std::vector<double> random_grip_places(RandomNumbers& random, int count) {
   constexpr double least = 0.05;
   for (;;) {
@@ -133,13 +134,13 @@ inline energy_model::Problem curved_problem(std::uint64_t number);
 inline energy_model::Problem mixed_problem(std::uint64_t number);
 inline energy_model::Problem strip_problem(std::uint64_t number);
 
-/// How much a random problem may have.
+/// Limits of a random problem.
 struct RandomLimits {
   int grips = 3;
   double gamma_exponent = 4;
 };
 
-/// A rod of unit length and stiffness, as random_problem() says.
+/// Returns a rod of unit length and stiffness as described at random_problem().
 inline energy_model::Problem random_rod_held(RandomNumbers& random, RandomSpace space,
                                              const RandomLimits& limits = {}) {
   energy_model::Problem problem;

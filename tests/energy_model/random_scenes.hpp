@@ -16,7 +16,7 @@
 
 namespace dlo::test {
 
-/// How two solutions of one problem compare.
+/// Comparison of two solutions of one problem.
 enum class Agreement {
   same,         ///< to 1e-8 l everywhere
   image,        ///< the same curvature and energy: a mirror image, or turned about a free axis
@@ -25,7 +25,7 @@ enum class Agreement {
   missing       ///< one of them at least did not converge
 };
 
-/// Both models on one problem.
+/// Results of both models for one problem.
 struct ComparedScene {
   std::uint64_t number = 0;
   energy_model::Equilibrium energy;
@@ -36,7 +36,8 @@ struct ComparedScene {
   double distance = std::numeric_limits<double>::quiet_NaN();  ///< of the two shapes [l]
 };
 
-/// Length over which a rod under these forces changes its shape: (EI / force)^(1/2), at most l / 8.
+/// Returns the length over which a rod under these forces changes its shape: (EI / force)^(1/2), at
+/// most l / 8.
 inline double shape_length(const energy_model::Problem& problem,
                            const energy_model::Equilibrium& shape) {
   double force = problem.weight_per_length.norm() * problem.length;
@@ -55,8 +56,8 @@ inline BalanceDefects defects_of(const energy_model::Problem& problem,
   return balance_of(problem, shape, shape_length(problem, shape) / 2);
 }
 
-/// Same shape, image of it, or another one: `distance` is the largest of points at equal arc
-/// length.
+/// Compares two shapes: same shape, its mirror image, or another one. `distance` is the largest of
+/// points at equal arc length.
 inline Agreement agreement_of(const energy_model::Problem& problem,
                               const energy_model::Equilibrium& a,
                               const energy_model::Equilibrium& b, double& distance) {
@@ -126,7 +127,7 @@ inline ComparedScene compare_models(std::uint64_t number, const energy_model::Pr
   return scene;
 }
 
-/// The problem as a scene file of dlo, to run it by hand.
+/// Returns the problem as a scene file of dlo, to run it by hand.
 inline std::string scene_text(const energy_model::Problem& problem, const std::string& name) {
   // A rod of 10 mm with this modulus has EI = 1 N m^2; its density makes the weight.
   constexpr double pi = 3.14159265358979323846;

@@ -41,7 +41,7 @@ class RigidPolygon {
     inverse_mass_[free_points + 1] *= 2;
   }
 
-  /// Tip at times that grow.
+  /// Returns the tip at increasing times.
   [[nodiscard]] Eigen::Matrix2Xd tips(const std::vector<double>& times) {
     Eigen::Matrix2Xd result(2, static_cast<Eigen::Index>(times.size()));
     const std::vector<Eigen::Matrix2Xd> shapes = shapes_at(times);
@@ -51,12 +51,12 @@ class RigidPolygon {
     return result;
   }
 
-  /// Arc length of a point from the clamp.
+  /// Returns the arc length of a point from the clamp.
   [[nodiscard]] double arc_length(Eigen::Index point) const {
     return (static_cast<double>(point) - 0.5) * segment_;
   }
 
-  /// Points, the first of which is within the clamp, at times that grow.
+  /// Returns the points, the first of which is inside the clamp, at increasing times.
   [[nodiscard]] std::vector<Eigen::Matrix2Xd> shapes_at(const std::vector<double>& times) {
     std::vector<Eigen::Matrix2Xd> result;
     double last = 0;
@@ -110,7 +110,7 @@ class RigidPolygon {
     return result;
   }
 
-  /// Rate of turning of a segment.
+  /// Returns the rate of rotation of a segment.
   [[nodiscard]] static double turning(const Eigen::Vector2d& along, const Eigen::Vector2d& rate) {
     return (along.x() * rate.y() - along.y() * rate.x()) / along.squaredNorm();
   }

@@ -4,7 +4,8 @@
 
 namespace dlo::test {
 
-/// A weightless rod of unit length and stiffness, clamped at both ends, the second one rolled.
+/// Returns a weightless rod of unit length and stiffness, clamped at both ends, with a roll of the
+/// second clamp.
 inline energy_model::Problem rolled_clamps(const Eigen::Vector3d& end,
                                            const Eigen::Vector3d& direction,
                                            double torsional_stiffness, double roll) {

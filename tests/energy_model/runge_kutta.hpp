@@ -2,7 +2,7 @@
 
 namespace dlo::test {
 
-/// One step of the classical method of Runge and Kutta, of order four.
+/// Makes one step of the classical Runge-Kutta method, of order four.
 /// @param rate  of the state, by position (or time) and state
 template <class Real, class State, class Rate>
 State runge_kutta(const Rate& rate, Real at, const State& state, Real step) {

@@ -104,7 +104,7 @@ TEST(SoftContact, AThinPegIsSeenBetweenTwoLooks) {
   }
 }
 
-/// One clamp or a clamp and a pin, over or beside one obstacle that yields.
+/// Returns a rod with one clamp, or a clamp and a pin, above or next to one obstacle that yields.
 Problem random_scene(int seed) {
   using obstacle::Body;
   std::mt19937 random(static_cast<unsigned>(seed));
@@ -132,7 +132,7 @@ Problem random_scene(int seed) {
   return problem;
 }
 
-/// Where a shape comes to rest that a load has pushed out of its plane and left.
+/// Returns the rest shape after a temporary load has pushed the rod out of its plane.
 Equilibrium after_a_push(const Problem& problem, const Equilibrium& shape) {
   Problem pushed = problem;
   pushed.loads = {{0.6, {0, 0, 0.01}}};
@@ -182,8 +182,8 @@ TEST(SoftContact, RandomScenesListEachEquilibriumOnceWithTheForceOfItsEnergy) {
   EXPECT_GE(pressed, scenes * 2 / 3);
 }
 
-/// In its middle plane a deep box pushes to one side as hard as to the other: the rod slides to one
-/// of them, as it does where the box stands a little aside.
+/// In its middle plane a deep box pushes to both sides equally. The rod slides to one of them, as
+/// it does if the box is slightly off the plane.
 TEST(SoftContact, ARodInTheMiddlePlaneOfADeepBoxLeavesIt) {
   const auto solved = [](double aside) {
     Problem problem = heavy_cantilever(10, 0);

@@ -19,7 +19,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// l = 1, w = 1 along -z, EI = `stiffness`.
+/// Returns a line with l = 1, w = 1 along -z, EI = `stiffness`.
 Problem line(double stiffness) {
   Problem problem;
   problem.length = 1;
@@ -34,7 +34,7 @@ Problem between_pins(double stiffness, const Vector3d& end) {
   return problem;
 }
 
-/// Clamps that turn the line out of its plane.
+/// Returns a line between clamps that rotate it out of its plane.
 Problem between_clamps(double stiffness) {
   Problem problem = between_pins(stiffness, {0.7, 0.1, 0.2});
   problem.grips[0].direction = Vector3d(0.3, 1, 0.4);
@@ -133,7 +133,7 @@ TEST(SoftLine, HangsFromAClamp) {
   }
 }
 
-/// A pin on the floor at the origin and one above it.
+/// Returns a line with a pin on the floor at the origin and one above it.
 Problem on_floor(double stiffness) {
   Problem problem = line(stiffness);
   problem.grips = {{0, {0, 0, 0}, {}, {}}, {1, {0.9, 0, 0.3}, {}, {}}};

@@ -12,7 +12,7 @@
 
 namespace dlo::test {
 
-/// A solver's result, which has to have converged: its message ends the test otherwise.
+/// Returns a solver's result, which must have converged: otherwise its message ends the test.
 template <typename Result>
 [[nodiscard]] Result converged(Result result) {
   EXPECT_EQ(result.status, energy_model::SolveStatus::converged) << result.message;
@@ -22,7 +22,7 @@ template <typename Result>
   return result;
 }
 
-/// A solver's result whose shape can be used: its message ends the test otherwise.
+/// Returns a solver's result whose shape is usable: otherwise its message ends the test.
 template <typename Result>
 [[nodiscard]] Result usable(Result result) {
   if (!succeeded(result.status)) throw std::runtime_error("no shape: " + result.message);
@@ -40,7 +40,7 @@ Eigen::Vector3d point_at(const Shape& shape, double s) {
   return sample_at(shape, s).points.col(0);
 }
 
-/// Largest distance of two shapes' points at the same arc lengths [m].
+/// Returns the largest distance of two shapes' points at the same arc lengths [m].
 /// @param s  of a rod of unit length unless they are given
 template <typename Shape>
 double gap_between(const Shape& a, const Shape& b,

@@ -60,7 +60,8 @@ Span span_on_obstacle(bool planar) {
   return span;
 }
 
-/// On a rigid obstacle, which it touches at one point and lies on beyond, up to a load and on.
+/// Returns the span on a rigid obstacle, with a contact at one point and a contact interval up to a
+/// load and beyond.
 Span touching_span(bool planar) {
   const double z = planar ? 0 : 0.3;
   Span span = gripped_span(planar);
@@ -82,7 +83,7 @@ Span span_on_peg(bool planar) {
   return span;
 }
 
-/// Both clamps hold the rod's frame; a rod in the plane has no twist.
+/// Returns the span with clamps that both hold the rod's frame; a rod in the plane has no twist.
 Span twisted_span(bool planar) {
   Span span = gripped_span(planar);
   span.twist = Span::Twist{0.7, {0.1, 0.9, 0.8}};
@@ -130,7 +131,7 @@ Span free_strip_span(bool planar) {
   return span;
 }
 
-/// Loads per length beside the weight, one of them over another.
+/// Returns the span with line loads in addition to the weight, two of which overlap.
 Span line_loaded_span(bool planar) {
   const double z = planar ? 0 : 1;
   Span span = gripped_span(planar);
@@ -138,7 +139,7 @@ Span line_loaded_span(bool planar) {
   return span;
 }
 
-/// With a couple beside a force, curved by nature; free to turn at its start.
+/// Returns an intrinsically curved span with a couple and a force, free to rotate at its start.
 Span turned_span(bool planar) {
   Span span = free_natural_span(planar);
   span.loads[0].couple = 3;

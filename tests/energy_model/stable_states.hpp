@@ -41,7 +41,7 @@ class StableStates {
     return problem;
   }
 
-  /// Converged shapes that polygons lead to, each once.
+  /// Returns converged shapes, found from polygons, without duplicates.
   [[nodiscard]] std::vector<energy_model::Equilibrium> find(const energy_model::Problem& problem,
                                                             int starts) {
     std::vector<Eigen::VectorXd> polygons;
@@ -59,7 +59,7 @@ class StableStates {
     return found;
   }
 
-  /// Largest distance of their points.
+  /// Returns the largest distance of their points.
   [[nodiscard]] static double distance(const energy_model::Equilibrium& a,
                                        const energy_model::Equilibrium& b) {
     const std::vector<double> at = energy_model::equal_arc_lengths(1, 33);
@@ -101,7 +101,8 @@ class StableStates {
     return angles;
   }
 
-  /// A local minimum of bending and gravity, its end held by a spring that becomes stiffer.
+  /// Returns a local minimum of bending and gravity, with the end held by a spring of increasing
+  /// stiffness.
   [[nodiscard]] std::optional<Eigen::VectorXd> relaxed(const energy_model::Problem& problem,
                                                        Eigen::VectorXd angles) const {
     // At the end a clamp's angle is the one nearest to the start's.

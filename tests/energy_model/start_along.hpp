@@ -10,7 +10,7 @@
 
 namespace dlo::test {
 
-/// A shape to start from, of unit length, along a line from corner to corner.
+/// Returns an initial guess of unit length along a line from corner to corner.
 inline energy_model::Equilibrium start_along(const std::vector<Eigen::Vector3d>& corners) {
   std::vector<double> at = {0};
   for (std::size_t i = 1; i < corners.size(); ++i) {

@@ -28,7 +28,7 @@ using Solver = std::function<Equilibrium(const Problem&)>;
 Equilibrium energy(const Problem& problem) { return solve_energy(problem); }
 Equilibrium exact(const Problem& problem) { return solve_exact(problem); }
 
-/// Both models, by name.
+/// Test of both models, by name.
 class BothModels : public testing::TestWithParam<std::pair<const char*, Solver>> {
  protected:
   [[nodiscard]] static Equilibrium solved(const Problem& problem) {
@@ -41,7 +41,8 @@ INSTANTIATE_TEST_SUITE_P(Strip, BothModels,
                                          std::pair("exact", Solver(exact))),
                          [](const auto& model) { return std::string(model.param.first); });
 
-/// Clamped along x at the origin, of unit length; in the x-y plane it bends about d2.
+/// Returns a strip of unit length, clamped along x at the origin; in the x-y plane it bends about
+/// d2.
 Problem strip(double about_d1, double about_d2, double torsion = 0.8) {
   Problem problem;
   problem.length = 1;
@@ -58,7 +59,7 @@ Problem round_rod(Problem of, double stiffness) {
   return of;
 }
 
-/// Held in ways that a round rod can be held in too.
+/// Returns strips that are held in ways in which a round rod can be held too.
 std::vector<Problem> held_strips() {
   std::vector<Problem> problems;
   Problem problem = strip(1, 1);

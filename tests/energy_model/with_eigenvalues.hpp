@@ -5,7 +5,7 @@
 
 namespace dlo::test {
 
-/// A symmetric matrix with these eigenvalues.
+/// Returns a symmetric matrix with these eigenvalues.
 inline Eigen::MatrixXd with_eigenvalues(const Eigen::VectorXd& eigenvalues) {
   const Eigen::Index n = eigenvalues.size();
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(Eigen::MatrixXd::Random(n, n));

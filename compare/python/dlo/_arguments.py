@@ -1,4 +1,4 @@
-"""Arguments of the wrong kind are told by their name, before the extension meets them."""
+"""Checks of arguments, whose messages name the argument, before the extension is called."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 Value = TypeVar("Value")
 
 Kind = Callable[[Any], Optional[str]]
-"""Why a value is none of this kind: "what it is (allowed: ...)", or None if it is one."""
+"""Function that returns None if a value is of the kind, else the reason: "what it is (allowed: ...)"."""
 
 
 def _a(value: Any) -> str:
@@ -66,7 +66,7 @@ def QUANTITY(value: Any) -> Optional[str]:
 def TRUTH(value: Any) -> Optional[str]:
     try:
         bool(value)
-    except Exception:  # such as of an array
+    except Exception:  # an array, for example, has no truth value
         return f"{_a(value)} (allowed: True or False)"
     return None
 
@@ -109,13 +109,13 @@ _LIMITS = {
 
 
 def require(key: str, value: Any, kind: Kind) -> None:
-    """Raises InputError, with key, value and what is allowed, unless a value is of a kind."""
+    """Raises InputError with key, value and what is allowed, unless the value is of the kind."""
     problem = kind(value)
     if problem is None:
         return
     try:
         shown = reprlib.repr(value)
-    except Exception:  # whatever somebody's __repr__ raises
+    except Exception:  # __repr__ may raise any exception
         shown = "?"
     raise InputError(f"{key} = {shown}: {problem}")
 
@@ -141,7 +141,7 @@ _CONVERTED: dict[Kind, Callable[[Any], Any]] = {
 def checked(**kinds: Kind) -> Callable[[Function], Function]:
     """Checks and converts a function's arguments before each call, by their kinds.
 
-    kinds: of arguments whose annotation does not determine the kind. None passes where it is the default.
+    kinds: kinds of arguments whose annotation does not determine it. None is accepted where it is the default.
     """
 
     def decorate(function: Function) -> Function:
@@ -177,7 +177,7 @@ class Attribute(property, Generic[Value]):
 
 
 class Strict:
-    """What has the attributes of its class, and no others."""
+    """Base of classes whose objects have only the attributes of their class."""
 
     def _no_field(self, name: str) -> str:
         fields = [key for key in dir(type(self)) if isinstance(getattr(type(self), key), property)]
@@ -192,8 +192,8 @@ class Strict:
 
 
 def told(method: Function, **kinds: Kind) -> Function:
-    """A method of the extension, called a thousand times a second: only if it has refused its arguments,
-    which have these kinds in their order, is looked for the one at fault."""
+    """Wraps a method of the extension that may be called a thousand times per second. Only after it has refused
+    its arguments are they checked, in the order of these kinds, to name the wrong one."""
 
     @functools.wraps(method)
     def call(self: Any, *arguments: Any, **named: Any) -> Any:

@@ -1,4 +1,4 @@
-"""Results that are documents: those of the command, with what one asks for most as attributes."""
+"""Results that are documents of the command, with frequently used values as attributes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = [
 
 
 def _found(value: Any, path: list[str]) -> Any:
-    """What is at a path of keys; of a list, where the key is *, what is there in each element."""
+    """Returns the value at a path of keys; for the key *, the list of the values in each element."""
     for i, key in enumerate(path):
         if key == "*":
             return [_found(one, path[i + 1 :]) for one in value]
@@ -28,7 +28,7 @@ def _found(value: Any, path: list[str]) -> Any:
 
 
 def _at(path: str, kind: Callable[[Any], Value], doc: str) -> Attribute[Value]:
-    """An attribute that a document has at a path, such as "frames/*/time_s"."""
+    """Returns an attribute that reads a document at a path, such as "frames/*/time_s"."""
     return Attribute(lambda self: kind(_found(self.json, path.split("/"))), doc=doc)
 
 
@@ -97,7 +97,7 @@ class Modes(Document):
 
 
 def _moving(path: str, doc: str) -> Attribute[NDArray[numpy.float64]]:
-    """An attribute of the frames of a rod with inertia, if one was asked for."""
+    """Returns an attribute of the frames of a rod with inertia, if it was requested."""
 
     def read(self: Document) -> NDArray[numpy.float64]:
         if "dynamic" not in self.json:

@@ -11,14 +11,14 @@ from ._errors import InputError
 FileName = Union[str, "os.PathLike[str]"]
 
 Materials = Optional[tuple[str, str]]
-"""Text and name of a file of materials; None: the built-in one."""
+"""Text and name of a file of materials; None: the built-in file."""
 
 
 def file_name(path: Any, what: str, allowed: str = "the name of a file") -> bytes:
-    """As the system has it."""
+    """Returns the name of a file in the encoding of the system."""
     if not isinstance(path, (str, bytes, os.PathLike)):
         raise InputError(f"{what}: a {type(path).__name__} (allowed: {allowed})")
-    # A name of a file may be of any bytes, that of a scene is Unicode.
+    # The name of a file may contain any bytes, the name of a scene is Unicode.
     try:
         name = os.fsencode(path)
     except UnicodeEncodeError:
@@ -29,7 +29,7 @@ def file_name(path: Any, what: str, allowed: str = "the name of a file") -> byte
 
 
 def file_text(name: bytes) -> tuple[str, str]:
-    """What is in a file, and its name for messages."""
+    """Returns the content of a file, and its name for messages."""
     return _dlo.read_file(name), name.decode(errors="replace")
 
 

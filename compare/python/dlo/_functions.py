@@ -1,4 +1,4 @@
-"""What the command dlo does with scenes and arrays of their shapes."""
+"""Functions of the command dlo for scenes and arrays of their shapes."""
 
 from __future__ import annotations
 
@@ -33,24 +33,24 @@ def many(scenes: Union[SceneLike, Iterable[SceneLike]]) -> list[SceneLike]:
 
 
 def _pair(shape: Any) -> tuple[Any, Any]:
-    """Points and their arc lengths, or None: two points are no pair of these."""
+    """Returns points and their arc lengths, or None. A tuple of two points is no such pair."""
     return (file_name(shape, "shapes"), None) if is_file(shape) else shape_pair(shape)
 
 
 def shape_pair(shape: Any) -> tuple[Any, Any]:
-    """The same of what is no file."""
+    """Returns points and their arc lengths, or None, for a shape that is no file."""
     if isinstance(shape, tuple) and len(shape) == 2 and _dimensions(shape[0]) != 1:
         return shape[0], shape[1]
     return shape, None
 
 
 def _recorded(motion: Any) -> Any:
-    """The name of a file, or rows."""
+    """Returns the name of a file, or the rows of an array."""
     return file_name(motion, "motion") if is_file(motion) else numpy.asarray(motion, float).tolist()
 
 
 def _dimensions(value: Any) -> int:
-    """Number of dimensions of an array; -1 of lists of several lengths."""
+    """Returns the number of dimensions of an array; -1 for lists of different lengths."""
     try:
         return numpy.ndim(value)
     except ValueError:

@@ -1,4 +1,4 @@
-"""What a scene is made of: tables of its file, whose keys are fields."""
+"""Elements of a scene: tables of its file, whose keys are fields."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ Quantity = Union[float, str]
 """A number in SI units, or text with a unit: 0.006 or "6 mm"."""
 
 Vector = Union[Sequence[Quantity], NDArray[Any]]
-"""Three of these, or a NumPy array of shape (3,)."""
+"""Three quantities, or a NumPy array of shape (3,)."""
 
 Direction = Union[Quantity, Vector]
 """An angle in the x-y plane from +x ("30 deg", or a number in rad), or a vector of any length."""
 
 class _Fixed(dict[str, Any]):
-    """A copy of a table that a scene has: what would be put into it would be lost."""
+    """Copy of a table of a scene, which refuses changes, because they would have no effect on the scene."""
 
     def _refuse(self, *_: Any, **__: Any) -> Any:
         raise TypeError("a copy of what the scene has (allowed: to set the field to a whole new value)")
@@ -47,7 +47,7 @@ class _Fixed(dict[str, Any]):
 
 
 def copied(key: str, value: Any) -> Any:
-    """A value that is the scene's own."""
+    """Returns a copy of a value, which belongs to the scene."""
     try:
         return copy.deepcopy(value)
     except RecursionError:
@@ -59,7 +59,7 @@ def copied(key: str, value: Any) -> Any:
 
 
 def number_of(value: Any, dimension: str) -> Any:
-    """What a document says in SI units; of a list each of its numbers, as an array."""
+    """Returns a value of a document in SI units; for a list an array of its numbers."""
     if isinstance(value, str):
         return _dlo.quantity(value, dimension)
     if isinstance(value, (list, tuple, numpy.ndarray)):
@@ -83,14 +83,14 @@ def _direction(value: Any) -> Any:
 
 
 def as_it_is(value: Any) -> Any:
-    """The same, not to be written into."""
+    """Returns a read-only copy of a value of a document."""
     if isinstance(value, dict):
         return _Fixed({key: as_it_is(one) for key, one in value.items()})
     return tuple(map(as_it_is, value)) if isinstance(value, (list, tuple)) else value
 
 
 def _field(key: str, read: Callable[[Any], Any], doc: str) -> property:
-    """A key of an element: read in SI units, set as Part._set does."""
+    """Returns a property for a key of an element: read in SI units, set as Part._set does."""
 
     def get(self: "Part") -> Any:
         return read(self._table.get(key))
@@ -113,7 +113,7 @@ class Part(Strict):
     and the scene stays as it was. None takes a key out.
     """
 
-    _name = ""  # of the table in a scene file
+    _name = ""  # name of the table in a scene file
 
     def __init__(self, **table: Any) -> None:
         self._owner: Optional[Scene] = None
@@ -232,7 +232,7 @@ class Section(Part):
 
 
 def _setting(key: str, doc: str) -> property:
-    """A key of what a scene always has: read as the scene's reader has it."""
+    """Returns a property for a key of a table that every scene has: read as the scene's reader returns it."""
 
     def get(self: "Settings") -> Any:
         if self._owner is not None:
@@ -325,7 +325,7 @@ def load(
 
 
 def _between(given: dict[str, Any]) -> dict[str, Any]:
-    """Renames start and end as a file has them: `from` is no name in Python."""
+    """Renames start and end to the keys of a file; `from` is a keyword in Python."""
     return {{"start": "from", "end": "to"}.get(key, key): value for key, value in given.items()}
 
 

@@ -1,4 +1,4 @@
-"""Pictures with matplotlib, which is imported only here. What is drawn, and how, the library says."""
+"""Pictures with matplotlib, which is imported only here. The library determines their content and style."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def _draw(ax: Any, panel: dict[str, Any]) -> None:
         _draw_curve(ax, curve)
     for words, x, y, right, up in panel["texts"]:
         ax.annotate(words, (x, y), (0.9 * right, 0.9 * up), textcoords="offset points", va="center", fontsize="small")
-    label_pad = 9 if ax.name == "3d" else None  # else it is on the numbers
+    label_pad = 9 if ax.name == "3d" else None  # otherwise the label overlaps the numbers
     for name, axis in zip("xyz", panel["axes"]):
         getattr(ax, f"set_{name}lim")(*axis["limits"])
         getattr(ax, f"set_{name}label")(axis["label"], labelpad=label_pad)
@@ -42,21 +42,21 @@ def _draw(ax: Any, panel: dict[str, Any]) -> None:
         if axis["tics"] is not None:
             getattr(ax, f"set_{name}ticks")([at for at, _ in axis["tics"]], [label for _, label in axis["tics"]])
     if ax.name == "3d":
-        # Smaller than its place, where its axes' names have no room.
+        # Smaller than its area, which has no space for the names of the axes.
         ax.set_box_aspect([high - low for low, high in (axis["limits"] for axis in panel["axes"])], zoom=0.8)
         ax.locator_params(nbins=5)
     elif panel["equal"]:
         ax.set_aspect("equal")
     ax.grid(True, color="0.9")
     if any(curve["title"] for curve in panel["curves"]):
-        # Below the numbers and the name of the axis, which in space are inside: nothing is drawn there.
+        # Below the numbers and the name of the axis. In space these are inside the area, so that it is free there.
         ax.legend(
             loc="upper left", bbox_to_anchor=(0, 0), borderaxespad=1 if ax.name == "3d" else 4, frameon=False
         )
 
 
 def plot(result: Any, ax: Any = None) -> Any:
-    """Draws what has a shape at equal aspect: in the plane that it lies in, else in space."""
+    """Draws a result with a shape at equal aspect: in its plane if it has one, else in space."""
     panel = result._panel(None if ax is None else ax.name == "3d")
     if ax is None:
         import matplotlib.pyplot
@@ -67,20 +67,20 @@ def plot(result: Any, ax: Any = None) -> Any:
 
 
 def _new_axes(figure: Any, panel: dict[str, Any]) -> Any:
-    pixels = 80  # of the library's an inch: letters are as large in its pictures
+    pixels = 80  # pixels of the library per inch, so that letters have the size of its pictures
     width, height = panel["size"]
     made = figure(figsize=(width / pixels, height / pixels), layout="constrained")
-    made.get_layout_engine().set(h_pad=0.2)  # in space it leaves less [inches]
+    made.get_layout_engine().set(h_pad=0.2)  # the default margin is too small for a plot in space [inches]
     if len(panel["axes"]) == 2:
         return made.add_subplot()
     ax = made.add_subplot(projection="3d")
-    # x, or else y, goes to the right.
+    # x points to the right, or y if x is vertical.
     ax.view_init(azim=(-60, 30, -60)[panel["upright"]], vertical_axis="xyz"[panel["upright"]])
     return ax
 
 
 def svg(result: Any) -> Optional[str]:
-    """The same as a file's text; None without matplotlib."""
+    """Returns the picture as the text of an SVG file; None without matplotlib."""
     try:
         from matplotlib.figure import Figure
     except ImportError:

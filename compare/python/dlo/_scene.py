@@ -19,7 +19,7 @@ SceneLike = Union["Scene", FileName]
 """A scene, or the name of a scene file."""
 
 Calibrated = Union[MaterialFit, MotionFit, FileName]
-"""What calibrate() found of a rod and its fixture, or the name of a file of it."""
+"""Result of calibrate() for a rod and its fixture, or the name of its file."""
 
 
 _ROD_KEYS = tuple(_dlo.scene_keys["rod"])
@@ -259,7 +259,7 @@ class Scene(Strict):
         return (Scene._read, (self.to_toml(), self._file, self._materials))
 
     def _top_field(key: str, doc: str) -> property:  # type: ignore[misc]
-        """A field whose value the reader knows in SI units."""
+        """Returns a property whose value the reader gives in SI units."""
         return property(
             lambda self: getattr(self._data, key),
             lambda self, value: self._put_one(key, value),
@@ -267,7 +267,7 @@ class Scene(Strict):
         )
 
     def _rod_field(key: str, dimension: str, doc: str) -> property:  # type: ignore[misc]
-        """A field that is as it was given, or None."""
+        """Returns a property whose value is the given one in SI units, or None."""
         return property(
             lambda self: number_of(self._rod.get(key), dimension),
             lambda self, value: self._put_one(key, value),
@@ -280,7 +280,7 @@ class Scene(Strict):
         )
 
     def _given(key: str, doc: str) -> Attribute[Any]:  # type: ignore[misc]
-        """A field that is a copy of what was given, or None."""
+        """Returns an attribute whose value is a copy of the given one, or None."""
         return Attribute(
             lambda self: as_it_is(self._rod.get(key)), lambda self, value: self._put_one(key, value), doc=doc
         )
@@ -352,7 +352,7 @@ class Scene(Strict):
 
 
 def as_scene(scene: SceneLike, materials: Optional[FileName] = None) -> Scene:
-    """The scene itself, or that of a file; with a file of materials, read with these."""
+    """Returns a scene, or the scene of a file; if a file of materials is given, the scene is read with it."""
     if not isinstance(scene, Scene):
         return Scene.from_file(scene, materials=materials)
     return scene if materials is None else scene._with_materials(materials)
@@ -364,8 +364,8 @@ def data_of(
     time: Optional[float] = None,
     calibrated: Optional[Calibrated] = None,
 ) -> _dlo.SceneData:
-    """What the extension takes. time: of a scene that moves, as it is then [s]. calibrated: in the place of
-    its rod and clamps."""
+    """Returns the extension's data of a scene. time: instant of a scene that moves [s]. calibrated: replaces its
+    rod and clamps."""
     data = as_scene(scene, materials)._data
     if isinstance(calibrated, (MaterialFit, MotionFit)):
         data = _dlo.calibrated_scene(data, calibrated.to_toml(), "calibrated")

@@ -1,4 +1,4 @@
-"""How results show themselves, in the words of the library."""
+"""Representations of results, in the words of the library."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from . import _plot
 
 
 def words(result: Any) -> str:
-    """One line: the verdict, where there is one."""
+    """Returns one line with the verdict, if there is one."""
     passed = getattr(result, "passed", None)
     if passed is not None:
         verdict = getattr(result, "verdict", "pass" if passed else "fail")
@@ -18,22 +18,22 @@ def words(result: Any) -> str:
     if deviation is not None:
         return f"RMS {1e3 * deviation['rms_m']:.4g} mm"
     lines = [" ".join(text.split()) for text in str(result).splitlines() if text.strip()]
-    # Where the first line names the scene, the next one says what it is of.
+    # If the first line names the scene, the next one states the kind of result.
     return ", ".join(lines[: 2 if lines[0].startswith("scene ") else 1])
 
 
 def line(result: Any) -> str:
-    """Of __repr__."""
+    """Returns the text of __repr__."""
     return f"<dlo.{type(result).__name__} {words(result)}>"
 
 
 def svg(result: Any) -> Optional[str]:
-    """The picture of what has a shape; None without matplotlib."""
+    """Returns the picture of a result with a shape; None without matplotlib."""
     return _plot.svg(result) if hasattr(result, "_panel") else None
 
 
 def html(result: Any) -> str:
-    """The verdict, the picture and all numbers."""
+    """Returns verdict, picture and all numbers as HTML."""
     picture = svg(result) or ""
     return (
         f"<div><p><b>{_html.escape(words(result))}</b></p>{picture[picture.find('<svg'):]}"

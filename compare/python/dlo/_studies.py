@@ -1,4 +1,4 @@
-"""What the command dlo does with many scenes, and with what moves."""
+"""Functions of the command dlo for many scenes, and for scenes that move."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ __all__ = ["bench", "modes", "regress", "stability", "suite", "sweep", "track"]
 
 
 def _spelled(field: str, value: Any, depth: int = 0) -> str:
-    """As a scene file has it."""
+    """Returns a value as a scene file spells it."""
     if isinstance(value, str):
         require(field, value, TEXT)
         return value
@@ -37,7 +37,7 @@ def _spelled(field: str, value: Any, depth: int = 0) -> str:
 
 
 def _axis(field: str, values: Union[str, Iterable[Any]]) -> tuple[str, Union[str, list[str]]]:
-    """A field and its values, which may be without end: one more than allowed is enough."""
+    """Returns a field and its values. They may be infinitely many: at most one more than allowed is read."""
     require("vary: a field", field, TEXT)
     if isinstance(values, str):
         require(f"vary: {field}", values, TEXT)

@@ -53,14 +53,14 @@ struct Choices<RegressionVerdict> {
 struct RegressionTolerance {
   double relative = 0.01;  ///< fraction of the error, >= 0
   double absolute = 1e-6;  ///< fraction of the rod's length, >= 0
-  /// `absolute` is a fraction of the deflection (TrivialShape) instead
+  /// Whether `absolute` is a fraction of the deflection (TrivialShape) instead.
   bool of_deflection = false;
 };
 
 /// Comparison of one case with its baseline.
 struct RegressionResult {
   std::string name;  ///< BaselineCase::name() of the case; for a changed case, its name in this run
-  /// Verdict over all errors of the case
+  /// Verdict over all errors of the case.
   RegressionVerdict verdict = RegressionVerdict::not_solved;
   std::optional<ShapeErrors> expected;  ///< baseline errors, if the baseline contains the case
   std::optional<ShapeErrors> measured;  ///< errors of this run, if the case was solved

@@ -19,7 +19,7 @@ struct RegressRequest {
 /// Comparison of scenes with a baseline, as `dlo regress` prints it.
 struct Regression {
   std::vector<RegressionResult> results;  ///< sorted by name
-  /// measured cases, to be written as a new baseline of these scenes
+  /// Measured cases, to be written as a new baseline of these scenes.
   std::vector<BaselineCase> cases;
 
   /// Whether every case was solved.

@@ -21,7 +21,7 @@ enum class SweepModel {
   exact,
   force,
   compare,  ///< the force model, stepped to rest, compared with the energy model
-  /// the chain, which is the force model's equilibrium without time steps, compared likewise
+  /// Comparison of the chain, which is the force model's equilibrium without time steps.
   compare_chain,
 };
 

@@ -8,7 +8,7 @@ namespace dlo::compare {
 /// Result of a program that was run.
 struct ChildOutcome {
   double seconds = 0;  ///< wall time from start to end, accurate to 1 % [s]
-  /// clause that states why it failed, without its own output; empty on success
+  /// Clause that states why the program failed, without its own output; empty on success.
   std::string problem;
   bool too_long = false;  ///< killed at the time limit
   int exit_status = 0;    ///< exit status of the program; 0 too if a signal ended it

@@ -79,7 +79,7 @@ struct MovingChoices {
   bool operator==(const MovingChoices&) const = default;
 };
 
-/// How an experiment ended.
+/// Ending of an experiment.
 enum class MovingStatus { diverged, too_many_steps, finished };
 
 /// Results of one experiment: the indicators of Tables 2 to 4.

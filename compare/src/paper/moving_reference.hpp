@@ -40,7 +40,7 @@ struct MovingReference {
   bool converged = false;
   std::string message;      ///< reason if it has not converged
   std::vector<int> frames;  ///< frame numbers, from the beginning of the movement
-  /// At the arc lengths of the force model's points [m], per frame.
+  /// Points of the rod at the arc lengths of the force model's points [m], per frame.
   std::vector<Eigen::Matrix3Xd> points;
   std::vector<Eigen::Vector3d> forces;  ///< force of the gripper on the rod [N], per frame
   double energy_error = 0;              ///< dlo::energy_model::Dynamics::energy_error

@@ -30,7 +30,7 @@ class Reference : public Command {
     return run_line("bash " + path("script"));
   }
 
-  /// All matches of the first group.
+  /// Returns all matches of the first group.
   [[nodiscard]] static std::vector<std::string> matches(const std::string& text,
                                                         const std::string& pattern) {
     std::vector<std::string> found;

@@ -33,7 +33,8 @@ std::map<std::string, double> csv_values(const std::string& csv) {
   return values;
 }
 
-/// Both weights of one rod, as if seen twice on its way to rest.
+/// Returns a report with both weights of one rod, as if it was sampled twice before it came to
+/// rest.
 PaperReport hand_made_report() {
   const compare::Scene scene = compare::parse_scene(
       "name = \"made\"\n[rod]\nlength = \"50 cm\"\ndiameter = \"2 mm\"\n"
@@ -118,8 +119,8 @@ TEST(PaperOutput, TextJsonAndCsvTellTheSameNumbers) {
   }
 }
 
-/// Every row of Tables 2 to 4 as printed, but for one that is given up, one without its force and
-/// one that diverges.
+/// Returns every row of Tables 2 to 4 as printed, except for one that is stopped, one without its
+/// force and one that diverges.
 compare::MovingReport hand_made_moving_report() {
   compare::MovingReport report;
   report.rows = compare::moving_rows();

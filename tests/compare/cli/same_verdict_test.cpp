@@ -91,7 +91,7 @@ TEST_F(SameVerdict, OfFiftyShapesFromCommandLibraryAndMatchers) {
   EXPECT_LE(passes, 8 * static_cast<int>(scenes));
 }
 
-/// But for what the tolerance is about.
+/// Returns the document without the fields that depend on the tolerance.
 nlohmann::json facts(nlohmann::json document) {
   for (const char* key : {"tolerance", "judged_m", "verdict", "reason", "explanations",
                           "superseded_by", "significant", "deflection_m", "hint"}) {

@@ -13,7 +13,8 @@
 
 namespace dlo::test {
 
-/// A rod of 0.5 kg/m whose clamp points 20 degrees up. @param rod  more keys of it
+/// Returns a rod of 0.5 kg/m whose clamp points 20 degrees upwards. @param rod  additional keys of
+/// the rod
 inline compare::Scene clamped(const std::string& rod = "") {
   return compare::parse_scene(
       "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0.5\n" + rod +
@@ -21,7 +22,7 @@ inline compare::Scene clamped(const std::string& rod = "") {
       "clamped.toml");
 }
 
-/// Points as a file has them.
+/// Returns points as a shape read from a file.
 inline compare::MeasuredShape made(Eigen::Matrix3Xd points) {
   compare::MeasuredShape shape;
   shape.file = "mine.csv";
@@ -50,7 +51,8 @@ inline JudgedShape judged(const compare::Scene& scene, const compare::MeasuredSh
   return outcome;
 }
 
-/// Fails, and the best explanation has these words and leaves less than a tenth of the tolerance.
+/// Expects that the shape fails, and that the best explanation contains these words and leaves less
+/// than a tenth of the tolerance.
 inline void expect_named(const std::string& what, const compare::Scene& scene,
                          const compare::MeasuredShape& shape, const std::vector<std::string>& words,
                          double left_m = 1e-3) {

@@ -92,7 +92,7 @@ struct Swing {
     options.policy.damping = false;
     return {polygon.discretisation.rod, points, options};
   }
-  /// Its coordinate.
+  /// Returns the coordinate of the mode.
   [[nodiscard]] double along(const force_model::Simulation& simulation) const {
     const Eigen::Matrix3Xd points = simulation.points();
     double sum = 0;

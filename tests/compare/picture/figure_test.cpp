@@ -53,7 +53,7 @@ Scene flat_scene() {
   return scene;
 }
 
-/// Each point of a rod, one of them moved.
+/// Returns the points of a rod, one of them moved by `off`.
 MeasuredShape measured(const Scene& scene, int points, double off) {
   MeasuredShape shape{.file = "mine.csv"};
   const Solution rod = solve(scene, Model::energy, {}, equal_arc_lengths(scene.length, points));

@@ -15,7 +15,7 @@ using dlo::compare::Field;
 using dlo::compare::Json;
 using dlo::compare::SolvedShape;
 
-/// In the order of Field::Get.
+/// Names of types, in the order of Field::Get.
 constexpr const char* python_types[] = {
     "float", "int", "bool", "str", "list[str]", "list[float]", "dict[str, float]", ""};
 static_assert(std::size(python_types) == std::variant_size_v<Field<SolvedShape>::Get>);

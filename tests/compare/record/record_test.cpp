@@ -77,7 +77,7 @@ TEST_F(Record, AShapeWithoutFramesHasNoTurns) {
             "row,gamma,tip_x_m,tip_y_m,tip_z_m,energy_J,evaluations,terms,statu");
 }
 
-/// Its largest force, which nothing else says.
+/// Field of the mean tension, which no other output contains.
 const Field<SolvedShape> mean_tension[] = {
     {"mean_tension", "N", "Mean of the tension along the rod", [](const SolvedShape& shape) {
        double sum = 0;

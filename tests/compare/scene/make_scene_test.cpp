@@ -72,7 +72,7 @@ Scene copper_wire() {
                      {"gripper.0.direction", "30 deg"}});
 }
 
-/// Where in the file something stood is not known of a scene that was made in code.
+/// Removes the line numbers, which a scene that was made in code does not have.
 Scene without_lines(Scene scene) {
   for (Gripper& gripper : scene.grippers) gripper.where.clear();
   return scene;

@@ -33,7 +33,7 @@ std::string mjcf_text(const std::string& name) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// With the first place of a piece, which is there, as another one.
+/// Returns the text with the first occurrence of a piece, which must exist, replaced.
 std::string changed(std::string text, const std::string& piece, const std::string& other) {
   const std::size_t at = text.find(piece);
   EXPECT_NE(at, std::string::npos) << piece;

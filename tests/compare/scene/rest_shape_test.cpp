@@ -46,7 +46,7 @@ constexpr double helix_radius = 0.02;
 constexpr double helix_pitch = 0.0628;
 constexpr double helix_length = 0.28;
 
-/// Along z, which begins at (R, 0, 0).
+/// Returns a point of a helix along z, which begins at (R, 0, 0).
 Eigen::Vector3d on_helix(double s) {
   const double c = helix_pitch / (2 * std::numbers::pi);
   const double angle = s / std::hypot(helix_radius, c);
@@ -72,7 +72,7 @@ Scene bare_scene(double length) {
   return scene;
 }
 
-/// Held by its first end where its rest shape begins.
+/// Returns a scene that is held by its first end where its rest shape begins.
 Scene resting_scene(const RestShape& shape, double length) {
   Scene scene = bare_scene(length);
   scene.set_rest_shape(shape);

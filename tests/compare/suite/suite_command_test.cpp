@@ -25,7 +25,7 @@ using testing::HasSubstr;
 
 class SuiteCommand : public dlo::test::Command {
  protected:
-  /// One of simulator.py, by its defect.
+  /// Returns the simulator of simulator.py with this defect.
   static std::string wrong(const std::string& defect) {
     return " --with " + defect + "='/usr/bin/python3 " + DLO_DATA +
            "/../tests/compare/suite/simulator.py " + defect + " {scene} {points} {shape}'";

@@ -21,8 +21,8 @@ using dlo::compare::Scene;
 using dlo::compare::Shape;
 using nlohmann::json;
 
-/// Between the chain's own points, by Lagrange's polynomial through the six nearest: its error is
-/// far below that of the chain.
+/// Interpolates between the chain's own points by Lagrange's polynomial through the six nearest,
+/// with an error far below that of the chain.
 Eigen::Matrix3Xd between(const Shape& chain, const std::vector<double>& at) {
   constexpr Eigen::Index nodes = 6;
   const auto count = static_cast<Eigen::Index>(chain.arc_length.size());

@@ -42,7 +42,8 @@ inline Eigen::Vector3d turned(const Eigen::Vector3d& vector, double angle) {
   return Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * vector;
 }
 
-/// A wire between two clamps, seen hung several times in one fixture that nobody knows well.
+/// Wire between two clamps, photographed in several mountings in one fixture that is not known
+/// accurately.
 struct Wire {
   double EI = 0;
   std::vector<Scene> scenes;
