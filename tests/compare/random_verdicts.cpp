@@ -364,7 +364,7 @@ class Verdicts {
     std::fflush(stdout);
   }
 
-  /// @return what is wrong with the verdict; empty if nothing
+  /// Counts a verdict. @return the error of the verdict; empty if there is none
   static std::string count(const Trial& trial, bool is_away, const CheckResult& result,
                            Tally& tally) {
     ++tally.tried;

@@ -8,8 +8,8 @@
 
 namespace dlo::test {
 
-/// Returns a gripper at the beginning of the rod and the origin. @param held  a direction or `hold
-/// = "pin"`
+/// Returns a gripper at the beginning of the rod and the origin.
+/// @param held  a direction or `hold = "pin"`
 inline std::string gripper_text(const std::string& held) {
   return "[[gripper]]\nat = 0\nposition = [0, 0, 0]\n" + held + "\n";
 }

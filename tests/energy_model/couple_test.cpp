@@ -1,5 +1,5 @@
-// Couples: arcs that they roll a rod into, their jump of the moment, energy against shooting, and
-// what is said where they have no potential.
+// Tests of couples: the arcs into which they bend a rod, the jump of the moment, the energy against
+// shooting, and the message if they have no potential.
 
 #include <gtest/gtest.h>
 

@@ -305,7 +305,8 @@ TEST(Dynamics, AFrameThatMovesEvenlyChangesNothing) {
   EXPECT_LT(moves.energy_error, 1e-8);
 }
 
-// Against a stiff rod that is carried evenly; what is along it drags nothing.
+// Comparison with a stiff rod that is moved at constant velocity; a flow along the rod causes no
+// drag.
 TEST(Dynamics, SquaredDragIsAcrossTheRod) {
   MovingRod rod = moving_cantilever(0.01);
   rod.material_damping = 0.3;
@@ -394,8 +395,8 @@ TEST(Dynamics, AClampThatStartsAtOnceStrikesTheRod) {
   EXPECT_LT(tip(result.frames[2]).y(), -1e-3);
 }
 
-// Radau's rule asks for the motion at the end of a step, where a break has two: what was before is
-// what counts, whichever of the two the motion itself says there.
+// Radau's rule evaluates the motion at the end of a step. At a break, where the motion has two
+// values, the one before the break is used, whichever of them the motion itself returns there.
 TEST(Dynamics, AStepThatEndsAtABreakKnowsOnlyWhatWasBefore) {
   constexpr double stop = 0.1;
   for (const bool pinned : {false, true}) {

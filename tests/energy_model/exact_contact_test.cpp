@@ -255,7 +255,7 @@ TEST(ExactContact, ARodOverABallFallsOffWhereItsCentreIsAboveTheClampsAxis) {
 }
 
 TEST(ExactContact, NoRodWithinAnObstacleIsConfirmed) {
-  // The start is at rest without the floor, and says that nothing touches.
+  // The initial shape is at rest without the floor and has no contacts.
   Problem problem = heavy_cantilever(8, 0);
   const Equilibrium free = solve_energy(problem);
   const double tip = test::point_at(free, 1).y();

@@ -250,8 +250,8 @@ TEST(MultipleShooting, LeavesAShapeWithAZeroModeAlone) {
   }
 }
 
-/// Shapes that wind around: the minimiser's angles pass near a pole whatever their axis. It once
-/// called what its terms did not resolve there converged.
+/// Shapes with several turns: the minimiser's angles pass near a pole for any axis. It once
+/// reported shapes as converged that its terms did not resolve there.
 TEST(MultipleShooting, ConfirmsTheMinimiserNearThePolesOfItsAngles) {
   std::vector<Problem> problems;
   Problem problem = heavy_cantilever(200, 90);

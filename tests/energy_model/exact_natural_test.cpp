@@ -1,6 +1,6 @@
-// Rods that are curved by nature, in the plane and in space, against circles and helices, first
-// integrals, critical weights from elsewhere, the rod that is intrinsically straight, and
-// Kirchhoff's equations integrated along the rod from what its first clamp is said to exert.
+// Tests of intrinsically curved rods, in the plane and in space, against circles and helices, first
+// integrals, published critical weights, the intrinsically straight rod, and Kirchhoff's equations
+// integrated along the rod from the reaction of its first clamp.
 
 #include <gtest/gtest.h>
 

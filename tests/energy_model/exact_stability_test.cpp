@@ -1,5 +1,5 @@
-// The exact solver's verdict on stability, against theory; what it finds and what it says that it
-// has not looked for; loads beside clamps.
+// Tests of the exact solver's verdict on stability, against theory; of its results and of its
+// report on what it has not searched; of loads next to clamps.
 
 #include <gtest/gtest.h>
 

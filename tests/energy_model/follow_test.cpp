@@ -58,8 +58,8 @@ TEST(Keep, IsFollowAsLongAsTheBranchIsKept) {
   }
 }
 
-// A clamp that stands upright and has turned too far for the rod to lean on its side: a rod there
-// falls about the clamp's axis. What try_follow() does not reach it does not forget either.
+// A vertical clamp that has rotated too far for the rod to lean to its side: the rod snaps about
+// the clamp's axis. If try_follow() does not reach a shape, it keeps the previous one.
 TEST(Keep, StaysWhereItWasWhenTheBranchHasEnded) {
   EnergySolver solver;
   ASSERT_TRUE(succeeded(solver.solve(heavy_cantilever(10, 80)).status));

@@ -163,7 +163,8 @@ TEST(SlackRope, HangsAsACatenary) {
 }
 
 TEST(AllEquilibria, OfAHorizontalClampAreThoseOfTheExactScan) {
-  // Above the fold at 41.4: what hangs, what is folded over it, and the pass between.
+  // Above the fold at 41.4: the hanging branch, the folded-over branch, and the saddle between
+  // them.
   for (const double gamma : {41.0, 41.5, 45.0, 60.0, 96.0, 120.0}) {
     SCOPED_TRACE(gamma);
     const Problem problem = heavy_cantilever(gamma, 0);

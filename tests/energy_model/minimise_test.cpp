@@ -62,7 +62,8 @@ TEST(Minimise, CallsNothingASuccessThatNLoptDoesNot) {
   EXPECT_EQ(translate_nlopt(NLOPT_MAXTIME_REACHED).status, SolveStatus::time_limit);
   EXPECT_EQ(translate_nlopt(NLOPT_MAXEVAL_REACHED).status, SolveStatus::evaluation_limit);
   EXPECT_NE(translate_nlopt(99).message.find("99"), std::string::npos);
-  // A failed line search is a start for a method that proves what it finds, nothing more.
+  // After a failed line search the result may only be used as an initial guess for a method that
+  // proves its result.
   EXPECT_TRUE(translate_nlopt(NLOPT_FAILURE).is_a_start());
   EXPECT_FALSE(translate_nlopt(NLOPT_OUT_OF_MEMORY).is_a_start());
   EXPECT_FALSE(translate_nlopt(99).is_a_start());

@@ -97,8 +97,8 @@ TEST(Table, OverhangLiftsTheRodBehindTheEdge) {
   }
 }
 
-/// EI kappa^2 / 2 + n.t + w.r, n the force in the rod, at its start and at its end: what no
-/// frictionless obstacle changes along a rod, whatever it is and however the rod touches it.
+/// Returns EI kappa^2 / 2 + n.t + w.r, n the force in the rod, at its start and at its end. This is
+/// constant along a rod for any frictionless obstacle and any kind of contact.
 std::array<double, 2> ends_of_first_integral(const Problem& problem, const Equilibrium& rod) {
   const Samples ends = rod.sample(std::array{0.0, problem.length});
   std::array<double, 2> result{};

@@ -54,8 +54,9 @@ TEST(PieceCuts, AreWhereASoftRodTurnsBackAndBesideIt) {
 }
 
 TEST(PieceCuts, ResolveSoftRodsBetweenManyGrips) {
-  // Refused before pieces ended where a shape wants it, before what loads do across a taut part was
-  // in its start, and before minima of polygons were followed with all terms.
+  // These scenes were refused before elements ended where a shape requires it, before initial
+  // guesses included the effect of loads across a taut part, and before minima of polygons were
+  // followed with all terms.
   for (const std::uint64_t number : {16, 19, 111, 127, 215, 245, 282, 341, 373}) {
     SCOPED_TRACE(number);
     const Problem problem = test::random_problem(number, test::RandomSpace::mixed);

@@ -1,4 +1,4 @@
-// The generator of random problems itself: what it promises, or the tests that use it test nothing.
+// Tests of the properties of the random problem generator, on which other tests rely.
 
 #include "random_problems.hpp"
 

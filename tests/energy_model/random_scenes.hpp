@@ -77,7 +77,7 @@ inline Agreement agreement_of(const energy_model::Problem& problem,
       std::abs(a.energy.total() - b.energy.total()) <= 1e-8 * scale) {
     return Agreement::image;
   }
-  // NaN, nobody has looked, proves nothing.
+  // NaN, an eigenvalue that was not computed, proves nothing.
   const bool proven = a.smallest_eigenvalue >= stable && b.smallest_eigenvalue >= stable;
   return proven ? Agreement::both_stable : Agreement::contradict;
 }

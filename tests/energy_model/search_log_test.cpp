@@ -1,4 +1,4 @@
-// A search for all equilibria tells where it has looked and what it has left out.
+// Tests of the log of a search for all equilibria: which initial guesses it has used and omitted.
 
 #include <gtest/gtest.h>
 

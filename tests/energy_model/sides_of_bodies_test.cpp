@@ -84,8 +84,8 @@ Problem with_block_in_the_way(int seed) {
   return problem;
 }
 
-// Whatever side a load pulls the rod to, and wherever it stays without the load: what is found
-// without help costs no more.
+// For any side to which a load moves the rod, and on which it stays without the load: the shape
+// that is found without this help has no more energy.
 TEST(SidesOfBodies, WhatIsFoundCostsNoMoreThanWhatALoadLeadsTo) {
   constexpr int scenes = 100;
   int led = 0;
@@ -121,7 +121,7 @@ TEST(SidesOfBodies, ARopeNearPointsOverAPegLiesOnIt) {
   const double pulled = problem.loads[0].force.dot(ends.tangents.col(1));
   EXPECT_NEAR(held, pulled + problem.weight_per_length.dot(fall), 1e-7 * held);
   EXPECT_LT(test::gap_between(rod, confirmed(problem, rod)), 1e-7);
-  // Beside the peg it hangs lower, and that is what a search for the lowest finds.
+  // Next to the peg the rope hangs lower, and a search for the lowest equilibrium finds this shape.
   const Equilibrium lowest = test::converged(solve_energy(problem));
   EXPECT_TRUE(lowest.contacts.empty());
   EXPECT_LT(lowest.energy.total(), rod.energy.total());

@@ -67,8 +67,8 @@ Problem with_moved_obstacle(Problem problem, const Eigen::Vector3d& by) {
   return problem;
 }
 
-// Moving an obstacle changes the energy at rest by the work of what it pushes with, and of nothing
-// else: grips stand still.
+// If an obstacle is moved, the energy at rest changes by the work of its contact force only,
+// because the grips do not move.
 TEST(SoftContact, EnergyGrowsByTheWorkOfAnObstacleThatIsMoved) {
   constexpr double h = 1e-4;
   for (const YieldingScene& scene : yielding_scenes()) {
@@ -84,9 +84,9 @@ TEST(SoftContact, EnergyGrowsByTheWorkOfAnObstacleThatIsMoved) {
   }
 }
 
-// Stiff and thin: what touches is a tenth of the way between the arc lengths at which a shape is
-// looked at first, wherever it is. By F = k (4/3) d (2 r d)^(1/2) it is pressed in by 3e-6 of 6e-4,
-// so that it pushes with next to what a rigid one does.
+// The peg is stiff and thin: its contact is a tenth of the distance between the arc lengths at
+// which a shape is first sampled, wherever it is. By F = k (4/3) d (2 r d)^(1/2) its depth is 3e-6
+// compared with 6e-4, so that its force is close to that of a rigid peg.
 TEST(SoftContact, AThinPegIsSeenBetweenTwoLooks) {
   constexpr double radius = 0.002;
   for (const double at : {0.4, 0.4007, 0.40125, 0.402}) {
@@ -140,9 +140,9 @@ Equilibrium after_a_push(const Problem& problem, const Equilibrium& shape) {
   return solve_energy(problem, {.start = &aside});
 }
 
-// Every equilibrium, stable or not, is stationary: an obstacle that is moved does work with its
-// force, and all else stands still. None stands twice in the list, and what is called stable comes
-// back from a push out of the plane, in which a round obstacle lets it down.
+// Every equilibrium, stable or not, is stationary: if an obstacle is moved, only its contact force
+// does work. The list contains no equilibrium twice. A stable one returns after a push out of the
+// plane, in which a round obstacle can lose the rod.
 TEST(SoftContact, RandomScenesListEachEquilibriumOnceWithTheForceOfItsEnergy) {
   constexpr int scenes = 10;
   // The errors of the shapes change energies by about 1e-9.

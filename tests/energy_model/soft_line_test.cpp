@@ -47,7 +47,7 @@ double lines_apart(const Equilibrium& a, const Equilibrium& b) {
   return test::gap_between(a, b, equal_arc_lengths(1, 501));
 }
 
-// A catenary knows nothing of a stream, nor of what follows a line that is pulled straight.
+// A catenary does not include a stream, nor follower loads of a line that is pulled straight.
 TEST(SoftLine, IsNoneOfLoadsWithoutAPotential) {
   Problem dragged = between_pins(1e-12, {0.7, 0, 0.1});
   dragged.drag = Drag{.velocity = {0, 1, 0}, .normal = 0.2};
@@ -60,7 +60,7 @@ TEST(SoftLine, IsNoneOfLoadsWithoutAPotential) {
   EXPECT_THROW((void)solve_energy(taut), std::invalid_argument);
 }
 
-// The sanitizers tell what it would otherwise read.
+// The sanitizers report an access to a destroyed problem.
 TEST(SoftLine, OutlivesItsProblem) {
   Equilibrium kept;
   {

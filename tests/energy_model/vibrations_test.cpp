@@ -64,10 +64,10 @@ TEST(Vibrations, OfAStraightCantileverAreThoseOfABeam) {
   EXPECT_NEAR(moved.col(1).norm(), 1, 1e-12);
 }
 
-// Next to straight a rod between two clamps is pressed by 4 pi^2 EI/l^2, at which it buckles. Then
-// w_ssss + 4 pi^2 w_ss = omega^2 w; what is odd about the middle has w = sin(a x) and sinh(b x)
-// with a^2 - b^2 = 4 pi^2, a b = omega, and is clamped where a cot(a/2) = b coth(b/2). To turn
-// about the line between the clamps costs nothing.
+// If its ends are only slightly closer than its length, a rod between two clamps carries the
+// buckling load 4 pi^2 EI/l^2. Then w_ssss + 4 pi^2 w_ss = omega^2 w. Modes that are odd about the
+// middle consist of sin(a x) and sinh(b x) with a^2 - b^2 = 4 pi^2, a b = omega, and are clamped if
+// a cot(a/2) = b coth(b/2). Rotation about the line between the clamps is a zero mode.
 TEST(Vibrations, OfAHardlyBuckledRodAreThoseOfAPressedBeam) {
   const double slack = 1e-6;
   const Vibrations found =

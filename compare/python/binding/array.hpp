@@ -11,8 +11,8 @@ namespace dlo::python {
 
 namespace py = pybind11;
 
-/// Returns a read-only view of M rows of 3 numbers, which keeps `owner` alive. @param stride
-/// distance of rows, in numbers
+/// Returns a read-only view of M rows of 3 numbers, which keeps `owner` alive.
+/// @param stride  distance of rows, in numbers
 [[nodiscard]] py::array rows_view(const double* first, py::ssize_t rows, py::handle owner,
                                   py::ssize_t stride = 3);
 

@@ -11,8 +11,8 @@
 namespace dlo::compare {
 namespace {
 
-/// Measures one case; a solver that does not converge is reported as its problem. @param program
-/// foreign program; null: the request's model
+/// Measures one case; a solver that does not converge is reported as its problem.
+/// @param program  foreign program; null: the request's model
 MeasuredCase measured_case(const Scene& scene, const RegressRequest& request,
                            const ForeignProgram* program) {
   try {

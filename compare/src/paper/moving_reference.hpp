@@ -10,9 +10,9 @@ namespace dlo::compare {
 
 /// Physical parameters of a point that follows Formula 19. Rewritten, the formula is
 ///     P(t+1) - 2 P(t) + P(t-1) = c_F F - (1 - c_h) (P(t) - P(t-1)).
-/// This is the Stoermer-Verlet step for points of mass m* = dt^2 / c_F with damping at the rate (1
-/// - c_h) / dt: m* P'' = F - m* (1 - c_h) / dt P'. It does not apply to steps that are scaled down
-/// (c_m < 1).
+/// This is the Stoermer-Verlet step for points of mass m* = dt^2 / c_F with a damping rate of
+/// (1 - c_h) / dt: m* P'' = F - m* (1 - c_h) / dt P'. It does not apply to steps that are scaled
+/// down (c_m < 1).
 struct PointReading {
   double mass = 0;  ///< m* [kg]
   /// (1 - c_h) / dt [1/s]; 1 / dt for rows without dynamics, whose c_h is 0.

@@ -49,7 +49,7 @@ struct MovingScanEntry {
   MovingDistance distance;      ///< agreement of these rows with the printed ones
 };
 
-/// Tables 2 to 4, and how they depend on what the paper leaves open.
+/// Tables 2 to 4, and their dependence on parameters that the paper does not print.
 struct MovingReport {
   MovingChoices choices;        ///< the choices of `rows`
   std::vector<MovingRow> rows;  ///< one per experiment

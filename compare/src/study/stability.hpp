@@ -43,8 +43,8 @@ struct StabilityResult {
   std::string note;      ///< additional facts, such as another equilibrium; may be empty
 };
 
-/// Runs a case with a stepper. The paper's steppers have c_F = 0.86 L/(2 c_c), l_s = 0.6 L and c_h
-/// = 0.9, see step_options; `verlet` likewise.
+/// Runs a case with a stepper. The paper's steppers and `verlet` have c_F = 0.86 L/(2 c_c),
+/// l_s = 0.6 L and c_h = 0.9, see step_options.
 ///
 /// The reference is the equilibrium that solve_polygon finds for the same parameters from the
 /// scene's own initial guess. A simulation that comes to rest elsewhere is compared with the

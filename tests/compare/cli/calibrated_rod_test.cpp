@@ -119,7 +119,8 @@ TEST_F(CalibratedCommand, WhatCalibrateWritesMakesTheShapeRight) {
   EXPECT_TRUE(says(refused.err, {"3 scenes, 1 shapes and 1 held out"}));
 }
 
-/// A wire so stiff that its shapes tell no EI is predicted by what was found all the same.
+/// A wire so stiff that its shapes do not determine EI is nevertheless predicted by the other
+/// fitted parameters.
 TEST_F(CalibratedCommand, WhatIsNoMaterialIsWrittenIfItPredicts) {
   std::mt19937 random(1);
   std::normal_distribution<double> error(0, 1e-3);

@@ -330,7 +330,7 @@ TEST_F(CheckCommand, ShapesComeInAnyUnitAndFrame) {
 }
 
 TEST_F(CheckCommand, AWrongUnitIsNoPass) {
-  // The whole rod in metres, said to be in millimetres: half a millimetre beside the gripper.
+  // The whole rod in metres, declared as millimetres: half a millimetre next to the gripper.
   std::vector<std::vector<double>> points = solved_points(steel() + " --model exact --samples 9");
   const std::string check =
       "check " + steel() + " --shape " + write_table("metres.csv", "x,y,z", points);

@@ -45,8 +45,8 @@ TEST_F(ContactCommand, CompareSaysWhatTouchesAsSolveDoes) {
                               "\n  contact         obstacle 2, lying from s = "}));
 }
 
-// No model has friction: the shape is that without, and every command says what it left out, but
-// not of an obstacle that the rod does not touch.
+// No model has friction: the shape is the one without it, and every command reports that friction
+// is neglected, except for an obstacle that the rod does not touch.
 TEST_F(ContactCommand, FrictionIsLeftOutAloud) {
   const std::string smooth = lying();
   const std::string text = read(smooth);

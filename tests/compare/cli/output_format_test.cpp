@@ -242,7 +242,7 @@ TEST_F(Output, TextHasNoNumberThatIsRounding) {
     std::smatch found;
     EXPECT_FALSE(std::regex_search(text, found, rounding)) << command << "\n" << text;
   }
-  // Documents keep what they have: nothing is lost there.
+  // JSON documents keep the full precision.
   const std::string json = run(commands[6] + " --format json").out;
   EXPECT_TRUE(std::regex_search(json, rounding));
 }

@@ -91,7 +91,7 @@ TEST_F(Output, DevicesPipesAndLinksStayWhatTheyAre) {
     fs::remove(path("plain.csv"));
     EXPECT_EQ(bash(command + " -o /dev/stdout | cat").out, expected) << command;
     EXPECT_EQ(bash(command + " -o >(cat >via); wait $!; cat via").out, expected) << command;
-    // Behind what is there already, and before what comes later.
+    // The output is written after existing content and before later content.
     (void)bash("{ echo first; " + command + " -o /dev/stdout; echo last; } >all");
     EXPECT_EQ(read(path("all")), "first\n" + expected + "last\n") << command;
     EXPECT_EQ(bash(command + " -o /dev/null").status, 0) << command;

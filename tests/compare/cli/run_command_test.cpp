@@ -1,4 +1,5 @@
-// The command as a function: what it is as a process, and nothing of it left for the next call.
+// Tests of the command as a function: it behaves like the process, and leaves no state for the next
+// call.
 
 #include "run_command.hpp"
 
@@ -31,7 +32,7 @@ class RunCommand : public Command {};
 
 TEST_F(RunCommand, IsTheProcess) {
   succeeds("solve " + steel() + " --model force --points 8 --format csv -o " + path("s.csv"));
-  // The search for what would make the shape right tells of its time.
+  // The search for explanations is disabled, because it prints its computing time.
   const std::string check = "check " + steel() + " --no-explanation --shape " + path("s.csv");
   const struct {
     std::string arguments;

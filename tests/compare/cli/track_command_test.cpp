@@ -44,7 +44,7 @@ TEST_F(TrackCommand, TellsFramesAndEventsInEveryFormat) {
   EXPECT_TRUE(says(csv, {",1 tip,,"}));
 }
 
-/// A wire whose clamp moves as a file beside the scene says.
+/// Fixture with a wire whose clamp moves by a file next to the scene.
 class OutputsOverInputs : public TrackCommand {
  protected:
   void SetUp() override {

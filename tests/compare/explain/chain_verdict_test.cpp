@@ -1,4 +1,5 @@
-// Chains of hinges, which are right in their own way, and what is said of those that are not.
+// Tests of chains of hinges: those that are correct discretisations, and the diagnosis of those
+// that are not.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

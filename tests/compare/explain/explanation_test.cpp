@@ -1,4 +1,4 @@
-// Shapes that are wrong in one way, and what is said of them.
+// Tests of the diagnosis of shapes with a single error.
 
 #include "dlo/compare/explanation.hpp"
 
@@ -133,7 +133,8 @@ TEST(Explanation, NamesTheScaleAndTheRotationOfAFile) {
   }
 }
 
-// How far a file is that was read in a wrong way says nothing: what is wrong with it comes first.
+// The distance of a file that was read incorrectly has no meaning: the error of the file is
+// reported first.
 TEST(Explanation, AFileThatIsReadWronglyIsNamedFirst) {
   const Scene scene = clamped();
   const JudgedShape wrong = judged(scene, made(1000 * shape_of(scene).points));
@@ -262,8 +263,8 @@ TEST(Explanation, NoCauseIsListedTwice) {
   }
 }
 
-/// An arch on two clamps that point up and down again; it stands if it is stiff, and falls out of
-/// its plane if not.
+/// Returns an arch on two clamps that point up and down; it is stable if it is stiff, and otherwise
+/// falls out of its plane.
 Scene arch(double stiffness) {
   return parse_scene(
       "[rod]\nlength = 1\nmass_per_length = 0.5\nbending_stiffness = " + std::to_string(stiffness) +
@@ -272,8 +273,9 @@ Scene arch(double stiffness) {
       "arch.toml");
 }
 
-// A planar solver's arch stands where it should have fallen. The stiffness at which arches begin to
-// stand fits best of all that are followed, and says nothing of the material.
+// A planar solver's arch stays upright where it should have fallen. Of all stiffnesses that are
+// followed, the one at which arches become stable fits best, but it does not determine the
+// material.
 TEST(Explanation, PlanarPointsOfARodThatHasLeftItsPlaneAreToldAsSuch) {
   const Scene scene = arch(0.05);
   std::optional<MeasuredShape> planar;

@@ -123,8 +123,8 @@ TEST(ChainSprings, OfUnequalSegmentsTheyAreThoseOfBeamTheory) {
   }
 }
 
-// Laid into another solver of chains the printed springs leave what is said of them, and no other
-// factor of them leaves less.
+// In another solver of chains the printed springs leave the reported error, and no multiple of them
+// leaves less.
 TEST(ChainSprings, OfUnequalSegmentsTheyBringAnotherSolversChainToTheRod) {
   const Scene scene = test::heavy_scene(12, 0);
   const std::vector<double>& lengths = unequal_lengths();

@@ -189,7 +189,8 @@ TEST(MaterialFit, TheNoiseOfCorrelatedErrorsIsWhatTheyWere) {
   EXPECT_LT(left, 0.85);
 }
 
-// Eight points of soft rods in an unknown frame: what is told is never far off, and something is.
+// Eight points of soft rods in an unknown frame: an identified value is never far from the true
+// one, and some values are identified.
 TEST(MaterialFit, WhatIsIdentifiedOfSoftRodsIsNear) {
   for (const char* name : {"calib_reg_G60.toml", "calib_reg_G10.toml"}) {
     const Scene scene = load_scene(std::string(DLO_DATA) + "/failures/" + name);

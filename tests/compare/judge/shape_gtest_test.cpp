@@ -1,4 +1,4 @@
-// The matchers for users of GoogleTest: what they accept and what they say.
+// Tests of the matchers for users of GoogleTest: accepted shapes and messages.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest-spi.h>

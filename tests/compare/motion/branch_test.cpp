@@ -53,7 +53,7 @@ TEST(BranchWitness, ShowsNoEndThatIsFarAway) {
   }
 }
 
-// Contacts that are not the same ones tell nothing of each other.
+// Forces of different contacts must not be compared.
 TEST(BranchWitness, ComparesTheSameContactsOnly) {
   BranchWitness last = of_force(1e-9);
   BranchWitness before = of_force(1);

@@ -87,7 +87,7 @@ struct Swing {
       points.col(polygon.free[i]) +=
           amplitude * movement.segment<3>(3 * static_cast<Eigen::Index>(i));
     }
-    // Formula 19 alone: nothing that slows down what oscillates from step to step.
+    // Formula 19 alone, without the damping of points that oscillate from step to step.
     force_model::StepOptions options = step_options(scene.force_model, polygon.discretisation);
     options.policy.damping = false;
     return {polygon.discretisation.rod, points, options};

@@ -15,7 +15,7 @@ namespace {
 using energy_model::ContactKind;
 using energy_model::ContactPart;
 
-// Whatever part of the motion is looked at, and whatever multiple of their rate frames have.
+// For any part of the motion, and for any ratio of the frame rates.
 TEST(FrameClock, ObstaclesAreWhereTheirOwnFrameBeforeHasThem) {
   const Scene scene = parse_scene(
       "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0.5\n[[gripper]]\nat = 0\n"

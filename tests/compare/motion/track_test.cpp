@@ -206,8 +206,8 @@ TEST(Track, KeepsItsBranchWhereAPointBeginsToLie) {
   }
 }
 
-// It falls once; the energy that it releases is what is missing of
-// the work, and comes out the same at twice the rate, to the bounds that both give.
+// The rod snaps once. The energy that the snap releases is the difference to the work, and is the
+// same at twice the rate within the bounds of both.
 TEST(Track, TellsASnapByTheEnergyThatIsMissing) {
   const auto snap_of = [](double rate) {
     const Track result = track(drawn_off(), at_rate(rate));
@@ -288,7 +288,7 @@ TEST(Track, RepeatsAFrameThatItHasLostInSmallerSteps) {
   }
 }
 
-// After the last pose nothing moves, in either model, and nothing is done.
+// After the last pose there is no motion and no work, in either model.
 TEST(Track, GoesOnAtRestBeyondTheLastPose) {
   TrackOptions options = at_rate(20);
   options.to = 1.5;

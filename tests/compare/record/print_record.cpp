@@ -1,4 +1,4 @@
-// Prints what the record says of a solution, for tests/record: an array of JSON.
+// Prints the fields of a solution's record, for tests/record, as a JSON array.
 
 #include <cstdio>
 #include <exception>

@@ -1,4 +1,5 @@
-// Each thing that a result says is described once: it stands wherever the record says so.
+// Tests of records: each field of a result is described once, and appears wherever the record
+// requires it.
 
 #include <gtest/gtest.h>
 

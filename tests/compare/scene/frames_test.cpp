@@ -1,4 +1,4 @@
-// Clamps that hold the rod's frame: what a file may say of it, and what is refused.
+// Tests of clamps that hold the rod's frame: accepted and refused keys of a file.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,8 @@ torsional_stiffness = "7.9e-3 N m^2"
 )";
 const std::string rod_without_torsion = rod.substr(0, rod.find("torsional"));
 
-/// A gripper of five lines and what else it says; the first one after `rod` is on lines 6 to 10.
+/// Returns a gripper of five lines with additional text; the first one after `rod` is on lines 6 to
+/// 10.
 std::string gripper(double at, const std::string& more, const std::string& hold = "clamp") {
   std::string text = "[[gripper]]\nat = " + std::to_string(at) + "\nposition = [" +
                      std::to_string(0.8 * at) + ", 0, 0]\nhold = \"" + hold + "\"\n";

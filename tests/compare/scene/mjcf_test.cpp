@@ -1,5 +1,5 @@
-// Scenes made of MuJoCo's models (data/mujoco), held against what MuJoCo's documentation says of
-// their elements.
+// Tests of scenes made from MuJoCo models (data/mujoco), compared with the meaning of their
+// elements in MuJoCo's documentation.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

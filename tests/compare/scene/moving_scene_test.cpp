@@ -1,4 +1,4 @@
-// Scenes whose grippers and obstacles move: what a file may say, and what is refused.
+// Tests of scenes whose grippers and obstacles move: accepted and refused keys of a file.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Obstacles: what a file may say of them, and what is refused.
+// Tests of obstacles: accepted and refused keys of a file.
 
 #include <gtest/gtest.h>
 

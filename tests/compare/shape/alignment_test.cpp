@@ -91,8 +91,8 @@ TEST(Alignment, RecoversTheMotionOfAWholeRodToTheNoise) {
   }
 }
 
-// Two thousand points are looked at by way of a tenth of them: what is found lies no farther from
-// the rod than where the points were taken, which is near the optimum.
+// Of two thousand points only a tenth is used in the first search. The result is no farther from
+// the rod than the original pose of the points, which is near the optimum.
 TEST(Alignment, ManyPointsLieAsNearAsTheyCan) {
   std::mt19937 random(15);
   const Scene scene = heavy_scene(8, 20);

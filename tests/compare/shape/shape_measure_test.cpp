@@ -269,7 +269,7 @@ TEST(ShapeMeasure, TheRmsIsNeverAboveTheLargest) {
   }
 }
 
-/// A check with nothing wrong in it but what is seen.
+/// Returns a check without any deviation, of which only the observed fraction varies.
 ShapeCheck seen(double share) {
   ShapeCheck check;
   check.length_m = 1;

@@ -1,6 +1,6 @@
-// The scenes of data/failures: each of them once crashed, hung, was refused or answered wrongly;
-// its first line says how. `dlo solve` ends with an equilibrium or a clean error, and where it is
-// known what is right, with that.
+// Tests of the scenes in data/failures. Each of them once crashed, did not end, was refused or gave
+// a wrong result; its first line states which. `dlo solve` must end with an equilibrium or a clean
+// error, and if the correct result is known, with that.
 
 #include <algorithm>
 #include <cctype>

@@ -152,7 +152,7 @@ TEST_P(SceneOfGrips, ChainConvergesToTheEnergyModelAtSecondOrder) {
   EXPECT_NEAR(order, 2, 0.2);
   EXPECT_LT(fine.shape, 2e-4);
   EXPECT_LT(chain_errors(scene, reference, 64).shape, 5e-4);
-  // A single gripper's force is what hangs on it, whatever the shape.
+  // The force of a single gripper equals the total load, for any shape.
   if (scene.grippers.size() > 1) {
     const double force_order = std::log(coarse.force / fine.force) / refinement;
     RecordProperty("force_order", std::to_string(force_order));

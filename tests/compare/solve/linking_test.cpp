@@ -1,4 +1,4 @@
-// Turns of a shape: what the solvers return against what the grips hold.
+// Tests of the turns of a shape: the solvers' results compared with the turns that the grips hold.
 
 #include <gtest/gtest.h>
 

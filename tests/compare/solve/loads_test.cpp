@@ -1,4 +1,5 @@
-// Couples and distributed loads of a scene: what its file may say, and what each model makes of it.
+// Tests of couples and distributed loads of a scene: accepted keys of its file, and the results of
+// each model.
 
 #include <gtest/gtest.h>
 

@@ -87,8 +87,8 @@ TEST(StretchEffect, OfARodThatHangsIsThatOfHookesLaw) {
   EXPECT_NEAR(solution.stretch.tension, 0, 1e-9);
 }
 
-// Between grips or beyond the last one: what stretch changes of the largest tension is what model
-// exact finds with it.
+// Between grips or beyond the last one, the predicted change of the largest tension by stretch
+// agrees with model exact with stretch.
 TEST(StretchEffect, OfOneClampIsThatOfTheRodThatStretches) {
   for (const Vector3d& direction : {Vector3d(1, 0, 0), Vector3d(1, 0, 1), Vector3d(1, 0, -2)}) {
     Scene scene = held_rubber(direction.normalized());

@@ -33,15 +33,15 @@ TEST(Benchmark, FrontIsWhatNoOtherRunBeats) {
   EXPECT_FALSE(has_run(runs, Model::force));
 }
 
-/// Whether a model's runs of a scene were left out for want of time, and said to be.
+/// Whether a model's runs of a scene were skipped for lack of time and reported as skipped.
 bool said_to_be_skipped(const BenchmarkReport& report, const std::string& scene, Model model) {
   return std::any_of(report.skipped.begin(), report.skipped.end(), [&](const std::string& one) {
     return one.starts_with(scene + ": " + to_string(model));
   });
 }
 
-/// Times are of the machine; these are the facts that hold on every one, however slow: what does
-/// not fit in is said to be skipped.
+/// Times depend on the machine. These facts hold on every machine, however slow: runs that do not
+/// fit into the budget are reported as skipped.
 TEST(Benchmark, RunsEveryModelOrSaysThatItDidNotAndItsAnswersFitTheRows) {
   const BenchmarkReport report =
       run_benchmark(benchmark_scenes(), {.budget_s = 3, .repeats = 1, .frames = 10});

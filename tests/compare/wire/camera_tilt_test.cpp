@@ -138,9 +138,9 @@ double log_probability(const Scene& scene, double log_modulus, const MeasuredSha
   return std::log(sum);
 }
 
-/// With clamps' directions beside it E is not where the deviance is least, but where it is
-/// likeliest whatever these are: the stiffer a rod, the more its shape tells of them. Of shapes
-/// that are alike the logarithms add up.
+/// If the directions of the clamps are unknown too, the estimate of E is not the minimum of the
+/// deviance but the maximum of the marginal likelihood over the directions: the stiffer a rod is,
+/// the more its shape determines them. For equal shapes the logarithms add up.
 TEST(WireFit, StiffnessIsLikeliestWhateverTheOtherNumbersAre) {
   constexpr int mountings = 4;
   constexpr double noise = 0.02;

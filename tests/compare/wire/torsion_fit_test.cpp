@@ -104,7 +104,7 @@ TEST(TorsionFit, WithoutWeightOnlyTheRatioIsTold) {
   EXPECT_NEAR(*found.torsion_over_bending->value, true_share, 1e-5);
 }
 
-// Exact points of a rod without torque: what rounding says of GJ is nothing.
+// Exact points of a rod without torque: rounding does not determine GJ.
 TEST(TorsionFit, ExactPointsOfAWireThatIsNotTwistedGiveNoBounds) {
   std::mt19937 random(3);
   const MaterialFit found = fit_of_turns({0}, 0, random);

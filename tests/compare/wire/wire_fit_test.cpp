@@ -32,8 +32,8 @@ using test::says;
 
 constexpr double deg = std::numbers::pi / 180;
 
-/// A wire of which a scene says nothing but what was meant, and a picture of it. EI = 1 in the
-/// scenes' unit, 1.6 times as much in what is said.
+/// Wire whose scene contains only nominal values, and a picture of it. EI = 1 in the scenes' unit,
+/// and 1.6 times as much in the nominal scene.
 struct Picture {
   Scene said;
   MeasuredShape seen;
@@ -223,7 +223,7 @@ TEST(WireFit, PerfectPointsInSpaceGiveBackTheCurvatureAboutBothAxes) {
   for (std::size_t k = 0; k < 4; ++k) EXPECT_NEAR(found.others[k].value, terms[k], 1e-3) << k;
 }
 
-/// Pictures of a wire that is what it is said to be, but for a change.
+/// Returns pictures of a wire that has its nominal values except for one change.
 std::vector<Picture> pictures_with(const std::function<void(Scene&)>& change, int points,
                                    std::mt19937& random) {
   std::vector<Picture> pictures;
@@ -241,8 +241,9 @@ std::vector<Picture> pictures_with(const std::function<void(Scene&)>& change, in
   return pictures;
 }
 
-// A wire that is curved by nature, and clamps that are all off the same way, leave residuals of one
-// sign in all shapes. What removes them is tried and told; of a wire as it is said nothing is.
+// An intrinsically curved wire, or clamps with a common misalignment, leave residuals of equal sign
+// in all shapes. Parameters that remove them are tried and reported; for a wire with its nominal
+// values nothing is reported.
 TEST(WireFit, SystematicResidualsNameWhatWouldRemoveThem) {
   std::mt19937 random(17);
   for (const int points : {5, 40}) {
@@ -308,7 +309,7 @@ TEST(BetweenShapes, WhatTheyHaveInCommonIsAShareOfTheirSquares) {
   EXPECT_NEAR(across.gap[1], -0.2, 1e-12);
 }
 
-// The moments of the two clamps take it up: what is there is what was known before.
+// The moments of the two clamps compensate it, so that the estimate equals the prior value.
 TEST(WireFit, AConstantCurvatureBetweenTwoClampsIsSaidNotToBeSeen) {
   std::mt19937 random(6);
   Scene said = test::heavy_scene(20, 30);
@@ -551,8 +552,8 @@ TEST(WireFit, AHangingStraightRodTellsNoStiffnessBesideItsPlace) {
   EXPECT_TRUE(says(found.not_identified, {"the same with any E"}));
 }
 
-// Shapes of ropes, w l^3 / (EI) = 1e6, on which natural curvature is hard to solve and tells
-// nothing.
+// Shapes of ropes, w l^3 / (EI) = 1e6, for which natural curvature is hard to solve and not
+// identifiable.
 TEST(WireFit, DoesNotLookForAStiffnessThatARopeHasNot) {
   constexpr double gamma = 500;
   constexpr double searched = 1e5;  // up to that (MaterialFitOptions::smallest_ratio)

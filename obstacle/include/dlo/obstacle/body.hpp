@@ -37,9 +37,10 @@ class Body {
   /// centres [m], >= 0
   [[nodiscard]] static Body capsule(const Eigen::Vector3d& centre, const Eigen::Vector3d& axis,
                                     double length, double radius);
-  /// Returns a block. @param axes  directions of its edges, orthonormal columns; @param size
-  /// lengths of its edges [m]; @param radius  radius of its rounded edges, which are within its
-  /// size [m]
+  /// Returns a block.
+  /// @param axes    directions of its edges, orthonormal columns
+  /// @param size    lengths of its edges [m]
+  /// @param radius  radius of its rounded edges, which are within its size [m]
   [[nodiscard]] static Body box(const Eigen::Vector3d& centre, const Eigen::Matrix3d& axes,
                                 const Eigen::Vector3d& size, double radius);
 
@@ -56,8 +57,8 @@ class Body {
   [[nodiscard]] Gap gap(const Eigen::Vector3d& point) const;
   /// Returns the signed distance of a point [m], > 0 outside, without derivatives.
   [[nodiscard]] double clearance(const Eigen::Vector3d& point) const;
-  /// Returns the signed distances of M points [m], > 0 outside, without derivatives. @param points
-  /// 3 x M [m]
+  /// Returns the signed distances of M points [m], > 0 outside, without derivatives.
+  /// @param points  3 x M [m]
   [[nodiscard]] Eigen::VectorXd clearances(const Eigen::Ref<const Eigen::Matrix3Xd>& points) const;
 
   /// Returns a number that identifies the face, edge or corner of the core that is nearest to a
