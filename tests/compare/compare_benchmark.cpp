@@ -1,4 +1,4 @@
-// Cost of what dlo::compare does around the models.
+// Cost of the parts of dlo::compare other than the models.
 //
 //     dlo_compare_benchmark --benchmark_repetitions=5 --benchmark_report_aggregates_only=true
 //

@@ -9,7 +9,7 @@
 
 namespace dlo::test {
 
-/// Runs lines of bash in a folder of its own, for what leaves the command.
+/// Fixture that runs lines of bash in a private folder, for tests of the command's output.
 class Output : public Command {
  protected:
   /// Runs a line of bash, possibly with several commands; its standard error is theirs.

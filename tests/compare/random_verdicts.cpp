@@ -148,8 +148,8 @@ Points refined(const Points& points, Eigen::Index count) {
   return resample(shape, equal_arc_lengths(s, static_cast<int>(count))).points;
 }
 
-/// Least distance (RMS) at which a file may be said to be from a rod: at equal arc lengths where
-/// the file has them; else by the nearest points, those of the rod from the file too.
+/// Returns the smallest distance (RMS) of a file from a rod under any convention: at equal arc
+/// lengths if the file contains them; else by nearest points, in both directions.
 double distance_from(const MeasuredShape& file, const Equilibrium& rod, double length) {
   constexpr int samples = 400;
   if (!file.arc_length.empty()) {

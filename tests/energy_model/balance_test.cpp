@@ -1,5 +1,5 @@
-// The balance of what solvers return: sums of forces and moments, and that every one of them
-// counts.
+// Tests of the balance of solvers' results: sums of forces and moments, and their dependence on
+// every one of them.
 
 #include "dlo/energy_model/balance.hpp"
 
@@ -126,7 +126,7 @@ bool is_refused(const Problem& problem, Equilibrium shape) {
   return has_lost_balance(shape) && shape.message.find("and the moments") != std::string::npos;
 }
 
-// By ten times what is allowed, of every grip, contact and obstacle.
+// Errors of ten times the allowed imbalance, of every grip, contact and obstacle.
 TEST(Balance, IsLostWithEveryForceAndTorqueThatIsReturned) {
   constexpr double share = 10 * allowed_imbalance;
   for (const BalancedRod& rod : balanced_rods()) {

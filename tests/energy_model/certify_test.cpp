@@ -30,8 +30,8 @@ TEST(Certify, TakesAShapeOfEnoughTermsAndOneOfTheCallers) {
   }
 }
 
-// Between two clamps in a plane three constraints take all that three terms leave free: there is no
-// direction in which a fold could be looked for.
+// Between two clamps in a plane three constraints fix all that three terms leave free: there is no
+// direction in which a fold could be searched for.
 TEST(Certify, TakesAShapeThatNothingIsFreeIn) {
   Span span;
   span.planar = true;
@@ -84,7 +84,8 @@ TEST(Certify, UsesTheFactorAtTheShapeItself) {
   }
 }
 
-// A shape that is followed comes from the factor of the shape before, and is what a search finds.
+// A shape that is followed is computed from the factorisation of the previous shape, and equals the
+// result of a search.
 TEST(Certify, AFollowedShapeIsTheOneThatIsSearchedFor) {
   SpanWorkspace workspace;
   const SpanSolution before =
@@ -116,8 +117,7 @@ SpanSolution straight_in(const Span& span) {
   return solution;
 }
 
-/// A clamped rod that stands nearly up to its own buckling, whose softest direction has an
-/// eigenvalue of about a hundredth.
+/// A clamped vertical rod close to self-buckling, whose smallest eigenvalue is about a hundredth.
 Span nearly_buckling() {
   Span span;
   span.length = 1;
@@ -138,8 +138,8 @@ SpanSolution upright(SpanWorkspace& workspace) {
   return solution;
 }
 
-// Along its softest direction a shape may be far from equilibrium and have nearly no residual:
-// Newton's step alone tells, and the direction is counted as neutral.
+// Along the eigenvector of the smallest eigenvalue a shape may be far from equilibrium with a
+// residual of almost zero. Only the Newton step shows this, and the direction counts as neutral.
 TEST(Certify, CallsAShapeWhoseNextStepIsNotSmallUndetermined) {
   SpanWorkspace workspace;
   const SpanSolution solution = upright(workspace);
@@ -242,8 +242,8 @@ SpanSolution straight_through(const obstacle::Body& body, double stiffness) {
   return straight_in(span);
 }
 
-// Through the axis of a soft cylinder and along the middle plane of a soft box the energy falls to
-// both sides, which nodes that are not on the axis do not see.
+// Through the axis of a soft cylinder and along the middle plane of a soft box the energy decreases
+// to both sides, which nodes away from the axis do not show.
 TEST(Certify, CallsNoShapeStableThatPassesTheMiddleOfAYieldingBody) {
   SpanWorkspace workspace;
   using obstacle::Body;
@@ -261,8 +261,8 @@ TEST(Certify, CallsNoShapeStableThatPassesTheMiddleOfAYieldingBody) {
   EXPECT_EQ(near.neutral_directions, 1);
 }
 
-// Where a planar rod gives way out of its plane the second variation in space is negative along the
-// direction that is told, in which its constraints do not change.
+// If a planar rod is unstable out of its plane, the second variation in space is negative along the
+// returned direction, in which its constraints do not change.
 TEST(NegativeCurvature, IsThatOfTheRodInSpace) {
   Problem problem = test::heavy_cantilever(200, 90);
   problem.grips.push_back({1, {0.1, 0, 0}, Eigen::Vector3d(0, -1, 0)});

@@ -61,7 +61,7 @@ TEST(ConfinedRod, IsTheFreeOneWhereThatStaysInItsPlane) {
   }
 }
 
-// A shape beside the plane is no start.
+// A shape out of the plane is not a valid initial guess.
 TEST(ConfinedRod, DoesNotFollowAShapeOutOfThePlane) {
   const Problem problem = bent_the_wrong_way(30, 0.6);
   const Equilibrium free = solve_energy(problem);

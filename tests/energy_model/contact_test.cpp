@@ -134,7 +134,7 @@ TEST(Contact, TouchingTipIsThatOfTheElastica) {
   EXPECT_EQ(result.contacts[0].kind, ContactKind::tip);
   const double R = result.contacts[0].force.y();
   EXPECT_NEAR(result.grips[0].force.y() + R, gamma, 1e-9);
-  // Forwards from the clamp with the torque that the solver says.
+  // Integrates forwards from the clamp with the torque of the solver.
   double theta = 0;
   double kappa = -result.grips[0].torque.z();
   Eigen::Vector2d point(0, 0);
@@ -192,8 +192,8 @@ TEST(Contact, HingedRodLiesUpToItsClamp) {
   }
 }
 
-/// The contacts of a twist-free rod as loads: what an obstacle does at single points, and where the
-/// rod lies the pressure, which is that of its weight.
+/// Returns a twist-free rod with its contacts as loads: forces at single points, and along contact
+/// intervals the pressure, which equals the weight.
 Problem with_contacts_as_loads(const Problem& problem, const Equilibrium& shape) {
   Problem loaded = problem;
   loaded.obstacles.clear();
@@ -336,7 +336,7 @@ TEST(Contact, ReversedRodRestsAsTheOther) {
   }
 }
 
-// A search that is out of time returns what it has, wherever it was.
+// A search whose time is over returns what it has computed, at any stage.
 TEST(Contact, EndsWithNumbersWheneverTheTimeEnds) {
   Problem problem;
   problem.length = 1;

@@ -37,8 +37,8 @@ Dynamics struck_at(const std::vector<double>& breaks, double frame) {
                   {.terms = 8});
 }
 
-// 0.1 + 0.2 is 0.3 and a rounding. Between the two no step can be made, and none is needed; what
-// two grips have in common happens once.
+// 0.1 + 0.2 differs from 0.3 by rounding. No step between the two is possible or needed; a common
+// event of two grips is processed once.
 TEST(DynamicsRounding, FramesAndBreaksThatDifferByRoundingAreOneInstant) {
   constexpr double sum = 0.1 + 0.2;
   static_assert(sum > 0.3);
@@ -57,8 +57,9 @@ TEST(DynamicsRounding, FramesAndBreaksThatDifferByRoundingAreOneInstant) {
   }
 }
 
-/// Angle from the vertical of a pendulum of unit length, whose pivot goes to the side with constant
-/// acceleration a: theta'' = -g sin(theta) - a cos(theta), by Runge and Kutta's rule of order four.
+/// Returns the angle from the vertical of a pendulum of unit length, whose pivot moves to the side
+/// with constant acceleration a: theta'' = -g sin(theta) - a cos(theta), by the Runge-Kutta method
+/// of order four.
 double pendulum_angle(double g, double a, double time) {
   constexpr int steps = 2000;
   const double h = time / steps;
@@ -74,8 +75,8 @@ constexpr double gravity = 9.81;
 constexpr double acceleration = 1.5;
 constexpr double payload = 0.3;
 
-/// A soft thread that hangs from a pin with a payload at its end; the pin goes to the side with
-/// constant acceleration.
+/// Returns a soft thread that hangs from a pin with a payload at its end; the pin moves to the side
+/// with constant acceleration.
 MovingRod thread_with_payload(double mass, double damping) {
   MovingRod rod;
   rod.problem.length = 1;

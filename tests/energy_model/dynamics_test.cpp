@@ -327,8 +327,9 @@ TEST(Dynamics, SquaredDragIsAcrossTheRod) {
   EXPECT_GT(result.frames[0].energy.dissipated, 19 * drag * velocity.z());
 }
 
-// A clamp that comes nearer and turns at an even rate: from the rates of the shapes at rest the rod
-// is off them by what goes as the square of its speed, from rates of none it vibrates about them.
+// A clamp approaches and rotates at a constant rate. If the rod starts with the rates of its
+// equilibrium shapes, its distance from them is proportional to the square of the speed; if it
+// starts without velocity, it vibrates about them.
 TEST(Dynamics, InMotionItFollowsItsShapesAtRestFromTheBegin) {
   MovingRod rod = closed_rod(5);
   constexpr double speed = 0.005;
@@ -391,7 +392,7 @@ TEST(Dynamics, AClampThatStartsAtOnceStrikesTheRod) {
   EXPECT_LT(result.frames[0].energy.kinetic, 0.05 * 0.5 * velocity.squaredNorm());
   EXPECT_LT(std::abs(tip(result.frames[1]).y()), 1e-4);
   EXPECT_LT(result.energy_error, 1e-6);
-  // The far end first goes back.
+  // The free end first moves backwards.
   EXPECT_LT(tip(result.frames[2]).y(), -1e-3);
 }
 

@@ -40,7 +40,8 @@ TEST(ExactContact, ConfirmsRodsThatTouchAFloorOrLieOnIt) {
       const Problem problem = over_level_floor(gamma, height);
       const Equilibrium energy = solve_energy(problem);
       const Equilibrium exact = solve_exact(problem, {.start = &energy});
-      // A soft rod that hangs down steeply turns about the vertical for next to nothing.
+      // A soft rod that hangs down steeply rotates about the vertical almost without a change of
+      // energy.
       const bool steep = gamma >= 1e4 && height == 0.3;
       ASSERT_TRUE(succeeded(exact.status) || (steep && exact.status == SolveStatus::near_singular))
           << exact.message;
@@ -67,7 +68,8 @@ TEST(ExactContact, ConfirmsRodsThatTouchAFloorOrLieOnIt) {
   EXPECT_GT(lying, 10);
 }
 
-// Out of a plane: a clamp that looks down and a load from the side, over a floor and beside a wall.
+// Out of a plane: a clamp that points downwards and a load from the side, above a floor and next to
+// a wall.
 TEST(ExactContact, ConfirmsARodThatALoadTakesOutOfThePlane) {
   for (const double side : {0.5, 2.0, 8.0}) {
     SCOPED_TRACE("side load " + std::to_string(side));
@@ -131,7 +133,7 @@ struct Confirmed {
   }
 };
 
-// One to three grips of all kinds over floors and beside walls.
+// One to three grips of all kinds above floors and next to walls.
 TEST(ExactContact, ConfirmsRandomRodsAgainstPlanes) {
   for (const bool space : {false, true}) {
     Confirmed seen;
@@ -180,8 +182,8 @@ TEST(ExactContact, ConfirmsTautRodsAroundAPeg) {
   EXPECT_EQ(seen.confirmed, 2);
 }
 
-// Two level clamps above a floor: free spans on both sides of what lies, a taut one that only
-// touches, in units of a real rod.
+// Two horizontal clamps above a floor: free spans on both sides of the contact interval, and a taut
+// rod with a point contact, in units of a real rod.
 TEST(ExactContact, ConfirmsACableBetweenTwoClampsOverAFloor) {
   Confirmed seen;
   for (const double apart : {0.9, 0.95, 0.99}) {
@@ -265,8 +267,8 @@ TEST(ExactContact, NoRodWithinAnObstacleIsConfirmed) {
   EXPECT_NEAR(found.penetration, 1e-3, 1e-9);
 }
 
-// A ball a third as wide as the distance of the cross-sections at which pressures are sampled. The
-// rod passes through its centre, or beside it.
+// The ball is a third as wide as the distance of the cross-sections at which pressures are sampled.
+// The rod passes through its centre, or next to it.
 TEST(ExactContact, NoRodEntersASmallBall) {
   constexpr double radius = 1e-3;
   const Problem alone = heavy_cantilever(8, 0);
@@ -296,7 +298,7 @@ TEST(ExactContact, NoObstacleIsConfirmedToPull) {
   };
   const Equilibrium alone = solve_energy(heavy_cantilever(0.3, 0));
   const Samples at = alone.sample(std::vector<double>{0.7, 1});
-  // The highest point of a peg under a slope is farther from it than the one beside.
+  // The highest point of a peg below a slope is farther from it than the point next to it.
   const double aside = 0.1 * (1 / at.tangents(0, 0) - 1);
   for (const bool peg : {false, true}) {
     const double free = peg ? at.points(1, 0) - aside : at.points(1, 1);

@@ -80,7 +80,8 @@ TEST(SecondVariation, CountsTheZeroModeOfARod) {
 }
 
 TEST(Exact, PutsStableEquilibriaFirst) {
-  // Above buckling both mirror images hold, and turn about the vertical for nothing.
+  // Above buckling both mirror images are stable, and rotate about the vertical without a change of
+  // energy.
   const std::vector<Equilibrium> above = all_exact(heavy_cantilever(8, 90));
   ASSERT_EQ(above.size(), 3U);
   EXPECT_EQ(above[0].status, SolveStatus::converged);

@@ -117,8 +117,8 @@ TEST(TwistedSecondVariation, VanishesWhereMichellsRingBuckles) {
   }
 }
 
-/// A rod whose frames are any function of s under a force, its natural strains such that a given
-/// moment is in it: what a change of the frames costs, by differences.
+/// Rod whose frames are a given function of s under a force, with natural strains such that it
+/// carries a given moment. It computes the energy of changes of the frames, by differences.
 struct FramedCurve {
   std::function<Eigen::Matrix3d(double)> frame;
   std::function<Eigen::Vector3d(double)> moment;
@@ -200,7 +200,7 @@ TEST(TwistedSecondVariation, IsTheSecondDifferenceOfTheEnergy) {
     }
     constexpr double h = 1e-3;
     const double second = (cost(h) - 2 * cost(0) + cost(-h)) / (h * h);
-    // Differences of the polygon: 1e-6 of what they are made of.
+    // Differences of the polygon are accurate to 1e-6 of their terms.
     EXPECT_NEAR(second / norm, found.smallest, 1e-5 * (1 + std::abs(found.smallest))) << size;
   }
 }
@@ -344,7 +344,7 @@ TEST(ExactTwist, ConfirmsTheLocalisedBuckleOfALongRod) {
   ASSERT_TRUE(static_cast<bool>(result.sample)) << result.message;
   EXPECT_NEAR(result.twists[0].torque, 98.541496171, 98.54e-7);
   EXPECT_NEAR(result.grips[1].force.x(), 2900.993206, 2901e-7);
-  // The energy model goes from there to its own.
+  // The energy model converges from there to its own solution.
   const Equilibrium energy = solve_energy(problem, {.start = &result});
   // The buckle slides along the rod and rotates about the line between the clamps for less than
   // rounding. These zero modes do not count as neutral directions.

@@ -30,7 +30,7 @@ TEST(FreeDirections, SmallestEigenvalueIsTheSmallestWhateverItsSign) {
     Eigen::VectorXd eigenvalues = Eigen::VectorXd::LinSpaced(24, 1, 3);
     eigenvalues[0] = smallest;
     const double found = smallest_eigenvalue(with_eigenvalues(eigenvalues), Eigen::MatrixXd(0, 24));
-    // Among others that are hardly larger, a hundredth is what is proven.
+    // Among eigenvalues that are hardly larger, the proven accuracy is a hundredth.
     EXPECT_NEAR(found, smallest, (smallest < 0.5 ? 1e-3 : 1e-2) * std::abs(smallest) + 1e-13);
   }
 }
@@ -44,15 +44,15 @@ TEST(FreeDirections, OnlyWhatConstraintsLeaveFreeIsAsked) {
     EXPECT_LT((jacobian * Z).norm(), 1e-13);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Z.transpose() * hessian * Z);
     const double smallest = eigen.eigenvalues()[0];
-    // A hundredth is what is proven.
+    // The proven accuracy is a hundredth.
     EXPECT_NEAR(smallest_eigenvalue(hessian, jacobian), smallest, 1e-2 * std::abs(smallest));
   }
   const Eigen::MatrixXd all = Eigen::MatrixXd::Identity(2, 2);
   EXPECT_EQ(smallest_eigenvalues(all, all).size(), 0);
 }
 
-/// A seed of the iteration that has nothing of the softest direction finds another eigenvalue,
-/// which the proof refuses.
+/// If the initial vector of the iteration has no component along the first eigenvector, it finds
+/// another eigenvalue, which the proof refuses.
 TEST(FreeDirections, SmallestEigenvalueIsProven) {
   Eigen::VectorXd seed(6);
   for (Eigen::Index i = 0; i < 6; ++i) seed[i] = std::sin(1 + 1.7 * static_cast<double>(i));

@@ -112,7 +112,7 @@ TEST(TwoClamps, TautAndSlackConvergeInBoundedWork) {
       const Samples ends = result.sample(std::vector<double>{0, 1});
       EXPECT_NEAR((ends.points.col(1) - ends.points.col(0)).norm(), span, 1e-9);
       EXPECT_LT((ends.tangents.colwise() - Eigen::Vector3d::UnitX()).norm(), 1e-9);
-      // The grips carry the weight, and nothing else acts.
+      // The grips carry the weight, and there is no other force.
       EXPECT_LT(
           (result.grips[0].force + result.grips[1].force - Eigen::Vector3d(0, gamma, 0)).norm(),
           1e-6 * (1 + gamma));

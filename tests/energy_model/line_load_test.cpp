@@ -1,5 +1,5 @@
-// Loads per length: against the weight, against beam theory, energy against multiple shooting, and
-// that a shape which has forgotten them is not taken for one that carries them.
+// Tests of line loads: against the weight, beam theory and multiple shooting, and that a shape
+// computed without them is not accepted as one with them.
 
 #include <gtest/gtest.h>
 
@@ -109,7 +109,8 @@ TEST(LineLoad, TendsToBeamTheoryWithTheSquareOfTheLoad) {
   }
 }
 
-/// Energy's shape is confirmed by shooting, and weighs what it should.
+/// Expects that shooting confirms the energy model's shape, and that the reactions balance the
+/// loads.
 void expect_confirmed(const Problem& problem, int& confirmed) {
   const Equilibrium energy = solve_energy(problem);
   if (!succeeded(energy.status)) return;

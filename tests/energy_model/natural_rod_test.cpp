@@ -142,7 +142,8 @@ TEST(NaturalRod, StaysAHelixUnderItsWrench) {
   EXPECT_NEAR(held.twists[0].torque, torque, 1e-8);
 }
 
-/// Smallest eigenvalue of the planar shape of a rod that hangs from a clamp, bent by nature.
+/// Returns the smallest eigenvalue of the planar shape of an intrinsically curved rod that hangs
+/// from a clamp.
 double hanging_curvature(double natural, double gamma) {
   Problem problem = clamped_rod();
   problem.grips[0].direction = -Vector3d::UnitY();
@@ -259,7 +260,8 @@ TEST(Clamp, ThatLetsTheRodRotatePassesItsTorqueOn) {
   problem.grips.push_back(
       {1, {0.8, 0.1, 0}, Vector3d(1, 0.3, 0.1), FrameHold{Vector3d(0.3, -0.4, 0.9), 0}});
   const Equilibrium whole = solved_rod(problem);
-  // Where the rod is anyway a clamp has nothing to do, if it does not hold the twist.
+  // A clamp at the position and direction that the rod has anyway exerts no load if it does not
+  // hold the twist.
   const Samples there = test::sample_at(whole, 0.4);
   Problem passed = problem;
   passed.grips.insert(passed.grips.begin() + 1,

@@ -78,8 +78,8 @@ TEST(NeutralDirections, EulersColumnHasTwoAtItsLoadAndIsNoBetterDeterminedThere)
 }
 
 TEST(NeutralDirections, AnArchThatSnapsHasOneAtItsFold) {
-  // Stiff sideways; the load is off the middle, so that it turns back at a fold, where the smallest
-  // eigenvalue is as the root of what the load lacks.
+  // The strip is stiff sideways. The load is off the middle, so that the branch ends at a fold,
+  // near which the smallest eigenvalue is proportional to the root of the distance of the load.
   const auto arch = [](double force) {
     Problem problem = strip(two_clamps(0, 0.9), 50, 1, 50);
     problem.loads = {{0.45, {0, -force, 0}}};
@@ -187,7 +187,7 @@ TEST(NeutralDirections, MessagesOfBothSolversCountZeroModes) {
     EXPECT_EQ(energy.message, "converged, 1 zero mode");
     EXPECT_EQ(energy.message, solve_exact(problem).message);
   }
-  // A load across the line of two pins lets nothing turn about that.
+  // A load across the line of two pins prevents rotation about it.
   Problem pushed = arch;
   pushed.loads = {{0.4, {0, -3, 0}}};
   for (const Problem& problem : {pushed, heavy_cantilever(1, 0), heavy_cantilever(1, -90)}) {

@@ -1,5 +1,5 @@
-// Where pieces of a soft rod end so that few coefficients resolve it, and that what takes them is
-// solved: random scenes that no affordable number of terms on pieces between grips resolves.
+// Tests of the ends of elements of a soft rod, such that few coefficients resolve it: random scenes
+// that no affordable number of terms on elements between grips resolves.
 
 #include "certify/piece_cuts.hpp"
 
@@ -62,7 +62,7 @@ TEST(PieceCuts, ResolveSoftRodsBetweenManyGrips) {
     const Problem problem = test::random_problem(number, test::RandomSpace::mixed);
     const Equilibrium energy = test::converged(solve_energy(problem));
     EXPECT_LT(test::defects_of(problem, energy).worst(), 1e-6);
-    // Multiple shooting gives up on what is pulled with 1e8 EI/l^2.
+    // Multiple shooting does not converge for a force of 1e8 EI/l^2.
     if (number == 19) continue;
     const Equilibrium exact = test::converged(solve_exact(problem, {.start = &energy}));
     double distance = 1;

@@ -1,5 +1,5 @@
-// Tangents of a rod in a plane from its curvature, against a closed form; their adjoint against
-// their Jacobian. The Hessian is looked at with the energy's (span_energy_test.cpp).
+// Tests of the tangents of a rod in a plane from its curvature, against a closed form, and of their
+// adjoint against their Jacobian. span_energy_test.cpp tests the Hessian with that of the energy.
 
 #include "frames/planar_frames.hpp"
 

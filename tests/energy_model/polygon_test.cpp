@@ -260,7 +260,7 @@ TEST(Polygon, StopsAtItsTimeLimit) {
                std::invalid_argument);
 }
 
-// A short step in a stiff segment is a large force: what is returned is judged by forces, too.
+// A short step in a stiff segment is a large force, so results are judged by forces too.
 TEST(Polygon, AToleranceOfLengthsLeavesNoForce) {
   for (const double gamma : {17.0, 19.0, 21.0, 23.0}) {
     PolygonProblem problem = two_clamps(JointLaw::hooke, 17, 0.8, gamma);

@@ -90,7 +90,7 @@ TEST(SpanReach, HasBeginsNodesAndEndsOfAllPieces) {
   EXPECT_NEAR(points.weights().sum(), rod.span.length, 1e-14);
 }
 
-// The work of forces at the points is that of what they spread to on the tangents.
+// The work of forces at the points equals that of their adjoint on the tangents.
 TEST(SpanReach, SpreadsForcesAsItSumsTangents) {
   const Sampled rod;
   const SpanReach points(rod.reach);

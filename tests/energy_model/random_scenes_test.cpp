@@ -1,5 +1,5 @@
-// The energy model against multiple shooting on random rods, and both against equilibrium from
-// their samples. The program dlo_random_scenes does the same for as many as are asked for.
+// Tests of the energy model against multiple shooting on random rods, and of both against the
+// balance of their samples. The program dlo_random_scenes does the same for any number of rods.
 
 #include "random_scenes.hpp"
 
@@ -17,7 +17,7 @@ using test::RandomSpace;
 class RandomScenes : public testing::TestWithParam<RandomSpace> {};
 
 TEST_P(RandomScenes, HoldTheEnergyModelAgainstMultipleShooting) {
-  // Paths are what a sanitizer build is for; counts are proven by the release build.
+  // A sanitizer build tests code paths; the release build proves the counts.
   const bool curved = GetParam() == RandomSpace::curved || GetParam() == RandomSpace::strip;
   const bool twisted = GetParam() == RandomSpace::twisted || GetParam() == RandomSpace::mixed;
   const std::uint64_t many = curved ? 10 : twisted ? 20 : 50;

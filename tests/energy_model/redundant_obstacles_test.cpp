@@ -18,7 +18,7 @@ namespace {
 
 using Body = obstacle::Body;
 
-/// A clamped rod over a floor or a table, and bodies within what is below it.
+/// A clamped rod above a floor or a table, and bodies inside the obstacle below it.
 struct RedundantScene {
   Problem plain;
   Problem with_more;
@@ -99,8 +99,8 @@ TEST(RedundantObstacles, AreAsIfTheyWereNotThere) {
 }
 
 TEST(RedundantObstacles, ABodyThatSticksOutCounts) {
-  // A box on the floor in the rod's way; and one that stands as far out of the floor but out of the
-  // rod's reach.
+  // A box on the floor within the rod's reach, and one that protrudes equally from the floor but
+  // out of the rod's reach.
   Problem problem = test::heavy_cantilever(80, 0);
   const Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   problem.obstacles = {{Body::half_space({0, -0.2, 0}, {0, 1, 0})},

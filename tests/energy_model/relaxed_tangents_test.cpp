@@ -18,7 +18,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// A rod of unit length and stiffness between a clamp and what holds its end.
+/// Returns a rod of unit length and stiffness between a clamp and the grip of its end.
 RodSpan held_rod(double weight, const Grip& end, const std::vector<Grip>& between = {}) {
   Problem problem;
   problem.length = 1;
@@ -40,7 +40,8 @@ Eigen::Matrix3Xd tangents_of_start(const std::vector<Eigen::Quaterniond>& frames
   return tangents;
 }
 
-/// Largest angle between a tangent and what pulls it: its neighbours, by 1 / h, and the force.
+/// Returns the largest sine of the angle between a tangent and the sum of its neighbours, weighted
+/// by 1 / h, and the force.
 double largest_angle(const RodSpan& span, const RodMesh& mesh, const RelaxedTangents& polygon) {
   const Eigen::Matrix3Xd& t = polygon.tangents;
   const auto pull_of = [&](const RodSpan::Clamp* clamp, Eigen::Index i) -> Eigen::Vector3d {

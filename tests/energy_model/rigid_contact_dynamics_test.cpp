@@ -41,7 +41,7 @@ std::vector<double> every(double step, int count) {
   return times;
 }
 
-/// Closer by far than the points at which a rod is held against obstacles.
+/// Returns arc lengths that are much closer than the points at which contact is checked.
 std::vector<double> dense() {
   std::vector<double> result;
   for (int i = 0; i <= 4000; ++i) result.push_back(i / 4000.0);
@@ -239,7 +239,7 @@ TEST(RigidContactDynamics, AFloorThatRisesDoesWork) {
   }
 }
 
-// Half a turn per second about a point of its surface beside the rod.
+// The obstacle rotates by half a turn per second about a point of its surface next to the rod.
 TEST(RigidContactDynamics, AnObstacleThatTurnsCarriesTheRod) {
   const obstacle::Body bar =
       obstacle::Body::box({0.5, -0.1, 0}, Eigen::Matrix3d::Identity(), {0.8, 0.1, 1}, 0.02);

@@ -115,7 +115,7 @@ class RigidPolygon {
     return (along.x() * rate.y() - along.y() * rate.x()) / along.squaredNorm();
   }
 
-  /// Solves the tridiagonal equations for what moves points along the segments of `along`.
+  /// Solves the tridiagonal equations for the corrections of points along the segments of `along`.
   void correct(Eigen::Matrix2Xd& moved, const Eigen::Matrix2Xd& along, const Eigen::Matrix2Xd& by,
                const Eigen::VectorXd& misses) const {
     const Eigen::Index n = count_;

@@ -1,5 +1,5 @@
-// The directors of a rod in space from its strains, against closed forms and another integrator;
-// their derivatives are looked at with the energy's (span_energy_test.cpp).
+// Tests of the directors of a rod in space from its strains, against closed forms and another
+// integrator. span_energy_test.cpp tests their derivatives with those of the energy.
 
 #include "frames/rod_frames.hpp"
 

@@ -79,7 +79,7 @@ TEST(SearchLog, AShapeThatTurnsFreelyIsListedOnce) {
     EXPECT_GE(all.size(), 2U);
     const std::vector<double> s = {0.1, 0.3, 0.5, 0.7, 0.9};
     const auto distances = [&](const Equilibrium& of) {
-      // From the line, and along it: what a turn about it keeps.
+      // Distance from the line and position along it, which a rotation about it does not change.
       const Eigen::Matrix3Xd points = of.sample(s).points;
       Eigen::Matrix2Xd kept(2, points.cols());
       kept << points.row(1),

@@ -90,8 +90,8 @@ Span twisted_span(bool planar) {
   return span;
 }
 
-/// A rod as it is: curved and, in space, twisted by nature, with a section and a clamp inside the
-/// span that passes torque on.
+/// Returns an intrinsically curved and, in space, twisted rod with a section and a clamp inside the
+/// span that transmits torque.
 Span natural_span(bool planar) {
   const double z = planar ? 0 : 1;
   Span span = gripped_span(planar);

@@ -16,9 +16,9 @@
 
 namespace dlo::test {
 
-/// Stable states of planar rods of unit length and stiffness, looked for by brute force: polygons
-/// relaxed from many random shapes, each the start of one refinement. No start, ranking or escape
-/// of the energy model's search has a part in it.
+/// Stable states of planar rods of unit length and stiffness, found by brute force: polygons are
+/// relaxed from many random shapes, and each is the initial guess of one refinement. No initial
+/// guess, ranking or escape of the energy model's search is used.
 class StableStates {
  public:
   enum class Held { clamp, clamp_and_pin, two_clamps };
@@ -159,7 +159,7 @@ class StableStates {
     }
     value += spring * miss.squaredNorm() / 2;
     for (Eigen::Index i = 0; i < segments; ++i) {
-      // A segment lifts what is beyond its middle.
+      // A segment raises all points beyond its middle.
       const double lifts = h * weight * h * (static_cast<double>(segments - i) - 0.5);
       value += lifts * std::sin(x[i]);
       gradient[i] += lifts * std::cos(x[i]) +

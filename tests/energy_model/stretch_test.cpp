@@ -55,7 +55,7 @@ Vector3d end_of_elastic_catenary(double H, double V, double w, double EA) {
 }
 
 TEST(Stretch, OfALineIsTheElasticCatenarys) {
-  // EI is what is left out: first order in it, which two of them take away.
+  // The neglected EI has a first-order effect, which extrapolation from two weights removes.
   std::array<double, 2> tension{};
   const std::array<double, 2> weights = {2e4, 4e4};
   for (std::size_t i = 0; i < weights.size(); ++i) {
@@ -123,7 +123,7 @@ TEST(Stretch, HoldsARodBetweenClampsThatAreFartherApart) {
   problem.grips[1].position.x() = 3;
   problem.weight_per_length = {0, -1, 0};
   const Equilibrium sags = test::converged(solve_exact(problem));
-  // Less than a beam's w l^4 / (384 EI) by what its stretch takes.
+  // The deflection is less than a beam's w l^4 / (384 EI), by the effect of stretch.
   const double beam = std::pow(2.0, 4) / 384;
   EXPECT_NEAR(test::point_at(sags, 1).y(), -beam, 0.5 * beam);
   EXPECT_LT(-test::point_at(sags, 1).y(), beam);

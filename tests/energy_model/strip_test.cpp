@@ -1,5 +1,5 @@
-// Strips: rods of two bending stiffnesses, held against round rods, beam theory, the lateral
-// buckling of a narrow cantilever, and one model against the other.
+// Tests of strips, rods of two bending stiffnesses, against round rods, beam theory, the lateral
+// buckling of a narrow cantilever, and between both models.
 
 #include <gtest/gtest.h>
 
@@ -188,8 +188,9 @@ double lateral_buckling_load(const Solver& solve, double weak, double torsion, d
 }
 
 TEST_P(BothModels, BucklesOutOfPlaneUnderPrandtlsAndMichellsLoad) {
-  // P l^2 = 4.0126 (B C)^(1/2), B the weak stiffness, where the other one is infinite; what it is
-  // short of that moves the load in its first power, which two ratios extrapolate away.
+  // P l^2 = 4.0126 (B C)^(1/2) with the weak stiffness B, for an infinite ratio of the stiffnesses.
+  // The effect of a finite ratio on the load is of first order in its inverse; two ratios are used
+  // to extrapolate.
   constexpr double weak = 1;
   constexpr double torsion = 0.6;
   const double expected = 2 * first_zero_of_bessel() * std::sqrt(weak * torsion);

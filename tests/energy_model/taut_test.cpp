@@ -1,5 +1,5 @@
-// Rods that grips stretch nearly to their length, up to 1e7 EI/l^2: the tension that their slack
-// asks for, and that such problems are solved.
+// Tests of rods that grips stretch nearly to their length, with forces up to 1e7 EI/l^2: that such
+// problems are solved, with the tension that follows from their slack.
 
 #include <gtest/gtest.h>
 
@@ -148,7 +148,7 @@ TEST(TautLine, LeavesACoupleOnAClampToThatClamp) {
   EXPECT_EQ(shot.grips[1].torque, Eigen::Vector3d(0, 0, -2));
 }
 
-// How the grips share it depends on the tension, which nothing determines.
+// The distribution over the grips depends on the tension, which is undetermined.
 TEST(TautLine, RefusesACoupleThatNoClampTakes) {
   Problem inside = taut_between_clamps();
   inside.loads = {{1, {0, 0, 0}, {0, 0, 1e-3}}};

@@ -1,5 +1,5 @@
-// Turns: writhe against closed forms, where a roll counts from, and twist and
-// writhe of what the solvers return against the turns that the grips hold.
+// Tests of turns: writhe against closed forms, the zero of a roll, and twist and writhe of the
+// solvers' results against the turns that the grips hold.
 
 #include "dlo/energy_model/turns.hpp"
 
@@ -188,8 +188,8 @@ TEST(Turns, OfTheGripsAreTwistAndWritheOfBothSolversShapes) {
   EXPECT_GE(compared, 22);
 }
 
-/// Slack enough for the rod without twist to lie in a loop, on this side or on that. What it counts
-/// from is no business of the side.
+/// The slack allows a loop of the rod without twist, on either side. The zero of the roll does not
+/// depend on the side.
 TEST(Turns, OfALoopAreTheSameOnEitherSide) {
   for (const double roll : {0.0, 0.5, -0.5, 2.0}) {
     Problem problem = rolled({0.45, 0, 0}, {1, 0, 0}, roll);

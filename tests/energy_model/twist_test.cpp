@@ -113,7 +113,7 @@ TEST(Twist, MakesARingUnstableAtMichellsAngle) {
     const SpanPoint at = model.evaluated(x);
     const Eigen::VectorXd multipliers =
         at.jacobian.transpose().colPivHouseholderQr().solve(at.gradient);
-    // The ring turns about its clamps' direction for nothing.
+    // The ring rotates about the direction of its clamps without a change of energy.
     const Eigen::VectorXd eigenvalues = second_variation_at(model, x, multipliers);
     return std::abs(eigenvalues[0]) < 1e-9 ? eigenvalues[1] : eigenvalues[0];
   };
@@ -206,7 +206,7 @@ TEST(Twist, HoldsAHelixUnderItsWrench) {
       const HelixPoint point = helix(curvature, torsion, grip.at);
       grip.position = point.r;
       grip.direction = point.t;
-      // Bishop's frame falls behind Frenet's by the torsion.
+      // Bishop's frame rotates relative to Frenet's at the rate of the torsion.
       const Eigen::AngleAxisd ahead((twist - torsion) * grip.at, point.t);
       grip.frame->d1 = ahead * point.normal;
     }

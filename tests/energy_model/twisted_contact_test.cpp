@@ -1,5 +1,6 @@
-// Rods on rigid obstacles between clamps that hold their frames, and rods with material directors
-// there: balance, derivatives of the energy by what is held, and elastic polygons.
+// Tests of rods on rigid obstacles between clamps that hold their frames, and of rods with material
+// directors there: balance, derivatives of the energy by the positions of grips, and elastic
+// polygons.
 
 #include <gtest/gtest.h>
 
@@ -106,7 +107,7 @@ TEST(TwistedContact, PolygonsOfMoreSegmentsComeNearer) {
 }
 
 TEST(TwistedContact, WhatTouchesOnlyOnceItIsTwistedIsFound) {
-  // Without twist the rod hangs in its plane; the wall is beside it.
+  // Without twist the rod hangs in its plane; the wall is next to it.
   Problem problem = framed_rod(5, 6);
   const Equilibrium free = test::usable(solve_energy(problem));
   const auto s = equal_arc_lengths(1, 101);

@@ -68,7 +68,7 @@ TEST(TwistedMaterial, IsWhereBothClampsHoldItWhateverTheTwist) {
     const Equilibrium found = test::usable(solve_energy(problem));
     const Samples samples = found.sample(equal_arc_lengths(1, 21));
     expect_unit_and_across(samples);
-    // To what the end's frame may miss.
+    // Within the allowed error of the end's frame.
     EXPECT_LT((samples.d1.col(0) - held_d1(problem.grips[0])).norm(), 1e-9) << roll;
     EXPECT_LT((samples.d1.rightCols<1>() - held_d1(problem.grips[1])).norm(), 1e-9) << roll;
   }

@@ -185,8 +185,8 @@ TEST(Vibrations, OfAHangingRodComeToThoseOfAChain) {
   EXPECT_NEAR(over[2] - over[1], (over[1] - over[0]) / 10, 0.3 * std::abs(over[1] - over[0]) / 10);
 }
 
-/// A rod's state along it, and how it changes in a vibration: points r, tangents t, moments m and
-/// forces n of what lies beyond; r' = t, m = t x t', m' = n x t, n' = -w - omega^2 dr.
+/// State of a rod along its arc length, and its change in a vibration: points r, tangents t,
+/// moments m and forces n of the part beyond; r' = t, m = t x t', m' = n x t, n' = -w - omega^2 dr.
 struct RodState {
   Vector3d r, t, m, n, dr, dt, dm, dn;
 };
@@ -224,7 +224,8 @@ RodState at_clamp(RodState y, const Vector3d& weight, double omega_squared) {
   return y;
 }
 
-/// Zero at a frequency: of five movements of the tip that leave it free, what they do at the clamp.
+/// Returns a function that is zero at a natural frequency: the determinant of the effects at the
+/// clamp of five movements of the tip.
 double miss_at_clamp(const Vector3d& tip, const Vector3d& tangent, const Vector3d& clamp_direction,
                      const Vector3d& weight, double omega_squared) {
   const Vector3d across = tangent.unitOrthogonal();
@@ -271,7 +272,7 @@ TEST(Vibrations, AboutHeavyShapesMeetTheLinearisedEquations) {
   }
 }
 
-// Upright beyond self-buckling the straight rod falls; short of it, slower and slower.
+// Beyond self-buckling the straight vertical rod is unstable; below it the frequency tends to zero.
 TEST(Vibrations, OfAnUprightRodStopWhereItBuckles) {
   const double buckles = test::self_buckling_gamma;
   double before = 1e9;

@@ -261,7 +261,7 @@ TEST(WithoutPotential, ForcesThatFollowInThePlaneAreThoseOfAnIntegrationFromTheT
     expect_balance_alone(result);
     EXPECT_LT((place_along(result) - followed_tip({}, clamp, force, {0, 0.5, 0})).norm(), 1e-10);
     EXPECT_EQ(result.energy.load, 0);
-    // The gripper holds what the tip pulls.
+    // The gripper balances the force at the tip.
     const Eigen::Vector3d t = tip_tangent_of(result);
     const Eigen::Vector3d pull = force.x() * Eigen::Vector3d(-t.y(), t.x(), 0) + force.z() * t;
     EXPECT_LT((result.grips[0].force + pull).norm(), 1e-9);
@@ -328,7 +328,7 @@ TEST(WithoutPotential, DragAlongAndAcrossWithWeightIsThatOfAnIntegrationFromTheT
 }
 
 TEST(WithoutPotential, DirectorsStayWhereThePlaneWithAllLoadsSays) {
-  // The stream alone says that d2 is along y: the strip bends about it.
+  // Only the stream determines that d2 is along y: the strip bends about it.
   Problem problem = held_along({1, 0, 0});
   problem.torsional_stiffness = 0.6;
   problem.bending_stiffness_2 = 3;

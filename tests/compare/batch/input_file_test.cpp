@@ -52,7 +52,8 @@ std::vector<std::string> messages_of_all_readers(const std::string& file) {
           input_error_of([&] { (void)load_shape(file, 1); })};
 }
 
-// A terminal hands out what was written to it; when its other end is closed, reading fails.
+// A terminal returns the data that were written to it; after its other end is closed, reading
+// fails.
 TEST_F(Reading, AnErrorAfterThePartThatCouldBeReadIsAnError) {
   const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
   ASSERT_GE(terminal, 0) << std::strerror(errno);

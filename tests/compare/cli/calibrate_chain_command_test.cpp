@@ -108,7 +108,7 @@ TEST_F(CalibrateCommand, TellsWhatMadeTheTargetMissed) {
     EXPECT_EQ(result.status, 1) << arguments;
     return result.out;
   };
-  // Segments alone are off: stretch is not what is wrong.
+  // The error is due to the number of segments, not to stretch.
   const std::string coarse = missed(stiff + " --target 0.01% --points 8");
   EXPECT_TRUE(says(coarse, {"N = 8 is too few"}));
   EXPECT_TRUE(coarse.find("without\n  --points") != std::string::npos ||
@@ -130,7 +130,7 @@ TEST_F(CalibrateCommand, TellsWhatMadeTheTargetMissed) {
   ASSERT_EQ(fit.at("why_missed").size(), 1U);
   EXPECT_TRUE(says(fit.at("why_missed")[0].get<std::string>(), {"c_c is A E"}));
   EXPECT_TRUE(says(missed(stiff + " --law paper --target 0.001%"), {"law paper"}));
-  // The parameter file says where c_c is from and whether it is good enough.
+  // The parameter file states the source of c_c and whether it suffices.
   const std::string toml =
       run("calibrate " + soft + " --target 0.01% --points 24 --format toml").out;
   EXPECT_TRUE(says(toml, {"# Target 0.01 %: not reached."}));

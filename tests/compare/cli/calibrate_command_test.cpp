@@ -256,7 +256,7 @@ TEST_F(CalibrateCommand, EveryFormatIsWritten) {
   }
 }
 
-// Shapes of a light wire tell GJ / EI, but neither of the two.
+// Shapes of a light wire determine GJ / EI, but neither of the two.
 TEST_F(CalibrateCommand, TellsHowStiffAWireIsAgainstTwist) {
   const std::string scene = std::string(DLO_DATA) + "/scenes/twisted_wire.toml";
   const std::string shape = path("seen.csv");

@@ -82,8 +82,8 @@ class CalibratedCommand : public dlo::test::Command {
   }
 };
 
-/// Clamps that point elsewhere than they were meant to, and one gripper's place, found by three
-/// shapes: what -o writes makes the scene's shape the right one.
+/// Misaligned clamps and the position of one gripper are fitted to three shapes. With the file that
+/// -o writes, the scene's rod has the measured shape.
 TEST_F(CalibratedCommand, WhatCalibrateWritesMakesTheShapeRight) {
   std::string shapes;
   std::string scenes;
@@ -104,7 +104,8 @@ TEST_F(CalibratedCommand, WhatCalibrateWritesMakesTheShapeRight) {
   EXPECT_EQ(run(check).status, 1);
   const auto calibrated = run(check + " --calibrated " + path("found.toml"));
   EXPECT_EQ(calibrated.status, 0) << calibrated.out << calibrated.err;
-  // A shape that only judges is on the rod that was fitted to the others, and changes nothing.
+  // A hold-out shape is compared with the rod that was fitted to the others, and does not change
+  // it.
   const std::string options = " --natural-curvature 1 --clamp-angles \"20 deg\" --same-clamps";
   const auto all = words_in(shapes);
   const auto held_out = run("calibrate" + scenes + " --shape " + all[0] + " " + all[1] +

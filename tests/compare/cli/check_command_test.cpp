@@ -135,7 +135,7 @@ direction = "0 deg"
   EXPECT_TRUE(says(document.at("reason"), {"the points do not determine the rod at s = "}));
 }
 
-// A chain's points are explained by its springs, not by another material: one line says so.
+// A chain's points are explained by its springs, not by another material; one line states this.
 TEST_F(CheckCommand, AModulusThatIsSupersededIsNoOptimum) {
   const std::string file = solved_file(steel() + " --model chain");
   const std::string check = "check " + steel() + " --tolerance 1% --shape " + file;
@@ -366,7 +366,7 @@ TEST_F(CheckCommand, SeenRangeAndDirectionAreSaid) {
     expect_error(words({check, "--tolerance 1% --min-seen", share}), 2, {"--min-seen"});
   }
   expect_error(check + " --register upright", 2, {"did you mean --register=upright?"});
-  // It would change nothing.
+  // The option would have no effect.
   expect_error(check + " --law hooke", 2, {"--law"});
 }
 

@@ -116,7 +116,7 @@ TEST_F(Command, BenchWritesRowsAndAnswers) {
   const std::string arguments = "bench " + steel() + " --seconds 0.5 --repeats 1";
   const json document = json_of(arguments);
   EXPECT_EQ(document.at("schema"), "dlo/bench/2");
-  // How many fit into half a second is the machine's affair; what does not is named.
+  // The number of runs within half a second depends on the machine; the others are named.
   EXPECT_GT(document.at("runs").size() + document.at("skipped").size(), 5U);
   for (const json& row : document.at("runs")) {
     for (const char* key :

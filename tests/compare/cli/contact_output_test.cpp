@@ -93,7 +93,7 @@ TEST_F(ContactCommand, CheckReportsFrictionAsNeglected) {
   EXPECT_TRUE(says(row.err, {"has friction"}));
 }
 
-// A cable that hangs beside a peg, a ball or a box: all models know the same bodies.
+// A cable next to a peg, a ball or a box: all models have the same bodies.
 TEST_F(ContactCommand, AllModelsTouchTheSameBodies) {
   const std::vector<std::string> bodies = {
       "shape = \"cylinder\"\npoint = [0.02, -0.05, 0]\naxis = [0, 0, 1]\nradius = \"2 cm\"\n",

@@ -18,7 +18,7 @@ using dlo::test::says;
 
 class Reference : public Command {
  protected:
-  /// Runs a bash script in the test's folder, with data/ and a simulator beside it and dlo in the
+  /// Runs a bash script in the test's folder, with data/ and a simulator next to it and dlo in the
   /// path.
   [[nodiscard]] Outcome bash(const std::string& script) const {
     const std::filesystem::path command(DLO_COMMAND);

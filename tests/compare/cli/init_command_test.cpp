@@ -1,4 +1,4 @@
-// dlo without arguments, dlo init, dlo materials: what a newcomer meets first.
+// Tests of dlo without arguments, dlo init and dlo materials, which new users run first.
 
 #include <gtest/gtest.h>
 

@@ -65,7 +65,7 @@ TEST_F(MotionCommand, CheckJudgesMarkersByTheRodThatIsAsked) {
   EXPECT_EQ(wrong.status, 1);
   EXPECT_THAT(wrong.out, HasSubstr("if the rod has inertia (--dynamic)"));
   EXPECT_THAT(wrong.out, HasSubstr("verdict         fail: RMS"));
-  // Nobody asked for a tolerance.
+  // No tolerance was given.
   succeeds(check(path("markers.csv")));
 }
 
@@ -210,7 +210,7 @@ TEST_F(MotionCommand, CalibrateReportsAStiffnessThatIsNotIdentifiedWithExitStatu
 TEST_F(MotionCommand, ARecordingIsAStartForTrackAndForCheck) {
   write_markers("markers.csv");
   const std::string released = swung(0.02) + "[track]\nstart = \"start.csv\"\n";
-  // The recording from its fifth row on, from which the motion goes on as it did.
+  // The recording from its fifth row on, with which the motion continues as before.
   std::string later = "time,s,x,y,z\n";
   std::istringstream rows(read(path("markers.csv")));
   std::string row;

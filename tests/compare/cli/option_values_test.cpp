@@ -1,4 +1,4 @@
-// Values of options: none may be empty, no number may be NaN, and what is wrong names its option.
+// Tests of option values: none may be empty, no number may be NaN, and errors name the option.
 
 #include <gtest/gtest.h>
 

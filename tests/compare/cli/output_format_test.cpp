@@ -191,11 +191,11 @@ TEST(Shown, IsZeroBelowTheErrorOfTheData) {
   EXPECT_EQ(shown(1e-12, 0), 1e-12);     // of one without a size
   EXPECT_TRUE(std::isnan(shown(NAN, 1)));
   EXPECT_EQ(shown(INFINITY, 1), INFINITY);
-  // A taut rod's forces are large beside its weight.
+  // A taut rod's forces are large compared with its weight.
   EXPECT_EQ(dlo::cli::shown(Eigen::Vector3d(1e4, -1e-6, 1), 1), Eigen::Vector3d(1e4, 0, 1));
 }
 
-// A search that has no time left lists what it has not judged.
+// A search without remaining time lists the shapes whose stability is not known.
 TEST(EquilibriaText, OfAShapeThatIsNotJudgedHasNoEigenvalue) {
   dlo::compare::AllSolutions all;
   all.solutions.resize(2);

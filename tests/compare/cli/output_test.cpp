@@ -48,7 +48,7 @@ TEST_F(Output, ThatIsLostOnStandardOutputIsAnError) {
   EXPECT_EQ(bash("$dlo solve cable.toml -o shape.csv >&-").status, 0);
   EXPECT_EQ(read(path("shape.csv")).substr(0, 8), "x,y,z,s\n");
   EXPECT_EQ(bash("$dlo solve cable.toml -o /dev/full").status, 5);
-  // SIGXFSZ would end it by a signal; the file keeps what it had.
+  // SIGXFSZ would end the process by a signal; the file keeps its content.
   const Outcome limited = bash("ulimit -f 1; $dlo solve cable.toml --samples 9999 -o shape.csv");
   EXPECT_EQ(limited.status, 5);
   EXPECT_TRUE(says(limited.err, {"shape.csv: cannot be written (File too large)"}));
@@ -229,7 +229,7 @@ TEST_F(Output, ThatHasNoPlaceIsRefusedBeforeAnythingIsComputed) {
   expect_refused(solve + path("closed/a.csv"), {"closed/a.csv", "Permission denied"});
 }
 
-// A process that a signal ends leaves its target as it was, and beside it one file .dlo-*.tmp.
+// A process that a signal ends leaves its target unchanged, and next to it one file .dlo-*.tmp.
 TEST_F(Output, ASignalLeavesTheTargetAsItWas) {
   write("a.csv", "old");
   const pid_t child = ::fork();

@@ -1,4 +1,4 @@
-// Other people's programs beside our models: dlo bench --with, dlo regress --with.
+// Tests of foreign programs compared with dlo's models: dlo bench --with, dlo regress --with.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

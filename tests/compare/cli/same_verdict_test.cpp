@@ -25,7 +25,7 @@ Shape shape_of_kind(Scene scene, int kind, std::mt19937& random) {
   scene.force_model.points = 21;
   const auto model = kind == 1 ? compare::Model::chain : compare::Model::energy;
   if (kind == 2) scene.scale_density(1.5);
-  // Few points: each is looked for along the rod in every cause that is tried.
+  // There are few points, because each is searched for along the rod for every candidate cause.
   const std::vector<double> s = compare::equal_arc_lengths(scene.length, 11);
   Shape shape = compare::solve(scene, model, {}, s).shape;
   if (kind == 3) shape.points.array() += 2e-3 * scene.length;
@@ -100,7 +100,7 @@ nlohmann::json facts(nlohmann::json document) {
   return document;
 }
 
-// Whether it is looked for causes, and how much is allowed, changes no number and no pass.
+// Neither the search for causes nor the tolerance changes a number or a pass.
 TEST_F(SameVerdict, HasTheSameNumbersWhateverIsAllowed) {
   const std::string file = std::string(DLO_DATA) + "/scenes/spring_steel_175.toml";
   const Scene scene = compare::load_scene(file);

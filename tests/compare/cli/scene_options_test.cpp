@@ -1,4 +1,4 @@
-// An option of the command line means what the same key of the scene's file means.
+// Tests that an option has the same effect as the key of the same name in the scene's file.
 
 #include <gtest/gtest.h>
 

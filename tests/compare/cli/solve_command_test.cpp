@@ -74,7 +74,7 @@ TEST_F(Command, SolvesSeveralGrippersWithTheModelsForAnyScene) {
     EXPECT_EQ(document.at("arc_length_m").back(), 0.5);
     ASSERT_EQ(document.at("grippers").size(), 2U);
     ASSERT_EQ(document.at("obstacles").size(), 1U);
-    // Weight and load, and nothing touches the floor
+    // The sum of the forces is weight and load; the rod does not touch the floor.
     EXPECT_NEAR(document.at("grippers")[0].at("force_N")[1].get<double>() +
                     document.at("grippers")[1].at("force_N")[1].get<double>(),
                 0.5 + 0.121735143, 1e-4);

@@ -35,8 +35,8 @@ using test::JudgedShape;
 using test::made;
 using test::says;
 
-// A right chain of few hinges is percents away from the rod: it is called what it is, and passes;
-// one with other springs does not.
+// A correct chain of few hinges is a few percent away from the rod. It is identified as a chain and
+// passes; one with other springs does not.
 TEST(Explanation, AChainOfHingesIsRightInItsOwnWay) {
   const Scene scene = clamped();
   for (const int segments : {10, 20, 40}) {
@@ -108,7 +108,7 @@ TEST(Explanation, AChainsSpringsAreCalledByTheirLaw) {
   }
 }
 
-// It is nearer to the rod than the others; a tolerance of 0.2 % tells them apart.
+// This chain is nearer to the rod than the others; a tolerance of 0.2 % distinguishes them.
 TEST(Explanation, AChainClampedInTheMiddleOfASegmentIsKnown) {
   std::vector<double> lengths(11, 0.1);
   lengths.front() = lengths.back() = 0.05;

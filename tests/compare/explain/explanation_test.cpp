@@ -206,7 +206,7 @@ TEST(Explanation, NamesAnotherTorsionalStiffness) {
   EXPECT_LT(named->rms_m, 1e-4);
 }
 
-/// A rod between two grippers 0.7 l apart, held as said: "hold = \"pin\"" or a direction.
+/// Returns a rod between two grippers 0.7 l apart, held as given: "hold = \"pin\"" or a direction.
 Scene held(const std::string& first, const std::string& last) {
   return parse_scene(
       "[rod]\nlength = 1\nbending_stiffness = 0.05\nmass_per_length = 0.5\n[[gripper]]\nat = "
@@ -298,7 +298,7 @@ TEST(Explanation, PlanarPointsOfARodThatHasLeftItsPlaneAreToldAsSuch) {
   const double at = check.effective_modulus.ratio * 0.05;
   EXPECT_TRUE(stands(1.01 * at));
   EXPECT_FALSE(stands(0.99 * at));
-  // One that stands has its own.
+  // For a stable arch the best stiffness is not at a bifurcation.
   Scene stiff = arch(0.2);
   const MeasuredShape right = shape_of(arch(0.3));
   const ShapeCheck other = check_shape(stiff, right);
@@ -329,7 +329,7 @@ TEST(Explanation, AnotherReasonThatLeavesLessOutdoesTheStiffness) {
 
 TEST(Explanation, OfARightShapeThereIsNone) {
   const Scene scene = between_clamps();
-  // The two ends of a rod between pins say nothing of it, nor of its unstable neighbours.
+  // The two ends of a rod between pins determine neither the rod nor its unstable equilibria.
   Matrix3Xd ends(3, 2);
   ends << 0, 0.7, 0, 0.1, 0, 0;
   const JudgedShape two = judged(held("hold = \"pin\"", "hold = \"pin\""), made(ends));

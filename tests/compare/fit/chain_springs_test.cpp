@@ -158,7 +158,7 @@ TEST(ChainSprings, OfUnequalSegmentsTheyBringAnotherSolversChainToTheRod) {
   }
 }
 
-// The first segment is then the half of one that goes on behind the clamp.
+// The first segment is then half of a segment that continues behind the clamp.
 TEST(ChainSprings, OfUnequalSegmentsAHalfAtTheClampIsHeldInTheMiddle) {
   const Scene scene = test::heavy_scene(2, 0);
   std::vector<double> lengths = unequal_lengths();

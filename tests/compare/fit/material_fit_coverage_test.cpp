@@ -119,7 +119,8 @@ TEST(MaterialFit, IntervalHoldsTheTruthInNineOfTenDrawsOfAnUnknownFrameWithArcLe
   EXPECT_LE(tally.held, 99);
 }
 
-// Taken for independent, such errors leave the truth outside in 25 and 60 of 100 draws.
+// If such errors were assumed to be independent, the interval would miss the true value in 25 and
+// 60 of 100 draws.
 TEST(MaterialFit, CorrelatedErrorsAreSaidAndWidenTheInterval) {
   const Scene scene = heavy_scene(5, 0);
   const energy_model::Equilibrium exact = solve_reference(scene, Model::exact);

@@ -32,8 +32,8 @@ using test::says;
 using test::uneven_arc_lengths;
 using test::with_noise;
 
-// A piece of a soft rod looks like another piece of a stiffer one: E was told 3 to 20 times too
-// large from these.
+// A part of a soft rod resembles another part of a stiffer one: from these shapes E was once
+// reported 3 to 20 times too large.
 TEST(MaterialFit, APieceInAnUnknownFrameThatFitsTwoModuliTellsNeither) {
   const std::string folder = std::string(DLO_DATA) + "/failures/";
   const Scene scene = load_scene(folder + "calib_reg_G60.toml");
@@ -64,8 +64,8 @@ TEST(MaterialFit, TwoClampsAreFollowedFromOneModulusToTheNext) {
   }
 }
 
-// A rod that is clamped upright falls to either side: the shape that its points are near to is the
-// other one, of another modulus than would lay the lowest near them.
+// A rod that is clamped upright falls to either side. The points are near one side, while the
+// lowest shape on the other side would fit them with another modulus.
 TEST(MaterialFit, AHeldRodIsFollowedFromItsOwnPoints) {
   Scene truth = heavy_scene(30, 80);
   truth.obstacles = {{obstacle::Body::cylinder({0.1, 0.25, 0}, Eigen::Vector3d::UnitZ(), 0.05)}};
@@ -239,7 +239,7 @@ TEST(MaterialFit, ShapesOfOneSceneShareItsEquilibria) {
   const long two = fit_material({scene, scene}, {shapes[0], shapes[1]}).equilibria;
   EXPECT_LT(two, 1.3 * static_cast<double>(one));
   EXPECT_LT(three, 1.3 * static_cast<double>(one));
-  // Another rod shares nothing.
+  // Scenes of different rods share no computations.
   Scene other = scene;
   other.length *= 1 + 1e-15;
   ASSERT_NE(other.length, scene.length);

@@ -64,7 +64,7 @@ Hangings in_a_fixture(double noise = 0) {
   return result;
 }
 
-/// A wire between two misaligned clamps, bent by nature in more ways than are fitted.
+/// Returns a wire between two misaligned clamps, with more natural curvature terms than are fitted.
 Hangings four_between_clamps() {
   std::mt19937 random(8);
   Hangings result;
@@ -137,7 +137,8 @@ TEST(Prediction, ChoosesTheOptionsThatTheWireWasMadeWith) {
   EXPECT_TRUE(test::holds(found.youngs_modulus, seen.scenes[0].material.youngs_modulus));
 }
 
-// Taken for a straight rod in a right clamp each of them has a narrow interval about another E.
+// If each shape is fitted as a straight rod in an aligned clamp, it has a narrow interval about
+// another E.
 TEST(Prediction, OneHangingDoesNotExcludeTheStiffnessThatAllHave) {
   const Hangings seen = in_a_fixture(1e-3);
   const double truth = seen.scenes[0].material.youngs_modulus;
@@ -168,7 +169,7 @@ TEST(Prediction, StepsFromTheFitToAllLeadWhereFitsFromNothingDo) {
   const MaterialFit found = fit_material(seen.scenes, seen.shapes, options);
   const Prediction anew = predict_each(seen.scenes, seen.shapes, options, found);
   ASSERT_TRUE(found.prediction.has_value());
-  // The weight of what was known before is measured anew there.
+  // predict_each() estimates the weight of the prior knowledge anew.
   for (std::size_t i = 0; i < anew.shapes_m.size(); ++i) {
     EXPECT_NEAR(found.prediction->shapes_m[i], anew.shapes_m[i], 0.02 * anew.shapes_m[i]) << i;
   }

@@ -38,7 +38,7 @@ std::string refusal_of_program(const std::string& with) {
   return error_of<InputError>([&] { return parse_foreign_program(with); });
 }
 
-/// Runs with a temporary folder of its own, to see what stays in it.
+/// Fixture with a private temporary folder, to check which files remain in it.
 class ForeignFolder : public testing::Test {
  protected:
   void SetUp() override {

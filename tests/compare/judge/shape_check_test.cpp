@@ -69,8 +69,9 @@ TEST(ShapeCheck, FindsTheModulusInAnyFrameFromEitherEnd) {
   }
 }
 
-// A frame is the better, the nearer the shape is in it. Nearest points see nothing of differences
-// along the rod: a wrong shape could be moved along it until its points lie past an end.
+// One frame is better than another if the shape is nearer to the rod in it. Nearest points do not
+// include differences along the rod: a wrong shape could be moved along it until its points are
+// beyond an end.
 TEST(ShapeCheck, AFrameByNearestPointsIsNeverWorseThanByLengthsAlongThePoints) {
   std::mt19937 random(20);
   for (const auto& [gamma, direction] : {std::pair(140.0, 0.0), {40.0, 60.0}, {40.0, -80.0}}) {
@@ -293,7 +294,7 @@ TEST(ShapeCheck, UprightNeedsGravity) {
   EXPECT_THROW((void)check_shape(scene, shape, {.pose = PoseFreedom::upright}), InputError);
 }
 
-/// Points on a line from corner to corner, as many as are asked for.
+/// Returns `count` points on a line from corner to corner.
 Eigen::Matrix3Xd along_corners(const Eigen::Matrix3Xd& corners, int count) {
   Shape line{{0}, corners};
   for (Eigen::Index i = 1; i < corners.cols(); ++i) {
@@ -303,9 +304,9 @@ Eigen::Matrix3Xd along_corners(const Eigen::Matrix3Xd& corners, int count) {
   return resample(line, equal_arc_lengths(line.arc_length.back(), count)).points;
 }
 
-// The pin is pulled by the load and by the weight of the rope between the heights of its ends; a
-// chain of straight lines over the peg is a few millimetres from that rope, whichever end it begins
-// with, and far from the one that hangs beside the peg.
+// The pin carries the load and the weight of the rope between the heights of its ends. A chain of
+// straight lines over the peg is a few millimetres from that rope, from whichever end it begins,
+// and far from the one that hangs next to the peg.
 TEST(ShapeCheck, TheReferenceIsTheStableEquilibriumNearThePoints) {
   const Scene scene = parse_scene(test::rope_beside_peg, "rope.toml");
   Eigen::Matrix3Xd corners(3, 5);

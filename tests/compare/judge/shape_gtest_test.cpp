@@ -32,7 +32,7 @@ Shape exact_shape() {
   return dlo::compare::solve(bent(), dlo::compare::Model::exact, {}, {0, 0.1, 0.35, 0.8, 1}).shape;
 }
 
-/// The exact shape at so many points that they tell all of the rod.
+/// Returns the exact shape with enough points to determine the whole rod.
 Shape dense_shape() {
   return dlo::compare::solve(bent(), dlo::compare::Model::exact, {},
                              dlo::energy_model::equal_arc_lengths(1, 101))
@@ -67,7 +67,7 @@ TEST(ShapeMatcher, SaysWhereAndHowFar) {
   EXPECT_NONFATAL_FAILURE(EXPECT_THAT(shape, IsShapeWithin(bent(), 0.01)), "a shape of 101 points");
 }
 
-// Few points lie near many rods: as `dlo check` has it, they have to tell all of the rod.
+// Few points are near many rods: as in `dlo check`, points must determine the whole rod.
 TEST(ShapeMatcher, WantsThePointsToTellTheRod) {
   EXPECT_THAT(shape_near(exact_shape(), bent(), 1e-4).explanation,
               HasSubstr("the points do not determine the rod at s = "));

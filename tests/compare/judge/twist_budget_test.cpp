@@ -60,7 +60,7 @@ TEST(Budget, HasNoPartForTwistThatTheForceModelHas) {
     EXPECT_NEAR(sum_of_shares(c.budget), 1, 1e-9);
     const bool consistent = bookkeeping == Bookkeeping::consistent;
     EXPECT_GT(consistent ? c.budget.discretisation.share : c.budget.bookkeeping.share, 0.7);
-    // A small part of what leaving it out costs.
+    // A small fraction of the error without twist.
     if (consistent) {
       EXPECT_LT(c.deviation.rms_m, 0.05 * make_plan(scene).bound("twist"));
     }

@@ -124,8 +124,8 @@ double error_of(double slower, const RodDamping& damping) {
   return result.quasi_static.mean;
 }
 
-// With drag the rod is behind by a way that is proportional to its speed; what the corners of the
-// accelerations leave is of second order.
+// With drag the lag of the rod is proportional to its speed; the error due to jumps of the
+// acceleration is of second order.
 TEST(DynamicTrack, ComesToTheTrackAtFirstOrderInItsSpeed) {
   const double fast = error_of(16, {.air = 0.05});
   const double slow = error_of(64, {.air = 0.05});
@@ -248,8 +248,8 @@ TEST(DynamicTrack, AMediumAtRestDragsTheMovingRod) {
                    {"medium.tangential_drag", "allowed"}));
 }
 
-// Two clamps carry a wire evenly: from where they move already it does not vibrate. Its last row
-// has it stop, of which its first part knows nothing.
+// Two clamps move a wire at constant velocity. If it starts with this velocity it does not vibrate.
+// Its last row is a stop, which does not affect the motion before.
 TEST(DynamicTrack, ARodThatIsCarriedEvenlyStaysAsAtRest) {
   std::string text =
       "gravity = [0, 0, -9.81]\n[rod]\nlength = 0.5\nbending_stiffness = 0.005\n"
@@ -289,7 +289,7 @@ TEST(DynamicTrack, BeginsInTheMiddleAsIfItHadBegunBefore) {
     EXPECT_NEAR(all.frames[before + i].time, late.frames[i].time, 1e-9);
     return (all.frames[before + i].points - late.frames[i].points).colwise().norm().maxCoeff();
   };
-  // At first it lacks what the air bends.
+  // At first the deflection by the air is missing.
   EXPECT_LT(apart(0), 3 * scene.length * all.quasi_static.largest);
   EXPECT_LT(apart(late.frames.size() - 1), 1e-4 * scene.length);
 }

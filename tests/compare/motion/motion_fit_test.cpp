@@ -23,7 +23,7 @@ namespace {
 
 constexpr double marker_noise = 1e-3;  // of a coordinate [m]
 
-/// A recording, and what it was made with.
+/// Recording with the parameters of its simulation.
 struct Recording {
   Scene made_with;
   Scene scene;       // of which the fit knows no EI

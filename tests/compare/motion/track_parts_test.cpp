@@ -68,7 +68,7 @@ TEST(Lag, IsTheShiftOfASeriesOfShapes) {
   EXPECT_NEAR(lag_of(leader, leader, step).time, 0, 1e-12);
   const std::vector<Eigen::Matrix3Xd> stands(10, shape_at(0));
   EXPECT_TRUE(std::isnan(lag_of(stands, stands, step).time));
-  // Who goes the other way is not late.
+  // A motion in the opposite direction has no lag.
   std::vector<Eigen::Matrix3Xd> away;
   for (int i = 0; i <= 100; ++i) {
     away.push_back(shape_at(step * i));

@@ -40,7 +40,8 @@ Scene swung() {
       "swung.toml");
 }
 
-/// A rod that comes to rest on a peg, from which its clamp draws it until its tip falls off.
+/// Returns a rod that comes to rest on a peg, from which its clamp pulls it until its tip falls
+/// off.
 Scene drawn_off() {
   return parse_scene(
       "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 1\n[[gripper]]\nat = 0\n"

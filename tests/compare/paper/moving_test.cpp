@@ -81,7 +81,8 @@ TEST(MovingExperiment, NeedsMoreStepsExactlyIfSomeWereScaledDown) {
 }
 
 TEST(MovingExperiment, CountsTheSameStartForEveryMovement) {
-  // Pulled into the gripper at the start, without dynamics: nothing later reaches the limit.
+  // The rod is pulled into the gripper at the start, without dynamics: no later movement reaches
+  // the limit.
   const MovingChoices behind{.start_offset = 1};
   const MovingRun turned = run(Movement::rotation, false, MovingVariant::relative, behind);
   const MovingRun moved = run(Movement::uniform, false, MovingVariant::relative, behind);
@@ -91,7 +92,7 @@ TEST(MovingExperiment, CountsTheSameStartForEveryMovement) {
 }
 
 TEST(MovingExperiment, WithoutDynamicsDragGrowsWithSpeedAndWithDynamicsLess) {
-  // A moved point asks for the force v / c_F without and (1 - c_h) v / c_F with dynamics.
+  // A moved point needs the force v / c_F without dynamics and (1 - c_h) v / c_F with it.
   const MovingChoices slow{.distance = 0.02};
   const MovingChoices fast{.distance = 0.04};
   const auto drag = [](MovingVariant variant, const MovingChoices& choices) {

@@ -53,7 +53,7 @@ TEST(TrackFigures, StripHasTheShapesOfItsFrames) {
   EXPECT_EQ(strip.panels.front().texts.at(4).words, "t = 1 s");
 }
 
-// A wall goes on without end, and the cells beside it are not its place.
+// A wall is infinite, but must not be drawn in the adjacent cells.
 TEST(TrackFigures, NothingOfAStripLeavesItsCell) {
   const Motion motion("buckling_wire", 20);
   const Figure strip = motion.figures().strip;

@@ -137,7 +137,7 @@ TEST(Discretise, FitsEqualSegmentsBetweenTheGrips) {
       EXPECT_EQ(start.col(pin.first_point), pin.targets.col(0));
       for (Eigen::Index i = 0; i < 20; ++i) {
         const double length = (start.col(i + 1) - start.col(i)).norm();
-        // Most off beside a held segment, which is straight where the curve is not.
+        // The error is largest next to a held segment, which is straight although the curve is not.
         EXPECT_NEAR(length / d.rod.rest_lengths[i], 1, 0.25) << i;
       }
     }
@@ -175,8 +175,8 @@ TEST(Discretise, SaysHowManyPointsTheGripsNeed) {
     const int needed = bookkeeping == Bookkeeping::consistent ? 12 : 16;
     scene.force_model.points = needed - 1;
     EXPECT_TRUE(says(refusal(scene), {"needs at least " + std::to_string(needed) + " points"}));
-    // With the fewest a single segment is left free, which would be crushed; the next refusal says
-    // with how many it is long enough.
+    // With the smallest number only a single segment is free, which would be compressed; the next
+    // refusal states the number with which it is long enough.
     scene.force_model.points = needed;
     const std::string crushed = refusal(scene);
     ASSERT_TRUE(says(crushed, {"in 1 segment"}));

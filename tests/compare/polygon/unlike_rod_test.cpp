@@ -1,4 +1,4 @@
-// Polygons of rods with sections and of rods that are curved by nature, against the rod's own
+// Tests of polygons of rods with sections and of intrinsically curved rods, against the rod's
 // differential equation and against each other.
 
 #include <gtest/gtest.h>

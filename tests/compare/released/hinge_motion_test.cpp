@@ -36,8 +36,8 @@ double first_mode(double x) {
          2;
 }
 
-// w = a phi(s / l) cos(omega t), omega = lambda^2 (EI / m)^(1/2) / l^2; of a = 0.01 l what is not
-// linear is of the order of (a / l)^2 of it, and of the phase of two periods.
+// w = a phi(s / l) cos(omega t), omega = lambda^2 (EI / m)^(1/2) / l^2. For a = 0.01 l nonlinear
+// terms are of the relative order (a / l)^2, in the phase of two periods too.
 TEST(ReleasedRod, VibratesInItsFirstModeAsTheClosedFormSays) {
   const ReleasedRod rod = released("motion_vibration");
   const double l = rod.scene.length;

@@ -1,5 +1,5 @@
-// Tubes and rectangles: what follows from their sizes, against closed forms, tables and another
-// series.
+// Tests of tubes and rectangles: quantities computed from their sizes, against closed forms, tables
+// and another series.
 
 #include <gtest/gtest.h>
 
@@ -84,7 +84,7 @@ TEST(CrossSection, OfATubeIsARing) {
   EXPECT_FALSE(tube.has_material_directors());
   const Scene solid = sectioned_scene("diameter = \"6 mm\"\ninner_diameter = 0");
   EXPECT_EQ(solid.bending_stiffness(), sectioned_scene("diameter = \"6 mm\"").bending_stiffness());
-  // By EI and mass alone the section says the axial stiffness.
+  // If EI and mass are given alone, the section determines the axial stiffness.
   const Scene given = parse_scene(
       "[rod]\nlength = 1\nbending_stiffness = 0.1\nmass_per_length = 0.01\n"
       "diameter = \"6 mm\"\ninner_diameter = \"4 mm\"\n" +
@@ -110,7 +110,7 @@ TEST(CrossSection, OfAFlatStripHasTwoBendingStiffnessesAndSaintVenantsTorsion) {
   EXPECT_EQ(problem.bending_stiffness_2, strip.bending_stiffness_2());
   EXPECT_EQ(problem.torsional_stiffness, strip.twisting_stiffness());
   EXPECT_EQ(strip.stiffness().name, std::string("E"));
-  // Given stiffnesses count before those of the section, and GJ then goes with these.
+  // Given stiffnesses override those of the section, and GJ is then computed from them.
   Scene given = strip;
   given.given_bending_stiffness = 0.1;
   EXPECT_FALSE(given.bending_stiffness_2());
@@ -169,7 +169,7 @@ TEST(CrossSection, IsRefusedWhereItIsNone) {
                                         "[[obstacle]]\npoint = [0, -0.2, 0]\nnormal = [0, 1, 0]\n"
                                         "touches = \"axis\"\n",
                                     "my.toml"));
-  // No clamp says where a strip's axes are.
+  // No clamp determines the directions of a strip's axes.
   expect_section_refused(material_rod("width = \"8 mm\"\nthickness = \"1 mm\"") + test::first_pin,
                          {"rod.width", "no gripper holds the rod's frame"});
 }

@@ -54,7 +54,7 @@ TEST(Layers, SixStrandsAboutOneHaveTheirSteinerTerm) {
   EXPECT_NEAR(wire.bonded_bending_stiffness / wire.free_bending_stiffness, 55.0 / 7, 1e-12);
   EXPECT_EQ(wire.outer_diameter, 3 * d);
   EXPECT_NEAR(wire.axial_stiffness, 7 * E * std::numbers::pi * d * d / 4, 1e-6);
-  // Three that touch each other lie about nothing.
+  // Three strands that touch each other have no core.
   const LayeredSection three =
       layered_section({{.youngs_modulus = E, .strands = 3, .strand_diameter = d}});
   EXPECT_NEAR(three.outer_diameter, d * (1 + 2 / std::sqrt(3)), 1e-15);

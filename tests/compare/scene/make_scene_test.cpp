@@ -1,4 +1,5 @@
-// Scenes made in code: they are what a file with the same fields is, and refused as that is.
+// Tests of scenes made in code: they equal the scene of a file with the same fields, and are
+// refused likewise.
 
 #include <gtest/gtest.h>
 

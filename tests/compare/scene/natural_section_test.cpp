@@ -1,4 +1,4 @@
-// Sections that are bent by nature where the rod is not.
+// Tests of sections that are intrinsically curved on a rod that is not.
 
 #include <gtest/gtest.h>
 

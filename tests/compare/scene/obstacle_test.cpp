@@ -26,7 +26,7 @@ void expect_refused(const std::string& keys, const std::vector<std::string>& par
   EXPECT_TRUE(says(test::scene_error(over_a_rod + keys), parts));
 }
 
-// The rod's axis keeps half of its diameter, 10 mm, away from what its surface touches.
+// The rod's axis stays half of its diameter, 10 mm, away from an obstacle that its surface touches.
 TEST(SceneObstacle, HasTheBodyThatTheFileSays) {
   EXPECT_NEAR(clearance("point = [0, -1, 0]\nnormal = [0, 1, 0]\n", {3, 2, 1}), 2.99, 1e-12);
   EXPECT_NEAR(clearance("shape = \"plane\"\npoint = [0, -1, 0]\nnormal = [0, 1, 0]\n"

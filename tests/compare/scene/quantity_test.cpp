@@ -19,7 +19,7 @@ std::string message(const std::string& text, Dimension dimension) {
   return error_of<InputError>([&] { return parse_quantity(text, dimension); });
 }
 
-/// A unit and what it is of the SI unit, worked out from its prefixes by hand.
+/// Unit with its factor to the SI unit, computed from its prefixes by hand.
 struct UnitCase {
   Dimension dimension;
   const char* unit;

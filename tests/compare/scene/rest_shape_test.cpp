@@ -1,4 +1,4 @@
-// Stress-free shapes that are said by a helix or by points in space.
+// Tests of stress-free shapes that are given by a helix or by points in space.
 
 #include "dlo/compare/rest_shape.hpp"
 
@@ -96,7 +96,7 @@ double farthest(const Scene& scene, Model model,
 }
 
 TEST(RestShape, ArcsAreFoundWhereTheyAre) {
-  // Neither the points nor anything else says where the arcs meet.
+  // Neither the points nor other data contain the boundaries of the arcs.
   for (const int count : {50, 137, 1000}) {
     const RestShape shape = fit_rest_shape(points_of(on_shaft, shaft_length, count), shaft_length);
     ASSERT_EQ(shape.arcs.size(), 3) << count;

@@ -1,4 +1,5 @@
-// Rods as scene files give them: by EI and mass per length, with sections, curved by nature.
+// Tests of rods in scene files: given by EI and mass per length, with sections, intrinsically
+// curved.
 
 #include <gtest/gtest.h>
 

@@ -50,7 +50,7 @@ TEST(Alignment, RecoversARandomRigidMotionOfSevenUnevenPointsFromEitherEnd) {
   }
 }
 
-// Whichever way a shape is looked at, its points fit where they are; against its order they do not.
+// In either direction the points fit at their positions; in the reverse order they do not.
 TEST(Alignment, AShiftedShapeIsNotReversedByRounding) {
   const Scene scene = heavy_scene(5, 20);
   const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
@@ -91,7 +91,7 @@ TEST(Alignment, RecoversTheMotionOfAWholeRodToTheNoise) {
   }
 }
 
-// Of two thousand points only a tenth is used in the first search. The result is no farther from
+// The first search uses only a tenth of two thousand points. The result is no farther from
 // the rod than the original pose of the points, which is near the optimum.
 TEST(Alignment, ManyPointsLieAsNearAsTheyCan) {
   std::mt19937 random(15);

@@ -38,7 +38,7 @@ struct Right {
     s = equal_arc_lengths(1, 21);
   }
 
-  /// Points of the rod, which goes straight on past its tip.
+  /// Returns points of the rod, which is extended straight beyond its tip.
   [[nodiscard]] Eigen::Matrix3Xd points(std::vector<double> at) const {
     std::vector<double> past;
     for (double& a : at) {
@@ -64,7 +64,8 @@ struct Right {
 /// with its boundary layer of length Gamma^(-1/2) and curvature Gamma^(1/2) at the clamp.
 constexpr double bow = 20.0 / 24 * 0.05 * 0.05 * 0.25;
 
-/// Whether it passes as the whole rod, RMS and largest deviation held against the same length.
+/// Whether it passes as the whole rod, with RMS and largest deviation compared with the same
+/// length.
 bool passes(const ShapeCheck& check, double allowed_m) {
   return judge(check, {.allowed_m = allowed_m}).passes() &&
          judge(check, {.allowed_m = allowed_m, .largest = true}).passes();
@@ -107,7 +108,7 @@ TEST_P(AnyRightShape, NoPointMovesUnseen) {
         Eigen::Matrix3Xd points = right.points(right.s);
         points.col(i) += d * way;
         const ShapeCheck check = right.check(points, column_s());
-        // The point's own share: half of each segment beside it.
+        // The weight of the point: half of each adjacent segment.
         const double share = (i == 0 || i == 20 ? 0.5 : 1) / 20;
         EXPECT_GT(check.deviation.rms_m, 0.8 * d * std::sqrt(share)) << i;
         EXPECT_LT(check.deviation.rms_m, 1.5 * d * std::sqrt(share)) << i;
@@ -185,7 +186,8 @@ TEST_P(AnyRightShape, ACutFileIsNamed) {
       const Eigen::Matrix3Xd ends = right.points({seen, 1});
       EXPECT_LT(check.deviation.max_m, 1e-7);
       EXPECT_NEAR(check.whole_max_m, (ends.col(1) - ends.col(0)).norm(), 1e-3);
-      // The rod leaves the outermost point by at most what is missing, and by about that.
+      // The distance of the rod from the outermost point is at most the length of the missing part,
+      // and close to it.
       EXPECT_LE(check.whole_rms_m, (1 + 1e-4) * std::sqrt(std::pow(1 - seen, 3) / 3));
       EXPECT_GT(check.whole_rms_m, 0.5 * std::sqrt(std::pow(1 - seen, 3) / 3));
       const ShapeJudgement whole = judge(check, {.allowed_m = 0.0015});

@@ -315,7 +315,7 @@ bookkeeping = "consistent"
   EXPECT_NEAR(fine.effective_modulus.ratio, 1, 4e-2);
 }
 
-// A clamp on the floor points into it: nothing above the floor leaves it that way.
+// A clamp on the floor points into it: no rod above the floor can leave it in this direction.
 TEST(Walls, AShapeThatIsNotVerifiedIsShownOnlyToWhoAcceptsIt) {
   const Scene scene = parse_scene(R"(
 gravity = [0, -9.81, 0]
@@ -584,7 +584,7 @@ TEST(PolygonBalance, HoldsAndIsLostWithEveryForce) {
   }
 }
 
-// A distance from rest of 1e-4 l says little about the forces of a stiff polygon.
+// A distance from rest of 1e-4 l does not determine the forces of a stiff polygon.
 TEST(PolygonBalance, OfTheForceModelIsStatedWhereItIsCoarse) {
   const Scene scene = spatial_clamps();
   EXPECT_FALSE(says(solve(scene, Model::force).message, {"balanced within"}));

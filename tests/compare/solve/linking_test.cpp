@@ -37,7 +37,7 @@ Scene twisted_scene(double apart, double turns) {
 }
 
 TEST(Linking, TwistAndWritheAddUpToTheTurnsOfTheGrips) {
-  // Less than half the thrust of Euler's column, so that nothing passes through itself.
+  // The thrust is less than half of Euler's load, so that the rod does not pass through itself.
   for (const double turns : {0.25, -0.6, 0.9}) {
     for (const Model model : {Model::energy, Model::exact}) {
       const Solution solution = solve(twisted_scene(0.7, turns), model);

@@ -235,7 +235,7 @@ TEST(Loads, WhatHasNoPotentialIsForExactWhichSaysWhatItHasChecked) {
     const Solution exact = solve(scene, Model::exact);
     EXPECT_TRUE(says(exact.message, {"stability is not judged", why}));
     EXPECT_TRUE(std::isnan(exact.smallest_eigenvalue));
-    // The tension of a free tip is none, at the clamp it is what the gripper holds along the rod.
+    // The tension is zero at a free tip; at the clamp it equals the gripper's force along the rod.
     EXPECT_NEAR(exact.tension.back(), 0, 1e-8);
     EXPECT_NEAR(exact.tension.front(), -exact.grippers[0].force.x(), 1e-6);
   }

@@ -183,7 +183,7 @@ TEST(Plan, AnObstacleOutOfReachChangesNothingAndOneInReachIsKept) {
 }
 
 TEST(Plan, TheReachOfARodIsAttained) {
-  // A straight rod points at the obstacle: its tip gets exactly as near as the plan says.
+  // A straight rod points at the obstacle: its tip has exactly the clearance of the plan.
   Scene scene = heavy_scene(0, -90);
   scene.obstacles = {{obstacle::Body::half_space({0, -1.5, 0}, Eigen::Vector3d::UnitY())}};
   EXPECT_NEAR(obstacle_clearances(scene).front(), 0.5, 1e-15);

@@ -40,7 +40,7 @@ TEST(States, MirrorImagesBendAndTwistAboutTheirOwnAxes) {
     ASSERT_EQ(samples.d1.cols(), samples.points.cols());
     // All are held alike.
     EXPECT_LT((samples.d1.col(0) - scene.first_frame().col(0)).norm(), 1e-9);
-    // Trapezoidal sums of what is stored, and of 1/2 GJ u3^2 with u3 = d1' . d2 in the middles.
+    // Trapezoidal sums of the stored energy, and of 1/2 GJ u3^2 with u3 = d1' . d2 at the middles.
     double bending = 0;
     double twisting = 0;
     for (Eigen::Index i = 0; i < samples.d1.cols(); ++i) {

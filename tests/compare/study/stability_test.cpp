@@ -44,7 +44,7 @@ TEST(Classify, TellsTheOutcomesApart) {
 }
 
 TEST(Classify, SeesOscillationFromStepToStep) {
-  // Looks that fall on the same phase see nothing; consecutive steps do.
+  // Samples at equal phases do not show the oscillation; consecutive steps do.
   SimulationEnd trajectory{.finite = true};
   trajectory.late.assign(8, two_points(0.1));
   for (int i = 0; i < 8; ++i) trajectory.last.push_back(two_points(i % 2 == 0 ? 0.1 : -0.1));
@@ -157,8 +157,7 @@ TEST(HardCases, AThousandPointsCreepOnAndAreNotSaidToRest) {
 }
 
 TEST(HardCases, AnotherEquilibriumPassesAndSaysSo) {
-  // Above buckling the rod falls to the side on which it starts; the reference has one side at
-  // most.
+  // Above buckling the rod falls to the side on which it starts; the reference is on one side only.
   const std::vector<HardCase> cases = hard_cases(1);
   const auto buckling = std::find_if(cases.begin(), cases.end(), [](const HardCase& hard) {
     return hard.name.find("above buckling") != std::string::npos;
@@ -235,8 +234,8 @@ void expect_safe_and_tight(const std::string& what, const Scene& scene, MapAxis 
   EXPECT_LT(most, loosest) << scene.name;
 }
 
-// Contraction and bending act across each other, so their bounds' sum is at most twice the larger.
-// Bent rods add what turning the joints' forces does.
+// Contraction and bending act in perpendicular directions, so the sum of their bounds is at most
+// twice the larger one. For bent rods the rotation of the joints' forces is added.
 TEST(StabilityMap, PredictionIsSafeAndTightForHookeanRods) {
   expect_safe_and_tight("hooke_c_c", hard_case_scene(), MapAxis::c_c, 1.02, 2);
   expect_safe_and_tight("hooke_c_h", hard_case_scene(), MapAxis::c_h, 1.5, 1.5);

@@ -92,8 +92,8 @@ TEST(MomentBalance, DoesNotHoldHalfWayToRest) {
   EXPECT_FALSE(moment_balance(battery_scene("floor"), end));
 }
 
-// Points further apart than the layer in which a soft rod bends at its clamp do not tell its
-// moments.
+// Points farther apart than the boundary layer in which a soft rod bends at its clamp do not
+// determine its moments.
 TEST(MomentBalance, OfARodAtRestIsWithinItsResolution) {
   for (const char* id : {"weight_100", "weight_1000", "weight_10000", "end_up"}) {
     const Scene scene = battery_scene(id);

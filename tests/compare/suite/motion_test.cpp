@@ -1,5 +1,5 @@
-// Scenes of the battery that move: their answers, what is wrong with a motion, and programs that
-// have one.
+// Tests of scenes of the benchmark set that move: their answers, causes of wrong motions, and
+// programs that compute motions.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -56,7 +56,7 @@ TEST(MotionAnswers, CommittedOnesAreThoseOfFreshOnesWithinTheirBounds) {
   }
 }
 
-// w at the tip is a cos(omega t), to what is not linear at a = 0.01 l.
+// w at the tip is a cos(omega t), up to nonlinear terms at a = 0.01 l.
 TEST(MotionAnswers, TheVibrationHasTheFrequencyOfItsClosedForm) {
   const json answer = committed_motion("motion_vibration");
   constexpr double lambda = 1.8751040687119611;

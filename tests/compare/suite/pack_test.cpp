@@ -156,7 +156,7 @@ TEST(Pack, CommittedOneHasEveryScene) {
     const json answer = committed(scene.id);
     for (const json& key : scene.motion ? moving : at_rest)
       EXPECT_TRUE(answer.contains(key)) << scene.id << key;
-    // The chains that rods that stretch or move are held against have errors of their own.
+    // The chains with which rods that stretch or move are compared have discretisation errors.
     const bool by_chain = scene.motion || scene.scene.stretch != dlo::compare::Stretch::none;
     EXPECT_LT(answer["points_bound_m"], (by_chain ? 2e-4 : 1e-6) * scene.scene.length);
   }

@@ -24,7 +24,7 @@ using test::says_none;
 constexpr double radius = 0.2;  // [m]
 constexpr double rate = 2;      // [rad/s]
 
-/// A gripper that goes round a circle and turns with it.
+/// Returns the direction of a gripper that moves on a circle and rotates with it.
 Eigen::Vector3d direction_at(double time) {
   return {-std::sin(rate * time), std::cos(rate * time), 0};
 }

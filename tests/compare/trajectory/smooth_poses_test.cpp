@@ -1,4 +1,4 @@
-// Poses without what is faster than a cut-off: gain by the closed form, no lag, lines kept.
+// Tests of low-pass filtered poses: gain by the closed form, no lag, unchanged lines.
 
 #include <gtest/gtest.h>
 

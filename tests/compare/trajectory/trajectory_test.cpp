@@ -70,7 +70,7 @@ TEST(Trajectory, TurnsAlongTheGreatCircle) {
   EXPECT_NEAR(way.pose_at(2).direction->dot(normal), 0, 1e-15);
 }
 
-// A pose that is given twice is held, and what moves along a line does not go beyond a pose.
+// A pose that is given twice is held, and a motion along a line does not overshoot a pose.
 TEST(Trajectory, NeitherLeavesAHeldPoseNorOvershoots) {
   const Trajectory way({{0, {0, 0, 0}, {}},
                         {1, {1, 0, 0}, {}},

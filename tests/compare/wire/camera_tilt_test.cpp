@@ -154,8 +154,8 @@ TEST(WireFit, StiffnessIsLikeliestWhateverTheOtherNumbersAre) {
       std::vector<Scene>(mountings, scene), std::vector<MeasuredShape>(mountings, shape),
       {.direction_tolerance = tolerance, .choose_options = false, .noise = noise});
   const double found = std::log(*fit.youngs_modulus.estimate / scene.stiffness().value);
-  // The highest of a parabola through three values about what was found; the deviance is least at
-  // 0.
+  // The maximum of a parabola through three values about the result; the minimum of the deviance is
+  // at 0.
   constexpr double step = 0.1;
   const auto at = [&](double x) {
     return mountings * log_probability(scene, x, shape, noise, tolerance);

@@ -63,7 +63,7 @@ Outcome outcome_of(unsigned seed) {
   return result;
 }
 
-/// The scene, which is one for all, is beside them.
+/// Writes the mountings of a wire, and next to them the scene, which is the same for all.
 void write(const std::string& folder, unsigned seed) {
   const Wire wire = wire_of(seed, mountings + 1);
   for (std::size_t i = 0; i < wire.shapes.size(); ++i) {

@@ -334,8 +334,8 @@ TEST(WireFit, AConstantCurvatureBetweenTwoClampsIsSaidNotToBeSeen) {
   if (!test::sanitized) EXPECT_GE(held, 17);
 }
 
-// A stiff rod's moments are a parabola along it at any E, and so is a natural curvature of three
-// terms: one picture cannot tell them apart.
+// A stiff rod's moments are a parabola along it for any E, and so is a natural curvature of three
+// terms: one picture cannot distinguish them.
 TEST(WireFit, OfAStiffRodInOnePictureStiffnessAndCurvatureAreNotIdentifiable) {
   std::mt19937 random(7);
   constexpr int draws = test::sanitized ? 3 : 20;
@@ -358,8 +358,8 @@ TEST(WireFit, OfAStiffRodInOnePictureStiffnessAndCurvatureAreNotIdentifiable) {
   if (!test::sanitized) EXPECT_GT(undetermined, 0);
 }
 
-// One wire hung five times whose stiffness is another one each time, by 10 %: more than noise
-// makes of it. The interval is for their mean.
+// One wire in five mountings with a stiffness that differs by 10 %, more than noise explains. The
+// interval is for the mean.
 TEST(WireFit, ShapesThatScatterSayItAndWidenTheInterval) {
   for (const bool whole_wire : {false, true}) {
     std::mt19937 random(8);
@@ -492,8 +492,8 @@ TEST(WireFit, AWeightlessArcTellsItsCurvatureAndNoStiffness) {
   }
 }
 
-// A circle under weight is the shape of a rod that is curved by nature and stiffer than any: E
-// grows as far as it is looked for, and has no upper bound.
+// A circle under weight is the shape of an intrinsically curved rod of infinite stiffness: E
+// increases to the limit of the search, and has no upper bound.
 TEST(WireFit, ACircleUnderWeightIsStifferThanAnyThatIsLookedFor) {
   constexpr double k = 1.5;
   std::mt19937 random(16);
@@ -515,8 +515,8 @@ TEST(WireFit, ACircleUnderWeightIsStifferThanAnyThatIsLookedFor) {
   }
 }
 
-// Where only the ends are held, shapes know ratios of forces and none of them: an arch without
-// weight. With a load in its middle they tell.
+// If only the ends are held, the shape of an arch without weight determines ratios of forces only.
+// A load in its middle makes the stiffness identifiable.
 TEST(WireFit, AnArchBetweenTwoClampsTellsItsStiffnessOnlyUnderALoad) {
   std::mt19937 random(12);
   Scene said = test::heavy_scene(1, 40);

@@ -81,8 +81,8 @@ struct StepOptions {
                    ///< rest length
   /// Change of c_s [-]. c_s grows by this for each point that has reversed its direction in two
   /// consecutive steps. It decreases by this after each step without such a point, but not below
-  /// the value 1. Movements of the size of rounding errors do not count, since a rod at rest would otherwise
-  /// seem to oscillate.
+  /// the value 1. Movements of the size of rounding errors do not count, since a rod at rest would
+  /// otherwise seem to oscillate.
   double c_s_change = 0.1;
   /// Time step dt in real time [s], > 0; infinity: without masses and time, for
   /// Integration::implicit_euler only.
