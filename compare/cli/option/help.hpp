@@ -27,8 +27,8 @@ struct OptionText {
 
 [[nodiscard]] OptionText option_text(const CLI::Option& option);
 
-/// Return commands, arguments and options in the order in which they were added, without hidden
-/// ones.
+/// Return commands, arguments and options in the order in which they were added; options without
+/// hidden ones.
 [[nodiscard]] std::vector<const CLI::App*> commands_of(const CLI::App& app);
 [[nodiscard]] std::vector<const CLI::Option*> arguments_of(const CLI::App& app);
 [[nodiscard]] std::vector<const CLI::Option*> options_of(const CLI::App& app);

@@ -67,7 +67,8 @@ struct OwnPolygon {
     std::optional<energy_model::JointLaw> law = std::nullopt, LastPoint last = LastPoint::there);
 
 /// Returns the points at rest of a chain with the clamps, springs and Hookean law of another one,
-/// found by a local search; std::nullopt if the search finds no equilibrium.
+/// found by a local search; std::nullopt if the grippers cannot hold the chain or the search finds
+/// no equilibrium.
 /// @param start  initial guess; its arc lengths are those of the chain's points
 [[nodiscard]] std::optional<Shape> chain_at_rest(const Scene& scene, const Shape& start,
                                                  const OwnPolygon& like);

@@ -9,8 +9,7 @@ namespace dlo::compare {
 namespace {
 
 /// Style of a curve. The colours follow Okabe and Ito, but are darker, so that they are visible
-/// inverted as well. Each has its own dashes and marks, so that curves can be distinguished without
-/// colour.
+/// inverted as well. Each has its own marks, so that curves can be distinguished without colour.
 struct CurveLook {
   const char* colour;
   Mark mark;

@@ -27,7 +27,7 @@ struct Look {
 inline constexpr std::size_t curve_colours = 6;
 
 /// Returns the style of the i-th curve, with a line and marks. Its colour can be distinguished by
-/// colour-blind readers, and its dashes and marks differ too. Styles repeat after curve_colours.
+/// colour-blind readers, and its marks differ too. Styles repeat after curve_colours.
 [[nodiscard]] Look curve_look(std::size_t i);
 /// Returns curve_look(i) without marks.
 [[nodiscard]] Look curve_line(std::size_t i);
@@ -98,7 +98,8 @@ struct Panel {
 };
 
 /// Returns a panel as it is drawn: with limits on all axes, infinite coordinates moved to the edge,
-/// and without curves that have no point.
+/// and without curves of which no point can be drawn: x or y is NaN, or not positive on a
+/// logarithmic axis.
 [[nodiscard]] Panel laid_out(Panel panel);
 
 /// Figure with plots below each other.

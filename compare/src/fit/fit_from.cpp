@@ -32,8 +32,8 @@ void add_chains(const std::vector<Scene>& scenes, const MaterialFitOptions& opti
   }
 }
 
-/// Throws if E is not identified and solves ended at their evaluation limit: without the limit it
-/// may be identifiable.
+/// Throws if a force acts on the scenes, E is not identified and solves ended at their evaluation
+/// limit: without the limit it may be identifiable.
 /// @throws ConvergenceError
 void refuse_limited(MaterialProfiles& material, const MaterialFit& fit) {
   const long limited = material.measured().limited_solves();

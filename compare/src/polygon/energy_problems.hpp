@@ -35,7 +35,8 @@ struct ChainScene {
 
 /// Returns the scene as a problem of the energy model.
 /// @throws InputError naming file, line and key if two grippers hold one arc length, or are at
-/// least as far apart as the length of the rod between them
+/// least as far apart as the length of the rod between them, unless the scene counts stretch or
+/// its rod is a taut line
 [[nodiscard]] energy_model::Problem energy_problem(const Scene& scene);
 
 }  // namespace dlo::compare

@@ -48,7 +48,7 @@ inline constexpr double surely_nearest = same_shape / 2;
                                            std::size_t compared,
                                            const std::vector<double>& from_shape);
 
-/// Returns the solution in space of a scene that `turn` moved into the plane z = 0.
+/// Returns, in space, a polygon's solution of a scene that `turn` moved into the plane z = 0.
 [[nodiscard]] Solution turned_back(Solution solution, const PlaneTurn& turn);
 
 }  // namespace dlo::compare

@@ -100,7 +100,8 @@ class StrictTable {
   /// Returns "file:line" of this table.
   [[nodiscard]] std::string where() const { return where(nullptr); }
 
-  /// Throws an InputError "file:line: key = value: problem".
+  /// Throws an InputError "file:line: key = value: problem", without " = value" if the key is
+  /// missing or a table.
   [[noreturn]] void fail(std::string_view key, const std::string& problem) const;
 
  private:

@@ -12,7 +12,7 @@ namespace {
 /// Largest and smallest accepted step length, divided by the radius.
 constexpr double longest_accepted = 1.01;
 constexpr double shortest_accepted = 0.75;
-/// Relative distance of the bounds of mu below which they count as equal.
+/// Distance of the bounds of mu, divided by the upper one, below which they count as equal.
 constexpr double closed_bounds = 1e-2;
 
 /// Bounds of mu. Up to `low`, H + mu is not positive definite or p is too long; from `high` on, p

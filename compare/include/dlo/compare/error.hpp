@@ -11,8 +11,8 @@ class ResultError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Invalid input by the user. The message is one line that names file, key, value and what is
-/// allowed.
+/// Invalid input by the user: a file, a key, a value. The message is one line. It names those of
+/// them that are concerned, and what is allowed.
 class InputError : public ResultError {
  public:
   /// @param message  quoted input may contain control characters; each becomes a "?", so that a

@@ -26,8 +26,9 @@ struct [[nodiscard]] EquilibriumCheck {
   /// The stiffness of the free points is positive definite by more than rounding, except for
   /// `neutral_modes`.
   bool stable = false;
-  /// Number of modes with neither stiffness nor force, at most two: a rod between two pins can
-  /// rotate about the line through them. The other members exclude these modes.
+  /// Number of modes without stiffness, such as one of a rod between two pins, which can rotate
+  /// about the line through them; 3: three or more. If a force acts along one, `stable` is false.
+  /// The other members exclude these modes.
   int neutral_modes = 0;
   /// The Newton step leads to an equilibrium, as a second step shows: it is at most a quarter of
   /// the first (Kantorovich), or only rounding. Otherwise `remaining_error` is no bound.
