@@ -59,7 +59,8 @@ std::optional<Solution> solve_rigid_chain(const Scene& scene, const ForceModelSe
   if (settings.joint_law) solution.energy.bending = result.bending_energy;
   solution.grippers =
       balanced(scene, discretisation.rod, points, {holding_load(discretisation, chain, result)},
-               energy_model::allowed_imbalance, "chain");
+               energy_model::allowed_imbalance, "chain")
+          .loads;
   solution.evaluations = result.evaluations;
   solution.seconds = result.seconds;
   return solution;
@@ -94,7 +95,8 @@ Solution solve_elastic_chain(const Scene& scene, const ForceModelSettings& setti
   }
   add_twisting_torques(lowest.rod, points, grippers);
   solution.grippers = balanced(scene, lowest.rod, points, std::move(grippers),
-                               energy_model::allowed_imbalance, "chain");
+                               energy_model::allowed_imbalance, "chain")
+                          .loads;
   solution.evaluations = lowest.evaluations;
   solution.seconds = lowest.seconds;
   return solution;

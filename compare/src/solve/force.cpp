@@ -282,13 +282,13 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
       settings.law == BendingLaw::hooke && solution.error_estimate <= near_rest * scene.length;
   const double allowed = is_bounded ? allowed_rest_imbalance(resting, points, solution.to_rest)
                                     : std::numeric_limits<double>::infinity();
-  solution.grippers =
+  BalancedGrippers balance =
       balanced(scene, resting, points, gripper_loads(resting, points), allowed, "force");
+  solution.grippers = std::move(balance.loads);
   constexpr double stated_above = 1e-6;  // divided by the largest force or moment
-  const double imbalance = polygon_imbalance(resting, points, solution.grippers).share();
-  if (imbalance > stated_above) {
-    solution.message +=
-        fmt::format(", forces and moments are balanced within {:.2g} of the largest", imbalance);
+  if (balance.share > stated_above) {
+    solution.message += fmt::format(
+        ", forces and moments are balanced within {:.2g} of the largest", balance.share);
   }
   if (is_dragged) solution.status = energy_model::SolveStatus::not_verified;
   if (!is_dragged && strayed()) solution.message += ", in another state than the chain";

@@ -158,11 +158,11 @@ double allowed_rest_imbalance(const force_model::Rod& rod, const Eigen::Matrix3X
          std::max(force / scale.largest_force, moment / scale.largest_moment);
 }
 
-std::vector<GripperLoad> balanced(const Scene& scene, const force_model::Rod& rod,
-                                  const Eigen::Matrix3Xd& points, std::vector<GripperLoad> grippers,
-                                  double allowed, const char* model) {
+BalancedGrippers balanced(const Scene& scene, const force_model::Rod& rod,
+                          const Eigen::Matrix3Xd& points, std::vector<GripperLoad> grippers,
+                          double allowed, const char* model) {
   const energy_model::Imbalance imbalance = polygon_imbalance(rod, points, grippers);
-  if (imbalance.share() <= allowed) return grippers;
+  if (imbalance.share() <= allowed) return {std::move(grippers), imbalance.share()};
   throw ConvergenceError(fmt::format("{}: the {} model did not converge to an equilibrium: {}",
                                      scene.file, model, imbalance.text()));
 }

@@ -40,15 +40,21 @@ namespace dlo::compare {
                                             const Eigen::Matrix3Xd& points,
                                             const Eigen::Matrix3Xd& to_rest);
 
+/// Forces of the grippers with which a polygon is in equilibrium.
+struct BalancedGrippers {
+  std::vector<GripperLoad> loads;  // in the order of the rod's grips
+  double share = 0;                // polygon_imbalance().share()
+};
+
 /// Checks that a polygon is in equilibrium under its actions, and returns those of the grippers.
 /// @param grippers  in the order of the rod's grips
 /// @param allowed   largest polygon_imbalance().share()
 /// @param model     name of the model in the message
 /// @throws ConvergenceError if the forces and moments on the polygon do not balance
-[[nodiscard]] std::vector<GripperLoad> balanced(const Scene& scene, const force_model::Rod& rod,
-                                                const Eigen::Matrix3Xd& points,
-                                                std::vector<GripperLoad> grippers, double allowed,
-                                                const char* model);
+[[nodiscard]] BalancedGrippers balanced(const Scene& scene, const force_model::Rod& rod,
+                                        const Eigen::Matrix3Xd& points,
+                                        std::vector<GripperLoad> grippers, double allowed,
+                                        const char* model);
 
 /// Checks that no segment of a polygon is strained by more than largest_strain(): a polygon that
 /// had to stretch or shorten is no shape of the rod, even if it balances.
