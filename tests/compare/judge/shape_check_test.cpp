@@ -223,6 +223,38 @@ CheckResult verdict_of(const Scene& scene, const Eigen::Matrix3Xd& points, doubl
                 .shape = {.modulus = ModulusSearch::no}});
 }
 
+// Within the first fifth of a soft rod's length, points may follow a bend or cut it.
+TEST(ShapeCheck, AFileWithoutPointsAtTheBendIsUndetermined) {
+  const Scene scene = heavy_scene(100, 0);
+  std::vector<double> s = equal_arc_lengths(1, 101);
+  EXPECT_TRUE(verdict_of(scene, exact_shape(scene, s).points, 0.005).passes());
+  std::erase_if(s, [](double at) { return at > 0 && at < 0.25; });
+  const CheckResult result = verdict_of(scene, exact_shape(scene, s).points, 0.005);
+  EXPECT_EQ(result.judgement.verdict, ShapeVerdict::undetermined) << result.judgement.reason;
+  EXPECT_LT(result.judgement.judged_m, 1e-3);
+}
+
+TEST(ShapeCheck, AFileNearAnUnverifiedEquilibriumIsUndetermined) {
+  const Scene scene = heavy_scene(10, 0);
+  ShapeCheck check = check_shape(scene, exact_shape(heavy_scene(5, 0), equal_arc_lengths(1, 21)));
+  ASSERT_EQ(judge(check, {.allowed_m = 0.01}).verdict, ShapeVerdict::fail);
+  check.unverified.emplace();
+  check.unverified->rms_m = 0.002;
+  check.unverified->max_m = 0.02;
+  EXPECT_EQ(judge(check, {.allowed_m = 0.01}).verdict, ShapeVerdict::undetermined);
+  EXPECT_EQ(judge(check, {.allowed_m = 0.01, .largest = true}).verdict, ShapeVerdict::fail);
+  EXPECT_EQ(judge(check, {.allowed_m = 0.001}).verdict, ShapeVerdict::fail);
+}
+
+// The distance over the whole rod includes parts that the file lacks.
+TEST(ShapeCheck, IsJudgedOverTheWholeRodUnlessAPartIsAsked) {
+  const Scene scene = heavy_scene(10, 0);
+  ShapeCheck check = check_shape(scene, exact_shape(scene, equal_arc_lengths(1, 21)));
+  check.whole_rms_m = 0.02;
+  EXPECT_EQ(judge(check, {.allowed_m = 0.01}).verdict, ShapeVerdict::fail);
+  EXPECT_EQ(judge(check, {.allowed_m = 0.01, .part = true}).verdict, ShapeVerdict::pass);
+}
+
 // A cantilever of small Gamma sags by w s^2 (6 l^2 - 4 l s + s^2) / (24 EI), at its tip by Gamma l
 // / 8.
 TEST(Significance, APassThatAStraightLineWouldHaveTooSaysSo) {
@@ -262,6 +294,21 @@ TEST(Significance, OfARodThatBendsAPassIsSignificant) {
       verdict_of(scene, exact_shape(scene, equal_arc_lengths(1, 21)).points, 0.01);
   EXPECT_EQ(passed.judgement.significant, true);
   EXPECT_GT(passed.deflection_m, 0.1);
+}
+
+// A force F at the tip and a line load w bend a cantilever by F l^3 / (3 EI) and w l^4 / (8 EI).
+TEST(Significance, IsThatOfEveryKindOfLoad) {
+  Scene tip = heavy_scene(0, 0);
+  const double unit = tip.bending_stiffness();
+  tip.loads = {{.at = 1, .force = {0, 0.06 * unit, 0}}};
+  Scene line = heavy_scene(0, 0);
+  line.distributed_loads = {{.from = 0, .to = 1, .force_per_length = {{0, 0.16 * unit, 0}}}};
+  for (const Scene& scene : {tip, line}) {
+    const CheckResult passed =
+        verdict_of(scene, exact_shape(scene, equal_arc_lengths(1, 21)).points, 0.005);
+    EXPECT_EQ(passed.judgement.significant, true);
+    EXPECT_NEAR(passed.deflection_m, 0.02, 1e-3 * 0.02);
+  }
 }
 
 // Without a deflection by weight and loads there is no fraction of it, and weight and loads do not
