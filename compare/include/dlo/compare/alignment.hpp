@@ -90,8 +90,10 @@ struct AlignOptions {
 
 /// A measured shape aligned with a reference.
 struct Alignment {
-  RigidMotion pose;       ///< from the file's frame to the scene's
-  bool reversed = false;  ///< whether the file's points (its s) run from arc length l to 0
+  RigidMotion pose;  ///< from the file's frame to the scene's
+  /// Whether the file's points, or with ArcLengths::file its arc lengths, run from the rod's arc
+  /// length l to 0.
+  bool reversed = false;
   /// Rule that was used; `nearest` may become `chord` for a whole file whose frame is fitted.
   ArcLengths arc_lengths = ArcLengths::nearest;
   Shape shape;             ///< points in the scene's frame, by increasing arc length
@@ -118,8 +120,8 @@ struct RodPart {
 /// directions. The points are assigned in order (dynamic programming); the motion then follows by
 /// Gauss-Newton steps on the distances perpendicular to the curve (also along it if a point is past
 /// an end). With weights by length and a frame to be fitted, the frame is then the one that
-/// minimises the distances that ShapeCheck reports, and a file as long as the rod (within 3 %) is
-/// aligned by `chord` if that is nearer.
+/// minimises the distances that ShapeCheck reports, and a file that is at most 3 % shorter than the
+/// rod is aligned by `chord` if that is nearer.
 /// @throws InputError if the options need a column s that the file lacks, if arc lengths of the
 /// file are not on the rod, or if a motion is to be fitted to too few points (fewer than 3)
 [[nodiscard]] Alignment align(const MeasuredShape& shape, const Reference& reference, double length,

@@ -41,8 +41,8 @@ struct CalibratedRod {
 
 /// Returns a scene with the calibrated quantities in place of its own.
 /// @throws InputError if the scene is given by E and the calibration by EI or the reverse, if it
-/// has not as many grippers, or with `camera_tilt` if more than weight acts on its rod or something
-/// moves
+/// lacks a corrected gripper, or with `camera_tilt` if more than weight acts on its rod or
+/// something moves
 [[nodiscard]] Scene calibrated_scene(Scene scene, const CalibratedRod& rod);
 
 /// Reads a calibrated rod from TOML.

@@ -10,7 +10,7 @@ namespace dlo::compare {
 /// its segments are rigid; else they have the force model's c_c, and the lowest of the shapes from
 /// several starts is returned.
 /// @throws InputError; ConvergenceError, also if a segment differs from its rest length by more
-/// than largest_strain(), with the number of points that would suffice
+/// than largest_strain(); the message then recommends more points
 [[nodiscard]] Solution solve_chain(const Scene& scene, const ForceModelSettings& settings,
                                    const SolveOptions& options = {});
 

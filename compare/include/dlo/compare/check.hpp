@@ -31,24 +31,25 @@ struct CheckResult {
   ShapeCheck check;                       ///< deviation of the shape
   ShapeTolerance tolerance;               ///< tolerance that was applied
   ShapeJudgement judgement;               ///< verdict with its reason
-  std::vector<Explanation> explanations;  ///< causes of a shape that is not near, best first
+  std::vector<Explanation> explanations;  ///< causes of a verdict `fail`, best first
   /// Cause that explains the shape better than any stiffness.
   std::optional<Explanation> supersedes_modulus;
   PoseFreedom pose = PoseFreedom::known;  ///< unknown part of the shape's frame
   std::vector<std::string> notes;         ///< how the shape file was interpreted
-  /// TrivialShape::deflection_m; NaN unless the shape passes or the tolerance is a share of the
-  /// deflection.
+  /// TrivialShape::deflection_m. It is computed if the tolerance is a share of the deflection, or
+  /// if the shape passes and weight or loads act. NaN if it was not computed, or no trivial shape
+  /// was found.
   double deflection_m = std::numeric_limits<double>::quiet_NaN();
 
   /// Whether the verdict is `pass`.
   [[nodiscard]] bool passes() const { return judgement.passes(); }
 };
 
-/// Explains why a shape passes although another stiffness would be much nearer; empty if this is
-/// not the case.
+/// Explains why a shape passes as the rod although E* is identified and differs from E by 5 % or
+/// more. Empty if one of these conditions does not hold, or if the verdict is not significant.
 [[nodiscard]] std::string other_stiffness_within(const CheckResult& result);
 
-/// Compares, judges and, if the shape is not within the tolerance, searches for causes.
+/// Compares, judges and, if the verdict is `fail`, searches for causes.
 /// @throws InputError, ConvergenceError
 [[nodiscard]] CheckResult check(const Scene& scene, const MeasuredShape& shape,
                                 const CheckRequest& request = {});

@@ -63,7 +63,7 @@ template <Chosen Value>
   return one_of(names<Value>());
 }
 
-/// Returns all names with their meanings, if those differ: "a, b (second) or c (third)".
+/// Returns all names, each with its meaning if it has one: "a, b (second) or c (third)".
 template <Chosen Value>
 [[nodiscard]] std::string meanings() {
   std::vector<std::string> result;

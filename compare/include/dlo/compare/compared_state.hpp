@@ -8,7 +8,8 @@ namespace dlo::compare {
 
 /// Another equilibrium of the energy model than the compared one.
 struct OtherState {
-  bool stable = false;             ///< whether its second variation is positive
+  /// Whether its second variation is positive; also true if its stability is not verified.
+  bool stable = false;
   double energy_difference_J = 0;  ///< its energy minus that of the compared equilibrium [J]
   double rms_from_compared_m = 0;  ///< RMS distance along the rod from the compared equilibrium [m]
   double rms_from_shape_m = 0;     ///< RMS distance from the shape [m]

@@ -81,9 +81,9 @@ struct Discretisation {
 /// A joint represents the rod between the middles of its segments. Its EI is that of the mean 1/EI,
 /// also across an end of a section (c_b of the law `paper` is proportional to it), and its angle at
 /// rest is the natural curvature times its length. The natural curvature is neglected by the law
-/// `paper`, and if the rod is not in its plane. GJ is proportional to EI if the clamps twist the
-/// rod and the law is hooke. The clamps' frames are not set here, because whole turns are counted
-/// from the untwisted equilibrium.
+/// `paper`, and if the rod is not in its plane. GJ, used if the clamps twist the rod and the law is
+/// hooke, is likewise that of the mean 1/GJ. The clamps' frames are not set here, because whole
+/// turns are counted from the untwisted equilibrium.
 ///
 /// A half-space becomes a wall of the force model, which acts on points. Each point has the
 /// stiffness L times the obstacle's, since walls have one stiffness for all points (the last point
@@ -95,7 +95,10 @@ struct Discretisation {
 /// @throws InputError if there are too few points for the grippers (with the number needed), two
 /// grippers hold the same arc length, grippers, or the segments that they hold, are further apart
 /// than the rod between them, or a single segment between two held points does not fit (with the
-/// number of points that do), or a joint would rotate by 3 rad or more at rest
+/// number of points that do), a joint would rotate by 3 rad or more at rest or by pi or more at the
+/// design curvature, or the scene or the settings have what no polygon has: two bending
+/// stiffnesses, couples, loads without a potential, a `joint_law`, natural curvature in a plane
+/// other than z = 0
 [[nodiscard]] Discretisation discretise(const Scene& scene, const ForceModelSettings& settings);
 
 /// Replaces the walls and solids of a discretisation by the given obstacles of a scene.

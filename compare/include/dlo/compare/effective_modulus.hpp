@@ -20,8 +20,8 @@ enum class Optimum {
   /// E* is identified, but it explains less than `clear_share` of the mean square deviation, or
   /// leaves more than the RMS displacement of the rod from straight (without_small_movement)
   partial,
-  /// A modulus twice or half as large fits less than 10 % worse, or not worse than the energy
-  /// model's own error.
+  /// A modulus twice or half as large fits less than 10 % worse, or worse by at most the energy
+  /// model's own error (modulus_resolution).
   flat,
   /// The fit still improves where the search ended: at the end of the range, or where the followed
   /// equilibrium ends or bifurcates.

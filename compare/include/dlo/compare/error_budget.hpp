@@ -15,8 +15,8 @@ struct BudgetPart {
 };
 
 /// Causes of the deviation between force model and rod, each isolated by changing one thing. "rod"
-/// is the energy model's shape, chain(law, bookkeeping, c_c) the polygon at rest, and "rigid" means
-/// c_c = 100 AE:
+/// is the shape of the reference_model(), chain(law, bookkeeping, c_c) the polygon at rest, and
+/// "rigid" means c_c = 100 AE, or c_c = AE if the reference stretches:
 ///     twist           rod without the twist that the scene holds - rod, if the force model and
 ///                     its chains neglect twist
 ///     natural curvature
@@ -32,13 +32,13 @@ struct BudgetPart {
 ///     not at rest     force model - force model after Newton's step to rest
 ///     interaction     remainder of force model - rod
 /// A polygon penetrates a rigid obstacle, whose stiffness is derived from c_c (discretise). A
-/// "rigid" chain therefore touches obstacles of 100 AE, and the part `contact` is the effect of the
-/// force model's own obstacle stiffness. Contact at points and segments instead of along a curve is
-/// part of discretisation. Law and bookkeeping are each changed from the better model, so that
-/// neither hides behind the other. Their joint effect beyond the sum of both belongs to
-/// interaction, and so do the second order of "not at rest" and the net torque of the paper's law
-/// between unequal segments, which has no potential. All chains start from the force model's shape,
-/// so that they are on its branch of equilibria.
+/// "rigid" chain therefore touches obstacles whose stiffness follows from its own c_c, and the part
+/// `contact` is the effect of the force model's own obstacle stiffness. Contact at points and
+/// segments instead of along a curve is part of discretisation. Law and bookkeeping are each
+/// changed from the better model, so that neither hides behind the other. Their joint effect beyond
+/// the sum of both belongs to interaction, and so do the second order of "not at rest" and the net
+/// torque of the paper's law between unequal segments, which has no potential. All chains start
+/// from the force model's shape, so that they are on its branch of equilibria.
 struct Budget {
   BudgetPart law;          ///< see above
   BudgetPart bookkeeping;  ///< see above
@@ -47,7 +47,7 @@ struct Budget {
   BudgetPart natural_curvature;
   BudgetPart discretisation;  ///< see above
   BudgetPart stretch;         ///< see above
-  BudgetPart contact;         ///< see above; zero if no rigid obstacle is touched
+  BudgetPart contact;         ///< see above; zero if no rigid obstacle is in reach
   BudgetPart not_at_rest;     ///< see above
   BudgetPart interaction;     ///< see above
   double total_m = 0;         ///< RMS of force model - rod

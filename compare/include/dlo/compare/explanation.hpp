@@ -38,15 +38,17 @@ struct Explanation {
   double max_m = 0;  ///< of a discretisation: largest deviation of a point from the chain
 };
 
-/// Searches for a single cause that explains a shape's deviation. Causes of the file: its unit, its
-/// axes, points off the rod, a scaling, noise. Causes of its simulator: a chain of hinges instead
-/// of a rod, an unstable equilibrium. Causes of the scene: stiffness or weight, the direction of
-/// gravity, the length, position and direction of a gripper, a pin that is a clamp or the reverse,
-/// natural curvature, twist. Each is fitted to the shape, on the branch of the compared
-/// equilibrium, by Gauss-Newton steps whose derivatives are differences between solved rods.
+/// Searches for a cause that explains a shape's deviation. Causes of the file, one or several at a
+/// time: its unit, its axes, its origin, points off the rod, a scaling, noise. Causes of its
+/// simulator: a chain of hinges instead of a rod, an unstable equilibrium. Causes of the scene, one
+/// at a time: stiffness or weight, size and direction of gravity, the length, position and
+/// direction of a gripper, a pin that is a clamp or the reverse, natural curvature, twist. Those of
+/// the scene are fitted to the shape, from the compared equilibrium, by Gauss-Newton steps whose
+/// derivatives are differences between solved rods.
 /// @param check  result for the same scene and shape
-/// @return causes that leave at most half of the deviation, the best first: a cause with fewer
-/// numbers before one that fits only slightly better with more; empty if there is none
+/// @return causes that leave at most half of the deviation, the best first: a cause with more
+/// numbers precedes another one only if each additional number halves the remaining deviation;
+/// empty if there is none
 [[nodiscard]] std::vector<Explanation> explain_shape(const Scene& scene, const MeasuredShape& shape,
                                                      const ShapeCheck& check,
                                                      const ShapeCheckOptions& options);
@@ -74,8 +76,8 @@ struct ChainJudgement {
 /// the rod is observed; the file is within `right_chain` of the tolerance from a chain at rest with
 /// the same number of points; check.rod is a stable, certified equilibrium; and the chain's
 /// distance from it is an error of discretisation, which decreases with shorter segments at the
-/// rate that the chain's clamps imply. If the distance decreases otherwise, the chain is too coarse
-/// to judge, and the verdict is `undetermined`.
+/// rate that the chain's clamps imply, or is within the bound of make_plan(). If the distance
+/// decreases at another rate, the chain is too coarse to judge, and the verdict is `undetermined`.
 [[nodiscard]] ChainJudgement judge_as_chain(const Scene& scene, const ShapeCheck& check,
                                             const ShapeTolerance& tolerance);
 

@@ -252,7 +252,7 @@ struct MaterialFit {
   /// With `choose_options`: the options that were tried, the chosen one first. It has the fewest
   /// numbers among those that predict as well as the best (within 1 %). The interval of E is
   /// extended to that of the largest number of terms that predicts nearly as well (within 10 %). If
-  /// nothing systematic was left, it is the only one and has no prediction.
+  /// nothing systematic was left, it is the only one, with a prediction only if one was requested.
   std::vector<FitAlternative> tried;
   std::vector<FittedNumber> others;  ///< numbers that were requested, those of the wire first
   /// Natural curvature of the first scene with the fitted corrections, about d1 and d2 [1/m]:
@@ -262,9 +262,9 @@ struct MaterialFit {
   Eigen::Vector3d camera_tilt = Eigen::Vector3d::Zero();  ///< as in CalibratedRod [rad]
   std::optional<Prediction> prediction;                   ///< if it was requested
   std::optional<ScatterBetweenShapes> scatter;            ///< if there is a significant one
-  /// Chains with the requested segments, one for each different scene. Empty if E is not
-  /// identified, or if the scene has what a plain chain lacks (twist, sections, natural curvature,
-  /// a gripper between its joints).
+  /// Chains with the requested segments, one for each different scene and each ChainClamp that is
+  /// possible there. Empty if E is not identified, or if the scene has what a plain chain lacks
+  /// (sections, natural curvature, two bending stiffnesses, couples, a gripper between its joints).
   std::vector<ChainSprings> chains;
   bool noise_is_estimated = true;   ///< whether the noise was estimated, not given
   int degrees_of_freedom = 0;       ///< number of measured numbers minus number of fitted numbers

@@ -39,7 +39,7 @@ struct ForceModelFitOptions {
   /// N; empty: chosen for the target (law hooke), or the scene's (law paper, whose error does not
   /// decrease with N).
   std::optional<int> points;
-  double target = 1e-3;  ///< RMS deviation divided by the rod's length, > 0
+  double target = 1e-3;  ///< RMS deviation divided by the rod's length, > 0 and < 1
   SolveOptions solve;    ///< limits of the solvers
   Progress progress;     ///< called during fits and runs to rest; may be empty
 };
@@ -48,7 +48,9 @@ struct ForceModelFitOptions {
 struct RuleDeviations {
   StiffnessRule rule = StiffnessRule::physical;  ///< how c_b was chosen
   std::vector<double> c_b;                       ///< [N]; empty for law hooke
-  std::vector<double> rms_over_length;           ///< of the chain; NaN if the rule gives no c_b
+  /// RMS deviation of the chain, divided by the length; NaN if the rule gives no c_b, infinite if
+  /// the chain does not converge with it.
+  std::vector<double> rms_over_length;
 };
 
 /// Parameters of the force model for one material, and the resulting deviations.
@@ -71,8 +73,9 @@ struct ForceModelFit {
   std::vector<RuleDeviations> rules;  ///< all rules that were tried
   /// RMS deviation of the force model, stepped to rest with `settings`, divided by the length [-].
   std::vector<double> stepped_rms_over_length;
-  /// RMS distance of that shape from the one with rigid segments at the same N, divided by the
-  /// length [-]: the effect of stretch. It hardly depends on N.
+  /// RMS distance of that shape from the chain's (solve_chain()) at the same N, divided by the
+  /// length [-]: the effect of stretch where the chain's segments are rigid. It hardly depends on
+  /// N.
   std::vector<double> stretch_rms_over_length;
   std::vector<long> steps;    ///< number of steps to rest, of each scene
   double order = 0;           ///< measured order of convergence in the segment length; 0: not used
@@ -102,7 +105,8 @@ struct ForceModelFit {
 /// (c_b, c_c) are kept. Finally the force model is stepped to rest with these settings, and its
 /// deviation is reported.
 /// @param holdouts  scenes that are compared, but not fitted
-/// @throws InputError if scenes differ in law or bookkeeping; ConvergenceError
+/// @throws InputError if there is no scene to fit, scenes differ in law or bookkeeping, or the
+/// target is out of range; ConvergenceError
 [[nodiscard]] ForceModelFit fit_force_model(const std::vector<Scene>& scenes,
                                             const std::vector<Scene>& holdouts,
                                             const ForceModelFitOptions& options = {});

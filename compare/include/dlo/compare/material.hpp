@@ -56,8 +56,8 @@ struct LayeredSection {
 
 /// Computes the stiffnesses and mass of a rod from its layers.
 /// @param layers  from the inside out
-/// @throws InputError if a layer is not outside of the previous one, or its strands do not fit side
-/// by side
+/// @throws InputError if a layer is not outside of the previous one, its strands do not fit side by
+/// side, or their number is one that Layer::strands excludes
 [[nodiscard]] LayeredSection layered_section(const std::vector<Layer>& layers);
 
 }  // namespace dlo::compare

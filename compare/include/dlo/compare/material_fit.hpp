@@ -42,7 +42,7 @@ namespace dlo::compare {
 /// are found together by Gauss-Newton steps from that E, in least squares. Terms of natural
 /// curvature are added one after the other, so that more of them never fit worse. Prior knowledge
 /// counts as measurements: the tolerances; a standard deviation of 10 / l for each term of natural
-/// curvature; a factor of ten for GJ / EI if the scene's is a guess. If errors are correlated, the
+/// curvature; a factor of ten for GJ / EI. If errors are correlated, the
 /// covariance of the numbers is that of least squares under such errors, averaged over all
 /// correlations that the residuals leave likely. The ends of the interval of E are where the
 /// profile of the squares, in which the effect of the others is linear about the optimum, has

@@ -29,8 +29,8 @@ struct PlannedSpan {
 
 /// Reach of the rod towards an obstacle.
 struct PlannedObstacle {
-  /// Smallest distance that all points of the rod keep from the obstacle in any shape [m];
-  /// negative: some point could enter it.
+  /// Lower bound of the distance between the rod's points and the obstacle in any shape [m];
+  /// negative: some point might enter it.
   double clearance = 0;
   bool in_reach = true;  ///< whether some point of the rod could touch it
 };
@@ -58,11 +58,13 @@ struct Neglected {
 
 /// Requirements of a scene, determined before it is solved.
 struct Plan {
-  double gamma = 0;      ///< w l^3 / (EI) [-]
-  double target = 0;     ///< PlanOptions::target
-  bool planar = false;   ///< whether grips, loads and obstacles in reach lie in one plane
-  bool moving = false;   ///< whether the gripper moves so fast that the rod's inertia matters
-  bool stretch = false;  ///< whether the bound of stretch is above a tenth of the target
+  double gamma = 0;     ///< w l^3 / (EI) [-]
+  double target = 0;    ///< PlanOptions::target
+  bool planar = false;  ///< whether grips, loads and obstacles in reach lie in one plane
+  bool moving = false;  ///< whether the gripper moves so fast that the rod's inertia matters
+  /// Whether the bound of stretch is above a tenth of the target; false if the scene counts
+  /// stretch.
+  bool stretch = false;
   std::vector<PlannedSpan> spans;          ///< by increasing arc length
   std::vector<PlannedObstacle> obstacles;  ///< in the scene's order
   bool frame_held = false;                 ///< whether a gripper holds the rod's frame

@@ -15,7 +15,8 @@ namespace dlo::compare {
 /// Solves a scene by one of the two continuous models.
 /// @param model  `energy` or `exact`
 /// @throws InputError; ConvergenceError, also if the shape is not verified or near a fold, unless
-/// `accept_unverified` is set
+/// `accept_unverified` is set. A balance under loads without a potential is returned as
+/// `not_verified`.
 [[nodiscard]] energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
                                                         const SolveOptions& options = {});
 /// Solves a scene by its reference_model().
@@ -23,15 +24,16 @@ namespace dlo::compare {
 [[nodiscard]] energy_model::Equilibrium solve_reference(const Scene& scene,
                                                         const SolveOptions& options = {});
 
-/// Finds all equilibria of the energy model that a search can find, whatever their status, and
-/// lists the searches. Results that `options` do not accept are removed; `saddle` is accepted.
+/// Finds all equilibria of the energy model that a search can find, saddles included, and lists the
+/// searches. Shapes that are not verified or near singular are removed unless `accept_unverified`
+/// is set.
 /// @throws InputError, ConvergenceError
 [[nodiscard]] energy_model::EnergySearch search_states(const Scene& scene,
                                                        const SolveOptions& options = {});
 
-/// Finds all equilibria of the scene's reference_model() that a search can find, whatever their
-/// status: stable ones first, by energy; never empty. For a rod that stretches only the lowest is
-/// found.
+/// Finds all equilibria of the scene's reference_model() that a search can find, as
+/// search_states(): stable ones first, by energy; never empty. For a rod that stretches only one is
+/// found, by solve_reference().
 /// @throws InputError, ConvergenceError
 [[nodiscard]] std::vector<energy_model::Equilibrium> reference_states(
     const Scene& scene, const SolveOptions& options = {});

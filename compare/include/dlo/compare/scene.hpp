@@ -77,8 +77,9 @@ struct DistributedLoad {
 
   /// Returns the force on the rod between two arc lengths [N].
   [[nodiscard]] Eigen::Vector3d between(double begin, double end) const;
-  /// Returns the integral of the absolute value of the load [N]; it is not smaller than the
-  /// absolute value of the resultant.
+  /// Returns the integral of the absolute value of the load [N] by the trapezoidal rule; it is
+  /// larger than the integral where the direction changes between two values, and not smaller than
+  /// the absolute value of the resultant.
   [[nodiscard]] double size() const;
 
   /// Compares all fields.
@@ -86,7 +87,7 @@ struct DistributedLoad {
 };
 
 /// A body that the rod's axis must not enter. It is larger by half the rod's diameter than the body
-/// in a scene file, which the rod's surface must not enter.
+/// in a scene file, which the rod's surface must not enter; with touches = "axis" both are equal.
 struct Obstacle {
   obstacle::Body body;  ///< [m]
   /// Force per depth and per length of rod [N/m^2]; infinite: rigid.
@@ -176,8 +177,8 @@ struct Scene {
   std::optional<double> given_bending_stiffness_2;
   std::optional<double> given_axial_stiffness;  ///< EA [N], > 0; empty: see axial_stiffness()
   Stretch stretch = Stretch::none;              ///< whether models with axial strain include it
-  /// GJ [N m^2], > 0; needed if two clamps hold frames or if the rod has material directors,
-  /// without effect otherwise.
+  /// GJ [N m^2], > 0; empty: assumed_torsional_stiffness() of a rod with material directors.
+  /// Another rod needs it if two clamps hold its frame; else it has no effect.
   std::optional<double> torsional_stiffness;
   /// Intervals with other properties, by arc length, without overlap.
   std::vector<Section> sections;
@@ -221,8 +222,8 @@ struct Scene {
   /// rod with material directors, and 0 of any other.
   [[nodiscard]] double twisting_stiffness() const;
   /// Returns GJ [N m^2] of one material with assumed_poisson_ratio, outside sections: for a
-  /// rectangular section E / (2 (1 + nu)) times its torsion constant, else mean_bending_stiffness()
-  /// / (1 + nu).
+  /// rectangular section E / (2 (1 + nu)) times its torsion constant, else, and if EI is given,
+  /// mean_bending_stiffness() / (1 + nu).
   [[nodiscard]] double assumed_torsional_stiffness() const;
   /// Whether twisting_stiffness() is an assumption: the rod has material directors and GJ is not
   /// given.
@@ -252,12 +253,14 @@ struct Scene {
   [[nodiscard]] double total_of_loads() const;
   /// Whether a load has a couple.
   [[nodiscard]] bool has_couples() const;
+  /// Checks that all loads have a potential (energy_model::has_potential).
   /// @param who  subject and verb for the message, such as "the energy model does"
-  /// @throws InputError that names the first load without a potential (energy_model::has_potential)
+  /// @throws InputError that names the drag, the first load that follows the rod, or the couples
   void require_potential(const char* who) const;
+  /// Checks that no load has a couple, and that all have a potential.
   /// @param who  subject and verb for the message, such as "the polygons of models force and chain
   /// do"
-  /// @throws InputError if there is a couple or a load without a potential
+  /// @throws InputError as require_potential(), or that names the first load with a couple
   void require_no_couples(const char* who) const;
   /// Returns int 1/GJ ds between two arc lengths [1/(N m)], with sections, for a rod that has a GJ.
   [[nodiscard]] double twisting_compliance(double begin, double end) const;
@@ -284,12 +287,13 @@ struct Scene {
   [[nodiscard]] Eigen::Matrix3d first_frame() const;
   /// Returns the normal of the plane in which an intrinsically curved rod is assumed to be bent,
   /// because its first clamp gives no d1: that of the scene without loads
-  /// (energy_model::natural_normal). Empty: the clamp gives d1, or the rod is straight.
+  /// (energy_model::natural_normal). Empty: the clamp gives d1, there is no clamp or no such plane,
+  /// or the rod is intrinsically straight.
   [[nodiscard]] std::optional<Eigen::Vector3d> assumed_normal() const;
   /// Returns the scene with an intrinsically straight and untwisted rod.
   [[nodiscard]] Scene without_natural_strain() const;
-  /// Returns the mean curvature of the stress-free shape in the axes of the frame that the first
-  /// clamp holds, as a vector about which the tangent rotates [1/m]; zero for an intrinsically
+  /// Returns the mean curvature of the stress-free shape as the vector in space about which the
+  /// tangent rotates [1/m], with d1 and d2 as the first clamp holds them; zero for an intrinsically
   /// straight rod.
   /// @throws InputError if neither a clamp nor a plane determines the frame
   [[nodiscard]] Eigen::Vector3d natural_curvature() const;
@@ -303,9 +307,9 @@ struct Scene {
   /// first clamp of a rod with material directors.
   [[nodiscard]] Scene without_twist() const;
   /// Returns the unit normal of the plane that contains grips, forces and obstacles in reach; any
-  /// one of several. Empty if there is none, if clamps hold twist, which bends the rod out of its
-  /// plane, or if the natural curvature is about another axis or the plane is oblique to the
-  /// principal axes of the cross-section.
+  /// one of several. Empty if there is none, if clamps hold twist or a load that follows the rod
+  /// leaves the plane, which bends the rod out of it, or if the natural curvature is about another
+  /// axis or the plane is oblique to the principal axes of the cross-section.
   [[nodiscard]] std::optional<Eigen::Vector3d> plane_normal() const;
   /// Whether plane_normal() exists.
   [[nodiscard]] bool planar() const { return plane_normal().has_value(); }

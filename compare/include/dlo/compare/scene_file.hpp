@@ -40,7 +40,7 @@ class SceneValue {
   /// Takes a vector: a position in m, a direction, a force in N.
   SceneValue(const Eigen::Vector3d& vector) : SceneValue{vector.x(), vector.y(), vector.z()} {}
 
-  /// Returns the value as a scene file would contain it; quotes are optional.
+  /// Returns the value as a scene file would contain it, but a text without its quotes.
   [[nodiscard]] const std::string& text() const { return text_; }
 
  private:

@@ -44,14 +44,13 @@ struct ShapeCheck {
   Shape reference;                ///< the energy model at the alignment's arc lengths
   energy_model::Equilibrium rod;  ///< the whole compared equilibrium
   std::vector<energy_model::Equilibrium> other_rods;  ///< the other stable equilibria
-  /// Empty if the search from the file's points found a verified equilibrium or was not needed.
+  /// Given if the search from the file's points converged to an equilibrium that is not verified.
   std::optional<UnverifiedState> unverified;
   /// Deviation of all points from the reference. The weight of a point is the arc length between
   /// its neighbours' middles, of the rod or of the polyline, whichever is longer. Missing ends of
   /// the rod do not count. RMS over length refers to the whole rod. For `nearest`, distances are
   /// from the nearest points in order; if points extend past an end, the file is longer than the
-  /// rod, and the excess is distributed along it. Tangent and curvature need given arc lengths;
-  /// else NaN.
+  /// rod, and the excess is distributed along it. Angle and curvature are then NaN.
   Deviation deviation;
   double excess_m = 0;  ///< `nearest`: length of the file beyond the rod's ends [m]
   /// RMS deviation of the file as the whole rod: a missing end counts with its distance from the
@@ -72,8 +71,8 @@ struct ShapeCheck {
   /// Number of the file's points that are not where a gripper holds the rod.
   long measured_points = 0;
   bool direction_is_clear = false;  ///< whether the other direction fits at least 5 % worse
-  /// Whether the points determine the rotation about the line that fits them best; false if they
-  /// lie nearly on it.
+  /// PoseFreedom::rigid: whether the points determine the rotation about the line that fits them
+  /// best; false if they lie nearly on it. True for other poses.
   bool turn_is_clear = true;
   /// E*/E; for each modulus the shape is aligned again, and the equilibrium followed.
   EffectiveModulus effective_modulus;

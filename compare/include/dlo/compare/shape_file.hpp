@@ -37,8 +37,8 @@ inline constexpr long most_shape_points = 100'000;
 ///     VTK: legacy, ASCII, DATASET POLYDATA with POINTS and one polyline in LINES (or several that
 ///          follow on from each other); without LINES the points in their order. The point data
 ///          arc_length_m of a FIELD, as `dlo solve` writes it; such a file is in metres. Its d1.
-///     NumPy: an array M x 2 or M x 3; of frames x M x 3 the one at FILE.npy:INDEX, from 0 or,
-///          negative, from the end.
+///     NumPy: an array M x 2 or M x 3; of frames x M x 2 or frames x M x 3 the frame at
+///          FILE.npy:INDEX, from 0 or, negative, from the end.
 /// Without z, z is zero.
 /// @param file  name of the file, for messages and to choose an array;
 /// @param unit  unit of the file's numbers [m]

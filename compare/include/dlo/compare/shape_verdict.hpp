@@ -29,9 +29,11 @@ struct ShapeTolerance {
 
 /// Outcome of a comparison.
 enum class ShapeVerdict {
-  pass,          ///< within the tolerance, and the points determine the rod
-  fail,          ///< beyond the tolerance
-  undetermined,  ///< within the tolerance, but the points do not determine the rod
+  pass,  ///< within the tolerance, and the points determine the rod
+  fail,  ///< beyond the tolerance
+  /// Within the tolerance, but the points do not determine the rod; or within the tolerance of an
+  /// equilibrium that is not verified.
+  undetermined,
 };
 
 /// Names of the verdicts in JSON.
@@ -64,8 +66,9 @@ struct ShapeJudgement {
 /// points determines it within the tolerance; the whole rod has to be observed. A few points on a
 /// short part of the rod lie near it whatever its shape is, so a file that shows less than
 /// `least_seen_share` never passes. A shape within the tolerance that does not show enough of the
-/// rod is `undetermined`. If a file has one measured point (ShapeCheck::measured_points), that
-/// point's distance is judged. The reason names what the file lacks.
+/// rod is `undetermined`, and so is a shape beyond it that is within the tolerance of
+/// ShapeCheck::unverified. If a file has one measured point (ShapeCheck::measured_points), the
+/// largest distance of a point is judged, not the RMS. The reason names what the file lacks.
 [[nodiscard]] ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance);
 
 }  // namespace dlo::compare

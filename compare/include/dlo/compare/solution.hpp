@@ -112,12 +112,13 @@ struct Linking {
   double writhe_error = 0;  ///< estimated error of the writhe
 };
 
-/// A shape and the cost of its solution. Solvers return converged shapes only, unless
-/// SolveOptions::accept_unverified admits shapes that are not verified or near singular.
+/// A shape and the cost of its solution. Solvers return converged shapes only, except that
+/// SolveOptions::accept_unverified admits shapes that are not verified or near singular, and that a
+/// balance under loads without a potential is returned as `not_verified`.
 struct Solution {
   Model model = Model::energy;  ///< model that solved the scene
-  /// `converged`, `roundoff_limited`, `not_verified` or `near_singular`; solve_all() also returns
-  /// `saddle`.
+  /// `converged`, `roundoff_limited`, `not_verified` or `near_singular`; from solve_all(), and from
+  /// solve_near() with `accept_unverified`, also `saddle`.
   energy_model::SolveStatus status = energy_model::SolveStatus::converged;
   std::string message;     ///< how the solver terminated
   double penetration = 0;  ///< Equilibrium::penetration of the energy model [m]

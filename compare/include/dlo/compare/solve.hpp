@@ -27,7 +27,8 @@ namespace dlo::compare {
                                   const SolveOptions& options = {},
                                   const std::vector<double>& arc_lengths = {});
 
-/// Converts an equilibrium of `energy` or `exact` to a Solution as solve() returns it.
+/// Converts an equilibrium of `energy` or `exact` to a Solution as solve() returns it, without
+/// Solution::stretch and the decision on stretch.
 /// @param obstacles  indices of the scene's obstacles that the model was given
 [[nodiscard]] Solution solution_of(const Scene& scene, Model model,
                                    const energy_model::Equilibrium& equilibrium,
