@@ -13,8 +13,9 @@ namespace {
 /// Smallest relative decrease of the mean square that a step must promise.
 constexpr double least_gain = 0.1;
 
-/// Sets the rods to the equilibrium of the changed scene near the compared one. If the cause
-/// changes how the rod is held, the lowest equilibrium is used if it is nearer to the shape.
+/// Sets the rods to an equilibrium of the scene at the start of the cause: if the start is zero,
+/// the one to which the compared equilibrium leads, else the one that a search finds. If the cause
+/// changes how the rod is held, the one that a search finds is used if it is nearer to the shape.
 /// Returns false if there is no equilibrium.
 bool goes_to_state(const SceneCause& cause, const energy_model::Equilibrium& rod,
                    FittedRods& rods) {

@@ -125,8 +125,8 @@ class Search {
     return best_ && price(*best_) <= price({"", 0, numbers, ExplanationKind::scene});
   }
 
-  /// Returns the length of the shape, if the arc between two points exceeds the chord by the same
-  /// ratio as on the rod [m].
+  /// Estimates the length of the shape [m]: its arcs are assumed to exceed their chords by the same
+  /// ratio as those of the rod.
   [[nodiscard]] double length_of_shape() const {
     const std::vector<double>& s = check_.alignment.shape.arc_length;
     const double chords = lengths_along(check_.reference.points).back();

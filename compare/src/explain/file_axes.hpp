@@ -19,8 +19,8 @@ struct FileAxes {
 [[nodiscard]] std::vector<FileAxes> other_axes(const Eigen::Vector3d& gravity,
                                                const Eigen::Matrix3Xd& points);
 
-/// Returns the transformation from the axes of a picture to the scene's, in which y is up (1) or
-/// down (-1).
+/// Returns the transformation from the axes of a picture to the scene's.
+/// @param up  1 if the picture's y points up, -1 if it points down
 [[nodiscard]] Eigen::Matrix3d picture_axes(const Eigen::Vector3d& gravity, double up);
 
 }  // namespace dlo::compare

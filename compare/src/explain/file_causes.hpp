@@ -55,9 +55,9 @@ struct FileUnit {
 [[nodiscard]] std::vector<FileCause> file_causes(const Scene& scene, const MeasuredShape& shape,
                                                  const ShapeCheck& check);
 
-/// Returns the explanation that remains without the points' noise. The noise of neighbours is
-/// independent, so little of it is left in their mean. Returns std::nullopt for fewer than eight
-/// points.
+/// Returns the explanation that the points are noisy, with the deviation that remains without the
+/// noise. The noise of neighbours is independent, so little of it is left in their mean. Returns
+/// std::nullopt for fewer than eight points.
 [[nodiscard]] std::optional<Explanation> noise_of_points(const Shape& shape,
                                                          const energy_model::Equilibrium& rod);
 

@@ -13,8 +13,8 @@ namespace {
 constexpr double shortest = 0.5;
 constexpr double longest = 1.25;
 
-/// Returns the units in which the shape is about as long as the rod or a part of it; the name of
-/// the metre is empty.
+/// Returns the units in which the shape is about as long as the rod or a part of it, with their
+/// factors; the unit in which the file was read has an empty name.
 std::vector<std::pair<std::string, double>> units_for(const MeasuredShape& shape, double length) {
   const double share = lengths_along(shape.points).back() / length;
   std::vector<std::pair<std::string, double>> units;

@@ -139,8 +139,9 @@ class Chain {
     return true;
   }
 
-  /// Returns the file's points minus the chain's points at rest; std::nullopt if the chain does not
-  /// come to rest.
+  /// Returns the file's points minus the chain's points at rest, zero for a last point that is
+  /// missing in the file; std::nullopt if the chain does not come to rest, or a segment is strained
+  /// by more than largest_chain_strain.
   /// @param factor  factor on the stiffness of the springs
   [[nodiscard]] std::optional<Eigen::Matrix3Xd> gaps(
       double factor, JointLaw law, int max_evaluations = most_evaluations_near_file) const {
@@ -159,7 +160,8 @@ class Chain {
     return gaps;
   }
 
-  /// Sets the paper's joint law, and, if the chain is welded, the paper's points of equal weight.
+  /// Sets the stiffness of the paper's joint law, and, if the chain is welded, the paper's equal
+  /// weights of all points.
   void set_paper_law() {
     problem_.stiffness = paper_stiffness(scene_, inner_.size(), clamp_);
     problem_.stiffnesses.resize(0);

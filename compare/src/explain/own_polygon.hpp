@@ -52,13 +52,14 @@ struct OwnPolygon {
 /// identified.
 [[nodiscard]] std::string and_springs(const OwnPolygon& chain);
 
-/// Returns the chains with as many hinges as a file has points, each at rest in the scene with a
+/// Returns the chains that may have a file's points as their own, each at rest in the scene with a
 /// spring in each hinge. There are three kinds: with a hinge at the clamp, with the first segment
 /// welded to the clamp, and with the clamp in the middle of a segment, of which the file has half.
 /// A clamp inside the rod holds a whole segment: the one whose middle it is at, or, if welded, the
-/// one that begins at its point; a hinge there is not computed. There is no chain if grippers are
-/// between the file's points, or if the scene has properties that a plain chain lacks. Obstacles
-/// act on the chain as on the rod.
+/// one that begins at its point; a hinge there is not computed. There is no chain if a gripper is
+/// neither at a point of the file nor, as a clamp, in the middle between two, if there are fewer
+/// than 4 or more than 200 segments, or if the scene has properties that a plain chain lacks.
+/// Obstacles act on the chain as on the rod.
 /// @param shape  in the scene's frame, along the whole rod
 /// @param law  joint law of the springs; empty: the one of the Hookean laws that fits best, or
 /// springs linear in the angle if the law is not identified

@@ -245,7 +245,7 @@ SceneCause twist(const Scene& scene, std::size_t last) {
           }};
 }
 
-/// Adds gravity of another size, and starts in the other directions of its axes.
+/// Adds another gravity, fitted from the scene's and from four directions perpendicular to it.
 void add_other_gravity(std::vector<SceneCause>& causes, const Scene& scene) {
   const Eigen::Vector3d down = scene.gravity.normalized();
   const Eigen::Vector3d across = down.unitOrthogonal();

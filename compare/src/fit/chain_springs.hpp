@@ -18,8 +18,8 @@ namespace dlo::compare {
 /// Returns the springs of chains of unequal segments that are nearest to a scene's rod. A chain is
 /// held in the middle of segments only if the segments at the clamps have half their length.
 /// @param lengths  along the rod, 4 to 200, scaled to the rod's length [m]
-/// @throws InputError if their number or sum differs, or one is not > 0; ConvergenceError if no
-/// shape of the rod is found
+/// @throws InputError if there are not 4 to 200, if one is not > 0, or if their sum differs from
+/// the rod's length by more than 5 %; ConvergenceError if no shape of the rod is found
 [[nodiscard]] std::vector<ChainSprings> chain_springs(const Scene& scene,
                                                       const std::vector<double>& lengths,
                                                       const SolveOptions& options);

@@ -21,8 +21,8 @@ inline constexpr std::size_t fewest_predicted = 3;
 
 /// Fits the material with the options that predict each shape best from the others: the number of
 /// terms of natural curvature, and whether clamps are as given, misaligned equally in all shapes,
-/// or misaligned in each shape. The interval of E is widened to that of options that predict nearly
-/// as well.
+/// or misaligned in each shape. The interval of E is widened to that of the largest number of terms
+/// that predicts nearly as well.
 /// @param options  checked by fit_material()
 /// @throws ConvergenceError if no options result in a fit; other exceptions as fit_material()
 [[nodiscard]] MaterialFit fit_with_chosen_options(const std::vector<Scene>& scenes,

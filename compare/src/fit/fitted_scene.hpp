@@ -6,8 +6,8 @@
 
 namespace dlo::compare {
 
-/// Returns a scene with the best estimates of the wire, and of clamp errors that all scenes share,
-/// whether identified or not.
+/// Returns a scene with the best estimates of the wire, and of the clamp errors and the camera's
+/// tilt that all scenes share, whether identified or not.
 /// @param first  the first of the fitted scenes, as it was before the fit
 [[nodiscard]] Scene fitted_scene(Scene scene, const MaterialFit& fit, const Scene& first);
 

@@ -25,7 +25,8 @@ namespace {
 /// one of eleven, five shapes in one of a hundred and one of two thousand.
 constexpr double maybe_common = 0.5;
 constexpr double surely_common = 0.7;
-/// Part of the residual that an alternative may leave to be reported, and to cast doubt on the fit.
+/// Part of the residual that an alternative may leave to be reported, and to cast doubt on the fit;
+/// part by which an alternative that includes another one must leave less.
 constexpr double worth_naming = 0.7;
 constexpr double too_much = 0.5;
 constexpr double next_to_nothing = 0.02;

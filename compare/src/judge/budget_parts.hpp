@@ -22,8 +22,9 @@ struct NamedPart {
 /// Returns all parts.
 [[nodiscard]] std::span<const NamedPart> budget_parts();
 
-/// Returns the parts of a comparison's error budget with their names, without those that its scene
-/// does not have. The pointers refer to the comparison.
+/// Returns the parts of a comparison's error budget with their names, without twist and natural
+/// curvature that the force model does not neglect and without a contact of 0. The pointers refer
+/// to the comparison.
 [[nodiscard]] std::vector<std::pair<const char*, const BudgetPart*>> shown_parts(
     const Comparison& comparison);
 

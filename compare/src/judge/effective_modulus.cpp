@@ -30,7 +30,7 @@ constexpr double least_step = 0.02;
 /// Accuracy of ln(E*/E).
 constexpr double log_tolerance = 1e-6;
 
-/// Thrown if the time limit of the whole search is exceeded.
+/// Thrown if the time limit of the whole search is exceeded, or the search is interrupted.
 struct OutOfTime {};
 
 /// One equilibrium of a scene as a function of the modulus; each solve starts from the nearest

@@ -188,7 +188,8 @@ AlignOptions align_options(const Scene& scene, const ShapeCheckOptions& options)
       .pose = options.pose, .arc_lengths = options.arc_lengths, .up = up_of(scene, options.pose)};
 }
 
-/// Compares an aligned shape with an equilibrium: sets all of ShapeCheck except the state and E*/E.
+/// Compares an aligned shape with an equilibrium: sets all of ShapeCheck except the state, other
+/// equilibria, stretched_length_m, turn_is_clear and E*/E.
 ShapeCheck compared(const Scene& scene, const MeasuredShape& shape, Alignment laid,
                     const energy_model::Equilibrium& rod) {
   ShapeCheck result;

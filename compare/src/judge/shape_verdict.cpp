@@ -17,7 +17,7 @@ std::string arc_range(double from, double to) {
   return fmt::format("s = {:.4g} to {:.4g} m", from, to);
 }
 
-/// Describes the parts of the rod that a file lacks; empty if it lacks none.
+/// Describes the parts that a file lacks at the ends of the rod; empty if it lacks none.
 std::string missing_parts(const ShapeCheck& check, double least) {
   const std::vector<double>& s = check.reference.arc_length;
   std::vector<std::string> parts;

@@ -52,13 +52,13 @@ struct ShapeName {
 /// Reads a shape as CSV. @throws InputError naming file and line
 [[nodiscard]] RawShape read_csv_shape(std::string_view text, const std::string& file);
 
-/// Reads a shape as JSON. @param unit  of the points, unless the file itself is in metres [m]
+/// Reads a shape as JSON. @param unit  of the points [m]; must be 1 if the file states metres
 /// @throws InputError naming the file
 [[nodiscard]] RawShape read_json_shape(std::string_view text, const std::string& file, double unit);
 
 /// Reads a NumPy array: M x 2 or M x 3 of any integer type or of 32 or 64 bit floating-point
-/// numbers, in any byte order and memory order. Of an array of frames, frames x M x 3, it reads the
-/// frame that the name selects (shape_name).
+/// numbers, in any byte order and memory order. Of an array of frames, frames x M x 2 or frames x
+/// M x 3, it reads the frame that the name selects (shape_name).
 /// @throws InputError naming the file
 [[nodiscard]] RawShape read_npy_shape(std::string_view bytes, const std::string& file);
 

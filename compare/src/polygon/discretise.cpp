@@ -47,12 +47,12 @@ RootMoment root_moment(const Scene& scene, const Gripper& grip, double side) {
   return {moment.norm(), most};
 }
 
-/// Returns the default curvature at which a moment-matched c_b is exact [1/m]. With one clamp it is
-/// the curvature at the clamp of a straight rod under the load, but at least a tenth of what the
-/// load could cause if it were perpendicular to the rod, since a rod along its load bends into
-/// other shapes than the straight one. With other grips it is the RMS curvature of the start shape,
-/// plus the curvature that the load would cause in a straight rod between two clamps, which the
-/// load does not exceed.
+/// Returns the default design curvature, at which a moment-matched c_b is exact [1/m]. With one
+/// clamp it is the curvature at the clamp of a straight rod under the load, but at least a tenth of
+/// what the load could cause if it were perpendicular to the rod, since a rod along its load bends
+/// into other shapes than the straight one. With other grips it is the RMS curvature of the start
+/// shape, plus the curvature that the load would cause in a straight rod between two clamps, which
+/// the load does not exceed.
 double design_curvature(const Scene& scene, const Layout& layout, const Eigen::Matrix3Xd& start) {
   const Gripper& grip = scene.grippers.front();
   if (scene.grippers.size() == 1 && grip.direction) {

@@ -80,11 +80,12 @@ enum class Side {
 /// @param rod  defines grips, walls and solids;  @param[in,out] points  [m], 3 x M
 void keep_free_ends_clear(const force_model::Rod& rod, Eigen::Ref<Eigen::Matrix3Xd> points);
 
-/// Ratio of Table 1's c_F to the largest stable step, L/(2 c_c); the paper has no formula for it.
+/// Ratio of Table 1's c_F to the largest stable step, L/(2 c_c) with L = l/N; the paper has no
+/// formula for it.
 inline constexpr double table_1_step_share = 0.86;
 /// Formula of c_F with table_1_step_share, as text.
 inline constexpr const char* table_1_step_formula = "c_F = 0.86 L/(2 c_c)";
-/// Ratio of Table 1's l_s to L.
+/// Ratio of Table 1's l_s to L = l/N.
 inline constexpr double table_1_limit_share = 0.6;
 /// Default c_h of the stepper `dynamic`, which the paper does not specify.
 inline constexpr double dynamic_share = 0.9;
@@ -97,7 +98,6 @@ inline constexpr double verlet_step_share = 0.5;
 /// Returns the stepper that a scene selects. Constants that the scene does not give have Table 1's
 /// proportions. The stepper `verlet` takes verlet_step_share and damps the slowest mode, as
 /// mode_bounds estimates it, critically; `implicit` needs no masses.
-/// @throws InputError if the scene lacks a constant that its stepper needs
 [[nodiscard]] force_model::StepOptions step_options(const ForceModelSettings& settings,
                                                     const Discretisation& discretisation);
 

@@ -28,9 +28,9 @@ class Curve {
   /// Returns the arc length, near `s`, of the curve's point that is nearest to a position [m].
   [[nodiscard]] double nearest(const Eigen::Vector3d& position, double s) const;
 
-  /// Returns non-decreasing arc lengths that minimise the sum of squared distances. Dynamic
-  /// programming finds the best nodes; each arc length then moves to the nearest point within one
-  /// spacing.
+  /// Returns arc lengths in order that minimise the sum of squared distances. Dynamic programming
+  /// finds the best non-decreasing nodes; each arc length then moves to the nearest point within
+  /// one spacing, so that neighbours may exchange their order by up to two spacings.
   /// @param positions  [m], 3 x M
   [[nodiscard]] std::vector<double> nearest_in_order(const Eigen::Matrix3Xd& positions) const;
 
@@ -62,9 +62,9 @@ class Curve {
 
 /// Assigns arc lengths to a shape in the scene's frame by means of the grippers. The result is a
 /// guess of the rod's shape that needs no equilibrium. Arc lengths are those of the file, or
-/// lengths along the polyline, which are scaled to the rod if they differ by no more than 3 %, or
-/// if they are longer. The direction of the file, and the position of a shorter polyline along the
-/// rod, are chosen so that the points are nearest to the grippers.
+/// lengths along the polyline. These are scaled to the rod by `chord`, and by `nearest` if they are
+/// longer than the rod or at most 3 % shorter. The direction of the file, and the position of a
+/// shorter polyline along the rod, are chosen so that the points are nearest to the grippers.
 /// @param rule  result of arc_length_rule()
 /// @return the points by strictly growing arc length; only the first of several with one arc length
 /// is kept

@@ -9,8 +9,8 @@
 namespace dlo::compare {
 
 /// Returns the weights of the points of a polyline on a rod, with sum 1: half the length of both
-/// adjacent segments. The length of a segment is the larger of the rod's arc length and the
-/// polyline's own length, reduced by 1 %. So both parts of the rod that the points cut short and
+/// adjacent segments. The length of a segment is the rod's arc length or the polyline's own length
+/// divided by 1.01, whichever is larger. So both parts of the rod that the points cut short and
 /// points that leave the rod are counted. For an axial strain of the polyline up to 1 % the weights
 /// are those of the trapezoidal rule over the arc length.
 /// @param s  rod arc length of each point, growing [m], M >= 2;  @param points  [m], 3 x M

@@ -13,7 +13,7 @@ namespace dlo::compare {
 
 /// Returns the part of a polygon between two segments that neighbouring clamps hold by their
 /// frames, with the twist that the frames require, whole turns counted, as energy_model::Problem
-/// counts it. Its compliance is not set.
+/// counts it. Its compliance is 1; the caller sets it.
 /// @param problem  the scene's problem, whose grips are the scene's grippers in order
 /// @param first, last  indices of the clamps in the scene
 /// @param points  any shape of the polygon whose held segments are where the clamps hold them [m]

@@ -71,7 +71,7 @@ struct LowestPolygon {
   /// Rod of the discretisation; if the scene's clamps twist it, with their frames and the twist.
   force_model::Rod rod;
   Eigen::Matrix3Xd untwisted;  ///< shape at rest without twist [m]; 3 x 0 if nothing twists it
-  int evaluations = 0;         ///< sum over all starts
+  int evaluations = 0;         ///< sum over all starts, and of the continuation of the twist
   double seconds = 0;
 };
 
