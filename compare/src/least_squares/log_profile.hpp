@@ -9,8 +9,8 @@
 namespace dlo::compare {
 
 /// Returns `count` equally spaced logarithms at which a profile is drawn, from half an interval's
-/// width below the interval to as far above it. An open side extends to a factor of two from
-/// `best`.
+/// width below the interval to as far above it. An interval that is open on a side is taken to end
+/// there at a factor of two from `best`.
 [[nodiscard]] std::vector<double> drawn_logarithms(const std::optional<double>& low, double best,
                                                    const std::optional<double>& high, int count);
 

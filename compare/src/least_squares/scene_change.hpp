@@ -8,9 +8,10 @@
 
 namespace dlo::compare {
 
-/// Returns the directions of possible rotations (ways_across) or displacements (ways_of_place): in
-/// a plane with this normal, or in all directions. Columns, unit and orthogonal.
-/// @param normal  unit; empty: all directions
+/// Returns the axes about which a direction may rotate (ways_across), or the directions of possible
+/// displacements (ways_of_place), within the plane with this normal or in space. Columns, unit and
+/// orthogonal.
+/// @param normal  unit; empty: in space
 [[nodiscard]] Eigen::Matrix3Xd ways_across(const Eigen::Vector3d& direction,
                                            const std::optional<Eigen::Vector3d>& normal);
 [[nodiscard]] Eigen::Matrix3Xd ways_of_place(const std::optional<Eigen::Vector3d>& normal);

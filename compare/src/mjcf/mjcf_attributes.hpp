@@ -31,8 +31,8 @@ class MjcfAttributes {
   [[nodiscard]] const XmlFile& xml() const { return xml_; }
   /// Refusals of the whole file, to which all its readers add.
   [[nodiscard]] XmlRefusals& refusals() const { return refusals_; }
-  /// Returns the default class that an element's attribute names, for elements below one with a
-  /// childclass.
+  /// Returns the default class that an element's attribute names (class or childclass), `outside`
+  /// if the element lacks the attribute. @throws InputError if there is no such class
   [[nodiscard]] const std::string& known_class(const pugi::xml_node& node, const char* attribute,
                                                const std::string& outside) const;
 
@@ -57,8 +57,8 @@ class MjcfAttributes {
   /// Reads pos and one of quat, axisangle, euler, xyaxes, zaxis.
   [[nodiscard]] MjcfPose pose(const pugi::xml_node& node, const std::string& childclass) const;
 
-  /// Checks that all attributes are read, and that the element may occur at its position.
-  /// @throws InputError for an unknown attribute, or a misplaced element
+  /// Checks that the element and all its attributes are known (MjcfElement).
+  /// @throws InputError for an unknown element or attribute
   void require_known(const pugi::xml_node& node) const;
   /// Checks that an attribute that a rod's scene cannot represent has no effect.
   /// @throws InputError with `why` if it has one

@@ -57,7 +57,9 @@ struct MjcfBody {
 [[nodiscard]] MjcfPlugin read_mjcf_plugin(const MjcfAttributes& attributes,
                                           const pugi::xml_node& node);
 
-/// Sets mass and centre of a body from its geoms. @param inertial  the element, if there is one
+/// Sets mass and centre of a body from its <inertial>, or from its geoms if it has none or the
+/// compiler's inertiafromgeom is true. @param inertial  the element, if there is one
+/// @throws InputError if neither is possible
 void set_mjcf_mass(const MjcfAttributes& attributes, const pugi::xml_node& inertial,
                    MjcfBody& body);
 

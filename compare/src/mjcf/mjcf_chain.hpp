@@ -60,8 +60,9 @@ struct MjcfHold {
   double at = 0;                                       ///< arc length [m]
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
   std::optional<Eigen::Vector3d> direction;            ///< unit vector of a clamp
-  std::optional<Eigen::Vector3d> d1;  ///< d1 of a clamp that is rotated from its reference pose
-  std::string words;                  ///< "the first body is fixed"
+  /// d1 of a clamp; empty for all clamps if none is rotated from its reference pose.
+  std::optional<Eigen::Vector3d> d1;
+  std::string words;  ///< "the first body is fixed"
 };
 
 /// Finds the grippers of a cable: a first body that is fixed or jointed to a fixed body, and

@@ -18,10 +18,11 @@ struct MjcfGeom {
   double friction = 1;                             ///< sliding [-]
   pugi::xml_node node;                             ///< for messages
 
-  /// Whether it has rotational symmetry about its axis z.
+  /// Whether it is a capsule or a cylinder.
   [[nodiscard]] bool is_round() const { return type == Type::capsule || type == Type::cylinder; }
-  /// Returns an end of its axis in the body, for a capsule without the cap [m]. For a box it is an
-  /// end of the longest edge, for other geoms the middle.
+  /// Returns an end of its axis in the body, for a capsule without the cap [m]. The axis of a box
+  /// is parallel to its longest edge; other geoms have no axis, and their middle is returned.
+  /// @param sign  1 or -1, the end
   [[nodiscard]] Eigen::Vector3d end(double sign) const;
   /// Whether two geoms collide.
   [[nodiscard]] bool collides(const MjcfGeom& other) const {

@@ -12,7 +12,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Largest sine or cosine of the angle between axes that count as parallel or perpendicular.
+/// Largest cosine of the angle between axes that count as perpendicular, and largest difference of
+/// the cosine from 1 for axes that count as parallel [-].
 constexpr double aligned = 1e-6;
 
 MjcfSpring of_ball(const XmlFile& xml, const MjcfBody& body, double h) {

@@ -60,10 +60,10 @@ struct DynamicTrack {
 };
 
 /// Simulates the rod of a track with inertia, along the same trajectories, whose velocities its
-/// grips have (energy_model::simulate). The rod starts with the equilibrium shape of the first
-/// frame; if grips or obstacles move then, it has the velocities with which equilibrium shapes
-/// follow them. The errors of the equilibrium shapes and of the force model's are measured against
-/// it.
+/// grips have (energy_model::simulate). The rod starts as Scene::start defines (given_start()),
+/// else with the equilibrium shape of the first frame; if grips or obstacles move then, it has the
+/// velocities with which equilibrium shapes follow them. The errors of the equilibrium shapes and
+/// of the force model's are measured against it.
 /// @param track  of the same scene and options
 /// @throws InputError as require_dynamic(), and if the damping is out of range; ConvergenceError if
 /// there is no initial shape

@@ -11,9 +11,9 @@ namespace dlo::compare {
 
 /// An interval of a scene's motion.
 struct MotionPart {
-  std::optional<double> from;  ///< [s]; empty: first time of a recorded start, or else time of
-                               ///< the first pose
-  std::optional<double> to;    ///< [s]; empty: time of the last pose
+  /// [s]; empty: first time of a recorded start, else time of the first pose, 0 if nothing moves.
+  std::optional<double> from;
+  std::optional<double> to;  ///< [s]; empty: time of the last pose
 };
 
 /// Returns the first time of the recording in Scene::start [s]; std::nullopt if the start is a

@@ -197,7 +197,7 @@ class NormalEquations {
     }
     return parameters;
   }
-  /// Returns twice the predicted decrease of the sum of squares by a full step, in variances.
+  /// Returns the predicted decrease of sum() by a full step.
   [[nodiscard]] double decrease() const {
     const Eigen::VectorXd full = step(0);
     return -2 * gradient_.dot(full) - full.dot(normal_ * full);

@@ -38,7 +38,7 @@ struct SimulatedMotion {
 
 /// Checks that a rod with inertia can be simulated.
 /// @throws InputError if the scene has a clamp that holds the rod's frame and changes its
-/// direction, couples, tangential drag, or no mass
+/// direction, loads without a potential, couples, tangential drag, or no mass
 void require_dynamic(const Scene& scene);
 
 /// Default tolerance of one step of a simulation, see DynamicsOptions::tolerance.

@@ -16,7 +16,7 @@ namespace dlo::compare {
 
 /// Interval of a scene's motion, and how it is sampled.
 struct TrackOptions {
-  std::optional<double> from;  ///< [s]; empty: time of the first pose
+  std::optional<double> from;  ///< [s]; empty: as MotionPart::from
   std::optional<double> to;    ///< [s], > from; empty: time of the last pose
   TrackRates rates;
   ForceBeside force = ForceBeside::runs;
@@ -31,8 +31,9 @@ struct TrackFrame : Solution {
   double time = 0;        ///< [s]
   bool followed = false;  ///< the rod stayed on the branch of the frame before
   double work = 0;        ///< work of grippers and obstacles on the rod, since the first frame [J]
-  /// Work since the frame before minus the increase of the energy, and the bound of its error by
-  /// forces between those of the two frames [J]. NaN if Branch::balances() is false.
+  /// Work since the frame before minus the increase of the energy, in a frame in which the rod left
+  /// its branch only of the jumps, and the bound of its error by forces between those before and
+  /// after each step [J]. `released` is NaN if Branch::balances() is false.
   double released = 0, released_bound = 0;
   std::optional<ForceFrame> force;
 };
@@ -78,8 +79,8 @@ struct Track {
   std::vector<TrackFrame> frames;  ///< up to the one at which it stopped; one or more
   std::vector<TrackEvent> events;  ///< by time
   std::optional<TrackStop> stopped;
-  double median_seconds = 0;  ///< duration of a frame of the energy model in which something moves
-                              ///< [s]
+  /// Median duration of a frame of the energy model in which something moves [s].
+  double median_seconds = 0;
   int lost = 0;  ///< number of frames whose shape was found by a search, on another branch or on
                  ///< the same
   int repeated = 0;                    ///< number of frames that needed smaller steps on the branch

@@ -27,7 +27,8 @@ inline constexpr double lag_range_share = 0.25;
 /// Returns the shift with the least mean square distance of all points.
 /// @param earliest  time before which the rod is not known [s]; points whose shifted time may be
 /// earlier are omitted
-/// @return std::nullopt if the least distance is at an end of the range
+/// @return std::nullopt if the least distance is at an end of the range, or fewer than eight points
+/// are left
 [[nodiscard]] std::optional<MotionShift> best_lag(const MarkerMotion& recorded,
                                                   const ModelMotion& model, double earliest,
                                                   Displacement displacement);

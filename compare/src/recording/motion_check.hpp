@@ -35,8 +35,10 @@ struct Choices<MotionModel> {
 /// Options of the check of a recorded motion.
 struct MotionCheckRequest {
   MotionModel model = MotionModel::at_rest;
-  RodDamping damping;                ///< damping of the rod with inertia
-  std::optional<double> from;        ///< start time of the rod's motion [s]; empty: the recording's
+  RodDamping damping;  ///< damping of the rod with inertia
+  /// Start time of the rod's motion [s]; empty: recorded_start_time() of the scene, else the first
+  /// time of the recording.
+  std::optional<double> from;
   std::optional<double> frame_rate;  ///< frame rate of the model, which is interpolated between
                                      ///< frames [Hz]
   std::optional<ShapeTolerance> tolerance;  ///< empty: default_tolerance()

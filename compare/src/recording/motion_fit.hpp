@@ -40,7 +40,7 @@ struct FittedRecording {
   std::size_t times = 0;
   double from = 0, to = 0;  ///< [s]
   double rms = 0;           ///< RMS distance between markers and rod [m]
-  double worst_time = 0;    ///< time at which the distance is largest [s]
+  double worst_time = 0;    ///< time at which the RMS distance is largest [s]
   double worst_rms = 0;     ///< RMS distance at that time [m]
   /// Whether the rod starts with a fitted shape and velocities; otherwise it starts in equilibrium,
   /// because the markers are too few.

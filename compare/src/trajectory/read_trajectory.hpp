@@ -50,8 +50,9 @@ struct PoseKeys {
 
 /// Reads the poses of a table: [[..pose]] rows of time, position, direction and roll, or the file
 /// that the key `trajectory` names (relative to the scene's folder), with poses or with two markers
-/// on a gripper (poses_of_markers()). Without either there are no poses. Either all rows have a
-/// direction or none has, likewise the roll.
+/// on a gripper (poses_of_markers()), smoothed if the key `cutoff` is given (smooth_poses()).
+/// Without either there are no poses. Either all rows have a direction or none has, likewise the
+/// roll.
 /// @throws InputError that names file, line, key and what is allowed
 [[nodiscard]] Trajectory read_trajectory(StrictTable& table, const PoseKeys& keys,
                                          const std::string& scene_file);
@@ -102,7 +103,8 @@ struct PoseKeys {
 /// @throws InputError that names the file, the line, and what is allowed
 [[nodiscard]] MarkerMotion parse_markers(std::string_view text, const std::string& file);
 
-/// Whether the first row of a CSV text is the header of a recording.
+/// Whether the first row of a CSV text has a column `time`, as a recording of markers has and a
+/// shape has not.
 [[nodiscard]] bool has_marker_columns(std::string_view text, const std::string& file);
 
 }  // namespace dlo::compare

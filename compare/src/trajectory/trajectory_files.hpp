@@ -5,9 +5,9 @@
 
 namespace dlo::compare {
 
-/// Returns the paths of the files that a scene's file names for reading, as `trajectory` and
-/// `rest_shape`, as the scene's reader opens them. Empty if the scene's file is not a regular file
-/// or not TOML; the scene's reader reports that.
+/// Returns the paths of the files that a scene's file names for reading (`trajectory`,
+/// `rest_shape`, `[track] start`), relative to the scene's folder. Empty if the scene's file is not
+/// a regular file or not TOML; the scene's reader reports that.
 [[nodiscard]] std::vector<std::string> trajectory_files(const std::string& scene_file);
 
 /// Returns the path of a file that a scene names, which is relative to the scene's folder.
@@ -16,8 +16,9 @@ namespace dlo::compare {
 /// Returns the beginning of the names of a series' frames: "rod" of rod.vtk.series.
 [[nodiscard]] std::string series_stem(const std::string& series);
 
-/// Whether --paraview may write a file next to the series file, whatever its name or links. Frames
-/// of any number count, because the number of frames is known only at the end.
+/// Whether a file, by its name or through links, may be one of the frames that --paraview writes
+/// next to the series file. Frames of any number count, because the number of frames is known only
+/// at the end.
 [[nodiscard]] bool is_frame_of_series(const std::string& file, const std::string& series);
 
 /// Returns the names of the frames for messages: "rod_00000.vtk, .." of rod.vtk.series.

@@ -55,9 +55,10 @@ struct AcrossRod {
 /// common.
 [[nodiscard]] std::optional<double> common_share(const std::vector<AcrossRod>& shapes);
 
-/// Returns the RMS distance of each shape from the mean of the others [m], measured as the distance
-/// from a rod: at equal arc lengths with `file`, else to the nearest point of the mean. Returns
-/// std::nullopt for fewer than two shapes, or if less than half of their arc lengths is common.
+/// Returns the RMS, over all shapes, of the distance of a shape from the mean of the others [m],
+/// measured as the distance from a rod: at equal arc lengths with `file`, else to the nearest point
+/// of the mean. Returns std::nullopt for fewer than two shapes, or if less than half of their arc
+/// lengths is common.
 [[nodiscard]] std::optional<double> repeatability(const std::vector<Shape>& shapes,
                                                   ArcLengths rule);
 

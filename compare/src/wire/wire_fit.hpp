@@ -12,8 +12,9 @@ namespace dlo::compare {
 [[nodiscard]] bool fits_a_wire(const MaterialFitOptions& options);
 
 /// Fits E, with `density` the density, and all other requested numbers together, starting from the
-/// material that fits best without them. Sets all of the result except the degrees of freedom of
-/// that earlier fit.
+/// material that fits best without them. Sets all of the result except the counts of equilibria and
+/// evaluations, `assumed`, `chains`, and what only searches for other options set (`common_share`,
+/// `alternatives`, `tried`).
 /// @param measured  the shapes, with their time limit
 /// @throws ConvergenceError if the iteration does not converge, or the time limit is exceeded
 [[nodiscard]] MaterialFit fit_wire(const std::vector<Scene>& scenes,

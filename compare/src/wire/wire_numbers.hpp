@@ -54,12 +54,13 @@ struct WireNumber {
                                                   const MaterialFitOptions& options);
 
 /// Returns all numbers to fit, in this order: the logarithm of the factor on E; with `density` that
-/// on the density; if requested that on GJ / EI, and natural curvature; then directions, positions
-/// and rolls of each shape; and the tilt of the camera.
+/// on the density; if requested that on GJ / EI, and natural curvature; then directions and
+/// positions of grippers, shared or of each shape; each shape's differences from shared directions;
+/// rolls of each shape; and the tilt of the camera.
 /// @param scenes  result of with_said_frames()
-/// @throws InputError if natural curvature is requested but no clamp or plane defines its axes, GJ
-/// but no scene twists the rod, rolls but no shape depends on one, or a tilt that
-/// why_no_camera_tilt() rejects
+/// @throws InputError if natural curvature is requested but given by a rest shape, or no clamp or
+/// plane defines its axes, GJ but no scene twists the rod, shared clamps of scenes whose grippers
+/// differ, rolls but no shape depends on one, or a tilt that why_no_camera_tilt() rejects
 [[nodiscard]] std::vector<WireNumber> wire_numbers(const std::vector<Scene>& scenes,
                                                    const std::vector<MeasuredShape>& shapes,
                                                    const MaterialFitOptions& options, bool density);

@@ -10,8 +10,7 @@
 
 namespace dlo::compare {
 
-/// Returns the result of a fit, without the degrees of freedom of the earlier fit and the
-/// prediction.
+/// Returns the result of fit_wire(), without the prediction.
 [[nodiscard]] MaterialFit wire_result(const WireProblem& problem, WireOptimum& optimum);
 
 /// Sets FittedShape::rod of the fit's shapes.

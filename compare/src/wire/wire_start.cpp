@@ -50,10 +50,10 @@ bool is_about_both_axes(const WireProblem& problem) {
          problem.numbers[second].described.unit == "1/m";
 }
 
-/// Returns the nearest start for each of several mean curvatures in the likely range [turns of the
-/// rod]. The curvatures are visited from both ends, and each shape follows its own equilibrium. If
-/// the roll of the clamp is unknown, several angles are tried. A curvature about both axes has
-/// several directions.
+/// Returns the nearest start for each of several mean curvatures in the likely range: up to 8 rad
+/// along the rod, to either side. The curvatures are visited from both ends, and each shape follows
+/// its own equilibrium. If the roll of the clamp is unknown, several angles are tried. A curvature
+/// about both axes has several directions.
 std::vector<NearestStart> nearest_by_curvature(const WireProblem& problem,
                                                const Eigen::VectorXd& from, FittedRods& rods) {
   constexpr std::array turns = {8.0, 5.0, 3.0, 1.5, 0.0, -1.5, -3.0, -5.0, -8.0};
