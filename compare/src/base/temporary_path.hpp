@@ -42,7 +42,8 @@ void end_groups();
 /// unless the signal is ignored or has a handler. Meant for programs: a library installs none.
 void end_groups_at_signals();
 
-/// Returns the folder for temporary files: TMPDIR, or /tmp if that names no folder.
+/// Returns the folder for temporary files: TMPDIR (else TMP, TEMP or TEMPDIR), or /tmp if that
+/// names no folder.
 [[nodiscard]] std::filesystem::path temporary_directory();
 
 /// A new file, open for writing, with the permissions that the umask leaves. Its destructor removes

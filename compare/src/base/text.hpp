@@ -52,7 +52,7 @@ void require_toml_limits(std::string_view text, const std::string& file);
 
 /// Checks the limits of a JSON text.
 /// @throws InputError that names file and line if brackets are nested deeper than deepest_nesting,
-/// or if there are more than `most_values` values
+/// or the file if there are more than `most_values` values
 void require_json_limits(std::string_view text, const std::string& file, long most_values);
 
 }  // namespace dlo::compare

@@ -48,8 +48,8 @@ struct Choices<RegressionVerdict> {
 /// Whether a verdict is a failure: all but same and better are.
 [[nodiscard]] bool failed(RegressionVerdict verdict);
 
-/// Tolerance of a regression. An error e, divided by the rod's length, has changed if it differs
-/// from the baseline by more than absolute + relative * e.
+/// Tolerance of a regression. An error has changed if it differs from the baseline's error e by
+/// more than absolute + relative * e; both errors are divided by the rod's length.
 struct RegressionTolerance {
   double relative = 0.01;  ///< fraction of the error, >= 0
   double absolute = 1e-6;  ///< fraction of the rod's length, >= 0

@@ -17,7 +17,8 @@ struct ForeignProgram {
   std::vector<std::string> words;  ///< words of its command, with {scene}, {points} and {shape}
 };
 
-/// Whether a name consists of letters, digits and "_.-+", so that a folder may have it.
+/// Whether a name consists of letters, digits and "_.-+" and is neither "." nor "..", so that a
+/// folder may have it.
 [[nodiscard]] bool is_program_name(const std::string& name);
 
 /// Reads a foreign program. @param text  "NAME=COMMAND"; the command is split by command_words()
@@ -36,9 +37,9 @@ struct ForeignRun {
   double seconds = 0;                  ///< wall time of the process [s]
   std::string problem;                 ///< one line; empty if there is a shape or a motion
   bool too_long = false;               ///< killed at the time limit
-  /// The program does not support the scene: its exit status is 3, or it wrote no shape and the
-  /// last line of its standard error begins with "not supported", or it wrote one shape instead of
-  /// a motion.
+  /// The program does not support the scene: its exit status is 3, or it failed or wrote no shape
+  /// and the last line of its standard error begins with "not supported", or it wrote one shape
+  /// instead of a motion.
   bool not_supported = false;
 };
 

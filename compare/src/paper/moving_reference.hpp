@@ -39,7 +39,7 @@ inline constexpr double reference_damping_ratio = 0.05;
 struct MovingReference {
   bool converged = false;
   std::string message;      ///< reason if it has not converged
-  std::vector<int> frames;  ///< frame numbers, from the beginning of the movement
+  std::vector<int> frames;  ///< compared frames of the experiment; none before the movement begins
   /// Points of the rod at the arc lengths of the force model's points [m], per frame.
   std::vector<Eigen::Matrix3Xd> points;
   std::vector<Eigen::Vector3d> forces;  ///< force of the gripper on the rod [N], per frame

@@ -27,7 +27,7 @@ std::string toml_value(const std::string& value) {
 
 bool is_z_up(const SceneChoices& choices) { return choices.up == "z"; }
 
-/// Returns an upward vector of this length.
+/// Returns an upward vector of this length; a downward one if the length is negative.
 std::string upwards(const SceneChoices& choices, double length) {
   const std::string text = fmt::format("{:.4g}", length);
   return is_z_up(choices) ? "[0, 0, " + text + "]" : "[0, " + text + ", 0]";

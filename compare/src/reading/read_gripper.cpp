@@ -18,7 +18,7 @@ namespace {
 
 Eigen::Vector3d read_direction(StrictTable& table) {
   if (table.is_array("direction")) return unit_vector(table, "direction");
-  // A bare number is in radians; -175 would be degrees without the unit.
+  // A bare number is in radians. The range refuses -175, which is meant in degrees.
   const Range turn{-2 * std::numbers::pi, 2 * std::numbers::pi, false,
                    "-2 pi to 2 pi rad, or a string such as \"-175 deg\", or a vector"};
   const double angle = table.number("direction", Dimension::angle, turn);

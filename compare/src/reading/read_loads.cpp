@@ -94,7 +94,7 @@ DistributedLoad read_distributed_load(StrictTable& table, const Scene& scene) {
   return load;
 }
 
-/// Adds the buoyancy of the rod: a load against gravity without inertia.
+/// Reads the drag, and adds the buoyancy of the rod: a load against gravity without inertia.
 void read_medium(StrictTable& table, Scene& scene) {
   table.only(scene_keys("medium"));
   const double density = table.number("density", Dimension::density, Range::positive());

@@ -11,14 +11,15 @@
 
 namespace dlo::compare {
 
-/// Reads an arc length on the rod.
+/// Reads an arc length on the rod; one that is beyond an end by rounding is moved to that end.
 /// @throws InputError that names file, line, key, value and what is allowed
 [[nodiscard]] double read_arc_length(StrictTable& table, std::string_view key, double length);
 
-/// Reads a direction of any length and returns the unit vector.
+/// Reads a direction of any length > 0 and returns the unit vector.
 [[nodiscard]] Eigen::Vector3d unit_vector(StrictTable& table, std::string_view key);
 
-/// Reads a position. If there are poses, the first of them gives the position.
+/// Reads a position. If there are poses, the first of them gives the position, and the key is
+/// refused.
 [[nodiscard]] Eigen::Vector3d read_place(StrictTable& table, const char* key,
                                          const Trajectory& trajectory);
 
@@ -51,7 +52,7 @@ void read_rest_shape(StrictTable& rod, const std::vector<StrictTable>& sections,
 /// behind or within an obstacle
 [[nodiscard]] Gripper read_gripper(StrictTable& table, const Scene& scene);
 
-/// Checks that the twist is determined if two clamps hold the rod's frame.
+/// Checks that GJ is given or assumed if two clamps hold the rod's frame.
 /// @param rod  table of the rod
 void check_twist(const Scene& scene, const StrictTable& rod);
 

@@ -30,7 +30,7 @@ void require_one_rest_shape(const StrictTable& rod) {
   }
 }
 
-/// Reads the points of a file, or rows of three numbers.
+/// Reads the points of a file, or rows of three numbers, or of six with d1.
 MeasuredShape read_rest_points(StrictTable& rod, const std::string& scene_file) {
   constexpr const char* key = "rest_shape";
   constexpr const char* allowed =

@@ -13,7 +13,7 @@ namespace {
 /// Largest w l^3 / (EI): beyond it no solver resolves the boundary layer at a clamp, and the shape
 /// of the rod no longer changes visibly.
 constexpr double largest_gamma = 1e12;
-/// Arc lengths of adjacent sections may differ by the rounding of units, divided by the length [-].
+/// Distance of adjacent sections that counts as rounding of units, divided by the length [-].
 constexpr double same_place_share = 1e-12;
 
 /// EI about every axis of the cross-section, or about d1 and d2.

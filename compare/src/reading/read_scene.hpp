@@ -13,7 +13,7 @@ namespace dlo::compare {
 /// A parsed scene: TOML, or a simulator's model converted to TOML.
 struct SceneSource {
   toml::table root;
-  std::string where;                ///< what the lines of the TOML belong to, for messages
+  std::string where;                ///< name of the TOML in messages: `file`, or "FILE, as a scene"
   std::string file;                 ///< file that it was read from
   std::optional<ModelChain> model;  ///< model that it was made from
 };

@@ -21,8 +21,8 @@
 namespace dlo::compare {
 namespace {
 
-/// Puts a value into the node that `place(node)` selects, with the type that it would have in a
-/// file.
+/// Calls `place` with a field's value in the type that it would have in a file: integer, number,
+/// text or array.
 template <typename Place>
 void place_value(const SceneField& field, const std::string& file, const Place& place) {
   const std::string& text = field.value.text();
@@ -38,7 +38,7 @@ void place_value(const SceneField& field, const std::string& file, const Place& 
   place(*array);
 }
 
-/// Short names of fields, and their paths.
+/// Names that are mistaken for fields, and the paths that a message proposes instead.
 constexpr std::pair<std::string_view, std::string_view> short_field_names[] = {
     {"E", "rod.material.youngs_modulus"},
     {"youngs_modulus", "rod.material.youngs_modulus"},
@@ -116,7 +116,8 @@ class Overrider {
     }
   }
 
-  /// Returns the table or array below `parent`; a table that is missing in the file is made empty.
+  /// Returns the table or array `step` of `parent`. A missing table is added empty; a rod's
+  /// material that is given by its name is replaced by the table of its values.
   toml::node& enter(toml::node& parent, std::string_view step, const std::string& path) const {
     toml::node* child = nullptr;
     if (toml::table* table = parent.as_table()) {
@@ -152,8 +153,8 @@ class Overrider {
   MissingElements missing_;
 };
 
-/// Returns EI, or the mean to which GJ is proportional, of a scene whose GJ is given; empty if the
-/// file is not a valid scene without other values.
+/// Returns EI of a scene whose GJ is given, the harmonic mean of two; empty if GJ is not given, or
+/// if the file is not a valid scene without other values.
 std::optional<double> bending_stiffness_with_torsion(const toml::table& root,
                                                      const std::string& name,
                                                      const std::vector<Material>& materials) {

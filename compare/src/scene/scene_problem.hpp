@@ -35,9 +35,10 @@ void scale_length(Scene& scene, double factor);
 /// Returns the grippers by increasing arc length.
 [[nodiscard]] std::vector<const Gripper*> grippers_along(const Scene& scene);
 
-/// Returns the distance [m] that every point of the rod keeps from each obstacle, without stretch.
-/// With the rod's length and grips no point leaves an ellipsoid between two adjacent grips (foci
-/// the grips, long axis the rod's length between them), or a ball around the last grip.
+/// Returns, for each obstacle, a lower bound of the distance between it and the points of the rod
+/// [m], without stretch; negative: a point might enter it. With the rod's length and grips no point
+/// leaves an ellipsoid between two adjacent grips (foci the grips, long axis the rod's length
+/// between them), or a ball around the first or last grip.
 [[nodiscard]] std::vector<double> obstacle_clearances(const Scene& scene);
 
 /// Returns the indices of the obstacles that the rod can touch without stretch. Only these are
@@ -45,9 +46,9 @@ void scale_length(Scene& scene, double factor);
 [[nodiscard]] std::vector<std::size_t> obstacles_in_reach(const Scene& scene);
 
 /// Returns the indices of the obstacles that a rod that stretches can touch; only these are given
-/// to the polygons. It extends by at most 2 l sqrt(P / EA), P the sum of all loads, since the
-/// stretch energy EA d^2 / (2 l) is at most the work of the loads over a displacement of 2 l. EA is
-/// the smaller one of EA and the settings' c_c.
+/// to the polygons. It extends by at most 2 l sqrt(P / EA), P the sum of weight and loads, since
+/// the stretch energy EA d^2 / (2 l) is at most the work of the loads over a displacement of 2 l.
+/// EA is the smaller one of EA and the settings' c_c.
 [[nodiscard]] std::vector<std::size_t> obstacles_in_reach(const Scene& scene,
                                                           const ForceModelSettings& settings);
 

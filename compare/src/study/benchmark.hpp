@@ -15,10 +15,12 @@ namespace dlo::compare {
 /// Settings of dlo bench: runs, tracking motion and time budget.
 struct BenchmarkOptions {
   /// Time budget of all runs [s], > 0. A run is skipped if its time, predicted from earlier runs,
-  /// exceeds a quarter of the time that is left.
+  /// exceeds a quarter of the time that is left for its scene.
   double budget_s = 40;
-  int repeats = 5;  ///< runs per median, >= 1
-  /// V of the tracking runs [m/s], > 0; the grippers also rotate at v/l.
+  /// Runs per median, >= 1; quick runs are repeated more often, and fewer runs are made if little
+  /// time is left.
+  int repeats = 5;
+  /// Speed v of the grippers in tracking runs [m/s], > 0; they also rotate at v/l.
   double gripper_speed = 0.1;
   int frames = 200;                           ///< frames of 1 ms per tracking run, >= 1
   std::vector<ForeignProgram> programs = {};  ///< foreign programs, for the static runs
@@ -58,7 +60,8 @@ struct BenchmarkRun {
   /// process.
   Timing time;
   long evaluations = 0;  ///< or steps; tracking runs: mean of one frame; programs: 0
-  /// RMS distance from the reference, divided by the length; tracking runs: RMS over all frames.
+  /// RMS distance from the reference (of `exact`, which is the reference, from `energy`), divided
+  /// by the length; tracking runs: RMS over the compared frames.
   double rms_over_length = 0;
   bool front = false;  ///< see mark_front()
 };
@@ -143,6 +146,7 @@ void mark_front(std::vector<BenchmarkRun>& runs);
 /// model follows, and the force model makes the steps that fit into a frame on this machine
 /// (measured before; at least one), or one step with stepper implicit. The error is measured in
 /// every tenth frame, against the quasi-static shape of the reference model.
+/// @param scenes    empty: benchmark_scenes()
 /// @param progress  called with the name of the current stage
 /// @throws std::invalid_argument if an option is out of range, InputError, ConvergenceError
 [[nodiscard]] BenchmarkReport run_benchmark(const std::vector<Scene>& scenes,

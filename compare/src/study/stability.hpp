@@ -36,23 +36,23 @@ struct StabilityResult {
   Stepper stepper = Stepper::automatic;  ///< stepper of the run
   Outcome outcome = Outcome::diverges;   ///< how the run ended
   long steps = 0;                        ///< number of steps
-  /// Largest distance of a point from the reference, divided by the length [-]; NaN if refused,
-  /// infinite if not finite.
+  /// Largest distance of a point from the reference, or from the other equilibrium that `note`
+  /// names, divided by the length [-]; NaN if refused, infinite if not finite.
   double error_over_length = 0;
   bool at_rest = false;  ///< proved by the stepper's own rest criterion
   std::string note;      ///< additional facts, such as another equilibrium; may be empty
 };
 
-/// Runs a case with a stepper. The paper's steppers and `verlet` have c_F = 0.86 L/(2 c_c),
-/// l_s = 0.6 L and c_h = 0.9, see step_options.
+/// Runs a case with a stepper. The paper's steppers have c_F = 0.86 L/(2 c_c), l_s = 0.6 L and
+/// c_h = 0.9, `verlet` its own time step and damping, see step_options.
 ///
 /// The reference is the equilibrium that solve_polygon finds for the same parameters from the
-/// scene's own initial guess. A simulation that comes to rest elsewhere is compared with the
-/// equilibrium that solve_polygon finds from the simulation's final shape. If that equilibrium is
-/// stable and at most the tolerance away, the simulation passes, and the note states both energies.
-/// The case that starts at rest passes if no sampled shape is farther than 1e-6 of the length from
-/// its start; the note states the change of its energy, and growth by more than 1e-12 of its
-/// magnitude is `wrong`.
+/// scene's own initial guess. A simulation that ends elsewhere without oscillating is compared with
+/// the equilibrium that solve_polygon finds from the simulation's final shape. If that equilibrium
+/// is stable and at most the tolerance away, the simulation passes, and the note states both
+/// energies. The case that starts at rest passes if no sampled shape is farther than 1e-6 of the
+/// length from its start; the note states the change of its energy, and growth by more than 1e-12
+/// of its magnitude is `wrong`.
 /// @throws ConvergenceError if there is no reference
 [[nodiscard]] StabilityResult run_hard_case(const HardCase& hard, Stepper stepper,
                                             const StabilityOptions& options = {});

@@ -36,8 +36,8 @@ struct CardScene {
   [[nodiscard]] RunStatus status() const;
   /// Returns the problem of the first run that is not solved; empty if all are.
   [[nodiscard]] std::string problem() const;
-  /// Whether all runs are solved, no cause is a defect, and the error at the largest N is at most
-  /// the default tolerance of `dlo check`, 1 % of the length.
+  /// Whether all runs are solved, no cause is a defect, and CardRun::error at the largest N is at
+  /// most 1 %, the default tolerance of `dlo check`.
   [[nodiscard]] bool right() const;
 };
 
@@ -94,6 +94,7 @@ struct CardOptions {
 /// Compares the errors of results tables with a baseline of `dlo regress`. There is a case for each
 /// scene, simulator and N, except for scenes that a simulator does not support. Cases of the
 /// baseline of other scenes or simulators are not compared, and stay in Regression::cases.
+/// @throws InputError if there is nothing to compare; else as judge_regression()
 [[nodiscard]] Regression judge_cards(const std::vector<BaselineCase>& baseline,
                                      const std::vector<Card>& cards,
                                      const RegressionTolerance& tolerance = {});

@@ -33,8 +33,8 @@ constexpr double may_be_left_of_way = 0.3;
 /// Largest fraction of the error that a cause with a fitted number may leave. It is small because
 /// any fitted number reduces the error.
 constexpr double may_be_left_fitted = 0.02;
-/// Largest such fraction for the coarsest shape, if the finest one satisfies the smaller limit. The
-/// rest is discretisation error.
+/// Largest such fraction for the second finest shape, if the finest one satisfies the smaller
+/// limit. The rest is discretisation error.
 constexpr double may_be_left_coarse = 0.3;
 /// Largest fraction of the error that a cause may leave if the shape is out of balance.
 constexpr double nothing_left = 2e-3;

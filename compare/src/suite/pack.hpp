@@ -9,7 +9,8 @@
 namespace dlo::compare {
 
 /// Returns an answer as a document with schema dlo/answer/1, in SI units. Numbers that are only
-/// rounding errors are 0, lengths have twelve decimals, and other numbers ten significant digits.
+/// rounding errors are 0. Points and their arc lengths have twelve decimals, bounds two significant
+/// digits, and other results ten or fewer.
 [[nodiscard]] nlohmann::ordered_json answer_json(const Answer& answer);
 
 /// Returns the points of an answer as x,y,z,s, which `dlo check` reads as a shape.

@@ -87,8 +87,8 @@ std::span<const Unit> units(Dimension dimension) {
   return {};
 }
 
-/// Returns a unit in the spelling of this table: "N*m", and one with a dot, have a blank between,
-/// powers a "^".
+/// Returns a unit in the spelling of the tables above: "*" and middle dots become blanks, raised
+/// digits "^2" and "^3", the micro sign "u" and the degree sign "deg".
 std::string plain_spelling(std::string_view written) {
   constexpr std::pair<std::string_view, std::string_view> spellings[] = {
       {"*", " "},         {"\xc2\xb7", " "}, {"\xe2\x8b\x85", " "}, {"\xc2\xb2", "^2"},

@@ -87,14 +87,14 @@ class StrictTable {
   [[nodiscard]] bool is_array(std::string_view key) const;
   [[nodiscard]] std::vector<std::string> keys() const;
 
-  /// Checks that the table has only allowed keys, in any form of its values. It is called before a
-  /// key is read, so that a message names a misspelt key rather than the key that is missing
+  /// Checks that the table has only allowed keys; their values are not checked. It is called before
+  /// a key is read, so that a message names a misspelt key rather than the key that is missing
   /// because of it.
   /// @throws InputError that names the first key that is not allowed
   void only(const std::vector<std::string>& allowed) const;
 
   /// Checks that every key was read.
-  /// @throws InputError that names the first key that was not read, and the existing keys
+  /// @throws InputError that names the first key that was not read, and the allowed keys
   void finish() const;
 
   /// Returns "file:line" of this table.
