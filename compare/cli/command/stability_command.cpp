@@ -37,8 +37,8 @@ struct StabilityOptions {
   PlotOptions plot;
 };
 
-/// Whether a result is a failure of the command: `auto` and `implicit` must not fail, the paper's
-/// steppers may.
+/// Whether a result is a failure of the command: `auto` and `implicit` must not fail, other
+/// steppers may. A case that is refused is no failure.
 bool fails(const StabilityResult& result) {
   const bool may_not =
       result.stepper == compare::Stepper::automatic || result.stepper == compare::Stepper::implicit;

@@ -47,7 +47,8 @@ std::string json_value_text(const Json& value) {
   return "[" + out + "]";
 }
 
-/// Returns "NAME VALUE UNIT", or an empty string if the scene does not have the quantity.
+/// Returns "NAME VALUE UNIT", or an empty string if the table does not have the quantity, or if it
+/// is zero or an empty list.
 /// @param quantity  a key, whose suffix is the unit; or "name=key"; or "name=key:unit"
 std::string quantity_text(const Json& table, const std::string& quantity) {
   const std::size_t equals = quantity.find('=');

@@ -6,7 +6,8 @@
 
 namespace dlo::cli {
 
-/// Adds the options that a command gets during its lifetime to a group of the help.
+/// While an object of this class exists, options that are added to the command are in a group of
+/// the help.
 class OptionGroup {
  public:
   OptionGroup(CLI::App& command, const std::string& name)
@@ -23,8 +24,7 @@ class OptionGroup {
   std::string before_;
 };
 
-/// Returns a check for numbers in [low, high]. NaN is refused, and infinity unless `high` is
-/// infinite.
+/// Returns a check for numbers in [low, high]. NaN and infinity are refused.
 [[nodiscard]] CLI::Validator number_between(double low, double high);
 
 /// Makes all commands refuse empty values of options and arguments, which result from unset

@@ -33,12 +33,13 @@ struct dlo::compare::Choices<dlo::cli::Format> {
 
 namespace dlo::cli {
 
-/// Options --format and -o, which every command has.
+/// Options --format and -o.
 struct OutputOptions {
   std::string format = "text";
   std::string file;
 
-  /// Whether the format is one that every command has; `vtk`, `toml` and `markdown` are not.
+  /// Whether the format is `wanted`; false for `vtk`, `toml` and `markdown`, which only some
+  /// commands have.
   [[nodiscard]] bool is(Format wanted) const { return format == compare::to_string(wanted); }
 };
 
@@ -113,11 +114,13 @@ void reserve_standard_descriptors();
 void check_output(const std::string& option, const std::string& file,
                   const std::vector<std::string>& inputs);
 
-/// Calls check_output() for every file that the command's options name, including standard output.
-/// Commands check folders themselves.
+/// Checks all files that the command's options write, as check_output() does, and standard output;
+/// refuses files that are written twice. Commands check folders themselves.
+/// @throws compare::InputError
 void check_outputs(const CLI::App& command);
 
-/// Returns the files that the command's arguments and options name for reading.
+/// Returns the files that the command's arguments and options name for reading, and the files that
+/// scenes among them name.
 [[nodiscard]] std::vector<std::string> input_files(const CLI::App& command);
 
 }  // namespace dlo::cli

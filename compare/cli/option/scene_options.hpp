@@ -24,7 +24,7 @@ class SceneOptions {
   void add_to(CLI::App& command, Steps steps = Steps::made);
   /// Adds the options for a scene that is examined while it moves: without --time.
   void add_moving_to(CLI::App& command);
-  /// Adds only --materials, --calibrated and the options that override [force_model].
+  /// Adds only --time, --materials, --calibrated and the options that override [force_model].
   void add_settings_to(CLI::App& command);
   /// Adds only --materials, --calibrated and the options that control the solvers.
   void add_solvers_to(CLI::App& command, Steps steps = Steps::made);

@@ -48,7 +48,8 @@ struct ToleranceWords {
   /// default.
   std::optional<std::string> allowed;
   std::string measure = "rms";  ///< or "max"
-  /// Smallest allowed fraction of the rod that is observed; empty: the whole rod.
+  /// Smallest allowed fraction of the rod that is observed, for points on a part of the rod, which
+  /// alone is judged; empty: the whole rod is judged.
   std::optional<double> min_seen;
 };
 

@@ -15,8 +15,8 @@ namespace dlo::cli {
 /// Returns the tables in Markdown, for a pull request.
 [[nodiscard]] std::string cards_markdown(const std::vector<compare::Card>& cards);
 
-/// Returns JUnit XML with one test case per scene: a failure unless it is right, skipped if it is
-/// not supported.
+/// Returns JUnit XML with one test case per scene: skipped if it is not supported, an error if
+/// there is no result to judge, else a failure unless it is right.
 [[nodiscard]] std::string cards_junit(const std::vector<compare::Card>& cards);
 
 /// Draws the largest error of each class against N.

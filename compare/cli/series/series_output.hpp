@@ -50,7 +50,7 @@ struct TrackFrames {
 /// Returns the text of a rod with inertia, which follows that of its track.
 [[nodiscard]] std::string dynamic_text(const compare::DynamicTrack& dynamic);
 
-/// Returns the key `dynamic` of the track's document.
+/// Returns the value of the key `dynamic` of the track's document.
 [[nodiscard]] Json dynamic_json(const compare::DynamicTrack& dynamic, const compare::Track& track,
                                 const TrackFrames& frames);
 
@@ -58,7 +58,7 @@ struct TrackFrames {
 [[nodiscard]] Json moving_frame_json(const compare::DynamicFrame& frame, bool points);
 
 /// Writes frames for ParaView: a series file with the times, and one polyline file per frame,
-/// `NAME_0000.vtk` for NAME.vtk.series. The series file is written last, when it is complete.
+/// `NAME_00000.vtk` for NAME.vtk.series. The series file is written last, when all frames are.
 /// @param dynamic  rod with inertia, whose shapes are then written, or null
 /// @throws compare::OutputError naming the file that cannot be written
 void write_series(const compare::Track& track, const compare::Scene& scene,

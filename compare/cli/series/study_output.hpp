@@ -49,7 +49,8 @@ namespace dlo::cli {
 [[nodiscard]] std::string regression_changes_text(
     const std::vector<compare::RegressionResult>& results, const std::string& file);
 
-/// Returns a regression as JSON. @param good  whether no case fails
+/// Returns a regression as JSON. @param good  whether no case fails; with --update, whether all
+/// scenes were solved
 [[nodiscard]] Json regression_json(const std::vector<compare::RegressionResult>& results,
                                    bool good);
 

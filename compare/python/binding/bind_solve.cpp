@@ -93,7 +93,7 @@ std::vector<double> samples_of(const SharedScene& scene, int count) {
 /// Solves a scene. @param model_name  empty: the scene's reference_model()
 /// @param number  number of an equilibrium in the list of solve_all(), from 1; empty: the
 /// equilibrium of the model
-/// @param near  None, or points, a pair of points and arc lengths, or as bytes the name of a file
+/// @param near  None, or a pair: points, or as bytes the name of a file; and arc lengths, or None
 std::shared_ptr<SolvedScene> solve(const SharedScene& scene, const std::string& model_name,
                                    int samples, const std::optional<int>& number,
                                    const py::object& near, const py::dict& limits) {
@@ -141,7 +141,7 @@ std::shared_ptr<SolvedStates> solve_all(const SharedScene& scene, int samples,
 }
 
 /// Binds a view of vectors, one for each of the solution's grippers or obstacles.
-/// @param vector  member of one of them
+/// @param vector  returns the vector of one of them
 template <typename Class, typename Loads, typename Vector>
 void bind_rows(Class& bound, const char* name, Loads Solution::*loads, const Vector& vector,
                const char* words) {

@@ -33,12 +33,14 @@ struct ChainRod {
                                              const Eigen::Vector3d& position,
                                              const std::optional<Eigen::Vector3d>& direction);
 
-/// Wall of a scene's obstacle after a movement. @param discretisation  of chain_rod()
-/// @throws compare::InputError if it is no plane
+/// Wall of a scene's obstacle after a movement.
 struct MovedWall {
   std::size_t index = 0;  ///< index in Rod::walls
   force_model::Wall wall;
 };
+/// Returns the wall of a plane that has moved. @param point  point of the plane in the scene [m]
+/// @param normal  to the free side, of any length
+/// @throws compare::InputError if the obstacle is no plane, or the normal is zero
 [[nodiscard]] MovedWall moved_wall(const SceneData& data, const ChainRod& rod, std::size_t obstacle,
                                    const Eigen::Vector3d& point, const Eigen::Vector3d& normal);
 

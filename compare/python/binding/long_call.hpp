@@ -55,7 +55,7 @@ class CallMutex {
 };
 
 /// Checks for signals, such as Ctrl-C, during a computation without the GIL. Python handles signals
-/// on its main thread only: on other threads stop() is always false.
+/// on its main thread only: calls of other threads stop only at the end of the interpreter.
 class Signals {
  public:
   Signals();
@@ -63,15 +63,15 @@ class Signals {
   Signals& operator=(const Signals&) = delete;
   ~Signals();
 
-  /// Whether a handler has raised an exception; checks ten times per second. May be called from any
-  /// thread.
+  /// Whether a handler has raised an exception, for which it checks ten times per second on the
+  /// call's own thread, or another thread ends the interpreter. May be called from any thread.
   [[nodiscard]] bool stop();
   /// Throws an exception if stop(), to leave a callback.
   void throw_if_stopped();
-  /// Raises the exception that the handler has raised. Requires the GIL.
+  /// Raises the exception that the handler has raised, if any. Requires the GIL.
   void rethrow() const;
 
-  /// Returns stop() of the call in which this thread is.
+  /// Returns stop() of the call in which this thread is; false outside of a call.
   [[nodiscard]] static bool asked();
 
  private:
