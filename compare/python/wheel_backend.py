@@ -106,8 +106,8 @@ def _pack(folder, wheel, info):
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    """PEP 517: the wheel's file name, in that directory. Setting build-dir: a folder in which CMake
-    has been configured with DLO_PYTHON for the same Python, to be used instead of build/release."""
+    """Makes the wheel in the directory and returns its file name (PEP 517). Setting build-dir: a folder in which
+    CMake has been configured with DLO_PYTHON for the same Python, to be used instead of build/release."""
     project = _project()
     info = f"{project['name']}-{project['version']}.dist-info"
     name = f"{project['name']}-{project['version']}-{_tag()}.whl"
@@ -124,5 +124,5 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
 
 
 def build_sdist(sdist_directory, config_settings=None):
-    """PEP 517 asks for it; sources are the repository's."""
+    """Raises NotImplementedError: PEP 517 requires this function, but only the repository has the sources."""
     raise NotImplementedError("dlo is built from a clone of its repository")

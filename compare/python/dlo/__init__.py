@@ -12,9 +12,9 @@ Motion       track
 In a loop    ForceModel, Batch
 Errors       InputError (a ValueError), ConvergenceError (a RuntimeError)
 
-Numbers are in SI units, or text with a unit. Wherever a scene is asked for, the name of a scene file
-will do. Results have NumPy arrays, json (the document of the command dlo), to_json(), str() (its
-text), and those with a shape plot(); a notebook shows verdict, picture and text. Long calls let other threads run, and Ctrl-C ends them.
+Numbers are in SI units, or text with a unit. Wherever a scene is asked for, the name of a scene file will do. Results
+have NumPy arrays, json (the document of the command dlo), to_json(), str() (its text), and those with a shape plot(); a
+notebook shows verdict, picture and text. Long calls let other threads run, and Ctrl-C ends them.
 """
 
 from . import _documents, _functions, _loops, _parts, _scene, _studies

@@ -77,23 +77,23 @@ class Document:
 
 
 class Plan(Document):
-    """What a scene needs, and bounds of what is neglected; of plan()."""
+    """Plan for a scene, with bounds of the effects that are neglected; result of plan()."""
 
 
 class Stability(Document):
-    """Where the steppers break; of stability()."""
+    """Hard cases, or a map of the largest stable c_F; result of stability()."""
 
 
 class Benchmark(Document):
-    """What accuracy costs; of bench()."""
+    """Speed and error of all models; result of bench()."""
 
 
 class Modes(Document):
-    """The slowest modes of a scene's rod; of modes()."""
+    """The slowest modes of a scene's rod; result of modes()."""
 
-    frequencies = _at("modes/*/frequency_Hz", _array, "Of the rod [Hz], shape (n,); NaN where the shape is unstable.")
-    arc_length = _at("arc_length_m", _array, "Where the modes' shapes are given [m], shape (M,).")
-    shapes = _at("modes/*/shape_m", _array, "The modes' displacements, shape (n, M, 3).")
+    frequencies = _at("modes/*/frequency_Hz", _array, "Frequencies of the rod [Hz], shape (n,); NaN if unstable.")
+    arc_length = _at("arc_length_m", _array, "Arc lengths of the points of the modes' shapes [m], shape (M,).")
+    shapes = _at("modes/*/shape_m", _array, "Displacements of the modes, at most 1 m, shape (n, M, 3).")
 
 
 def _moving(path: str, doc: str) -> Attribute[NDArray[numpy.float64]]:
@@ -108,7 +108,7 @@ def _moving(path: str, doc: str) -> Attribute[NDArray[numpy.float64]]:
 
 
 class Track(Document):
-    """A rod while its grippers move, frame by frame; of track()."""
+    """A rod while its grippers or obstacles move, frame by frame; result of track()."""
 
     _strip: dict[str, Any]
 
@@ -116,67 +116,67 @@ class Track(Document):
         return self._strip
 
     def plot(self, ax: Any = None) -> Any:
-        """Draws nine of the frames with matplotlib, row by row, at equal aspect. ax: the axes to
-        draw into, new ones for None; returned."""
+        """Draws nine of the frames, or all if there are fewer, with matplotlib, row by row, at equal aspect, and
+        returns the axes. ax: the axes to draw into; None: new ones."""
         return _plot.plot(self, ax)
 
     def _repr_svg_(self) -> Optional[str]:
         return _show.svg(self)
 
-    arc_length = _at("arc_length_m", _array, "Of the frames' points [m], shape (M,).")
+    arc_length = _at("arc_length_m", _array, "Arc lengths of the frames' points [m], shape (M,).")
     time = _at("frames/*/time_s", _array, "Of the frames [s], shape (F,).")
-    points = _at("frames/*/points_m", _array, "At rest [m], shape (F, M, 3).")
+    points = _at("frames/*/points_m", _array, "Positions of the rod at rest [m], shape (F, M, 3).")
     gripper_forces = _at(
-        "frames/*/grippers/*/force_N", _array, "What each gripper exerts on the rod at rest [N], shape (F, G, 3)."
+        "frames/*/grippers/*/force_N", _array, "Force of each gripper on the rod at rest [N], shape (F, G, 3)."
     )
     gripper_torques = _at(
-        "frames/*/grippers/*/torque_Nm", _array, "The same about each gripper's position [N m], shape (F, G, 3)."
+        "frames/*/grippers/*/torque_Nm", _array, "Torque of each gripper on the rod at rest [N m], shape (F, G, 3)."
     )
-    moving_points = _moving("points_m", "Of the rod with inertia [m], shape (F, M, 3); of one that was asked for (dynamic).")
-    moving_gripper_forces = _moving("grippers/*/force_N", "The same of the grippers' forces [N], shape (F, G, 3).")
-    moving_gripper_torques = _moving("grippers/*/torque_Nm", "The same of their torques [N m], shape (F, G, 3).")
+    moving_points = _moving("points_m", "Positions of the rod with inertia [m], shape (F, M, 3), with dynamic=True.")
+    moving_gripper_forces = _moving("grippers/*/force_N", "Force of each gripper on it [N], shape (F, G, 3).")
+    moving_gripper_torques = _moving("grippers/*/torque_Nm", "Torque of each gripper on it [N m], shape (F, G, 3).")
 
 
 class MotionCheck(Document):
-    """A recorded motion against its scene's rod; of check() with motion."""
+    """A recorded motion compared with its scene's rod; result of check() with motion."""
 
     passed = _at("verdict", _passes, "Whether it is within the tolerance, 1 % of the length if none was given.")
-    reason = _at("reason", str, "Why, in words.")
+    reason = _at("reason", str, "Reason for the verdict, in words.")
     rms = _at("rms_m", float, "RMS distance of all points from the rod [m].")
     largest = _at("largest_m", float, "Largest distance of a point [m].")
     time = _at("frames/*/time_s", _array, "Of the frames [s], shape (F,).")
     errors = _at("frames/*/rms_m", _array, "RMS distance of each frame's points [m], shape (F,).")
-    lag = _at("lag_s", _number, "By which the recording is late [s], where that explains much of the distance; else None.")
+    lag = _at("lag_s", _number, "Lag of the recording [s], if it explains much of the distance; else None.")
 
     @property
     def causes(self) -> list[tuple[str, float]]:
-        """What would bring it nearer: (cause, RMS distance were it so [m]), the best first."""
+        """Candidate causes: (cause, RMS distance that it leaves [m]), the best first."""
         return [(cause["cause"], cause["rms_m"]) for cause in self["causes"]]
 
 
 class Regression(Document):
-    """Shape errors against a baseline; of regress()."""
+    """Shape errors compared with a baseline; result of regress()."""
 
     def __init__(self, text: str, json_text: str, junit: str, update: str = "") -> None:
         super().__init__(text, json_text)
         self._junit = junit
         self._update = update
 
-    passed = _at("verdict", _passes, "Whether no case fails; of an update, whether every scene was solved.")
+    passed = _at("verdict", _passes, "Whether no case fails; for an update, whether every scene was solved.")
 
     @property
     def reason(self) -> str:
-        """How many cases have become what; of an update that the baseline is written."""
+        """Number of cases with each verdict; for an update that has succeeded, that the baseline is written."""
         written = self._update and self.passed
         return f"{self._update} written" if written else self._text.splitlines()[-1]
 
     def to_junit(self) -> str:
-        """What `dlo regress --junit` writes: JUnit XML."""
+        """Returns JUnit XML, as `dlo regress --junit` writes it."""
         return self._junit
 
 
 class ScoreCard(Document):
-    """A simulator on the battery; of suite(). json is the document of `dlo suite --format json`, with one card."""
+    """Score card of a simulator; result of suite(). json is that of `dlo suite --format json`, with one card."""
 
     def __init__(
         self,
@@ -197,12 +197,12 @@ class ScoreCard(Document):
 
     @property
     def passed(self) -> Optional[bool]:
-        """Whether no error is worse than the baseline's; of an update, whether all was solved; None without one."""
+        """Whether no case fails; for an update, whether every scene was solved; None without a baseline."""
         return self._passed
 
     @property
     def reason(self) -> Optional[str]:
-        """The cases that have changed, and how many have become what; None without a baseline."""
+        """Cases that have changed, and the number of cases with each verdict; None without a baseline."""
         return None if self._changes is None else self._changes.rstrip("\n")
 
     @property
@@ -213,38 +213,38 @@ class ScoreCard(Document):
 
     @property
     def right(self) -> int:
-        """Scenes that are right."""
+        """Number of scenes that are right."""
         return int(self.card["total"]["right"])
 
     @property
     def causes(self) -> dict[str, int]:
-        """What is wrong, by name, and in how many scenes."""
+        """Number of scenes with each cause of an error, by the cause's name."""
         return dict(self.card["total"]["causes"])
 
     def to_markdown(self) -> str:
-        """What `dlo suite --markdown` writes."""
+        """Returns the card in Markdown, as `dlo suite --markdown` writes it."""
         return self._markdown
 
     def to_junit(self) -> str:
-        """What `dlo suite --junit` writes: JUnit XML."""
+        """Returns JUnit XML, as `dlo suite --junit` writes it."""
         return self._junit
 
     def to_html(self) -> str:
-        """What `dlo suite --report` writes, without its picture: a page with a badge."""
+        """Returns a page with a badge, as `dlo suite --report` writes it, but without its picture."""
         return self._html
 
 
 class Calibration(Document):
-    """Parameters that were fitted; of calibrate()."""
+    """Fitted parameters; result of calibrate()."""
 
     def __init__(self, text: str, json_text: str, toml: str) -> None:
         super().__init__(text, json_text)
         self._toml = toml
 
     def to_toml(self) -> str:
-        """What `dlo calibrate -o FILE.toml` writes: a file of parameters (of the force model) or of
-        materials (of measured shapes; "" where E is not identified and no shapes were predicted), or
-        stiffness and damping (of a recorded motion; "" where the stiffness is not identified)."""
+        """Returns the file that `dlo calibrate -o FILE.toml` writes: parameters of the force model; or from measured
+        shapes the rod and its fixture ("" if E is not identified and no shapes were predicted); or from a recorded
+        motion stiffness and damping ("" if the stiffness is not identified)."""
         return self._toml
 
 
@@ -253,7 +253,7 @@ def _fitted(key: str, doc: str) -> Attribute[Optional[float]]:
 
 
 class MaterialFit(Calibration):
-    """Young's modulus from measured shapes; of calibrate()."""
+    """Young's modulus from measured shapes; result of calibrate()."""
 
     youngs_modulus = _fitted(
         "youngs_modulus_Pa", "E [Pa]; None if it is not identifiable, or the rod is given by its bending_stiffness."
@@ -264,20 +264,20 @@ class MaterialFit(Calibration):
 
     @property
     def interval(self) -> tuple[Optional[float], Optional[float]]:
-        """The 95 % interval of what is fitted; an end is None where it is open."""
+        """The 95 % interval of E [Pa], or of EI [N m^2] if the rod is given by it; an end is None where it is open."""
         unit = "_Pa" if "youngs_modulus_Pa" in self.json else "_Nm2"
         low, high = self["interval_95" + unit]
         return low, high
 
 
 class MotionFit(Calibration):
-    """Stiffness and damping from a recorded motion; of calibrate()."""
+    """Stiffness and damping from a recorded motion; result of calibrate()."""
 
 
 class ForceModelFit(Calibration):
-    """The force model's parameters; of calibrate()."""
+    """The force model's parameters; result of calibrate()."""
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """For Scene.force_model and for programs of your own, in SI units."""
+        """Parameters for Scene.force_model and for other programs, in SI units."""
         return dict(self["parameters"])

@@ -1,4 +1,4 @@
-"""What goes wrong."""
+"""Exceptions of the module."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class InputError(ValueError):
 class ConvergenceError(RuntimeError):
     """A solver did not converge; the message says which one and why.
 
-    result: the shape so far, of which nothing may be concluded, or None.
+    result: the result so far, from which no conclusions can be drawn, or None.
     """
 
     def __init__(self, message: str, result: Any = None) -> None:

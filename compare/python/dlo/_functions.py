@@ -33,19 +33,19 @@ def many(scenes: Union[SceneLike, Iterable[SceneLike]]) -> list[SceneLike]:
 
 
 def _pair(shape: Any) -> tuple[Any, Any]:
-    """Returns points and their arc lengths, or None. A tuple of two points is no such pair."""
+    """Returns points, or the encoded name of a file, and their arc lengths or None."""
     return (file_name(shape, "shapes"), None) if is_file(shape) else shape_pair(shape)
 
 
 def shape_pair(shape: Any) -> tuple[Any, Any]:
-    """Returns points and their arc lengths, or None, for a shape that is no file."""
+    """Returns points and their arc lengths or None, for a shape that is no file. A tuple of two points is no pair."""
     if isinstance(shape, tuple) and len(shape) == 2 and _dimensions(shape[0]) != 1:
         return shape[0], shape[1]
     return shape, None
 
 
 def _recorded(motion: Any) -> Any:
-    """Returns the name of a file, or the rows of an array."""
+    """Returns the encoded name of a file, or the rows of an array."""
     return file_name(motion, "motion") if is_file(motion) else numpy.asarray(motion, float).tolist()
 
 
@@ -83,19 +83,17 @@ def solve(
     calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> _dlo.Solution:
-    """The shape of a scene's rod: `dlo solve`.
+    """Returns the shape of a scene's rod: `dlo solve`.
 
-    model: "energy" (the lowest energy), "exact" (the rod's balance, shot), "chain" (the force model's
-    polygon) or "force" (the force model, stepped to rest); None: "exact" of a scene with
-    stretch = True, else "energy". samples: M points at equal arc lengths from 0 to l; None: 101 of
-    energy and exact, the polygon's own points else. equilibrium: the number, from 1, of one of the
-    equilibria that solve_all() lists, stable ones first, by energy. near: points, a pair of points and arc lengths, or
-    the name of a file of these: the equilibrium of model energy that a local search from them leads to,
-    in place of the lowest. time: of a scene that moves, as it is then [s]; None: at the first pose.
-    materials: a file in which the name of a material is looked up instead. calibrated: a MaterialFit or MotionFit of
-    calibrate(), or a file that `dlo calibrate -o` wrote: its rod, and how clamps and camera are held, in
-    the place of the scene's.
-    limits: time_limit [s], terms, max_evaluations, max_steps, rest_tolerance.
+    model: "energy" (the lowest energy), "exact" (the rod's balance, by shooting), "chain" (the lowest energy of the
+    force model's polygon) or "force" (the force model, stepped to rest); None: "exact" for a scene with stretch = True,
+    else "energy". samples: M points at equal arc lengths from 0 to l; None: 101 for energy and exact, else the
+    polygon's own points. equilibrium: number, from 1, of an equilibrium in the list of solve_all(). near: points, a
+    pair of points and arc lengths, or the name of a file of these: model energy then returns the equilibrium to which
+    a local search from them leads, instead of the lowest. time: time of a scene that moves [s]; None: of the first
+    pose. materials: file in which the name of a material is looked up instead of the built-in one. calibrated: a
+    MaterialFit or MotionFit of calibrate(), or a file that `dlo calibrate -o` wrote: its rod, clamps and camera
+    replace those of the scene. limits: time_limit [s], terms, max_evaluations, max_steps, rest_tolerance.
 
     Raises InputError, or ConvergenceError, whose result is the shape so far or None.
     """
@@ -114,9 +112,9 @@ def solve_all(
     calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> _dlo.Equilibria:
-    """Every equilibrium that the energy model finds, with its stability: `dlo solve --all`.
+    """Returns every equilibrium that the energy model finds, with its stability: `dlo solve --all`.
 
-    time, materials, calibrated: as of solve().
+    samples, time, materials, calibrated: as in solve().
     """
     return _dlo.solve_all(data_of(scene, materials, time, calibrated), samples or 0, limits)
 
@@ -155,23 +153,24 @@ def check(
     calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> Union[_dlo.Check, MotionCheck]:
-    """How far points are from the shape that the scene's rod would take: `dlo check`.
+    """Compares points with the shape that the scene's rod would take: `dlo check`.
 
-    points: positions along the rod [m], shape (M, 3) or (M, 2) with z = 0; from either end, stretches
-    may be missing; or the name of a file that `dlo check --shape` reads, in metres. arc_length: where along the rod they are [m], shape (M,), if that is known.
-    tolerance: "1%" or 0.01 of the rod's length, "5% of deflection" (of a stiff rod, by its weight and loads),
-    or "2 mm"; None: 1 % of the length. measure: "rms" or "max", what is held against it. min_seen: the points are a part of the rod, and
-    of less than this share no verdict passes; None: they are all of it. register: what is unknown of
-    the points' frame, "known" (nothing), "translation", "upright" or "rigid". arc_lengths: "auto",
-    "file" (those given), "nearest" or "chord". modulus: look for E*/E. explain: of a shape that
-    fails look for candidate causes, which takes longer than all else. materials,
-    calibrated: as of solve().
+    points: positions in order along the rod, from either end [m], shape (M, 3), or (M, 2) with z = 0; parts of the rod
+    may be missing; or the name of a file that `dlo check --shape` reads, in metres. arc_length: arc lengths of the
+    points [m], shape (M,), if they are known. tolerance: "1%" or 0.01 of the rod's length, "5% of deflection" (of a
+    stiff rod, by its weight and loads), or "2 mm"; None: 1 % of the length. measure: "rms" or "max", the deviation that
+    is compared with the tolerance. min_seen: for points on a part of the rod, which then alone is judged: smallest
+    fraction of the rod that has to be observed to pass; None: the whole rod is judged. register: unknown part of the
+    points' frame: "known" (nothing), "translation", "upright" (and the rotation about the vertical) or "rigid".
+    arc_lengths: "auto", "file" (the given ones), "nearest" or "chord". modulus: whether E*/E is computed. explain:
+    whether causes are searched for if the verdict is "fail", which takes longer than all else. materials, calibrated:
+    as in solve().
 
-    With motion in place of points a MotionCheck of a scene that moves: rows of time [s], arc length, x, y,
-    z [m], shape (R, 5), or the name of a CSV file of these.
-    dynamic: hold it against the rod with inertia, of that damping [s], drag [N s/m^2] and
-    quadratic_drag [N s^2/m^3] (None: of calibrated, else 0), not at rest. begin: of the rod's motion [s]; None: the recording's.
-    frame_rate: of the rod [Hz]; None: as needed.
+    With motion instead of points: returns a MotionCheck of a scene that moves. motion: rows of time [s], arc length,
+    x, y, z [m], shape (R, 5), or the name of a CSV file of these. dynamic: whether the rod has inertia, with damping
+    [s], drag [N s/m^2] and quadratic_drag [N s^2/m^3] (None: of calibrated, else 0), or is at rest at every time.
+    begin: start time of the rod's motion [s]; None: that of a recording in track.start, else the first time of motion.
+    frame_rate: frame rate of the rod [Hz]; None: as needed.
     """
     what = locals()
     what["tolerance"] = None if tolerance is None else str(tolerance)
@@ -198,10 +197,10 @@ def compare(
     calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> _dlo.Comparison:
-    """How far the force model is from the energy model, and why: `dlo compare`.
+    """Compares the force model with the energy model and states the causes of their distance: `dlo compare`.
 
-    modulus: look for E*/E. plan: make a plan too, as `dlo compare --explain` does, at the cost of some
-    ten solves. time, materials, calibrated: as of solve().
+    modulus: whether E*/E is computed. plan: whether a plan is made too, as by `dlo compare --explain`, which
+    takes about ten solves. time, materials, calibrated: as in solve().
     """
     return _dlo.compare(data_of(scene, materials, time, calibrated), modulus, plan, limits)
 
@@ -217,10 +216,10 @@ def plan(
     materials: Optional[FileName] = None,
     calibrated: Optional[Calibrated] = None,
 ) -> Plan:
-    """What a scene needs, and bounds of what is neglected: `dlo solve --explain`.
+    """Plans how to solve a scene, with bounds of the effects that are neglected: `dlo solve --explain`.
 
-    target: wanted RMS error over the rod's length. gripper_speed: how fast a gripper moves [m/s].
-    time_limit: of all that the plan solves [s]. time, materials, calibrated: as of solve().
+    target: requested RMS error divided by the rod's length. gripper_speed: speed of a gripper [m/s].
+    time_limit: limit for all solves of the plan [s]. time, materials, calibrated: as in solve().
     """
     return Plan(*_dlo.plan(data_of(scene, materials, time, calibrated), target, gripper_speed, time_limit))
 
@@ -265,23 +264,29 @@ def calibrate(
     calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> Union[MaterialFit, ForceModelFit, MotionFit]:
-    """Young's modulus from measured shapes, or the force model's parameters: `dlo calibrate`.
+    """Fits Young's modulus to measured shapes, or the force model's parameters to the rod: `dlo calibrate`.
 
-    With shapes, one of each scene or several of one, or a single shape: a MaterialFit. A shape is an array of points
-    [m], a tuple of points and their arc lengths, or the name of a file in metres. density, torsional_stiffness: fit these as well;
-    natural_curvature: so many terms of it. clamp_angles, clamp_positions, clamp_rolls: how well the clamps are
-    known (standard deviations, "5 deg", "2 mm"); each shape's own are then fitted,
-    with same_clamps what all share, but for rolls, and with clamp_scatter each shape's own about it. camera_tilt: how level the camera is; one tilt of all shapes is then fitted. predict: each shape is left out in turn, and predicted. holdout: shapes that only judge, their scenes after the others ("held_out" of the document). options: "auto": where
-    residuals are systematic, the terms of natural curvature, and clamps as said, alike or each on its own, that predict
-    best ("tried" of the document); "given"; None: "auto" of three shapes or more, without these six. noise: standard deviation of one coordinate; None: estimated. segments: of your simulator's chain, whose springs are
-    then found too ("chains" of the document); segment_lengths [m] where they are unequal. register, arc_lengths: as of check(). time, materials,
-    calibrated: as of solve(), of all scenes.
+    With shapes: returns a MaterialFit. shapes: one of each scene, several of one scene, or a single shape: an array of
+    points [m], a tuple of points and their arc lengths, or the name of a file in metres. density, torsional_stiffness:
+    whether these are fitted as well. natural_curvature: number of its terms that are fitted as well. clamp_angles,
+    clamp_positions, clamp_rolls: standard deviations of the clamps, such as "5 deg" or "2 mm"; if > 0, the clamps of
+    each shape are fitted, or with same_clamps (except for rolls) those that all shapes share, and with clamp_scatter,
+    a standard deviation too, the differences of each shape's directions from them. camera_tilt: standard deviation of
+    the camera's tilt; if > 0, one tilt of all shapes is fitted. predict: whether each shape is predicted from the
+    others. holdout: shapes that are judged, not fitted ("held_out" of the document); their scenes follow those of the
+    others. options: "auto": if residuals are systematic, the terms of natural curvature and the errors of clamps, none,
+    shared or of each shape, are those that predict best ("tried" of the document); "given"; None: "auto" for three
+    shapes or more if neither natural curvature nor errors of clamps are requested. noise: standard deviation of one
+    coordinate; None: estimated. segments: number of segments of a chain whose springs are computed too ("chains" of the
+    document); segment_lengths: their lengths [m], if unequal. register, arc_lengths: as in check(). time, materials,
+    calibrated: as in solve(), for all scenes.
 
-    With motion, markers recorded on the rod of one scene that moves: a MotionFit with stiffness over
-    mass and damping. It is an array of time [s], arc length, x, y, z [m] by row, or a file of these.
+    With motion, markers recorded on the rod of one scene that moves: returns a MotionFit, with stiffness over mass and
+    damping. motion: rows of time [s], arc length, x, y, z [m], shape (R, 5), or the name of a CSV file of these.
 
-    Without: a ForceModelFit of the scenes. holdout: scenes that only judge. target: RMS deviation
-    wanted over the length (0.001 if not given). points: N; None: as the target needs.
+    With neither: returns a ForceModelFit of the scenes. holdout: scenes that are judged, not fitted. target: requested
+    RMS deviation divided by the length; None: 0.001. points: N; None: as the target requires (law hooke), or the
+    scene's (law paper).
     """
     what = locals()
     data = [data_of(scene, materials, time, calibrated) for scene in many(scenes)]

@@ -14,7 +14,7 @@ __all__ = ["Batch", "ForceModel"]
 
 
 class ForceModel(_dlo.ForceModel):
-    """A scene's force model in a loop of your own: step, move grippers and walls, read points.
+    """Force model of a scene for a loop of your own: step, move grippers and walls, read points.
 
         loop = dlo.ForceModel(scene)
         points = numpy.empty((len(loop), 3))
@@ -23,12 +23,12 @@ class ForceModel(_dlo.ForceModel):
             loop.step(30)
             loop.points(out=points)
 
-    points: where it starts [m], shape (N, 3); None: straight from one gripper, between several where
-    its polygon rests. grip_stiffness: of springs that hold the points instead of rigid grips, as a
-    haptic device feels them [N/m]; None: rigid. N, law and stepper are scene.force_model's.
+    points: initial points [m], shape (N, 3); None: straight from one gripper, between several the polygon's
+    rest shape. grip_stiffness: stiffness [N/m] of springs that hold the points instead of rigid grips, as a
+    haptic device feels them; None: rigid. N, law and stepper are those of scene.force_model.
 
-    Threads may share one: each call has it to itself. step() lets others run meanwhile. A signal handler
-    that interrupts step() may not call it: RuntimeError.
+    Threads may share an object: its calls exclude each other, and step() lets other threads run. Calls by a
+    signal handler that interrupts step() raise RuntimeError.
     """
 
     def __init__(
@@ -49,10 +49,9 @@ class ForceModel(_dlo.ForceModel):
 
 
 class Batch(_dlo.Batch):
-    """Many rods at once, eight in lockstep, on several threads: for tables of simulations.
+    """Steps many rods at once, eight in lockstep, on several threads: for tables of simulations.
 
-    All scenes have the same force_model.points, law and stepper, and start as a ForceModel of each.
-    threads: 0: all cores.
+    Scenes must have the same force_model.points, law and stepper; they start like ForceModel. threads: 0: all cores.
     """
 
     def __init__(self, scenes: Iterable[SceneLike], *, threads: int = 0) -> None:

@@ -31,7 +31,7 @@ Direction = Union[Quantity, Vector]
 """An angle in the x-y plane from +x ("30 deg", or a number in rad), or a vector of any length."""
 
 class _Fixed(dict[str, Any]):
-    """Copy of a table of a scene, which refuses changes, because they would have no effect on the scene."""
+    """Copy of a table of a scene. It refuses changes, because they would have no effect on the scene."""
 
     def _refuse(self, *_: Any, **__: Any) -> Any:
         raise TypeError("a copy of what the scene has (allowed: to set the field to a whole new value)")
@@ -108,9 +108,9 @@ def _of(dimension: str) -> Callable[[Any], Any]:
 class Part(Strict):
     """An element of a scene: a table of its file.
 
-    A part is read in SI units. Set, it takes numbers in SI units or text with a unit; a scene that
-    holds it is read anew at once, so that a value out of range is an InputError that names the key,
-    and the scene stays as it was. None takes a key out.
+    Fields are read in SI units, and set to numbers in SI units or texts with a unit. A scene that contains
+    the part is checked at once: a value out of range raises InputError that names the key, and the scene is
+    unchanged. None removes a key.
     """
 
     _name = ""  # name of the table in a scene file
@@ -155,33 +155,33 @@ class Part(Strict):
 
 
 class Gripper(Part):
-    """What holds a point of the rod; clamp() and pin() make one."""
+    """A clamp or a pin that holds a point of the rod; clamp() and pin() make one."""
 
     _name = "gripper"
     at = _field("at", _of("length"), "Arc length that is held [m].")
-    position = _field("position", _of("length"), "Where [m], shape (3,).")
+    position = _field("position", _of("length"), "Position of that point [m], shape (3,).")
     hold = _field("hold", lambda value: value or "clamp", '"clamp" or "pin".')
     direction = _field(
-        "direction", _direction, "Of a clamp: unit vector along growing arc length, shape (3,)."
+        "direction", _direction, "Direction of a clamp: unit vector along growing arc length, shape (3,)."
     )
     roll = _field("roll", _of("angle"), "Rotation about the direction that the clamp holds [rad].")
     frame = _field("frame", _of("number"), "Rows d1, d2, d3 that the clamp holds, shape (3, 3).")
-    quaternion = _field("quaternion", _of("number"), "The same as [w, x, y, z], shape (4,).")
-    turns = _field("turns", as_it_is, "Whole turns more than the least, beside a frame.")
-    pose = _field("pose", as_it_is, "How it moves: tables of time, position and, of a clamp, direction and roll.")
-    trajectory = _field("trajectory", as_it_is, "A CSV file of poses, or of two markers, beside the scene's.")
-    cutoff = _field("cutoff", _of("frequency"), "Of the file's poses: what is faster is left out [Hz].")
+    quaternion = _field("quaternion", _of("number"), "Frame as a quaternion [w, x, y, z], shape (4,).")
+    turns = _field("turns", as_it_is, "Whole turns that are added to frame or quaternion.")
+    pose = _field("pose", as_it_is, "Poses of its motion: tables of time, position and, of clamps, direction and roll.")
+    trajectory = _field("trajectory", as_it_is, "Name of a CSV file of poses or two markers, in the scene's folder.")
+    cutoff = _field("cutoff", _of("frequency"), "Frequency above which motion is removed from the file's poses [Hz].")
 
 
 class Load(Part):
-    """A force that keeps its direction, or turns with the rod, a mass that hangs, a couple; load() makes one."""
+    """A force or the weight of a mass, and a couple, in space or rotating with the rod; load() makes one."""
 
     _name = "load"
     at = _field("at", _of("length"), "Arc length [m].")
-    force = _field("force", _of("force"), "[N], shape (3,).")
-    mass = _field("mass", _of("mass"), "[kg], instead of a force.")
-    torque = _field("torque", _of("torque"), "Of a couple [N m], shape (3,).")
-    follows = _field("follows", as_it_is, "Whether both are along d1, d2 and the tangent, and turn with them.")
+    force = _field("force", _of("force"), "Force [N], shape (3,).")
+    mass = _field("mass", _of("mass"), "Mass of a body that hangs there [kg], instead of a force.")
+    torque = _field("torque", _of("torque"), "Couple [N m], shape (3,).")
+    follows = _field("follows", as_it_is, "Whether both have components along d1, d2, tangent, and rotate with them.")
 
 
 class DistributedLoad(Part):
@@ -191,7 +191,7 @@ class DistributedLoad(Part):
     start = _field("from", _of("length"), "Where it begins [m] (`from` in a file); None: at 0.")
     end = _field("to", _of("length"), "Where it ends [m] (`to` in a file); None: at the rod's end.")
     force_per_length = _field(
-        "force_per_length", _of("force_per_length"), "[N/m], shape (3,); or (K, 3), from start to end."
+        "force_per_length", _of("force_per_length"), "Values [N/m], shape (3,); or (K, 3), from start to end."
     )
 
 
@@ -199,25 +199,25 @@ class Obstacle(Part):
     """A body that the rod cannot pass; obstacle() makes one."""
 
     _name = "obstacle"
-    point = _field("point", _of("length"), "Of a plane, or the body's centre [m], shape (3,).")
+    point = _field("point", _of("length"), "Point of a plane, or centre of a body [m], shape (3,).")
     shape = _field(
         "shape", lambda value: value or "plane", '"plane", "sphere", "cylinder", "capsule", "box".'
     )
-    normal = _field("normal", _direction, "Of a plane, to the free side; of a box an edge.")
-    axis = _field("axis", _direction, "Of a cylinder, a capsule or a box.")
-    radius = _field("radius", _of("length"), "[m]; of a box that of its edges.")
-    length = _field("length", _of("length"), "Of a capsule, between its centres [m].")
-    size = _field("size", _of("length"), "Of a box [m], shape (3,).")
-    stiffness = _field("stiffness", _of("foundation"), "Force per depth and length [N/m^2].")
+    normal = _field("normal", _direction, "Normal of a plane, to the free side; for a box the direction of an edge.")
+    axis = _field("axis", _direction, "Axis of a cylinder or a capsule; for a box the direction of an edge.")
+    radius = _field("radius", _of("length"), "Radius [m]; for a box that of its edges.")
+    length = _field("length", _of("length"), "Length of a capsule between the centres of its caps [m].")
+    size = _field("size", _of("length"), "Edges of a box [m], shape (3,).")
+    stiffness = _field("stiffness", _of("foundation"), "Force per depth and length [N/m^2]; None: rigid.")
     friction = _field("friction", _of("number"), "Coulomb's coefficient [-]; no model has it.")
     touches = _field("touches", lambda value: value or "surface", '"surface" or "axis" of the rod.')
-    pose = _field("pose", as_it_is, "How it moves: tables of time and point.")
-    trajectory = _field("trajectory", as_it_is, "A CSV file of poses, beside the scene's.")
-    cutoff = _field("cutoff", _of("frequency"), "Of the file's poses: what is faster is left out [Hz].")
+    pose = _field("pose", as_it_is, "Poses of its motion: tables of time and point.")
+    trajectory = _field("trajectory", as_it_is, "Name of a CSV file of poses, in the scene's folder.")
+    cutoff = _field("cutoff", _of("frequency"), "Frequency above which motion is removed from the file's poses [Hz].")
 
 
 class Section(Part):
-    """A part of the rod that is another one; section() makes one."""
+    """An interval of the rod with other properties; section() makes one."""
 
     _name = "section"
     start = _field("from", _of("length"), "Where it begins [m] (`from` in a file).")
@@ -226,9 +226,9 @@ class Section(Part):
     mass_per_length = _field("mass_per_length", _of("mass_per_length"), "rho A [kg/m].")
     torsional_stiffness = _field("torsional_stiffness", _of("section_stiffness"), "GJ [N m^2].")
     natural_curvature = _field(
-        "natural_curvature", _of("curvature"), "Of its stress-free shape [1/m]: k or [x, y]."
+        "natural_curvature", _of("curvature"), "Curvature of its stress-free shape [1/m]: k or [x, y]."
     )
-    natural_twist = _field("natural_twist", _of("twist"), "Of its stress-free shape [rad/m].")
+    natural_twist = _field("natural_twist", _of("twist"), "Twist of its stress-free shape [rad/m].")
 
 
 def _setting(key: str, doc: str) -> property:
@@ -243,21 +243,21 @@ def _setting(key: str, doc: str) -> property:
 
 
 class Settings(Part):
-    """Of which a scene has one; a dict will do. What is not set is read as it is derived."""
+    """A table of which a scene has one; it can be set to a dict. Fields that are not set have their default."""
 
 
 class ForceModelSettings(Settings):
-    """How a scene is stepped: scene.force_model."""
+    """Settings of the force model: scene.force_model."""
 
     _name = "force_model"
-    points = _setting("points", "N.")
+    points = _setting("points", "Number of points N.")
     law = _setting("law", '"hooke" (linear) or "paper" (cubic).')
-    joint_law = _setting("joint_law", 'Of model chain alone: "linear", "binormal" or "hooke"; None: as law.')
+    joint_law = _setting("joint_law", 'Joint law of model chain: "linear", "binormal" or "hooke"; None: as law.')
     bookkeeping = _setting("bookkeeping", '"consistent" or "paper".')
-    stepper = _setting("stepper", '"auto", or one of the paper\'s.')
-    bending_rule = _setting("bending_rule", "Of the law paper.")
+    stepper = _setting("stepper", '"auto", "basic", "limited", "relative", "dynamic", "verlet" or "implicit".')
+    bending_rule = _setting("bending_rule", "Rule for c_b of the law paper.")
     design_curvature = _setting("design_curvature", "k of Formula 21 [1/m]; None: derived.")
-    point_weight = _setting("point_weight", "Of every point [N]; None: derived.")
+    point_weight = _setting("point_weight", "Weight of every point [N]; None: derived.")
     c_b = _setting("c_b", "[N]; None: derived.")
     c_c = _setting("c_c", "[N]; None: derived.")
     c_F = _setting("c_F", "[m/N]; None: derived.")
@@ -266,23 +266,23 @@ class ForceModelSettings(Settings):
 
 
 class Medium(Settings):
-    """What the rod is immersed in, which bears it, and drags it where it streams: scene.medium."""
+    """Medium in which the rod is immersed, with buoyancy, and with drag if it streams: scene.medium."""
 
     _name = "medium"
-    density = _field("density", _of("density"), "[kg/m^3]; None: nothing bears the rod.")
-    velocity = _field("velocity", _of("velocity"), "Of a steady stream [m/s], shape (3,); None: at rest.")
+    density = _field("density", _of("density"), "Density [kg/m^3]; None: no buoyancy.")
+    velocity = _field("velocity", _of("velocity"), "Velocity of a steady stream [m/s], shape (3,); None: at rest.")
     normal_drag = _field("normal_drag", _of("number"), "Coefficient across the rod [-].")
     tangential_drag = _field("tangential_drag", _of("number"), "Coefficient along the rod [-]; None: 0.")
 
 
 class TrackRates(Settings):
-    """How a scene that moves is looked at: scene.track."""
+    """Sampling rates, and the start of a rod with inertia, of a scene that moves: scene.track."""
 
     _name = "track"
-    frame_rate = _setting("frame_rate", "Frames a second [Hz].")
-    obstacle_rate = _setting("obstacle_rate", "How often obstacles move [Hz]; None: with every frame.")
+    frame_rate = _setting("frame_rate", "Frames per second [Hz].")
+    obstacle_rate = _setting("obstacle_rate", "Rate at which obstacles are moved [Hz]; None: in every frame.")
     start = _setting("start", "File of a shape or a recording from which a rod with inertia starts; None: its equilibrium.")
-    step_rate = _setting("step_rate", "Steps of the force model a second [Hz].")
+    step_rate = _setting("step_rate", "Steps of the force model per second [Hz].")
 
 
 def clamp(
@@ -297,9 +297,9 @@ def clamp(
 ) -> Gripper:
     """A gripper that holds position [m] and direction of the rod at an arc length [m].
 
-    direction may be left out beside a frame or a quaternion, whose d3 it is. roll (an angle), frame
-    (rows d1, d2, d3) or quaternion [w, x, y, z] also keep the rod from rotating about itself; turns
-    are whole turns more than the least.
+    direction may be omitted if a frame or a quaternion is given; it is then their d3. roll (an angle), frame
+    (rows d1, d2, d3) or quaternion [w, x, y, z] also keep the rod from rotating about its tangent; turns
+    are whole turns that are added to frame or quaternion, which alone mean at most half a turn.
     """
     return Gripper(**locals())
 
@@ -336,7 +336,7 @@ def distributed_load(
 ) -> DistributedLoad:
     """A force per length [N/m] from an arc length to another [m], or on the whole rod.
 
-    Rows of three are forces per length at equal distances from start to end, linear between.
+    Rows of three are forces per length at equal distances from start to end, linear between them.
     """
     return DistributedLoad(**_between(locals()))
 
@@ -354,10 +354,10 @@ def obstacle(
     friction: Optional[float] = None,
     touches: Optional[str] = None,
 ) -> Obstacle:
-    """A plane (point [m], normal to the free side), or another shape with what it needs.
+    """A plane (point [m], normal to the free side), or a body whose centre is point.
 
     shape: "sphere" (radius), "cylinder" (axis, radius), "capsule" (axis, length, radius) or "box"
-    (size, axis, normal, radius of its edges). stiffness [N/m^2]: of one that yields.
+    (size, axis, normal, radius of its edges). stiffness [N/m^2]: None for a rigid obstacle.
     """
     return Obstacle(**locals())
 
@@ -372,5 +372,5 @@ def section(
     natural_curvature: Optional[Union[Quantity, Sequence[Quantity]]] = None,
     natural_twist: Optional[Quantity] = None,
 ) -> Section:
-    """A part of the rod, from an arc length to another [m], that is another one or bent at rest."""
+    """An interval of the rod, from an arc length to another [m], with other properties or stress-free shape."""
     return Section(**_between(locals()))

@@ -39,21 +39,20 @@ class Scene(Strict):
         dlo.Scene(length="2 m", diameter="6 mm", material="silicone",
                   grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction="30 deg")])
 
-    material is a name (dlo.materials()) or {"youngs_modulus": "3 MPa", "density": 1150}. A tube has an
-    inner_diameter too, a flat rod width (along d1) and thickness (along d2) instead. A rod may be given
-    by bending_stiffness (EI [N m^2]; a pair about d1 and d2) and mass_per_length [kg/m] instead.
-    A cable has layers instead, from the inside out, such as {"outer_diameter": "2 mm", "material": "copper"}
-    or {"strands": 6, "strand_diameter": "2 mm", "material": "copper"}, and layer_bound "bonded" or "free".
-    helix is {"radius": "2 cm", "pitch": "1 cm"} of the stress-free shape, pitch > 0 right-handed. rest_shape
-    is a file of its points or the points themselves [m], shape (M, 3); shape (M, 6) has d1 of the frame
-    there too. rest_shape_error says what arcs leave of the points, rest_shape_angle what of d1.
-    force_model, medium, track: a dict, or ForceModelSettings, Medium and TrackRates. materials: a file that
-    names are looked up in instead.
+    material is a name (dlo.materials()) or {"youngs_modulus": "3 MPa", "density": 1150}. A tube has an inner_diameter
+    too, a flat rod width (along d1) and thickness (along d2) instead. A rod may be given by bending_stiffness
+    (EI [N m^2]; a pair about d1 and d2) and mass_per_length [kg/m] instead. A cable has layers instead, from the
+    inside out, such as {"outer_diameter": "2 mm", "material": "copper"} or
+    {"strands": 6, "strand_diameter": "2 mm", "material": "copper"}, and layer_bound "bonded" or "free".
+    helix is {"radius": "2 cm", "pitch": "1 cm"} of the stress-free shape, pitch > 0 right-handed. rest_shape is a
+    file of its points or the points themselves [m], shape (M, 3); shape (M, 6) has d1 of the frame there too.
+    rest_shape_error and rest_shape_angle are the largest errors of the rod's arcs in points and d1. force_model,
+    medium, track: a dict, or ForceModelSettings, Medium and TrackRates. materials: a file in which names of materials
+    are looked up instead of the built-in one.
 
-    Every field can be read (in SI units) and set (None: as if it had not been given). Whatever is
-    set goes through the reader of scene files: a value out of range is an InputError that names
-    the key at fault, and the scene stays as it was. Of fields that only fit together, replace()
-    makes a scene with all of them changed at once.
+    Every field can be read (in SI units) and, unless it is derived, set (None: as if it had not been given). The reader
+    of scene files checks the value: if it is out of range, InputError names the key, and the scene is unchanged.
+    replace() returns a scene with several fields changed at once, for fields that are valid only together.
     """
 
     def __init__(
@@ -186,7 +185,7 @@ class Scene(Strict):
 
     @classmethod
     def from_file(cls, path: FileName, *, materials: Optional[FileName] = None) -> "Scene":
-        """Reads a scene file (TOML). materials: a file that names are looked up in instead."""
+        """Reads a scene file (TOML, or a MuJoCo model of a cable). materials: as in Scene."""
         name = file_name(path, "scene", "a dlo.Scene, or the name of a scene file")
         return cls._read(*file_text(name), materials_file(materials))
 
@@ -194,30 +193,30 @@ class Scene(Strict):
     def from_text(
         cls, text: str, name: str = "scene", *, materials: Optional[FileName] = None
     ) -> "Scene":
-        """Reads a scene file's text. name: what messages call it."""
+        """Reads the text of a scene file. name: name of the file in messages. materials: as in Scene."""
         require("text", text, TEXT)
         require("name", name, TEXT)
         return cls._read(text, name, materials_file(materials))
 
     def to_toml(self) -> str:
-        """The text of a scene file."""
+        """Returns the scene as the text of a scene file."""
         return _dlo.toml_text(self._document())
 
     def document(self, points: Optional[int] = None) -> dict[str, Any]:
-        """The scene in SI units with all that follows from it: `dlo scene --format json`. points: N of
-        the polygon in "force_model"; None: the scene's."""
+        """Returns the scene in SI units with the quantities that follow from it: `dlo scene --format json`.
+        points: N of the polygon in "force_model"; None: the scene's."""
         document: dict[str, Any] = json.loads(_dlo.scene_document(self._data, points))
         return document
 
     def copy(self) -> "Scene":
-        """The same scene, to be changed on its own."""
+        """Returns an equal scene that can be changed independently."""
         return self._from_document(self._document(), self._file, self._materials, self._data)
 
     def _with_materials(self, path: FileName) -> "Scene":
         return self._from_document(self._document(), self._file, materials_file(path))
 
     def replace(self, **fields: Any) -> "Scene":
-        """A copy with other fields, all changed at once."""
+        """Returns a copy with other fields, all changed at once."""
         scene = self.copy()
 
         def change() -> None:
@@ -291,15 +290,15 @@ class Scene(Strict):
     def _derived(key: str, doc: str) -> property:  # type: ignore[misc]
         return property(lambda self: getattr(self._data, key), doc=doc)
 
-    name = _top_field("name", "For people.")
-    gravity = _top_field("gravity", "[m/s^2], shape (3,).")
-    length = _top_field("length", "Of the rod [m].")
-    diameter = _top_field("diameter", "Of the rod [m]; 0: not known.")
-    inner_diameter = _top_field("inner_diameter", "Of a tube [m]; 0: solid.")
-    width = _top_field("width", "Of a rectangular section, along d1 [m]; 0: it is none.")
-    thickness = _top_field("thickness", "Of a rectangular section, along d2 [m]; 0: it is none.")
+    name = _top_field("name", "Title for people.")
+    gravity = _top_field("gravity", "Gravity [m/s^2], shape (3,).")
+    length = _top_field("length", "Length of the rod [m].")
+    diameter = _top_field("diameter", "Diameter of the rod [m]; 0: not known.")
+    inner_diameter = _top_field("inner_diameter", "Inner diameter of a tube [m]; 0: solid.")
+    width = _top_field("width", "Edge of a rectangular section along d1 [m]; 0: not rectangular.")
+    thickness = _top_field("thickness", "Edge of a rectangular section along d2 [m]; 0: not rectangular.")
     bending_stiffness = _top_field(
-        "bending_stiffness", "EI [N m^2], given or of the material; about d1 of two."
+        "bending_stiffness", "EI [N m^2], given or of the material; about d1 if there are two."
     )
     mass_per_length = _top_field("mass_per_length", "rho A [kg/m], given or of the material.")
     axial_stiffness = _top_field("axial_stiffness", "EA [N], given, of the material, or assumed.")
@@ -307,9 +306,9 @@ class Scene(Strict):
         "torsional_stiffness", "section_stiffness", "GJ as given [N m^2], or None."
     )
     natural_curvature = _rod_field(
-        "natural_curvature", "curvature", "As given [1/m]: k, [x, y], or rows of such; or None."
+        "natural_curvature", "curvature", "Natural curvature as given [1/m]: k, [x, y], or rows of such; or None."
     )
-    natural_twist = _rod_field("natural_twist", "twist", "As given [rad/m], or None.")
+    natural_twist = _rod_field("natural_twist", "twist", "Natural twist as given [rad/m], or None.")
     rest_shape_error = _derived(
         "rest_shape_error", "Largest distance of rest_shape's points from the rod's arcs [m]; NaN without."
     )
@@ -317,37 +316,37 @@ class Scene(Strict):
         "rest_shape_angle", "Largest angle of a given d1 from that of the rod's arcs [rad]; NaN without."
     )
     joint_stiffness = _rod_field(
-        "joint_stiffness", "joint_stiffness", "Of a chain's joints, as given [N m/rad], or None."
+        "joint_stiffness", "joint_stiffness", "Stiffness of a chain's joints as given [N m/rad], or None."
     )
-    joint_spacing = _rod_field("joint_spacing", "length", "Of a chain, as given [m], or None.")
+    joint_spacing = _rod_field("joint_spacing", "length", "Distance of a chain's joints as given [m], or None.")
     grippers = _part_field("grippers", "A tuple of Gripper; set any iterable of them.")
     loads = _part_field("loads", "A tuple of Load.")
     distributed_loads = _part_field("distributed_loads", "A tuple of DistributedLoad.")
     obstacles = _part_field("obstacles", "A tuple of Obstacle.")
     sections = _part_field("sections", "A tuple of Section.")
     youngs_modulus = _derived("youngs_modulus", "E of the material [Pa]; 0: not known.")
-    density = _derived("density", "Of the material [kg/m^3]; 0: not known.")
-    mass = _derived("mass", "Of the rod, with sections [kg].")
+    density = _derived("density", "Density of the material [kg/m^3]; 0: not known.")
+    mass = _derived("mass", "Mass of the rod, with sections [kg].")
     gamma = _derived("gamma", "w l^3 / (EI) [-]: below 0.1 nearly straight, from 1000 on a rope.")
-    planar = _derived("planar", "Whether grips, forces and obstacles in reach share a plane.")
+    planar = _derived("planar", "Whether the rod stays in a plane that contains grips, forces and obstacles in reach.")
     material: Attribute[Optional[Union[str, dict[str, Any]]]] = _given(
-        "material", "Its name, or a copy of its table; None of a rod that is given by EI and mass."
+        "material", "Name of the material, or a copy of its table, as given; or None."
     )
-    layers = _given("layers", "Of a cable, as given: tables from the inside out; or None.")
+    layers = _given("layers", "Layers of a cable as given: tables from the inside out; or None.")
     layer_bound: Attribute[Optional[str]] = _given(
-        "layer_bound", 'Of a cable, as given: "bonded" or "free" to slip; or None, which is bonded.'
+        "layer_bound", 'Bound of a cable as given: "bonded" or "free" to slip; or None, which is bonded.'
     )
-    helix: Attribute[Optional[dict[str, Any]]] = _given("helix", "A copy of its table, or None.")
-    rest_shape = _given("rest_shape", "As given: a file's name or points; or None.")
-    force_model = _set_of("force_model", ForceModelSettings, "How it is stepped; set a dict or ForceModelSettings.")
-    medium = _set_of("medium", Medium, "What the rod is immersed in; set a dict or Medium.")
-    track = _set_of("track", TrackRates, "How it is looked at while it moves; set a dict or TrackRates.")
+    helix: Attribute[Optional[dict[str, Any]]] = _given("helix", "Helix as given: a copy of its table; or None.")
+    rest_shape = _given("rest_shape", "Stress-free shape as given: a file's name or points; or None.")
+    force_model = _set_of("force_model", ForceModelSettings, "Its settings; set a dict or ForceModelSettings.")
+    medium = _set_of("medium", Medium, "Medium in which the rod is immersed; set a dict or Medium.")
+    track = _set_of("track", TrackRates, "Sampling rates of its motion; set a dict or TrackRates.")
     del _top_field, _rod_field, _part_field, _given, _set_of, _derived
 
     stretch: Attribute[Union[bool, str]] = Attribute(
         lambda self: self._rod.get("stretch", False),
         lambda self, value: self._put_one("stretch", value),
-        doc='Whether it stretches by its tension over EA, which model exact alone takes; "auto": where it matters.',
+        doc='Whether model exact includes the axial strain, tension over EA; "auto": if it matters.',
     )
 
 
@@ -376,8 +375,8 @@ def data_of(
 
 
 def materials(file: Optional[FileName] = None) -> list[dict[str, Any]]:
-    """The materials that a scene can name: name, youngs_modulus [Pa], density [kg/m^3], source.
+    """Returns the materials that a scene can name: name, youngs_modulus [Pa], density [kg/m^3], source.
 
-    file: that has them; None: those that are built in.
+    file: name of a file of materials; None: the built-in ones.
     """
     return _dlo.materials(materials_file(file))

@@ -57,17 +57,16 @@ def sweep(
     materials: Optional[FileName] = None,
     **limits: Any,
 ) -> dict[str, NDArray[Any]]:
-    """All combinations of the values of some fields, as columns: `dlo sweep`.
+    """Solves a scene with all combinations of the values of some fields: `dlo sweep`.
 
-    vary: of each field (a path in the scene file such as "rod.length" or "gripper.0.direction", or
-    "gamma", which scales gravity) its values, numbers, vectors or text, or a range as the command
-    takes it, "log:0.1:10:5". The last field changes fastest. model: "energy", "exact", "chain",
-    "force", "compare" or "compare-chain". threads: 0: all cores. materials: as of solve().
+    vary: for each field (a path in the scene file such as "rod.length" or "gripper.0.direction", or
+    "gamma", which scales gravity) its values, numbers, vectors or text, or a range as in the command,
+    "log:0.1:10:5". The last field changes fastest. model: "energy", "exact", "chain", "force", "compare"
+    or "compare-chain". threads: number of threads; 0: all cores. materials: as in solve().
 
-    Returns a dict of arrays of shape (rows,), at most a million, by the names of the command's columns:
-    "row" int64; "status", "optimum" and a field with a value that is no number str ("" where there is
-    none); all others float64, with all digits (NaN where there is none). A row whose column "status"
-    is not "ok" has no results.
+    Returns a dict of arrays of shape (rows,), at most a million, by the names of the command's columns: "row" int64;
+    "status", "optimum" and a field with a value that is no number str ("" where there is none); all others float64,
+    with all digits (NaN where there is none). A row whose column "status" is not "ok" has no results.
     """
     what = locals()
     made = as_scene(scene, materials)
@@ -88,11 +87,11 @@ def stability(
     map_steps: int = 20000,
     threads: int = 0,
 ) -> Stability:
-    """Where the force model's steppers break: `dlo stability`.
+    """Tests the stability of the force model's steppers: `dlo stability`.
 
-    Without map: hard cases, those whose name contains `case`, with these steppers (all), of at most
-    max_steps. map: "cF-cc" or "cF-ch", the largest stable c_F of a scene (None: the hard cases' rod),
-    predicted and measured, on columns x rows rods of map_steps steps each.
+    Without map: runs the hard cases whose name contains `case`, with these steppers (none: all), of at most
+    max_steps each. map: "cF-cc" or "cF-ch", the largest stable c_F of a scene (None: the hard cases' rod),
+    predicted and measured, with columns x rows rods of map_steps steps each. threads: 0: all cores.
     """
     if map is None:
         if scene is not None:
@@ -106,10 +105,10 @@ def stability(
 def bench(
     scenes: Union[SceneLike, Iterable[SceneLike]] = (), *, seconds: float = 40.0, repeats: int = 5
 ) -> Benchmark:
-    """What accuracy costs with every model: `dlo bench`.
+    """Measures speed and error of all models: `dlo bench`.
 
-    scenes: one or more; none: a steel rod and one a hundred times softer. seconds: of all runs.
-    repeats: that a median is taken of.
+    scenes: one or more; none: a steel rod and one a hundred times softer. seconds: time for all runs.
+    repeats: runs per median.
     """
     return Benchmark(*_dlo.bench(list(map(data_of, many(scenes))), seconds, repeats))
 
@@ -130,16 +129,14 @@ def regress(
     calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> Regression:
-    """Shape errors against a baseline under version control: `dlo regress`.
+    """Compares shape errors with a baseline under version control: `dlo regress`.
 
-    baseline: a file's name; update: write it anew, of these scenes and no others. model: "force" or
-    "chain". An error may change by relative of it and absolute of the rod's length. tolerance: in place
-    of absolute, "1%" of the length or "5% of deflection" (of a stiff rod, by its weight and loads). programs:
-    somebody else's, "NAME=COMMAND" as the command's --with. time, materials,
-    calibrated: as of solve().
+    baseline: name of its file. update: whether it is replaced by these scenes' errors alone. model: "force" or "chain".
+    An error may change by the fraction relative of the baseline's plus the fraction absolute of the rod's length.
+    tolerance: instead of absolute, "1%" of the length or "5% of deflection" (of a stiff rod, by its weight and loads).
+    programs: other programs, "NAME=COMMAND" as in the command's --with. time, materials, calibrated: as in solve().
 
-    Raises InputError, or ConvergenceError where a scene of an update is not solved and the baseline is
-    left as it was.
+    Raises InputError, or ConvergenceError where a scene of an update is not solved and the baseline is left as it was.
     """
     what = locals()
     data = [data_of(scene, materials, time, calibrated) for scene in many(scenes)]
@@ -169,21 +166,19 @@ def suite(
     relative: float = 0.01,
     absolute: float = 1e-6,
 ) -> ScoreCard:
-    """The score card of a simulator that is a function: `dlo suite --with`.
+    """Makes the score card of a simulator that is a function: `dlo suite --with`.
 
-    run(scene, N) returns the rod at rest as points [m], shape (N, 3), as a pair of these and their arc
-    lengths [m], shape (N,), or as what has both (a dlo.Solution). N is points, then 2 and 4 times as many.
-    scene.document(N) is the scene in SI units, as programs get it. NotImplementedError says that there
-    is no such scene; any other exception is a failure, of which the card says why. It is called once at a
-    time, from any thread.
+    run(scene, N) returns the rod at rest as points [m], shape (N, 3), as a pair of these and their arc lengths [m],
+    shape (N,), or as an object with both (a dlo.Solution). N is points, then 2 and 4 times as many. scene.document(N)
+    is the scene in SI units, as for other programs. NotImplementedError means that the scene is not supported; any
+    other exception is a failure, and the card states it. One call is made at a time, from any thread.
 
-    name: of the card; None: the function's. scenes: classes, or names of scenes; none: all. threads: of
-    all else; 0: all cores. time_limit: of each run, and of each reference [s]. A run is ended between two
-    instructions of Python, so that a longer call of C ends first; it is then a failure.
-    state: a folder that keeps finished runs by name, scene and N; they are not run again. Name another one
-    if the function has changed. baseline: a file as regress() has; the ScoreCard then passes or fails.
-    update: write the errors of these scenes into it. An error may change by relative of it and absolute of
-    the rod's length.
+    name: name of the card; None: the function's. scenes: classes, or names of scenes; none: all. threads: for other
+    computations; 0: all cores. time_limit: limit of each run, and of each reference [s]; a run beyond it is a failure.
+    It is ended between two instructions of Python, after the current call of C. state: a folder that keeps finished
+    runs by name, scene and N; they are not run again. Use another folder if the function has changed. baseline: a file
+    as for regress(); the ScoreCard then passes or fails. update: whether the errors of these scenes are written into
+    it. An error may change by the fraction relative of the baseline's plus the fraction absolute of the rod's length.
     """
     what = locals()
     if not callable(run):
@@ -217,11 +212,11 @@ def modes(
     calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> Modes:
-    """Natural frequencies about a scene's shape: `dlo modes`.
+    """Computes natural frequencies about a scene's shape: `dlo modes`.
 
-    count: of modes, the slowest ones. rate: steps of the force model a second. damping: ratio of the
-    slowest mode that the material has [-]. samples: points of each mode's shape. time, materials,
-    calibrated: as of solve().
+    count: number of modes, the slowest ones. rate: steps of the force model per second. damping: damping ratio
+    of the slowest mode by the material [-], for c_h. samples: points of each mode's shape. time, materials,
+    calibrated: as in solve().
     """
     what = locals()
     found: Modes = _dlo.modes(data_of(scene, materials, time, calibrated), what, Modes, limits)
@@ -247,15 +242,17 @@ def track(
     calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> Track:
-    """The rod of a scene that moves, at rest at every time: `dlo track`.
+    """Follows the rod of a scene that moves, at rest at every time: `dlo track`.
 
-    begin, end: of the motion [s]; None: the first and the last pose. frame_rate, obstacle_rate,
-    step_rate: frames, moves of obstacles and steps of the force model a second; None: as the scene
-    says. force: the force model beside it. dynamic: the rod with inertia too, from rest at the first
-    pose; damping: its material's Kelvin-Voigt time [s], drag: the air's force per length and velocity
-    [N s/m^2], quadratic_drag: that across the rod [N s^2/m^3]; None: of calibrated, else 0. samples: M points of each frame. materials, calibrated: as of solve().
+    begin, end: interval of the motion [s]; None: from the start of a recording in track.start, else the first pose,
+    to the last pose. frame_rate, obstacle_rate, step_rate: frames, moves of obstacles and steps of the force model per
+    second; None: the scene's. force: whether the force model is run too. dynamic: whether the rod with inertia is
+    simulated too, from track.start, else from equilibrium with the velocities with which equilibria follow the
+    grippers; damping: Kelvin-Voigt time of its material [s]; drag: force of the air per length and velocity [N s/m^2];
+    quadratic_drag: force across the rod per length and squared velocity [N s^2/m^3]; None: of calibrated, else 0.
+    samples: M points of each frame. materials, calibrated: as in solve().
 
-    Raises InputError, or ConvergenceError where it had to stop, whose result is what was before.
+    Raises InputError, or ConvergenceError if it had to stop; its result is the motion until then.
     """
     what = locals()
     if not dynamic and (damping or drag or quadratic_drag):

@@ -8,18 +8,18 @@ from typing import Any, Callable
 
 
 class _TimeIsUp(BaseException):
-    """What a function's own `except Exception` does not catch."""
+    """Exception that a function's own `except Exception` does not catch."""
 
 
 def _raise_in(thread: int, error: Any) -> None:
-    """Between two of its instructions; None takes back what is not raised yet."""
+    """Raises an exception in a thread between two of its instructions; None withdraws one not raised yet."""
     ctypes.pythonapi.PyThreadState_SetAsyncExc(
         ctypes.c_ulong(thread), None if error is None else ctypes.py_object(error)
     )
 
 
 def within(seconds: float, function: Callable[..., Any]) -> Callable[..., Any]:
-    """The function, which raises TimeoutError once it has taken longer. What it calls in C ends first."""
+    """Returns the function with a time limit, after which it raises TimeoutError; a call of C ends first."""
 
     def call(*arguments: Any) -> Any:
         thread, lock = threading.get_ident(), threading.Lock()

@@ -6,8 +6,8 @@
 namespace dlo::compare {
 
 /// Returns the paths of the files that a scene's file names for reading (`trajectory`,
-/// `rest_shape`, `[track] start`), relative to the scene's folder. Empty if the scene's file is not
-/// a regular file or not TOML; the scene's reader reports that.
+/// `rest_shape`, `[track] start`): the scene's folder and the name. Empty if the scene's file is
+/// not a regular file or not TOML; the scene's reader reports that.
 [[nodiscard]] std::vector<std::string> trajectory_files(const std::string& scene_file);
 
 /// Returns the path of a file that a scene names, which is relative to the scene's folder.

@@ -60,8 +60,9 @@ struct MaterialFitOptions {
   /// of the clamps. If they are 0, the accuracy is assumed: 20 degrees for shared clamps, with a
   /// scatter of 5 degrees and a camera that is level to 2 degrees; 5 degrees for clamps of each
   /// shape. The interval of E is extended to that of the largest number of terms that predicts
-  /// nearly as well. At least three shapes are needed. Empty: calibrate() chooses if there are
-  /// three shapes and none of these options is given; fit_material() does not.
+  /// nearly as well. At least three shapes are needed. Empty: calibrate() chooses so if there are
+  /// three shapes or more and neither natural curvature nor errors of clamps are requested;
+  /// fit_material() does not.
   std::optional<bool> choose_options;
   /// Whether, if residuals are systematic and none of the above is fitted, the fit tests which of
   /// them would remove the residuals (MaterialFit::alternatives).
