@@ -124,8 +124,8 @@ class ChainFinder {
            std::none_of(world_.bodies.begin() + 1, world_.bodies.end(), is_inside);
   }
 
-  /// Whether a fixed body is the first segment: it is as long as the next one and has a geom that
-  /// ends at the joint of the next one.
+  /// Whether a fixed body is the first segment: it holds a composite, or it is as long as the next
+  /// one and has a geom that ends at the joint of the next one.
   [[nodiscard]] bool is_segment(std::size_t holder, const std::vector<std::size_t>& along) const {
     const MjcfBody& body = world_.bodies[holder];
     if (world_.composite && body.node == world_.composite) return true;

@@ -23,7 +23,7 @@ struct ChainScene {
 };
 
 /// Returns the rigid chain of a scene's polygon, std::nullopt unless the scene has one clamp at an
-/// end, forces in one plane and no obstacle.
+/// end, forces in one plane and no obstacle in reach.
 [[nodiscard]] std::optional<ChainScene> chain_scene(const Scene& scene,
                                                     const Discretisation& discretisation,
                                                     const ForceModelSettings& settings);

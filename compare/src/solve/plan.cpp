@@ -94,8 +94,9 @@ double bound_at(const Scene& scene, const energy_model::Equilibrium& rod, int po
   return polygon ? polygon_bound(scene, *polygon, rod) : unbounded;
 }
 
-/// Returns the number of points at which the polygon's error meets the target, by extrapolation
-/// with the order of convergence; 0 if time is up, or no N up to most_planned_points does.
+/// Returns a number of points with which the bound of the polygon's error meets the target, found
+/// by extrapolation with the order of convergence; 0 if time is up, or no N up to
+/// most_planned_points does.
 int points_for_target(const Scene& scene, const energy_model::Equilibrium& rod, double target,
                       const TimeLimit& time) {
   const std::vector<double> s = equal_arc_lengths(scene.length, rod_points);

@@ -122,7 +122,7 @@ SimulatorRun run_program(const ForeignProgram& program, const BatteryScene& scen
   return result;
 }
 
-/// Returns size and modification time of the files that a command names, such as its script.
+/// Returns name, size and modification time of the files that a command names, such as its script.
 std::string files_of_command(const std::vector<std::string>& words) {
   std::string text;
   std::error_code none;

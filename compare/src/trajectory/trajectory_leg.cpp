@@ -9,7 +9,7 @@
 namespace dlo::compare {
 namespace {
 
-/// Largest difference between the tangents of great circles that count as one [-].
+/// Largest difference between the axes of great circles that count as one [-].
 constexpr double same_circle = 1e-6;
 
 /// Weights of Hermite's cubic at a share u of the time between two poses.
@@ -47,7 +47,7 @@ GreatCircle circle_between(const Eigen::Vector3d& from, const Eigen::Vector3d& t
   return {std::atan2(sine, from.dot(to)), across / sine};
 }
 
-/// Returns the angular velocity at a pose between two great circles [rad/s].
+/// Returns the angular velocity at a pose between two great circles [rad/s]; 0 if they differ.
 double turning_rate(const GreatCircle& before, const GreatCircle& after, double h_before,
                     double h_after) {
   if (!((before.axis - after.axis).norm() < same_circle)) return 0;
