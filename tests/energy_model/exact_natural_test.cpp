@@ -1,6 +1,6 @@
-// Tests of intrinsically curved rods, in the plane and in space, against circles and helices, first
-// integrals, published critical weights, the intrinsically straight rod, and Kirchhoff's equations
-// integrated along the rod from the reaction of its first clamp.
+// Tests of intrinsically curved rods, in the plane and in space, against a first integral,
+// published critical weights, and Kirchhoff's equations integrated along the rod from the reaction
+// of its first clamp.
 
 #include <gtest/gtest.h>
 
@@ -10,40 +10,19 @@
 #include <limits>
 #include <stdexcept>
 
-#include "base/sized_samples.hpp"
-#include "base/spin.hpp"
 #include "dlo/energy_model/exact.hpp"
+#include "dlo/energy_model/natural_frame.hpp"
 #include "equilibrium_balance.hpp"
-#include "kirchhoff/rod_span.hpp"
 #include "kirchhoff_rod.hpp"
 #include "placement.hpp"
-#include "problem/rod_law.hpp"
 #include "problems.hpp"
 #include "random_problems.hpp"
-#include "shooting/second_variation.hpp"
 #include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
 using test::heavy_cantilever;
-
-/// A rod of constant strains from the origin, its first frame the axes.
-struct FreeHelix {
-  Eigen::Vector3d u;
-
-  [[nodiscard]] Eigen::Matrix3d frame(double s) const {
-    return Eigen::AngleAxisd(u.norm() * s, u.normalized()).toRotationMatrix();
-  }
-  [[nodiscard]] Eigen::Vector3d point(double s) const {
-    const double w = u.norm();
-    const Eigen::Matrix3d hat = test::hat_of(u);
-    const Eigen::Matrix3d integral = s * Eigen::Matrix3d::Identity() +
-                                     (1 - std::cos(w * s)) / (w * w) * hat +
-                                     (s - std::sin(w * s) / w) / (w * w) * hat * hat;
-    return integral.col(2);
-  }
-};
 
 /// Returns a rod of unit length and bending stiffness, clamped at the origin in the frame of the
 /// axes.
@@ -66,36 +45,6 @@ Problem hanging_rod(double curvature, double gamma) {
   problem.torsional_stiffness = 2.0 / 3;
   problem.natural_strains = {{0, curvature, 0}};
   return problem;
-}
-
-TEST(ExactNatural, ACurvatureWithoutLoadIsACircle) {
-  constexpr double curvature = 2.5;
-  Problem problem = heavy_cantilever(0, 0);
-  problem.torsional_stiffness = 1;
-  problem.natural_strains = {{0, curvature, 0}};
-  const Equilibrium result = test::converged(solve_exact(problem));
-  EXPECT_GT(result.smallest_eigenvalue, 0);
-  EXPECT_NEAR(result.energy.total(), 0, 1e-20);
-  EXPECT_LT(result.grips[0].torque.norm() + result.grips[0].force.norm(), 1e-11);
-  const Samples samples = result.sample(equal_arc_lengths(1, 11));
-  for (Eigen::Index i = 0; i < 11; ++i) {
-    // To the left of a rod along x in the plane whose normal is z.
-    const double angle = curvature * samples.arc_length[static_cast<std::size_t>(i)];
-    const Eigen::Vector3d expected(std::sin(angle), 1 - std::cos(angle), 0);
-    EXPECT_LT((samples.points.col(i) - expected / curvature).norm(), 1e-12);
-    EXPECT_NEAR(samples.curvature.col(i).norm(), curvature, 1e-11);
-  }
-}
-
-TEST(ExactNatural, StrainsWithoutLoadAreAHelix) {
-  const FreeHelix helix{{0.6, 2, 1.5}};
-  const Equilibrium result = test::converged(solve_exact(curved_rod(helix.u)));
-  const Samples samples = result.sample(equal_arc_lengths(1, 11));
-  for (Eigen::Index i = 0; i < 11; ++i) {
-    const double s = samples.arc_length[static_cast<std::size_t>(i)];
-    EXPECT_LT((samples.points.col(i) - helix.point(s)).norm(), 1e-12);
-    EXPECT_LT((samples.tangents.col(i) - helix.frame(s).col(2)).norm(), 1e-12);
-  }
 }
 
 /// int f dtheta from a to b by Gauss-Legendre on panels.
@@ -150,67 +99,6 @@ TEST(ExactNatural, ATipLoadInThePlaneIsAQuadrature) {
     return std::pow(curvature(a, low) - natural, 2) / 2 / curvature(a, low);
   });
   EXPECT_NEAR(result.energy.bending, bending, 1e-11);
-}
-
-/// A helix of strains u with the force lambda u and the moment mu u + lambda e3 in its frame, which
-/// a rod of the natural strains u0 has: K (u - u0) = mu u + lambda e3.
-struct KirchhoffHelix {
-  FreeHelix helix{{0.4, 2.2, 1.3}};
-  double lambda = 3;
-  double mu = -0.4;
-  double torsion = 0.8;
-
-  [[nodiscard]] Problem problem() const {
-    const Eigen::Vector3d stiffness(1, 1, torsion);
-    Problem problem = curved_rod(helix.u - own_moment().cwiseQuotient(stiffness), torsion);
-    problem.grips.push_back({.at = 1,
-                             .position = helix.point(1),
-                             .direction = Eigen::Vector3d(helix.frame(1).col(2)),
-                             .frame = FrameHold{.d1 = Eigen::Vector3d(helix.frame(1).col(0))}});
-    return problem;
-  }
-  [[nodiscard]] Eigen::Vector3d own_moment() const {
-    return mu * helix.u + lambda * Eigen::Vector3d::UnitZ();
-  }
-  [[nodiscard]] Eigen::Vector3d force() const { return lambda * helix.u; }
-  /// Returns the helix as an initial guess with errors.
-  [[nodiscard]] Equilibrium shape(double error) const {
-    Equilibrium shape;
-    shape.grips = {{-force(), -own_moment()}, {force(), helix.frame(1) * own_moment()}};
-    shape.grips[0].force.x() += error;
-    shape.sample = [*this, error](std::span<const double> arc_lengths) {
-      Samples samples = sized_samples(arc_lengths, 1);
-      const auto count = static_cast<Eigen::Index>(arc_lengths.size());
-      for (Eigen::Index i = 0; i < count; ++i) {
-        const double s = arc_lengths[static_cast<std::size_t>(i)];
-        samples.points.col(i) = helix.point(s) + error * Eigen::Vector3d(0, std::sin(5 * s), 0);
-        samples.tangents.col(i) = helix.frame(s).col(2);
-        samples.curvature.col(i) = helix.frame(s) * helix.u.cross(Eigen::Vector3d::UnitZ());
-      }
-      return samples;
-    };
-    return shape;
-  }
-};
-
-TEST(ExactNatural, KirchhoffsHelixIsHeldByItsWrench) {
-  const KirchhoffHelix expected;
-  const Equilibrium start = expected.shape(0.01);
-  const Equilibrium result = solve_exact(expected.problem(), {.start = &start});
-  ASSERT_TRUE(result.sample) << result.message;
-  for (const double s : {0.0, 0.3, 0.77, 1.0}) {
-    EXPECT_LT((test::point_at(result, s) - expected.helix.point(s)).norm(), 1e-11);
-  }
-  EXPECT_LT((result.grips[1].force - expected.force()).norm(), 1e-9);
-  EXPECT_LT((result.grips[0].torque + expected.own_moment()).norm(), 1e-9);
-  const Eigen::Vector3d end_moment = expected.helix.frame(1) * expected.own_moment();
-  EXPECT_LT((result.grips[1].torque - end_moment).norm(), 1e-9);
-  ASSERT_EQ(result.twists.size(), 1U);
-  EXPECT_NEAR(result.twists[0].angle, expected.helix.u.z(), 1e-10);
-  EXPECT_NEAR(result.twists[0].torque, expected.own_moment().z(), 1e-9);
-  // And the search comes no higher.
-  const Equilibrium lowest = test::converged(solve_exact(expected.problem()));
-  EXPECT_LT(lowest.energy.total(), result.energy.total() + 1e-9);
 }
 
 /// The equilibrium of a hanging rod in its plane next to another one.
@@ -279,32 +167,6 @@ TEST(ExactNatural, BetweenTheTwoWeightsTheLowestShapeIsOutOfThePlane) {
   Samples mirrored = all[0].sample(s);
   mirrored.points.row(2) *= -1;
   EXPECT_LT((all[1].sample(s).points - mirrored.points).cwiseAbs().maxCoeff(), 1e-10);
-}
-
-TEST(ExactNatural, StrainsOfZeroAreTheStraightRod) {
-  Problem cantilever = heavy_cantilever(12, 20);
-  cantilever.torsional_stiffness = 0.7;
-  cantilever.loads = {{0.4, {1, 2, 0}}};
-  cantilever.sections = {{0.3, 0.6, 2, 0.4, {0, -20, 0}}};
-  const Equilibrium straight = solve_exact(cantilever);
-  cantilever.natural_strains = {Eigen::Vector3d::Zero()};
-  const Equilibrium curved = test::converged(solve_exact(cantilever));
-  EXPECT_LT(test::gap_between(straight, curved), 1e-11);
-  EXPECT_NEAR(straight.energy.total(), curved.energy.total(), 1e-11);
-  EXPECT_LT((straight.grips[0].torque - curved.grips[0].torque).norm(), 1e-10);
-
-  Problem twisted = test::two_clamps(10, 0.8);
-  twisted.torsional_stiffness = 0.7;
-  twisted.sections = {{0.3, 0.6, 2, 0.4, {0, -20, 0}}};
-  for (Grip& grip : twisted.grips) grip.frame = FrameHold{};
-  twisted.grips[0].frame->roll = 0.5;
-  twisted.grips[1].frame->roll = 2.5;
-  const Equilibrium one = solve_exact(twisted);
-  twisted.natural_strains = {Eigen::Vector3d::Zero()};
-  const Equilibrium other = test::converged(solve_exact(twisted));
-  EXPECT_NEAR(one.energy.total(), other.energy.total(), 1e-10);
-  EXPECT_NEAR(one.twists.at(0).torque, other.twists.at(0).torque, 1e-9);
-  EXPECT_NEAR(one.twists.at(0).angle, other.twists.at(0).angle, 1e-9);
 }
 
 /// Grips that a random curve goes through, natural strains of up to two Legendre terms, sections.
@@ -409,79 +271,6 @@ TEST(ExactNatural, WhatIsUnstableOfTheStraightRodIsUnstable) {
     EXPECT_LT(test::gap_between(shape, curved), 1e-10);
     EXPECT_EQ(shape.status, curved.status);
   }
-}
-
-TEST(ExactNatural, AStraightClampedRodBucklesUnderItsTwist) {
-  // tan(M l / 2 EI) = M l / 2 EI without tension (Greenhill).
-  constexpr double known = 8.986818916;
-  const RodSpan span = uncut(KirchhoffHelix().problem());
-  const ClampFrames frames = {Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity()};
-  const auto smallest = [&](double torque) {
-    return second_variation(span, {}, frames, torque * torque,
-                            [&](const std::vector<double>& arc) {
-                              std::vector<RodState> states(arc.size());
-                              for (std::size_t i = 0; i < arc.size(); ++i) {
-                                states[i].R = from_rotation_vector({0, 0, torque / 0.8 * arc[i]});
-                                states[i].m = {0, 0, torque};
-                              }
-                              return states;
-                            })
-        .smallest;
-  };
-  EXPECT_GT(smallest(known - 1e-6), 0);
-  EXPECT_LT(smallest(known + 1e-6), 0);
-  EXPECT_NEAR(smallest(known), 0, 1e-7);
-}
-
-TEST(ExactNatural, TheOtherWayRoundItIsTheSameRod) {
-  Problem problem = curved_rod({0.5, 2, 1});
-  problem.natural_strains.emplace_back(-0.3, 0.7, 0.4);
-  problem.weight_per_length = {1, -2, -3};
-  problem.loads = {{0.3, {1, 1, 0}}};
-  problem.sections = {{0.5, 0.8, 2, 1.2, {0, -4, 0}}};
-  const Equilibrium one = test::converged(solve_exact(problem));
-  // d2 and t point backwards, and so do the strains but for the signs of d2 and t.
-  Problem reversed = problem;
-  reversed.grips[0].at = 1;
-  reversed.grips[0].direction = -*problem.grips[0].direction;
-  reversed.loads[0].at = 0.7;
-  reversed.sections[0].begin = 0.2;
-  reversed.sections[0].end = 0.5;
-  const Eigen::Vector3d signs(-1, 1, 1);
-  reversed.natural_strains[0] = problem.natural_strains[0].cwiseProduct(signs);
-  reversed.natural_strains[1] = -problem.natural_strains[1].cwiseProduct(signs);
-  const Equilibrium other = test::converged(solve_exact(reversed));
-  const std::vector<double> s = equal_arc_lengths(1, 22);  // none where sections meet
-  const std::vector<double> backwards(s.rbegin(), s.rend());
-  const Samples a = one.sample(s);
-  const Samples b = other.sample(backwards);
-  EXPECT_LT((a.points - b.points).cwiseAbs().maxCoeff(), 1e-11);
-  EXPECT_LT((a.tangents + b.tangents).cwiseAbs().maxCoeff(), 1e-11);
-  EXPECT_LT((a.curvature - b.curvature).cwiseAbs().maxCoeff(), 1e-9);
-  EXPECT_NEAR(one.energy.total(), other.energy.total(), 1e-11);
-  EXPECT_LT((one.grips[0].force - other.grips[0].force).norm(), 1e-10);
-  EXPECT_LT((one.grips[0].torque - other.grips[0].torque).norm(), 1e-10);
-}
-
-TEST(ExactNatural, AClampInTheMiddleHoldsTwoRods) {
-  Problem problem = curved_rod({0.5, 2, 1});
-  problem.weight_per_length = {1, -2, -3};
-  problem.grips[0].at = 0.4;
-  const Equilibrium both = test::converged(solve_exact(problem));
-  Problem right = problem;
-  right.length = 0.6;
-  right.grips[0].at = 0;
-  Problem left = problem;
-  left.length = 0.4;
-  const Equilibrium after = solve_exact(right);
-  const Equilibrium before = solve_exact(left);
-  const std::vector<double> ends = {0, 1};
-  const Samples tips = both.sample(ends);
-  EXPECT_LT((tips.points.col(0) - test::point_at(before, 0)).norm(), 1e-11);
-  EXPECT_LT((tips.points.col(1) - test::point_at(after, 0.6)).norm(), 1e-11);
-  EXPECT_NEAR(both.energy.total(), before.energy.total() + after.energy.total(), 1e-11);
-  const Eigen::Vector3d torque = before.grips[0].torque + after.grips[0].torque;
-  EXPECT_LT((both.grips[0].torque - torque).norm(), 1e-10);
 }
 
 TEST(ExactNatural, UnitsAndPlaceDoNotMatter) {

@@ -82,8 +82,10 @@ TEST(SecondVariation, CountsTheZeroModeOfARod) {
 TEST(Exact, PutsStableEquilibriaFirst) {
   // Above buckling both mirror images are stable, and rotate about the vertical without a change of
   // energy.
+  EXPECT_EQ(all_exact(heavy_cantilever(7.8, 90)).size(), 1U);
   const std::vector<Equilibrium> above = all_exact(heavy_cantilever(8, 90));
   ASSERT_EQ(above.size(), 3U);
+  EXPECT_GT(test::point_at(above[0], 1).x(), 0);  // the one towards +x comes first
   EXPECT_EQ(above[0].status, SolveStatus::converged);
   EXPECT_EQ(above[1].status, SolveStatus::converged);
   EXPECT_EQ(above[2].status, SolveStatus::saddle);
@@ -93,10 +95,13 @@ TEST(Exact, PutsStableEquilibriaFirst) {
 
 TEST(Exact, FindsPairsOfRootsWithinACellOfItsScan) {
   EXPECT_EQ(all_exact(heavy_cantilever(41.4, 0)).size(), 3U);
-  const double fold = test::reference_values().at("bistability_fold_Gamma").at("0").get<double>();
-  for (const double off : {1e-5, 1e-6, 1e-7}) {
-    EXPECT_EQ(all_exact(heavy_cantilever(fold * (1 + off), 0)).size(), 3U) << off;
-    EXPECT_EQ(all_exact(heavy_cantilever(fold * (1 - off), 0)).size(), 1U) << off;
+  const auto folds = test::reference_values().at("bistability_fold_Gamma");
+  for (const double degrees : {0.0, 30.0}) {
+    const double fold = folds.at(degrees == 0 ? "0" : "30").get<double>();
+    for (const double off : {1e-5, 1e-6, 1e-7}) {
+      EXPECT_EQ(all_exact(heavy_cantilever(fold * (1 + off), degrees)).size(), 3U) << off;
+      EXPECT_EQ(all_exact(heavy_cantilever(fold * (1 - off), degrees)).size(), 1U) << off;
+    }
   }
 }
 
@@ -162,19 +167,27 @@ TEST(Exact, ListsWhatItHasFoundWhenItsTimeIsOver) {
   EXPECT_GT(cut_short, 0);
 }
 
+TEST(Exact, RefusesLoadsBeyondDoublePrecisionAndBadOptions) {
+  EXPECT_THROW((void)solve_exact(heavy_cantilever(1e7, 0)), std::invalid_argument);
+  EXPECT_THROW((void)solve_exact(heavy_cantilever(1, 0), {.tolerance = -1}), std::invalid_argument);
+  const Equilibrium result = solve_exact(heavy_cantilever(1, 0));
+  EXPECT_THROW((void)test::sample_at(result, 1.1), std::invalid_argument);
+}
+
 TEST(LoadBesideAClamp, CountsOnce) {
   // Nearer than 1e-9 l it is the clamp's, on either side of it and at either end.
-  struct Case {
-    double clamp;
-    double load;
-  };
-  for (const Case place : {Case{5e-10, 0}, Case{0, 5e-10}, Case{0, 0}, Case{5e-10, 1.2e-9},
-                           Case{1, 1 - 5e-10}, Case{1 - 5e-10, 1}, Case{0.4, 0.4 + 5e-10}}) {
-    SCOPED_TRACE(testing::Message() << place.clamp << ", " << place.load);
+  for (const auto& [clamp, load] : {std::pair(5e-10, 0.0),
+                                    {0, 5e-10},
+                                    {0, 0},
+                                    {5e-10, 1.2e-9},
+                                    {1, 1 - 5e-10},
+                                    {1 - 5e-10, 1},
+                                    {0.4, 0.4 + 5e-10}}) {
+    SCOPED_TRACE(testing::Message() << clamp << ", " << load);
     Problem problem = heavy_cantilever(0, 0);
-    problem.grips[0].at = place.clamp;
-    const double other = place.clamp > 0.5 ? 0 : 1;
-    problem.loads = {{place.load, {0, 100, 0}}, {other, {0, 1, 0}}};
+    problem.grips[0].at = clamp;
+    const double other = clamp > 0.5 ? 0 : 1;
+    problem.loads = {{load, {0, 100, 0}}, {other, {0, 1, 0}}};
     for (const Equilibrium& result : {solve_energy(problem), solve_exact(problem)}) {
       ASSERT_TRUE(succeeded(result.status)) << result.message;
       EXPECT_NEAR(result.grips[0].force.y(), -101, 1e-9);

@@ -1,5 +1,5 @@
-// The exact solver with twist: closed forms of shapes and of where they buckle, the second
-// variation against differences, balances and symmetries.
+// The exact solver with twist: closed forms of shapes and of where they buckle, balances, and the
+// frames that clamps hold.
 
 #include <gtest/gtest.h>
 
@@ -117,94 +117,6 @@ TEST(TwistedSecondVariation, VanishesWhereMichellsRingBuckles) {
   }
 }
 
-/// Rod whose frames are a given function of s under a force, with natural strains such that it
-/// carries a given moment. It computes the energy of changes of the frames, by differences.
-struct FramedCurve {
-  std::function<Eigen::Matrix3d(double)> frame;
-  std::function<Eigen::Vector3d(double)> moment;
-  Eigen::Vector3d stiffness;
-  Eigen::Vector3d n;
-
-  static constexpr int parts = 2000;
-
-  static Eigen::Vector3d strain(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
-    const Eigen::AngleAxisd rotation(Eigen::Matrix3d(a.transpose() * b));
-    return parts * rotation.angle() * rotation.axis();
-  }
-
-  /// Returns the energy of the frames exp(hat(spin)) R minus that of the frames R.
-  [[nodiscard]] double cost(const std::function<Eigen::Vector3d(double)>& spin) const {
-    double energy = 0;
-    for (int i = 0; i < parts; ++i) {
-      const double s = static_cast<double>(i) / parts;
-      const double next = (i + 1.0) / parts;
-      const double middle = (s + next) / 2;
-      const Eigen::Matrix3d a = from_rotation_vector(spin(s)) * frame(s);
-      const Eigen::Matrix3d b = from_rotation_vector(spin(next)) * frame(next);
-      const Eigen::Vector3d own = frame(middle).transpose() * moment(middle);
-      const Eigen::Vector3d change = strain(a, b) - strain(frame(s), frame(next));
-      energy += own.dot(change) / parts + change.dot(stiffness.cwiseProduct(change)) / (2 * parts);
-      energy -= n.dot(a.col(2) + b.col(2)) / (2 * parts);
-    }
-    return energy;
-  }
-};
-
-/// A function on the elements of the second variation, polynomials through their nodes.
-Eigen::Vector3d on_elements(const SecondVariation& mode, double s) {
-  constexpr Eigen::Index order = 4;
-  Eigen::Index first = 0;
-  while (first + 2 * order < mode.s.size() && mode.s[first + order] < s) first += order;
-  Eigen::Vector3d value = Eigen::Vector3d::Zero();
-  for (Eigen::Index k = first; k <= first + order; ++k) {
-    double part = 1;
-    for (Eigen::Index j = first; j <= first + order; ++j) {
-      if (j != k) part *= (s - mode.s[j]) / (mode.s[k] - mode.s[j]);
-    }
-    value += part * mode.spin.col(k);
-  }
-  return value;
-}
-
-TEST(TwistedSecondVariation, IsTheSecondDifferenceOfTheEnergy) {
-  // On frames of no special shape, with a force and a moment that do not fit them.
-  const auto frame = [](double s) {
-    const Eigen::Vector3d turn(1.5 * std::sin(2 * s), 2 * s * s - 1, 5 * s + std::cos(3 * s));
-    return from_rotation_vector(turn).toRotationMatrix();
-  };
-  const auto moment = [](double s) { return Eigen::Vector3d(2 - s, std::sin(4 * s), 3 * s * s); };
-  for (const double size : {-9.0, 0.0, 4.0, 13.0}) {
-    Problem problem = rolled_clamps({0.4, 0.3, 0.2}, frame(1).col(2), 0.8, 0);
-    problem.grips[0].direction = Eigen::Vector3d(frame(0).col(2));
-    const FramedCurve curve{frame,
-                            [&](double s) { return Eigen::Vector3d(size * moment(s)); },
-                            {1, 1, 0.8},
-                            {2, -3, 5}};
-    const SecondVariation found =
-        second_variation(span_of(problem), {}, any_frames(), 200, states_of([&](double s) {
-                           RodState state;
-                           state.R = frame(s);
-                           state.m = curve.moment(s);
-                           state.n = curve.n;
-                           return state;
-                         }));
-    const auto cost = [&](double amount) {
-      return curve.cost([&](double s) { return Eigen::Vector3d(amount * on_elements(found, s)); });
-    };
-    double norm = 0;
-    for (int i = 0; i < FramedCurve::parts; ++i) {
-      const Eigen::Vector3d here = on_elements(found, static_cast<double>(i) / FramedCurve::parts);
-      const Eigen::Vector3d next = on_elements(found, (i + 1.0) / FramedCurve::parts);
-      norm += (next - here).squaredNorm() * FramedCurve::parts +
-              (here.squaredNorm() + next.squaredNorm()) / (2 * FramedCurve::parts);
-    }
-    constexpr double h = 1e-3;
-    const double second = (cost(h) - 2 * cost(0) + cost(-h)) / (h * h);
-    // Differences of the polygon are accurate to 1e-6 of their terms.
-    EXPECT_NEAR(second / norm, found.smallest, 1e-5 * (1 + std::abs(found.smallest))) << size;
-  }
-}
-
 /// A cross-section of a round rod as the closed forms have it, in units of l and EI.
 struct RoundState {
   Eigen::Vector3d r, t;
@@ -239,64 +151,6 @@ Eigen::Vector3d turned(const Eigen::Vector3d& d, const Eigen::Vector3d& axis, do
   return Eigen::AngleAxisd(angle, axis) * d;
 }
 
-/// A helix around z, of radius R and pitch 2 pi P: curvature R / rho^2, torsion P / rho^2 with
-/// rho^2 = R^2 + P^2, and the force along its axis n = (M - P / rho^2) / rho.
-struct Helix {
-  double radius;
-  double pitch;
-  double torque;
-
-  [[nodiscard]] double rho() const { return std::hypot(radius, pitch); }
-  [[nodiscard]] double torsion() const { return pitch / (rho() * rho()); }
-  [[nodiscard]] RoundState operator()(double s) const {
-    const double angle = s / rho();
-    RoundState state;
-    state.r = {radius * (std::cos(angle) - 1), radius * std::sin(angle), pitch * angle};
-    state.t = Eigen::Vector3d(-radius * std::sin(angle), radius * std::cos(angle), pitch) / rho();
-    state.v = radius / (rho() * rho()) * Eigen::Vector3d(-std::cos(angle), -std::sin(angle), 0);
-    state.n = {0, 0, (torque - torsion()) / rho()};
-    state.torque = torque;
-    return state;
-  }
-};
-
-TEST(ExactTwist, FindsKirchhoffsHelix) {
-  const Helix helix{0.15, 0.1, 2.5};
-  const double c = 0.7;
-  const RoundState end = helix(1);
-  Problem problem = rolled_clamps(end.r, end.t, c, 0);
-  problem.grips[0].direction = helix(0).t;
-  // The normal turns by the torsion against the transported frame, the rod's frame by the twist.
-  problem.grips[0].frame->d1 = helix(0).v;
-  problem.grips[1].frame->d1 = turned(end.v, end.t, helix.torque / c - helix.torsion());
-  const Equilibrium near = shape_of(
-      [&](double s) {
-        RoundState state = helix(s);
-        state.r += 1e-3 * Eigen::Vector3d(std::sin(5 * s), s, s * s);
-        state.t = (state.t + 0.02 * Eigen::Vector3d(s, std::sin(3 * s), 0)).normalized();
-        state.v *= 1.05;
-        state.n *= 1.1;
-        state.torque *= 0.95;
-        return state;
-      },
-      c);
-  const Equilibrium result = solve_exact(problem, {.start = &near});
-  ASSERT_TRUE(static_cast<bool>(result.sample)) << result.message;
-  const std::vector<double> s = equal_arc_lengths(1, 21);
-  const Samples samples = result.sample(s);
-  for (Eigen::Index i = 0; i < 21; ++i) {
-    const RoundState expected = helix(s[static_cast<std::size_t>(i)]);
-    EXPECT_LT((samples.points.col(i) - expected.r).norm(), 1e-11);
-    EXPECT_LT((samples.curvature.col(i) - expected.v).norm(), 1e-10);
-  }
-  ASSERT_EQ(result.twists.size(), 1U);
-  EXPECT_NEAR(result.twists[0].torque, helix.torque, 1e-11);
-  EXPECT_NEAR(result.twists[0].angle, helix.torque / c, 1e-11);
-  EXPECT_LT((result.grips[1].force - end.n).norm(), 1e-10);
-  EXPECT_LT((result.grips[1].torque - end.t.cross(end.v) - helix.torque * end.t).norm(), 1e-10);
-  EXPECT_NEAR(result.energy.twisting, helix.torque * helix.torque / (2 * c), 1e-10);
-}
-
 /// The homoclinic solution of a long rod under tension T and torque M (Coyne 1990): with k^2 = T -
 /// M^2 / 4 and theta its angle to the line,
 ///     1 - cos theta = 2 k^2 / T / cosh^2(k s),   phi = M s / 2 + atan(2 k / M tanh(k s)),
@@ -306,8 +160,6 @@ struct LocalisedBuckle {
   double torque;
   double tension;
 
-  [[nodiscard]] double slack() const { return 4 * rate() / tension; }
-  [[nodiscard]] double turn() const { return 4 * std::acos(torque / (2 * std::sqrt(tension))); }
   [[nodiscard]] double rate() const { return std::sqrt(tension - torque * torque / 4); }
   [[nodiscard]] RoundState operator()(double from_start) const {
     const double s = from_start - 0.5;
@@ -376,20 +228,6 @@ Problem askew(double roll) {
   return problem;
 }
 
-TEST(ExactTwist, IsNoneWhereTheRodWithoutFramesHasTheFrame) {
-  Problem plain = askew(0);
-  for (Grip& grip : plain.grips) grip.frame.reset();
-  const Equilibrium expected = solve_exact(plain);
-  EXPECT_TRUE(expected.twists.empty());
-  Problem problem = askew(0);
-  problem.grips[1].frame->d1 = carried_director(expected, held_d1(problem, problem.grips[0]));
-  const Equilibrium twisted = test::converged(solve_exact(problem));
-  const std::vector<double> s = equal_arc_lengths(1, 21);
-  EXPECT_LT((twisted.sample(s).points - expected.sample(s).points).norm(), 1e-8);
-  ASSERT_EQ(twisted.twists.size(), 1U);
-  EXPECT_NEAR(twisted.twists[0].angle, 0, 1e-8);
-}
-
 TEST(ExactTwist, PutsTheFrameAtTheEndWhereTheRollSays) {
   const Problem unrolled = askew(0);
   const Eigen::Vector3d start = held_d1(unrolled, unrolled.grips[0]);
@@ -426,23 +264,6 @@ TEST(ExactTwist, OfSeveralPartsIsInBalance) {
   EXPECT_NEAR(result.twists[0].torque, problem.torsional_stiffness * result.twists[0].angle, 1e-12);
   EXPECT_NEAR(result.energy.twisting, result.twists[0].torque * result.twists[0].angle / 2, 1e-12);
   EXPECT_LT(test::balance_of(problem, result, 0.01).worst(), 1e-10);
-}
-
-TEST(ExactTwist, OfTheMirroredRollIsTheMirroredShape) {
-  // Clamps, weight and the rod without twist in the plane.
-  Problem problem = rolled_clamps({0.8, 0.1, 0}, {1, 0.5, 0}, 0.7, 2.5);
-  problem.weight_per_length = {0, -5, 0};
-  const Equilibrium one = solve_exact(problem);
-  problem.grips[1].frame->roll *= -1;
-  const Equilibrium other = solve_exact(problem);
-  ASSERT_EQ(one.status, SolveStatus::converged) << one.message;
-  ASSERT_EQ(other.status, SolveStatus::converged) << other.message;
-  EXPECT_NEAR(one.twists.at(0).angle, -other.twists.at(0).angle, 1e-10);
-  const std::vector<double> s = equal_arc_lengths(1, 21);
-  Eigen::Matrix3Xd mirrored = other.sample(s).points;
-  mirrored.row(2) *= -1;
-  EXPECT_GT(mirrored.row(2).cwiseAbs().maxCoeff(), 0.01);
-  EXPECT_LT((one.sample(s).points - mirrored).norm(), 1e-10);
 }
 
 TEST(ExactTwist, StartsFromAnEquilibriumWithoutContinuation) {
