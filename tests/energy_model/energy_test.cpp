@@ -2,12 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <random>
 
 #include "dlo/energy_model/exact.hpp"
-#include "equilibrium_balance.hpp"
-#include "placement.hpp"
 #include "problems.hpp"
 #include "runge_kutta.hpp"
 #include "solved.hpp"
@@ -17,25 +14,20 @@ namespace {
 
 using test::heavy_cantilever;
 
-class EnergyAgainstExact : public testing::TestWithParam<double> {};
-
-TEST_P(EnergyAgainstExact, AgreesAtEveryClampAngle) {
-  const double gamma = GetParam();
-  const double tolerance = gamma <= 10 ? 1e-9 : 1e-8;
-  for (int degrees = -90; degrees <= 90; degrees += 15) {
-    const Problem problem = heavy_cantilever(gamma, degrees);
-    const Equilibrium energy = solve_energy(problem);
-    const Equilibrium exact = solve_exact(problem);
-    ASSERT_EQ(energy.status, SolveStatus::converged) << degrees << ": " << energy.message;
-    ASSERT_EQ(exact.status, SolveStatus::converged) << degrees << ": " << exact.message;
-    EXPECT_LT(test::gap_between(energy, exact), tolerance) << degrees << " deg";
-    EXPECT_NEAR(energy.energy.total(), exact.energy.total(), 1e-10 * (1 + gamma)) << degrees;
-    EXPECT_NEAR(energy.energy.bending, exact.energy.bending, 1e-9 * (1 + gamma)) << degrees;
-    EXPECT_LT((energy.grips[0].torque - exact.grips[0].torque).norm(), 1e-9 * (1 + gamma));
+TEST(Energy, AgreesWithExactAtEveryClampAngle) {
+  for (const double gamma : {0.1, 1.0, 10.0, 100.0}) {
+    for (int degrees = -90; degrees <= 90; degrees += 15) {
+      SCOPED_TRACE(testing::Message() << "Gamma " << gamma << ", " << degrees << " deg");
+      const Problem problem = heavy_cantilever(gamma, degrees);
+      const Equilibrium energy = test::converged(solve_energy(problem));
+      const Equilibrium exact = test::converged(solve_exact(problem));
+      EXPECT_LT(test::gap_between(energy, exact), gamma <= 10 ? 1e-9 : 1e-8);
+      EXPECT_NEAR(energy.energy.total(), exact.energy.total(), 1e-10 * (1 + gamma));
+      EXPECT_NEAR(energy.energy.bending, exact.energy.bending, 1e-9 * (1 + gamma));
+      EXPECT_LT((energy.grips[0].torque - exact.grips[0].torque).norm(), 1e-9 * (1 + gamma));
+    }
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Gamma, EnergyAgainstExact, testing::Values(0.1, 1.0, 10.0, 100.0));
 
 TEST(Energy, AgreesWithExactUnderInnerAndTipLoads) {
   std::mt19937 engine(11);
@@ -53,16 +45,11 @@ TEST(Energy, AgreesWithExactUnderInnerAndTipLoads) {
   }
 }
 
-TEST(Energy, EvaluationsOfAHorizontalClampStayFew) {
-  const auto evaluations = [](double gamma) {
-    const Equilibrium energy = solve_energy(heavy_cantilever(gamma, 0));
-    const Equilibrium exact = solve_exact(heavy_cantilever(gamma, 0));
-    EXPECT_LT(test::gap_between(energy, exact), 1e-8);
-    return energy.evaluations;
-  };
-  for (const double gamma : {0.01, 0.1, 0.1845, 0.5, 1.0})
-    EXPECT_LE(evaluations(gamma), 10) << gamma;
-  EXPECT_LE(evaluations(10), 16);
+TEST(Energy, OfOneClampIsFoundByAFewNewtonSteps) {
+  EXPECT_LE(solve_energy(heavy_cantilever(0.18, 0)).evaluations, 4);
+  for (const double gamma : {0.01, 0.5, 1.0, 10.0, 18.0, 100.0}) {
+    EXPECT_LE(solve_energy(heavy_cantilever(gamma, 0)).evaluations, gamma < 10 ? 10 : 8) << gamma;
+  }
 }
 
 TEST(Energy, FallsExponentiallyInTheNumberOfTerms) {
@@ -94,36 +81,6 @@ TEST(Energy, ClampAtTheEndIsTheMirrorOfAClampAtTheStart) {
   EXPECT_LT((a.sample(s).curvature - b.sample(mirrored).curvature).norm(), 1e-11);
   EXPECT_LT((b.sample(s).points - c.sample(s).points).norm(), 1e-10);
   EXPECT_LT((a.grips[0].torque - b.grips[0].torque).norm(), 1e-11);
-}
-
-TEST(Energy, GripperBalancesWeightAndLoadsOnTheDeformedRod) {
-  Problem problem = heavy_cantilever(8, 20);
-  problem.grips[0].position = {0.3, -0.2, 0.1};
-  problem.loads = {{0.6, {1, -2, 0}}, {1.0, {0.5, 1, 0}}};
-  const Equilibrium energy = solve_energy(problem);
-  const Eigen::Vector3d carried =
-      problem.weight_per_length + problem.loads[0].force + problem.loads[1].force;
-  EXPECT_LT((energy.grips[0].force + carried).norm(), 1e-14);
-  // Curvature at the clamp against quadrature.
-  EXPECT_LT(test::balance_of(problem, energy, 0.01).torque, 5e-9);
-}
-
-TEST(Energy, ScalesWithTheRodAtEqualGamma) {
-  const Problem unit = heavy_cantilever(3, 10);
-  const test::Placement other{.length = 0.2, .stiffness = 0.07};
-  const auto found = other.between(solve_energy(unit), solve_energy(other.of(unit)));
-  EXPECT_LT(found.points, 4e-13);
-  EXPECT_LT(found.energy, 2e-13);
-}
-
-TEST(Energy, TurnsWithTheSceneInSpace) {
-  Problem problem = heavy_cantilever(4, 25);
-  problem.loads = {{0.5, {0.3, 1, 0}}};
-  const Eigen::AngleAxisd turn(1.1, Eigen::Vector3d(1, 2, -0.5).normalized());
-  const test::Placement other{.turn = turn.toRotationMatrix()};
-  const auto found = other.between(solve_energy(problem), solve_energy(other.of(problem)));
-  EXPECT_LT(found.points, 4e-12);
-  EXPECT_LT(found.torque, 1e-10);
 }
 
 TEST(Energy, UprightRodStaysUprightBelowSelfBucklingAndFallsTowardsXAbove) {
@@ -230,13 +187,6 @@ TEST(Energy, TheErrorStatedIsTheTrueOneWithinAFactorOfAThousand) {
   EXPECT_GE(compared, 22);
 }
 
-TEST(Energy, OfOneClampIsFoundByAFewNewtonSteps) {
-  EXPECT_LE(solve_energy(heavy_cantilever(0.18, 0)).evaluations, 4);
-  EXPECT_LE(solve_energy(heavy_cantilever(10, 0)).evaluations, 8);
-  EXPECT_LE(solve_energy(heavy_cantilever(18, 0)).evaluations, 8);
-  EXPECT_LE(solve_energy(heavy_cantilever(100, 0)).evaluations, 8);
-}
-
 TEST(Energy, OfOneClampTurnsTowardsTheLoadByTheShorterWay) {
   const std::vector<double> s = equal_arc_lengths(1, 33);
   for (const double gamma : {0.5, 7.0, 9.0, 11.9, 12.1, 40.0, 60.0, 300.0}) {
@@ -258,18 +208,15 @@ TEST(Energy, StoppedEarlyIsAFailureThatSaysSo) {
 }
 
 TEST(Energy, RefusesWhatItDoesNotKnow) {
-  Problem problem = heavy_cantilever(1, 0);
-  problem.length = -1;
-  EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
-  problem = heavy_cantilever(1, 0);
-  problem.bending_stiffness = NAN;
-  EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
-  problem = heavy_cantilever(1, 0);
-  problem.grips.clear();
-  EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
-  problem = heavy_cantilever(1, 0);
-  problem.loads = {{1.5, {0, 1, 0}}};
-  EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
+  const auto refused = [](const auto& spoil) {
+    Problem problem = heavy_cantilever(1, 0);
+    spoil(problem);
+    EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
+  };
+  refused([](Problem& p) { p.length = -1; });
+  refused([](Problem& p) { p.bending_stiffness = NAN; });
+  refused([](Problem& p) { p.grips.clear(); });
+  refused([](Problem& p) { p.loads = {{1.5, {0, 1, 0}}}; });
   EXPECT_THROW((void)solve_energy(heavy_cantilever(1, 0), {.terms = 1000}), std::invalid_argument);
   EXPECT_THROW((void)solve_energy(heavy_cantilever(1, 0), {.tolerance = 0}), std::invalid_argument);
 }

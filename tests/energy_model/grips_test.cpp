@@ -18,7 +18,6 @@ namespace dlo::energy_model {
 namespace {
 
 using test::heavy_cantilever;
-using test::reference_values;
 using test::two_clamps;
 
 TEST(Grips, BalanceWeightAndLoadsInEveryArrangement) {
@@ -191,45 +190,6 @@ TEST(AllEquilibria, AreCalledConvergedOnlyIfNothingMakesThemFall) {
       }
     }
   }
-}
-
-double fold_gamma(double degrees, double from) {
-  // Follow the thrown-back state downwards until it snaps, then bisect.
-  Problem problem = heavy_cantilever(from, degrees);
-  const std::vector<Equilibrium> all = all_energy(problem);
-  const Equilibrium* thrown_back = nullptr;
-  for (const Equilibrium& equilibrium : all) {
-    // Held in the plane; in space it would fall to the front sideways, which is not the fold.
-    const bool behind = test::point_at(equilibrium, 1).x() < 0;
-    if (behind &&
-        (thrown_back == nullptr || equilibrium.energy.total() < thrown_back->energy.total())) {
-      thrown_back = &equilibrium;
-    }
-  }
-  if (thrown_back == nullptr) return 0;
-  Equilibrium on_branch = *thrown_back;
-  double high = from;
-  double low = from / 2;
-  double step = from / 20;
-  while (high - low > 1e-5 * high) {
-    const double gamma = std::max(high - step, (high + low) / 2);
-    const Equilibrium next = solve_energy(heavy_cantilever(gamma, degrees), {.start = &on_branch});
-    // Beyond the fold it snaps to the front. (Out of the plane it does not hold itself, see above.)
-    if (next.status != SolveStatus::failed && test::point_at(next, 1).x() < 0) {
-      high = gamma;
-      on_branch = next;
-    } else {
-      low = gamma;
-      step /= 2;
-    }
-  }
-  return high;
-}
-
-TEST(Bistability, FoldsAreWhereTheFollowedStateSnaps) {
-  const auto folds = reference_values().at("bistability_fold_Gamma");
-  EXPECT_NEAR(fold_gamma(0, 60) / folds.at("0").get<double>(), 1, 1e-4);
-  EXPECT_NEAR(fold_gamma(30, 40) / folds.at("30").get<double>(), 1, 1e-4);
 }
 
 TEST(SelfBuckling, IsWhereTheUprightRodLosesItsStability) {
