@@ -77,25 +77,6 @@ TEST(NaturalRod, IsItsOwnShapeWithoutForces) {
   EXPECT_LT((point_at(clothoid, 1) - tip).norm(), 1e-12);
 }
 
-TEST(NaturalRod, IsAHelixWithTwistToo) {
-  Problem problem = clamped_rod();
-  const Vector3d u(2, 3, 4);  // about all three: with one of them zero a wrong sign can hide
-  problem.natural_strains = {u};
-  const Equilibrium helix = solved_rod(problem);
-  // The frame turns about u, which stays where it is in the frame.
-  const Vector3d axis = along_x() * u.normalized();
-  const Vector3d t = Vector3d::UnitX();
-  for (const double s : {0.25, 0.6, 1.0}) {
-    const double angle = u.norm() * s;
-    const Vector3d along = axis.dot(t) * axis;
-    const Vector3d expected =
-        s * along +
-        (std::sin(angle) * (t - along) + (1 - std::cos(angle)) * axis.cross(t)) / u.norm();
-    EXPECT_LT((point_at(helix, s) - expected).norm(), 1e-12);
-  }
-  EXPECT_LT(helix.energy.total(), 1e-20);
-}
-
 // However far the free rod turns: whole turns are counted with it.
 TEST(NaturalRod, IsFreeBetweenClampsWhereTheStressFreeShapeEnds) {
   for (const double k : {2.0, 6.0, -9.0, 14.0}) {
@@ -109,37 +90,6 @@ TEST(NaturalRod, IsFreeBetweenClampsWhereTheStressFreeShapeEnds) {
     EXPECT_LT(held.energy.bending, 1e-16);
     EXPECT_LT((point_at(held, 1) - free.points.col(1)).norm(), 1e-12);
   }
-}
-
-TEST(NaturalRod, StaysAHelixUnderItsWrench) {
-  Problem problem = clamped_rod();
-  const Vector3d natural(0, 2, 1);
-  const Vector3d u(0, 2.5, 1.8);
-  problem.natural_strains = {natural};
-  problem.grips[0].frame = FrameHold{Vector3d::UnitY(), 0};
-  Problem free = problem;
-  free.natural_strains = {u};
-  const Equilibrium helix = solved_rod(free);
-  const Samples end = test::sample_at(helix, 1);
-  // t' = u2 d1
-  const Vector3d d1 = end.curvature.col(0).normalized();
-  problem.grips.push_back({1, end.points.col(0), end.tangents.col(0), FrameHold{d1, 0}});
-  const Equilibrium held = solved_rod(problem);
-  for (const double s : {0.2, 0.5, 0.9}) {
-    EXPECT_LT((point_at(held, s) - point_at(helix, s)).norm(), 1e-9);
-  }
-  // m = (0, B (u2 - k), C (u3 - tau)) stays in the frame, and with it the force lambda u, by which
-  // u x m + t x lambda u = 0.
-  const double B = problem.bending_stiffness;
-  const double C = problem.torsional_stiffness;
-  const double moment = B * (u.y() - natural.y());
-  const double torque = C * (u.z() - natural.z());
-  const double lambda = torque - u.z() * moment / u.y();
-  const Vector3d in_space = along_x() * u;
-  EXPECT_LT((held.grips[1].force - lambda * in_space).norm(), 1e-8);
-  EXPECT_LT((held.grips[0].torque + along_x() * Vector3d(0, moment, torque)).norm(), 1e-8);
-  ASSERT_EQ(held.twists.size(), 1U);
-  EXPECT_NEAR(held.twists[0].torque, torque, 1e-8);
 }
 
 /// Returns the smallest eigenvalue of the planar shape of an intrinsically curved rod that hangs
@@ -243,16 +193,6 @@ TEST(Sections, ObeyKirchhoffsEquationsInThePlaneAndInSpace) {
   }
 }
 
-TEST(Sections, OfAStiffSleeveStaysStraightAndCarriesTwistOnly) {
-  // A section that is a thousand times as stiff has a thousandth of the curvature.
-  Problem problem = clamped_rod();
-  problem.weight_per_length = {0, -10, 0};
-  problem.sections = {{0.4, 0.6, 1e3, 1e3, {0, -10, 0}}};
-  const Equilibrium result = solved_rod(problem);
-  const Samples shape = result.sample(std::vector<double>{0.39999, 0.40001, 0.5});
-  EXPECT_NEAR(shape.curvature.col(1).norm() / shape.curvature.col(0).norm(), 1e-3, 1e-6);
-}
-
 TEST(Clamp, ThatLetsTheRodRotatePassesItsTorqueOn) {
   Problem problem = clamped_rod();
   problem.weight_per_length = {0, -4, 1};
@@ -280,17 +220,6 @@ TEST(Clamp, ThatLetsTheRodRotatePassesItsTorqueOn) {
   EXPECT_GT(pushed.grips[1].force.norm(), 1);
   EXPECT_NEAR(pushed.grips[1].torque.dot(there.tangents.col(0)), 0, 1e-9);
   expect_kirchhoff(passed, pushed, along_x(), 1e-8);
-}
-
-TEST(NaturalRod, TurnsInAClampThatDoesNotHoldItsFrame) {
-  Problem problem = clamped_rod();
-  problem.weight_per_length = {0, -6, 1};
-  problem.natural_strains = {{0, 3, 1}};
-  problem.grips[0].frame = FrameHold{Vector3d::UnitY(), 0};
-  problem.grips.push_back({0.6, {0.5, -0.05, 0.02}, Vector3d(1, -0.2, 0), std::nullopt});
-  const Equilibrium result = solved_rod(problem);
-  EXPECT_NEAR(result.grips[1].torque.dot(Vector3d(1, -0.2, 0)), 0, 1e-9);
-  expect_kirchhoff(problem, result, along_x(), 1e-8);
 }
 
 TEST(NaturalRod, HasTheSameDirectorsInBothModels) {
@@ -396,19 +325,6 @@ TEST(SectionsOfTheirOwnShape, ObeyKirchhoffsEquationsInBothModels) {
       EXPECT_NEAR(energy.energy.total(), exact.energy.total(), 1e-8);
     }
   }
-}
-
-TEST(SectionsOfTheirOwnShape, LikeTheRodsAreTheRod) {
-  Problem problem = clamped_rod();
-  problem.weight_per_length = {0, -5, 2};
-  problem.natural_strains = {{1, 2, 0.5}};
-  problem.grips[0].frame = FrameHold{Vector3d::UnitY(), 0};
-  const Vector3d plain = point_at(solved_rod(problem), 1);
-  Section section{0.25, 0.6, 1, 2.0 / 3, problem.weight_per_length};
-  section.natural_curvature = Eigen::Vector2d(1, 2);
-  section.natural_twist = 0.5;
-  problem.sections = {section};
-  EXPECT_LT((point_at(solved_rod(problem), 1) - plain).norm(), 1e-10);
 }
 
 TEST(NaturalRod, SaysWhatItNeeds) {

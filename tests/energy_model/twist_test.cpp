@@ -12,10 +12,7 @@
 #include "dlo/energy_model/exact.hpp"
 #include "dlo/energy_model/turns.hpp"
 #include "equilibrium_balance.hpp"
-#include "free_basis.hpp"
-#include "linear/free_directions.hpp"
 #include "problems.hpp"
-#include "strain/span_energy.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -42,84 +39,6 @@ Equilibrium solved(const Problem& problem) {
 }
 
 double axial_torque(const Equilibrium& equilibrium) { return equilibrium.twists.at(0).torque; }
-
-/// Eigenvalues of the second variation under the constraints; those without effect at this point,
-/// as of the distance between the ends of a straight rod, are left out.
-Eigen::VectorXd second_variation_at(SpanEnergy& model, const Eigen::VectorXd& x,
-                                    const Eigen::VectorXd& multipliers) {
-  SpanPoint at = model.evaluated(x);
-  const Eigen::MatrixXd& jacobian = at.jacobian;
-  Eigen::MatrixXd hessian;
-  model.hessian(at, multipliers, hessian);
-  Eigen::MatrixXd effective(0, model.size());
-  for (Eigen::Index row = 0; row < jacobian.rows(); ++row) {
-    if (jacobian.row(row).norm() < 1e-9) continue;
-    effective.conservativeResize(effective.rows() + 1, Eigen::NoChange);
-    effective.bottomRows<1>() = jacobian.row(row);
-  }
-  EXPECT_LT(at.residual.norm(), 1e-12);
-  EXPECT_LT((at.gradient - jacobian.transpose() * multipliers).norm(), 1e-9);
-  const Eigen::MatrixXd Z = test::free_basis(effective, model.size());
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Z.transpose() * hessian * Z).eigenvalues();
-}
-
-/// d1 at the end of a straight rod along x, or of a ring, that is twisted by psi.
-Eigen::Vector3d turned(double psi) {
-  return Eigen::AngleAxisd(psi, Eigen::Vector3d::UnitX()) * Eigen::Vector3d::UnitZ();
-}
-
-/// Root of a function by bisection.
-template <typename Function>
-double root(const Function& f, double low, double high) {
-  const bool rises = f(high) > 0;
-  for (int i = 0; i < 50; ++i) {
-    const double middle = (low + high) / 2;
-    ((f(middle) > 0) == rises ? high : low) = middle;
-  }
-  return low;
-}
-
-// Love's treatise: tan(m/4) = m/4 for two clamped ends that stay where they are, without tension.
-TEST(Twist, BucklesAStraightClampedRodAtItsCriticalMoment) {
-  Span span;
-  span.planar = false;
-  span.start_direction = span.end_direction = Eigen::Vector3d::UnitX();
-  span.holds = {{1, {1, 0, 0}}};
-  const double stiffness = 0.7;
-  const auto smallest = [&](double moment) {
-    const double psi = moment / stiffness;
-    span.twist = Span::Twist{stiffness, turned(psi)};
-    SpanEnergy model(span, 24);
-    const Eigen::VectorXd x = model.with_twist(Eigen::VectorXd::Zero(model.size()), psi);
-    Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(model.constraints());
-    multipliers.tail<1>()[0] = moment;
-    return second_variation_at(model, x, multipliers)[0];
-  };
-  EXPECT_NEAR(root(smallest, 6, 10), 8.986818916, 1e-8);
-}
-
-// Michell 1889, Zajac 1962: 2 pi sqrt(3) EI / GJ.
-TEST(Twist, MakesARingUnstableAtMichellsAngle) {
-  Span span;
-  span.planar = false;
-  span.start_direction = span.end_direction = Eigen::Vector3d::UnitX();
-  span.holds = {{1, {0, 0, 0}}};
-  const double stiffness = 0.7;
-  const auto second_smallest = [&](double psi) {
-    span.twist = Span::Twist{stiffness, turned(psi)};
-    SpanEnergy model(span, 32);
-    Eigen::VectorXd x = model.with_twist(Eigen::VectorXd::Zero(model.size()), psi);
-    x[0] = 2 * pi;
-    const SpanPoint at = model.evaluated(x);
-    const Eigen::VectorXd multipliers =
-        at.jacobian.transpose().colPivHouseholderQr().solve(at.gradient);
-    // The ring rotates about the direction of its clamps without a change of energy.
-    const Eigen::VectorXd eigenvalues = second_variation_at(model, x, multipliers);
-    return std::abs(eigenvalues[0]) < 1e-9 ? eigenvalues[1] : eigenvalues[0];
-  };
-  const double critical = 2 * pi * std::sqrt(3.0) / stiffness;
-  EXPECT_NEAR(root(second_smallest, 0.9 * critical, 1.1 * critical), critical, 1e-7 * critical);
-}
 
 // The solver reaches the same result: beyond that angle the ring passes through itself and loses
 // two turns. Its writhe is one of the turns that the clamps hold.
