@@ -55,23 +55,6 @@ TEST(Couple, AtTheTipRollsTheRodIntoAnArc) {
   }
 }
 
-TEST(Couple, InTheMiddleBendsWhatIsBeforeIt) {
-  constexpr double at = 0.4;
-  constexpr double torque = 5;
-  for (const Solve solve : both) {
-    const Equilibrium result =
-        test::converged(solve(with_couple(heavy_cantilever(0, 90), at, torque)));
-    const std::vector<double> s = {0.2, 0.7};
-    const Samples shape = result.sample(s);
-    EXPECT_NEAR(shape.curvature.col(0).norm(), torque, 1e-9);
-    EXPECT_NEAR(shape.curvature.col(1).norm(), 0, 1e-9);
-    // Upwards, then to the left.
-    EXPECT_NEAR(shape.tangents(0, 1), -std::sin(torque * at), 1e-10);
-    EXPECT_NEAR(shape.tangents(1, 1), std::cos(torque * at), 1e-10);
-    EXPECT_NEAR(result.energy.load, -torque * torque * at, 1e-9);
-  }
-}
-
 TEST(Couple, SeenFromTheOtherEndIsTheSame) {
   Problem problem = with_couple(heavy_cantilever(5, 20), 0.6, 4);
   problem.loads[0].force = {1, 2, 0};
@@ -189,13 +172,6 @@ TEST(Couple, PotentialBetweenPinsIsCountedFromTheirChord) {
     EXPECT_NEAR(energy.energy.load, -3 * from_chord, 1e-9) << degrees;
     EXPECT_NEAR(exact.energy.load, -3 * from_chord, 1e-7) << degrees;
   }
-}
-
-TEST(Couple, AShapeThatHasForgottenItIsNoEquilibrium) {
-  const Problem without = two_clamps(10, 0.8);
-  const Problem problem = with_couple(without, 0.35, 0.5);
-  EXPECT_GT(test::balance_of(problem, solve_energy(without), 0.02).worst(), 1e-3);
-  EXPECT_LT(test::balance_of(problem, solve_energy(problem), 0.02).worst(), 1e-7);
 }
 
 TEST(Couple, OutOfThePlaneIsForShootingAloneAndNotCalledStable) {

@@ -11,11 +11,9 @@
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "equilibrium_balance.hpp"
-#include "problem/split.hpp"
 #include "problems.hpp"
 #include "random_problems.hpp"
 #include "solved.hpp"
-#include "strain/span_energy.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -60,29 +58,6 @@ TEST(LineLoad, OnAllOfTheRodIsAWeight) {
       EXPECT_NEAR(other.energy.total(), one.energy.total(), 1e-12 * 20);
       EXPECT_EQ(one.grips[0].torque, other.grips[0].torque);
     }
-  }
-}
-
-TEST(LineLoad, PartsAddUp) {
-  const Problem heavy = heavy_cantilever(20, 30);
-  const Eigen::Vector3d w = heavy.weight_per_length;
-  const Eigen::Vector3d none = Eigen::Vector3d::Zero();
-  Problem halves = heavy;
-  halves.weight_per_length.setZero();
-  halves.line_loads = {{0, 0.4, w, w}, {0.4, 1, w, w}};
-  Problem wedges = halves;
-  wedges.line_loads = {{0, 1, w, none}, {0, 1, none, w}};
-  const Equilibrium one = solve_exact(heavy);
-  for (const Problem& problem : {halves, wedges}) {
-    const Equilibrium energy = solve_energy(problem);
-    const Equilibrium exact = solve_exact(problem);
-    ASSERT_EQ(energy.status, SolveStatus::converged) << energy.message;
-    ASSERT_EQ(exact.status, SolveStatus::converged) << exact.message;
-    EXPECT_LT(test::gap_between(energy, one), 1e-9);
-    EXPECT_LT(test::gap_between(exact, one), 1e-11);
-    EXPECT_NEAR(exact.energy.load, one.energy.gravity, 1e-10);
-    EXPECT_NEAR(energy.energy.load, one.energy.gravity, 1e-9);
-    EXPECT_NEAR(energy.energy.gravity, 0, 1e-11);
   }
 }
 
@@ -168,15 +143,6 @@ TEST(LineLoad, ARodSeenFromItsOtherEndIsTheSame) {
     const Equilibrium other = test::converged(solve(reversed));
     EXPECT_LT((one.sample(s).points - other.sample(back).points).norm(), 1e-10);
   }
-}
-
-TEST(LineLoad, AShapeThatHasForgottenItIsNoEquilibrium) {
-  Problem problem = two_clamps(10, 0.8);
-  const Equilibrium without = solve_energy(problem);
-  problem.line_loads = {{0.3, 0.5, {0, 5, 0}, {0, 5, 0}}};
-  EXPECT_GT(test::balance_of(problem, without, 0.01).worst(), 1e-3);
-  EXPECT_LT(test::balance_of(problem, solve_energy(problem), 0.01).worst(), 1e-7);
-  EXPECT_GT(test::gap_between(solve_exact(problem, {.start = &without}), without), 2e-4);
 }
 
 TEST(LineLoad, OfWhatIsNotOnTheRodIsRefused) {

@@ -70,22 +70,6 @@ Eigen::Matrix3Xd straight_start(const PolygonProblem& problem) {
   return start;
 }
 
-TEST(UnlikeJoints, TheChainsGradientIsItsEnergysDerivative) {
-  const ChainProblem problem = bent_chain();
-  const Eigen::VectorXd angles = Eigen::VectorXd::LinSpaced(n, 0.4, -1.5);
-  Eigen::VectorXd gradient(n);
-  (void)chain_energy(problem, angles, gradient);
-  Eigen::VectorXd unused(n);
-  constexpr double h = 1e-6;
-  for (Eigen::Index i = 1; i < n; ++i) {
-    const Eigen::VectorXd step = h * Eigen::VectorXd::Unit(n, i);
-    const double slope = (chain_energy(problem, angles + step, unused) -
-                          chain_energy(problem, angles - step, unused)) /
-                         (2 * h);
-    EXPECT_NEAR(gradient[i], slope, 1e-8 * gradient.norm()) << i;
-  }
-}
-
 TEST(UnlikeJoints, ThePolygonsGradientIsItsEnergysDerivative) {
   const PolygonProblem problem = bent_polygon();
   Eigen::Matrix3Xd points = straight_start(problem);
