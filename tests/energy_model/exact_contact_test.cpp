@@ -31,66 +31,11 @@ Problem over_level_floor(double gamma, double height) {
   return problem;
 }
 
-TEST(ExactContact, ConfirmsRodsThatTouchAFloorOrLieOnIt) {
-  int tips = 0;
-  int lying = 0;
-  for (const double gamma : {0.3, 1.0, 3.0, 10.0, 100.0, 1e3, 1e4, 1e5}) {
-    for (const double height : {0.01, 0.03, 0.1, 0.3}) {
-      SCOPED_TRACE("Gamma " + std::to_string(gamma) + ", height " + std::to_string(height));
-      const Problem problem = over_level_floor(gamma, height);
-      const Equilibrium energy = solve_energy(problem);
-      const Equilibrium exact = solve_exact(problem, {.start = &energy});
-      // A soft rod that hangs down steeply rotates about the vertical almost without a change of
-      // energy.
-      const bool steep = gamma >= 1e4 && height == 0.3;
-      ASSERT_TRUE(succeeded(exact.status) || (steep && exact.status == SolveStatus::near_singular))
-          << exact.message;
-      ASSERT_TRUE(succeeded(energy.status)) << energy.message;
-      const std::vector<double> at = equal_arc_lengths(problem.length, 101);
-      const Samples one = exact.sample(at);
-      const Samples other = energy.sample(at);
-      const double l = problem.length;
-      EXPECT_LT((one.points - other.points).colwise().norm().maxCoeff(), 1e-8 * l);
-      const double weight = l * problem.weight_per_length.norm();
-      EXPECT_LT((exact.grips[0].force - energy.grips[0].force).norm(), 1e-7 * weight);
-      EXPECT_LT((exact.grips[0].torque - energy.grips[0].torque).norm(), 1e-7 * weight * l);
-      EXPECT_NEAR(exact.energy.total(), energy.energy.total(), 1e-8 * weight * l);
-      ASSERT_EQ(exact.contacts.size(), energy.contacts.size());
-      for (std::size_t k = 0; k < exact.contacts.size(); ++k) {
-        EXPECT_EQ(exact.contacts[k].kind, energy.contacts[k].kind);
-        EXPECT_NEAR(exact.contacts[k].begin, energy.contacts[k].begin, 1e-7 * l);
-        EXPECT_LT((exact.contacts[k].force - energy.contacts[k].force).norm(), 1e-7 * weight);
-        (exact.contacts[k].kind == ContactKind::tip ? tips : lying) += 1;
-      }
-    }
-  }
-  EXPECT_GT(tips, 2);
-  EXPECT_GT(lying, 10);
-}
-
-// Out of a plane: a clamp that points downwards and a load from the side, above a floor and next to
-// a wall.
-TEST(ExactContact, ConfirmsARodThatALoadTakesOutOfThePlane) {
-  for (const double side : {0.5, 2.0, 8.0}) {
-    SCOPED_TRACE("side load " + std::to_string(side));
-    Problem problem = over_level_floor(20, 0.15);
-    problem.grips[0].direction = Eigen::Vector3d(1, -0.1, 0.2).normalized();
-    problem.loads = {{0.6, {0, 0, side}}};
-    problem.obstacles.push_back({obstacle::Body::half_space({0, 0, 2}, {0, 0, -1})});
-    const Equilibrium energy = solve_energy(problem);
-    const Equilibrium exact = solve_exact(problem, {.start = &energy});
-    ASSERT_TRUE(succeeded(energy.status)) << energy.message;
-    ASSERT_TRUE(succeeded(exact.status)) << exact.message;
-    ASSERT_EQ(exact.contacts.size(), 1U);
-    const std::vector<double> at = equal_arc_lengths(problem.length, 101);
-    const Eigen::Matrix3Xd apart = exact.sample(at).points - energy.sample(at).points;
-    EXPECT_LT(apart.colwise().norm().maxCoeff(), 1e-8 * problem.length);
-    EXPECT_LT((exact.contacts[0].force - energy.contacts[0].force).norm(), 1e-6 * 20);
-  }
-}
-
 /// Numbers of shapes with contact that were confirmed from themselves, by kind.
 struct Confirmed {
+  bool may_be_near_singular = false;
+  double place_error = 1e-6;  // allowed for the ends of a contact
+  int refused = 0;
   int touching = 0;
   int confirmed = 0;
   int lying = 0;
@@ -103,9 +48,13 @@ struct Confirmed {
     constexpr double endless = std::numeric_limits<double>::infinity();
     const double limit = start != nullptr ? endless : 20;
     const Equilibrium energy = solve_energy(problem, {.time_limit = limit, .start = start});
+    refused += succeeded(energy.status) ? 0 : 1;
     if (!succeeded(energy.status) || energy.contacts.empty()) return;
     ++touching;
-    const Equilibrium exact = test::usable(solve_exact(problem, {.start = &energy}));
+    const Equilibrium exact = solve_exact(problem, {.start = &energy});
+    ASSERT_TRUE(succeeded(exact.status) ||
+                (may_be_near_singular && exact.status == SolveStatus::near_singular))
+        << exact.message;
     ++confirmed;
     ASSERT_EQ(exact.contacts.size(), energy.contacts.size());
     const std::vector<double> at = equal_arc_lengths(problem.length, 101);
@@ -124,14 +73,45 @@ struct Confirmed {
     for (std::size_t k = 0; k < energy.contacts.size(); ++k) {
       EXPECT_EQ(exact.contacts[k].kind, energy.contacts[k].kind);
       EXPECT_EQ(exact.contacts[k].obstacle, energy.contacts[k].obstacle);
-      EXPECT_NEAR(exact.contacts[k].begin, energy.contacts[k].begin, 1e-6);
-      EXPECT_NEAR(exact.contacts[k].end, energy.contacts[k].end, 1e-6);
+      EXPECT_NEAR(exact.contacts[k].begin, energy.contacts[k].begin, place_error);
+      EXPECT_NEAR(exact.contacts[k].end, energy.contacts[k].end, place_error);
       EXPECT_LT((exact.contacts[k].force - energy.contacts[k].force).norm(), 1e-7 * force);
       (energy.contacts[k].kind == ContactKind::lying ? lying : points) += 1;
     }
     several += energy.contacts.size() > 1 ? 1 : 0;
   }
 };
+
+TEST(ExactContact, ConfirmsRodsThatTouchAFloorOrLieOnIt) {
+  Confirmed seen{.place_error = 1e-7};
+  for (const double gamma : {0.3, 1.0, 3.0, 10.0, 100.0, 1e3, 1e4, 1e5}) {
+    for (const double height : {0.01, 0.03, 0.1, 0.3}) {
+      SCOPED_TRACE("Gamma " + std::to_string(gamma) + ", height " + std::to_string(height));
+      // A soft rod that hangs down steeply rotates about the vertical almost without a change of
+      // energy.
+      seen.may_be_near_singular = gamma >= 1e4 && height == 0.3;
+      seen.confirm(over_level_floor(gamma, height));
+    }
+  }
+  EXPECT_EQ(seen.refused, 0);
+  EXPECT_GT(seen.points, 2);
+  EXPECT_GT(seen.lying, 10);
+}
+
+// Out of a plane: a clamp that points downwards and a load from the side, above a floor and next to
+// a wall.
+TEST(ExactContact, ConfirmsARodThatALoadTakesOutOfThePlane) {
+  Confirmed seen;
+  for (const double side : {0.5, 2.0, 8.0}) {
+    SCOPED_TRACE("side load " + std::to_string(side));
+    Problem problem = over_level_floor(20, 0.15);
+    problem.grips[0].direction = Eigen::Vector3d(1, -0.1, 0.2).normalized();
+    problem.loads = {{0.6, {0, 0, side}}};
+    problem.obstacles.push_back({obstacle::Body::half_space({0, 0, 2}, {0, 0, -1})});
+    seen.confirm(problem);
+  }
+  EXPECT_EQ(seen.confirmed, 3);
+}
 
 // One to three grips of all kinds above floors and next to walls.
 TEST(ExactContact, ConfirmsRandomRodsAgainstPlanes) {
@@ -141,6 +121,7 @@ TEST(ExactContact, ConfirmsRandomRodsAgainstPlanes) {
       SCOPED_TRACE("seed " + std::to_string(seed) + (space ? " in space" : " in the plane"));
       seen.confirm(test::random_touching_problem(seed, space, 300));
     }
+    EXPECT_LE(seen.refused, 1);
     EXPECT_GE(seen.touching, 14);
     EXPECT_EQ(seen.confirmed, seen.touching);
     EXPECT_GE(seen.points, 5);

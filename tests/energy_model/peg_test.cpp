@@ -5,16 +5,12 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
-#include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
-#include "../sanitized.hpp"
 #include "contact/penetration.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
-#include "random_contact.hpp"
 #include "solved.hpp"
 #include "start_along.hpp"
 
@@ -97,23 +93,6 @@ TEST(Table, OverhangLiftsTheRodBehindTheEdge) {
   }
 }
 
-/// Returns EI kappa^2 / 2 + n.t + w.r, n the force in the rod, at its start and at its end. This is
-/// constant along a rod for any frictionless obstacle and any kind of contact.
-std::array<double, 2> ends_of_first_integral(const Problem& problem, const Equilibrium& rod) {
-  const Samples ends = rod.sample(std::array{0.0, problem.length});
-  std::array<double, 2> result{};
-  for (std::size_t i = 0; i < 2; ++i) {
-    const auto column = static_cast<Eigen::Index>(i);
-    result[i] = problem.weight_per_length.dot(ends.points.col(column));
-    if (i == 1 && problem.grips.size() < 2) continue;
-    const Reaction& grip = i == 0 ? rod.grips.front() : rod.grips.back();
-    const double sense = i == 0 ? -1 : 1;
-    result[i] += sense * grip.force.dot(ends.tangents.col(column)) +
-                 grip.torque.squaredNorm() / (2 * problem.bending_stiffness);
-  }
-  return result;
-}
-
 // A rope over a peg: the tensions at its ends differ by the weight of its length between their
 // heights.
 TEST(Peg, RopeHasTheTensionOfTheFrictionlessCapstan) {
@@ -129,69 +108,6 @@ TEST(Peg, RopeHasTheTensionOfTheFrictionlessCapstan) {
   const double before = -rod.grips[0].force.dot(ends.tangents.col(0));
   const double after = rod.grips[1].force.dot(ends.tangents.col(1));
   EXPECT_NEAR(before - after, gamma * (ends.points(1, 0) - ends.points(1, 1)), 1e-7 * gamma);
-}
-
-// A converged shape does not penetrate the body, is only pushed by it, and conserves its first
-// integral. Hardly any scene does not converge.
-TEST(Peg, RandomRodsRestOnBodiesOrSayWhyNot) {
-  int looked = 0;
-  int converged = 0;
-  int touching = 0;
-  for (const bool space : {false, true}) {
-    for (int seed = 0; seed < test::draws(20); ++seed) {
-      const std::optional<Problem> scene =
-          test::random_problem_with_body(static_cast<unsigned>(seed), space);
-      if (!scene) continue;
-      const Problem& problem = *scene;
-      const double gamma = problem.weight_per_length.norm();
-      SCOPED_TRACE("seed " + std::to_string(seed) + (space ? " in space" : " in the plane"));
-      ++looked;
-      const Equilibrium rod = solve_energy(problem, {.time_limit = 20});
-      if (rod.status != SolveStatus::converged) {
-        EXPECT_FALSE(succeeded(rod.status)) << rod.message;
-        continue;
-      }
-      ++converged;
-      touching += rod.contacts.empty() ? 0 : 1;
-      const Body& body = problem.obstacles[0].body;
-      const Samples dense = rod.sample(equal_arc_lengths(1, 7919));
-      EXPECT_GT(body.clearances(dense.points).minCoeff(), -1e-8);
-      for (const ContactPart& contact : rod.contacts) {
-        EXPECT_GE(contact.begin_force, -1e-6 * (1 + gamma));
-        EXPECT_GE(contact.end_force, -1e-6 * (1 + gamma));
-        const Samples there =
-            rod.sample(std::array{contact.begin, (contact.begin + contact.end) / 2, contact.end});
-        EXPECT_LT(body.clearances(there.points).cwiseAbs().maxCoeff(), 1e-8);
-        if (contact.kind == ContactKind::lying) continue;
-        const Eigen::Vector3d normal = body.gap(there.points.col(0)).gradient;
-        EXPECT_NEAR(contact.force.dot(normal), contact.force.norm(), 1e-9 * (1 + gamma));
-      }
-      const std::array<double, 2> integral = ends_of_first_integral(problem, rod);
-      double size = 1 + gamma;
-      for (const Reaction& grip : rod.grips) size += grip.force.norm();
-      EXPECT_NEAR(integral[0], integral[1], 1e-7 * size);
-    }
-  }
-  EXPECT_GE(looked, test::draws(30));
-  EXPECT_GE(converged, looked - 1);
-  EXPECT_GE(touching, converged - 4);
-}
-
-// An obstacle that yields less and less is another solver's way to the same shape.
-TEST(Peg, StifferAndStifferOnesLeadToTheRigidOne) {
-  Problem problem = heavy_cantilever(100, 0);
-  problem.obstacles = {{Body::sphere({0.14, -0.1, 0.01}, 0.08)}};
-  const Equilibrium rigid = test::converged(solve_energy(problem));
-  double last = 4;
-  for (const double stiffness : {1e5, 1e6, 1e7}) {
-    problem.obstacles[0].stiffness = stiffness;
-    const Equilibrium soft = test::usable(solve_energy(problem));
-    const double below = rigid.energy.total() - soft.energy.total();
-    EXPECT_GT(below, 0);
-    EXPECT_LT(below, last / 3);
-    last = below;
-  }
-  EXPECT_LT(last, 0.1);
 }
 
 // A body thinner than the grid on which shapes are judged is seen, whatever the search has found.

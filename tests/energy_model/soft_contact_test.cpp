@@ -99,6 +99,7 @@ TEST(SoftContact, AThinPegIsSeenBetweenTwoLooks) {
     const Equilibrium rigid = test::converged(solve_energy(problem));
     problem.obstacles[0].stiffness = 1e8;
     const Equilibrium soft = test::converged(solve_energy(problem));
+    EXPECT_EQ(soft.penetration, 0);  // only a rigid obstacle is penetrated, a soft one yields
     EXPECT_LT(soft.obstacles[0].y(), rigid.obstacles[0].y());
     EXPECT_NEAR(soft.obstacles[0].y() / rigid.obstacles[0].y(), 1, 0.01);
   }
