@@ -12,24 +12,6 @@
 namespace dlo::energy_model {
 namespace {
 
-/// A rod that is clamped along x and pulled nearly across, out of its plane.
-TEST(Certify, TakesAShapeOfEnoughTermsAndOneOfTheCallers) {
-  Span span;
-  span.planar = false;
-  span.length = 1;
-  span.start_direction = Eigen::Vector3d::UnitX();
-  span.weight = {0, 1, 20};
-  span.loads = {{1, {2, 0, 5}}};
-  SpanWorkspace workspace;
-  for (const int terms : {0, 9}) {
-    SpanOptions options;
-    options.terms = terms;
-    const SpanSolution solution = std::move(solve_span(span, options, workspace).front());
-    EXPECT_EQ(solution.status, SolveStatus::converged) << terms << ": " << solution.message;
-    EXPECT_TRUE(solution.resolved);
-  }
-}
-
 // Between two clamps in a plane three constraints fix all that three terms leave free: there is no
 // direction in which a fold could be searched for.
 TEST(Certify, TakesAShapeThatNothingIsFreeIn) {
@@ -82,28 +64,6 @@ TEST(Certify, UsesTheFactorAtTheShapeItself) {
     EXPECT_EQ(certified.smallest_eigenvalue, alone.smallest_eigenvalue);
     EXPECT_EQ(certified.factor->distance(certified, 1), 0);
   }
-}
-
-// A shape that is followed is computed from the factorisation of the previous shape, and equals the
-// result of a search.
-TEST(Certify, AFollowedShapeIsTheOneThatIsSearchedFor) {
-  SpanWorkspace workspace;
-  const SpanSolution before =
-      std::move(solve_span(spatial_arch(0.3), SpanOptions(), workspace).front());
-  ASSERT_TRUE(before.factor);
-  const Span span = spatial_arch(0.28);
-  SpanOptions options;
-  const auto tangents = [&](const Eigen::VectorXd&) { return before.at_x()->tangents(); };
-  options.start.field = tangents;
-  options.start.known = {before.model, before.x, before.multipliers, before.factor};
-  const SpanSolution followed = std::move(solve_span(span, options, workspace).front());
-  const SpanSolution searched = std::move(solve_span(span, SpanOptions(), workspace).front());
-  ASSERT_EQ(followed.status, SolveStatus::converged) << followed.message;
-  EXPECT_TRUE(followed.followed);
-  EXPECT_LT(followed.next_step, 1e-10);
-  EXPECT_NEAR(followed.energy, searched.energy, 1e-9);
-  EXPECT_NEAR(followed.smallest_eigenvalue, searched.smallest_eigenvalue,
-              0.02 * searched.smallest_eigenvalue);
 }
 
 /// The straight shape of a rod that is clamped at its begin, before it is certified.

@@ -56,8 +56,8 @@ MatrixXd::BlockXpr part_of(MatrixXd& whole, Index rows, Index columns) {
 }
 
 TEST(DenseProducts, AreThoseOfTheLibraryInAllSizes) {
-  for (const Index rows : {1, 2, 3, 4, 5, 8, 11, 20, 47}) {
-    for (const Index inner : {1, 2, 3, 7, 26}) {
+  for (const Index rows : {1, 2, 3, 4, 5, 8, 11, 15, 16, 20, 31, 32, 33, 47, 63, 64, 65, 130}) {
+    for (const Index inner : {1, 2, 3, 7, 30}) {
       for (const Index columns : {1, 2, 3, 4, 5, 9}) {
         MatrixXd wholes[3];
         const auto a = part_of(wholes[0], rows, inner);
@@ -145,18 +145,6 @@ TEST(DenseProducts, TurnAnglesAsTheLibraryDoes) {
       }
       EXPECT_EQ(cosines[count], 2);
       EXPECT_EQ(sines[count], 2);
-    }
-  }
-}
-
-TEST(DenseProducts, SumALongColumnInAllSizes) {
-  for (const Index rows : {15, 16, 31, 32, 33, 63, 64, 65, 130}) {
-    const MatrixXd a = MatrixXd::Random(rows, 30);
-    const Eigen::VectorXd b = Eigen::VectorXd::Random(30);
-    for (const DenseKernel* kernel : kernels) {
-      Eigen::VectorXd product(rows);
-      kernel->multiply(columns_of(a), columns_of(b), result_columns(product));
-      EXPECT_LT((product - a * b).norm(), rounding) << rows;
     }
   }
 }

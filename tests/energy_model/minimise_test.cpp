@@ -69,16 +69,5 @@ TEST(Minimise, CallsNothingASuccessThatNLoptDoesNot) {
   EXPECT_FALSE(translate_nlopt(99).is_a_start());
 }
 
-TEST(Minimise, StopsAtASmallGradient) {
-  const Objective objective = [](const Eigen::Ref<const Eigen::VectorXd>& x,
-                                 Eigen::Ref<Eigen::VectorXd> gradient) {
-    gradient = 2 * x;
-    return x.squaredNorm();
-  };
-  Eigen::VectorXd x = Eigen::VectorXd::Ones(2);
-  const MinimiseResult result = test::converged(minimise_lbfgs(objective, x, {1e-6, 100}));
-  EXPECT_LE(2 * x.norm(), 1e-6);
-}
-
 }  // namespace
 }  // namespace dlo::energy_model

@@ -80,28 +80,6 @@ TEST_P(PolygonOfEveryLaw, GradientIsTheDifferenceOfTheEnergy) {
   }
 }
 
-TEST(Polygon, LinearJointHasItsAngleForAMoment) {
-  // Two segments: E = k alpha^2 / 2 to rounding, at angles on both sides of where its series ends.
-  PolygonProblem problem;
-  problem.rest_lengths = Eigen::Vector2d(0.5, 0.25);
-  problem.stretch_stiffness = 1;
-  problem.node_forces.setZero(3, 3);
-  problem.law = JointLaw::linear;
-  problem.stiffness = 3;
-  Eigen::Matrix3Xd gradient(3, 3);
-  for (const double alpha : {1e-9, 1e-4, 0.1, 0.2837, 0.2838, 1.0, 2.5, 3.1}) {
-    Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, 3);
-    points(0, 1) = 0.5;
-    points.col(2) << 0.5 + 0.25 * std::cos(alpha), 0, 0.25 * std::sin(alpha);
-    const double k = 3 / 0.375;
-    const double energy = polygon_energy(problem, points, gradient);
-    EXPECT_NEAR(energy, k * alpha * alpha / 2, 1e-13 * k * alpha * alpha) << alpha;
-    // The force on the last point, across its segment: moment over length.
-    const Eigen::Vector3d across(-std::sin(alpha), 0, std::cos(alpha));
-    EXPECT_NEAR(gradient.col(2).dot(across), k * alpha / 0.25, 1e-9 * k * alpha) << alpha;
-  }
-}
-
 TEST_P(PolygonOfEveryLaw, RestsInFewStepsAndBalancesItsForces) {
   for (const double gamma : {0.0, 1.0, 100.0, 1000.0}) {
     for (const Eigen::Index points : {8, 33, 200}) {

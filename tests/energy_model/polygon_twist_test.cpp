@@ -185,21 +185,6 @@ TEST(PolygonTwist, ApproachesTheRodInSecondOrder) {
   }
 }
 
-TEST(PolygonTwist, OfSeveralTurnsIsTheRodsAndBalances) {
-  SpatialRod scene;
-  scene.gamma = 1;
-  scene.roll = 6 * pi;
-  const Equilibrium rod = test::usable(solve_energy(scene.rod()));
-  const TwistedPolygon polygon = twisted(scene, 80, rod);
-  const PolygonResult& result = polygon.result;
-  ASSERT_TRUE(succeeded(result.status)) << result.message;
-  EXPECT_LT(polygon.rms, 1e-3);
-  // Grips and weight, whatever the shape.
-  Eigen::Vector3d force = result.grip_forces.rowwise().sum();
-  force.y() -= scene.gamma;
-  EXPECT_LT(force.norm(), 1e-6);
-}
-
 TEST(PolygonTwist, IsRefusedWhereItIsNotHeldOrHasNoLaw) {
   Eigen::Matrix3Xd points;
   const PolygonProblem good = random_problem(points);

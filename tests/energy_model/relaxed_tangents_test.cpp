@@ -92,26 +92,5 @@ TEST(RelaxedTangents, CloseTheirGapsAndComeToRest) {
   }
 }
 
-TEST(RelaxedTangents, HaveTheEnergyOfTheirJointsAndLoads) {
-  const RodSpan span = held_rod(2, clamp_at_end(0.7, {1, 0, 0}));
-  const RodMesh mesh = make_mesh(span, 0.05);
-  const auto start = polygon_starts(span, mesh, Motion::in_plane)[2];
-  const RelaxedTangents polygon =
-      relax_tangents(span, mesh, tangents_of_start(start), Motion::in_plane, Deadline(10));
-  const Eigen::Matrix3Xd& t = polygon.tangents;
-  const Eigen::Index count = t.cols();
-  const double h = mesh.width(0);
-  const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
-  double energy = 2 / h * (1 - t.col(0).dot(x) + 1 - t.col(count - 1).dot(x));
-  double height = 0;
-  for (Eigen::Index i = 0; i < count; ++i) {
-    if (i > 0) energy += (1 - t.col(i).dot(t.col(i - 1))) / h;
-    energy += 2 * h * (height + h / 2 * t(1, i));
-    height += h * t(1, i);
-  }
-  EXPECT_NEAR(polygon.energy, energy, 1e-9);
-  EXPECT_NEAR(t.row(2).norm(), 0, 1e-12);
-}
-
 }  // namespace
 }  // namespace dlo::energy_model

@@ -195,40 +195,6 @@ TEST_P(Objective, HasTheDerivativesOfItsValue) {
   }
 }
 
-TEST_P(Objective, OfAnotherSpanIsNotTheOneBefore) {
-  const Span span = GetParam().span();
-  Span lighter = span;
-  lighter.weight /= 2;
-  SpanEnergy model(lighter, 6);
-  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(model.size(), -0.5, 0.5);
-  SpanPoint point = model.evaluated(x);
-  const double energy_of_lighter = point.energy;
-  model.reset(span, 6);
-  const SpanPoint expected = SpanEnergy(span, 6).evaluated(x);
-  model.evaluate(x, point);
-  EXPECT_NE(point.energy, energy_of_lighter);
-  EXPECT_EQ(point.energy, expected.energy);
-  EXPECT_EQ(point.gradient, expected.gradient);
-}
-
-// The values at a point do not change when the model is evaluated at other points.
-TEST_P(Objective, APointStaysWhatItIs) {
-  SpanEnergy model(GetParam().span(), 6);
-  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(model.size(), -0.5, 0.5);
-  const Eigen::VectorXd mu = Eigen::VectorXd::Ones(model.constraints());
-  SpanPoint here = model.evaluated(x);
-  Eigen::MatrixXd hessian;
-  model.hessian(here, mu, hessian);
-  SpanPoint there = model.evaluated(0.5 * x);
-  Eigen::MatrixXd of_there;
-  model.hessian(there, mu, of_there);
-  Eigen::MatrixXd again;
-  model.hessian(here, mu, again);
-  EXPECT_EQ(again, hessian);
-  EXPECT_EQ(here.residual, model.evaluated(x).residual);
-  EXPECT_EQ(here.tangents(), model.evaluated(x).tangents());
-}
-
 #ifdef DLO_COUNTS_ALLOCATIONS
 class ObjectiveWithoutObstacles : public Objective {};
 
