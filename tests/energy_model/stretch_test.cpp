@@ -1,4 +1,4 @@
-// Rods that stretch by N / EA: closed forms, an integration of its own, and derivatives.
+// Rods that stretch by N / EA: closed forms, and an integration of its own.
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,9 @@
 #include <stdexcept>
 
 #include "../says.hpp"
-#include "base/spin.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "runge_kutta.hpp"
-#include "shooting/rod_flow.hpp"
 #include "solved.hpp"
 
 namespace dlo::energy_model {
@@ -145,68 +143,6 @@ TEST(Stretch, MovesTheLoadThatBucklesAColumn) {
       EXPECT_GT(point.tail<2>().norm(), 0.02);
     }
   }
-}
-
-TEST(Stretch, PressesARodBetweenClampsUntilItBuckles) {
-  // EA delta (1 - delta) = 4 pi^2 EI / l^2.
-  for (const double delta : {0.03, 0.05}) {
-    Problem problem = rod(1000);
-    problem.grips = {{0, {0, 0, 0}, Vector3d::UnitX(), {}},
-                     {1, {1 - delta, 0, 0}, Vector3d::UnitX(), {}}};
-    const Equilibrium solved = test::converged(solve_exact(problem));
-    const double bent = test::point_at(solved, 0.5).tail<2>().norm();
-    if (1000 * delta * (1 - delta) < 4 * std::pow(std::acos(-1.0), 2)) {
-      EXPECT_NEAR(solved.energy.total(), 1000 * delta * delta / 2, 1e-9);
-      EXPECT_LT(bent, 1e-9);
-    } else {
-      EXPECT_LT(solved.energy.total(), 1000 * delta * delta / 2);
-      EXPECT_GT(bent, 0.02);
-    }
-  }
-}
-
-TEST(Stretch, DerivativesAreThoseOfDifferences) {
-  RodSection section;
-  section.bending = 1.2;
-  section.bending_2 = 0.7;
-  section.torsion = 0.9;
-  section.weight = {0.3, -2, 0.5};
-  section.stretch = 0.05;
-  const NaturalStrain none;
-  const RodPiece piece{section, none, 0.1, 0.6};
-  RodState state;
-  state.m = {0.4, -0.8, 0.3};
-  state.n = {2, -1, 3};
-  RodVariation change(12);
-  change.r.leftCols<3>().setIdentity();
-  change.spin.middleCols<3>(3).setIdentity();
-  change.m.middleCols<3>(6).setIdentity();
-  change.n.rightCols<3>().setIdentity();
-  const auto follow = [&](Eigen::Index k, double step) {
-    RodState moved = state;
-    Vector3d unit = Vector3d::Zero();
-    unit[k % 3] = step;
-    if (k < 3) moved.r += unit;
-    if (k >= 3 && k < 6) moved.R = from_rotation_vector(unit) * moved.R;
-    if (k >= 6 && k < 9) moved.m += unit;
-    if (k >= 9) moved.n += unit;
-    RodIntegrals integrals;
-    EXPECT_TRUE(follow_rod(piece, 1e-13, moved, integrals));
-    return moved;
-  };
-  RodState end = state;
-  RodIntegrals integrals;
-  ASSERT_TRUE(follow_rod(piece, 1e-13, end, change, integrals));
-  constexpr double step = 1e-5;
-  for (Eigen::Index k = 0; k < 12; ++k) {
-    const RodState up = follow(k, step);
-    const RodState down = follow(k, -step);
-    EXPECT_LT(((up.r - down.r) / (2 * step) - change.r.col(k)).norm(), 1e-8) << k;
-    EXPECT_LT(((up.m - down.m) / (2 * step) - change.m.col(k)).norm(), 1e-8) << k;
-    const Vector3d dt = change.spin.col(k).cross(end.t());
-    EXPECT_LT(((up.t() - down.t()) / (2 * step) - dt).norm(), 1e-8) << k;
-  }
-  EXPECT_GT(integrals.stretch, 0);
 }
 
 TEST(Stretch, IsRefusedByNameByWhatDoesNotStretch) {
