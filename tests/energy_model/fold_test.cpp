@@ -3,13 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <span>
 #include <vector>
 
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
+#include "runge_kutta.hpp"
 #include "solved.hpp"
 
 namespace dlo::energy_model {
@@ -29,31 +29,18 @@ Problem ribbon(Real gamma) {
 
 /// theta'' = Gamma s cos(theta) from the tip, s = 0, where theta' = 0; with the derivative by
 /// theta(0) and what lies between the tip and here.
-using State = std::array<Real, 6>;  // theta, theta', their derivatives, x, y
-
-State rate(Real gamma, Real s, const State& u) {
-  return {u[1],           gamma * s * std::cos(u[0]),
-          u[3],           -gamma * s * std::sin(u[0]) * u[2],
-          std::cos(u[0]), std::sin(u[0])};
-}
+using State = Eigen::Matrix<Real, 6, 1>;  // theta, theta', their derivatives, x, y
 
 /// Integrates by the Runge-Kutta method, at equally spaced s from the tip to the clamp.
 std::vector<State> shot(Real gamma, Real tip_angle, int steps) {
   const Real h = Real(1) / static_cast<Real>(steps);
-  std::vector<State> states = {{tip_angle, 0, 1, 0, 0, 0}};
-  const auto moved = [](const State& u, Real by, const State& along) {
-    State result = u;
-    for (std::size_t i = 0; i < result.size(); ++i) result.at(i) += by * along.at(i);
-    return result;
+  const auto rates = [gamma](Real s, const State& u) {
+    return State(u[1], gamma * s * std::cos(u[0]), u[3], -gamma * s * std::sin(u[0]) * u[2],
+                 std::cos(u[0]), std::sin(u[0]));
   };
+  std::vector<State> states = {State(tip_angle, 0, 1, 0, 0, 0)};
   for (int i = 0; i < steps; ++i) {
-    const Real s = static_cast<Real>(i) * h;
-    const State& u = states.back();
-    const State k1 = rate(gamma, s, u);
-    const State k2 = rate(gamma, s + h / 2, moved(u, h / 2, k1));
-    const State k3 = rate(gamma, s + h / 2, moved(u, h / 2, k2));
-    const State k4 = rate(gamma, s + h, moved(u, h, k3));
-    states.push_back(moved(moved(moved(moved(u, h / 6, k1), h / 3, k2), h / 3, k3), h / 6, k4));
+    states.push_back(test::runge_kutta(rates, static_cast<Real>(i) * h, states.back(), h));
   }
   return states;
 }
@@ -64,13 +51,9 @@ State at_clamp(Real gamma, Real tip_angle) {
   const State a = shot(gamma, tip_angle, steps).back();
   const State b = shot(gamma, tip_angle, 2 * steps).back();
   const State c = shot(gamma, tip_angle, 4 * steps).back();
-  State result = c;
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    const Real coarse = b.at(i) + (b.at(i) - a.at(i)) / 15;
-    const Real fine = c.at(i) + (c.at(i) - b.at(i)) / 15;
-    result.at(i) = fine + (fine - coarse) / 31;
-  }
-  return result;
+  const State coarse = b + (b - a) / Real(15);
+  const State fine = c + (c - b) / Real(15);
+  return fine + (fine - coarse) / Real(31);
 }
 
 struct Fold {

@@ -15,6 +15,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "problems.hpp"
+#include "runge_kutta.hpp"
 #include "solved.hpp"
 
 namespace dlo::energy_model {
@@ -185,42 +186,29 @@ TEST(Vibrations, OfAHangingRodComeToThoseOfAChain) {
   EXPECT_NEAR(over[2] - over[1], (over[1] - over[0]) / 10, 0.3 * std::abs(over[1] - over[0]) / 10);
 }
 
-/// State of a rod along its arc length, and its change in a vibration: points r, tangents t,
-/// moments m and forces n of the part beyond; r' = t, m = t x t', m' = n x t, n' = -w - omega^2 dr.
-struct RodState {
-  Vector3d r, t, m, n, dr, dt, dm, dn;
-};
-
-RodState state_slope(const RodState& y, const Vector3d& weight, double omega_squared) {
-  RodState d;
-  d.r = y.t;
-  d.t = y.m.cross(y.t);
-  d.m = y.n.cross(y.t);
-  d.n = -weight;
-  d.dr = y.dt;
-  d.dt = y.dm.cross(y.t) + y.m.cross(y.dt);
-  // The moment has no part about the tangent: dm . t + m . dt = 0 keeps itself.
-  d.dm = y.dn.cross(y.t) + y.n.cross(y.dt);
-  d.dn = -omega_squared * y.dr;
-  return d;
-}
-
-RodState advanced(const RodState& y, const RodState& d, double h) {
-  return {y.r + h * d.r,   y.t + h * d.t,   y.m + h * d.m,   y.n + h * d.n,
-          y.dr + h * d.dr, y.dt + h * d.dt, y.dm + h * d.dm, y.dn + h * d.dn};
-}
+/// State of a rod along its arc length, and its change in a vibration: columns r, t, m, n, dr, dt,
+/// dm and dn of points, tangents, and moments and forces of the part beyond; r' = t, m = t x t',
+/// m' = n x t, n' = -w - omega^2 dr.
+using VibratingState = Eigen::Matrix<double, 3, 8>;
 
 /// From the tip to the clamp, by the classical Runge-Kutta method.
-RodState at_clamp(RodState y, const Vector3d& weight, double omega_squared) {
+VibratingState at_clamp(VibratingState y, const Vector3d& weight, double omega_squared) {
+  const auto slope = [&](double, const VibratingState& at) {
+    const Vector3d t = at.col(1);
+    const Vector3d m = at.col(2);
+    const Vector3d n = at.col(3);
+    const Vector3d dt = at.col(5);
+    const Vector3d dm = at.col(6);
+    const Vector3d dn = at.col(7);
+    // The moment has no part about the tangent: dm . t + m . dt = 0 keeps itself.
+    VibratingState rate;
+    rate << t, m.cross(t), n.cross(t), -weight, dt, dm.cross(t) + m.cross(dt),
+        dn.cross(t) + n.cross(dt), -omega_squared * at.col(4);
+    return rate;
+  };
   constexpr int steps = 4000;
   const double h = -1.0 / steps;
-  for (int i = 0; i < steps; ++i) {
-    const RodState a = state_slope(y, weight, omega_squared);
-    const RodState b = state_slope(advanced(y, a, h / 2), weight, omega_squared);
-    const RodState c = state_slope(advanced(y, b, h / 2), weight, omega_squared);
-    const RodState d = state_slope(advanced(y, c, h), weight, omega_squared);
-    y = advanced(advanced(advanced(advanced(y, a, h / 6), b, h / 3), c, h / 3), d, h / 6);
-  }
+  for (int i = 0; i < steps; ++i) y = test::runge_kutta(slope, 0.0, y, h);
   return y;
 }
 
@@ -233,16 +221,12 @@ double miss_at_clamp(const Vector3d& tip, const Vector3d& tangent, const Vector3
   const Vector3d here = clamp_direction.unitOrthogonal();
   Eigen::Matrix<double, 5, 5> at;
   for (Eigen::Index k = 0; k < 5; ++k) {
-    RodState y{tip,
-               tangent,
-               Vector3d::Zero(),
-               Vector3d::Zero(),
-               k < 3 ? Vector3d(Vector3d::Unit(k)) : Vector3d(Vector3d::Zero()),
-               k < 3 ? Vector3d(Vector3d::Zero()) : (k == 3 ? across : beside),
-               Vector3d::Zero(),
-               Vector3d::Zero()};
+    VibratingState y = VibratingState::Zero();
+    y.leftCols<2>() << tip, tangent;
+    if (k < 3) y(k, 4) = 1;
+    if (k >= 3) y.col(5) = k == 3 ? across : beside;
     y = at_clamp(y, weight, omega_squared);
-    at.col(k) << y.dr, here.dot(y.dt), clamp_direction.cross(here).dot(y.dt);
+    at.col(k) << y.col(4), here.dot(y.col(5)), clamp_direction.cross(here).dot(y.col(5));
   }
   return at.determinant();
 }
