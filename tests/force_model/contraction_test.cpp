@@ -29,12 +29,6 @@ TEST(Contraction, PullsTogetherByTheRelativeExtension) {
   EXPECT_NEAR(forces(0, 1), -0.2 * c_c, 1e-15);
 }
 
-TEST(Contraction, IsZeroAtRestLength) {
-  const Eigen::Matrix3Xd points = random_polygon(1, 9, 0.1, 0);
-  const Eigen::Matrix3Xd forces = forces_of(points, Eigen::VectorXd::Constant(9, 0.1));
-  EXPECT_LT(forces.cwiseAbs().maxCoeff(), c_c * 1e-14);
-}
-
 TEST(Contraction, ForcesAndTorquesSumToZeroForAnySegments) {
   const Eigen::Matrix3Xd points = random_polygon(2, 12, 0.1, 0.8);
   const Eigen::Matrix3Xd forces = forces_of(points, Eigen::VectorXd::LinSpaced(12, 0.05, 0.2));

@@ -22,13 +22,6 @@ inline Eigen::Matrix3Xd random_polygon(unsigned seed, Eigen::Index segments, dou
   return points;
 }
 
-inline Eigen::Quaterniond random_rotation(unsigned seed) {
-  std::mt19937 engine(seed);
-  std::normal_distribution<double> normal;
-  return Eigen::Quaterniond(normal(engine), normal(engine), normal(engine), normal(engine))
-      .normalized();
-}
-
 inline Eigen::Vector3d net_torque(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& forces) {
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
