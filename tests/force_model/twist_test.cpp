@@ -24,7 +24,6 @@ namespace {
 
 using std::numbers::pi;
 using test::difference_forces;
-using test::net_torque;
 using test::random_polygon;
 using test::TwistedRod;
 
@@ -93,20 +92,6 @@ TEST(Twist, ForcesAreTheGradientOfTheEnergy) {
   twist_gradient(span, points, gradient);
   const double moment = twist_angle(span, points) / span.compliance;
   EXPECT_LT((forces + moment * gradient).cwiseAbs().maxCoeff(), 1e-14 * size);
-}
-
-TEST(Twist, HasNoNetForceAndItsTorqueIsWhatTheFramesBear) {
-  constexpr Eigen::Index n = 15;
-  const Eigen::Matrix3Xd points = random_polygon(8, n, 0.05, 0.3);
-  const TwistedSpan span = random_span(n);
-  Eigen::Matrix3Xd forces = Eigen::Matrix3Xd::Zero(3, n + 1);
-  add_twist_forces(span, points, forces);
-  const double size = forces.cwiseAbs().maxCoeff();
-  const double moment = twist_angle(span, points) / span.compliance;
-  EXPECT_LT(forces.rowwise().sum().norm(), 1e-14 * size);
-  const Eigen::Vector3d couples =
-      moment * (direction(points, span.first_segment) - direction(points, span.last_segment));
-  EXPECT_LT((net_torque(points, forces) + couples).norm(), 1e-14 * size);
 }
 
 TEST(Twist, AtRestTheGripsBalanceEachOtherAndBearIt) {

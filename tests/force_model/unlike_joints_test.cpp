@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "dlo/force_model/batch.hpp"
@@ -162,23 +161,6 @@ TEST(NaturalTurns, StepAsThePlainForcesSayOnEveryInstructionSet) {
       EXPECT_LT((simulation.points() - plain.points()).cwiseAbs().maxCoeff(), allowed) << points;
       EXPECT_LT((batch.points(1) - plain.points()).cwiseAbs().maxCoeff(), allowed) << points;
     }
-  }
-}
-
-TEST(NaturalTurns, ARodComesToRestInItsFreeShapeWithoutLoads) {
-  SteelRod steel;
-  const double turn = 2 * std::numbers::pi / 20;
-  Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, 660);
-  rod.loads.setZero();
-  rod.bending.natural_turns = Eigen::VectorXd::Constant(steel.points - 2, turn);
-  Simulation simulation(rod, steel.straight(), {});
-  const RelaxResult result = simulation.relax();
-  ASSERT_EQ(result.status, RelaxStatus::at_rest) << result.message;
-  const Eigen::Matrix3Xd points = simulation.points();
-  for (Eigen::Index i = 1; i + 1 < points.cols(); ++i) {
-    const Eigen::Vector3d u = points.col(i) - points.col(i - 1);
-    const Eigen::Vector3d v = points.col(i + 1) - points.col(i);
-    EXPECT_NEAR(std::atan2(u.cross(v).z(), u.dot(v)), turn, 1e-5);
   }
 }
 
