@@ -8,19 +8,18 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "problems.hpp"
+#include "rolled_clamps.hpp"
 #include "solved.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
-using std::numbers::pi;
 using test::heavy_cantilever;
 using test::two_clamps;
 
@@ -87,11 +86,7 @@ std::vector<BalancedRod> balanced_rods() {
   add("a floor that yields", yielding, false);
   yielding.obstacles[0].body = Body::half_space({0, -0.1228, 0}, {0, 1, 0});
   add("contact that begins at 0.502, just behind the middle of the rod", yielding, false);
-  Problem twisted = two_clamps(4, 0.7);
-  twisted.torsional_stiffness = 0.8;
-  for (Grip& grip : twisted.grips) grip.frame = FrameHold{};
-  twisted.grips.back().frame->roll = 2;
-  add("a twisted rod", twisted, false);
+  add("a twisted rod", test::framed_clamps(4, 0.7, 0.8, 2), false);
   Problem stretched = two_clamps(8, 0.99);
   stretched.axial_stiffness = 100;
   add("a rod that stretches", stretched, true);

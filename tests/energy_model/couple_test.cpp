@@ -15,6 +15,7 @@
 #include "equilibrium_balance.hpp"
 #include "problems.hpp"
 #include "random_problems.hpp"
+#include "rolled_clamps.hpp"
 #include "solved.hpp"
 
 namespace dlo::energy_model {
@@ -187,9 +188,7 @@ TEST(Couple, OutOfThePlaneIsForShootingAloneAndNotCalledStable) {
 }
 
 TEST(Couple, IsRefusedWhereItIsNotKnown) {
-  Problem framed = with_couple(two_clamps(1, 0.8), 0.5, 1);
-  framed.torsional_stiffness = 1;
-  for (Grip& grip : framed.grips) grip.frame = FrameHold{};
+  const Problem framed = with_couple(test::framed_clamps(1, 0.8, 1, 0), 0.5, 1);
   EXPECT_THROW((void)solve_energy(framed), std::invalid_argument);
   Problem on_floor = with_couple(heavy_cantilever(1, 0), 1, 1);
   on_floor.obstacles = {{obstacle::Body::half_space({0, -0.1, 0}, Eigen::Vector3d::UnitY())}};

@@ -11,6 +11,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "problems.hpp"
+#include "rolled_clamps.hpp"
 #include "solved.hpp"
 
 namespace dlo::energy_model {
@@ -147,12 +148,8 @@ void expect_sliding_helix(double slack, const char* message) {
   constexpr double torsion = 0.8;
   const double tension = std::pow(4 * std::sin(theta) / slack, 2);
   const double torque = 2 * std::cos(theta) * std::sqrt(tension);
-  Problem problem = two_clamps(0, 1 - slack);
-  problem.torsional_stiffness = torsion;
-  problem.grips[0].direction = Eigen::Vector3d::UnitX();
-  problem.grips[0].frame = FrameHold{};
-  problem.grips[1].frame = FrameHold{.roll = torque / torsion + 4 * theta};
-  const Equilibrium found = solve_energy(problem);
+  const double roll = torque / torsion + 4 * theta;
+  const Equilibrium found = solve_energy(test::framed_clamps(0, 1 - slack, torsion, roll));
   ASSERT_EQ(found.status, SolveStatus::converged) << found.message;
   EXPECT_TRUE(found.message.starts_with(message)) << found.message;
   EXPECT_EQ(found.neutral_directions, 0);

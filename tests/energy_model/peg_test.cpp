@@ -11,6 +11,7 @@
 #include "contact/penetration.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
+#include "rolled_clamps.hpp"
 #include "solved.hpp"
 #include "start_along.hpp"
 
@@ -112,10 +113,7 @@ TEST(Peg, RopeHasTheTensionOfTheFrictionlessCapstan) {
 
 // A body thinner than the grid on which shapes are judged is seen, whatever the search has found.
 TEST(Peg, AThinOneWithinARodIsSeenWhereverItIs) {
-  Problem problem = test::two_clamps(5, 0.7);
-  problem.torsional_stiffness = 0.8;
-  for (Grip& grip : problem.grips) grip.frame.emplace();
-  problem.grips[1].frame->roll = 1;
+  Problem problem = test::framed_clamps(5, 0.7, 0.8, 1);
   const Equilibrium free = test::converged(solve_energy(problem));
   for (const double at : {0.30025, 0.5001, 0.71234}) {
     for (const double radius : {3e-5, 1e-4, 3e-4}) {

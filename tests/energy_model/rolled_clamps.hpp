@@ -4,17 +4,24 @@
 
 namespace dlo::test {
 
-/// Returns a weightless rod of unit length and stiffness, clamped at both ends, with a roll of the
-/// second clamp.
+/// Returns a horizontal rod of unit length and stiffness whose clamps hold its frame, at the
+/// distance `span`, with a roll of the second clamp.
+inline energy_model::Problem framed_clamps(double gamma, double span, double torsional_stiffness,
+                                           double roll) {
+  energy_model::Problem problem = two_clamps(gamma, span);
+  problem.torsional_stiffness = torsional_stiffness;
+  for (energy_model::Grip& grip : problem.grips) grip.frame = energy_model::FrameHold{};
+  problem.grips[1].frame->roll = roll;
+  return problem;
+}
+
+/// Returns such a rod without weight whose second clamp has any position and direction.
 inline energy_model::Problem rolled_clamps(const Eigen::Vector3d& end,
                                            const Eigen::Vector3d& direction,
                                            double torsional_stiffness, double roll) {
-  energy_model::Problem problem = two_clamps(0, 0.5);
-  problem.torsional_stiffness = torsional_stiffness;
+  energy_model::Problem problem = framed_clamps(0, 0.5, torsional_stiffness, roll);
   problem.grips[1].position = end;
   problem.grips[1].direction = direction;
-  problem.grips[0].frame = energy_model::FrameHold{};
-  problem.grips[1].frame = energy_model::FrameHold{.d1 = std::nullopt, .roll = roll};
   return problem;
 }
 

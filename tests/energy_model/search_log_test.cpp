@@ -10,6 +10,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
 #include "random_problems.hpp"
+#include "rolled_clamps.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -111,11 +112,7 @@ TEST(SearchLog, AccountsForEveryEquilibriumOfOneSpan) {
   curved.natural_strains = {{0, 6, 0}};
   curved.torsional_stiffness = 0.7;
   expect_accounted(curved);
-  Problem twisted = two_clamps(1, 0.7);
-  twisted.torsional_stiffness = 0.7;
-  twisted.grips[0].frame = FrameHold{};
-  twisted.grips[1].frame = FrameHold{.roll = 2};
-  expect_accounted(twisted);
+  expect_accounted(test::framed_clamps(1, 0.7, 0.7, 2));
 }
 
 TEST(SearchLog, TellsWhatAFloorLeavesOutAndAccountsForWhatLiesOnIt) {

@@ -18,6 +18,7 @@
 #include "dlo/energy_model/exact.hpp"
 #include "problems.hpp"
 #include "random_contact.hpp"
+#include "rolled_clamps.hpp"
 #include "solved.hpp"
 #include "start_along.hpp"
 
@@ -185,11 +186,7 @@ TEST(SidesOfBodies, AStableEquilibriumIsFoundNearItsOwnPoints) {
   Problem pins = heavy_cantilever(20, 0);
   pins.grips = {{0.1, {0, 0, 0}}, {0.8, {0.4, 0.1, 0}}};
   expect_found_near_own_points(pins, "two pins");
-  Problem twisted = test::two_clamps(5, 0.7);
-  twisted.torsional_stiffness = 0.8;
-  twisted.grips[0].frame = FrameHold{};
-  twisted.grips[1].frame = FrameHold{.roll = 7};
-  expect_found_near_own_points(twisted, "twisted");
+  expect_found_near_own_points(test::framed_clamps(5, 0.7, 0.8, 7), "twisted");
   for (const bool space : {false, true}) {
     for (unsigned seed = 0; seed < 6; ++seed) {
       const std::optional<Problem> scene = test::random_problem_with_body(seed, space);

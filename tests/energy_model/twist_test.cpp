@@ -13,6 +13,7 @@
 #include "dlo/energy_model/turns.hpp"
 #include "equilibrium_balance.hpp"
 #include "problems.hpp"
+#include "rolled_clamps.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -21,15 +22,7 @@ using std::numbers::pi;
 
 /// Two clamps that face each other, `distance` apart on a line, the second turned by `roll`.
 Problem turned_rod(double distance, double roll, double weight) {
-  Problem problem;
-  problem.length = 1;
-  problem.bending_stiffness = 1;
-  problem.torsional_stiffness = 0.75;
-  problem.weight_per_length = {0, -weight, 0};
-  const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
-  problem.grips = {{0, {0, 0, 0}, x, FrameHold{}}, {1, {distance, 0, 0}, x, FrameHold{}}};
-  problem.grips.back().frame->roll = roll;
-  return problem;
+  return test::framed_clamps(weight, distance, 0.75, roll);
 }
 
 Equilibrium solved(const Problem& problem) {
@@ -210,9 +203,7 @@ TEST(Twist, IsRefusedWhereItMeansNothing) {
 
 // A shape to start from has the turns of another roll.
 TEST(Twist, StartedFromAnotherRollItMeetsItsOwn) {
-  Problem problem = test::two_clamps(5, 0.7);
-  problem.torsional_stiffness = 0.8;
-  for (Grip& grip : problem.grips) grip.frame.emplace();
+  Problem problem = test::framed_clamps(5, 0.7, 0.8, 0);
   const auto solved = [&problem](double roll, const Equilibrium* start) {
     problem.grips[1].frame->roll = roll;
     Equilibrium rod = solve_energy(problem, {.start = start});

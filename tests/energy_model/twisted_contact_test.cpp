@@ -15,6 +15,7 @@
 #include "equilibrium_balance.hpp"
 #include "polygon_of_rod.hpp"
 #include "problems.hpp"
+#include "rolled_clamps.hpp"
 #include "solved.hpp"
 
 namespace dlo::energy_model {
@@ -22,12 +23,7 @@ namespace {
 
 /// Two clamps that face each other, 0.7 l apart, the second turned by `roll`.
 Problem framed_rod(double gamma, double roll) {
-  Problem problem = test::two_clamps(gamma, 0.7);
-  problem.torsional_stiffness = 0.75;
-  problem.grips[0].frame = FrameHold{};
-  problem.grips[1].frame = FrameHold{};
-  problem.grips[1].frame->roll = roll;
-  return problem;
+  return test::framed_clamps(gamma, 0.7, 0.75, roll);
 }
 
 Obstacle floor_at(double height) { return {obstacle::Body::half_space({0, height, 0}, {0, 1, 0})}; }
