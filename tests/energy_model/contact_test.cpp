@@ -1,4 +1,4 @@
-// Rods on rigid and on soft obstacles.
+// Rods on rigid obstacles.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// Tests of couples: the arcs into which they bend a rod, the jump of the moment, the energy against
-// shooting, and the message if they have no potential.
+// Tests of couples: the arcs into which they bend a rod, balance, the energy against shooting, and
+// the message if they have no potential.
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // The moving rod against its own energy, a polygon of rigid segments that is integrated otherwise,
-// vibrations, pendulums, and the shapes at rest that slow motion comes to.
+// vibrations, and the shapes at rest that slow motion comes to.
 
 #include "dlo/energy_model/dynamics.hpp"
 

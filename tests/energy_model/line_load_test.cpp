@@ -1,5 +1,4 @@
-// Tests of line loads: against the weight, beam theory and multiple shooting, and that a shape
-// computed without them is not accepted as one with them.
+// Tests of line loads: against the weight, beam theory and multiple shooting.
 
 #include <gtest/gtest.h>
 

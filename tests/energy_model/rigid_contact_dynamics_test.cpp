@@ -1,5 +1,5 @@
 // Moving rods that meet rigid obstacles: a polygon with a contact of another kind, shapes at rest
-// on them, their own energy, and frames of reference.
+// on them, and their own energy.
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
@@ -33,8 +32,9 @@ Equilibrium solved(const Problem& problem) {
 
 double axial_torque(const Equilibrium& equilibrium) { return equilibrium.twists.at(0).torque; }
 
-// The solver reaches the same result: beyond that angle the ring passes through itself and loses
-// two turns. Its writhe is one of the turns that the clamps hold.
+// Michell 1889, Zajac 1962: a ring is unstable beyond a twist of 2 pi sqrt(3) EI / GJ. Beyond that
+// angle it passes through itself and loses two turns. Its writhe is one of the turns that the
+// clamps hold.
 TEST(Twist, LeavesTheRingThatItMakesUnstable) {
   const double critical = 2 * pi * std::sqrt(3.0) / 0.75;
   const Equilibrium ring = solved(turned_rod(0, critical - 0.1 + 2 * pi, 0));
