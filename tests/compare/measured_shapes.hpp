@@ -36,11 +36,6 @@ inline compare::RigidMotion random_pose(std::mt19937& random) {
           Eigen::Vector3d(normal(random), normal(random), normal(random))};
 }
 
-/// Returns the inverse motion.
-inline compare::RigidMotion inverse(const compare::RigidMotion& pose) {
-  return {pose.rotation.transpose(), -pose.rotation.transpose() * pose.translation};
-}
-
 inline Eigen::Matrix3Xd with_noise(Eigen::Matrix3Xd points, double sigma, std::mt19937& random) {
   std::normal_distribution<double> normal(0, sigma);
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
@@ -81,6 +76,12 @@ inline compare::MeasuredShape exact_shape(const compare::Scene& scene,
                                           const std::vector<double>& s) {
   const energy_model::Equilibrium exact = compare::solve_reference(scene, compare::Model::exact);
   return {"exact", exact.sample(s).points, {}};
+}
+
+/// Returns the energy model's shape of a scene with these arc lengths.
+inline compare::MeasuredShape seen_shape(const compare::Scene& scene,
+                                         const std::vector<double>& s) {
+  return {"seen", compare::solve_reference(scene, compare::Model::energy).sample(s).points, s};
 }
 
 }  // namespace dlo::test

@@ -24,4 +24,12 @@ inline compare::Scene heavy_scene(double gamma, double degrees) {
   return scene;
 }
 
+/// Returns heavy_scene(gamma, 0) with a second clamp at the rod's end.
+inline compare::Scene two_clamps(double gamma, const Eigen::Vector3d& end,
+                                 const Eigen::Vector3d& direction = Eigen::Vector3d::UnitX()) {
+  compare::Scene scene = heavy_scene(gamma, 0);
+  scene.grippers.push_back({.at = 1, .position = end, .direction = direction.normalized()});
+  return scene;
+}
+
 }  // namespace dlo::test
