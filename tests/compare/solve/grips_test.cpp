@@ -19,7 +19,6 @@
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solution.hpp"
 #include "dlo/compare/solve.hpp"
-#include "polygon/energy_problems.hpp"
 #include "scenes.hpp"
 #include "solve/polygon_solution.hpp"
 
@@ -30,18 +29,9 @@ using Eigen::Vector3d;
 using test::error_of;
 using test::heavy_scene;
 using test::says;
+using test::two_clamps;
 
-Scene two_clamps(double gamma, const Vector3d& end) {
-  Scene scene = heavy_scene(gamma, 0);
-  scene.grippers.push_back({.at = 1, .position = end, .direction = Vector3d::UnitX()});
-  return scene;
-}
-
-Scene spatial_clamps() {
-  Scene scene = two_clamps(5, {0.6, 0.1, 0.2});
-  scene.grippers[1].direction = Vector3d(0.5, 0.3, -0.6).normalized();
-  return scene;
-}
+Scene spatial_clamps() { return two_clamps(5, {0.6, 0.1, 0.2}, {0.5, 0.3, -0.6}); }
 
 Scene clamp_inside() {
   Scene scene = heavy_scene(8, 20);
@@ -78,14 +68,6 @@ Scene three_clamps() {
 Scene yielding_floor() {
   Scene scene = two_clamps(30, {0.9, 0.2, 0});
   scene.obstacles = {{.stiffness = 20000 * scene.bending_stiffness()}};
-  return scene;
-}
-
-/// The free end lies on a floor.
-Scene tip_on_floor() {
-  Scene scene = heavy_scene(20, 0);
-  scene.grippers[0].position = {0, 0.15, 0};
-  scene.obstacles = {{.stiffness = 5000 * scene.bending_stiffness()}};
   return scene;
 }
 
@@ -146,24 +128,16 @@ TEST_P(SceneOfGrips, ChainConvergesToTheEnergyModelAtSecondOrder) {
   // Far apart, since grips and loads fall differently among the points of each N.
   const Errors coarse = chain_errors(scene, reference, 24);
   const Errors fine = chain_errors(scene, reference, 96);
-  const double refinement = std::log(coarse.segment / fine.segment);
-  const double order = std::log(coarse.shape / fine.shape) / refinement;
-  RecordProperty("order", std::to_string(order));
-  EXPECT_NEAR(order, 2, 0.2);
+  const auto order_of = [&](double Errors::*error) {
+    return std::log(coarse.*error / fine.*error) / std::log(coarse.segment / fine.segment);
+  };
+  EXPECT_NEAR(order_of(&Errors::shape), 2, 0.2);
   EXPECT_LT(fine.shape, 2e-4);
   EXPECT_LT(chain_errors(scene, reference, 64).shape, 5e-4);
   // The force of a single gripper equals the total load, for any shape.
-  if (scene.grippers.size() > 1) {
-    const double force_order = std::log(coarse.force / fine.force) / refinement;
-    RecordProperty("force_order", std::to_string(force_order));
-    EXPECT_GT(force_order, 1.7);
-  }
+  if (scene.grippers.size() > 1) EXPECT_GT(order_of(&Errors::force), 1.7);
   EXPECT_LT(fine.force, 2e-3);
-  if (coarse.torque > 0) {
-    const double torque_order = std::log(coarse.torque / fine.torque) / refinement;
-    RecordProperty("torque_order", std::to_string(torque_order));
-    EXPECT_GT(torque_order, 1.7);
-  }
+  if (coarse.torque > 0) EXPECT_GT(order_of(&Errors::torque), 1.7);
   EXPECT_LT(fine.torque, 5e-3);
 }
 
@@ -183,46 +157,8 @@ TEST_P(SceneOfGrips, ForceModelRestsInTheChainsPolygon) {
   }
 }
 
-TEST_P(SceneOfGrips, GrippersAndObstaclesCarryAllThatHangsOnTheRod) {
-  for (const Bookkeeping bookkeeping : {Bookkeeping::consistent, Bookkeeping::paper}) {
-    Scene scene = GetParam().scene;
-    scene.force_model.bookkeeping = bookkeeping;
-    const Discretisation d = discretise(scene, scene.force_model);
-    const energy_model::PolygonResult rest =
-        energy_model::solve_polygon(polygon_problem(d.rod), d.starts.front());
-    ASSERT_TRUE(energy_model::succeeded(rest.status)) << rest.message;
-    Vector3d force = d.rod.loads.rowwise().sum();
-    Vector3d torque = Vector3d::Zero();
-    for (Eigen::Index i = 0; i < rest.points.cols(); ++i) {
-      torque += rest.points.col(i).cross(Vector3d(d.rod.loads.col(i)));
-    }
-    std::vector<Eigen::Index> held;
-    for (const force_model::Grip& grip : d.rod.grips) {
-      for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) held.push_back(grip.first_point + k);
-    }
-    for (std::size_t k = 0; k < held.size(); ++k) {
-      const Vector3d hold = rest.grip_forces.col(static_cast<Eigen::Index>(k));
-      force += hold;
-      torque += rest.points.col(held[k]).cross(hold);
-    }
-    for (const force_model::Wall& wall : d.rod.walls) {
-      for (Eigen::Index i = 0; i < rest.points.cols(); ++i) {
-        if (std::count(held.begin(), held.end(), i) > 0) continue;
-        const Vector3d push = force_model::wall_force(wall, rest.points.col(i));
-        force += push;
-        torque += rest.points.col(i).cross(push);
-      }
-    }
-    const double size = d.rod.loads.colwise().norm().sum();
-    EXPECT_LT(force.norm(), 1e-6 * size);
-    EXPECT_LT(torque.norm(), 1e-6 * size);
-    EXPECT_NEAR((d.weights.rowwise().sum() - scene.weight_per_length()).norm(), 0, 1e-12);
-  }
-}
-
 INSTANTIATE_TEST_SUITE_P(Of, SceneOfGrips,
-                         testing::Values(NamedScene{"two_clamps", two_clamps(10, {0.8, 0, 0})},
-                                         NamedScene{"spatial_clamps", spatial_clamps()},
+                         testing::Values(NamedScene{"spatial_clamps", spatial_clamps()},
                                          NamedScene{"clamp_inside", clamp_inside()},
                                          NamedScene{"clamp_and_pin", clamp_and_pin()},
                                          NamedScene{"two_pins", two_pins()},
@@ -230,18 +166,6 @@ INSTANTIATE_TEST_SUITE_P(Of, SceneOfGrips,
                                          NamedScene{"three_clamps", three_clamps()},
                                          NamedScene{"yielding_floor", yielding_floor()}),
                          [](const auto& instance) { return instance.param.name; });
-
-TEST(Walls, UnderAFreeEndAreFirstOrder) {
-  // The last point has half a segment's weight but, as all of the force model's, a whole one's
-  // stiffness of the floor.
-  const Scene scene = tip_on_floor();
-  const energy_model::Equilibrium reference = solve_reference(scene, Model::energy);
-  const Errors coarse = chain_errors(scene, reference, 24);
-  const Errors fine = chain_errors(scene, reference, 96);
-  EXPECT_NEAR(std::log(coarse.shape / fine.shape) / std::log(coarse.segment / fine.segment), 1,
-              0.2);
-  EXPECT_LT(fine.shape, 3e-4);
-}
 
 TEST(Walls, RigidOnesAreEnteredByLessThanTheStretchOfTheRod) {
   Scene scene = yielding_floor();
@@ -273,52 +197,9 @@ TEST(Walls, EveryNumberOfPointsComesToRestOnARigidOne) {
   }
 }
 
-// A wire pushed against a wall, which its tip slides along.
-TEST(Walls, ATipAgainstAWallIsWhereOtherModelsHaveIt) {
-  Scene scene = parse_scene(R"(
-gravity = [0, -9.81, 0]
-[rod]
-length = "30 cm"
-diameter = "0.5 mm"
-material = "copper"
-[[gripper]]
-at = 0
-position = [0, 0, 0]
-direction = "0 deg"
-[[obstacle]]
-point = ["25 cm", 0, 0]
-normal = [-1, 0, 0]
-[force_model]
-law = "hooke"
-bookkeeping = "consistent"
-)",
-                            "copper.toml");
-  const Solution energy = solve(scene, Model::energy);
-  ASSERT_EQ(energy.contacts.size(), 1);
-  EXPECT_EQ(energy.contacts[0].kind, energy_model::ContactKind::tip);
-  EXPECT_EQ(energy.contacts[0].obstacle, 0);
-  // Its surface touches.
-  EXPECT_NEAR(energy.shape.points(0, 100), 0.25 - 0.25e-3, 1e-12);
-  EXPECT_NEAR(energy.grippers[0].force.x(), -energy.contacts[0].force.x(), 1e-12);
-  ASSERT_EQ(energy.tension.size(), energy.shape.arc_length.size());
-  const Eigen::Vector3d tip = energy.shape.points.col(100) - energy.shape.points.col(99);
-  EXPECT_NEAR(energy.tension.back(), energy.contacts[0].force.dot(tip.normalized()),
-              2e-2 * energy.contacts[0].force.norm());
-  // The force model approaches it with the square of its segments.
-  const SolveOptions patient{.time_limit = 300};  // of sanitizers
-  scene.force_model.points = 12;
-  const double coarse = compare(scene, patient).deviation.rms_over_length;
-  scene.force_model.points = 24;
-  const Comparison fine = compare(scene, patient);
-  EXPECT_LT(fine.deviation.rms_over_length, 4e-4);
-  EXPECT_GT(coarse, 3.5 * fine.deviation.rms_over_length);
-  EXPECT_NEAR(fine.effective_modulus.ratio, 1, 4e-2);
-}
-
 // A clamp on the floor points into it: no rod above the floor can leave it in this direction.
 TEST(Walls, AShapeThatIsNotVerifiedIsShownOnlyToWhoAcceptsIt) {
   const Scene scene = parse_scene(R"(
-gravity = [0, -9.81, 0]
 [rod]
 length = "30 cm"
 diameter = "0.5 mm"
@@ -337,9 +218,6 @@ roll = "90 deg"
 [[obstacle]]
 point = [0, "-0.25 mm", 0]
 normal = [0, 1, 0]
-[force_model]
-law = "hooke"
-bookkeeping = "consistent"
 )",
                                   "copper.toml");
   EXPECT_TRUE(
@@ -358,75 +236,33 @@ bookkeeping = "consistent"
 }
 
 TEST(PaperLaw, HasATorqueOfItsOwnWhereSegmentsDiffer) {
-  // Two clamps leave one part of the rod, of equal segments: chain and force model are one model
-  // but for the stretch of the segments, which makes them a little unequal.
-  Scene equal = two_clamps(10, {0.8, 0, 0});
-  equal.force_model.law = BendingLaw::paper;
-  const auto distance = [](const Scene& scene) {
-    const Solution chain = solve_chain(scene, scene.force_model);
-    const Solution force = solve_force(scene, scene.force_model);
-    return (chain.shape.points - force.shape.points).colwise().norm().maxCoeff();
-  };
-  EXPECT_LT(distance(equal), 1e-6);
-  Scene unequal = two_pins();
-  unequal.force_model.law = BendingLaw::paper;
-  const double apart = distance(unequal);
+  Scene scene = two_pins();
+  scene.force_model.law = BendingLaw::paper;
+  const Solution chain = solve_chain(scene, scene.force_model);
+  const Solution force = solve_force(scene, scene.force_model);
+  const double apart = (chain.shape.points - force.shape.points).colwise().norm().maxCoeff();
   EXPECT_GT(apart, 1e-6);
   EXPECT_LT(apart, 1e-3);
 }
 
-/// A pin just above a rigid floor: a start that hangs straight down would be crushed on it.
-Scene pin_above_floor() {
+// The pin is just above a rigid floor: a start that hangs straight down would be crushed on it.
+TEST(Chain, LiesOnAFloorBelowItsPin) {
   Scene scene = heavy_scene(100, 0);
   scene.grippers = {{.at = 0, .position = {0, 0.02, 0}}};
   scene.obstacles = {Obstacle{}};
-  return scene;
-}
-
-TEST(Chain, LiesOnAFloorBelowItsPin) {
   double last = 0;
   for (const int points : {16, 64, 240}) {
-    Scene scene = pin_above_floor();
     scene.force_model.points = points;
-    scene.force_model.law = BendingLaw::hooke;
-    scene.force_model.bookkeeping = Bookkeeping::consistent;
     const Solution chain = solve_chain(scene, scene.force_model);
     const double weight = 100 * scene.bending_stiffness();
     EXPECT_NEAR(chain.grippers[0].force.y() + chain.obstacles[0].y(), weight, 1e-6 * weight);
     const Eigen::Matrix3Xd& p = chain.shape.points;
     const Eigen::Index n = p.cols() - 1;
-    const double length = (p.rightCols(n) - p.leftCols(n)).colwise().norm().sum();
-    EXPECT_NEAR(length, 1, 1e-4);
+    EXPECT_NEAR((p.rightCols(n) - p.leftCols(n)).colwise().norm().sum(), 1, 1e-4);
     EXPECT_GT(p.row(1).minCoeff(), -1e-5);
-    if (points > 16) {
-      EXPECT_NEAR(chain.grippers[0].force.y(), last, 0.02 * last);
-    }
+    if (points > 16) EXPECT_NEAR(chain.grippers[0].force.y(), last, 0.02 * last);
     last = chain.grippers[0].force.y();
   }
-}
-
-/// A clamp and a pin so near on the rod that few points leave one segment between them, longer than
-/// they are apart.
-Scene grips_near_each_other() {
-  Scene scene = heavy_scene(5, 0);
-  scene.grippers.push_back({.at = 0.186, .position = {0.12, 0.05, 0}});
-  scene.force_model.law = BendingLaw::hooke;
-  scene.force_model.bookkeeping = Bookkeeping::consistent;
-  return scene;
-}
-
-TEST(Chain, AndForceRefuseASegmentThatCannotFitAndSayHowManyPointsDo) {
-  Scene scene = grips_near_each_other();
-  for (const int points : {9, 10}) {
-    scene.force_model.points = points;
-    for (const auto solver : {&solve_chain, &solve_force}) {
-      EXPECT_TRUE(says(error_of<InputError>([&] { return solver(scene, scene.force_model, {}); }),
-                       {"in 1 segment between points", "allowed: 11 or more"}));
-    }
-  }
-  scene.force_model.points = 11;
-  const Solution chain = solve_chain(scene, scene.force_model);
-  EXPECT_LT(chain.energy.stretch, 1e-3 * chain.energy.bending);
 }
 
 TEST(Chain, StretchAboveAHundredthIsNoResultUnlessAskedFor) {
@@ -448,78 +284,14 @@ TEST(Chain, StretchAboveAHundredthIsNoResultUnlessAskedFor) {
 
 TEST(Force, RestsInTheStateOfTheChain) {
   // From the chain's own start it swings into an arch with half as much energy again.
-  Scene scene;
-  scene.file = scene.name = "clamps in space";
-  scene.length = 1;
-  scene.diameter = 0.004;
-  scene.material = {.name = "own", .youngs_modulus = 79577471545.94765, .density = 2788.27335};
-  scene.gravity = {0, -9.81, 0};
-  scene.grippers = {
-      {.at = 0.127,
-       .position = {0.2986607170328106, 0.611656186051831, -0.2478694131670547},
-       .direction = Vector3d(-0.21736416854540283, -0.3883106916406705, -0.8955264513067773)},
-      {.at = 0.567,
-       .position = {0.3675062348836809, 0.4192120289768312, -0.2173591936662226},
-       .direction = Vector3d(-0.37780616912170295, -0.8845221558642805, -0.2736476829041102)}};
-  scene.force_model.law = BendingLaw::hooke;
-  scene.force_model.bookkeeping = Bookkeeping::consistent;
+  Scene scene =
+      load_scene(std::string(DLO_DATA) + "/failures/chain_force_different_minima_N9.toml");
   for (const int points : {9, 17}) {
     scene.force_model.points = points;
     const Solution chain = solve_chain(scene, scene.force_model);
     const Solution force = solve_force(scene, scene.force_model);
     EXPECT_EQ(force.message, "at rest");
     EXPECT_NEAR(force.energy.bending, chain.energy.bending, 1e-4 * chain.energy.bending);
-  }
-}
-
-TEST(Torque, IsAboutTheGrippersOwnPositionInEveryModelThatBalancesIt) {
-  const Vector3d away(3, -2, 1);
-  for (Scene scene : {heavy_scene(8, 20), loaded_clamps(), clamp_inside(), spatial_clamps()}) {
-    scene.force_model.points = 24;
-    for (const Model model : {Model::energy, Model::chain}) {
-      const Solution there = solve(scene, model);
-      Scene moved = scene;
-      for (Gripper& gripper : moved.grippers) gripper.position += away;
-      const Solution here = solve(moved, model);
-      for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
-        const GripperLoad& a = there.grippers[i];
-        const GripperLoad& b = here.grippers[i];
-        const double size = 1e-3 * scene.bending_stiffness() + a.torque.norm();
-        EXPECT_LT((a.torque - b.torque).norm(), 1e-4 * size) << to_string(model) << " " << i;
-        EXPECT_LT((a.force - b.force).norm(), 1e-4 * (a.force.norm() + size)) << to_string(model);
-      }
-      // The balance about the origin: the lever is the gripper's position.
-      Vector3d torque = Vector3d::Zero();
-      for (std::size_t i = 0; i < moved.grippers.size(); ++i) {
-        torque +=
-            here.grippers[i].torque + moved.grippers[i].position.cross(here.grippers[i].force);
-      }
-      const Discretisation d = discretise(moved, moved.force_model);
-      double carried = 0;
-      if (model == Model::energy) {
-        // Weight per length on a fine grid of the shape, and point loads.
-        const energy_model::Equilibrium rod = solve_reference(moved, Model::energy);
-        constexpr int cells = 2000;
-        std::vector<double> middles;
-        middles.reserve(cells);
-        for (int k = 0; k < cells; ++k) middles.push_back((k + 0.5) / cells);
-        const Eigen::Matrix3Xd p = rod.sample(middles).points;
-        const Vector3d w = moved.weight_per_length() / cells;
-        for (Eigen::Index k = 0; k < p.cols(); ++k) torque += p.col(k).cross(w);
-        for (const PointLoad& load : moved.loads) {
-          torque += rod.sample(std::vector<double>{load.at}).points.col(0).cross(load.force);
-        }
-      } else {
-        const Solution chain = solve_chain(moved, moved.force_model);
-        // The torque at the polygon's own points; points inside a gripper have no weight.
-        for (Eigen::Index k = 0; k < chain.shape.points.cols(); ++k) {
-          torque += Vector3d(chain.shape.points.col(k)).cross(Vector3d(d.rod.loads.col(k)));
-        }
-      }
-      carried = moved.weight_per_length().norm();
-      for (const PointLoad& load : moved.loads) carried += load.force.norm();
-      EXPECT_LT(torque.norm(), 1e-4 * carried) << to_string(model);
-    }
   }
 }
 
@@ -535,26 +307,10 @@ TEST(Chain, FindsTheLowestOfTwoArches) {
   }
 }
 
-TEST(Comparison, OfTwoClampsHasNoTipAndNoStraightRod) {
-  Scene scene = two_clamps(2, {0.8, 0, 0});
-  // A hundredth of AE gives way to the thrust of the arch, 40 EI/l^2, by a thousandth.
-  scene.force_model.c_c = scene.axial_stiffness() / 100;
-  const Comparison comparison = compare(scene);
-  EXPECT_TRUE(std::isnan(comparison.deviation.tip_m));
-  EXPECT_TRUE(std::isnan(comparison.deviation.rms_over_movement));
-  EXPECT_TRUE(std::isnan(comparison.undeformed_rms_over_length));
-  EXPECT_LT(comparison.deviation.rms_over_length, 5e-3);
-  // Stretch is the force model's alone; the chain keeps to the rod's own.
-  EXPECT_GT(comparison.budget.stretch.rms_m, 1e-4);
-  EXPECT_NEAR(comparison.budget.discretisation.share + comparison.budget.stretch.share, 1, 0.05);
-  // Between two clamps the sag hardly knows the stiffness.
-  EXPECT_NE(comparison.effective_modulus.optimum, Optimum::clear);
-}
-
 // Tests chains with and without stretch, and the force model at rest. The balance depends on each
 // reaction and load.
 TEST(PolygonBalance, HoldsAndIsLostWithEveryForce) {
-  for (const Scene& scene : {heavy_scene(8, 20), spatial_clamps(), clamp_and_pin()}) {
+  for (const Scene& scene : {heavy_scene(8, 20), spatial_clamps(), yielding_floor()}) {
     for (const Model model : {Model::chain, Model::force}) {
       SCOPED_TRACE(to_string(model));
       const Solution solution = solve(scene, model, {});
@@ -569,11 +325,10 @@ TEST(PolygonBalance, HoldsAndIsLostWithEveryForce) {
                 good.share());
       std::vector<GripperLoad> pulled = solution.grippers;
       pulled.back().force.y() += 3 * allowed * good.largest_force;
-      const energy_model::Imbalance bad = polygon_imbalance(rod, points, pulled);
-      EXPECT_GT(bad.share(), allowed);
-      const std::string error = error_of<ConvergenceError>(
-          [&] { return balanced(scene, rod, points, pulled, allowed, "chain"); });
-      EXPECT_TRUE(says(error, {"the forces leave"})) << error;
+      EXPECT_GT(polygon_imbalance(rod, points, pulled).share(), allowed);
+      EXPECT_TRUE(says(error_of<ConvergenceError>(
+                           [&] { return balanced(scene, rod, points, pulled, allowed, "chain"); }),
+                       {"the forces leave"}));
       std::vector<GripperLoad> turned = solution.grippers;
       turned.back().torque.z() += 3 * allowed * good.largest_moment;
       EXPECT_GT(polygon_imbalance(rod, points, turned).share(), allowed);

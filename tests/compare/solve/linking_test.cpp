@@ -2,9 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <numbers>
-#include <string>
 
 #include "../../says.hpp"
 #include "dlo/compare/error.hpp"
@@ -34,34 +32,6 @@ Scene twisted_scene(double apart, double turns) {
                      .direction = x,
                      .frame = FrameHold{.roll = 2 * pi * turns}}};
   return scene;
-}
-
-TEST(Linking, TwistAndWritheAddUpToTheTurnsOfTheGrips) {
-  // The thrust is less than half of Euler's load, so that the rod does not pass through itself.
-  for (const double turns : {0.25, -0.6, 0.9}) {
-    for (const Model model : {Model::energy, Model::exact}) {
-      const Solution solution = solve(twisted_scene(0.7, turns), model);
-      ASSERT_EQ(solution.linking.size(), 1U) << turns;
-      const Linking& part = solution.linking.front();
-      EXPECT_NEAR(part.held, turns, 1e-12);
-      EXPECT_GT(std::abs(part.writhe), 0.01) << turns;
-      EXPECT_NEAR(part.twist + part.writhe, turns, 1e-6) << to_string(model);
-      EXPECT_LT(part.writhe_error, 1e-6);
-    }
-  }
-}
-
-/// A flat ring meets itself where its ends do, so that its writhe is one or minus one. A rod
-/// twisted by 0.866 turns whose ends are then joined keeps -0.134 of them as twist.
-TEST(Linking, AFlatRingHasTheTurnsOfItsGrips) {
-  for (const Model model : {Model::energy, Model::exact}) {
-    const Solution solution = solve(twisted_scene(0, 0.866), model);
-    const Linking& part = solution.linking.front();
-    EXPECT_NEAR(part.twist, -0.134, 1e-6) << to_string(model);
-    EXPECT_NEAR(part.twist + part.writhe, 0.866, 1e-6) << to_string(model);
-    const double bending = 2 * pi * pi * 2e-3 / 0.8;
-    EXPECT_NEAR(solution.energy.bending, bending, 1e-6 * bending) << to_string(model);
-  }
 }
 
 /// With its ends this near, the loop that two turns make has passed through itself.

@@ -1,8 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "dlo/compare/chain.hpp"
 #include "dlo/compare/discretise.hpp"
-#include "dlo/compare/force.hpp"
 #include "dlo/compare/material_fit.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/shape_check.hpp"
@@ -46,19 +44,6 @@ TEST(Reach, EveryModelLeavesFarObstaclesOut) {
       EXPECT_EQ(solution.obstacles, std::vector<Vector3d>(2, Vector3d::Zero()));
     }
   }
-}
-
-TEST(Reach, TheSolversThemselvesLeaveThemOut) {
-  Scene scene = heavy_scene(8, 0);
-  scene.force_model.points = 12;
-  const Scene among = among_far_obstacles(scene);
-  const ForceModelSettings& settings = scene.force_model;
-  EXPECT_TRUE(discretise(among, settings).rod.walls.empty());
-  EXPECT_EQ(solve_chain(among, settings).evaluations, solve_chain(scene, settings).evaluations);
-  EXPECT_EQ(solve_force(among, settings).steps, solve_force(scene, settings).steps);
-  EXPECT_EQ(solve_reference(among, Model::energy).evaluations,
-            solve_reference(scene, Model::energy).evaluations);
-  EXPECT_EQ(reference_states(among).size(), reference_states(scene).size());
 }
 
 // One that can be touched keeps its place among those that cannot.

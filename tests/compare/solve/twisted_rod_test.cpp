@@ -5,7 +5,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
-#include <string>
 #include <vector>
 
 #include "../../sanitized.hpp"
@@ -42,9 +41,7 @@ TEST(TwistedRod, ForceModelApproachesTheRodInSecondOrder) {
     scene.force_model.c_c = 10 * scene.axial_stiffness();
     const energy_model::Equilibrium rod = solve_reference(scene, Model::energy);
     ASSERT_EQ(rod.twists.size(), 1);
-    SolveOptions options;
-    options.rest_tolerance = 1e-8;
-    options.time_limit = 300;  // for a machine that is busy
+    const SolveOptions options{.time_limit = 300, .rest_tolerance = 1e-8};
     // The steps to rest grow as the square of the points.
     const std::vector<int> sizes =
         test::sanitized ? std::vector<int>{20, 40} : std::vector<int>{20, 40, 80, 160};
@@ -72,7 +69,7 @@ TEST(TwistedRod, ForceModelApproachesTheRodInSecondOrder) {
   }
 }
 
-TEST(TwistedRod, IsTheSameOfChainAndForceModelAndBalances) {
+TEST(TwistedRod, IsTheSameOfChainAndForceModel) {
   const Scene scene = spatial_scene(3);
   const Solution chain = solve(scene, Model::chain);
   const Solution force = solve(scene, Model::force);
@@ -86,23 +83,10 @@ TEST(TwistedRod, IsTheSameOfChainAndForceModelAndBalances) {
     EXPECT_NEAR(part.torque, scene.twisting_stiffness() * part.angle, 1e-12);
     EXPECT_NEAR(part.angle, rod.twists[0].angle, 0.03 * rod.twists[0].angle);
     EXPECT_NEAR(solution->energy.twisting, part.torque * part.angle / 2, 1e-12);
-    Eigen::Vector3d force_sum = scene.weight_per_length() * scene.length;
-    Eigen::Vector3d torque = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < 2; ++i) {
-      const GripperLoad& load = solution->grippers[i];
-      force_sum += load.force;
-      torque += load.torque + scene.grippers[i].position.cross(load.force);
-      EXPECT_NEAR(load.torque.dot(*scene.grippers[i].direction), (i == 0 ? -1 : 1) * part.torque,
-                  0.1 * std::abs(part.torque));
+      EXPECT_NEAR(solution->grippers[i].torque.dot(*scene.grippers[i].direction),
+                  (i == 0 ? -1 : 1) * part.torque, 0.1 * std::abs(part.torque));
     }
-    const Shape& shape = solution->shape;
-    // Weights of a consistent polygon: halves of the segments, but those in the grippers.
-    for (Eigen::Index i = 1; i + 1 < shape.points.cols(); ++i) {
-      const double L = 1.0 / (static_cast<double>(shape.points.cols()) - 2);
-      torque += shape.points.col(i).cross(L * scene.weight_per_length());
-    }
-    EXPECT_LT(force_sum.norm(), 1e-4 * scene.bending_stiffness());
-    EXPECT_LT(torque.norm(), 1e-4 * scene.bending_stiffness());
   }
 }
 
@@ -111,12 +95,10 @@ TEST(TwistedRod, CountsTurnsOfDirectorsAsTheEnergyModelDoes) {
   scene.force_model.points = 40;
   const Eigen::Vector3d first = Eigen::Vector3d::UnitZ();
   const Eigen::Vector3d along = *scene.grippers[1].direction;
-  const Eigen::Vector3d last =
-      (Eigen::Vector3d::UnitY() - along.y() * along + 0.3 * along.unitOrthogonal()).normalized();
+  const Eigen::Vector3d last = along.unitOrthogonal();
   for (const int turns : {-1, 0, 1}) {
     scene.grippers[0].frame = {.d1 = first, .roll = 0};
-    scene.grippers[1].frame = {.d1 = (last - last.dot(along) * along).normalized(),
-                               .roll = 2 * pi * turns};
+    scene.grippers[1].frame = {.d1 = last, .roll = 2 * pi * turns};
     const double rod = solve(scene, Model::energy).twists.at(0).angle;
     const double chain = solve(scene, Model::chain).twists.at(0).angle;
     EXPECT_NEAR(chain, rod, 0.02 + 0.01 * std::abs(rod)) << turns;
@@ -148,23 +130,6 @@ TEST(TwistedRod, MayHaveThreeFramesSectionsAndAPin) {
       EXPECT_NEAR(polygon.twists[i].torque, rod.twists[i].torque, 0.02 * GJ / 0.3);
     }
   }
-}
-
-TEST(TwistedRod, IsNeglectedByThePaperLawAndOfARodThatIsIntrinsicallyCurved) {
-  const std::vector<std::string> twist = {"twist"};
-  Scene scene = spatial_scene(2);
-  scene.force_model.law = BendingLaw::paper;
-  for (const Model model : {Model::chain, Model::force}) {
-    const Solution paper = solve(scene, model);
-    EXPECT_EQ(paper.neglected, twist);
-    EXPECT_TRUE(paper.twists.empty());
-    EXPECT_EQ(paper.shape.points, solve(scene.without_twist(), model).shape.points);
-  }
-  scene.force_model.law = BendingLaw::hooke;
-  scene.grippers[0].frame->d1 = Eigen::Vector3d::UnitZ();
-  scene.natural_strain = {0, 0.5, 0};
-  const std::vector<std::string> both = {"twist", "natural curvature"};
-  EXPECT_EQ(solve(scene, Model::chain).neglected, both);
 }
 
 TEST(TwistedRod, FallsFromItsOwnShapeToItself) {
