@@ -14,9 +14,9 @@ namespace dlo::test {
 /// springs are linear in the angle.
 /// @param lengths  of the segments;  @param h  over which a spring EI/h stands for the rod
 /// @param welded  whether the clamp holds the first segment; else it holds a hinge
-/// @param lift  upwards on the end [N]
+
 inline Eigen::Matrix3Xd hinged_chain(const std::vector<double>& lengths, double h, double stiffness,
-                                     bool welded, double lift = 0) {
+                                     bool welded) {
   constexpr double weight = 0.5 * 9.81;  // per length [N/m]
   const Eigen::Rotation2Dd direction(20 * std::numbers::pi / 180);
   // A hinge at the clamp is the joint behind a segment of no length that the clamp holds.
@@ -27,7 +27,7 @@ inline Eigen::Matrix3Xd hinged_chain(const std::vector<double>& lengths, double 
   Eigen::Matrix2Xd forces = Eigen::Matrix2Xd::Zero(2, before + n + 1);
   forces.row(1).head(before + n) -= weight / 2 * segments.transpose();
   forces.row(1).tail(before + n) -= weight / 2 * segments.transpose();
-  forces(1, before + n) += lift;
+
   const Eigen::VectorXd springs = Eigen::VectorXd::Constant(before + n - 1, stiffness / h);
   Eigen::Matrix3Xd points =
       chain_at_rest(segments, springs, direction.inverse().toRotationMatrix() * forces,

@@ -11,11 +11,10 @@
 #include <vector>
 
 #include "../../says.hpp"
-#include "dlo/compare/check.hpp"
 #include "dlo/compare/explanation.hpp"
-#include "dlo/compare/reference.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "hinged_chain.hpp"
+#include "judged_shape.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -23,6 +22,9 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Matrix3Xd;
 using Eigen::Vector3d;
+using test::clamped;
+using test::made;
+using test::right_file;
 using test::says;
 
 /// A cantilever in the plane, one out of it, and a rod between two grippers.
@@ -42,23 +44,6 @@ Scene scene_of(int kind) {
   }
 }
 
-enum class Fault { axes, origin, ends, unit };
-
-/// The words that name it and no other.
-const char* words_for(Fault fault) {
-  switch (fault) {
-    case Fault::axes:
-      return "the scene's";
-    case Fault::origin:
-      return "another origin";
-    case Fault::ends:
-      return "an end point is missing";
-    case Fault::unit:
-      break;
-  }
-  return "not in metres";
-}
-
 Matrix3d random_axes(std::mt19937& random) {
   std::array<int, 3> order = {0, 1, 2};
   Matrix3d axes;
@@ -73,19 +58,33 @@ Matrix3d random_axes(std::mt19937& random) {
   return axes;
 }
 
-Matrix3Xd said_wrongly(Matrix3Xd points, Fault fault, std::mt19937& random) {
-  std::uniform_real_distribution<double> metres(-1, 1);
-  switch (fault) {
-    case Fault::axes:
-      return random_axes(random) * points;
-    case Fault::origin:
+/// An error of a file.
+struct Fault {
+  const char* words;  ///< that name it and no other
+  Matrix3Xd (*apply)(const Matrix3Xd& points, std::mt19937& random);
+};
+
+constexpr Fault missing_end = {"an end point is missing",
+                               [](const Matrix3Xd& points, std::mt19937& /*random*/) -> Matrix3Xd {
+                                 return points.leftCols(points.cols() - 1);
+                               }};
+constexpr Fault other_axes = {"the scene's",
+                              [](const Matrix3Xd& points, std::mt19937& random) -> Matrix3Xd {
+                                return random_axes(random) * points;
+                              }};
+constexpr Fault other_origin = {
+    "another origin", [](const Matrix3Xd& points, std::mt19937& random) -> Matrix3Xd {
+      std::uniform_real_distribution<double> metres(-1, 1);
       return points.colwise() + Vector3d(metres(random), metres(random), metres(random));
-    case Fault::ends:
-      return points.leftCols(points.cols() - 1);
-    case Fault::unit:
-      break;
-  }
-  return points * std::array{1000.0, 100.0, 1 / 0.0254}[random() % 3];
+    }};
+constexpr Fault other_unit = {"not in metres",
+                              [](const Matrix3Xd& points, std::mt19937& random) -> Matrix3Xd {
+                                return points * std::array{1000.0, 100.0, 1 / 0.0254}[random() % 3];
+                              }};
+
+/// Returns the matrix from the scene's axes to those of a file with z up.
+Matrix3d to_z_up() {
+  return (Matrix3d() << Vector3d::UnitX(), Vector3d::UnitZ(), -Vector3d::UnitY()).finished();
 }
 
 std::vector<Explanation> explained(const Scene& scene, const MeasuredShape& shape) {
@@ -94,38 +93,29 @@ std::vector<Explanation> explained(const Scene& scene, const MeasuredShape& shap
 }
 
 TEST(JointCauses, TwoThingsThatAreWrongWithAFileAreBothNamed) {
-  constexpr std::array<std::array<Fault, 2>, 6> pairs = {{{Fault::ends, Fault::axes},
-                                                          {Fault::axes, Fault::origin},
-                                                          {Fault::axes, Fault::unit},
-                                                          {Fault::ends, Fault::origin},
-                                                          {Fault::origin, Fault::unit},
-                                                          {Fault::ends, Fault::unit}}};
+  constexpr std::array<std::array<Fault, 2>, 6> pairs = {{{missing_end, other_axes},
+                                                          {other_axes, other_origin},
+                                                          {other_axes, other_unit},
+                                                          {missing_end, other_origin},
+                                                          {other_origin, other_unit},
+                                                          {missing_end, other_unit}}};
   std::mt19937 random(7);
   int named = 0;
   int tried = 0;
   for (const auto& pair : pairs) {
     for (int i = 0; i < 5; ++i, ++tried) {
       const Scene scene = scene_of(tried % 3);
-      const int count = 9 + static_cast<int>(random() % 8);
-      MeasuredShape shape;
-      shape.file = "mine.csv";
-      shape.points = solve_reference(scene, Model::energy)
-                         .sample(equal_arc_lengths(scene.length, count))
-                         .points;
-      for (const Fault fault : pair) shape.points = said_wrongly(shape.points, fault, random);
+      MeasuredShape shape = right_file(scene, 9 + static_cast<int>(random() % 8));
+      for (const Fault& fault : pair) shape.points = fault.apply(shape.points, random);
       const std::vector<Explanation> found = explained(scene, shape);
       const std::string best = found.empty() ? "nothing" : found.front().cause;
-      const auto names = [&best](Fault fault) {
-        return best.find(words_for(fault)) != std::string::npos;
-      };
       bool right = !found.empty() && found.front().rms_m < 0.005 * scene.length;
-      for (const Fault fault : {Fault::axes, Fault::origin, Fault::ends, Fault::unit}) {
-        right = right && names(fault) == (fault == pair[0] || fault == pair[1]);
+      for (const Fault& fault : {missing_end, other_axes, other_origin, other_unit}) {
+        const bool is_made = fault.words == pair[0].words || fault.words == pair[1].words;
+        right = right && (best.find(fault.words) != std::string::npos) == is_made;
       }
       named += right ? 1 : 0;
-      if (!right) {
-        fmt::print("{} and {}: {}\n", words_for(pair[0]), words_for(pair[1]), best);
-      }
+      if (!right) fmt::print("{} and {}: {}\n", pair[0].words, pair[1].words, best);
     }
   }
   EXPECT_EQ(tried, 30);
@@ -135,16 +125,9 @@ TEST(JointCauses, TwoThingsThatAreWrongWithAFileAreBothNamed) {
 // A file with z up that was moved as well: not "z is down", nor two axes exchanged.
 TEST(JointCauses, AMovedFileWithZUpIsCalledThat) {
   const Scene scene = scene_of(0);
-  MeasuredShape shape;
-  shape.file = "z_up.csv";
-  Matrix3d to_z_up;
-  to_z_up << Vector3d::UnitX(), Vector3d::UnitZ(), -Vector3d::UnitY();
   for (const double height : {1.0, 0.3}) {
-    shape.points =
-        (to_z_up *
-         solve_reference(scene, Model::energy).sample(equal_arc_lengths(scene.length, 31)).points)
-            .colwise() +
-        Vector3d(0, 0, height);
+    const MeasuredShape shape =
+        made((to_z_up() * right_file(scene).points).colwise() + Vector3d(0, 0, height));
     const std::vector<Explanation> found = explained(scene, shape);
     ASSERT_FALSE(found.empty());
     EXPECT_TRUE(says(found.front().cause, {"z is up in the file",
@@ -153,81 +136,21 @@ TEST(JointCauses, AMovedFileWithZUpIsCalledThat) {
   }
 }
 
-// An error that is not the file's is not attributed to the file, however many possible errors of a
-// file there are.
-TEST(JointCauses, AnotherSceneIsNoFaultOfTheFile) {
-  for (const int kind : {0, 1, 2}) {
-    const Scene scene = scene_of(kind);
-    for (const double factor : {0.3, 0.7, 2.0}) {
-      Scene other = scene;
-      other.scale_modulus(factor);
-      MeasuredShape shape;
-      shape.file = "soft.csv";
-      shape.points =
-          solve_reference(other, Model::energy).sample(equal_arc_lengths(scene.length, 31)).points;
-      const std::vector<Explanation> found = explained(scene, shape);
-      ASSERT_FALSE(found.empty());
-      EXPECT_EQ(found.front().kind, ExplanationKind::scene) << found.front().cause;
-    }
-  }
-}
-
-/// Returns the scene of hinged_chain().
-Scene hinged_scene(const std::string& more = "") {
-  return parse_scene(
-      "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0.5\n[[gripper]]\nat = 0\n"
-      "position = [0, 0, 0]\ndirection = \"20 deg\"\n" +
-          more,
-      "clamped.toml");
-}
-
 // Its bodies begin at its hinges, and where the last one ends is no body's begin.
 TEST(JointCauses, AChainOfBodiesWhoseLastEndIsMissingIsCalledThat) {
   constexpr int segments = 8;
-  const Eigen::Matrix3Xd chain =
-      test::hinged_chain(std::vector<double>(segments, 1.0 / segments), 1.0 / segments, 1, false);
-  MeasuredShape shape;
-  shape.file = "xpos.csv";
-  shape.points = chain.leftCols(segments);
-  const std::vector<Explanation> found = explained(hinged_scene(), shape);
+  const Matrix3Xd chain =
+      test::hinged_chain(std::vector<double>(segments, 1.0 / segments), 1.0 / segments, 1, false)
+          .leftCols(segments);
+  const std::vector<Explanation> found = explained(clamped(), made(chain));
   ASSERT_FALSE(found.empty());
   EXPECT_EQ(found.front().cause,
             "a chain of 8 segments with a hinge at the clamp, its last end missing as in MuJoCo's "
             "xpos, its springs EI/h and linear in the angle");
   EXPECT_LT(found.front().rms_m, 1e-3);
-  // And in a file with z up.
-  Matrix3d to_z_up;
-  to_z_up << Vector3d::UnitX(), Vector3d::UnitZ(), -Vector3d::UnitY();
-  shape.points = (to_z_up * shape.points).eval();
-  const std::vector<Explanation> both = explained(hinged_scene(), shape);
+  const std::vector<Explanation> both = explained(clamped(), made(to_z_up() * chain));
   ASSERT_FALSE(both.empty());
   EXPECT_TRUE(says(both.front().cause, {"z is up in the file", "a chain of 8 segments", "xpos"}));
-}
-
-// A floor acts on the end of a chain like the force that keeps it on the floor.
-TEST(JointCauses, AChainOnAFloorIsRightInItsOwnWay) {
-  const auto chain = [](double lift) {
-    return test::hinged_chain(std::vector<double>(10, 0.1), 0.1, 1, false, lift);
-  };
-  const double height = chain(0)(1, 10) + 0.1;
-  double low = 0;
-  double high = 5;
-  for (int i = 0; i < 60; ++i) {
-    const double lift = (low + high) / 2;
-    (chain(lift)(1, 10) < height ? low : high) = lift;
-  }
-  const Matrix3Xd points = chain(low);
-  ASSERT_GT(points.leftCols(10).row(1).minCoeff(), height);
-  const Scene scene = hinged_scene(
-      fmt::format("[[obstacle]]\npoint = [0, {:.17g}, 0]\nnormal = [0, 1, 0]\n", height));
-  MeasuredShape shape;
-  shape.file = "floor.csv";
-  shape.points = points;
-  const CheckResult result = check(
-      scene, shape,
-      {.tolerance = ShapeTolerance{.allowed_m = 0.01}, .shape = {.modulus = ModulusSearch::no}});
-  EXPECT_TRUE(result.passes()) << result.judgement.reason;
-  EXPECT_TRUE(says(result.judgement.reason, {"right for a chain of 10 segments with a hinge"}));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "../../says.hpp"
 #include "dlo/compare/explanation.hpp"
+#include "dlo/compare/reference.hpp"
 #include "dlo/compare/scene_file.hpp"
 
 namespace dlo::test {
@@ -28,6 +29,23 @@ inline compare::MeasuredShape made(Eigen::Matrix3Xd points) {
   shape.file = "mine.csv";
   shape.points = std::move(points);
   return shape;
+}
+
+/// Returns the rod of the energy model at equal arc lengths as a shape read from a file.
+inline compare::MeasuredShape right_file(const compare::Scene& scene, int count = 41) {
+  return made(compare::solve_reference(scene, compare::Model::energy)
+                  .sample(compare::equal_arc_lengths(scene.length, count))
+                  .points);
+}
+
+/// Returns an arch on two clamps that point up and down; it is stable if it is stiff, and otherwise
+/// falls out of its plane.
+inline compare::Scene arch(double stiffness) {
+  return compare::parse_scene(
+      "[rod]\nlength = 1\nmass_per_length = 0.5\nbending_stiffness = " + std::to_string(stiffness) +
+          "\n[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"90 deg\"\n[[gripper]]\nat = "
+          "1\nposition = [0.5, 0, 0]\ndirection = \"-90 deg\"\n",
+      "arch.toml");
 }
 
 /// Judgement of a shape, and its explanations.
