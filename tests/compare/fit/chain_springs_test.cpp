@@ -8,9 +8,7 @@
 #include <vector>
 
 #include "dlo/compare/error.hpp"
-#include "dlo/compare/material_fit.hpp"
 #include "dlo/compare/reference.hpp"
-#include "measured_shapes.hpp"
 #include "rolled_chain.hpp"
 #include "scenes.hpp"
 
@@ -72,55 +70,10 @@ TEST(ChainSprings, TheOrderInTheSegmentIsThatOfTheClamp) {
   EXPECT_LT(fine.at(ChainClamp::middle).rms_m, 0.1 * fine.at(ChainClamp::hinge).rms_m);
 }
 
-TEST(ChainSprings, BetweenTwoClampsBothEndsAreHeldAlike) {
-  Scene scene = test::heavy_scene(15, 30);
-  scene.grippers.push_back({.at = 1,
-                            .position = {0.8, 0.05, 0},
-                            .direction = Eigen::Vector3d(std::cos(0.5), std::sin(0.5), 0)});
-  const auto chains = springs_of(scene, 24);
-  EXPECT_NEAR(chains.at(ChainClamp::middle).segment_length, 1.0 / 23, 1e-15);
-  EXPECT_LT(chains.at(ChainClamp::middle).rms_m, 2e-3);
-}
-
 const std::vector<double>& unequal_lengths() {
   static const std::vector<double> lengths = {0.08, 0.11, 0.05, 0.09, 0.12, 0.04,
                                               0.13, 0.1,  0.07, 0.06, 0.15};
   return lengths;
-}
-
-// Reference by beam theory with hinges at the beginnings of the segments. Each bends by its moment
-// divided by its spring stiffness, EI / half of both segments, at the clamp EI / h.
-TEST(ChainSprings, OfUnequalSegmentsTheyAreThoseOfBeamTheory) {
-  Scene scene = test::heavy_scene(1e-9, 0);
-  scene.loads = {{.at = 1, .force = {0, -0.001 * scene.bending_stiffness(), 0}}};
-  const std::vector<double>& h = unequal_lengths();
-  std::vector<double> s(h.size() + 1, 0.0);
-  std::partial_sum(h.begin(), h.end(), s.begin() + 1);
-  double product = 0;
-  double square = 0;
-  for (std::size_t j = 0; j < s.size(); ++j) {
-    const double rod = (3 * s[j] * s[j] - std::pow(s[j], 3)) / 6;
-    double chain = 0;
-    for (std::size_t i = 0; i < j; ++i) {
-      chain += (1 - s[i]) * (s[j] - s[i]) * (i == 0 ? h[0] : (h[i - 1] + h[i]) / 2);
-    }
-    product += rod * chain;
-    square += chain * chain;
-  }
-  const std::vector<ChainSprings> chains = chain_springs(scene, h, {});
-  ASSERT_EQ(chains.size(), 2);  // the first segment is no half
-  const ChainSprings& hinge = chains[0];
-  ASSERT_EQ(hinge.clamp, ChainClamp::hinge);
-  EXPECT_NEAR(hinge.over_rod, square / product, 1e-4);
-  ASSERT_EQ(hinge.joints.size(), h.size());
-  ASSERT_EQ(chains[1].joints.size(), h.size() - 1);
-  for (std::size_t i = 0; i < h.size(); ++i) {
-    const double mean = i == 0 ? h[0] : (h[i - 1] + h[i]) / 2;
-    const double k = hinge.over_rod * scene.bending_stiffness() / mean;
-    EXPECT_NEAR(hinge.joints[i].at, s[i], 1e-6);
-    EXPECT_NEAR(hinge.joints[i].stiffness / k, 1, 1e-6);
-    EXPECT_NEAR(hinge.joints[i].binormal_stiffness / k, 1, 1e-3);
-  }
 }
 
 // In another solver of chains the printed springs leave the reported error, and no multiple of them
@@ -203,19 +156,6 @@ TEST(ChainSprings, ARodThatIsNoPlainChainHasNone) {
   Scene scene = test::heavy_scene(5, 0);
   scene.natural_strain.y() = 1;
   EXPECT_TRUE(chain_springs(scene, 20, {}).empty());
-}
-
-TEST(ChainSprings, AFitTellsThemOfTheRodThatItFound) {
-  const Scene truth = test::heavy_scene(5, 0);
-  Scene said = truth;
-  said.scale_modulus(2);
-  const MeasuredShape seen = test::exact_shape(truth, equal_arc_lengths(1, 15));
-  const MaterialFit fit = fit_material({said, said}, {seen, seen}, {.chain_segments = 20});
-  const auto right = springs_of(truth, 20);
-  ASSERT_EQ(fit.chains.size(), right.size());
-  for (const ChainSprings& chain : fit.chains) {
-    EXPECT_NEAR(chain.stiffness / right.at(chain.clamp).stiffness, 1, 1e-5);
-  }
 }
 
 }  // namespace

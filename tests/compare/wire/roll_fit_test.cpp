@@ -8,15 +8,15 @@
 #include <numbers>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../../sanitized.hpp"
 #include "../../says.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/material_fit.hpp"
-#include "dlo/compare/reference.hpp"
 #include "dlo/compare/scene_file.hpp"
-#include "dlo/compare/shape.hpp"
+#include "measured_shapes.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -28,11 +28,9 @@ using test::says;
 constexpr double per_degree = std::numbers::pi / 180;
 
 MeasuredShape seen_points(const Scene& truth, int count, double noise, std::mt19937& random) {
-  const std::vector<double> s = equal_arc_lengths(truth.length, count);
-  std::normal_distribution<double> error(0, noise);
-  Eigen::Matrix3Xd points = solve_reference(truth, Model::energy).sample(s).points;
-  points += Eigen::Matrix3Xd::NullaryExpr(3, count, [&] { return error(random); });
-  return {"seen", std::move(points), s};
+  MeasuredShape shape = test::seen_shape(truth, equal_arc_lengths(truth.length, count));
+  shape.points = test::with_noise(std::move(shape.points), noise, random);
+  return shape;
 }
 
 double fitted_roll(const MaterialFit& fit, const std::string& name, std::size_t shape) {
