@@ -8,32 +8,18 @@
 
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/plan.hpp"
+#include "judge/budget_shares.hpp"
 #include "scenes.hpp"
 
 namespace dlo::compare {
 namespace {
 
-using test::heavy_scene;
-
-Scene twisted_scene() {
-  Scene scene = heavy_scene(1, 0);
-  scene.grippers.push_back(
-      {.at = 1, .position = {0.8, 0, 0}, .direction = Eigen::Vector3d::UnitX()});
+TEST(Budget, TellsWhatTwistThatIsLeftOutCosts) {
+  Scene scene = test::two_clamps(1, {0.8, 0, 0});
   for (Gripper& gripper : scene.grippers) gripper.frame = FrameHold{};
   scene.grippers.back().frame->roll = 3;
   scene.torsional_stiffness = scene.bending_stiffness() / 1.3;
   scene.force_model.c_c = scene.axial_stiffness() / 100;
-  return scene;
-}
-
-double sum_of_shares(const Budget& b) {
-  return b.twist.share + b.natural_curvature.share + b.law.share + b.bookkeeping.share +
-         b.discretisation.share + b.stretch.share + b.contact.share + b.not_at_rest.share +
-         b.interaction.share;
-}
-
-TEST(Budget, TellsWhatTwistThatIsLeftOutCosts) {
-  Scene scene = twisted_scene();
   scene.force_model.law = BendingLaw::paper;
   const Comparison c = compare(scene, {}, {}, ModulusSearch::no);
   EXPECT_EQ(c.force.neglected, std::vector<std::string>{"twist"});
@@ -45,26 +31,7 @@ TEST(Budget, TellsWhatTwistThatIsLeftOutCosts) {
   const double alone =
       compare(scene.without_twist(), {}, {}, ModulusSearch::no).budget.discretisation.rms_m;
   EXPECT_NEAR(b.discretisation.rms_m, alone, 1e-3 * alone);
-  EXPECT_NEAR(sum_of_shares(b), 1, 1e-9);
-}
-
-TEST(Budget, HasNoPartForTwistThatTheForceModelHas) {
-  Scene scene = twisted_scene();
-  scene.force_model.points = 32;
-  scene.force_model.c_c.reset();
-  for (const Bookkeeping bookkeeping : {Bookkeeping::consistent, Bookkeeping::paper}) {
-    scene.force_model.bookkeeping = bookkeeping;
-    const Comparison c = compare(scene, {}, {}, ModulusSearch::no);
-    EXPECT_TRUE(c.force.neglected.empty());
-    EXPECT_EQ(c.budget.twist.rms_m, 0);
-    EXPECT_NEAR(sum_of_shares(c.budget), 1, 1e-9);
-    const bool consistent = bookkeeping == Bookkeeping::consistent;
-    EXPECT_GT(consistent ? c.budget.discretisation.share : c.budget.bookkeeping.share, 0.7);
-    // A small fraction of the error without twist.
-    if (consistent) {
-      EXPECT_LT(c.deviation.rms_m, 0.05 * make_plan(scene).bound("twist"));
-    }
-  }
+  EXPECT_NEAR(test::sum_of_shares(b), 1, 1e-9);
 }
 
 }  // namespace
