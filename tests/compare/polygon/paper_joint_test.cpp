@@ -14,7 +14,6 @@
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/solution.hpp"
 #include "dlo/compare/solve.hpp"
-#include "dlo/energy_model/chain.hpp"
 #include "scenes.hpp"
 
 namespace {
@@ -64,34 +63,6 @@ TEST(EquivalentModulus, RefusesWhatIsNoJoint) {
   EXPECT_THROW((void)paper_joint_angle(1, 1, 2.1), std::invalid_argument);
   EXPECT_THROW((void)paper_joint_angle(1, 1, -1), std::invalid_argument);
   EXPECT_THROW((void)equivalent_bending_stiffness(1, 1, NAN), std::invalid_argument);
-}
-
-TEST(EquivalentModulus, AChainUnderAnEndCoupleTurnsAtEveryJointAsARodOfThatModulusDoes) {
-  // The couple is a pair of forces across the last segment; its moment reaches every joint. Less
-  // than a quarter turn in all, or the same forces bend the rod the other way.
-  const Eigen::Index segments = 4;
-  const double L = 0.1;
-  const double c_b = 40;
-  for (const double alpha : {0.05, 0.2, 0.4}) {
-    const double curvature = alpha / L;
-    const double moment = equivalent_bending_stiffness(c_b, L, alpha) * curvature;
-    const double last = alpha * static_cast<double>(segments - 1);
-    dlo::energy_model::ChainProblem problem;
-    problem.segment_lengths = Eigen::VectorXd::Constant(segments, L);
-    problem.law = dlo::energy_model::JointLaw::paper;
-    problem.stiffness = c_b;
-    problem.node_forces.setZero(2, segments + 1);
-    const Eigen::Vector2d across(-std::sin(last), std::cos(last));
-    problem.node_forces.col(segments) = moment / L * across;
-    problem.node_forces.col(segments - 1) = -moment / L * across;
-    const dlo::energy_model::ChainResult result = dlo::energy_model::solve_chain(problem);
-    ASSERT_TRUE(dlo::energy_model::succeeded(result.status)) << result.message;
-    for (Eigen::Index i = 1; i < segments; ++i) {
-      const Eigen::Vector2d u = result.points.col(i) - result.points.col(i - 1);
-      const Eigen::Vector2d v = result.points.col(i + 1) - result.points.col(i);
-      EXPECT_NEAR(std::atan2(u.x() * v.y() - u.y() * v.x(), u.dot(v)), alpha, 1e-6) << i;
-    }
-  }
 }
 
 TEST(EquivalentModulus, PredictsTheBestFitOfACantileverUnderLittleWeight) {

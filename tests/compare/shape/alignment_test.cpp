@@ -66,31 +66,6 @@ TEST(Alignment, AShiftedShapeIsNotReversedByRounding) {
   }
 }
 
-TEST(Alignment, RecoversTheMotionOfAWholeRodToTheNoise) {
-  std::mt19937 random(2);
-  for (const double gamma : {0.5, 5.0, 100.0}) {
-    const Scene scene = heavy_scene(gamma, -30);
-    const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
-    std::vector<double> s = uneven_arc_lengths(random, 7, 1);
-    s.front() = 0;
-    s.back() = 1;
-    const MeasuredShape truth = exact_shape(scene, s);
-    for (int round = 0; round < 20; ++round) {
-      const RigidMotion pose = random_pose(random);
-      const MeasuredShape moved =
-          test::reversed({"moved", with_noise(pose.applied(truth.points), 1e-3, random), {}});
-      const Alignment found = align(moved, energy.sample, 1, any_motion);
-      EXPECT_TRUE(found.reversed);
-      // sqrt(3) sigma, and three standard deviations of the mean of 7 squares
-      EXPECT_LT(found.rms_m, 1e-3 * std::sqrt(3 * (1 + 3 * std::sqrt(2.0 / 21))));
-      // Six coordinates from 21 numbers: errors of the size of the noise, three sigma a coordinate.
-      EXPECT_LT(largest_distance(found.pose.applied(pose.applied(truth.points)), truth.points),
-                6e-3)
-          << gamma << ", " << round;
-    }
-  }
-}
-
 // The first search uses only a tenth of two thousand points. The result is no farther from
 // the rod than the original pose of the points, which is near the optimum.
 TEST(Alignment, ManyPointsLieAsNearAsTheyCan) {
@@ -106,6 +81,7 @@ TEST(Alignment, ManyPointsLieAsNearAsTheyCan) {
     seen.points = pose.applied(seen.points);
     const Alignment found = align(seen, energy.sample, 1, any_motion);
     EXPECT_EQ(found.reversed, backwards);
+    EXPECT_TRUE(std::ranges::is_sorted(found.shape.arc_length));
     EXPECT_LT(found.mean_square, where_it_was);
     // Six numbers of four thousand are fitted.
     EXPECT_GT(found.mean_square, 0.99 * where_it_was);
@@ -161,24 +137,6 @@ TEST(Alignment, MissingStretchesAreNotFilled) {
   EXPECT_NEAR(std::sqrt(sum / draws), 1e-4 * std::sqrt(2.0), 0.05e-4);
 }
 
-TEST(Alignment, ADenseNoisyPolylineStaysInOrder) {
-  // Points 1 mm apart with 2 mm of noise: the polyline is several times as long as the rod.
-  const Scene scene = heavy_scene(10, 0);
-  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
-  const std::vector<double> s = equal_arc_lengths(1, 1001);
-  std::mt19937 random(5);
-  const RigidMotion pose = random_pose(random);
-  const MeasuredShape seen{
-      "seen", with_noise(pose.applied(energy.sample(s).points), 2e-3, random), {}};
-  const Alignment found = align(test::reversed(seen), energy.sample, 1, any_motion);
-  EXPECT_TRUE(found.reversed);
-  EXPECT_TRUE(std::is_sorted(found.shape.arc_length.begin(), found.shape.arc_length.end()));
-  EXPECT_LT(found.rms_m, 2e-3 * std::sqrt(3.0));
-  EXPECT_LT(largest_distance(found.pose.applied(pose.applied(energy.sample(s).points)),
-                             energy.sample(s).points),
-            2e-3);
-}
-
 TEST(Alignment, FreedomsOfTheFrame) {
   const Scene scene = heavy_scene(6, 35);
   const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
@@ -204,17 +162,6 @@ TEST(Alignment, FreedomsOfTheFrame) {
   }
 }
 
-TEST(Alignment, RulesForArcLengthsAreChosenByWhatTheFileHas) {
-  const Scene scene = heavy_scene(1, 0);
-  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
-  const auto rule = [&](const std::vector<double>& s, bool column) {
-    const MeasuredShape shape{"f", energy.sample(s).points, column ? s : std::vector<double>()};
-    return align(shape, energy.sample, 1).arc_lengths;
-  };
-  EXPECT_EQ(rule({0, 0.3, 0.6, 1}, true), ArcLengths::file);
-  EXPECT_EQ(rule({0, 0.3, 0.6, 1}, false), ArcLengths::nearest);
-}
-
 // A helix turns one way; only a reflection, which is no motion, makes it turn the other.
 TEST(Alignment, AMirrorImageIsNotTheSameShape) {
   constexpr double radius = 0.1;
@@ -222,33 +169,28 @@ TEST(Alignment, AMirrorImageIsNotTheSameShape) {
   const double turn = 1 / std::hypot(radius, pitch);
   const Reference helix = [&](std::span<const double> s) {
     const auto count = static_cast<Eigen::Index>(s.size());
+    const Eigen::ArrayXd angle = turn * Eigen::Map<const Eigen::ArrayXd>(s.data(), count);
+    const Eigen::ArrayXd along = Eigen::ArrayXd::Constant(count, pitch);
+    Eigen::ArrayXXd points(count, 3);
+    points << radius * angle.cos(), radius * angle.sin(), pitch * angle;
+    Eigen::ArrayXXd tangents(count, 3);
+    tangents << -radius * angle.sin(), radius * angle.cos(), along;
     energy_model::Samples samples;
-    samples.points.resize(3, count);
-    samples.tangents.resize(3, count);
+    samples.points = points.transpose();
+    samples.tangents = turn * tangents.transpose();
     samples.curvature = Eigen::Matrix3Xd::Zero(3, count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const double angle = turn * s[static_cast<std::size_t>(i)];
-      samples.points.col(i) << radius * std::cos(angle), radius * std::sin(angle), pitch * angle;
-      samples.tangents.col(i) << -radius * std::sin(angle), radius * std::cos(angle), pitch;
-      samples.tangents.col(i) *= turn;
-    }
     return samples;
   };
   std::mt19937 random(8);
-  const std::vector<double> s = equal_arc_lengths(1, 41);
-  const Eigen::Matrix3Xd points = helix(s).points;
-  for (const bool column_s : {false, true}) {
-    for (int axis = 0; axis < 3; ++axis) {
-      Eigen::Matrix3Xd mirrored = points;
-      mirrored.row(axis) *= -1;
-      const RigidMotion pose = random_pose(random);
-      const std::vector<double> column = column_s ? s : std::vector<double>();
-      EXPECT_LT(align({"own", pose.applied(points), column}, helix, 1, any_motion).rms_m, 1e-6);
-      const Alignment other =
-          align({"mirrored", pose.applied(mirrored), column}, helix, 1, any_motion);
-      EXPECT_GT(other.rms_m, 0.2 * radius) << column_s << ", " << axis;
-      EXPECT_NEAR(other.pose.rotation.determinant(), 1, 1e-12);
-    }
+  const Eigen::Matrix3Xd points = helix(equal_arc_lengths(1, 41)).points;
+  for (int axis = 0; axis < 3; ++axis) {
+    Eigen::Matrix3Xd mirrored = points;
+    mirrored.row(axis) *= -1;
+    const RigidMotion pose = random_pose(random);
+    EXPECT_LT(align({"own", pose.applied(points), {}}, helix, 1, any_motion).rms_m, 1e-6);
+    const Alignment other = align({"mirrored", pose.applied(mirrored), {}}, helix, 1, any_motion);
+    EXPECT_GT(other.rms_m, 0.2 * radius) << axis;
+    EXPECT_NEAR(other.pose.rotation.determinant(), 1, 1e-12);
   }
 }
 

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
 #include <string>
 #include <vector>
 
@@ -186,46 +185,6 @@ TEST(ShapeFile, RefusesMorePointsThanAllowed) {
   std::string text;
   for (long i = 0; i <= most_shape_points; ++i) text += std::to_string(i) + ",0\n";
   expect_refused({{text, {"mine:100001: 100001 points", "2 to 100000"}}});
-}
-
-// Short version of a fuzz test: randomly combined parts of valid files give a shape or an
-// InputError.
-TEST(ShapeFile, AnyBytesAreAShapeOrAnInputError) {
-  const std::vector<std::string> pieces = {vtk_head,
-                                           vtk_points,
-                                           "LINES 1 4\n3 0 1 2\n",
-                                           "OFFSETS t\n0 3\n",
-                                           "CONNECTIVITY t\n0 1 2\n",
-                                           "x,y,z\n",
-                                           "0,0,0\n",
-                                           "1,2,3\n",
-                                           "[[0,0],[1,1]]",
-                                           "{\"points_m\":",
-                                           "}",
-                                           "nan",
-                                           std::string("\0\xFF", 2),
-                                           "POINTS 2 f\n",
-                                           "-1",
-                                           "\n",
-                                           " ",
-                                           "[",
-                                           "LINES 2 3\n",
-                                           "9e99"};
-  std::mt19937 random(7);
-  int shapes = 0;
-  for (int round = 0; round < 20000; ++round) {
-    std::string text;
-    const auto count = random() % 7;
-    for (std::size_t i = 0; i < count; ++i) text += pieces[random() % pieces.size()];
-    if (!text.empty() && random() % 3 == 0)
-      text[random() % text.size()] = static_cast<char>(random());
-    try {
-      shapes += parse_shape(text, "f").points.cols() >= 2 ? 1 : 0;
-    } catch (const InputError&) {
-      continue;
-    }
-  }
-  EXPECT_GT(shapes, 20);
 }
 
 }  // namespace

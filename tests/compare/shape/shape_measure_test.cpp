@@ -253,24 +253,6 @@ TEST(ShapeMeasure, DenseNoiseIsNoExcess) {
       << judge(check, {.allowed_m = 0.01}).reason;
 }
 
-TEST(ShapeMeasure, TheRmsIsNeverAboveTheLargest) {
-  std::mt19937 random(6);
-  std::uniform_real_distribution<double> exponent(-12, 0);
-  const Right right(random);
-  for (int draw = 0; draw < 100; ++draw) {
-    Shape shape{right.s, right.points(right.s)};
-    shape.points.row(2).array() += std::pow(10, exponent(random));
-    const Deviation d = shape_deviation(right.scene, shape, right.rod.sample);
-    EXPECT_LE(d.rms_m, d.max_m);
-    if (draw >= 10) continue;
-    for (const bool column_s : {false, true}) {
-      const ShapeCheck check = right.check(shape.points, column_s);
-      EXPECT_LE(check.deviation.rms_m, check.deviation.max_m);
-      EXPECT_LE(check.whole_rms_m, check.whole_max_m);
-    }
-  }
-}
-
 /// Returns a check without any deviation, of which only the observed fraction varies.
 ShapeCheck seen(double share) {
   ShapeCheck check;

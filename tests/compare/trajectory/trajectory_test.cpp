@@ -90,22 +90,6 @@ TEST(Trajectory, NeitherLeavesAHeldPoseNorOvershoots) {
   EXPECT_LE(last, 3.1);
 }
 
-TEST(Trajectory, IsTheSameInTurnedAxes) {
-  const Eigen::Matrix3d turn =
-      Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
-  std::vector<Pose> turned = three_corners();
-  for (Pose& pose : turned) {
-    pose.position = turn * pose.position;
-    pose.direction = turn * *pose.direction;
-  }
-  const Trajectory way(three_corners());
-  const Trajectory other(turned);
-  for (const double time : {0.3, 1.2, 1.4, 2.2}) {
-    EXPECT_LT((other.pose_at(time).position - turn * way.pose_at(time).position).norm(), 1e-14);
-    EXPECT_LT((*other.pose_at(time).direction - turn * *way.pose_at(time).direction).norm(), 1e-14);
-  }
-}
-
 TEST(Trajectory, RefusesWhatIsNoWay) {
   EXPECT_THROW(Trajectory(std::vector<Pose>{}), std::invalid_argument);
   EXPECT_THROW(Trajectory({{1, {0, 0, 0}, {}}, {1, {1, 0, 0}, {}}}), std::invalid_argument);
