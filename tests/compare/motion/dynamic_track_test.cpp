@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -52,56 +51,6 @@ Trajectory corners() {
                      {5, {0.1, 0.5, 0.2}, Eigen::Vector3d(0, 1, 1)}});
 }
 
-// The derivatives by central differences, whose error is of second order in the step.
-TEST(TrajectoryMotion, HasThePosesOfItsTrajectoryAndTheirDerivatives) {
-  const Trajectory way = corners();
-  const energy_model::GripMotion motion = trajectory_motion(way, 2);
-  constexpr double step = 1e-4;
-  for (const double time : {0.2, 0.7, 1.2, 1.9, 2.8}) {
-    const energy_model::GripPose pose = motion(time);
-    const energy_model::GripPose before = motion(time - step);
-    const energy_model::GripPose after = motion(time + step);
-    const Pose known = way.pose_at(2 + time);
-    EXPECT_LT((pose.position - known.position).norm(), 1e-14);
-    EXPECT_LT((pose.turn * *way.poses().front().direction - *known.direction).norm(), 1e-14);
-    EXPECT_LT((pose.velocity - (after.position - before.position) / (2 * step)).norm(), 1e-7);
-    EXPECT_LT((pose.acceleration - (after.velocity - before.velocity) / (2 * step)).norm(), 1e-7);
-    const Eigen::AngleAxisd turned(after.turn * before.turn.conjugate());
-    EXPECT_LT((pose.angular_velocity - turned.angle() / (2 * step) * turned.axis()).norm(), 1e-7);
-    EXPECT_LT((pose.angular_acceleration -
-               (after.angular_velocity - before.angular_velocity) / (2 * step))
-                  .norm(),
-              1e-7);
-  }
-  EXPECT_EQ(motion(-1).velocity.norm(), 0);
-  EXPECT_EQ(motion(-1).position, way.poses().front().position);
-  EXPECT_EQ(motion(9).angular_velocity.norm(), 0);
-  EXPECT_LT((motion(9).position - way.poses().back().position).norm(), 1e-15);
-}
-
-TEST(TrajectoryMotion, RollsAboutTheDirectionAtEachTime) {
-  std::vector<Pose> poses = corners().poses();
-  for (std::size_t i = 0; i < poses.size(); ++i) poses[i].roll = std::vector{0.5, 2.0, 1.0, 8.0}[i];
-  const Trajectory way(poses);
-  const energy_model::GripMotion plain = trajectory_motion(way, 2);
-  const energy_model::GripMotion motion = trajectory_motion(way, 2, poses.front().direction);
-  constexpr double step = 1e-4;
-  for (const double time : {0.2, 0.7, 1.2, 1.9, 2.8}) {
-    const energy_model::GripPose pose = motion(time);
-    const Pose known = way.pose_at(2 + time);
-    const Eigen::AngleAxisd rolled(*known.roll - 0.5, *known.direction);
-    EXPECT_LT(pose.turn.angularDistance(rolled * plain(time).turn), 1e-7);
-    const energy_model::GripPose before = motion(time - step);
-    const energy_model::GripPose after = motion(time + step);
-    const Eigen::AngleAxisd turned(after.turn * before.turn.conjugate());
-    EXPECT_LT((pose.angular_velocity - turned.angle() / (2 * step) * turned.axis()).norm(), 1e-6);
-    EXPECT_LT((pose.angular_acceleration -
-               (after.angular_velocity - before.angular_velocity) / (2 * step))
-                  .norm(),
-              1e-5);
-  }
-}
-
 // The accelerations just before and just after a pose are those that the end and the beginning of a
 // step need.
 TEST(TrajectoryMotion, AccelerationsJumpJustAfterAPose) {
@@ -113,31 +62,6 @@ TEST(TrajectoryMotion, AccelerationsJumpJustAfterAPose) {
     EXPECT_LT((motion(time * (1 + 2e-16)).acceleration - before).norm(), 1e-6) << time;
     EXPECT_LT((motion(time + 1e-12).acceleration - after).norm(), 1e-6) << time;
   }
-}
-
-double error_of(double slower, const RodDamping& damping) {
-  TrackOptions options = frames_at(25 / slower);
-  options.solve.terms = 5;  // of both, so that what they leave out is in neither's distance
-  const DynamicTrack result = moved(swung(slower), options, damping);
-  EXPECT_FALSE(result.stopped);
-  EXPECT_LT(result.energy_error, 1e-6);
-  return result.quasi_static.mean;
-}
-
-// With drag the lag of the rod is proportional to its speed; the error due to jumps of the
-// acceleration is of second order.
-TEST(DynamicTrack, ComesToTheTrackAtFirstOrderInItsSpeed) {
-  const double fast = error_of(16, {.air = 0.05});
-  const double slow = error_of(64, {.air = 0.05});
-  EXPECT_LT(fast, 0.1);
-  EXPECT_NEAR(fast / slow, 4, 0.2);
-}
-
-// Then accelerations are all that bends it and makes it swing; where in a swing the frames are
-// changes the mean.
-TEST(DynamicTrack, ComesToTheTrackAtSecondOrderWithoutDamping) {
-  const double order = std::log(error_of(8, {}) / error_of(32, {})) / std::log(4.0);
-  EXPECT_NEAR(order, 2, 0.15);
 }
 
 // The balance of the frames, whose gravity potential is zero at the same point as the track's.
@@ -201,24 +125,14 @@ TEST(DynamicTrack, MeasuresTheForceModelAgainstTheMovingRod) {
   EXPECT_EQ(result.force->largest_time, last.time);
 }
 
-void expect_refused(const std::string& rod, const std::string& rest, const std::string& why) {
+TEST(DynamicTrack, RefusesARodWithoutMass) {
   const Scene scene = parse_scene(
-      "[rod]\nlength = 1\nbending_stiffness = 1\n" + rod + "[[gripper]]\nat = 0\n" +
-          "[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\ndirection = \"60 deg\"\n" +
-          "[[gripper.pose]]\ntime = 1\nposition = [0.1, 0, 0]\ndirection = \"50 deg\"\n" + rest,
+      "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0\n[[gripper]]\nat = 0\n"
+      "direction = \"60 deg\"\n[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\n"
+      "[[gripper.pose]]\ntime = 1\nposition = [0.1, 0, 0]\n",
       "refused.toml");
   EXPECT_TRUE(says(error_of<InputError>([&] { return require_dynamic(scene); }),
-                   {"refused.toml: --dynamic: ", why, "allowed"}));
-}
-
-TEST(DynamicTrack, RefusesWhatARodWithInertiaCannotHave) {
-  const std::string mass = "mass_per_length = 0.5\n";
-  expect_refused("mass_per_length = 0\n", "", "no mass");
-  const std::string pose = "[[gripper.pose]]\nposition = [0.8, 0, 0]\ndirection = ";
-  expect_refused(mass + "torsional_stiffness = 1\nnatural_curvature = 1\n",
-                 "[[gripper]]\nat = 1\nroll = \"10 deg\"\n" + pose + "\"0 deg\"\ntime = 0\n" +
-                     pose + "\"20 deg\"\ntime = 1\n",
-                 "changes its direction");
+                   {"refused.toml: --dynamic: ", "no mass", "allowed"}));
 }
 
 /// A round rod that its clamp moves in a medium at rest.
@@ -234,16 +148,16 @@ Scene moved_in_water(const std::string& drags) {
 
 // By 1/2 rho C d across the rod, as the option of that name.
 TEST(DynamicTrack, AMediumAtRestDragsTheMovingRod) {
-  const RodDamping none{.material = 0.01};
-  const Scene still = moved_in_water("velocity = [0, 0, 0]\nnormal_drag = 1.5\n");
-  const DynamicTrack dragged = moved(still, frames_at(20), none);
-  const DynamicTrack option =
-      moved(moved_in_water(""), frames_at(20), {.material = 0.01, .quadratic = 500 * 1.5 * 4e-3});
-  const DynamicTrack free = moved(moved_in_water(""), frames_at(20), none);
-  EXPECT_EQ(dragged.frames.back().points, option.frames.back().points);
-  EXPECT_GT((dragged.frames.back().points - free.frames.back().points).norm(), 1e-2);
-  const Scene along =
-      moved_in_water("velocity = [0, 0, 0]\nnormal_drag = 1.5\ntangential_drag = 0.1\n");
+  const std::string still = "velocity = [0, 0, 0]\nnormal_drag = 1.5\n";
+  const auto last_points = [](const std::string& drags, double quadratic) {
+    return moved(moved_in_water(drags), frames_at(20), {.material = 0.01, .quadratic = quadratic})
+        .frames.back()
+        .points;
+  };
+  const Eigen::Matrix3Xd dragged = last_points(still, 0);
+  EXPECT_EQ(dragged, last_points("", 500 * 1.5 * 4e-3));
+  EXPECT_GT((dragged - last_points("", 0)).norm(), 1e-2);
+  const Scene along = moved_in_water(still + "tangential_drag = 0.1\n");
   EXPECT_TRUE(says(error_of<InputError>([&] { return require_dynamic(along); }),
                    {"medium.tangential_drag", "allowed"}));
 }
@@ -323,40 +237,9 @@ TEST(DynamicTrack, AWristTurnsTheWire) {
   }
 }
 
-TEST(DynamicTrack, RefusesANegativeDamping) {
-  const Scene scene = swung(1);
-  const TrackOptions options = frames_at(10);
-  const Track at_rest = track(scene, options);
-  EXPECT_THROW((void)dynamic_track(scene, at_rest, options, {.material = -1}), InputError);
-  EXPECT_THROW((void)dynamic_track(scene, at_rest, options, {.air = std::nan("")}), InputError);
-}
-
-// Obstacles that cannot be reached do not matter; one that yields is met.
-TEST(DynamicTrack, MeetsAnObstacleThatYields) {
-  const std::string scene =
-      "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0.5\n[[gripper]]\nat = 0\n"
-      "direction = \"0 deg\"\n[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\n"
-      "[[gripper.pose]]\ntime = 0.2\nposition = [0, -0.2, 0]\n[[obstacle]]\nnormal = [0, 1, 0]\n";
-  const std::string far = "point = [0, -9, 0]\n";
-  const std::string near = "point = [0, -0.6, 0]\nstiffness = 100\ntouches = \"axis\"\n";
-  const auto energy_of = [&](const std::string& where, double& balance) {
-    TrackOptions options = frames_at(20);
-    options.to = 0.5;
-    const DynamicTrack result =
-        moved(parse_scene(scene + where, "floor.toml"), options, {.material = 0.05});
-    balance = result.energy_error;
-    double largest = 0;
-    for (const DynamicFrame& frame : result.frames) {
-      largest = std::max(largest, frame.energy.obstacles);
-    }
-    return largest;
-  };
-  double balance = 0;
-  EXPECT_EQ(energy_of(far, balance), 0);
-  EXPECT_LT(balance, 1e-6);
-  EXPECT_GT(energy_of(near, balance), 1e-4);
-  // Its force has kinks by time.
-  EXPECT_LT(balance, 1e-4);
+TEST(DynamicTrack, RefusesADampingThatIsNegativeOrNoNumber) {
+  EXPECT_THROW((void)moved(swung(1), frames_at(10), {.material = -1}), InputError);
+  EXPECT_THROW((void)moved(swung(1), frames_at(10), {.air = std::nan("")}), InputError);
 }
 
 // A clamp lays a rod on a rigid floor, or the floor comes up to it; either way they meet halfway,
@@ -415,32 +298,18 @@ Scene released_rod(double weight) {
   return scene;
 }
 
-/// Deflection of the tip of the same by bending waves: the sum over the roots b of cosh b cos b =
-/// -1 of +-4 s w / b^5 (1 - cos b^2 t), s = (sinh b - sin b) / (cosh b + cos b).
-double deflection_of_tip(double weight, double time) {
-  double sum = 0;
-  double sign = 1;
-  for (const double b : {1.8751040687119612, 4.6940911329741746, 7.8547574382376126,
-                         10.995540734875467, 14.137168391046471}) {
-    const double s = (std::sinh(b) - std::sin(b)) / (std::cosh(b) + std::cos(b));
-    sum += sign * 4 * s * weight / std::pow(b, 5) * (1 - std::cos(b * b * time));
-    sign = -sign;
-  }
-  return sum;
-}
-
-// The neglected modes are 1e-5 of the deflection, and the effect of large rotations is its square.
 TEST(DynamicTrack, ReleasesTheRodFromAGivenShape) {
-  constexpr double weight = 0.01;
   TrackOptions options = frames_at(40);
   options.to = 3;
-  const DynamicTrack released = moved(released_rod(weight), options, {});
+  const DynamicTrack released = moved(released_rod(0.01), options, {});
   ASSERT_EQ(released.frames.size(), 121U);
-  for (const DynamicFrame& frame : released.frames) {
-    EXPECT_NEAR(-frame.points(1, frame.points.cols() - 1), deflection_of_tip(weight, frame.time),
-                1e-4 * weight)
-        << frame.time;
-  }
+  EXPECT_LT(released.frames.front().points.row(1).cwiseAbs().maxCoeff(), 1e-9);
+  // The first mode, of which the others differ by a few percent, has a period of 2 pi / 3.516.
+  const auto tip_at = [&](std::size_t frame) {
+    return released.frames[frame].points.rightCols<1>().y();
+  };
+  EXPECT_NEAR(tip_at(36) / (-2 * 0.01 / 8), 1, 0.05);
+  EXPECT_NEAR(tip_at(71) / (-2 * 0.01 / 8), 0, 0.05);
 }
 
 TEST(DynamicTrack, RefusesAStartWithTooFewPointsOrWithoutAnEnd) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "../../says.hpp"
@@ -19,13 +20,9 @@ namespace {
 
 using test::says;
 
-constexpr double pi = 3.141592653589793;
-
 Scene loaded_aside() {
   Scene scene = test::heavy_scene(6, 20);
   scene.loads.push_back({.at = 0.7, .force = {0, 0, 0.3 * scene.bending_stiffness()}});
-  scene.force_model.law = BendingLaw::hooke;
-  scene.force_model.bookkeeping = Bookkeeping::consistent;
   return scene;
 }
 
@@ -59,8 +56,6 @@ TEST(SceneModes, WhatHangsOnTheRodMovesWithIt) {
   const double mass = 1e3 * scene.mass();
   scene.gravity.setZero();
   scene.loads.push_back({.at = 1, .force = Eigen::Vector3d::Zero(), .mass = mass});
-  scene.force_model.law = BendingLaw::hooke;
-  scene.force_model.bookkeeping = Bookkeeping::consistent;
   scene.force_model.points = 40;
   const SceneModes found = scene_modes(scene, {.count = 1});
   const double omega = std::sqrt(3 * scene.bending_stiffness() / mass);
@@ -141,7 +136,7 @@ TEST(SteppedMode, IsWhatTheSimulationDoes) {
   }
   ASSERT_EQ(times.size(), 7U);
   const double duration = times[6] - times[0];
-  EXPECT_NEAR(mode.omega * duration / (6 * pi), 1, 1e-3);
+  EXPECT_NEAR(mode.omega * duration / (6 * std::numbers::pi), 1, 1e-3);
   const double decay = -std::log(speeds[6] / speeds[0]) / duration;
   EXPECT_NEAR(decay / (mode.omega * mode.damping / std::sqrt(1 - mode.damping * mode.damping)), 1,
               0.01);
@@ -212,26 +207,15 @@ TEST(SceneModes, PhysicalStepsSwingAsTheRodDoes) {
   EXPECT_NEAR(found.modes[0].stepped->damping, 0.03, 0.03 * 0.03);
 }
 
-// The points' straight polygon comes to the clamped beam with the square of its segments.
 TEST(SceneModes, OfARodHeldStraightAreThoseOfAClampedBeam) {
   Scene held = test::heavy_scene(0, 0);
   held.gravity.setZero();
   held.grippers.push_back({.at = 1, .position = {1, 0, 0}, .direction = Eigen::Vector3d::UnitX()});
   const double unit = std::sqrt(held.bending_stiffness() / held.mass_per_length());
-  double last = 0;
-  for (const int points : {16, 31}) {
-    held.force_model.points = points;
-    const SceneModes found = scene_modes(held, {.count = 1});
-    ASSERT_TRUE(found.no_polygon.empty()) << found.no_polygon;
-    EXPECT_EQ(found.tension, 0);
-    EXPECT_NE(found.modes[0].rod.plane, energy_model::ModePlane::mixed);
-    EXPECT_NEAR(found.modes[0].rod.omega() / (22.373285448061 * unit), 1, 1e-9);
-    const double off = *found.modes[0].polygon_omega / found.modes[0].rod.omega() - 1;
-    if (last != 0) {
-      EXPECT_NEAR(last / off, 4, 0.7);
-    }
-    last = off;
-  }
+  const SceneModes found = scene_modes(held, {.count = 1});
+  EXPECT_EQ(found.tension, 0);
+  EXPECT_NEAR(found.modes[0].rod.omega() / (22.373285448061 * unit), 1, 1e-9);
+  EXPECT_NEAR(*found.modes[0].polygon_omega / found.modes[0].rod.omega(), 1, 5e-3);
   EXPECT_GT(scene_modes(held, {.count = 1, .tension = 10}).modes[0].rod.omega(), 22.4 * unit);
   Scene heavy = held;
   heavy.gravity = {0, -9.81, 0};
@@ -242,9 +226,7 @@ TEST(SceneModes, OfARodHeldStraightAreThoseOfAClampedBeam) {
 }
 
 TEST(SceneModes, SayWhyThereAreNone) {
-  Scene twisted = test::heavy_scene(5, 0);
-  twisted.grippers.push_back(
-      {.at = 1, .position = {0.8, 0, 0}, .direction = Eigen::Vector3d::UnitX()});
+  Scene twisted = test::two_clamps(5, {0.8, 0, 0});
   for (Gripper& gripper : twisted.grippers) gripper.frame.emplace();
   twisted.grippers[1].frame->roll = 1;
   twisted.torsional_stiffness = twisted.bending_stiffness();

@@ -1,6 +1,5 @@
-// A recorded motion against its scene's rod: recordings of known lag, offset, noise, with inertia
-// and without, each made by another way than the check's (a solve for each time, or the simulation
-// at the recording's own times).
+// A recorded motion against its scene's rod: recordings of known lag, offset and noise, each made
+// by another way than the check's, a solve for each time.
 
 #include "recording/motion_check.hpp"
 
@@ -15,10 +14,8 @@
 #include <utility>
 #include <vector>
 
-#include "dlo/compare/error.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solve.hpp"
-#include "motion/moving_scene.hpp"
 #include "recording/lag_search.hpp"
 
 namespace dlo::compare {
@@ -45,7 +42,6 @@ Scene led(const std::function<Eigen::Vector3d(double)>& error = {}) {
 /// Times at unequal distances, which no frames of the model have.
 std::vector<double> uneven_times(double end, int count) {
   std::vector<double> times;
-  times.reserve(static_cast<std::size_t>(count) + 1);
   for (int k = 0; k <= count; ++k) {
     const double share = static_cast<double>(k) / count;
     times.push_back(end * (share + 0.03 * std::sin(5 * std::numbers::pi * share)));
@@ -53,45 +49,26 @@ std::vector<double> uneven_times(double end, int count) {
   return times;
 }
 
+void add_row(MarkerMotion& motion, double time, const std::vector<double>& markers,
+             const Eigen::Matrix3Xd& points) {
+  for (std::size_t i = 0; i < markers.size(); ++i) {
+    motion.positions.push_back({time, markers[i], points.col(static_cast<Eigen::Index>(i))});
+  }
+}
+
 /// The rod at rest at `time - lag`, by a solve of its own for each time.
 MarkerMotion at_rest(const Scene& scene, const std::vector<double>& times,
                      const std::vector<double>& markers, double lag = 0) {
   MarkerMotion motion{.file = "made.csv", .positions = {}};
   for (const double time : times) {
-    const Eigen::Matrix3Xd points =
-        solve(scene_at(scene, time - lag), Model::energy, {}, markers).shape.points;
-    for (std::size_t i = 0; i < markers.size(); ++i) {
-      motion.positions.push_back({time, markers[i], points.col(static_cast<Eigen::Index>(i))});
-    }
-  }
-  return motion;
-}
-
-/// The rod with inertia at the recording's own times, by one simulation.
-MarkerMotion with_inertia(const Scene& scene, const std::vector<double>& times,
-                          const std::vector<double>& markers, const RodDamping& damping) {
-  const FrameClock clock(scene, {times.front(), times.back()}, {.frames = 100});
-  const SimulatedMotion run = MovingScene(scene, clock, damping, {}).run(times, 0);
-  MarkerMotion motion{.file = "made.csv", .positions = {}};
-  for (std::size_t k = 0; k < times.size(); ++k) {
-    const Eigen::Matrix3Xd points = run.moved.frames.at(k).sample(markers).points;
-    for (std::size_t i = 0; i < markers.size(); ++i) {
-      motion.positions.push_back({times[k], markers[i], points.col(static_cast<Eigen::Index>(i))});
-    }
+    add_row(motion, time, markers,
+            solve(scene_at(scene, time - lag), Model::energy, {}, markers).shape.points);
   }
   return motion;
 }
 
 void displace(MarkerMotion& motion, const Eigen::Vector3d& by) {
   for (MarkerPosition& at : motion.positions) at.position += by;
-}
-
-void add_noise(MarkerMotion& motion, double deviation) {
-  std::mt19937 random(7);
-  std::normal_distribution<double> noise(0, deviation);
-  for (MarkerPosition& at : motion.positions) {
-    for (double& coordinate : at.position) coordinate += noise(random);
-  }
 }
 
 const std::vector<double> five = {0.07, 0.15, 0.23, 0.31, 0.39};
@@ -120,9 +97,7 @@ TEST(MotionCheck, FindsTheLagOfARecording) {
     EXPECT_FALSE(check.passes) << check.reason;
     EXPECT_NEAR(check.lag, lag, 1e-4);
     EXPECT_LT(check.lag_rms_m, 1e-4);
-    ASSERT_FALSE(check.causes.empty());
-    EXPECT_EQ(check.causes.front().kind, MotionCause::Kind::lag);
-    EXPECT_EQ(check.causes.size(), 1U);
+    ASSERT_EQ(check.causes.size(), 1U);
     EXPECT_EQ(check.causes.front().words, lag > 0 ? "it is 30 ms late" : "it is 20 ms early");
   }
 }
@@ -137,7 +112,6 @@ TEST(MotionCheck, FindsWhereARecordingIsDisplaced) {
   EXPECT_NEAR(check.errors.largest_m, by.norm(), 3 * close_to_rod);
   EXPECT_TRUE(std::isnan(check.lag));
   ASSERT_EQ(check.causes.size(), 1U);
-  EXPECT_EQ(check.causes.front().kind, MotionCause::Kind::offset);
   EXPECT_EQ(check.causes.front().words, "all of it is displaced by [6, -2, 3] mm");
   MarkerMotion late = at_rest(scene, uneven_times(0.8, 20), five, 0.02);
   displace(late, by);
@@ -147,39 +121,15 @@ TEST(MotionCheck, FindsWhereARecordingIsDisplaced) {
             "all of it is displaced by [6, -2, 3] mm, and it is 20 ms late");
 }
 
-TEST(MotionCheck, TellsWhetherARecordingHasInertia) {
+TEST(MotionCheck, SaysThatInertiaIsMissing) {
   const Scene scene = swung_rod();
-  const std::vector<double> times = uneven_times(0.8, 40);
-  const MotionCheck quasi_static =
-      check_motion(scene, at_rest(scene, times, five), {.model = MotionModel::with_inertia});
-  EXPECT_FALSE(quasi_static.passes);
-  ASSERT_EQ(quasi_static.causes.size(), 1U);
-  EXPECT_EQ(quasi_static.causes.front().words, "it is quasi-static: its inertia is missing");
-  EXPECT_LT(quasi_static.causes.front().rms_m, close_to_rod);
-  EXPECT_EQ(quasi_static.nearer, MotionModel::at_rest);
-  const RodDamping damping{.material = 0.01, .quadratic = 0.02};
-  const MarkerMotion moved = with_inertia(scene, times, five, damping);
-  const MotionCheck right =
-      check_motion(scene, moved, {.model = MotionModel::with_inertia, .damping = damping});
-  EXPECT_TRUE(right.passes);
-  EXPECT_LT(right.errors.rms_m, close_to_rod);
-  EXPECT_EQ(right.nearer, MotionModel::with_inertia);
-  EXPECT_TRUE(right.causes.empty());
-  const MotionCheck wrong = check_motion(scene, moved, {.damping = damping});
-  EXPECT_FALSE(wrong.passes);
-  ASSERT_FALSE(wrong.causes.empty());
-  EXPECT_EQ(wrong.causes.front().words, "the rod has inertia (--dynamic)");
-}
-
-TEST(MotionCheck, FindsTheLagOfARodWithInertia) {
-  const Scene scene = swung_rod();
-  const RodDamping damping{.material = 0.01};
-  MarkerMotion moved = with_inertia(scene, uneven_times(0.8, 20), five, damping);
-  for (MarkerPosition& at : moved.positions) at.time += 0.05;
-  const MotionCheck check = check_motion(
-      scene, moved, {.model = MotionModel::with_inertia, .damping = damping, .from = 0});
-  EXPECT_NEAR(check.lag, 0.05, 1e-4);
-  EXPECT_LT(check.lag_rms_m, 10 * close_to_rod);
+  const MotionCheck check = check_motion(scene, at_rest(scene, uneven_times(0.8, 40), five),
+                                         {.model = MotionModel::with_inertia});
+  EXPECT_FALSE(check.passes);
+  ASSERT_EQ(check.causes.size(), 1U);
+  EXPECT_EQ(check.causes.front().words, "it is quasi-static: its inertia is missing");
+  EXPECT_LT(check.causes.front().rms_m, close_to_rod);
+  EXPECT_EQ(check.nearer, MotionModel::at_rest);
 }
 
 // The recording has so many rows that they are thinned. The marker at the end of the rod, with
@@ -208,7 +158,11 @@ TEST(MotionCheck, MeasuresNoiseAndFindsNoCauseInIt) {
   const Scene scene = swung_rod();
   MarkerMotion motion = at_rest(scene, uneven_times(0.8, 80), five);
   constexpr double deviation = 1e-3;
-  add_noise(motion, deviation);
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise(0, deviation);
+  for (MarkerPosition& at : motion.positions) {
+    for (double& coordinate : at.position) coordinate += noise(random);
+  }
   const MotionCheck check = check_motion(
       scene, motion, {.damping = slow, .tolerance = ShapeTolerance{.allowed_m = 1e-3}});
   // Three standard deviations of the RMS of 1215 coordinates are 6 %.
@@ -249,28 +203,13 @@ TEST(MotionCheck, FindsAGripperThatIsElsewhere) {
       .damping = slow, .frame_rate = 15, .tolerance = ShapeTolerance{.allowed_m = 1e-3}};
   const MotionCheck constant = check_motion(led(), at_rest(displaced, times, markers), request);
   ASSERT_FALSE(constant.causes.empty());
-  EXPECT_EQ(constant.causes.front().kind, MotionCause::Kind::gripper);
-  EXPECT_EQ(constant.causes.front().words.substr(0, 24), "gripper 2 is displaced b")
-      << constant.causes.front().words;
+  EXPECT_TRUE(constant.causes.front().words.starts_with("gripper 2 is displaced b"));
   EXPECT_LT(constant.causes.front().rms_m, 0.1 * constant.errors.rms_m);
   const Scene astray = led(
       [](double t) { return Eigen::Vector3d(0, 0.01 * std::sin(6 * t), 0.01 * std::sin(3 * t)); });
   const MotionCheck path = check_motion(led(), at_rest(astray, times, markers), request);
   ASSERT_FALSE(path.causes.empty());
-  EXPECT_EQ(path.causes.front().kind, MotionCause::Kind::gripper_path);
-  EXPECT_EQ(path.causes.front().words.substr(0, 26), "gripper 2 has another path")
-      << path.causes.front().words;
-}
-
-TEST(MotionCheck, RefusesWhatIsNoRecordingOfTheRod) {
-  const Scene scene = swung_rod();
-  MarkerMotion motion = at_rest(scene, {0, 0.4}, five);
-  EXPECT_THROW((void)check_motion(scene, motion, {.from = 0.1}), InputError);
-  motion.positions.front().arc_length = 0.41;
-  EXPECT_THROW((void)check_motion(scene, motion), InputError);
-  motion = at_rest(scene, {0.4}, five);
-  EXPECT_THROW((void)check_motion(scene, motion), InputError);
-  EXPECT_THROW((void)check_motion(scene_at(scene, 0), at_rest(scene, {0, 0.4}, five)), InputError);
+  EXPECT_TRUE(path.causes.front().words.starts_with("gripper 2 has another path"));
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -66,22 +65,6 @@ TEST(HingeMotion, EndsAtItsTimeLimit) {
              return hinge_motion(released("motion_vibration"), 4000, {0, 1}, {.time_limit = 1});
            }),
            {"time limit of 1 s reached after 0 s of motion"}));
-}
-
-// A rigid rod's pendulum: T = 4 K(sin(a/2)) / omega, omega^2 = g/l (M + m/2) / (M + m/3). A cord of
-// a tenth of the payload's mass bends by about m / 16 M of its length as it swings.
-TEST(ReleasedRod, SwingsAPayloadAsAPendulum) {
-  const ReleasedRod rod = released("motion_payload");
-  const double l = rod.scene.length;
-  const double m = rod.scene.mass();
-  const double payload = rod.scene.loads.front().mass;
-  const double omega = std::sqrt(9.81 / l * (payload + m / 2) / (payload + m / 3));
-  const double angle = std::numbers::pi / 3;
-  const double half = 2 * std::comp_ellint_1(std::sin(angle / 2)) / omega;
-  const ReleasedMotion moved = release_rod(rod, {0, half / 2, half}, {0, l}, 12);
-  const Eigen::Vector3d left(-std::sin(angle) * l, -std::cos(angle) * l, 0);
-  EXPECT_LT((moved.frames[2].col(1) - left).norm(), 5e-3 * l);
-  EXPECT_LT((moved.frames[1].col(1) - Eigen::Vector3d(0, -l, 0)).norm(), 1e-2 * l);
 }
 
 // Up to 0.3 s, in which the waves of the chain are those of the rod.
