@@ -4,19 +4,14 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "../../says.hpp"
-#include "base/input_file.hpp"
-#include "base/temporary_path.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/scene_file.hpp"
-#include "foreign/child_process.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -60,6 +55,10 @@ TEST(ForeignProgram, IsANameAndTheWordsOfACommand) {
   const ForeignProgram program = parse_foreign_program("my-sim_2=sim --in={scene} '{shape}' a=b");
   EXPECT_EQ(program.name, "my-sim_2");
   EXPECT_THAT(program.words, ElementsAre("sim", "--in={scene}", "{shape}", "a=b"));
+  EXPECT_THAT(
+      parse_foreign_program("a=sim \"{shape} \\\"b\\$c\\d\"e\\ f '' $HOME *.csv a|b >c; `d` #")
+          .words,
+      ElementsAre("sim", "{shape} \"b$c\\de f", "", "$HOME", "*.csv", "a|b", ">c;", "`d`", "#"));
 }
 
 TEST(ForeignProgram, BadOnesAreRefused) {
@@ -69,7 +68,10 @@ TEST(ForeignProgram, BadOnesAreRefused) {
     EXPECT_THAT(refusal_of_program(text), HasSubstr("not such a NAME")) << text;
   }
   EXPECT_THAT(refusal_of_program("a=sim {scene}"), HasSubstr("no {shape} in the command"));
-  EXPECT_THAT(refusal_of_program("a='sim {shape}"), HasSubstr("is not closed"));
+  for (const char* text :
+       {"a='sim {shape}", "a=sim \"{shape}", "a=sim {shape} \"\\", "a=sim {shape}\\", "a= "}) {
+    EXPECT_THAT(refusal_of_program(text), HasSubstr("--with a: the command ")) << text;
+  }
   EXPECT_THROW((void)parse_foreign_programs({"a=b {shape}", "a=c {shape}"}), InputError);
 }
 
@@ -92,21 +94,6 @@ TEST_F(ForeignFolder, SaysWhatFailedWithTheLastLineOfItsStandardError) {
   EXPECT_THAT(run_shell("touch $2.csv $2.vtk").problem, HasSubstr("wrote no shape"));
   EXPECT_THAT(run_foreign({"none", {"no such program", "{shape}"}}, soft_cable(), 16, 20).problem,
               StartsWith("could not be started: "));
-}
-
-TEST(Child, RunsInItsFolderAndIsEndedWithAllItStarted) {
-  const TemporaryFolder folder("no folder");
-  const TemporaryFile beside(folder.path());
-  EXPECT_GE(beside.descriptor(), 0);
-  ::close(beside.descriptor());
-  const ChildFiles files{.folder = folder.path(), .output = "out", .error = "err"};
-  EXPECT_EQ(run_child({"sh", "-c", "pwd; echo no >&2"}, files, 20).problem, "");
-  EXPECT_EQ(read_file(folder.path() / "out"), folder.path().string() + "\n");
-  EXPECT_EQ(read_file(folder.path() / "err"), "no\n");
-  const ChildOutcome late = run_child({"sh", "-c", "sleep 60 & sleep 60"}, files, 0.2);
-  EXPECT_TRUE(late.too_long);
-  EXPECT_EQ(late.problem, "killed after the time limit of 0.2 s");
-  EXPECT_LT(late.seconds, 20);
 }
 
 TEST_F(ForeignFolder, ReadsNothingButRegularFiles) {
@@ -141,20 +128,12 @@ TEST_F(ForeignFolder, GoesWithAllThatIsInItHoweverDeep) {
   EXPECT_EQ(run_shell(deep).problem, "wrote no shape");
 }
 
-TEST_F(ForeignFolder, IsKilledAtTheTimeLimitWithAllThatItStarted) {
+TEST_F(ForeignFolder, IsKilledAtTheTimeLimitWithAllThatItStartedAndLeftRunning) {
   const std::string mark = std::filesystem::temp_directory_path().string() + "_alive";
-  const auto begin = std::chrono::steady_clock::now();
   const ForeignRun run = run_shell("trap '' TERM; (sleep 1; touch " + mark + ") & sleep 60", 0.2);
-  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
   EXPECT_TRUE(run.too_long);
   EXPECT_EQ(run.problem, "killed after the time limit of 0.2 s");
-  EXPECT_LT(took.count(), 10);
-  (void)std::system("sleep 1.5");
-  EXPECT_FALSE(std::filesystem::exists(mark));
-}
-
-TEST_F(ForeignFolder, WhatItLeavesRunningIsKilledToo) {
-  const std::string mark = std::filesystem::temp_directory_path().string() + "_left";
+  EXPECT_LT(run.seconds, 10);
   EXPECT_EQ(run_shell("(sleep 1; touch " + mark + ") & exit 3").problem, "exit status 3");
   (void)std::system("sleep 1.5");
   EXPECT_FALSE(std::filesystem::exists(mark));
@@ -169,8 +148,6 @@ TEST(ForeignDeviation, OfTheReferenceItselfIsZeroAndOfAMovedShapeTheWay) {
   shape.points.row(2).array() += 0.005;
   const Deviation moved = foreign_deviation(scene, shape, rod.sample);
   EXPECT_NEAR(moved.rms_over_length, 0.005, 1e-12);
-  EXPECT_NEAR(moved.max_m, 0.005, 1e-12);
-  EXPECT_NEAR(moved.tip_m, 0.005, 1e-12);
   // Either direction of the file, with or without arc lengths.
   shape.points = shape.points.rowwise().reverse().eval();
   shape.arc_length.clear();
