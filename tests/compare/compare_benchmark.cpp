@@ -45,28 +45,15 @@ void sweep(benchmark::State& state, SweepModel model, const std::string& rows) {
   state.SetBytesProcessed(bytes);
 }
 
+void on_all_cores(benchmark::internal::Benchmark* sweeps) {
+  sweeps->ArgName("threads")->Arg(0)->UseRealTime()->Unit(benchmark::kMillisecond);
+}
+
 }  // namespace
 
-BENCHMARK_CAPTURE(sweep, energy, SweepModel::energy, "200")
-    ->ArgName("threads")
-    ->Arg(1)
-    ->Arg(0)
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(sweep, exact, SweepModel::exact, "20")
-    ->ArgName("threads")
-    ->Arg(0)
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(sweep, chain, SweepModel::chain, "20")
-    ->ArgName("threads")
-    ->Arg(0)
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(sweep, force, SweepModel::force, "2")
-    ->ArgName("threads")
-    ->Arg(0)
-    ->UseRealTime()
-    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(sweep, energy, SweepModel::energy, "200")->Arg(1)->Apply(on_all_cores);
+BENCHMARK_CAPTURE(sweep, exact, SweepModel::exact, "20")->Apply(on_all_cores);
+BENCHMARK_CAPTURE(sweep, chain, SweepModel::chain, "20")->Apply(on_all_cores);
+BENCHMARK_CAPTURE(sweep, force, SweepModel::force, "2")->Apply(on_all_cores);
 
 BENCHMARK_MAIN();
