@@ -61,6 +61,14 @@ class Command : public Folder {
     return result.out;
   }
 
+  /// Expects this exit status, and all of `words` in the two outputs of a command.
+  void expect_output(const std::string& arguments, int status,
+                     const std::vector<std::string>& words) const {
+    const Outcome result = run(arguments);
+    EXPECT_EQ(result.status, status) << arguments << "\n" << result.err;
+    EXPECT_TRUE(says(result.out + result.err, words)) << arguments;
+  }
+
   /// Runs a command for the files that it writes; it has to end well.
   void succeeds(const std::string& arguments) const { (void)said(arguments); }
 

@@ -1,12 +1,13 @@
 // The command as a user runs it: exit status, standard output, standard error, files.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -28,50 +29,65 @@ TEST_F(Command, CompareWritesTheContractsJson) {
   EXPECT_EQ(document.at("schema"), "dlo/compare/1");
   ASSERT_EQ(document.at("cases").size(), 2U);
   const json& paper = document.at("cases")[0];
-  EXPECT_EQ(paper.at("law"), "paper");
-  EXPECT_EQ(paper.at("bookkeeping"), "paper");
-  EXPECT_EQ(paper.at("points"), 16);
   EXPECT_NEAR(paper.at("parameters").at("c_b"), 3574.96, 0.005);
-  EXPECT_NEAR(paper.at("parameters").at("c_c"), 659734, 0.5);
   EXPECT_NEAR(paper.at("effective_modulus_ratio"), 0.044, 0.001);
   for (const char* key : {"rms_m", "max_m", "tip_m", "rms_over_length"}) {
     EXPECT_GT(paper.at("deviation").at(key).get<double>(), 0) << key;
   }
   EXPECT_GT(paper.at("cost").at("force_s").get<double>(), 0);
-  const json& hooke = document.at("cases")[1];
-  EXPECT_EQ(hooke.at("law"), "hooke");
-  EXPECT_NEAR(hooke.at("effective_modulus_ratio"), 1, 0.01);
+  EXPECT_EQ(document.at("cases")[1].at("law"), "hooke");
 }
 
-TEST_F(Command, CompareIsReadableAsTextAndCsv) {
-  const Outcome text = run("compare " + steel());
-  EXPECT_TRUE(says(text.out, {"E*/E"}));
-  const Outcome csv = run("compare " + steel() + " --format csv");
-  EXPECT_EQ(csv.out.substr(0, 10), "scene,law,");
-  EXPECT_TRUE(says(csv.out, {"\"spring steel, -175 deg\""}));
+/// Returns the numbers of the output of `dlo paper --format csv` by "section,scene,item,quantity".
+std::map<std::string, double> paper_values(const std::string& csv) {
+  std::map<std::string, double> values;
+  std::vector<dlo::test::CsvRow> rows = dlo::test::csv_rows(csv);
+  for (dlo::test::CsvRow& row : std::span(rows).subspan(1)) {
+    const double value = std::stod(row.back());
+    row.pop_back();
+    EXPECT_TRUE(values.emplace(fmt::format("{}", fmt::join(row, ",")), value).second);
+  }
+  return values;
 }
 
-TEST_F(Command, PaperPrintsTablesShapesAndTheModulus) {
+TEST_F(Command, PaperHasTheSameNumbersInJsonAndInCsv) {
   succeeds("paper --format json -o " + path("paper.json"));
   const json document = json::parse(read(path("paper.json")));
   EXPECT_EQ(document.at("schema"), "dlo/paper/1");
-  EXPECT_EQ(document.at("cases").size(), 6U);
-  // The average forces of Tables 2 and 4 are met within 10 % RMS with c_F and l_s in centimetres.
+  const std::map<std::string, double> csv = paper_values(said("paper --format csv"));
+  const auto expect_value = [&](const std::string& name, const json& value) {
+    EXPECT_NEAR(csv.at(name), value, 1e-10 * std::abs(value.get<double>())) << name;
+  };
+  ASSERT_EQ(document.at("cases").size(), 6U);
+  for (const json& one : document.at("cases")) {
+    const std::string weight = one.at("point_weight") == "printed" ? " printed weight," : ",";
+    const std::string of = weight + "\"" + one.at("scene").get<std::string>() + "\",";
+    expect_value("rest" + of + ",effective_modulus_ratio", one.at("effective_modulus_ratio"));
+    for (const json& at : one.at("modulus_against_time")) {
+      for (const std::string key : {"effective_modulus_ratio", "distance_to_rest_over_length"}) {
+        expect_value(fmt::format("creep{}t={},{}", of, at.at("time_s").get<double>(), key),
+                     at.at(key));
+      }
+    }
+  }
   const json& moving = document.at("moving");
   // The eleven of Tables 2 to 4, and their five movements with three more steppers.
-  EXPECT_EQ(moving.at("rows").size(), 26U);
+  ASSERT_EQ(moving.at("rows").size(), 26U);
+  for (const json& row : moving.at("rows")) {
+    const std::string name = fmt::format(
+        "moving,,\"{}, {} rod, {}; varied: none\",", row.at("movement").get<std::string>(),
+        row.at("rod").get<std::string>(), row.at("variant").get<std::string>());
+    expect_value(name + "steps", row.at("steps"));
+    expect_value(name + "average_force_N", row.at("average_force_N"));
+    expect_value(name + "shape_rms_over_length", row.at("error").at("shape_rms_over_length"));
+  }
+  // The average forces of Tables 2 and 4 are met within 10 % RMS with c_F and l_s in centimetres.
   const auto scanned = [&](int row, const char* key) { return moving.at("scan")[row].at(key); };
   EXPECT_EQ(scanned(0, "choices").at("length_unit_m"), 0.01);
   EXPECT_LT(scanned(0, "distance").at("force_factor").get<double>(), 1.1);
   EXPECT_GT(scanned(0, "distance").at("force_factor").get<double>(), 1);
   EXPECT_EQ(scanned(1, "choices").at("length_unit_m"), 1);
   EXPECT_TRUE(scanned(1, "distance").at("force_factor").is_null());
-  EXPECT_EQ(run("paper --format csv").out.substr(0, 8), "section,");
-  const Outcome text = run("paper");
-  EXPECT_EQ(text.status, 0) << text.err;
-  EXPECT_EQ(text.err, "");
-  EXPECT_TRUE(says(text.out, {"3776.21457", "3574.96", "659734", "1/3", "spring steel, -215 deg",
-                              "116121", "34389"}));
 }
 
 TEST_F(Command, StabilityWritesTheContractsJsonAndFailsForNothingButAutoAndImplicit) {
@@ -84,7 +100,6 @@ TEST_F(Command, StabilityWritesTheContractsJsonAndFailsForNothingButAutoAndImpli
   EXPECT_EQ(last.at("outcome"), "pass");
   EXPECT_LT(last.at("error_over_length").get<double>(), 1e-5);
   EXPECT_GT(last.at("steps").get<long>(), 100);
-  EXPECT_EQ(document.at("cases")[5].at("stepper"), "verlet");
   EXPECT_EQ(document.at("cases")[6].at("stepper"), "implicit");
   EXPECT_EQ(document.at("cases")[6].at("outcome"), "pass");
   EXPECT_LT(document.at("cases")[6].at("steps").get<long>(), 100);
@@ -94,13 +109,10 @@ TEST_F(Command, StabilityWritesTheContractsJsonAndFailsForNothingButAutoAndImpli
   EXPECT_TRUE(says(no_number.out, {"\npulled too far,auto,refused,0,,false,"}));
   EXPECT_EQ(refused.status, 0);
   EXPECT_TRUE(says(refused.out, {"no more than the 0.5 m of rod"}));
-  EXPECT_EQ(run("stability --case crossed --stepper auto --format csv").out.substr(0, 13),
-            "case,stepper,");
 }
 
 TEST_F(Command, StabilityMapTakesAScene) {
   const std::string small = " --columns 2 --rows 8 --map-steps 2000";
-  EXPECT_TRUE(says(said("stability --map cF-ch" + small), {"predicted"}));
   const Outcome csv = run("stability " + scene(good) + " --map cF-cc --format csv" + small);
   EXPECT_EQ(std::count(csv.out.begin(), csv.out.end(), '\n'), 1 + 2 * 8) << csv.err;
   const json document = json_of("stability --map cF-cc" + small);
@@ -125,82 +137,28 @@ TEST_F(Command, BenchWritesRowsAndAnswers) {
     }
   }
   EXPECT_EQ(document.at("answers")[0].at("static").size(), 4U);
-  EXPECT_EQ(run(arguments + " --format csv").out.substr(0, 11), "scene,kind,");
-  EXPECT_TRUE(says(run(arguments).out, {"What to use"}));
   expect_error("bench --seconds 0", 2, {"--seconds"});
   expect_error("bench " + path("missing.toml"), 2, {"missing.toml"});
 }
 
-TEST_F(Command, OptionsOverrideTheScene) {
-  const json document = json::parse(
-      run("compare " + steel() +
-          " --law hooke --bookkeeping consistent --points 24 --c-c \"5 kN\" " + "--format json")
-          .out);
-  const json& only = document.at("cases")[0];
-  EXPECT_EQ(only.at("law"), "hooke");
-  EXPECT_EQ(only.at("points"), 24);
-  EXPECT_EQ(only.at("parameters").at("c_c"), 5000);
-}
-
-TEST_F(Command, BadInputNamesFileLineKeyValueAndWhatIsAllowed) {
-  expect_error("solve " + path("missing.toml"), 2, {"missing.toml", "cannot be read"});
-  const std::string text = good;
-  expect_error("solve " + scene("colour = 3\n" + text), 2,
-               {"scene.toml:1", "colour", "3", "unknown key", "allowed"});
-  expect_error("solve " + scene("[rod]\nlength = -0.5\ndiameter = 0.002\nmaterial = \"copper\"\n"),
-               2, {"scene.toml:2", "rod.length", "-0.5", "1e-06 to"});
-  expect_error(
-      "solve " + scene("[rod]\nlength = 1\ndiameter = 0.002\nmaterial = { youngs_modulus = "
-                       "\"210 GPA\", density = 1 }\n"),
-      2, {"scene.toml:4", "youngs_modulus", "210 GPA", "GPa"});
-  expect_error("solve " + scene("[rod]\nlength = nan\ndiameter = 0.002\nmaterial = \"copper\"\n"),
-               2, {"scene.toml:2", "rod.length", "nan", "finite"});
-  expect_error("solve " + scene("[rod]\nlength = 1\ndiameter = 0.002\nmaterial = \"copper\"\n"
-                                "[[gripper]]\nat = 2\nposition = [0, 0, 0]\ndirection = 0\n"),
-               2, {"scene.toml:6", "gripper.at", "2", "0 to 1"});
-}
-
 TEST_F(Command, BadUsageIsOneLineAndStatusTwo) {
-  expect_error("slove", 2, {"dlo"});
   expect_error("solve", 2, {"SCENE"});
   expect_error("solve " + steel() + " --model fem", 2, {"fem", "energy"});
   expect_error("solve " + steel() + " --points 1", 2, {"--points"});
-  expect_error("solve " + steel() + " --c-c nan", 2, {"--c-c", "nan"});
-  expect_error("solve " + steel() + " --c-c \"5 kg\"", 2, {"--c-c", "5 kg", "kN"});
   expect_error("solve " + steel() + " --format xml", 2, {"xml", "json"});
 }
 
-TEST_F(Command, WhatDoesNotConvergeIsStatusThreeAndWritesNothing) {
-  const std::string output = path("result.json");
-  expect_error("solve " + steel() + " --max-evaluations 1 --format json -o " + output, 3,
-               {"energy model", "evaluation limit"});
-  EXPECT_FALSE(std::filesystem::exists(output));
-  expect_error("solve " + steel() + " --model chain --max-evaluations 1 -o " + output, 3,
-               {"chain"});
-  expect_error("solve " + steel() + " --model force --max-steps 5 -o " + output, 3,
-               {"force model", "5 steps"});
-  expect_error("solve " + steel() + " --model force --stepper basic --c-F 1 -o " + output, 3,
-               {"diverged"});
-  EXPECT_FALSE(std::filesystem::exists(output));
-}
-
-TEST_F(Command, OutputThatCannotBeWrittenLeavesTheOldFileAlone) {
-  const std::string output = path("kept.json");
-  std::ofstream(output) << "old";
-  expect_error("solve " + steel() + " --max-evaluations 1 -o " + output, 3, {});
-  EXPECT_EQ(read(output), "old");
-  expect_error("solve " + steel() + " -o " + path("no/such/folder/x.json"), 2,
-               {"no/such/folder/x.json", "cannot be written"});
-  succeeds("solve " + steel() + " -o " + output);
-  EXPECT_TRUE(says(read(output), {"\"gamma\""}));
-  std::filesystem::create_symlink("kept.json", path("link.json"));
-  succeeds("solve " + steel() + " --format csv -o " + path("link.json"));
-  EXPECT_TRUE(std::filesystem::is_symlink(path("link.json")));
-  EXPECT_EQ(read(output).substr(0, 2), "x,");
-  std::filesystem::remove(path("link.json"));
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("")),
-                          std::filesystem::directory_iterator()),
-            1);  // kept.json: no temporary file is left
+TEST_F(Command, WhatDoesNotConvergeIsStatusThreeAndLeavesTheOldFile) {
+  const std::string output = write("result.json", "old");
+  const auto expect_status_three = [&](const std::string& options,
+                                       const std::vector<std::string>& words) {
+    expect_error("solve " + steel() + " -o " + output + options, 3, words);
+    EXPECT_EQ(read(output), "old") << options;
+  };
+  expect_status_three(" --max-evaluations 1", {"energy model", "evaluation limit"});
+  expect_status_three(" --model chain --max-evaluations 1", {"chain"});
+  expect_status_three(" --model force --max-steps 5", {"force model", "5 steps"});
+  expect_status_three(" --model force --stepper basic --c-F 1", {"diverged"});
 }
 
 TEST_F(Command, TheExtensionIsTheFormatUnlessOneIsGiven) {
@@ -219,51 +177,21 @@ TEST_F(Command, TheExtensionIsTheFormatUnlessOneIsGiven) {
   EXPECT_EQ(first_line("calibrate " + steel(), "c.json"), "{");
 }
 
-/// A word that gives an option, with a value that the option takes.
+/// Returns words that give an option, with a value that the option takes.
 std::string given(const std::string& option) {
-  static const std::map<std::string, std::string> values = {{"--arc-lengths", "file"},
-                                                            {"--unit", "mm"},
-                                                            {"--segments", "8"},
-                                                            {"--shape", "a.csv"},
-                                                            {"--motion", "a.csv"},
-                                                            {"--parameters", "a.toml"},
-                                                            {"--points", "12"},
-                                                            {"--law", "hooke"},
-                                                            {"--bookkeeping", "paper"},
-                                                            {"--stepper", "dynamic"},
-                                                            {"--bending-rule", "moment_matched"},
-                                                            {"--design-curvature", "5"},
-                                                            {"--c-b", "1"},
-                                                            {"--c-c", "1"},
-                                                            {"--c-F", "1"},
-                                                            {"--c-h", "0.5"},
-                                                            {"--l-s", "1"},
-                                                            {"--max-steps", "9"},
-                                                            {"--rest-tolerance", "1e-5"},
-                                                            {"--target-error", "1%"},
-                                                            {"--terms", "9"},
-                                                            {"--step-rate", "1000"},
-                                                            {"--every", "2"},
-                                                            {"--samples", "9"},
-                                                            {"--case", "folded"},
-                                                            {"--max-steps-auto", "9"},
-                                                            {"--steps-at-rest", "9"},
-                                                            {"--map", "cF-cc"},
-                                                            {"--columns", "2"},
-                                                            {"--rows", "4"},
-                                                            {"--map-steps", "9"},
-                                                            {"--time-limit", "1"},
-                                                            {"--state", "d"},
-                                                            {"--baseline", "a.json"},
-                                                            {"--markdown", "a.md"},
-                                                            {"--junit", "a.xml"},
-                                                            {"--report", "a.html"},
-                                                            {"--output", "a.json"},
-                                                            {"--relative", "1%"},
-                                                            {"--absolute", "1%"}};
-  const auto value = values.find(option);
+  static const std::string examples =
+      "--arc-lengths file --unit mm --segments 8 --shape a.csv --motion a.csv "
+      "--parameters a.toml --points 12 --law hooke --bookkeeping paper --stepper dynamic "
+      "--bending-rule moment_matched --design-curvature 5 --c-b 1 --c-c 1 --c-F 1 --c-h 0.5 "
+      "--l-s 1 --max-steps 9 --rest-tolerance 1e-5 --target-error 1% --terms 9 "
+      "--step-rate 1000 --every 2 --samples 9 --case folded --max-steps-auto 9 "
+      "--steps-at-rest 9 --map cF-cc --columns 2 --rows 4 --map-steps 9 --time-limit 1 "
+      "--state d --baseline a.json --markdown a.md --junit a.xml --report a.html "
+      "--output a.json --relative 1% --absolute 1% ";
   if (option == "SCENE") return "scene.toml";
-  return value == values.end() ? option : option + " " + value->second;
+  const std::size_t at = examples.find(option + " ");
+  if (at == std::string::npos) return option;
+  return examples.substr(at, examples.find(' ', at + option.size() + 1) - at);
 }
 
 /// Words of a command with which all conditions of a row hold.
@@ -310,34 +238,10 @@ TEST_F(Command, EveryOptionWithoutEffectIsRefusedOrReported) {
   EXPECT_EQ(run("solve " + steel() + curvature + " --law paper").err, "");
 }
 
-TEST_F(Command, NoOptionIsLeftOutInSilence) {
-  for (const std::string format : {"csv", "vtk"}) {
-    for (const std::string option : {"--all", "--explain"}) {
-      expect_error(words({"solve", steel(), option, "--format", format}), 2, {option, format});
-    }
-  }
-  const Outcome warned = run("solve " + steel() + " --points 9 --law hooke");
-  EXPECT_EQ(warned.status, 0);
-  EXPECT_TRUE(says(warned.err, {"--points, --law: no effect"}));
-  EXPECT_EQ(run("solve " + steel() + " --points 9 --model chain").err, "");
-  EXPECT_EQ(run("solve " + steel()).err, "");
-}
-
 TEST_F(Command, HelpIsACommandAndUnknownOptionsAreNamed) {
-  EXPECT_EQ(run("help").out, run("--help").out);
   EXPECT_EQ(run("help solve").out, run("solve --help").out);
-  succeeds("help solve");
   expect_error("help nothing", 2, {"unknown command nothing"});
   expect_error("-V", 2, {"unknown option -V", "--version"});
-  expect_error("--modle", 2, {"unknown option --modle"});
-  expect_error("solve --modle", 2, {"--modle", "did you mean --model?"});
-}
-
-TEST_F(Command, HelpHasAnExample) {
-  for (const std::string command : {"solve", "compare", "paper", "bench", "stability"}) {
-    EXPECT_TRUE(says(said(command + " --help"), {"Example"})) << command;
-  }
-  succeeds("--version");
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
-// Every example of every --help is run; the manual page that help2man makes lists every command.
+// Every example of every --help is run, no option takes an empty value, and the manual page that
+// help2man makes lists every command.
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <map>
 #include <regex>
-#include <sstream>
 
 #include "command_fixture.hpp"
 #include "dlo/compare/deviation.hpp"
@@ -68,6 +68,21 @@ TEST_F(Reference, EveryExampleOfEveryHelpWorks) {
       EXPECT_EQ(result.status, 0) << example << "\n" << result.err;
     }
   }
+}
+
+TEST_F(Reference, NoOptionOfAnyCommandTakesAnEmptyValue) {
+  std::size_t count = 0;
+  for (const std::string& command : commands()) {
+    const std::string help = run(command + " --help").out;
+    for (const std::string& option : matches(help, "\n  (?:-\\w, )?(--[^ ]+) [^ ]")) {
+      expect_error(words({command, option, "''"}), 2, {option, "the value is empty"});
+      ++count;
+    }
+  }
+  EXPECT_GE(count, 100U);
+  expect_error("solve " + steel() + " --time-limit= --samples 3", 2,
+               {"--time-limit", "the value is empty"});
+  expect_error("solve ''", 2, {"SCENE", "the value is empty"});
 }
 
 TEST_F(Reference, ManualPageOfThePackageListsEveryCommand) {

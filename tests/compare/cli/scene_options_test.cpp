@@ -92,30 +92,12 @@ TEST_F(SceneOptions, OfTheSolversDoWhatTheySay) {
 }
 
 TEST_F(SceneOptions, ATimeThatLeavesNothingButASaddleIsNoSuccess) {
-  const std::string twisted = scene(R"(
-gravity = [0, 0, 0]
-[rod]
-length = 0.2
-diameter = "0.4 mm"
-material = "spring_steel"
-torsional_stiffness = 1.2e-3
-[[gripper]]
-at = 0
-position = [0, -0.02, 0]
-hold = "pin"
-[[gripper]]
-at = 0.05
-position = [0.01, -0.045, 0.006]
-direction = [0.3, 0.9, 1.4]
-roll = 2.4
-[[gripper]]
-at = 0.14
-position = [0.09, -0.08, 0.022]
-direction = [-0.7, -1.1, 1.2]
-roll = 5.5
-[[load]]
-at = 0.12
-force = [-4e-3, 6e-3, 5e-3]
+  const std::string twisted = scene(R"(gravity = [0, 0, 0]
+rod = { length = 0.2, diameter = "0.4 mm", material = "spring_steel", torsional_stiffness = 1.2e-3 }
+gripper = [{ at = 0, position = [0, -0.02, 0], hold = "pin" },
+           { at = 0.05, position = [0.01, -0.045, 0.006], direction = [0.3, 0.9, 1.4], roll = 2.4 },
+           { at = 0.14, position = [0.09, -0.08, 0.022], direction = [-0.7, -1.1, 1.2], roll = 5.5 }]
+load = [{ at = 0.12, force = [-4e-3, 6e-3, 5e-3] }]
 )");
   for (const std::string limit : {"0.001", "0.01", "0.1", "0.3"}) {
     const Outcome found =
