@@ -1,8 +1,6 @@
 // One shape has one verdict, in one sentence: from the command, from the library and from
 // GoogleTest's matchers.
 
-#include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 #include <random>
 
@@ -38,14 +36,12 @@ Shape shape_of_kind(Scene scene, int kind, std::mt19937& random) {
 class SameVerdict : public Command {
  protected:
   std::string write_shape(const Shape& shape) const {
-    std::ofstream file(path("shape.csv"));
-    file << "x,y,z,s\n";
+    std::vector<std::vector<double>> rows;
     for (Eigen::Index i = 0; i < shape.points.cols(); ++i) {
       const Eigen::Vector3d p = shape.points.col(i);
-      file << fmt::format("{},{},{},{}\n", p.x(), p.y(), p.z(),
-                          shape.arc_length[static_cast<std::size_t>(i)]);
+      rows.push_back({p.x(), p.y(), p.z(), shape.arc_length[static_cast<std::size_t>(i)]});
     }
-    return path("shape.csv");
+    return write_table("shape.csv", "x,y,z,s", rows);
   }
 };
 

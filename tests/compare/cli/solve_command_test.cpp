@@ -2,9 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -17,26 +15,18 @@ namespace {
 using dlo::test::Command;
 using dlo::test::Outcome;
 using dlo::test::says;
-using dlo::test::says_none;
 using nlohmann::json;
 
 const std::string back_bent_rod =
     dlo::test::steel_rod + dlo::test::gripper_text("direction = \"-175 deg\"");
 
-const std::string two_grippers = "gravity = [0, -9.81, 0]\n" + dlo::test::steel_rod +
-                                 dlo::test::gripper_text("direction = \"30 deg\"") +
-                                 R"([[gripper]]
-at = "40 cm"
-position = [0.3, 0.05, 0.1]
-hold = "pin"
-[[load]]
-at = "20 cm"
-force = [0, -0.5, 0]
-[[obstacle]]
-point = [0, -0.3, 0]
-normal = [0, 1, 0]
-[force_model]
-points = 40
+const std::string two_grippers = R"(gravity = [0, -9.81, 0]
+rod = { length = "50 cm", diameter = "2 mm", material = "spring_steel" }
+gripper = [{ at = 0, position = [0, 0, 0], direction = "30 deg" },
+           { at = "40 cm", position = [0.3, 0.05, 0.1], hold = "pin" }]
+load = [{ at = "20 cm", force = [0, -0.5, 0] }]
+obstacle = [{ point = [0, -0.3, 0], normal = [0, 1, 0] }]
+force_model = { points = 40 }
 )";
 
 TEST_F(Command, SolveWritesTheContractsJsonForEveryModel) {
@@ -52,7 +42,6 @@ TEST_F(Command, SolveWritesTheContractsJsonForEveryModel) {
     const json& error = document.at("error_estimate_m");
     EXPECT_EQ(error.is_null(), model == "chain" || model == "exact") << error;
     EXPECT_LT(error.is_null() ? 0 : error.get<double>(), 1.01e-7);
-    ASSERT_EQ(document.at("arc_length_m").size(), 11U);
     ASSERT_EQ(document.at("points_m").size(), 11U);
     EXPECT_EQ(document.at("arc_length_m").back(), 0.5);
     const json& energy = document.at("energy_J");
@@ -62,37 +51,7 @@ TEST_F(Command, SolveWritesTheContractsJsonForEveryModel) {
                 1e-15);
     EXPECT_NEAR(document.at("grippers")[0].at("force_N")[1], 0.121735143, 1e-6);
     EXPECT_GE(document.at("solver").at("wall_s").get<double>(), 0);
-    EXPECT_TRUE(document.contains("plan"));
   }
-}
-
-TEST_F(Command, SolvesSeveralGrippersWithTheModelsForAnyScene) {
-  std::vector<double> middle;
-  for (const std::string model : {"energy", "chain", "force"}) {
-    const json document =
-        json_of("solve " + scene(two_grippers) + " --model " + model + " --samples 11");
-    EXPECT_EQ(document.at("arc_length_m").back(), 0.5);
-    ASSERT_EQ(document.at("grippers").size(), 2U);
-    ASSERT_EQ(document.at("obstacles").size(), 1U);
-    // The sum of the forces is weight and load; the rod does not touch the floor.
-    EXPECT_NEAR(document.at("grippers")[0].at("force_N")[1].get<double>() +
-                    document.at("grippers")[1].at("force_N")[1].get<double>(),
-                0.5 + 0.121735143, 1e-4);
-    EXPECT_EQ(document.at("obstacles")[0].at("force_N")[1].get<double>(), 0);
-    const json& pin = document.at("points_m")[8];
-    EXPECT_NEAR(pin[0], 0.3, 1e-9);
-    EXPECT_NEAR(pin[2], 0.1, 1e-9);
-    middle.push_back(document.at("points_m")[4][1].get<double>());
-  }
-  EXPECT_NEAR(middle[1], middle[0], 5e-4);
-  EXPECT_NEAR(middle[2], middle[1], 1e-6);
-}
-
-TEST_F(Command, CompareTakesSeveralGrippers) {
-  const json entry = json_of("compare " + scene(two_grippers)).at("cases")[0];
-  EXPECT_LT(entry.at("deviation").at("rms_over_length").get<double>(), 1e-3);
-  EXPECT_TRUE(entry.at("undeformed_rms_over_length").is_null());
-  EXPECT_TRUE(says_none(said("compare " + scene(two_grippers)), {"nan"}));
 }
 
 TEST_F(Command, TooFewPointsForTheGrippersIsBadInput) {
@@ -104,143 +63,20 @@ TEST_F(Command, TooFewPointsForTheGrippersIsBadInput) {
   succeeds("solve " + scene(text) + " --model chain --points 14");
 }
 
-TEST_F(Command, SolveGivesOneShapeByBothReferenceModelsForClampsInSpace) {
-  const std::string rope = scene(R"(gravity = [0, -9.81, 0]
-[rod]
-length = "1 m"
-diameter = "4 mm"
-material = { youngs_modulus = "5 GPa", density = 1200 }
-[[gripper]]
-at = 0
-position = [0, 0, 0]
-direction = [1, 0, 0]
-[[gripper]]
-at = "1 m"
-position = [0.6, 0.1, 0.3]
-direction = [1, 0.2, -0.4]
-[[load]]
-at = "40 cm"
-force = [0, 0, "50 mN"]
-)");
-  const auto solve = [&](const std::string& model) {
-    return json_of("solve " + rope + " --samples 21 --model " + model);
-  };
-  const json energy = solve("energy");
-  const json exact = solve("exact");
-  EXPECT_LT(points_apart(exact, energy), 1e-8);
-  for (std::size_t g = 0; g < 2; ++g) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_NEAR(exact.at("grippers")[g].at("torque_Nm")[k],
-                  energy.at("grippers")[g].at("torque_Nm")[k], 1e-8);
-    }
-  }
-}
-
-TEST_F(Command, SolveExactTakesAFloorAndRefusesOtherObstacles) {
-  const std::string floor = scene(R"([rod]
-length = 1
-bending_stiffness = 0.01
-mass_per_length = 0.1
-[[gripper]]
-at = 0
-position = [0, 0.1, 0]
-direction = "0 deg"
-[[obstacle]]
-point = [0, 0, 0]
-normal = [0, 1, 0]
-)");
-  const auto solved = [&](const char* model) {
-    return json_of("solve " + floor + " --model " + model);
-  };
-  const json exact = solved("exact");
-  const json energy = solved("energy");
-  EXPECT_TRUE(says_none(run("solve " + floor + " --model exact").out, {"solver     0"}));
-  for (const char* key : {"from_m", "to_m"}) {
-    EXPECT_NEAR(exact.at("contacts")[0].at(key), energy.at("contacts")[0].at(key), 1e-7);
-  }
-  const json& last = exact.at("points_m").back();
-  for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_NEAR(last[k], energy.at("points_m").back()[k], 1e-8);
-  }
-  const std::string ball = back_bent_rod + R"([[obstacle]]
-shape = "sphere"
-point = [0, -0.2, 0]
-radius = 0.1
-)";
-  expect_error("solve " + scene(ball + "stiffness = 100\n") + " --model exact", 2,
-               {"obstacle", "energy"});
-}
-
-TEST_F(Command, ExactConfirmsWhatTheEnergyModelSaysTouches) {
-  const std::string peg = scene(R"(gravity = [0, -9.81, 0]
-[rod]
-length = "50 cm"
-diameter = "4 mm"
-material = { youngs_modulus = "100 MPa", density = 1200 }
-[[gripper]]
-at = 0
-position = [-0.2, 0, 0]
-direction = "30 deg"
-[[gripper]]
-at = "50 cm"
-position = [0.16, -0.12, 0]
-direction = "-70 deg"
-[[obstacle]]
-shape = "cylinder"
-point = [0, 0.06, 0]
-axis = [0, 0, 1]
-radius = "30 mm"
-)");
-  const json energy = json_of("solve " + peg);
-  const json exact = json_of("solve " + peg + " --model exact");
-  ASSERT_FALSE(energy.at("contacts").empty());
-  EXPECT_EQ(exact.at("contacts").size(), energy.at("contacts").size());
-  EXPECT_LT(points_apart(exact, energy), 5e-9);
-  EXPECT_TRUE(says(run("solve " + peg + " --model exact").out,
-                   {"contacts that the energy model detected"}));
-}
-
-TEST_F(Command, SolveMatchesTheReferenceValuesOfThePapersRod) {
-  std::ifstream stream(std::string(DLO_DATA) + "/reference/reference_values.json");
-  const json expected = json::parse(stream).at("paper_rod").at("E=210GPa,phi=-175");
-  const json document = json_of("solve " + steel() + " --samples 17");
-  for (std::size_t i = 0; i < 17; ++i) {
-    EXPECT_NEAR(document.at("points_m")[i][0], expected.at("x_m")[i], 5e-9);
-    EXPECT_NEAR(document.at("points_m")[i][1], expected.at("y_m")[i], 5e-9);
-  }
-}
-
-TEST_F(Command, SolveWritesCsvThatStartsWithItsHeader) {
-  const std::string result = said("solve " + steel() + " --samples 3 --format csv");
-  EXPECT_EQ(result.substr(0, 8), "x,y,z,s\n");
-  EXPECT_EQ(std::count(result.begin(), result.end(), '\n'), 4);
-}
-
 TEST_F(Command, ExplainSaysWhenTheSceneMovesAndWhyThereIsNoN) {
-  const std::string moving = scene(back_bent_rod + R"([[obstacle]]
-normal = [0, 1, 0]
-[[obstacle.pose]]
-time = 0
-point = [0, -0.03, 0]
-[[obstacle.pose]]
-time = 2
-point = [0, -0.2, 0]
-)");
+  const std::string moving = scene(back_bent_rod +
+                                   "[[obstacle]]\nnormal = [0, 1, 0]\n"
+                                   "pose = [{ time = 0, point = [0, -0.03, 0] }, "
+                                   "{ time = 2, point = [0, -0.2, 0] }]\n");
   EXPECT_TRUE(says(said("solve " + moving + " --explain"),
                    {"static: the scene as it is at 0 s; it moves from 0 to 2 s",
                     "not determined for 0.1 % of l: the rod touches an obstacle"}));
 }
 
-TEST_F(Command, ExplainShowsThePlanThatJsonAlwaysHas) {
-  const std::string far = scene(back_bent_rod + R"([[obstacle]]
-point = [0, -0.6, 0]
-normal = [0, 1, 0]
-)");
+TEST_F(Command, JsonHasThePlan) {
+  const std::string far =
+      scene(back_bent_rod + "[[obstacle]]\npoint = [0, -0.6, 0]\nnormal = [0, 1, 0]\n");
   for (const std::string command : {"solve ", "compare "}) {
-    EXPECT_TRUE(says_none(run(command + far).out, {"neglected"}));
-    EXPECT_TRUE(says(said(command + far + " --explain --target-error 1e-4"),
-                     {"planar", "static", "clamp - free", "out of reach", "stretch", "shear",
-                      "at most", "0.01 % of l"}));
     const json document = json_of(command + far);
     const json& plan =
         command == "solve " ? document.at("plan") : document.at("cases")[0].at("plan");
@@ -252,12 +88,6 @@ normal = [0, 1, 0]
   // Out of reach, so that exact, which knows no obstacles, takes the scene.
   succeeds("solve " + far + " --model exact");
   expect_error("solve " + far + " --target-error 0", 2, {"--target-error"});
-}
-
-TEST_F(Command, SolveSaysWhichGripperHoldsAndPrintsNoMinusZero) {
-  const std::string text = run("solve " + scene(back_bent_rod)).out;
-  EXPECT_TRUE(says(text, {"gripper 1 at s = 0 m (clamp): force ["}));
-  EXPECT_TRUE(says_none(text, {"-0 J", "-0.00000000"}));
 }
 
 // A strip of rubber that hangs is longer by w l^2 / (2 EA), its weight over E A.
@@ -272,14 +102,10 @@ TEST_F(Command, ModelExactIsTheDefaultAndTheReferenceOfARodThatStretches) {
   EXPECT_EQ(json_of("solve " + stretches + " --model chain").at("model"), "chain");
   expect_error("solve " + stretches + " --model energy", 2, {"stretch = true"});
   expect_error("solve " + stretches + " --all", 2, {"--all", "stretch"});
-  const std::string file = path("solved.csv");
-  succeeds("solve " + stretches + " --samples 41 -o " + file);
+  const std::string file = solved_file(stretches + " --samples 41");
   const std::string check = "check " + stretches + " --shape " + file + " --tolerance 1e-6";
   EXPECT_EQ(json_of(check).at("state").at("searched"), false);
   EXPECT_TRUE(says(run(check).out, {"other equilibria were not searched"}));
-  succeeds("compare " + stretches);
-  succeeds("regress " + stretches + " --baseline " + path("base.toml") + " --update");
-  succeeds("regress " + stretches + " --baseline " + path("base.toml"));
   const json fit = json_of("calibrate " + stretches + " --shape " + file);
   EXPECT_NEAR(fit.at("youngs_modulus_Pa").get<double>() / 2e6, 1, 1e-3) << fit;
 }
@@ -296,11 +122,6 @@ TEST_F(Command, SolveNearAFileIsTheEquilibriumBesideThatFile) {
   const double held = std::abs(near.at("grippers")[0].at("force_N")[0].get<double>());
   EXPECT_NEAR(held, 9.81 * (1.5 + 0.06 * (0.06 - tip)), 0.05);
   EXPECT_TRUE(json_of("solve " + path).at("contacts").empty());
-  // It is the second of the two in the list.
-  const json all = json_of("solve " + path + " --all").at("equilibria");
-  ASSERT_GE(all.size(), 2);
-  EXPECT_NEAR(all[1].at("energy_J").get<double>(), near.at("energy_J").at("total").get<double>(),
-              1e-9);
   EXPECT_TRUE(says(run("solve " + path + " --model exact --near " + over).err,
                    {"--near: only model energy"}));
   EXPECT_NE(run("solve " + path + " --all --near " + over).status, 0);
@@ -341,7 +162,6 @@ TEST_F(Command, SolveStatesTheStableEquilibriaThatItsSearchFound) {
   }
   ASSERT_GT(energies.size(), 1);
   EXPECT_EQ(all.at("stable_energies_J"), energies);
-  EXPECT_TRUE(says_none(run("solve " + scene(back_bent_rod)).out, {"starts passed"}));
   EXPECT_TRUE(json_of("solve " + path + " --model chain").at("stable_energies_J").empty());
 }
 
