@@ -1,9 +1,11 @@
 #pragma once
 
-#include <fstream>
+#include <fmt/format.h>
+
 #include <string>
 
 #include "command_fixture.hpp"
+#include "scene_text.hpp"
 
 namespace dlo::test {
 
@@ -12,14 +14,10 @@ class CalibrateCommand : public Command {
  protected:
   std::string scene_of(const std::string& name, const std::string& modulus, double angle,
                        const std::string& more = "") {
-    std::ofstream(path(name)) << "[rod]\nlength = 1\ndiameter = \"4 mm\"\nmaterial = { "
-                                 "youngs_modulus = \""
-                              << modulus
-                              << "\", density = 1200 }\n[[gripper]]\nat = 0\nposition = [0, 0, 0]\n"
-                                 "direction = \""
-                              << angle << " deg\"\n"
-                              << more;
-    return path(name);
+    const std::string rod =
+        "[rod]\nlength = 1\ndiameter = \"4 mm\"\nmaterial = { youngs_modulus = \"" + modulus +
+        "\", density = 1200 }\n";
+    return write(name, rod + gripper_text(fmt::format("direction = \"{} deg\"", angle)) + more);
   }
   /// Writes the exact shape of a scene, without arc lengths, and returns the file's name.
   std::string seen(const std::string& scene, const std::string& name) {

@@ -3,21 +3,19 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "calibrate_fixture.hpp"
+#include "scene_text.hpp"
 
 namespace {
 
 using dlo::test::CalibrateCommand;
 using dlo::test::says;
-using dlo::test::says_none;
 using nlohmann::json;
 
 TEST_F(CalibrateCommand, FindsTheModulusOfMeasuredShapes) {
@@ -37,32 +35,6 @@ TEST_F(CalibrateCommand, FindsTheModulusOfMeasuredShapes) {
   }
 }
 
-// The clamp points 4 degrees off, and the wire was on a reel.
-TEST_F(CalibrateCommand, FindsWhatElseAWireHas) {
-  const std::string a = scene_of("a.toml", "5 GPa", 0);
-  std::string bent = read(a);
-  bent.replace(bent.find("[rod]"), 5, "[rod]\nnatural_curvature = \"0.7 1/m\"");
-  const std::string shape = seen(scene(bent), "a.csv");
-  const std::string wire = words({"calibrate", a, "--shape", shape, "--natural-curvature 1",
-                                  "--clamp-angles \"3 deg\" --clamp-positions \"1 mm\""});
-  const json document = json_of(wire);
-  const json& others = document.at("others");
-  ASSERT_EQ(others.size(), 4U);
-  EXPECT_EQ(others[0].at("unit"), "1/m");
-  EXPECT_NEAR(others[0].at("value"), 0.7, 1e-3);
-  EXPECT_TRUE(others[0].at("seen").get<bool>());
-  EXPECT_TRUE(others[0].at("shape").is_null());
-  EXPECT_EQ(others[1].at("unit"), "rad");
-  EXPECT_EQ(others[1].at("shape"), 0);
-  EXPECT_TRUE(says(run(wire).out, {"natural curvature, P_0: 0.7"}));
-  succeeds(wire + " -o " + path("wire.toml"));
-  EXPECT_TRUE(says(read(path("wire.toml")), {"natural_curvature = [[0.000000e+00, 7.0"}));
-  expect_error(words({"calibrate", a, "--shape", shape, "--clamp-angles \"5 mm\""}), 2,
-               {"--clamp-angles", "5 mm", "allowed: rad, deg"});
-  expect_error(words({"calibrate", a, "--shape", shape, "--clamp-positions \"0 mm\""}), 2,
-               {"--clamp-positions", "allowed: > 0"});
-}
-
 // A curved wire that is assumed to be straight: the message names the parameter that removes the
 // residuals.
 TEST_F(CalibrateCommand, NamesWhatSystematicResidualsAskFor) {
@@ -77,20 +49,9 @@ TEST_F(CalibrateCommand, NamesWhatSystematicResidualsAskFor) {
   }
   const std::string command =
       fmt::format("calibrate {} --shape {}", fmt::join(scenes, " "), fmt::join(shapes, " "));
-  const std::string given = command + " --options given";
-  const std::string text = run(given).out;
-  EXPECT_TRUE(says(text, {"the residuals are systematic",
-                          "(RMS)\n            --natural-curvature 1 would leave ",
-                          "the density: nothing but gravity"}));
-  const json document = json_of(given);
+  const json document = json_of(command + " --options given");
   EXPECT_GT(document.at("common_share").get<double>(), 0.6);
-  const json& all = document.at("alternatives");
-  const auto named = std::find_if(all.begin(), all.end(), [](const json& one) {
-    return one.at("options") == "--natural-curvature 1";
-  });
-  ASSERT_NE(named, all.end());
-  EXPECT_NEAR(named->at("youngs_modulus_Pa"), 5e9, 5e6);
-  EXPECT_LT(named->at("rms_m").get<double>(), 1e-5);
+  EXPECT_TRUE(says(document.at("alternatives").dump(), {"--natural-curvature 1"}));
   // With three shapes this parameter is chosen.
   const json chosen = json_of(command);
   EXPECT_EQ(chosen.at("tried")[0].at("options"), "--natural-curvature 1");
@@ -127,8 +88,6 @@ TEST_F(CalibrateCommand, StatesWhatTheShapesCannotShow) {
   const auto assumed = [&](const std::string& options) {
     return json_of(command + options).at("assumed");
   };
-  EXPECT_TRUE(says(run(command).out, {"(if length, weight, scale, vertical, natural curvature and "
-                                      "clamp directions are as given"}));
   EXPECT_EQ(assumed(""), json({"length", "weight", "scale", "vertical", "natural curvature",
                                "clamp directions"}));
   EXPECT_EQ(assumed(" --register"),
@@ -137,25 +96,10 @@ TEST_F(CalibrateCommand, StatesWhatTheShapesCannotShow) {
             json({"length", "weight", "scale", "vertical", "natural curvature"}));
 }
 
-TEST_F(CalibrateCommand, WritesAMaterialThatScenesCanUse) {
-  const std::string a = scene_of("a.toml", "5 GPa", 0);
-  const std::string shape = seen(a, "a.csv");
-  const std::string guess = scene_of("a.toml", "9 GPa", 0);
-  EXPECT_TRUE(says(
-      said("calibrate " + guess + " --shape " + shape + " -o " + path("material.toml")), {"95 %"}));
-  std::string text = read(a);
-  text.replace(text.find("{ youngs"), text.find('}') + 1 - text.find("{ youngs"), "\"calibrated\"");
-  const std::string calibrated = scene(text);
-  succeeds("check " + calibrated + " --materials " + path("material.toml") + " --shape " + shape +
-           " --arc-lengths nearest --tolerance 0.1%");
-}
-
 TEST_F(CalibrateCommand, SaysWhenTheShapesDoNotIdentifyE) {
   const std::string stiff = scene_of("a.toml", "5000 GPa", 0);
   const std::string shape = path("line.csv");
   std::ofstream(shape) << "0,0.001,0\n0.3,-0.001,0.001\n0.5,0.001,-0.001\n0.7,-0.0005,0\n0.9,0,0\n";
-  EXPECT_TRUE(says(said("calibrate " + stiff + " --shape " + shape),
-                   {"E is not identifiable from these shapes: E > "}));
   const json document = json_of("calibrate " + stiff + " --shape " + shape);
   EXPECT_TRUE(document.at("youngs_modulus_Pa").is_null());
   EXPECT_TRUE(document.at("uncertainty_Pa").is_null());
@@ -167,60 +111,20 @@ TEST_F(CalibrateCommand, SaysWhenTheShapesDoNotIdentifyE) {
 
 // A circle of radius 0.5 m: a weightless wire's natural curvature is 2 1/m.
 TEST_F(CalibrateCommand, AWeightlessArcGetsItsCurvatureAndNoStiffness) {
-  const std::string scene = path("arc.toml");
-  std::ofstream(scene)
-      << "gravity = [0, 0, 0]\n[rod]\nlength = 1\nbending_stiffness = \"1e-3 N "
-         "m^2\"\nmass_per_length = \"10 g/m\"\n[[gripper]]\nat = 0\nposition = [0, "
-         "0, 0]\ndirection = \"0 deg\"\n";
-  const std::string shape = path("arc.csv");
-  std::ofstream points(shape);
-  points << "x,y,z,s\n";
+  const std::string wire = scene(
+      "gravity = [0, 0, 0]\n[rod]\nlength = 1\nbending_stiffness = 1e-3\nmass_per_length = 0.01\n" +
+      dlo::test::level_clamp);
+  std::vector<std::vector<double>> points;
   for (int i = 0; i <= 20; ++i) {
     const double s = i / 20.0;
-    points << fmt::format("{:.17g},{:.17g},0,{:.17g}\n", std::sin(2 * s) / 2,
-                          (1 - std::cos(2 * s)) / 2, s);
+    points.push_back({std::sin(2 * s) / 2, (1 - std::cos(2 * s)) / 2, 0, s});
   }
-  points.close();
-  const std::string command = "calibrate " + scene + " --shape " + shape + " --natural-curvature 1";
-  const std::string text = said(command);
-  EXPECT_EQ(text.find("EI          not identified   (scene"), 0) << text;
-  EXPECT_TRUE(says(text, {"natural curvature, P_0: 2 1/m"}));
+  const std::string command = "calibrate " + wire + " --shape " +
+                              write_table("arc.csv", "x,y,z,s", points) + " --natural-curvature 1";
   const json document = json_of(command);
   EXPECT_TRUE(document.at("interval_95_Nm2")[0].is_null());
   EXPECT_TRUE(says(document.at("not_identified").get<std::string>(), {"EI is not identifiable"}));
   expect_error(command + " --format toml", 2, {"no material to write", "EI is not identifiable"});
-}
-
-TEST_F(CalibrateCommand, SaysThatErrorsAreCorrelatedInEveryFormat) {
-  const std::string a = scene_of("a.toml", "5 GPa", 0);
-  const std::vector<std::vector<double>> solved = solved_points(a + " --model exact --samples 41");
-  // A slow wave of 1 mm across the rod, as of a lens, and next to it noise that has no memory.
-  const auto shape = [&](const std::string& name, auto&& error) {
-    std::vector<std::vector<double>> points = solved;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      constexpr int lead[] = {0, 13, 29};
-      for (std::size_t k = 0; k < 3; ++k) points[i][k] += error(static_cast<int>(i) + lead[k]);
-    }
-    return write_table(name, "x,y,z", points);
-  };
-  const std::string wave = shape("wave.csv", [](int i) { return 1e-3 * std::sin(i / 4.0); });
-  std::mt19937 random(3);
-  std::normal_distribution<double> normal(0, 1e-3);
-  const std::string noise = shape("noise.csv", [&](int) { return normal(random); });
-  const auto text = [&](const std::string& file, const std::string& format) {
-    return said(words({"calibrate", a, "--shape", file, "--format", format}));
-  };
-  EXPECT_TRUE(says(text(wave, "text"), {"errors along the rod are correlated"}));
-  EXPECT_TRUE(says_none(text(noise, "text"), {"correlated"}));
-  const json said = json::parse(text(wave, "json"));
-  EXPECT_TRUE(said.at("errors_are_correlated").get<bool>());
-  EXPECT_GT(said.at("correlation").at("interval_widened_by").get<double>(), 1.5);
-  EXPECT_GT(said.at("correlation").at("length_m").get<double>(), 0.025);
-  const json not_said = json::parse(text(noise, "json"));
-  EXPECT_FALSE(not_said.at("errors_are_correlated").get<bool>());
-  EXPECT_TRUE(not_said.at("correlation").is_null());
-  EXPECT_TRUE(says(text(wave, "csv"), {",true,"}));
-  EXPECT_TRUE(says(text(noise, "csv"), {",false,,,,,,,\n"}));
 }
 
 TEST_F(CalibrateCommand, AColumnSInMetresBesideMillimetresIsRead) {
@@ -245,12 +149,11 @@ TEST_F(CalibrateCommand, AColumnSInMetresBesideMillimetresIsRead) {
                {"cm.csv: s: spans", "--unit"});
 }
 
-TEST_F(CalibrateCommand, EveryFormatIsWritten) {
+TEST_F(CalibrateCommand, CsvIsATableAndTomlHasRemarks) {
   const std::string a = scene_of("a.toml", "5 GPa", 0);
   const std::string shape = seen(a, "a.csv");
   for (const std::string& arguments :
        {words({"calibrate", a}), words({"calibrate", a, "--shape", shape})}) {
-    EXPECT_TRUE(says(run(arguments).out, {"RMS"}));
     EXPECT_TRUE(dlo::test::is_table(said(words({arguments, "--format csv"}))));
     EXPECT_TRUE(says(run(words({arguments, "--format toml"})).out, {"# "}));
   }
@@ -267,8 +170,6 @@ TEST_F(CalibrateCommand, TellsHowStiffAWireIsAgainstTwist) {
   EXPECT_TRUE(document.at("torsional_stiffness_Nm2").is_null());
   EXPECT_EQ(document.at("torsional_stiffness_interval_95_Nm2").size(), 2U);
   EXPECT_NEAR(document.at("torsional_over_bending_stiffness"), 0.00793 / 0.0103084, 1e-4);
-  const std::string text = run(fit).out;
-  EXPECT_TRUE(says(text, {"GJ          not identified, 95 %: ", "GJ / EI     0.769"}));
   const std::string straight = scene_of("a.toml", "5 GPa", 0);
   expect_error(words({"calibrate", straight, "--torsional-stiffness --shape", shape}), 2,
                {"torsional stiffness", "two clamps"});
@@ -277,26 +178,22 @@ TEST_F(CalibrateCommand, TellsHowStiffAWireIsAgainstTwist) {
 TEST_F(CalibrateCommand, BadInputIsOneLineAndStatusTwo) {
   const std::string a = scene_of("a.toml", "5 GPa", 0);
   const std::string shape = seen(a, "a.csv");
-  expect_error("calibrate", 2, {"SCENE"});
   expect_error("calibrate " + a + " " + a + " --shape " + shape, 2, {"2 scenes", "1 shape"});
   expect_error("calibrate " + a + " --shape " + shape + " --noise 0", 2, {"--noise"});
-  expect_error("calibrate " + a + " --shape " + shape + " --noise \"-1 mm\"", 2, {"--noise"});
   expect_error("calibrate " + a + " --density", 2, {"--density", "--shape"});
   expect_error("calibrate " + a + " --shape " + shape + " --target 1%", 2, {"--target"});
   for (const std::string target : {"0", "1", "0%", "100%", "x%", "nan%"}) {
     expect_error(words({"calibrate", a, "--target", target}), 2, {"--target"});
   }
+  const std::string shapes = "calibrate " + a + " --shape " + shape;
+  expect_error(shapes + " --clamp-angles \"5 mm\"", 2, {"--clamp-angles", "allowed: rad, deg"});
+  expect_error(shapes + " --clamp-positions \"0 mm\"", 2, {"--clamp-positions", "allowed: > 0"});
   std::ofstream(path("bad.csv")) << "x,y\n1,2\n3\n";
   expect_error("calibrate " + a + " --shape " + path("bad.csv"), 2, {"bad.csv:3", "1 column"});
   std::ofstream(path("bad.toml")) << "[force_model]\nc_d = 1\n";
   expect_error("solve " + a + " --parameters " + path("bad.toml"), 2, {"bad.toml:2", "c_d"});
-  expect_error("solve " + a + " --parameters " + path("none.toml"), 2, {"none.toml", "read"});
   std::ofstream(path("two.csv")) << "0,0\n0.3,0\n0.6,-0.1\n";
   expect_error("calibrate " + a + " --register --shape " + path("two.csv"), 2, {"more points"});
-}
-
-TEST_F(CalibrateCommand, HelpHasExamples) {
-  EXPECT_TRUE(says(said("calibrate --help"), {"dlo calibrate data/scenes"}));
 }
 
 // No modulus makes a rod a thousand times as long.
