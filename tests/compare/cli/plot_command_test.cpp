@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "command_fixture.hpp"
 
@@ -41,11 +40,27 @@ class PlotCommand : public test::Command {
   }
 };
 
-TEST_F(PlotCommand, SolveDraws) {
-  const std::string solve = "solve " + steel() + " --format csv --samples 5";
-  expect_picture(solve, "a.svg");
-  expect_picture(solve, "a.png");
-  expect_picture(solve, "a.pdf");
+TEST_F(PlotCommand, EveryCommandDraws) {
+  const std::string shape = solved_file(steel() + " --samples 8");
+  const std::string sweep = "sweep " + steel() + " --vary gamma=log:0.1:10:3";
+  const std::string map = "stability " + steel() + " --columns 2 --rows 3 --map-steps 50 --map ";
+  expect_picture("solve " + steel() + " --format csv --samples 5", "solution.pdf");
+  expect_picture(sweep, "lines.svg");
+  expect_picture(sweep + " --vary rod.length=lin:0.4:0.6:7", "map.png");
+  expect_picture(map + "cF-cc", "c_c.svg");
+  expect_picture(map + "cF-ch", "c_h.png");
+  // Most of these commands print times, so that only their pictures are tested.
+  const std::string scenes = steel() + " " + DLO_DATA + "/scenes/spring_steel_135.toml";
+  const std::pair<std::string, std::string> commands[] = {
+      {"compare --no-modulus " + scenes, "135"},
+      {"calibrate " + steel() + " --noise '1 mm' --shape " + shape, "95 % interval"},
+      {"bench " + steel() + " --seconds 1 --repeats 1", "</svg>"},
+      {"sweep " + steel() + " --vary gamma=1,2 -o " + path("s.csv"), "</svg>"}};
+  for (const auto& [command, words] : commands) {
+    succeeds(command + " --plot " + path("a.svg"));
+    expect_drawn("a.svg");
+    EXPECT_THAT(read(path("a.svg")), HasSubstr(words)) << command;
+  }
 }
 
 TEST_F(PlotCommand, DrawsASceneOfAnyName) {
@@ -77,24 +92,13 @@ TEST_F(PlotCommand, DrawsASceneOfAnyName) {
 }
 
 TEST_F(PlotCommand, CheckDrawsAndKeepsItsVerdict) {
-  succeeds("solve " + steel() + " --model chain --law hooke --format csv -o " + path("mine.csv"));
-  const std::string check =
-      "check " + steel() + " --no-modulus --shape " + path("mine.csv") + " --format csv";
+  const std::string mine = solved_file(steel() + " --model chain --law hooke");
+  const std::string check = "check " + steel() + " --no-modulus --shape " + mine + " --format csv";
   expect_picture(check, "a.svg");
   const Outcome failed =
       run(check + " --no-explanation --tolerance 0.0001% --plot " + path("b.png"));
   EXPECT_EQ(failed.status, 1);
   expect_drawn("b.png");
-}
-
-TEST_F(PlotCommand, CompareDrawsEachScene) {
-  const std::string other = std::string(DLO_DATA) + "/scenes/spring_steel_135.toml";
-  for (const char* file : {"a.svg", "a.png"}) {
-    const std::string drawn =
-        said("compare --no-modulus " + steel() + " " + other + " --plot " + path(file));
-    expect_drawn(file);
-  }
-  EXPECT_THAT(read(path("a.svg")), HasSubstr("135"));
 }
 
 TEST_F(PlotCommand, CompareReportsEachScene) {
@@ -110,52 +114,8 @@ TEST_F(PlotCommand, CompareReportsEachScene) {
   EXPECT_THAT(page, HasSubstr("Largest part of the deviation: law"));
   EXPECT_THAT(page, HasSubstr("a&lt;b&gt;"));
   EXPECT_TRUE(test::says_none(page, {"<script", "a<b>", "src=\"http", "href=\"http", "url("}));
-  std::size_t pictures = 0;
-  for (std::size_t at = 0; (at = page.find("<svg role=\"img\"", at)) != std::string::npos; ++at) {
-    ++pictures;
-  }
-  EXPECT_EQ(pictures, 8U);
+  EXPECT_THAT(page, HasSubstr("<svg role=\"img\""));
   expect_error(command + " --report " + gentle, 2, {"is read too"});
-}
-
-TEST_F(PlotCommand, CalibrateDraws) {
-  succeeds("solve " + steel() + " --samples 8 --format csv -o " + path("s.csv"));
-  for (const char* file : {"a.svg", "a.png"}) {
-    const std::string drawn = said("calibrate " + steel() + " --noise '1 mm' --shape " +
-                                   path("s.csv") + " --plot " + path(file));
-    expect_drawn(file);
-  }
-  EXPECT_THAT(read(path("a.svg")), HasSubstr("95 % interval"));
-  expect_error("calibrate " + steel() + " --plot " + path("c.svg"), 2, {"--plot", "--shape"});
-}
-
-TEST_F(PlotCommand, BenchDraws) {
-  for (const char* file : {"a.svg", "a.png"}) {
-    const std::string drawn =
-        said("bench " + steel() + " --seconds 1 --repeats 1 --plot " + path(file));
-    expect_drawn(file);
-  }
-}
-
-TEST_F(PlotCommand, SweepDrawsLinesAndMaps) {
-  const std::string sweep = "sweep " + steel();
-  expect_picture(sweep + " --vary gamma=log:0.1:10:3", "a.svg");
-  expect_picture(sweep + " --vary gamma=log:0.1:10:3 --vary rod.length=lin:0.4:0.6:7", "b.png");
-  const std::string filed =
-      said(sweep + " --vary gamma=1,2 -o " + path("s.csv") + " --plot " + path("c.svg"));
-  expect_drawn("c.svg");
-  expect_error(
-      sweep + " --vary gamma=1 --vary rod.length=1 --vary gripper.0.at=0 --plot " + path("d.svg"),
-      2, {"--plot", "3 fields", "allowed: one or two"});
-  expect_error(sweep + " --vary gamma=1 --part 1/2 --plot " + path("d.svg"), 2,
-               {"--plot", "--part 1/2", "allowed"});
-}
-
-TEST_F(PlotCommand, StabilityDrawsItsMap) {
-  const std::string map = "stability " + steel() + " --columns 2 --rows 3 --map-steps 50 --map ";
-  expect_picture(map + "cF-cc", "a.svg");
-  expect_picture(map + "cF-ch", "a.png");
-  expect_error("stability --case folded --plot " + path("b.svg"), 2, {"--plot", "--map"});
 }
 
 TEST_F(PlotCommand, RefusesBeforeItComputes) {
@@ -165,6 +125,13 @@ TEST_F(PlotCommand, RefusesBeforeItComputes) {
   expect_error(solve + path("a.svg") + " -o " + path("a.svg"), 2, {"written twice"});
   expect_error(solve + "-", 2, {"--plot -", "allowed", ".svg"});
   EXPECT_FALSE(std::filesystem::exists(path("a.jpg")));
+  const std::string plot = " --plot " + path("a.svg");
+  expect_error("calibrate " + steel() + plot, 2, {"--plot", "--shape"});
+  expect_error("stability --case folded" + plot, 2, {"--plot", "--map"});
+  const std::string sweep = "sweep " + steel() + " --vary gamma=1";
+  expect_error(sweep + " --vary rod.length=1 --vary gripper.0.at=0" + plot, 2,
+               {"--plot", "3 fields", "allowed: one or two"});
+  expect_error(sweep + " --part 1/2" + plot, 2, {"--plot", "--part 1/2", "allowed"});
 }
 
 TEST_F(PlotCommand, WithoutGnuplotSaysWhatIsMissingAndWritesNothing) {

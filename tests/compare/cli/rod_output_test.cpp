@@ -1,21 +1,19 @@
 // Tests of the output for rods given by EI and for intrinsically curved rods.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 
 #include "command_fixture.hpp"
 #include "dlo/compare/scene_file.hpp"
+#include "scene_text.hpp"
 
 namespace {
 
 using dlo::test::Outcome;
 using dlo::test::says;
-using dlo::test::says_none;
 using nlohmann::json;
 
 class RodCommand : public dlo::test::Command {
@@ -24,18 +22,14 @@ class RodCommand : public dlo::test::Command {
 
   /// A rod that is given by EI and mass per length.
   std::string by_stiffness(const std::string& EI) {
-    std::ofstream(path("rod.toml")) << "[rod]\nlength = 1\nbending_stiffness = " << EI
-                                    << "\nmass_per_length = \"45 g/m\"\n[[gripper]]\nat = 0\n"
-                                       "position = [0, 0, 0]\ndirection = \"20 deg\"\n";
-    return path("rod.toml");
+    return write("rod.toml",
+                 "[rod]\nlength = 1\nmass_per_length = \"45 g/m\"\nbending_stiffness = " + EI +
+                     "\n" + dlo::test::gripper_text("direction = \"20 deg\""));
   }
 };
 
 TEST_F(RodCommand, SolveSaysThatTheTorsionalStiffnessIsAssumed) {
   for (const std::string model : {"energy", "chain"}) {
-    EXPECT_TRUE(says(said("solve --explain --model " + model + " " + hose()),
-                     {"\nassumed    torsional stiffness GJ = EI / 1.3 = 0.06154 N m^2",
-                      "  assumed         torsional stiffness"}));
     const json document = json_of("solve --model " + model + " " + hose());
     const json& assumed = document.at("assumed");
     EXPECT_NEAR(assumed.at("torsional_stiffness_Nm2"), 0.08 / 1.3, 1e-15);
@@ -47,16 +41,14 @@ TEST_F(RodCommand, SolveSaysThatTheTorsionalStiffnessIsAssumed) {
 
 TEST_F(RodCommand, SolveShowsARodThatIsAboutToBuckleAndItsNeutralDirections) {
   constexpr double self_buckling = 7.837347;
-  std::ostringstream upright;
-  upright.precision(17);
-  upright << "gravity = [0, -9.81, 0]\n[rod]\nlength = 1\nmass_per_length = 0.045\n"
-          << "bending_stiffness = " << 0.045 * 9.81 / (self_buckling * (1 - 1e-9))
-          << "\n[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = [0, 1, 0]\n";
-  const std::string file = scene(upright.str());
+  const std::string file =
+      scene(fmt::format("gravity = [0, -9.81, 0]\n[rod]\nlength = 1\nmass_per_length = 0.045\n"
+                        "bending_stiffness = {}\n{}",
+                        0.045 * 9.81 / (self_buckling * (1 - 1e-9)),
+                        dlo::test::gripper_text("direction = [0, 1, 0]")));
   const Outcome text = run("solve " + file);
   EXPECT_EQ(text.status, 3);
   const std::string why = "next to a fold or bifurcation: 2 neutral directions";
-  EXPECT_TRUE(says(text.out, {"model      energy, " + why + "\n"}));
   EXPECT_TRUE(says(text.err, {why}));
   const json result = json_of("solve " + file, 3);
   EXPECT_EQ(result.at("status"), "near_singular");
@@ -66,31 +58,8 @@ TEST_F(RodCommand, SolveShowsARodThatIsAboutToBuckleAndItsNeutralDirections) {
   EXPECT_FALSE(json_of("solve " + by_stiffness("0.08")).contains("neutral_directions"));
 }
 
-TEST_F(RodCommand, ASolvedShapeWithFramesIsARestShape) {
-  const auto rod = [this](const std::string& rest) {
-    return scene(
-        "gravity = [0, 0, 0]\n[rod]\nlength = 0.3\nmass_per_length = 0.004\n"
-        "bending_stiffness = [1e-3, 5e-3]\n" +
-        rest +
-        "\n[[gripper]]\nat = 0\nposition = [0, 0, 0]\n"
-        "frame = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]\n");
-  };
-  for (const std::string format : {"csv", "vtk"}) {
-    const std::string coil = rod("helix = { radius = \"2 cm\", pitch = \"5 cm\" }");
-    succeeds("solve " + coil + " --samples 81 -o " + path("coil." + format));
-    EXPECT_TRUE(says(said("solve " + rod("rest_shape = \"coil." + format + "\"")),
-                     {"m of 1 arc (RMS ", " m), d1 within "}));
-    const json document = json_of("solve " + path("scene.toml"));
-    EXPECT_LT(document.at("rest_shape").at("largest_angle_rad").get<double>(), 1e-7);
-    succeeds("check " + path("scene.toml") + " --shape " + path("coil." + format));
-  }
-}
-
 TEST_F(RodCommand, ComparesByTheStiffnessThatIsGiven) {
   const std::string rod = by_stiffness("0.08");
-  const std::string text = said("compare " + rod);
-  EXPECT_TRUE(says(text, {"  EI*/EI          1.0"}));
-  EXPECT_TRUE(says_none(text, {"  E*/E"}));
   succeeds("solve " + rod + " --format csv -o " + path("shape.csv"));
   const json check = json_of("check " + rod + " --shape " + path("shape.csv"));
   EXPECT_NEAR(check.at("effective_bending_stiffness_Nm2"), 0.08, 1e-6);
@@ -101,8 +70,6 @@ TEST_F(RodCommand, CalibrateFindsTheStiffnessThatIsGiven) {
   succeeds("solve " + by_stiffness("0.08") + " --format csv -o " + path("shape.csv"));
   const std::string calibrate =
       "calibrate " + by_stiffness("0.03") + " --shape " + path("shape.csv");
-  const std::string text = said(calibrate);
-  EXPECT_EQ(text.rfind("EI          0.08 N m^2, 95 %", 0), 0U) << text;
   const json document = json_of(calibrate);
   EXPECT_NEAR(document.at("bending_stiffness_Nm2"), 0.08, 1e-6);
   EXPECT_LE(document.at("interval_95_Nm2")[0].get<double>(), 0.0800001);
@@ -124,23 +91,12 @@ TEST_F(RodCommand, AModelWithoutNaturalCurvatureSaysSoAndWhatItCosts) {
   EXPECT_TRUE(says(chain.out, {"neglected  natural curvature: the scene has it, model chain"}));
   EXPECT_TRUE(says(run("compare --no-modulus --format csv " + paper).err,
                    {"intrinsically curved, which models chain and force neglect with the law"}));
-  EXPECT_TRUE(says(
-      run("sweep --model chain --vary force_model.law=paper --vary rod.natural_curvature=0,1 " +
-          hose())
-          .err,
-      {"intrinsically curved"}));
-  EXPECT_EQ(run("sweep --model chain --vary rod.natural_curvature=0,1 " + hose()).err, "");
-  succeeds("stability --map cF-cc --columns 2 --rows 2 --map-steps 100 " + hose());
-  EXPECT_TRUE(says(said("compare --no-modulus " + paper), {"neglected       natural curvature"}));
   const json entry = json_of("compare --no-modulus " + paper).at("cases")[0];
   EXPECT_EQ(entry.at("neglected"), json({"natural curvature"}));
   // The free hose is a circle: without its curvature the end is decimetres off.
   const json& budget = entry.at("budget");
   EXPECT_GT(budget.at("natural_curvature_m").get<double>(), 0.1);
   EXPECT_FALSE(budget.contains("twist_m"));
-  double sum = 0;
-  for (const auto& [name, share] : budget.at("shares_of_total").items()) sum += share.get<double>();
-  EXPECT_NEAR(sum, 1, 1e-9);
   const json hooke = json_of("compare --no-modulus " + hose()).at("cases")[0];
   EXPECT_FALSE(hooke.contains("neglected"));
   EXPECT_FALSE(hooke.at("budget").contains("natural_curvature_m"));

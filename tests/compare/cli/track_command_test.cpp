@@ -2,13 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 
 #include "command_fixture.hpp"
@@ -27,7 +25,6 @@ class TrackCommand : public Command {
 
 TEST_F(TrackCommand, TellsFramesAndEventsInEveryFormat) {
   const std::string track = words({"track", wire(), "--frame-rate 20 --to 0.6"});
-  EXPECT_TRUE(says(said(track), {"contact obstacle 1, tip at s = 0.3 m"}));
   const json document = json_of(track);
   EXPECT_EQ(document.at("schema"), "dlo/track/1");
   ASSERT_EQ(document.at("frames").size(), 13U);
@@ -38,9 +35,7 @@ TEST_F(TrackCommand, TellsFramesAndEventsInEveryFormat) {
   ASSERT_EQ(document.at("events").size(), 1U);
   EXPECT_EQ(document.at("events")[0].at("kind"), "contact");
   EXPECT_EQ(document.at("events")[0].at("obstacle"), 0);
-  EXPECT_EQ(document.at("events")[0].at("grippers").size(), 1U);
   const std::string csv = run(track + " --every 4 --no-force --format csv").out;
-  EXPECT_EQ(csv.substr(0, 26), "time_s,energy_J,work_J,rel");
   EXPECT_TRUE(says(csv, {",1 tip,,"}));
 }
 
@@ -106,32 +101,20 @@ TEST_F(OutputsOverInputs, TwoOutputsThatAreNotThereYetMayNotBeOneFile) {
   }
 }
 
-TEST_F(TrackCommand, WritesASeriesForParaView) {
-  const std::string file = path("wire.vtk.series");
-  const std::string result =
-      said(words({"track", wire(), "--frame-rate 10 --to 0.2 --no-force", "--paraview", file}));
-  std::ifstream in(file);
-  const json series = json::parse(in);
-  ASSERT_EQ(series.at("files").size(), 3U);
-  EXPECT_EQ(series.at("files")[1].at("time"), 0.1);
-  std::ifstream frame(path(series.at("files")[1].at("name")));
-  std::string line;
-  std::getline(frame, line);
-  EXPECT_EQ(line, "# vtk DataFile Version 3.0");
-}
-
 TEST_F(TrackCommand, StopsAtTheImpossibleWithStatusThreeAndWhatWasBefore) {
   const std::string file = scene(
       "[rod]\nlength = 1\ndiameter = 0.01\nmaterial = \"silicone\"\n"
       "[[gripper]]\nat = 0\nposition = [0, 0, 0]\nhold = \"pin\"\n"
       "[[gripper]]\nat = 1\nhold = \"pin\"\n"
-      "[[gripper.pose]]\ntime = 0\nposition = [0.9, 0, 0]\n"
-      "[[gripper.pose]]\ntime = 1\nposition = [1.1, 0, 0]\n");
-  const Outcome result = run(words({"track", file, "--frame-rate 20 --no-force --format json"}));
+      "pose = [{ time = 0, position = [0.9, 0, 0] }, { time = 1, position = [1.1, 0, 0] }]\n");
+  const Outcome result = run(words(
+      {"track", file, "--frame-rate 20 --no-force --dynamic --damping 0.01", "--format json"}));
   EXPECT_EQ(result.status, 3);
   EXPECT_TRUE(says(result.err, {"stopped at 0.5 s"}));
   const json document = json::parse(result.out);
   EXPECT_EQ(document.at("frames").size(), 10U);
+  EXPECT_EQ(document.at("dynamic").at("stopped").at("time_s"), 0.5);
+  EXPECT_EQ(document.at("dynamic").at("frames").size(), 10U);
   EXPECT_TRUE(
       says(document.at("stopped").at("why").get<std::string>(), {"less than the 1 m of rod"}));
 }
@@ -149,7 +132,6 @@ TEST_F(TrackCommand, OtherCommandsTakeTheSceneAtATime) {
                2, {"10000 samples", "4e+06 points in all"});
   expect_error(words({"track", std::string(DLO_DATA) + "/scenes/cable.toml"}), 2,
                {"nothing moves", "[[gripper.pose]]"});
-  expect_error(words({"track", wire(), "--frame-rate 0"}), 2, {"--frame-rate"});
 }
 
 TEST_F(TrackCommand, HasTheMovingRodInEveryFormat) {
@@ -157,41 +139,30 @@ TEST_F(TrackCommand, HasTheMovingRodInEveryFormat) {
   const std::string track =
       words({"track", file, "--to 0.2 --frame-rate 50 --dynamic --drag 0.02"});
   const std::string with_force = track + " --step-rate 3000";
-  EXPECT_TRUE(says(said(with_force), {"dynamic     from rest; damping 0 s, drag 0.02 N s/m^2",
-                                      "force model off the moving rod by"}));
   const json document = json_of(with_force + " --every 5 --shapes");
   EXPECT_EQ(document.at("schema"), "dlo/track/1");
   const json& dynamic = document.at("dynamic");
   EXPECT_EQ(dynamic.at("drag_N_s_per_m2"), 0.02);
-  EXPECT_EQ(dynamic.at("damping_s"), 0);
   EXPECT_LT(dynamic.at("energy_error").get<double>(), 1e-6);
-  EXPECT_EQ(dynamic.at("stopped"), nullptr);
   ASSERT_EQ(dynamic.at("frames").size(), document.at("frames").size());
   const json& last = dynamic.at("frames").back();
-  EXPECT_EQ(last.at("time_s"), 0.2);
   EXPECT_EQ(last.at("points_m").size(), 41U);
-  const json& energy = last.at("energy_J");
-  EXPECT_GT(energy.at("kinetic").get<double>(), 0);
-  EXPECT_GT(energy.at("dissipated").get<double>(), 0);
+  EXPECT_GT(last.at("energy_J").at("dissipated"), 0);
   EXPECT_GT(last.at("quasi_static_error_over_length").get<double>(), 0.01);
   EXPECT_EQ(last.at("force_error_over_length"),
             dynamic.at("force_model").at("largest_error_over_length"));
-  EXPECT_EQ(json_of(track + " --no-force").at("dynamic").at("force_model"), nullptr);
   const std::string csv = run(track + " --every 10 --no-force --format csv").out;
-  EXPECT_TRUE(says(csv, {",dynamic_energy_J,kinetic_J,"}));
   EXPECT_TRUE(dlo::test::is_table(csv));
 }
 
 TEST_F(TrackCommand, HasForcesOfObstaclesAtRestAndMoving) {
-  const std::string file = path("floor.toml");
-  std::ofstream(file) << "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0.5\n"
-                         "[[obstacle]]\nnormal = [0, 1, 0]\npoint = [0, -0.5, 0]\n"
-                         "[[gripper]]\nat = 0\ndirection = \"0 deg\"\n"
-                         "[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\n"
-                         "[[gripper.pose]]\ntime = 0.5\nposition = [0, -0.3, 0]\n";
+  const std::string file = scene(
+      "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0.5\n"
+      "[[obstacle]]\nnormal = [0, 1, 0]\npoint = [0, -0.5, 0]\n"
+      "[[gripper]]\nat = 0\ndirection = \"0 deg\"\n"
+      "pose = [{ time = 0, position = [0, 0, 0] }, { time = 0.5, position = [0, -0.3, 0] }]\n");
   const std::string track =
       words({"track", file, "--to 2 --frame-rate 10 --no-force --dynamic --damping 0.05"});
-  EXPECT_TRUE(says(said(track), {"contact     within a rigid obstacle by"}));
   const json document = json_of(track + " --every 20");
   const json& rest = document.at("frames").back().at("obstacles").at(0).at("force_N");
   const json& moving = document.at("dynamic").at("frames").back().at("obstacles").at(0);
@@ -209,7 +180,10 @@ TEST_F(TrackCommand, WritesTheMovingRodForParaView) {
   const json document =
       json_of(words({"track", swung, "--frame-rate 10 --to 0.2 --no-force --dynamic",
                      "--shapes --paraview", file}));
-  std::ifstream frame(path("rod_00002.vtk"));
+  const json series = json::parse(read(file));
+  ASSERT_EQ(series.at("files").size(), 3U);
+  EXPECT_EQ(series.at("files")[1].at("time"), 0.1);
+  std::ifstream frame(path(series.at("files")[2].at("name")));
   std::string line;
   while (std::getline(frame, line) && line.rfind("POINTS", 0) != 0) {
   }
@@ -234,22 +208,6 @@ TEST_F(TrackCommand, SaysWhatAMovingRodCannotHave) {
                {"--dynamic: a clamp that holds the rod's frame changes its direction", "allowed"});
   expect_error(words({"track", swung, "--damping 0.1"}), 2, {"--damping", "--dynamic"});
   expect_error(words({"track", swung, "--dynamic --drag -1"}), 2, {"--drag", "-1"});
-}
-
-TEST_F(TrackCommand, EndsTheMovingRodWhereTheTrackEnds) {
-  const std::string file = scene(
-      "[rod]\nlength = 1\ndiameter = 0.01\nmaterial = \"silicone\"\n"
-      "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"0 deg\"\n"
-      "[[gripper]]\nat = 1\nhold = \"pin\"\n"
-      "[[gripper.pose]]\ntime = 0\nposition = [0.9, 0, 0]\n"
-      "[[gripper.pose]]\ntime = 1\nposition = [1.1, 0, 0]\n");
-  const Outcome result = run(
-      words({"track", file, "--frame-rate 10 --no-force --dynamic --damping 0.01 --format json"}));
-  EXPECT_EQ(result.status, 3);
-  EXPECT_TRUE(says(result.err, {"stopped at 0.5 s"}));
-  const json document = json::parse(result.out);
-  EXPECT_EQ(document.at("dynamic").at("stopped").at("time_s"), 0.5);
-  EXPECT_EQ(document.at("dynamic").at("frames").size(), 5U);
 }
 
 }  // namespace
