@@ -10,8 +10,6 @@
 namespace {
 
 using dlo::test::Command;
-using dlo::test::Outcome;
-using dlo::test::says;
 using nlohmann::json;
 
 class ModesCommand : public Command {
@@ -19,9 +17,8 @@ class ModesCommand : public Command {
   static std::string cable() { return std::string(DLO_DATA) + "/scenes/cable.toml"; }
 };
 
-TEST_F(ModesCommand, TellsFrequenciesInEveryFormat) {
+TEST_F(ModesCommand, TellsFrequencies) {
   const std::string modes = words({"modes", cable(), "--count 3"});
-  EXPECT_TRUE(says(said(modes), {"mode 1      0.608202 Hz, out; polygon 0.60", "stable from"}));
   const json document = json_of(modes + " --samples 11");
   EXPECT_EQ(document.at("schema"), "dlo/modes/1");
   ASSERT_EQ(document.at("modes").size(), 3U);
@@ -30,8 +27,6 @@ TEST_F(ModesCommand, TellsFrequenciesInEveryFormat) {
   EXPECT_LT(first.at("relative_error").get<double>(), 1e-8);
   EXPECT_EQ(first.at("shape_m").size(), 11U);
   EXPECT_TRUE(first.at("stepped").is_null());
-  const std::string csv = run(modes + " --format csv").out;
-  EXPECT_EQ(csv.substr(0, 18), "mode,frequency_Hz,");
   const json stepped = json_of(modes + " --stepper dynamic").at("modes")[0];
   EXPECT_EQ(stepped.at("stepped").at("damping_ratio").get<double>(), 1);
 }

@@ -73,22 +73,7 @@ TEST_F(SceneOptions, OfTheSolversDoWhatTheySay) {
   };
   EXPECT_EQ(terms("5"), 5);
   EXPECT_EQ(terms("9"), 9);
-  // Far above Gamma = 41.4 a horizontal clamp has other equilibria, some of them unstable.
-  const std::string soft =
-      scene(std::string(short_rod).replace(std::string(short_rod).find("spring_steel") - 1, 14,
-                                           "{ youngs_modulus = \"0.2 GPa\", density = 7850 }"));
-  const Outcome all = run("solve " + soft + " --all --format json");
-  ASSERT_EQ(all.status, 0) << all.err;
-  const json search = json::parse(all.out);
-  EXPECT_GT(search.at("equilibria").size(), 1U) << all.out;
-  // Each is the first find of one start.
-  std::size_t found_first = 0;
-  for (const json& strategy : search.at("looked_from")) {
-    found_first += strategy.at("found_first").get<std::size_t>();
-  }
-  EXPECT_EQ(found_first, search.at("equilibria").size());
-  EXPECT_TRUE(search.at("not_looked").empty()) << all.out;
-  expect_error("solve " + soft + " --all --model chain", 2, {"--all", "energy"});
+  expect_error("solve " + steel() + " --all --model chain", 2, {"--all", "energy"});
 }
 
 TEST_F(SceneOptions, ATimeThatLeavesNothingButASaddleIsNoSuccess) {
