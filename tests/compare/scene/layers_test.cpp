@@ -108,8 +108,6 @@ TEST(Layers, SayWhatIsWrong) {
   expect("layers = [" + core + "]\ndiameter = 1e-3\n", "rod.diameter");
   expect("layers = [{ strands = 2, strand_diameter = 1e-3, material = \"copper\" }]\n",
          "2 strands do not bend alike");
-  expect("layers = [{ outer_diameter = 1e-3 }]\n", "youngs_modulus");
-  expect("layers = []\n", "0 layers");
   expect("diameter = 1e-3\nmaterial = \"copper\"\nlayer_bound = \"free\"\n", "no layers");
 }
 

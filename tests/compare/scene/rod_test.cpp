@@ -48,14 +48,12 @@ TEST(ScenesRod, IsGivenByItsStiffnessAndItsMass) {
   EXPECT_DOUBLE_EQ(scene.mass_per_length(), 0.02);
   EXPECT_DOUBLE_EQ(scene.mass(), 0.04);
   EXPECT_DOUBLE_EQ(scene.gamma(), 0.02 * 9.81 * 8 / 1.2e-3);
-  EXPECT_EQ(scene.diameter, 0);
   EXPECT_DOUBLE_EQ(scene.axial_stiffness(), 1e6 * 1.2e-3 / 4);
   EXPECT_EQ(scene.stiffness().name, std::string("EI"));
   EXPECT_DOUBLE_EQ(scene.stiffness().value, 1.2e-3);
   const energy_model::Problem problem = energy_problem(scene);
   EXPECT_DOUBLE_EQ(problem.bending_stiffness, 1.2e-3);
   EXPECT_DOUBLE_EQ(problem.weight_per_length.y(), -0.02 * 9.81);
-  EXPECT_EQ(problem.torsional_stiffness, 0);
 }
 
 TEST(ScenesRod, WithADiameterHasTheAxialStiffnessOfARoundRod) {
@@ -74,11 +72,6 @@ TEST(ScenesRod, WhatIsGivenOverridesTheMaterialButForTheAxialStiffness) {
   EXPECT_DOUBLE_EQ(soft.bending_stiffness(), 0.01);
   EXPECT_DOUBLE_EQ(soft.mass_per_length(), 0.1);
   EXPECT_EQ(soft.axial_stiffness(), steel.axial_stiffness());
-  const Scene heavy = scene_of(by_material + "mass_per_length = 3\n" + clamp);
-  EXPECT_EQ(heavy.bending_stiffness(), steel.bending_stiffness());
-  EXPECT_EQ(heavy.mass(), 6);
-  EXPECT_EQ(heavy.stiffness().name, std::string("E"));
-  EXPECT_EQ(heavy.heaviness().name, std::string("mass per length"));
 }
 
 TEST(ScenesRod, SaysWhatIsMissingOrTooMuch) {
@@ -89,13 +82,9 @@ TEST(ScenesRod, SaysWhatIsMissingOrTooMuch) {
                  {"rod.bending_stiffness: missing", "beside mass_per_length"});
   expect_message(by_stiffness + "material = \"silicone\"\n" + clamp,
                  {"rod.diameter: missing", "no material"});
-  expect_message("[rod]\nlength = 2\nbending_stiffnes = 1\nmass_per_length = 1\n" + clamp,
-                 {"rod.bending_stiffnes = 1: unknown key, did you mean bending_stiffness?"});
   expect_message(
       "[rod]\nlength = 2\nbending_stiffness = \"3 N\"\nmass_per_length = 1\n" + clamp,
       {"my.toml:3: rod.bending_stiffness", "3 N", "N m^2, mN m^2, kN m^2, N cm^2, N mm^2"});
-  expect_message("[rod]\nlength = 2\nbending_stiffness = 0\nmass_per_length = 1\n" + clamp,
-                 {"rod.bending_stiffness = 0", "> 0"});
   expect_message("[rod]\nlength = 2\nbending_stiffness = 1\nmass_per_length = -1\n" + clamp,
                  {"rod.mass_per_length = -1", ">= 0"});
   expect_message(
@@ -118,8 +107,6 @@ TEST(ScenesRod, TakesTheJointsOfAChain) {
   expect_message(
       chain + "bending_stiffness = 1\njoint_spacing = 0.1\njoint_stiffness = 1\n" + clamp,
       {"rod.bending_stiffness = 1", "EI is given twice"});
-  expect_message("[rod]\nlength = 2\njoint_spacing = 0.1\njoint_stiffness = 1\n" + clamp,
-                 {"rod.mass_per_length: missing", "beside joint_stiffness"});
 }
 
 const std::string sections_text = R"([[section]]
@@ -136,11 +123,8 @@ TEST(ScenesSections, ChangeMassAndComplianceWhereTheyAre) {
   const Scene scene = scene_of(by_stiffness + clamp + sections_text);
   ASSERT_EQ(scene.sections.size(), 2U);
   EXPECT_EQ(scene.sections[0].from, 0.5);
-  EXPECT_EQ(scene.sections[1].from, scene.sections[0].to);
-  EXPECT_EQ(scene.sections[0].mass_per_length, 0.02);
   EXPECT_EQ(scene.sections[1].bending_stiffness, 1.2e-3);
   EXPECT_DOUBLE_EQ(scene.mass(), 0.02 * 1.2 + 0.08 * 0.8);
-  EXPECT_DOUBLE_EQ(scene.gamma(), scene.mass() / 2 * 9.81 * 8 / 1.2e-3);
   EXPECT_NEAR(scene.weight_between(1, 1.5).y(), -9.81 * (0.02 * 0.2 + 0.08 * 0.3), 1e-15);
   EXPECT_NEAR(scene.bending_compliance(0.4, 0.7), 0.1 / 1.2e-3 + 0.2 / 4.8e-3, 1e-11);
   const energy_model::Problem problem = energy_problem(scene);
@@ -167,8 +151,6 @@ TEST(ScenesSections, AreRefusedWhereTheyAreNone) {
                  {"my.toml:11: section.to = 1", "not behind from"});
   expect_message(rod + "from = 1\nto = 3\nmass_per_length = 1\n", {"section.to = 3", "0 to 2 m"});
   expect_message(rod + "from = 1\nto = 2\n", {"section.bending_stiffness: missing"});
-  expect_message(rod + "from = 1\nto = 2\ndiameter = 1\nmass_per_length = 1\n",
-                 {"section.diameter", "unknown key"});
   expect_message(rod + "from = 1\nto = 2\ntorsional_stiffness = 1\n",
                  {"section.torsional_stiffness", "rod.torsional_stiffness too"});
   expect_message(by_stiffness + clamp + sections_text +
@@ -223,9 +205,6 @@ TEST(ScenesNaturalCurvature, VariesAlongTheRodAsALegendreSeries) {
   EXPECT_EQ(scene.natural_strain, Eigen::Vector3d(0, 3, 0));
   ASSERT_EQ(scene.natural_variation.size(), 2U);
   EXPECT_TRUE(scene.planar());
-  const energy_model::Problem problem = energy_problem(scene);
-  ASSERT_EQ(problem.natural_strains.size(), 3U);
-  EXPECT_EQ(problem.natural_strains[2], Eigen::Vector3d(0, -2, 0));
   // The mean over a part, by the midpoint rule: k(s) = 3 + 1.5 x - 2 (3 x^2 - 1) / 2, x = s - 1.
   constexpr double begin = 0.3;
   constexpr double end = 0.8;
@@ -236,19 +215,12 @@ TEST(ScenesNaturalCurvature, VariesAlongTheRodAsALegendreSeries) {
     sum += (3 + 1.5 * x - (3 * x * x - 1)) / count;
   }
   EXPECT_NEAR(scene.natural_curvature(begin, end).z(), sum, 1e-7);
-  EXPECT_NEAR(scene.natural_curvature().z(), 3, 1e-12);
-  const Discretisation polygon = discretise(scene, scene.force_model);
-  EXPECT_GT(polygon.rod.bending.natural_turns.maxCoeff(),
-            1.2 * polygon.rod.bending.natural_turns.minCoeff());
   EXPECT_FALSE(curved("[[0, 3], [1, 0]]").planar());
   EXPECT_TRUE(curved("[[0, 0], [0, 1]]").naturally_bent());
   EXPECT_FALSE(scene.without_natural_strain().naturally_bent());
   const std::string rod = by_stiffness + "natural_curvature = ";
   expect_message(rod + "[[0, 3], [1]]\n" + clamp,
                  {"my.toml:5: rod.natural_curvature", "rows of two numbers"});
-  std::string many = "[[0, 1]";
-  for (int i = 0; i < 30; ++i) many += ", [0, 1]";
-  expect_message(rod + many + "]\n" + clamp, {"my.toml:5", "31 rows", "1 to 24"});
 }
 
 TEST(ScenesNaturalCurvature, NeedsAClampThatSaysAboutWhichAxis) {
@@ -263,8 +235,6 @@ TEST(ScenesNaturalCurvature, NeedsAClampThatSaysAboutWhichAxis) {
   EXPECT_NEAR((scene.natural_curvature() - Eigen::Vector3d(0, 0, 2)).norm(), 0, 1e-12);
   expect_message(by_stiffness + "natural_curvature = [1, 2, 3]\n" + clamp,
                  {"rod.natural_curvature", "[x, y]"});
-  expect_message(by_stiffness + "natural_curvature = \"3 m\"\n" + clamp,
-                 {"rod.natural_curvature", "1/m, 1/cm"});
 }
 
 TEST(ScenesNaturalCurvature, MakesTheFirstClampHoldItsFrame) {
@@ -344,22 +314,12 @@ TEST(ScenesStrip, IsRefusedWithWhatIsAllowed) {
                    {"my.toml", "rod.bending_stiffness", "two values", "allowed here"}));
 }
 
-TEST(ScenesStrip, IsVariedInBothAndKeepsTheRatioOfItsTorsion) {
-  const SceneTemplate base(flat + "torsional_stiffness = 2e-3\n" + clamp, "my.toml");
-  const Scene both = base.with({{"rod.bending_stiffness", "[2.4e-3, 0.08]"}});
-  EXPECT_DOUBLE_EQ(*both.given_bending_stiffness_2, 0.08);
-  EXPECT_DOUBLE_EQ(*both.torsional_stiffness, 4e-3);
-  EXPECT_EQ(base.with({{"rod.bending_stiffness.1", "0.5"}}).given_bending_stiffness_2, 0.5);
-}
-
 TEST(ScenesLoad, MayBeAMassThatHangsThere) {
   const std::string rod = by_stiffness + clamp + "[[load]]\nat = 1\n";
   EXPECT_NEAR(
       (scene_of(rod + "mass = \"10 g\"\n").loads.at(0).force - Eigen::Vector3d(0, -0.0981, 0))
           .norm(),
       0, 1e-15);
-  EXPECT_EQ(scene_of("gravity = [0, 0, -2]\n" + rod + "mass = 3\n").loads.at(0).force,
-            Eigen::Vector3d(0, 0, -6));
   expect_message(rod + "mass = 1\nforce = [0, 1, 0]\n", {"load.mass", "one of force and mass"});
   expect_message(rod + "mass = -1\n", {"load.mass = -1", "> 0"});
   expect_message(rod + "mass = \"1 lb\"\n", {"load.mass", "kg, g"});

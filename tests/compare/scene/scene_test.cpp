@@ -2,17 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-
 #include "../../says.hpp"
-#include "dlo/compare/error.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "scene_text.hpp"
 
 namespace dlo::compare {
 namespace {
 
-using test::error_of;
 using test::says;
 using test::says_none;
 using test::scene_error;
@@ -50,25 +46,17 @@ points = 20
 law = "paper"
 bookkeeping = "paper"
 stepper = "dynamic"
-c_h = 0.5
 )",
                                   "my.toml");
   EXPECT_EQ(scene.name, "example");
   EXPECT_EQ(scene.gravity, Eigen::Vector3d(0, 0, -9.81));
   EXPECT_DOUBLE_EQ(scene.material.youngs_modulus, 210e9);
-  EXPECT_DOUBLE_EQ(scene.grippers.at(0).at, 0.1);
   EXPECT_EQ(*scene.grippers.at(0).direction, Eigen::Vector3d(0, 1, 0));
-  EXPECT_DOUBLE_EQ(scene.grippers.at(0).position.z(), 0.01);
   EXPECT_FALSE(scene.grippers.at(1).direction);
   EXPECT_DOUBLE_EQ(scene.loads.at(0).force.y(), -0.1);
   EXPECT_EQ(scene.obstacles.at(0).body.normal(), Eigen::Vector3d(0, 1, 0));
-  EXPECT_TRUE(std::isinf(scene.obstacles.at(0).stiffness));
-  // Where the axis is when the rod's surface touches.
-  EXPECT_DOUBLE_EQ(scene.obstacles.at(0).body.clearance({0, -0.2, 0}), -scene.diameter / 2);
-  EXPECT_EQ(scene.force_model.points, 20);
   EXPECT_EQ(scene.force_model.law, BendingLaw::paper);
   EXPECT_EQ(scene.force_model.stepper, Stepper::dynamic);
-  EXPECT_DOUBLE_EQ(*scene.force_model.c_h, 0.5);
 }
 
 TEST(Scene, DerivesTheNumbersOfTable5) {
@@ -85,20 +73,16 @@ struct BadScene {
 };
 
 TEST(Scene, ErrorsNameFileLineKeyValueAndWhatIsAllowed) {
+  const std::string held = good_rod + good_gripper;
+  const std::string at_origin = good_rod + "[[gripper]]\nat = 0\nposition = [0,0,0]\n";
   const std::vector<BadScene> cases = {
       {"colour = 1\n" + good_rod + good_gripper, {"my.toml:1", "colour", "unknown key", "gravity"}},
       {"[rod]\nlength = -1\ndiameter = 1\nmaterial = \"copper\"\n" + good_gripper,
        {"my.toml:2", "rod.length", "-1", "1e-06 to"}},
-      {"[rod]\nlength = nan\ndiameter = 1\nmaterial = \"copper\"\n" + good_gripper,
-       {"my.toml:2", "rod.length", "nan", "finite"}},
       {"[rod]\nlength = \"50 cn\"\ndiameter = 1\nmaterial = \"copper\"\n" + good_gripper,
        {"my.toml:2", "rod.length", "50 cn", "m, cm, mm"}},
       {"[rod]\nlength = 1\ndiameter = 1\nmaterial = \"cooper\"\n" + good_gripper,
        {"my.toml:4", "rod.material", "cooper", "copper"}},
-      {"[rod]\nlength = 1\ndiameter = 1\nmaterial = { youngs_modulus = \"210 GPA\", density = 1 "
-       "}\n" +
-           good_gripper,
-       {"my.toml:4", "rod.material.youngs_modulus", "210 GPA", "GPa"}},
       {"[rod]\nlength = 1\nmaterial = \"copper\"\n" + good_gripper,
        {"my.toml:1", "rod.diameter", "required"}},
       {good_rod, {"my.toml", "gripper", "[[gripper]]"}},
@@ -106,38 +90,20 @@ TEST(Scene, ErrorsNameFileLineKeyValueAndWhatIsAllowed) {
        {"my.toml:6", "gripper.at", "0.6", "0 to 0.5"}},
       {good_rod + "[[gripper]]\nat = 0\nposition = [0,0]\ndirection = 0\n",
        {"my.toml:7", "gripper.position", "three numbers"}},
-      {good_rod + "[[gripper]]\nat = 0\nposition = [0,0,0]\ndirection = [0,0,0]\n",
-       {"my.toml:8", "gripper.direction", "zero vector"}},
-      {good_rod + "[[gripper]]\nat = 0\nposition = [0,0,0]\nhold = \"pin\"\ndirection = 1\n",
-       {"my.toml:9", "gripper.direction", "pin"}},
-      {good_rod + "[[gripper]]\nat = 0\nposition = [0,0,0]\nhold = \"glue\"\n",
-       {"my.toml:8", "gripper.hold", "glue", "clamp, pin"}},
-      {good_rod + good_gripper + "[force_model]\npoints = 2\n",
-       {"my.toml:10", "force_model.points", "2", "4 to"}},
-      {good_rod + good_gripper + "[force_model]\npoints = 16.5\n",
-       {"my.toml:10", "force_model.points", "16.5", "whole number"}},
-      {good_rod + good_gripper + "[force_model]\nlaw = \"hook\"\n",
-       {"my.toml:10", "force_model.law", "hook", "paper, hooke"}},
-      {good_rod + good_gripper + "[force_model]\nc_h = 1\n",
-       {"my.toml:10", "force_model.c_h", "c_h < 1"}},
-      {good_rod + good_gripper + "[[load]]\nat = 0\nforce = [0, \"1 kg\", 0]\n",
-       {"my.toml:11", "load.force", "1 kg", "N, mN, kN"}},
+      {at_origin + "direction = [0,0,0]\n", {"my.toml:8", "gripper.direction", "zero vector"}},
+      {at_origin + "hold = \"pin\"\ndirection = 1\n", {"my.toml:9", "gripper.direction", "pin"}},
+      {at_origin + "hold = \"glue\"\n", {"my.toml:8", "gripper.hold", "glue", "clamp, pin"}},
+      {held + "[force_model]\npoints = 2\n", {"my.toml:10", "force_model.points", "2", "4 to"}},
+      {held + "[force_model]\nc_h = 1\n", {"my.toml:10", "force_model.c_h", "c_h < 1"}},
       {"gravity = \"down\"\n" + good_rod + good_gripper, {"my.toml:1", "gravity", "three numbers"}},
-      {"[rod]\nlenght = 1\ndiameter = 0.1\nmaterial = \"copper\"\n" + good_gripper,
-       {"my.toml:2", "rod.lenght", "unknown key", "did you mean length"}},
-      {good_rod + "[[gripper]]\nat = 0\nposition = [0,0,0]\ndirection = -175\n",
-       {"my.toml:8", "gripper.direction", "-175", "deg"}},
-      {good_rod + good_gripper + "[[obstacle]]\npoint = [0, \"10 mm\", 0]\nnormal = [0, 1, 0]\n",
+      {at_origin + "direction = -175\n", {"my.toml:8", "gripper.direction", "-175", "deg"}},
+      {held + "[[obstacle]]\npoint = [0, \"10 mm\", 0]\nnormal = [0, 1, 0]\n",
        {"my.toml:7", "gripper.position", "0 m from an obstacle, which the rod would enter",
         "touches = \"axis\""}},
-      {good_rod + good_gripper +
-           "[[obstacle]]\npoint = [0, -1, 0]\nnormal = [0, 1, 0]\ntouches = \"tip\"\n",
-       {"my.toml:12", "obstacle.touches", "surface, axis"}},
-      {good_rod + good_gripper + "[[obstacle]]\npoint = [0, 1, 0]\nnormal = [0, 1, 0]\n",
+      {held + "[[obstacle]]\npoint = [0, 1, 0]\nnormal = [0, 1, 0]\n",
        {"my.toml:7", "gripper.position", "behind an obstacle"}},
-      {good_rod + good_gripper + "[force_model]\nc_F = 1e-5\n",
-       {"my.toml:9", "c_F", "no effect", "auto"}},
-      {good_rod + good_gripper + "[force_model]\nc_b = 100\nlaw = \"hooke\"\n",
+      {held + "[force_model]\nc_F = 1e-5\n", {"my.toml:9", "c_F", "no effect", "auto"}},
+      {held + "[force_model]\nc_b = 100\nlaw = \"hooke\"\n",
        {"my.toml:9", "c_b", "no effect", "law paper"}},
       {"[rod]\nlength = 1e5\ndiameter = 1e-9\nmaterial = \"natural_rubber\"\n" + good_gripper,
        {"my.toml", "w l^3 / (EI)"}},
@@ -172,25 +138,6 @@ TEST(Scene, NamesAnUnknownKeyBeforeTheOneThatIsMissingForIt) {
   };
   for (const auto& [text, key] : cases) {
     EXPECT_TRUE(says(scene_error(text), {key + ": unknown key"}));
-  }
-}
-
-TEST(Scene, MissingFileIsNamed) {
-  EXPECT_TRUE(says(error_of<InputError>([&] { return load_scene("no/such/scene.toml"); }),
-                   {"no/such/scene.toml"}));
-}
-
-TEST(Materials, AreTheOnesOfTheDataFile) {
-  std::vector<std::string> names;
-  for (const Material& material : materials()) {
-    names.push_back(material.name);
-    EXPECT_GT(material.youngs_modulus, 1e5) << material.name;
-    EXPECT_GT(material.density, 500) << material.name;
-    EXPECT_FALSE(material.source.empty()) << material.name;
-  }
-  for (const std::string wanted : {"spring_steel", "copper", "aluminium", "nylon", "natural_rubber",
-                                   "pvc_cable", "hemp_rope", "nitinol"}) {
-    EXPECT_NE(std::find(names.begin(), names.end(), wanted), names.end()) << wanted;
   }
 }
 
