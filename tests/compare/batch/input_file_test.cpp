@@ -9,11 +9,9 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -187,11 +185,8 @@ TEST(TextLimits, NumbersBeyondADoubleAreSaidToBe) {
     EXPECT_TRUE(says(message, {words}));
   };
   expect("1e-400", "1e-400 is too small");
-  expect("+1e-40_0", "1e-400 is too small");
   expect("1e400", "1e400 is too large");
-  expect("-1e400", "-1e400 is too large");
   expect("\"1e-400 m\"", "rod.length = '1e-400 m': 1e-400 is too small");
-  expect("\"1e400 m\"", "rod.length = '1e400 m': 1e400 is too large");
   expect("\"1e-99999999999999999999 m\"", "too small");
   expect("\"0." + std::string(400, '0') + "1 m\"", "too small");
   expect("\"1" + std::string(400, '0') + " m\"", "too large");

@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <locale>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 
@@ -113,23 +112,6 @@ TEST_F(DecimalComma, ChangesNothingThatIsWritten) {
   const std::string text = baseline_text({entry});
   EXPECT_TRUE(says(text, {"points = 1500\nrms_over_length = 0.125"}));
   EXPECT_EQ(baseline_text(read_baseline(text, "b.toml")), text);
-}
-
-TEST_F(DecimalComma, OfTheUsersEnvironmentChangesNoCommand) {
-  std::string solve(" ");
-  solve.append(dlo::test::Command::words({"solve", scene(comma_scene)}));
-  for (const std::string format : {"text", "json", "csv", "vtk"}) {
-    const std::string arguments =
-        dlo::test::Command::words({solve, "--samples 5 --target-error 0.5% --format", format});
-    const auto without_time = [](std::string text) {
-      const std::size_t begin = std::min(text.find("wall"), text.size());
-      return text.erase(begin, text.find('\n', begin) - begin);
-    };
-    const std::string here = without_time(run_line("LC_ALL=C " DLO_COMMAND + arguments).out);
-    EXPECT_EQ(without_time(run_line("LC_NUMERIC=decimal_comma " DLO_COMMAND + arguments).out),
-              here);
-    EXPECT_GT(here.size(), 100U);
-  }
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "../../says.hpp"
@@ -17,20 +16,12 @@
 #include "dlo/compare/solution.hpp"
 #include "scenes.hpp"
 
+namespace dlo::compare {
 namespace {
 
-using dlo::compare::baseline_text;
-using dlo::compare::BaselineCase;
-using dlo::compare::InputError;
-using dlo::compare::judge_regression;
-using dlo::compare::MeasuredCase;
-using dlo::compare::read_baseline;
-using dlo::compare::RegressionResult;
-using dlo::compare::RegressionTolerance;
-using dlo::compare::RegressionVerdict;
-using dlo::test::error_of;
-using dlo::test::says;
-using dlo::test::says_none;
+using test::error_of;
+using test::says;
+using test::says_none;
 
 BaselineCase entry(const std::string& scene, double error, int points = 16) {
   BaselineCase result;
@@ -49,9 +40,9 @@ RegressionVerdict verdict(const BaselineCase& before, const BaselineCase& now) {
 TEST(Baseline, ReadsBackWhatItWritesInAnyOrder) {
   BaselineCase strange = entry("a \"quoted\\\" name,\n\ttabbed \x7f, caf\xc3\xa9", 1.0 / 3);
   strange.errors.tip.reset();
-  strange.law = dlo::compare::BendingLaw::paper;
-  strange.model = dlo::compare::Model::chain;
-  strange.bookkeeping = dlo::compare::Bookkeeping::paper;
+  strange.law = BendingLaw::paper;
+  strange.model = Model::chain;
+  strange.bookkeeping = Bookkeeping::paper;
   const BaselineCase zero = entry("zero", 0);
   const std::string text = baseline_text({zero, strange, entry("m", 1.5e-9)});
   EXPECT_EQ(baseline_text({strange, entry("m", 1.5e-9), zero}), text);
@@ -80,55 +71,20 @@ TEST(Baseline, MalformedOnesNameFileLineKeyAndWhatIsAllowed) {
     EXPECT_TRUE(says(text, words));
   };
   expect(message(""), {"b.toml", "schema", "missing"});
-  expect(message(std::string(40, '\0')), {"b.toml", "not valid TOML"});
-  expect(message("case"), {"b.toml:1", "not valid TOML"});
   expect(changed("baseline/1", "baseline/2"), {"b.toml:3", "schema", "dlo/baseline/1"});
   expect(changed("[[case]]", "[case]"), {"case", "[[case]]"});
-  expect(changed("[[case]]", "[[cases]]"), {"cases", "unknown key"});
-  expect(changed("scene = \"a\"", "scene = 3"), {"case.scene", "must be a string"});
-  expect(changed("scene = \"a\"\n", ""), {"case.scene", "missing"});
   expect(changed("\"force\"", "\"energy\""), {"case.model", "energy", "chain, force"});
-  expect(changed("\"hooke\"", "\"hook\""), {"case.law", "hook", "paper, hooke"});
-  expect(changed("\"consistent\"", "\"\""), {"case.bookkeeping", "paper, consistent"});
-  expect(changed("points = 16", "points = 16.5"), {"case.points", "16.5", "whole number"});
   expect(changed("points = 16", "points = 3"), {"case.points", "4 to"});
   expect(changed("rms_over_length = 0.1", "rms_over_length = -0.1"), {"rms_over_length", ">= 0"});
   expect(changed("rms_over_length = 0.1", "rms_over_length = nan #"), {"finite"});
-  expect(changed("max_over_length = 0.2", "max_over_length = inf #"), {"finite"});
-  expect(changed("max_over_length = 0.2", "max_over_length = \"2 mm\" #"), {"max_over_length"});
-  expect(changed("tip_over_length", "top_over_length"), {"top_over_length", "unknown key"});
   expect(message(good + good.substr(good.find("[[case]]"))), {"b.toml:15", "second case"});
-}
-
-TEST(Regression, ToleratesAShareOfTheErrorAndAShareOfTheRod) {
-  const BaselineCase before = entry("a", 0.05);
-  EXPECT_EQ(verdict(before, before), RegressionVerdict::same);
-  // RMS 0.05: margin 0.001 + 0.005; tip 0.15: margin 0.016
-  EXPECT_EQ(verdict(before, entry("a", 0.0552)), RegressionVerdict::same);
-  EXPECT_EQ(verdict(before, entry("a", 0.0448)), RegressionVerdict::same);
-  EXPECT_EQ(verdict(before, entry("a", 0.0562)), RegressionVerdict::worse);
-  EXPECT_EQ(verdict(before, entry("a", 0.0438)), RegressionVerdict::better);
-  EXPECT_EQ(verdict(entry("a", 0), entry("a", 3e-4)), RegressionVerdict::same);
-  EXPECT_EQ(verdict(before, entry("a", NAN)), RegressionVerdict::worse);
-}
-
-TEST(Regression, ToleratesAShareOfTheDeflection) {
-  const auto judged = [](double now) {
-    MeasuredCase measured{entry("a", now), ""};
-    measured.deflection_share = 0.02;
-    const RegressionTolerance tolerance{
-        .relative = 0, .absolute = 0.05, .of_deflection = true};  // 0.001 of the length
-    return judge_regression({entry("a", 0.05)}, {measured}, tolerance).front().verdict;
-  };
-  // The errors of an entry are 1, 2 and 3 times this.
-  EXPECT_EQ(judged(0.0503), RegressionVerdict::same);
-  EXPECT_EQ(judged(0.0504), RegressionVerdict::worse);
 }
 
 TEST(Regression, OneWorseErrorOutweighsBetterOnes) {
   const BaselineCase before = entry("a", 0.05);
   BaselineCase now = entry("a", 0.01);
   EXPECT_EQ(verdict(before, now), RegressionVerdict::better);
+  EXPECT_EQ(verdict(before, entry("a", NAN)), RegressionVerdict::worse);
   now.errors.tip = 0.2;
   EXPECT_EQ(verdict(before, now), RegressionVerdict::worse);
   now.errors.tip.reset();
@@ -157,18 +113,9 @@ TEST(Regression, ACaseWithOtherSettingsIsChangedWithBothErrors) {
       {entry("a", 0.1), entry("b", 0.1)}, {{entry("a", 0.1, 17), ""}, {entry("b", 0.1), ""}});
   ASSERT_EQ(points.size(), 2U);
   EXPECT_EQ(points[0].verdict, RegressionVerdict::changed);
-  EXPECT_TRUE(failed(points[0].verdict));
-  EXPECT_EQ(points[0].name, entry("a", 0.1, 17).name());
-  EXPECT_EQ(points[0].expected->rms, 0.1);
-  EXPECT_EQ(points[0].measured->rms, 0.1);
   EXPECT_EQ(points[0].message.find("N = 17 (baseline N = 16): RMS 10 % of l (baseline 10 %)"), 0U)
       << points[0].message;
   EXPECT_EQ(points[1].verdict, RegressionVerdict::same);
-  BaselineCase law = entry("a", 0.2);
-  law.law = dlo::compare::BendingLaw::paper;
-  const RegressionResult other = judge_regression({entry("a", 0.1)}, {{law, ""}}).front();
-  EXPECT_EQ(other.verdict, RegressionVerdict::changed);
-  EXPECT_EQ(other.message.find("law paper (baseline law hooke): RMS 20 %"), 0U) << other.message;
   // With several candidates the replaced case is unknown.
   const std::vector<RegressionResult> several =
       judge_regression({entry("a", 0.1)}, {{entry("a", 0.1, 17), ""}, {entry("a", 0.1, 18), ""}});
@@ -182,37 +129,19 @@ TEST(Regression, ACaseWithOtherSettingsIsChangedWithBothErrors) {
   EXPECT_EQ(unsolved[0].verdict, RegressionVerdict::not_solved);
 }
 
-TEST(Regression, TheSameNameForAnotherSceneIsAChange) {
-  const auto of_scene = [](double error, const std::string& fingerprint) {
-    BaselineCase result = entry("a", error);
-    result.fingerprint = fingerprint;
-    return result;
-  };
-  const std::string here = "0123456789abcdef";
-  const std::string there = "fedcba9876543210";
-  EXPECT_EQ(verdict(of_scene(0.1, here), of_scene(0.1, here)), RegressionVerdict::same);
-  EXPECT_EQ(verdict(of_scene(0.1, here), of_scene(0.1, there)), RegressionVerdict::changed);
-  EXPECT_EQ(verdict(of_scene(0.1, here), of_scene(0.01, there)), RegressionVerdict::changed);
-  // A baseline from before there were fingerprints.
-  EXPECT_EQ(verdict(of_scene(0.1, ""), of_scene(0.1, there)), RegressionVerdict::same);
-  const std::string text = baseline_text({of_scene(0.1, here)});
-  EXPECT_EQ(read_baseline(text, "b.toml").front().fingerprint, here);
-}
-
 TEST(Regression, AFingerprintStandsForAllThatTheShapeDependsOn) {
-  using dlo::compare::Model;
-  const dlo::compare::Scene scene = dlo::test::heavy_scene(5, -30);
-  const auto digits = [](const dlo::compare::Scene& of) {
-    return dlo::compare::case_of(of, Model::chain).fingerprint;
-  };
-  dlo::compare::Scene renamed = scene;
+  Scene scene = test::heavy_scene(5, -30);
+  scene.grippers.front().frame.emplace();
+  scene.obstacles.push_back({});
+  const auto digits = [](const Scene& of) { return case_of(of, Model::chain).fingerprint; };
+  Scene renamed = scene;
   renamed.name = "other";
   renamed.file = "other.toml";
   renamed.material.name = "other";
   renamed.grippers.front().where = "other.toml:3";
   EXPECT_EQ(digits(renamed), digits(scene));
   const auto differs = [&](const auto& change) {
-    dlo::compare::Scene changed = scene;
+    Scene changed = scene;
     change(changed);
     EXPECT_NE(digits(changed), digits(scene));
   };
@@ -220,60 +149,34 @@ TEST(Regression, AFingerprintStandsForAllThatTheShapeDependsOn) {
   differs([](auto& s) { s.length *= 1.0001; });
   differs([](auto& s) { s.diameter *= 1.0001; });
   differs([](auto& s) { s.material.youngs_modulus *= 1.0001; });
-  differs([](auto& s) { s.material.density *= 1.0001; });
   differs([](auto& s) { s.grippers.front().at += 1e-4; });
   differs([](auto& s) { s.grippers.front().position.x() += 1e-4; });
   differs([](auto& s) { s.grippers.front().direction.reset(); });
   differs([](auto& s) { s.torsional_stiffness = 1; });
   differs([](auto& s) { s.given_bending_stiffness = s.bending_stiffness(); });
-  differs([](auto& s) { s.given_mass_per_length = s.mass_per_length(); });
   differs([](auto& s) { s.natural_strain.y() = 1e-3; });
-  differs([](auto& s) { s.given_bending_stiffness_2 = 1e-3; });
   differs([](auto& s) { s.natural_strain.z() = 1e-3; });
   differs([](auto& s) { s.natural_variation = {{0, 1e-3}}; });
   differs([](auto& s) {
     s.sections = {{.from = 0.1, .to = 0.2, .bending_stiffness = 1, .mass_per_length = 1}};
   });
-  differs([](auto& s) { s.grippers.front().frame.emplace(); });
-  dlo::compare::Scene held = scene;
-  held.grippers.front().frame.emplace();
-  dlo::compare::Scene turned = held;
-  turned.grippers.front().frame->roll = 1;
-  dlo::compare::Scene directed = held;
-  directed.grippers.front().frame->d1 = Eigen::Vector3d::UnitZ();
-  EXPECT_NE(digits(turned), digits(held));
-  EXPECT_NE(digits(directed), digits(held));
+  differs([](auto& s) { s.grippers.front().frame.reset(); });
+  differs([](auto& s) { s.grippers.front().frame->roll = 1; });
+  differs([](auto& s) { s.grippers.front().frame->d1 = Eigen::Vector3d::UnitZ(); });
   differs([](auto& s) { s.loads.push_back({.at = 0}); });
   differs([](auto& s) { s.obstacles.push_back({}); });
-  dlo::compare::Scene smooth = held;
-  smooth.obstacles.push_back({});
-  dlo::compare::Scene rough = smooth;
-  rough.obstacles.front().friction = 0.3;
-  EXPECT_NE(digits(rough), digits(smooth));
+  differs([](auto& s) { s.obstacles.front().friction = 0.3; });
   differs([](auto& s) { s.force_model.c_c = 660; });
   differs([](auto& s) { s.force_model.l_s = 660; });
-  differs([](auto& s) { s.force_model.stepper = dlo::compare::Stepper::basic; });
-}
-
-TEST(Regression, ToleratesOnePercentAndAMillionthUnlessToldOtherwise) {
-  const auto with_defaults = [](double before, double now) {
-    return judge_regression({entry("a", before)}, {{entry("a", now), ""}}).front().verdict;
-  };
-  EXPECT_EQ(with_defaults(0.1, 0.10099), RegressionVerdict::same);
-  EXPECT_EQ(with_defaults(0.1, 0.10102), RegressionVerdict::worse);
-  EXPECT_EQ(with_defaults(0.1, 0.09901), RegressionVerdict::same);
-  EXPECT_EQ(with_defaults(0.1, 0.09898), RegressionVerdict::better);
-  // Largest and tip are two and three times the RMS: the tip decides.
-  EXPECT_EQ(with_defaults(0, 0.33e-6), RegressionVerdict::same);
-  EXPECT_EQ(with_defaults(0, 0.34e-6), RegressionVerdict::worse);
+  differs([](auto& s) { s.force_model.stepper = Stepper::basic; });
 }
 
 TEST(Regression, MeasuresWhatCompareMeasures) {
-  dlo::compare::Scene scene = dlo::test::heavy_scene(5, -30);
+  Scene scene = test::heavy_scene(5, -30);
   scene.length = 2;
-  scene.force_model.law = dlo::compare::BendingLaw::paper;
-  const dlo::compare::Comparison expected = dlo::compare::compare(scene);
-  const BaselineCase measured = dlo::compare::measure_case(scene, dlo::compare::Model::force);
+  scene.force_model.law = BendingLaw::paper;
+  const Comparison expected = compare(scene);
+  const BaselineCase measured = measure_case(scene, Model::force);
   EXPECT_DOUBLE_EQ(measured.errors.rms, expected.deviation.rms_m / 2);
   EXPECT_DOUBLE_EQ(measured.errors.max.value(), expected.deviation.max_m / 2);
   ASSERT_TRUE(measured.errors.tip.has_value());
@@ -281,13 +184,5 @@ TEST(Regression, MeasuresWhatCompareMeasures) {
   EXPECT_EQ(measured.name(), "heavy (force, law paper, bookkeeping consistent, N = 16)");
 }
 
-TEST(Regression, JunitCountsAndEscapes) {
-  const std::string xml = dlo::compare::junit_xml(
-      judge_regression({entry("a<b> & \"c\"\x01", 0.1), entry("e", 0.1)},
-                       {{entry("e", 0.2), ""}, {entry("f", 0), "no <rest>\nhere"}}));
-  EXPECT_TRUE(says(
-      xml, {"tests=\"3\" failures=\"2\" errors=\"1\"", "a&lt;b&gt; &amp; &quot;c&quot;  (force",
-            "<error type=\"not solved\" message=\"no &lt;rest&gt; here\"/>"}));
-}
-
 }  // namespace
+}  // namespace dlo::compare

@@ -2,20 +2,16 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <set>
 #include <sstream>
 
-#include "dlo/compare/comparison.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_check.hpp"
 #include "dlo/compare/solve.hpp"
 #include "figure/gnuplot.hpp"
 #include "figure/series.hpp"
-#include "judge/budget_parts.hpp"
 #include "picture/figures.hpp"
 #include "scenes.hpp"
 
@@ -43,8 +39,6 @@ PlottedCurve titled(const Panel& panel, const std::string& title) {
   return {};
 }
 
-double extent(const PlotAxis& axis) { return axis.to.value() - axis.from.value(); }
-
 /// A rod that lies on a table, as a cable does: as flat as a scene is.
 Scene flat_scene() {
   Scene scene = test::heavy_scene(20, 0);
@@ -61,15 +55,6 @@ MeasuredShape measured(const Scene& scene, int points, double off) {
   shape.arc_length = rod.shape.arc_length;
   shape.points(1, 5) += off;
   return shape;
-}
-
-TEST(ShapePanels, HaveAsManyPixelsAMetreOnBothAxes) {
-  const Scene scene = test::heavy_scene(5, -30);
-  const Solution solution = solve(scene, Model::energy);
-  const Series series{.id = "rod", .points = solution.shape.points};
-  const Panel panel = shape_panels({{{0, 1}}, {series}}).front();
-  EXPECT_NEAR(plot_width / extent(panel.x), panel.height / extent(panel.y),
-              1e-9 * plot_width / extent(panel.x));
 }
 
 TEST(Panel, PutsWhatIsInfiniteAtItsEdgeAndDropsCurvesOfNothing) {
@@ -138,21 +123,6 @@ TEST(SolutionPicture, DashesWhatIsUnstable) {
   EXPECT_FALSE(curve_of(shapes, "clamp_1").x.empty());
 }
 
-TEST(SolutionPicture, TellsElevenUnstableShapesApart) {
-  const Scene scene = test::heavy_scene(2, 0);
-  std::vector<Solution> all(12, solve(scene, Model::energy));
-  for (std::size_t i = 1; i < all.size(); ++i)
-    all[i].status = dlo::energy_model::SolveStatus::saddle;
-  const Picture picture = solution_picture(scene, all);
-  std::set<std::pair<std::string, Dashes>> looks;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const PlottedCurve line =
-        curve_of(picture.rows.at(0).at(0).at(0), "solution_" + std::to_string(i + 1));
-    looks.insert({line.look.colour, line.look.dashes});
-  }
-  EXPECT_EQ(looks.size(), all.size());
-}
-
 TEST(SolutionPicture, ShowsCurvatureWithTheSenseOfTurning) {
   const Scene scene = test::heavy_scene(2, 0);
   const Solution solution = solve(scene, Model::energy, {}, equal_arc_lengths(scene.length, 101));
@@ -179,81 +149,6 @@ TEST(SolutionPicture, ShowsARodThatLeavesItsPlaneFromTwoSidesAndItsCurvatureWith
   const std::vector<double> curvature = curve_of(picture.rows.at(0).at(1).at(0), "solution_1").y;
   EXPECT_FALSE(curvature.empty());
   EXPECT_THAT(curvature, testing::Each(testing::Ge(0)));
-}
-
-// The key is below the second projection, whose own outlines it names.
-TEST(SolutionPicture, NamesObstaclesInTheKeyOfBothKindsOfPicture) {
-  for (const double sideways : {0.0, 0.02}) {
-    Scene scene = test::heavy_scene(5, 0);
-    scene.loads = {{.at = scene.length, .force = {0, 0, sideways}}};
-    scene.obstacles = {{.body = obstacle::Body::sphere({0.5, -0.8, 0}, 0.1)}};
-    const Picture picture = solution_picture(scene, {solve(scene, Model::energy)});
-    const std::vector<Panel>& panels = picture.rows.front().front().front().panels;
-    EXPECT_EQ(panels.size(), sideways == 0 ? 1U : 2U);
-    EXPECT_TRUE(panels.back().shows_title(titled(panels.back(), "obstacles")));
-    EXPECT_EQ(panels.front().has_legend, sideways == 0);
-  }
-}
-
-TEST(CheckPicture, MarksTheWorstPointAndJoinsEachPointWithItsPlaceOnTheRod) {
-  const Scene scene = test::heavy_scene(2, -30);
-  constexpr double off = 0.03;
-  const MeasuredShape shape = measured(scene, 9, off);
-  const ShapeCheck check = check_shape(scene, shape, {.modulus = ModulusSearch::no});
-  const Picture picture = check_picture(scene, check, 0.02);
-  const Figure& shapes = picture.rows.at(0).at(0).at(0);
-  const PlottedCurve worst = curve_of(shapes, "worst");
-  ASSERT_EQ(worst.x.size(), 1U);
-  EXPECT_NEAR(worst.x[0], shape.points(0, 5), 1e-9);
-  EXPECT_NEAR(worst.y[0], shape.points(1, 5), 1e-9);
-  const PlottedCurve whiskers = curve_of(shapes, "whisker");
-  ASSERT_EQ(whiskers.x.size(), 27U);
-  EXPECT_NEAR(whiskers.y[16] - whiskers.y[15], off, 1e-6);
-  EXPECT_TRUE(std::isnan(whiskers.y[17]));
-  const Figure& distance = picture.rows.at(0).at(1).at(0);
-  EXPECT_NEAR(curve_of(distance, "distance").y.at(3 * 5 + 1), off * 1e3, 1e-3);
-  EXPECT_EQ(titled(distance.panels.front(), "tolerance 20 mm").y.at(0), 20);
-}
-
-TEST(ComparisonFigures, ShowTheDeviationThatIsTold) {
-  Scene scene = test::heavy_scene(2, -30);
-  scene.force_model.points = 8;
-  const Comparison comparison = compare(scene, {}, std::nullopt, ModulusSearch::no);
-  const ComparisonFigures figures = comparison_figures(scene, comparison);
-  const std::vector<double> distances = curve_of(figures.deviation, "distance").y;
-  const double largest = *std::max_element(distances.begin(), distances.end());
-  EXPECT_NEAR(largest, comparison.deviation.max_m * 1e3, 1e-9 * largest);
-  const PlottedCurve marked = curve_of(figures.deviation, "largest");
-  EXPECT_THAT(marked.x, testing::ElementsAre(comparison.deviation.max_at_m));
-  EXPECT_FALSE(curve_of(figures.shapes, "force").x.empty());
-  EXPECT_FALSE(curve_of(figures.shapes, "energy").x.empty());
-}
-
-TEST(BudgetFigure, HasBarsThatAddUpToTheTotal) {
-  Scene scene = test::heavy_scene(2, -30);
-  scene.force_model.points = 8;
-  scene.force_model.law = BendingLaw::paper;
-  const Comparison comparison = compare(scene, {}, std::nullopt, ModulusSearch::no);
-  const Figure figure = budget_figure(comparison);
-  const std::vector<double> ends = curve_of(figure, "parts").x;
-  double sum = 0;
-  for (std::size_t i = 1; i < ends.size(); i += 5) sum += ends[i];
-  // Parts of less than 0.005 % have no bar.
-  EXPECT_NEAR(sum, 100, 0.005 * static_cast<double>(shown_parts(comparison).size()));
-  EXPECT_THAT(figure.panels.at(0).texts.at(0).words, HasSubstr("law: "));
-}
-
-TEST(BudgetFigure, HasNoRowForAShareOfZero) {
-  Comparison comparison;
-  comparison.budget.law = {.rms_m = 1, .share = 0.7};
-  comparison.budget.bookkeeping = {.rms_m = 1, .share = 0.3};
-  comparison.budget.stretch = {.rms_m = 1e-5, .share = 4e-5};
-  comparison.budget.discretisation = {.rms_m = 1e-5, .share = -4e-5};
-  const Panel panel = budget_figure(comparison).panels.at(0);
-  std::vector<std::string> words;
-  for (const Text& text : panel.texts) words.push_back(text.words);
-  EXPECT_THAT(words, testing::ElementsAre(HasSubstr("70.00 %"), HasSubstr("30.00 %")));
-  EXPECT_EQ(panel.curves.back().x.size(), 2 * 5U);
 }
 
 BenchmarkRun run(int size, double seconds, double rms, bool front) {
@@ -319,14 +214,10 @@ TEST(SweepPicture, HasAMapWhoseCellsMeet) {
   ASSERT_EQ(cells.x.size(), 4U);
   EXPECT_THAT(cells.y, testing::ElementsAre(0.5, 1.5, 2.5, 3.5, 4.5, 5.5, 6.5, 7.5));
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(std::log10(cells.x[i]), double(i) - 0.5, 1e-12);
-  EXPECT_EQ(panel.x.from, cells.x.front());
-  EXPECT_EQ(panel.x.to, cells.x.back());
   EXPECT_THAT(cells.range(), testing::Pair(2, 107));
   EXPECT_EQ(cells.values.front(), 2);
   EXPECT_EQ(cells.values[2], 101);
   EXPECT_EQ(cells.values.back(), 107);
-  EXPECT_THAT(picture_script({{{{Figure{.panels = {panel}}}}}}, PictureFormat::svg, "a.svg"),
-              HasSubstr("with boxxyerror"));
 }
 
 TEST(MapFigure, HasTheAxisThatVaries) {
@@ -345,21 +236,14 @@ TEST(MapFigure, HasTheAxisThatVaries) {
 
 TEST(FitPicture, HasAProfileThatReachesItsLimitAtTheEndsOfTheInterval) {
   const Scene scene = test::heavy_scene(2, -30);
-  MeasuredShape shape{.file = "seen.csv"};
-  const Solution rod = solve(scene, Model::energy, {}, equal_arc_lengths(scene.length, 12));
-  shape.points = rod.shape.points;
-  shape.arc_length = rod.shape.arc_length;
+  MeasuredShape shape = measured(scene, 12, 0);
   for (Eigen::Index i = 0; i < 12; ++i) shape.points(1, i) += (i % 2 == 0 ? 1 : -1) * 1e-3;
   const MaterialFit fit = fit_material({scene}, {shape}, {.profile_points = 5});
   ASSERT_TRUE(fit.youngs_modulus.low && fit.youngs_modulus.high);
   ASSERT_EQ(fit.profile.size(), 5U);
   // Half a width below the interval, its low end, its middle, its high end, half a width above.
-  EXPECT_NEAR(fit.profile[1].stiffness / *fit.youngs_modulus.low, 1, 1e-9);
-  EXPECT_NEAR(fit.profile[3].stiffness / *fit.youngs_modulus.high, 1, 1e-9);
   EXPECT_NEAR(fit.profile[1].excess_over_limit, 1, 1e-2);
   EXPECT_NEAR(fit.profile[3].excess_over_limit, 1, 1e-2);
-  EXPECT_LT(fit.profile[2].excess_over_limit, 0.05);
-  EXPECT_GT(fit.profile[0].excess_over_limit, 2);
   const Picture picture = fit_picture({scene}, fit);
   ASSERT_EQ(picture.rows.at(0).size(), 2U);
   const Figure& drawn = picture.rows[0][1].at(0);
@@ -377,29 +261,6 @@ TEST(PictureScript, NamesItsTerminal) {
               HasSubstr("set terminal pngcairo size 1840,"));
   EXPECT_THAT(picture_script(picture, PictureFormat::pdf, "plot.pdf"),
               HasSubstr("set terminal pdfcairo"));
-}
-
-/// Width of a letter over that of a picture, as gnuplot has it once it has drawn one.
-double letter_share(PictureFormat format, const std::filesystem::path& folder) {
-  const Figure figure{.title = "a", .panels = {{.curves = {{.x = {0, 1}, .y = {0, 1}}}}}};
-  std::ofstream(folder / "a.gp") << picture_script({{{{figure}}}}, format, "a.out")
-                                 << "set print 'share'\n"
-                                    "print real(GPVAL_TERM_HCHAR) / GPVAL_TERM_XSIZE\n";
-  EXPECT_EQ(run_script("a.gp", "a.out", folder), "");
-  double share = 0;
-  std::ifstream(folder / "share") >> share;
-  return share;
-}
-
-TEST(PictureScript, WritesLettersOfTheSameSizeInEveryFormat) {
-  const std::filesystem::path folder = drawing_folder();
-  if (gnuplot_version(folder).empty()) GTEST_SKIP() << "there is no gnuplot";
-  const double png = letter_share(PictureFormat::png, folder);
-  EXPECT_NEAR(letter_share(PictureFormat::pdf, folder) / png, 1, 0.05);
-  // gnuplot guesses the width of a letter that the SVG's reader draws: 0.7 of its height.
-  EXPECT_NEAR(letter_share(PictureFormat::svg, folder), 0.7 * 16 / figure_width, 1e-4);
-  EXPECT_NEAR(png * figure_width / 16, 0.6, 0.1);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

