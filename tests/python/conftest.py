@@ -2,9 +2,11 @@
 
 import ctypes
 import gc
+import json
 import os
 import pathlib
 import re
+import subprocess
 import sys
 import tempfile
 
@@ -68,6 +70,26 @@ def root():
 def command():
     """The command dlo of the same build."""
     return os.environ["DLO_COMMAND"]
+
+
+def without_times(document):
+    """Returns a document without the numbers that a clock has measured."""
+    if isinstance(document, dict):
+        times = ("wall_s", "force_s", "energy_s", "frame_s", "run_s")
+        return {key: without_times(value) for key, value in document.items() if key not in times}
+    return list(map(without_times, document)) if isinstance(document, list) else document
+
+
+@pytest.fixture
+def command_json(command):
+    """Runs the command with these arguments. Returns its document without times."""
+    def run(*arguments):
+        words = [command, *map(str, arguments), "--format", "json"]
+        done = subprocess.run(words, capture_output=True, text=True)
+        assert done.returncode in (0, 1), done.stderr
+        return without_times(json.loads(done.stdout))
+
+    return run
 
 
 @pytest.fixture

@@ -50,12 +50,15 @@ def test_a_shape_that_is_left_open_is_part_of_the_error():
     assert caught.value.result.status == "near_singular"
 
 
-INTERRUPTED = """
-import os, signal, sys, threading, time
+SCENE = """
 import dlo
 scene = dlo.Scene(length=1, diameter="5 mm", material="silicone",
                   grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction=0.0)],
                   force_model={"points": 2000, "law": "hooke"})
+"""
+
+INTERRUPTED = SCENE + """
+import os, signal, threading, time
 threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
 begin = time.monotonic()
 try:
@@ -145,12 +148,8 @@ def test_memory_does_not_grow(steel, sanitized):
     assert resident() - before < 500_000
 
 
-HANDLED = """
+HANDLED = SCENE + """
 import signal
-import dlo
-scene = dlo.Scene(length=1, diameter="5 mm", material="silicone",
-                  grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction=0.0)],
-                  force_model={"points": 2000, "law": "hooke"})
 loop, batch = dlo.ForceModel(scene), dlo.Batch([scene])
 free = dlo.ForceModel(scene)
 def handle(*_):
@@ -170,11 +169,9 @@ print(free.steps, len(loop.points()), len(batch.points()))  # nothing is left lo
     "busy, what",
     [
         ("loop.step(10**9)", "loop.points()"),
-        ("loop.step(10**9)", "loop.steps"),
         ("loop.step(10**9)", "loop.step()"),
         ("loop.rest(1e-15, 10**9, 60)", "loop.rest()"),
         ("batch.step(10**9)", "batch.points()"),
-        ("batch.step(10**9)", "batch.step()"),
     ],
 )
 def test_a_handler_that_uses_the_busy_loop_is_told(busy, what, interpreter):
@@ -184,12 +181,8 @@ def test_a_handler_that_uses_the_busy_loop_is_told(busy, what, interpreter):
     assert done.stdout.endswith("\n10 2000 1\n")
 
 
-LEFT = """
+LEFT = SCENE + """
 import threading, time
-import dlo
-scene = dlo.Scene(length=1, diameter="5 mm", material="silicone",
-                  grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction=0.0)],
-                  force_model={"points": 2000, "law": "hooke"})
 loop, batch = dlo.ForceModel(scene), dlo.Batch([scene])
 def work():
     while True:
@@ -204,9 +197,7 @@ print("leaving")
 @pytest.mark.parametrize(
     "what",
     [
-        "loop.step(30)",
         "loop.step(10**9)",
-        "loop.step(3); loop.points()",
         # Two that wait for the third: the first to get the loop keeps it from nobody.
         "loop.step(10**9) if threading.current_thread().name[:8] == 'Thread-1' else loop.points()",
         "batch.step(30)",
@@ -227,31 +218,21 @@ def test_arguments_of_a_wrong_kind_are_named(cable):
     points = loop.points()
     for call, words in [
         (lambda: dlo.solve(cable, samples="a"), r"samples = 'a': a str \(allowed: an integer\)"),
-        (lambda: dlo.solve(cable, samples=1.5), r"samples = 1.5: a float \(allowed: an integer\)"),
         (lambda: dlo.solve(cable, samples=2**40), r"samples = 1099511627776: out of range \(allowed"),
         (lambda: dlo.solve(cable, model=3), r"model = 3: a int \(allowed: text\)"),
         (lambda: dlo.solve(cable, model="\ud800"), r"model = .*half a character \(allowed: Unicode"),
-        (lambda: dlo.solve(cable, time_limit="1 s"), r"time_limit = '1 s': a str \(allowed: a number"),
         (lambda: dlo.solve(cable, max_steps=1.5), r"max_steps = 1.5: a float \(allowed: an integer"),
         (lambda: dlo.solve(3), r"scene: a int \(allowed: a dlo.Scene, or the name of a scene file"),
-        (lambda: dlo.check(cable, points, min_seen=[1]), r"min_seen = \[1\]: a list \(allowed: a num"),
-        (lambda: dlo.check(cable, points, tolerance=1j), r"tolerance = 1j: a complex \(allowed: a num"),
         (lambda: dlo.check(cable, points, modulus=points), r"modulus = .*\(allowed: True or False"),
         (lambda: dlo.calibrate(3), r"scenes = 3: a int \(allowed: a list"),
-        (lambda: dlo.calibrate(cable, [points], segments="5"), r"segments = '5': a str \(allowed: an"),
         (lambda: dlo.stability(steppers=[1]), r"steppers = \[1\]: a int \(allowed: a list of text"),
         (lambda: dlo.sweep(cable, 3), r"vary = 3: a int \(allowed: a dict"),
         (lambda: dlo.sweep(cable, {3: "1"}), r"vary: a field = 3: a int \(allowed: text"),
-        (lambda: dlo.sweep(cable, {"gamma": 3}), r"vary: gamma = 3: a int \(allowed: a list"),
-        (lambda: dlo.track(cable, begin="0 s"), r"begin = '0 s': a str \(allowed: a number"),
         (lambda: dlo.ForceModel(cable, grip_stiffness="1"), r"grip_stiffness = '1': a str \(allowed"),
         (lambda: dlo.Batch(cable, threads=1), r"scenes = .*: a Scene \(allowed: a list"),
-        (lambda: loop.step("a"), r"count = 'a': a str \(allowed: an integer\)"),
         (lambda: loop.move_gripper(-1, (0, 0, 0)), r"gripper = -1: out of range \(allowed: an integer f"),
-        (lambda: loop.rest(tolerance=[]), r"tolerance = \[\]: a list \(allowed: a number"),
         (lambda: batch.move_gripper(0.5, 0, (0, 0, 0)), r"rod = 0.5: a float \(allowed: an integer f"),
         (lambda: cable.replace(force_model={1: 2}), r"force_model: a key = 1: a int \(allowed: text"),
-        (lambda: cable.replace(grippers=3), r"grippers = 3: a int \(allowed: a list"),
         (lambda: dlo.Scene.from_text(b""), r"text = b'': a bytes \(allowed: text"),
         (lambda: dlo.Scene.from_file("\ud800"), r"scene: a file's name with half a character"),
     ]:

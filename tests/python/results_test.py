@@ -10,118 +10,61 @@ import tomllib
 
 import numpy
 import pytest
+from conftest import without_times
 
 import dlo
 
 
-def command_json(command, *arguments):
-    done = subprocess.run(
-        [command, *map(str, arguments), "--format", "json"], capture_output=True, text=True
-    )
-    assert done.returncode in (0, 1), done.stderr
-    return json.loads(done.stdout)
-
-
-def without_times(document):
-    """But for what the clock has measured."""
-    if isinstance(document, dict):
-        times = ("wall_s", "force_s", "energy_s")
-        return {k: without_times(v) for k, v in document.items() if k not in times}
-    if isinstance(document, list):
-        return [without_times(value) for value in document]
-    return document
-
-
-def test_solve_is_the_commands(root, command):
+def test_solve_is_the_commands(root, command_json):
     scene = root / "data/scenes/spring_steel_175.toml"
     solution = dlo.solve(scene, samples=9)
-    assert without_times(solution.json) == without_times(
-        command_json(command, "solve", scene, "--samples", 9)
-    )
+    assert without_times(solution.json) == command_json("solve", scene, "--samples", 9)
     assert json.loads(solution.to_json())["schema"] == "dlo/solve/1"
     assert "energy, converged" in str(solution)
 
 
-def test_solve_near_points_is_the_equilibrium_beside_them(root, command, tmp_path):
+def test_solve_takes_points_or_the_number_of_an_equilibrium(tmp_path):
     scene = dlo.Scene(
-        length="1 m",
-        diameter="6 mm",
-        bending_stiffness="5e-3 N m^2",
-        mass_per_length="0.06 kg/m",
-        gravity=(0, -9.81, 0),
+        length="1 m", diameter="6 mm", bending_stiffness="5e-3 N m^2", mass_per_length="0.06 kg/m",
         grippers=[dlo.pin(at=0, position=(-0.35, 0.06, 0))],
         loads=[dlo.load(at="1 m", mass="1.5 kg")],
         obstacles=[dlo.obstacle(shape="cylinder", point=(0, 0, 0), axis=(0, 0, 1), radius="4 cm")],
     )
     over = [[-0.35, 0.06], [-0.01, 0.043], [0.03, 0.03], [0.043, 0], [0.043, -0.3], [0.043, -0.59]]
-    near = dlo.solve(scene, near=over)
-    second = dlo.solve(scene, equilibrium=2)
-    assert abs(second.energy["total"] - near.energy["total"]) < 1e-9
-    assert near.stable and near.points[-1, 0] > 0
-    lowest = dlo.solve(scene)
-    assert lowest.points[-1, 0] < -0.3
-    assert lowest.stable_energies == [lowest.energy["total"]] and lowest.passing_starts == 2
     file = tmp_path / "over.csv"
-    file.write_text("".join(f"{x},{y},0\n" for x, y in over))
+    numpy.savetxt(file, over, delimiter=",")
+    near = dlo.solve(scene, near=over)
     assert numpy.allclose(dlo.solve(scene, near=file).points, near.points)
+    assert abs(dlo.solve(scene, equilibrium=2).energy["total"] - near.energy["total"]) < 1e-9
+    lowest = dlo.solve(scene)
+    assert lowest.stable_energies == [lowest.energy["total"]] and lowest.passing_starts == 2
     with pytest.raises(dlo.InputError, match="only model energy"):
         dlo.solve(scene, "exact", near=over)
-    assert dlo.check(scene, near.points).energy_above_lowest > 0.1
+    assert dlo.check(scene, near.points, explain=False).energy_above_lowest > 0.1
 
 
-def test_a_frame_is_found_by_the_commands_word(cable):
+def test_check_has_the_deflection_and_the_frame_that_it_found(cable):
     points = numpy.array(dlo.solve(cable, samples=15).points) @ numpy.diag((-1, 1, -1)) + (1, 2, 3)
-    assert dlo.check(cable, points, tolerance="1%").passed is False
-    found = dlo.check(cable, points, tolerance="1%", register="upright")
-    assert found.passed
+    options = {"tolerance": "5% of deflection", "modulus": False, "explain": False, "measure": "max"}
+    assert dlo.check(cable, points, **options).passed is False
+    found = dlo.check(cable, points, register="upright", **options)
+    assert found.passed and found.verdict == "pass" and found.significant is True
+    assert found.json["tolerance"]["allowed_m"] == pytest.approx(0.05 * found.deflection)
+    assert found.json["tolerance"]["measure"] == "max"
+    assert dlo.check(cable, points, min_seen=0.2, explain=False).json["tolerance"]["least_seen_share"] == 0.2
 
 
-def test_a_pass_of_a_stiff_rod_is_not_significant(command):
-    beam = dlo.Scene(length=4, bending_stiffness=4e4, mass_per_length=2,
-                     grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction="0 deg")])
-    line = [[0, 0], [2, 0], [4, 0]]
-    check = dlo.check(beam, line, tolerance="1%", modulus=False)
-    assert check.passed and check.verdict == "pass" and check.significant is False
-    assert check.deflection == pytest.approx(2 * 9.81 * 4**4 / (8 * 4e4), rel=1e-3)
-    check = dlo.check(beam, line, tolerance="5% of deflection", modulus=False)
-    assert not check.passed and check.significant is None
-    assert dlo.check(beam, dlo.solve(beam).points, tolerance="5% of deflection").significant is True
-    assert dlo.check(beam, line, measure="max", min_seen=0.2).json["tolerance"]["measure"] == "max"
-
-
-def test_check_is_the_commands(root, command):
+def test_check_is_the_commands(root, command_json):
     scene = root / "data/scenes/cable.toml"
     shape = root / "data/shapes/cable.csv"
     points = numpy.loadtxt(shape, delimiter=",", skiprows=3)
     check = dlo.check(scene, points, tolerance="1%")
-    expected = command_json(
-        command, "check", scene, "--shape", shape, "--tolerance", "1%", "--arc-lengths", "nearest"
-    )
+    expected = command_json("check", scene, "--shape", shape, "--tolerance", "1%", "--arc-lengths", "nearest")
     document = check.json
     assert document.pop("shape") == "points"
     expected.pop("shape")
     assert document == expected
     assert check.passed == (expected["verdict"] == "pass")
-
-
-def test_fifty_shapes_have_the_commands_verdict(root, command, tmp_path):
-    random = numpy.random.default_rng(50)
-    for name in ("cable", "spring_steel_175", "long_rod", "side_load", "buckling_wire"):
-        scene = root / f"data/scenes/{name}.toml"
-        right = dlo.solve(scene, samples=7).points
-        length = dlo.Scene.from_file(scene).length
-        for kind in range(5):
-            noise = random.normal(size=right.shape) * length * (0, 1e-3, 3e-3, 1e-2, 3e-2)[kind]
-            points = right + noise
-            shape = tmp_path / "shape.csv"
-            numpy.savetxt(shape, points, delimiter=",", header="x,y,z", comments="")
-            points = numpy.loadtxt(shape, delimiter=",", skiprows=1)
-            for measure in ("rms", "max"):
-                check = dlo.check(scene, points, tolerance="1%", measure=measure, modulus=False)
-                words = ["check", scene, "--shape", shape, "--tolerance", "1%", "--measure", measure]
-                expected = command_json(command, *words, "--no-modulus")
-                assert check.passed == (expected["verdict"] == "pass")
-                assert check.reason == expected["reason"]
 
 
 def test_deviations_are_those_of_the_document(steel):
@@ -135,14 +78,12 @@ def test_deviations_are_those_of_the_document(steel):
         assert 0 < result.deviation["rms_m"] < result.deviation["max_m"]
 
 
-def test_compare_is_the_commands(root, command):
-    scene = dlo.Scene.from_file(root / "data/scenes/spring_steel_175.toml")
+def test_compare_is_the_commands(root, command_json):
+    file = root / "data/scenes/spring_steel_175.toml"
+    scene = dlo.Scene.from_file(file)
     scene.force_model = {"points": 16, "law": "hooke", "bookkeeping": "consistent"}
     comparison = dlo.compare(scene)
-    expected = command_json(
-        command, "compare", root / "data/scenes/spring_steel_175.toml", "--law", "hooke",
-        "--bookkeeping", "consistent",
-    )
+    expected = command_json("compare", file, "--law", "hooke", "--bookkeeping", "consistent")
     assert comparison.json["schema"] == expected["schema"]
     assert comparison.deviation["rms_m"] == expected["cases"][0]["deviation"]["rms_m"]
     assert comparison.force_points.shape == comparison.energy_points.shape == (16, 3)
@@ -196,28 +137,8 @@ def test_grippers_bear_the_weight(cable):
     solution = dlo.solve(cable)
     weight = -cable.mass * cable.gravity
     numpy.testing.assert_allclose(solution.gripper_forces, [weight], atol=1e-9 * weight[1])
-    # The torque about the clamp is that of the weight at the rod's centre.
-    s, points = solution.arc_length, dlo.solve(cable, samples=2001).points
-    centre = (points[1:] + points[:-1]).mean(axis=0) / 2
-    numpy.testing.assert_allclose(
-        solution.gripper_torques[0], numpy.cross(-centre, -weight), atol=1e-6 * weight[1]
-    )
-    assert solution.tension.shape == solution.curvature.shape == s.shape
-
-
-def test_every_equilibrium_is_found(root):
-    states = dlo.solve_all(
-        dlo.Scene(
-            length="2 m",
-            diameter="1 mm",
-            material="copper",
-            grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction=0.0)],
-        ),
-        samples=2,
-    )
-    assert len(states) == 3
-    assert [state.smallest_eigenvalue > 0 for state in states] == [True, False, False]
-    assert len(states.json["equilibria"]) == 3
+    assert solution.gripper_torques.tolist() == [one["torque_Nm"] for one in solution.json["grippers"]]
+    assert solution.tension.shape == solution.curvature.shape == solution.arc_length.shape
 
 
 def test_calibrate_finds_the_modulus_it_was_given(cable):
@@ -288,12 +209,11 @@ def test_two_points_are_points(cable):
     assert len(dlo.calibrate(cable, [pair])["shapes"][0]["points_m"]) == 3
 
 
-def test_a_shape_may_be_the_name_of_a_file_and_one_needs_no_list(root, cable, command):
+def test_a_shape_may_be_the_name_of_a_file_and_one_needs_no_list(root, cable, command_json):
     scene, shape = root / "data/scenes/cable.toml", root / "data/shapes/cable.csv"
     for name in (shape, str(shape)):
-        assert dlo.check(scene, name, tolerance="1%").json == command_json(
-            command, "check", scene, "--shape", shape, "--tolerance", "1%"
-        )
+        found = dlo.check(scene, name, tolerance="1%").json
+        assert found == command_json("check", scene, "--shape", shape, "--tolerance", "1%")
     points = numpy.loadtxt(shape, delimiter=",", skiprows=3)
     pair = (points, numpy.linspace(0.1, 1, len(points)))
     for one, listed in ((shape, [points]), (points.tolist(), [shape]), (pair, [pair])):
@@ -321,10 +241,7 @@ def test_plan_and_modes(steel):
     assert dlo.plan(steel)["geometry"] == "planar"
     modes = dlo.modes(steel, count=2, samples=5)
     assert modes.shapes.shape == (2, 5, 3)
-    # In and out of its plane a rod that hardly bends swings as a straight one:
-    # omega = 1.8751^2 sqrt(EI / (rho A l^4)), but for its sag of some per cent.
-    slow = 1.8751**2 * (steel.bending_stiffness / steel.mass_per_length) ** 0.5 / steel.length**2
-    numpy.testing.assert_allclose(modes.frequencies * 2 * numpy.pi, slow, rtol=0.02)
+    assert modes.frequencies.tolist() == [mode["frequency_Hz"] for mode in modes.json["modes"]]
 
 
 def test_sweep_has_the_rows_of_the_command(root, command):
@@ -345,13 +262,6 @@ def test_sweep_has_the_rows_of_the_command(root, command):
     assert columns["status"].tolist() == ["ok"] * 4
 
 
-def test_sweep_takes_arrays_and_says_what_is_no_scene(cable):
-    columns = dlo.sweep(cable, {"rod.length": numpy.array([0.5, -1]), "gravity": [(0, -9.81, 0)]})
-    assert columns["status"][0] == "ok"
-    assert "rod.length" in columns["status"][1]
-    assert numpy.isnan(columns["energy_J"][1])
-
-
 def test_a_sweep_has_all_digits_and_the_types_it_says(cable):
     table = dlo.sweep(cable, {"rod.length": [1, 1 / 3], "gripper.0.direction": ["30 deg", 0.5]})
     assert table["rod.length"].tolist() == [1, 1, 1 / 3, 1 / 3]
@@ -363,11 +273,12 @@ def test_a_sweep_has_all_digits_and_the_types_it_says(cable):
     assert kinds.pop("gripper.0.direction") == kinds.pop("status") == "U"
     assert set(kinds.values()) == {"f"}
     # The same whatever is in the rows: nothing where there is no result.
-    table = dlo.sweep(cable, {"rod.length": [1, -1], "force_model.points": [12]}, model="compare-chain")
+    table = dlo.sweep(cable, {"rod.length": numpy.array([1, -1]), "force_model.points": [12]}, model="compare-chain")
     assert {name: table[name].dtype.kind for name in ("optimum", "evaluations", "tip_over_length")} == {
         "optimum": "U", "evaluations": "f", "tip_over_length": "f",
     }
     assert table["optimum"][1] == "" and numpy.isnan(table["evaluations"][1])
+    assert table["status"][0] == "ok" and "rod.length" in table["status"][1]
     pinned = cable.replace(grippers=[*cable.grippers, dlo.pin(at=1, position=(0.6, 0, 0))])
     table = dlo.sweep(pinned, {"force_model.points": [12]}, model="compare-chain")
     assert numpy.isnan(table["tip_over_length"]).all()
@@ -376,10 +287,8 @@ def test_a_sweep_has_all_digits_and_the_types_it_says(cable):
 def test_compare_plans_when_it_is_asked(steel):
     steel.force_model = {"points": 12}
     quick, planned = dlo.compare(steel, modulus=False), dlo.compare(steel, modulus=False, plan=True)
-    assert "plan" not in quick.json["cases"][0]
-    assert planned.json["cases"][0]["plan"]["geometry"] == "planar"
-    plan = str(dlo.plan(steel))
-    assert str(planned).startswith(plan) and plan not in str(quick)
+    assert "plan" not in quick.json["cases"][0] and planned.json["cases"][0]["plan"]["geometry"] == "planar"
+    assert str(planned).startswith(str(dlo.plan(steel)))
 
 
 def test_stability_and_bench(steel):
@@ -389,28 +298,13 @@ def test_stability_and_bench(steel):
     assert {run["model"] for run in runs} >= {"energy", "chain"}
 
 
-def test_a_map_of_stability_is_the_commands(root, command):
+def test_a_map_of_stability_is_the_commands(root, command_json):
     scene = root / "data/scenes/spring_steel_175.toml"
     table = dlo.stability(scene, map="cF-cc", columns=2, rows=3, map_steps=50)
-    expected = command_json(
-        command, "stability", scene, "--map", "cF-cc", "--columns", 2, "--rows", 3, "--map-steps", 50
-    )
-    assert table.json == expected
+    options = ("--map", "cF-cc", "--columns", 2, "--rows", 3, "--map-steps", 50)
+    assert table.json == command_json("stability", scene, *options)
     with pytest.raises(dlo.InputError, match="allowed: cF-cc, cF-ch"):
         dlo.stability(map="cF")
-
-
-def test_plots(steel):
-    matplotlib = pytest.importorskip("matplotlib.pyplot")
-    solution = dlo.solve(steel)
-    ax = solution.plot()
-    assert any(numpy.array_equal(line.get_xydata(), solution.points[:, :2]) for line in ax.lines)
-    check = dlo.check(steel, solution.points[::10])
-    drawn = check.plot(ax=matplotlib.figure().add_subplot())
-    whiskers = [line for line in drawn.lines if "distances" in line.get_label()]
-    assert len(whiskers[0].get_xydata()) == 3 * len(check.points)  # with a gap behind each
-    dlo.compare(steel, modulus=False).plot()
-    matplotlib.close("all")
 
 
 @pytest.fixture
@@ -441,16 +335,12 @@ def test_only_functions_make_results(results, cable):
                 make()
 
 
-def test_an_object_that_its_class_has_not_made_is_refused(cable):
+def test_an_object_that_its_class_has_not_made_is_refused():
     for kind in (dlo.ForceModel, dlo.Batch):
         empty = kind.__new__(kind)
-        with pytest.raises(TypeError, match=r"not made by its class|no attribute"):
-            empty.points()
-        with pytest.raises(TypeError, match="not made by its class"):
-            len(kind.__new__(kind))
-    for one in (dlo.solve(cable), dlo.ForceModel(cable)):
-        with pytest.raises(TypeError, match=r"cannot be"):
-            one.__reduce__()
+        for call in (empty.points, lambda: len(empty), empty.__reduce__):
+            with pytest.raises(TypeError, match="not made by its class|no attribute|cannot be"):
+                call()
 
 
 def test_a_huge_array_is_refused_before_it_is_copied(cable):

@@ -29,31 +29,15 @@ def hung(**fields):
     return dlo.Scene(**{**scene, **fields})
 
 
-def flat():
-    """Hardly bent."""
-    return hung(material="spring_steel")
-
-
-def tall():
-    return hung(grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction=(0, -1, 0.1))], gravity=(0, -9.81, 0))
-
-
-def upright():
-    """In the plane x-z."""
-    return hung(gravity=(0, 0, -9.81))
-
-
-def sideways():
-    """In the plane y-z."""
-    grip = dlo.clamp(at=0, position=(0.3, 0, 0), direction=(0, 1, 0))
-    return hung(grippers=[grip], gravity=(0, 0, -9.81))
-
-
-def spatial():
-    return hung(loads=[dlo.load(at="1 m", force=(0, 0, "50 mN"))])
-
-
-SCENES = {"flat": flat, "tall": tall, "upright": upright, "sideways": sideways, "spatial": spatial}
+LEVEL = dlo.clamp(at=0, position=(0.3, 0, 0), direction=(0, 1, 0))
+STEEP = dlo.clamp(at=0, position=(0, 0, 0), direction=(0, -1, 0.1))
+SCENES = {
+    "flat": lambda: hung(material="spring_steel"),
+    "tall": lambda: hung(grippers=[STEEP], gravity=(0, -9.81, 0)),
+    "upright": lambda: hung(gravity=(0, 0, -9.81)),  # in the plane x-z
+    "sideways": lambda: hung(grippers=[LEVEL], gravity=(0, 0, -9.81)),  # in the plane y-z
+    "spatial": lambda: hung(loads=[dlo.load(at="1 m", force=(0, 0, "50 mN"))]),
+}
 
 
 def shapes(name):
