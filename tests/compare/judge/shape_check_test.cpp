@@ -209,6 +209,38 @@ CheckResult verdict_of(const Scene& scene, const Eigen::Matrix3Xd& points, doubl
                 .shape = {.modulus = ModulusSearch::no}});
 }
 
+// Within the first fifth of a soft rod's length, points may follow a bend or cut it.
+TEST(ShapeCheck, AFileWithoutPointsAtTheBendIsUndetermined) {
+  const Scene scene = heavy_scene(100, 0);
+  std::vector<double> s = equal_arc_lengths(1, 101);
+  EXPECT_TRUE(verdict_of(scene, exact_shape(scene, s).points, 0.005).passes());
+  std::erase_if(s, [](double at) { return at > 0 && at < 0.25; });
+  const CheckResult result = verdict_of(scene, exact_shape(scene, s).points, 0.005);
+  EXPECT_EQ(result.judgement.verdict, ShapeVerdict::undetermined) << result.judgement.reason;
+  EXPECT_LT(result.judgement.judged_m, 1e-3);
+}
+
+TEST(ShapeCheck, AFileNearAnUnverifiedEquilibriumIsUndetermined) {
+  const Scene scene = heavy_scene(10, 0);
+  ShapeCheck check = check_shape(scene, exact_shape(heavy_scene(5, 0), equal_arc_lengths(1, 21)));
+  ASSERT_EQ(judge(check, {.allowed_m = 0.01}).verdict, ShapeVerdict::fail);
+  check.unverified.emplace();
+  check.unverified->rms_m = 0.002;
+  check.unverified->max_m = 0.02;
+  EXPECT_EQ(judge(check, {.allowed_m = 0.01}).verdict, ShapeVerdict::undetermined);
+  EXPECT_EQ(judge(check, {.allowed_m = 0.01, .largest = true}).verdict, ShapeVerdict::fail);
+  EXPECT_EQ(judge(check, {.allowed_m = 0.001}).verdict, ShapeVerdict::fail);
+}
+
+// The distance over the whole rod includes parts that the file lacks.
+TEST(ShapeCheck, IsJudgedOverTheWholeRodUnlessAPartIsAsked) {
+  const Scene scene = heavy_scene(10, 0);
+  ShapeCheck check = check_shape(scene, exact_shape(scene, equal_arc_lengths(1, 21)));
+  check.whole_rms_m = 0.02;
+  EXPECT_EQ(judge(check, {.allowed_m = 0.01}).verdict, ShapeVerdict::fail);
+  EXPECT_EQ(judge(check, {.allowed_m = 0.01, .part = true}).verdict, ShapeVerdict::pass);
+}
+
 // A cantilever of small Gamma sags at its tip by Gamma l / 8.
 TEST(Significance, APassThatAStraightLineWouldHaveTooSaysSo) {
   constexpr double gamma = 0.08;
