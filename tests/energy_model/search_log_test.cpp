@@ -125,6 +125,9 @@ TEST(SearchLog, TellsWhatAFloorLeavesOutAndAccountsForWhatLiesOnIt) {
 TEST(SearchLog, TellsThatTheTimeLimitCutItShort) {
   const EnergySearch search = search_energy(two_clamps(10, 0.6), {.time_limit = 1e-6});
   EXPECT_NE(left_out(search).find("time limit"), std::string::npos) << left_out(search);
+  for (const Equilibrium& found : search.equilibria) {
+    EXPECT_NE(found.message.find("time limit"), std::string::npos) << found.message;
+  }
   const EnergySearch whole = search_energy(two_clamps(10, 0.6));
   EXPECT_EQ(left_out(whole).find("time limit"), std::string::npos) << left_out(whole);
 }

@@ -163,7 +163,7 @@ class EnergySolver::State {
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     for (Equilibrium& equilibrium : result) {
       equilibrium.seconds = seconds;
-      if (wanted == Wanted::lowest && deadline.passed()) add_time_limit(equilibrium);
+      if (deadline.passed()) add_time_limit(equilibrium);
     }
     return result;
   }
