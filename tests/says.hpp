@@ -29,7 +29,8 @@ inline testing::AssertionResult says_none(const std::string& text,
   return testing::AssertionSuccess();
 }
 
-/// What an error says that ends some work; "no error" if none does. Others go on to the test.
+/// Returns the text of the error of this type that work throws, or "no error". Errors of other
+/// types reach the test.
 template <typename Error, typename Work>
 std::string error_of(const Work& work) {
   try {

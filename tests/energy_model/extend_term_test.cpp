@@ -37,7 +37,8 @@ Eigen::VectorXd gradient(const Tether& tether, const SpanEnergy& model, SpanPoin
   return (d[0] * J[0] + d[1] * J[1] + d[2] * J[2]).transpose() * tether.weights;
 }
 
-/// Of a span in a plane, where a tangent's second derivative is -t a a^T, a that of its angle.
+/// Returns the Hessian for a span in a plane, where a tangent's second derivative is -t a a^T with
+/// the derivative a of its angle.
 Eigen::MatrixXd hessian(const Tether& tether, const SpanEnergy& model, SpanPoint& at) {
   const std::array<Eigen::MatrixXd, 3> J = model.tangent_jacobian(at);
   const Eigen::Matrix3Xd t = at.tangents();

@@ -1,6 +1,5 @@
-// What a step costs: the kernel against steps written with Eigen, one rod and many, and how long a
-// rod takes to come to rest. Ratios (`speedup`) are taken within one benchmark, the two sides
-// taking turns.
+// Time of a step: the kernel against steps written with Eigen, one rod and many, and the time until
+// a rod comes to rest. Ratios (`speedup`) are measured within one benchmark, in alternating runs.
 
 #include <benchmark/benchmark.h>
 

@@ -147,7 +147,7 @@ TEST(ImplicitStepper, MovesARestingRodWithItsGripperInOneSolve) {
   simulation.move_grip(0, targets, way);
   ASSERT_EQ(simulation.step().status, StepStatus::good);
   EXPECT_EQ(simulation.steps() - before, 1);
-  // What the positions' rounding moves the slowest mode by, at either place.
+  // Displacement of the slowest mode by the rounding of positions, at either place.
   const double rounding = check_equilibrium(simulation.rod(), simulation.points()).rounding_error;
   EXPECT_LT(rounding, 1e-7 * soft.length);
   EXPECT_LT(rms_between(simulation.points(), rest.colwise() + way),

@@ -54,7 +54,7 @@ struct Oscillation {
     }
   }
 
-  /// Of a stepper's shape at `time`, against the movement until then [-].
+  /// Returns the error of a stepper's shape at `time`, divided by the movement until then [-].
   [[nodiscard]] double error(force_model::Stepper stepper, int steps) const {
     force_model::StepOptions options;
     options.policy = force_model::policy(stepper);

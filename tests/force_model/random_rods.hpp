@@ -18,7 +18,7 @@ using force_model::Rod;
 using force_model::StepOptions;
 using force_model::Stepper;
 
-/// Of the rods below [m].
+/// Length of the rods below [m].
 inline constexpr double length = 0.5;
 
 enum class Walls { none, two };

@@ -1,4 +1,4 @@
-// What `at rest` promises, held against where stepping on leads.
+// The claim `at rest` is compared with the shape after many more steps.
 
 #include "dlo/force_model/relax.hpp"
 

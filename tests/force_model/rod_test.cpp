@@ -58,8 +58,8 @@ TEST(Solid, PushesWithinSegmentsAsALeverDoes) {
   EXPECT_NEAR(solid_energy(ball, points), potential, 1e-14);
 }
 
-/// What the loads do about a point, with the opposite sign: a rod at rest under them, held by one
-/// gripper, is balanced by it.
+/// Returns the force and the moment about a point that balance the loads: those of the only gripper
+/// of a rod at rest.
 GripReaction balancing(const Rod& rod, const Eigen::Matrix3Xd& points,
                        const Eigen::Vector3d& about) {
   GripReaction result;

@@ -37,7 +37,7 @@ Eigen::MatrixXd full_stiffness(const Rod& rod, Eigen::Matrix3Xd points) {
   return matrix;
 }
 
-/// Of the points behind a clamp at the first two.
+/// Returns the stiffness of the points behind a clamp that holds the first two.
 Eigen::MatrixXd stiffness_matrix(const Rod& rod, const Eigen::Matrix3Xd& points) {
   const Eigen::Index n = points.size() - 6;
   return full_stiffness(rod, points).bottomRightCorner(n, n);
@@ -59,7 +59,7 @@ double measured_fastest(const Rod& rod, const Eigen::Matrix3Xd& points) {
   return between_free.eigenvalues().real().maxCoeff();
 }
 
-/// What a random shape is of.
+/// Properties of the rod of a random shape.
 struct Kind {
   BendingLaw law = BendingLaw::hooke;
   double c_c = 0;

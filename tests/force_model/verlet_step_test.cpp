@@ -65,7 +65,7 @@ std::vector<double> energies(const Swinging& swinging, int steps) {
 TEST(VerletStepper, KeepsTheEnergyOfAFreelySwingingRod) {
   const Swinging swinging;
   const double start = energy(swinging.rod, swinging.steel.straight()).total();
-  // What the rod has to exchange: its weight falling by a tenth of its length.
+  // Scale of the energies: the weight times a tenth of the length.
   const double size = swinging.steel.weight_per_length * std::pow(swinging.steel.length, 2) / 10;
   const auto largest_error = [&](const std::vector<double>& all) {
     double result = 0;

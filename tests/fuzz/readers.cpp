@@ -74,7 +74,7 @@ void baseline(const std::string& text) {
   if (!reads([&] { written = compare::baseline_text(compare::read_baseline(text, file)); }, file)) {
     return;
   }
-  // What we write ourselves has to be good.
+  // A baseline that dlo has written must be readable.
   promise(compare::baseline_text(compare::read_baseline(written, "written")) == written,
           "a baseline reads as it was written");
 }

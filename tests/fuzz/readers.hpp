@@ -4,9 +4,9 @@
 
 namespace dlo::fuzz {
 
-/// What every reader of a user's text promises: a value that the rest can work with, or an
-/// InputError whose one line begins with the file's name. Anything else is thrown on, or is a
-/// std::logic_error that says what was broken.
+/// Reads a text as a scene file. A reader of a user's text must return a valid value or throw an
+/// InputError of one line that begins with the file's name.
+/// @throws std::logic_error if the reader breaks this; other exceptions of the reader pass
 void scene(const std::string& text);
 void model(const std::string& text);       ///< MJCF
 void parameters(const std::string& text);  ///< of the force model

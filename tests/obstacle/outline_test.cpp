@@ -48,8 +48,7 @@ TEST(Outline, IsTheSurfaceInAPlaneOfSymmetry) {
     Eigen::Matrix3Xd in_space = Eigen::Matrix3Xd::Zero(3, points.cols());
     in_space.topRows<2>() = points;
     EXPECT_LT(body.clearances(in_space).cwiseAbs().maxCoeff(), 1e-12);
-    // Of a chord over an angle a the segment has the share a^2 / 6 of its
-    // sector.
+    // The segment beyond a chord over an angle a has a^2 / 6 of the area of its sector.
     const double chords = std::pow(2 * M_PI / 120, 2) / 6 * disc;
     EXPECT_NEAR(enclosed_area(points), area, chords + 1e-12);
   }

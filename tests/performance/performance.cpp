@@ -56,7 +56,7 @@ struct Work {
     }
   }
 
-  /// Of one repetition [s].
+  /// Returns the time of one repetition [s].
   [[nodiscard]] double seconds() const {
     const double begin = computing_time();
     for (long i = 0; i < repeats; ++i) run();

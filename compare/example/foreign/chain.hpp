@@ -97,7 +97,7 @@ inline void refuse_unless(bool possible, const std::string& why) {
   if (!possible) throw NotSupported(why);
 }
 
-/// What such a chain cannot be made of is refused, not neglected.
+/// Refuses a scene with parts that such a chain does not model.
 inline void check(const nlohmann::json& scene) {
   const nlohmann::json& model = scene.at("force_model");
   const nlohmann::json& rod = scene.at("rod");

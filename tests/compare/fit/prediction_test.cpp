@@ -99,7 +99,7 @@ TEST(Prediction, WhatAFixtureHasWrongIsFoundOnceAndPredictsTheShapeLeftOut) {
   EXPECT_LT(found.prediction->rms_m, 1e-4);
   // Four scenes at four angles are no repetitions.
   EXPECT_FALSE(found.prediction->repeatability_m.has_value());
-  // What each shape has of its own predicts no other.
+  // A clamp error that each shape has of its own predicts no other shape.
   options.shared_clamps = false;
   const MaterialFit own = fit_material(seen.scenes, seen.shapes, options);
   ASSERT_TRUE(own.prediction.has_value());

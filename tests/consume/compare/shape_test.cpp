@@ -1,4 +1,4 @@
-// What a program does with all three libraries: read a scene, solve it, compare, and test shapes.
+// A program with all three libraries: it reads a scene, solves it, compares, and tests shapes.
 
 #include <dlo/compare.hpp>
 #include <dlo/compare/gtest.hpp>
