@@ -43,7 +43,7 @@ struct Wire {
   static constexpr double wall_stiffness = 100;   // [N/m]
 };
 
-/// Computes the targets of the gripper in the hand: a smooth path, up to 0.35 m/s and 125 deg/s.
+/// Computes the targets of the gripper in the hand: a smooth path, up to 0.35 m/s and 134 deg/s.
 void follow_hand(double time, double segment, Eigen::Matrix3Xd& targets) {
   const double turn = 2 * std::numbers::pi * time;
   const Eigen::Vector3d position(0.1 * std::sin(0.5 * turn), 0.05 * std::sin(0.37 * turn),

@@ -67,8 +67,8 @@ void BandMatrix::multiply(const Eigen::Matrix3Xd& vectors, Eigen::Matrix3Xd& res
 BandFactor::BandFactor(Eigen::Index points) : rows_(static_cast<std::size_t>(points)) {}
 
 bool BandFactor::compute(const BandMatrix& matrix, const std::vector<char>& is_free, double shift) {
-  // Schur complements after elimination of the previous points: of this point's diagonal block, of
-  // the next one's, and of the block between both.
+  // Changes by the elimination of the previous points (terms of the Schur complement): of this
+  // point's diagonal block, of the next one's, and of the block between both.
   const Eigen::Index count = matrix.points();
   Eigen::Matrix3d own = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d next = Eigen::Matrix3d::Zero();

@@ -12,21 +12,20 @@
 namespace dlo::force_model {
 namespace {
 
-/// Largest number of Newton steps to follow a gripper in one step; after them its points are set to
-/// its targets.
+/// Number of linear solves in one step after which no further Newton step follows a gripper; its
+/// points are then set to its targets.
 constexpr int most_newton_steps = 64;
 /// Largest rotation of a segment in one Newton step, as the tangent of the angle [-].
 constexpr double largest_turn = 1;
 /// A segment shorter than this fraction of its rest length has no reliable direction. Its rotation
 /// is computed as if it had this length.
 constexpr double shortest_turned = 0.25;
-/// Fraction of the rest length to which segments of zero length are opened, so that they have a
-/// direction.
+/// Fraction of the rest length to which shorter segments are opened, so that they have a direction.
 constexpr double opened = 1e-3;
 /// Limit of compression in the transverse stiffness, in units of c_c / L. More compression occurs
 /// only in initial shapes, and would make the stiffness indefinite.
 constexpr double most_pressed = 0.01;
-/// Required fraction of the decrease that the slope predicts (Armijo).
+/// Required fraction of the decrease that the quadratic model predicts.
 constexpr double sufficient = 0.05;
 /// Largest number of solves in the search for the points that touch walls. If the set is not found,
 /// the last one is used until the next step.
@@ -86,8 +85,9 @@ ImplicitStep::ImplicitStep(const Rod& rod, const Eigen::Matrix3Xd& points,
   inertia_ = masses_ * (1 + damping_rate_ * time_step_) / time_step_;
 }
 
-/// Opens a segment of zero length along the chord of its neighbours, in the direction of
-/// contraction forces. The points after it, up to the next held point, move along.
+/// Opens segments that are shorter than `opened`, in the direction of contraction forces: each
+/// along the chord from the point before it to the point after it. The points after it, up to the
+/// next held point, move along.
 void ImplicitStep::open_segments(const Rod& rod) {
   const Eigen::Index last = points_.cols() - 1;
   for (Eigen::Index i = 0; i < last; ++i) {
@@ -210,8 +210,8 @@ double ImplicitStep::search(const Rod& rod, bool gripper_moves) {
     const double moved = potential(rod, trial_);
     const double promised = energy_ + share * (walls_energy_ - slope + share / 2 * curvature);
     const double rounding = energy_rounding * (std::abs(energy_) + energy_unit_);
-    // If no gripper moves, the model's decrease is half of `decrease`. With walls, where the model
-    // is exact only at 0 and 1, it is a convex function, so that its chord is an upper bound.
+    // If no gripper moves, the model's decrease is share * `decrease`. With walls the model is
+    // exact only at 0 and 1; between them it is convex, so that its chord is an upper bound.
     const double decrease = slope - walls_energy_ - share / 2 * curvature;
     const double slack = gripper_moves ? std::abs(curvature) / 2 * share + 1e-3 * energy_unit_
                                        : share * (1 - sufficient) * decrease;

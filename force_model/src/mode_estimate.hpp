@@ -11,8 +11,7 @@ namespace dlo::force_model {
 ///
 /// Each step rounds the positions by about eps x, x the largest coordinate. Momentum accumulates
 /// the squares of 1 / (1 - c_h) such errors, and a stiff rod responds with the forces of its
-/// fastest modes, so that rounding alone causes
-/// modes, so that rounding alone makes
+/// fastest modes, so that rounding alone makes
 ///     -dF.dP = k N fastest (eps x)^2 / (1 - c_h),   1 - c_h = 4 sqrt(slowest / fastest),
 /// with k measured at rest as 0.005 to 0.035 for rods whose fastest mode bends (N = 16 to 1000) and
 /// up to 0.35 for one that stretches (c_c = 1e9 N). A block whose value is at most that of k = 2

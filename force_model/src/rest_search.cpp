@@ -11,7 +11,7 @@
 namespace dlo::force_model {
 namespace {
 
-constexpr long unconditional_after = 50'000;  // steps between measurements without signs of rest
+constexpr long unconditional_after = 50'000;  // steps before a measurement without signs of rest
 constexpr long clock_steps = 64;  // steps between readings of the clock (cost: one step)
 
 }  // namespace

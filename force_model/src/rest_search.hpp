@@ -51,7 +51,8 @@ class RestSearch {
   /// equilibrium but not at rest, or found the simple signs of rest wrong; else infinity [N/m].
   [[nodiscard]] double slowest_mode() const { return slowest_mode_; }
 
-  /// Returns the result; if no steps are left, the final shape is measured.
+  /// Returns the result. Unless the search found rest or diverged, the final shape is measured,
+  /// which may be at rest.
   [[nodiscard]] RelaxResult finish(const MovingShape& shape);
 
  private:

@@ -8,7 +8,6 @@ namespace dlo::force_model {
 /// Applies finite movements to a polygon as if they were rates: the rotation of a segment from a
 /// linear solve does not stretch it. With a segment a and the difference d between the movements of
 /// its end and its beginning, u = a/|a|,
-/// moves than its beginning, u = a/|a|,
 ///     |a'| = |a| + u.d,   a'/|a'| along a + d                                            (1)
 /// Anchors move exactly as given. A part between an anchor and a free end is built from (1). A part
 /// between two anchors is built from the first one. The remaining gap at the second anchor is

@@ -23,7 +23,7 @@ enum PointArray : int {
   proposals = 3,         ///< movements before scaling [m], 3 axes, of this step and of the last
   forces = 9,            ///< forces on free points, 0 on rigidly held ones [N], 3 axes
   loads = 12,            ///< constant forces [N], 3 axes
-  external_forces = 15,  ///< loads, walls and spring grips [N], 3 axes
+  external_forces = 15,  ///< loads, walls, solids, spring grips [N], 3 axes
   rest_lengths = 18,     ///< L_k of the segment from P_k to P_{k+1} [m]
   stretch = 19,          ///< c_c / L_k [N/m], 0 where there is no segment
   bend = 20,             ///< hooke: 2 EI / L [N m], paper: c_b [N]; 0 where there is no joint
@@ -82,7 +82,8 @@ struct KernelChoice {
 struct StepKernel {
   /// Computes external_forces = loads + walls.
   void (*add_walls)(const PointBlock& block, const WallLanes* walls, std::ptrdiff_t count);
-  /// Computes forces = contraction + bending + `applied` (loads or external_forces). `regular` is
+  /// Computes the forces on free points = contraction + bending + twist + `applied` (loads or
+  /// external_forces), and 0 for other points. `regular` is
   /// set to 1 for rods for which the formulas hold at every joint. It is set to 0 if a segment has
   /// no direction or a joint is folded beyond hooke_fold_angle: then `forces` is undefined.
   void (*compute_forces)(const PointBlock& block, PointArray applied, PerLane& regular);

@@ -97,7 +97,8 @@ Eigen::VectorXd StiffnessFactor::negative_curvature(const BorderedMatrix& K) con
     return factor_.matrixU().solve(Eigen::VectorXd::Unit(pivots.size(), pivot));
   }
   // The pivots of the bordered matrix do not give directions of K. The lowest mode is found by
-  // inverse iteration, with the smallest power of four as a shift that makes K positive definite.
+  // inverse iteration with a shift: the first of eps 4^k largest, k = 0, 1, .., that makes K
+  // positive definite.
   const double largest = K.largest_eigenvalue();
   for (double share = std::numeric_limits<double>::epsilon(); share < 2; share *= 4) {
     const BorderedMatrix shifted = K.shifted(share * largest);

@@ -19,12 +19,13 @@ struct BatchRod {
   StepOptions options;      ///< step settings
 };
 
-/// Vectorised batch of rods with equal number of points, bending law and step policy. A block
-/// contains eight rods, and one instruction moves the same point of all of them. Batches are meant
-/// for sweeps, calibration and stability maps. Lengths, stiffnesses, loads, walls, grips, initial
-/// points and step constants may differ from rod to rod. Each rod moves as in its own Simulation,
-/// up to rounding. Rods between grips that hold their frame are refused, because only a Simulation
-/// counts their twist.
+/// Vectorised batch of rods with equal number of points, bending law, number of natural turns, step
+/// policy and instruction set. A block contains eight rods, and one instruction moves the same
+/// point of all of them. Batches are meant for sweeps, calibration and stability maps. Lengths,
+/// stiffnesses, loads, walls, grips, initial points and step constants may differ from rod to rod.
+/// Each rod moves as in its own Simulation, up to rounding. Rods between grips that hold their
+/// frame are refused, because only a Simulation counts their twist, and so are steps with
+/// velocities and implicit steps.
 ///
 /// Blocks share no data. Different threads may work on different blocks at the same time:
 ///     tbb::parallel_for(std::size_t{0}, batch.blocks(), [&](auto b) { batch.step_block(b, 1000);
@@ -35,8 +36,8 @@ class Batch {
   static constexpr std::size_t rods_per_block = 8;
 
   /// Creates the batch.
-  /// @throws std::invalid_argument if there are no rods, if they differ in what must be equal, or
-  /// as Simulation
+  /// @throws std::invalid_argument if there are no rods, if they differ in what must be equal, if
+  /// one is refused (see above), or as Simulation
   explicit Batch(const std::vector<BatchRod>& rods);
   Batch(const Batch& other) = delete;
   Batch& operator=(const Batch& other) = delete;

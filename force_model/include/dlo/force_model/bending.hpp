@@ -60,8 +60,9 @@ void check(const Bending& bending, Eigen::Index segments);
 /// vector along +z:
 ///     P_{i+1}: M(alpha_0)/|b| z x v   P_{i-1}: M(alpha_0)/|a| z x u   P_i: minus the sum
 ///
-/// At a full fold (u = -v) the direction of opening is not defined; a fixed one orthogonal to u is
-/// taken. A joint next to a segment of zero length has no angle and exerts no force.
+/// At a full fold (u = -v) the direction of opening is not defined. A fixed one orthogonal to u is
+/// taken, for `paper` only if a = b: else e is parallel to u, and there is no force. A joint next
+/// to a segment of zero length has no angle and exerts no force.
 /// @param points        positions [m], 3 x (n+1), n >= 1
 /// @param rest_lengths  [m], n, > 0
 /// @param[in,out] forces  added to, not overwritten [N], 3 x (n+1)

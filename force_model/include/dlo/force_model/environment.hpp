@@ -30,7 +30,9 @@ void check(const Wall& wall);
 struct Solid {
   obstacle::Body body;   ///< [m]
   double stiffness = 0;  ///< sum of c_e over all samples of a segment [N/m], >= 0
-  int samples = 1;  ///< samples per segment, >= 1 (obstacle::samples_per_segment); 1: at its end
+  /// Equally spaced samples per segment, from its first point on, >= 1
+  /// (obstacle::samples_per_segment), and one at the last point of the rod; 1: at the points only.
+  int samples = 1;
 };
 
 /// @throws std::invalid_argument naming the first member that is out of range

@@ -38,8 +38,8 @@ struct Rod {
 /// grips that hold its frame, because of twist.
 [[nodiscard]] bool is_planar(const Rod& rod);
 
-/// Checks a rod. If two grips hold frames, the law must be hooke, stiffnesses > 0 (also of bending,
-/// between them), and there must be no natural angles.
+/// Checks a rod. If two or more grips hold frames, the law must be hooke, the joints between them
+/// must have torsional and bending stiffnesses > 0, and there must be no natural angles.
 /// @throws std::invalid_argument naming the first member that is out of range
 void check(const Rod& rod);
 

@@ -46,9 +46,9 @@ class Simulation {
 
   /// Steps until the rod is at rest. A shape is at rest if its tangent stiffness is positive
   /// definite, and both the Newton step to the equilibrium and the remaining momentum are below the
-  /// tolerance. A small force or movement alone proves nothing, as the paper's creeping shapes
-  /// show. A rod in an unstable equilibrium is displaced by 1e-6 of its length in a direction of
-  /// negative curvature.
+  /// tolerance, or below EquilibriumCheck::rounding_error if that is larger. A small force or
+  /// movement alone proves nothing, as the paper's creeping shapes show. A rod in an unstable
+  /// equilibrium is displaced by 1e-6 of its length in a direction of negative curvature.
   /// Allocates.
   RelaxResult relax(const RelaxOptions& options = {});
 

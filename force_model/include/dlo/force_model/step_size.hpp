@@ -19,15 +19,18 @@ inline constexpr double smallest_mode_ratio = 1e-15;
 
 /// Returns bounds for a rod in a given shape.
 ///
-/// `fastest` adds up what can act on one point: 4 c_c / L of contraction, 16 M'(alpha) / L^2 of
-/// bending (hooke: 16 EI / L^3 when straight; paper: 48 c_b sin^2(alpha/2) cos(alpha/2) / L), what
-/// turning the joint's forces adds (at most 4 M / L^2, of a natural turn's couple too), twist
-/// (twist_mode_bound), walls, solids and spring grips. L is the shortest segment as it is now, so
-/// that compressed segments count.
+/// `fastest` adds up what can act on one point, the largest value of each: 4 c_c / L of
+/// contraction, 16 M'(alpha) / L^2 of bending (hooke: 16 EI / L^3 when straight; paper: 48 c_b
+/// sin^2(alpha/2) cos(alpha/2) / L), what turning the joint's forces adds (at most 4 M / L^2, of a
+/// natural turn's couple too), twist (twist_mode_bound), walls, solids and spring grips. L is for
+/// contraction the rest length of a segment, or its present length if that is shorter, and for
+/// bending the present length of the shorter segment of a joint, but never less than a tenth of the
+/// rest length.
 ///
 /// `slowest` is the first mode of a straight clamped-free rod of this length and these points,
-/// (1.8751 / l)^4 EI L, EI that of the softest joint. For the cubic law EI L is taken at the joint
-/// angle that the loads ask for.
+/// (1.8751 / l)^4 EI L, L the mean rest length and EI that of the softest joint. For the paper's
+/// law EI is M L / alpha, alpha the angle of that joint at the moment M = (sum of all |load|) l/2,
+/// but at most its moment at 3 rad.
 /// @param points  [m], 3 x rod.points()
 /// @throws std::invalid_argument if a shape or number is out of range
 [[nodiscard]] ModeBounds mode_bounds(const Rod& rod,

@@ -44,13 +44,13 @@ enum class Integration {
   ///       not stretch them; between two grips the gap that this leaves is spread and lengths are
   ///       restored;
   ///     - which points walls press is part of what is solved (an active set);
-  ///     - dP is shortened so that no segment rotates by more than 45 degrees, and until the
-  ///     potential
-  ///       energy (with dt that of M and C too) falls by a share of what the quadratic model
-  ///       promises, or while a gripper moves is not far above it;
+  ///     - dP is shortened so that no segment rotates by more than 45 degrees, and then halved
+  ///       until the potential energy (with dt that of M and C too) falls by at least a share of
+  ///       what the quadratic model promises; while a gripper moves, until that energy is not far
+  ///       above the one which the model promises;
   ///     - held points that a gripper has moved since the last step are part of dP; a movement that
   ///       had to be shortened is made in as many Newton steps as it takes, in the same step.
-  /// A rod that clamps twist is refused, and so are rods in lockstep.
+  /// A rod that clamps twist is refused, and so are rods of a Batch.
   implicit_euler,
 };
 
