@@ -26,8 +26,8 @@ struct PlanarCantilever {
   std::vector<Load> loads;  ///< sorted by `at`
 };
 
-/// A problem with one clamp at either end, reduced to its plane and its own units. It contains
-/// geometry and units only.
+/// A problem with one clamp, at one end of the rod, reduced to its plane and its own units. It
+/// contains geometry and units only.
 struct ReducedCantilever {
   PlanarCantilever rod;
   Plane plane;            ///< origin at the clamp, x along the rod at the clamp
@@ -57,7 +57,7 @@ struct PlanarSamples {
                               std::span<const double> arc_lengths, const PlanarSamples& planar);
 
 /// Returns force and torque of the clamp on the rod: the force balances weight and loads, the
-/// torque bends the rod to its curvature at the clamp.
+/// torque bends the rod to its curvature at the clamp and balances couples of loads at the clamp.
 /// @param clamp_curvature  curvature in 1/l, in the plane's frame
 [[nodiscard]] Reaction clamp_reaction(const Problem& problem, const ReducedCantilever& reduced,
                                       double clamp_curvature);

@@ -8,7 +8,7 @@ namespace dlo::energy_model {
 namespace {
 
 /// Distance in span units by which a body may stick out of another one and still count as within
-/// it: a tenth of the allowed depth of a shape behind a rigid obstacle.
+/// it: a hundredth of the allowed depth of a shape behind a rigid obstacle.
 constexpr double rounding = 1e-10;
 /// Radius, in lengths of the span, within which the core of a body is used. A rod stays within one
 /// length of the anchor; the margin is 5 %.

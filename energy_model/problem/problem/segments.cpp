@@ -9,7 +9,8 @@ namespace {
 /// Slack, divided by its length, above which a segment is not stretched but hangs or arches.
 constexpr double largest_slack = 0.05;
 
-/// Upper bound of the tension; no rod is pulled harder without being stretched to its length.
+/// Largest tension in the search [EI/l^2]; no rod is pulled harder without being stretched to its
+/// length.
 constexpr double largest_tension = 1e9;
 
 double sine_of_half(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {

@@ -120,7 +120,7 @@ struct Span {
   /// Returns the weight and line loads of the rod between two arc lengths; negative if `to` is less
   /// than `from`.
   [[nodiscard]] Eigen::Vector3d weight_between(double from, double to) const;
-  /// Returns the mean weight and line loads per length, outside parts.
+  /// Returns the weight per length outside parts, plus the mean of the line loads.
   [[nodiscard]] Eigen::Vector3d mean_weight() const;
   /// Returns the sum of the norms of weight and loads, as a scale.
   [[nodiscard]] double total_load() const;

@@ -37,8 +37,8 @@ struct PlacedSpan {
 };
 
 /// Cuts a problem at its clamps, and converts every span to its units and its frame.
-/// @throws std::invalid_argument if the problem is out of range, or grips are farther apart than
-/// the rod between them
+/// @throws std::invalid_argument if the problem is out of range, a load has no potential, the rod
+/// stretches (axial_stiffness), or grips are farther apart than the rod between them
 [[nodiscard]] std::vector<PlacedSpan> split(const Problem& problem);
 
 }  // namespace dlo::energy_model

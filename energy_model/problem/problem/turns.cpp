@@ -54,7 +54,7 @@ const Grip& reference_clamp(const Problem& problem) {
   return *first;
 }
 
-/// Returns the d1 of that clamp, without roll.
+/// Returns the d1 of reference_clamp() before its roll.
 Eigen::Vector3d reference_d1(const Problem& problem, const Grip& clamp) {
   const Eigen::Vector3d direction = clamp.direction->normalized();
   if (clamp.frame && clamp.frame->d1) return part_across(*clamp.frame->d1, direction);

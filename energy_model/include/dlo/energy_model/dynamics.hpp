@@ -52,8 +52,12 @@ struct EnergyBalance {
   double kinetic = 0;  ///< kinetic energy of the points
   double bending = 0;  ///< bending energy int 1/2 EI kappa^2 ds, of strains beyond the natural ones
   double twisting = 0;  ///< twisting energy int 1/2 GJ u3^2 ds, of twist beyond the natural one
-  double gravity = 0;   ///< potential of weight and line loads; zero at the first grip at time 0
-  double load = 0;      ///< potential of dead loads; zero at the first grip at time 0
+  /// Potential of weight and line loads. It is zero at the position that the first clamp along the
+  /// rod (without clamps the first grip) has at the first time of the simulation.
+  double gravity = 0;
+  /// Potential of dead loads, zero at the same position; that of a load on a clamp is zero at the
+  /// position of this clamp at the first time.
+  double load = 0;
   /// Energy of the springs of yielding obstacles and of the stiff springs that represent rigid
   /// ones.
   double obstacles = 0;

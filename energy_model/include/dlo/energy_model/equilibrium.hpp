@@ -71,8 +71,8 @@ struct [[nodiscard]] Equilibrium {
   /// |mu| in EI/l^2.
   /// `exact`: the largest gap between shots, with positions in l, rotations in rad, moments in
   /// f^(1/2) EI/l and forces in f EI/l^2, f from the initial guess. For a rod that is shot from its
-  /// tip it is the error of the clamp's angle [rad]; with contact it is the norm of all residuals
-  /// divided by the largest force. -1: unknown, for a span for which the time did not suffice.
+  /// tip it is the error of the clamp's angle [rad]. -1: unknown, for a span for which the time did
+  /// not suffice.
   double residual = -1;
   /// `energy`: estimated distance of the points from those of an equilibrium, divided by the rod
   /// length: the remaining error of solver, rounding and truncation, divided by the eigenvalue
@@ -83,8 +83,9 @@ struct [[nodiscard]] Equilibrium {
   /// of the plane of a planar shape too; negative: unstable. `energy`: eigenvalue of the reduced
   /// Hessian over EI/l, in the norm of the bending energy. `exact`: relative to int |eta'|^2 +
   /// |eta|^2 ds, where eta is the change of the tangent (with material directors: the spin) and
-  /// lengths are in l. NaN: unknown. It is unknown for `exact` if the loads have no potential, and
-  /// for one clamp in a plane, whose stability `energy` proves without it.
+  /// lengths are in l. NaN: unknown. It is unknown for `exact` if the loads have no potential. It
+  /// may be unknown for `energy` and a uniform straight round rod in a plane with a single grip, a
+  /// clamp, and parallel forces, whose stability is proven without it.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   /// `energy`, if `near_singular`: number of eigenvalues that are zero to the tolerance. Each is a
   /// direction in which a fold or a bifurcation leaves the shape undetermined. It is 0 if only the

@@ -19,9 +19,9 @@ struct ExactOptions {
   /// Shape of this problem or a similar one, with the reactions of its grips, which Newton's method
   /// confirms or corrects without a search. It has to outlive the call. If clamps twist the rod,
   /// the solver starts with the torque of the shape's `twists` and counts whole turns as they do; a
-  /// shape without `twists` is treated as the rod without twist. For a rod with material directors
-  /// the frames are given by the shape's d1. If it has no d1, they are computed from the frame of
-  /// the first clamp, which has to exist, and from the reactions.
+  /// shape without `twists` is treated as the rod without twist. For a rod with material directors,
+  /// which must have a clamp, the frames are given by the shape's d1. If it has no d1, they are
+  /// computed from the frame of the first clamp and from the reactions.
   const Equilibrium* start = nullptr;
 };
 
@@ -40,8 +40,10 @@ struct ExactOptions {
 /// @return the lowest `converged` shape, else the lowest other one, else the reason why there is
 /// none. Its stability is that of the second variation by finite elements on its own shape
 /// @throws std::invalid_argument if the problem or an option is out of range. Also for obstacles
-/// without a start, for yielding obstacles, for obstacles of a rod with natural strains, and for a
-/// clamp without a frame between two that hold frames of a round straight rod
+/// without a start, for yielding obstacles, for obstacles together with natural strains, couples,
+/// axial_stiffness or a line load that varies along the rod, for axial_stiffness with loads that
+/// have no potential, for confined_to_plane, and for a clamp without a frame between two that hold
+/// frames of a round straight rod
 Equilibrium solve_exact(const Problem& problem, const ExactOptions& options = {});
 
 /// Returns every equilibrium that the scan or the search finds: `converged` ones first, by energy,

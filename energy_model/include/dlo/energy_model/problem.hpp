@@ -34,9 +34,9 @@ struct Grip {
 /// A force and a couple at one arc length.
 ///
 /// The couple of a dead load keeps its axis. It has a potential only in a plane: minus torque times
-/// the angle of the tangent. `energy` accepts it across the plane of a rod that touches no obstacle
-/// and whose frame is not held. `exact` accepts any couple; out of the plane stability is not
-/// judged.
+/// the angle of the tangent. `energy` accepts it across the plane of a rod without obstacles and
+/// with at most one clamp that holds a frame, and any couple at a clamp. `exact` accepts any
+/// couple; out of the plane stability is not judged.
 ///
 /// A load that follows the rod has no potential: only `exact` accepts it, and not at a clamp.
 struct Load {
@@ -96,9 +96,9 @@ struct Section {
 /// in turns.hpp); energy_model/doc/search.md describes how a solver gets there. A rod that
 /// has_material_directors() has d1 and d2 fixed to its material. The first clamp along the rod
 /// holds them: at its FrameHold::d1, or else d2 is the normal of the plane that grips and forces
-/// share, on the side of +z (+y, +x if the plane contains those), so that a strain u2 > 0 bends the
-/// rod to the left; the roll of the clamp is added. Without a clamp the directors are free to
-/// rotate. A later clamp holds them only if it has a frame.
+/// share, on the side of +z (of +y if the plane contains z, of +x if it contains y and z), so that
+/// a strain u2 > 0 bends the rod to the left; the roll of the clamp is added. Without a clamp the
+/// directors are free to rotate. A later clamp holds them only if it has a frame.
 struct Problem {
   double length = 0;               ///< l [m], > 0
   double bending_stiffness = 0;    ///< EI [N m^2], > 0; about d1 if bending_stiffness_2 is given
@@ -128,9 +128,9 @@ struct Problem {
   std::optional<double> axial_stiffness = std::nullopt;
 };
 
-/// Whether d1 and d2 are fixed to the rod's material. They are if the rod is not intrinsically
-/// straight, or if it or one of its sections has bending_stiffness_2 (equal to bending_stiffness or
-/// not). A round straight rod has none.
+/// Whether d1 and d2 are fixed to the rod's material. They are if natural_strains is not empty
+/// (even if all are zero), or if the rod or one of its sections has bending_stiffness_2 (equal to
+/// bending_stiffness or not). A round straight rod has none.
 [[nodiscard]] bool has_material_directors(const Problem& problem);
 
 /// Whether a load has a couple.

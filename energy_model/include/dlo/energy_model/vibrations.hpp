@@ -54,8 +54,8 @@ struct VibrationMode {
   /// exp((-omega_squared)^(1/2) t).
   double omega_squared = 0;
   /// Estimated relative truncation error of omega: half the change of omega_squared from fewer
-  /// terms, divided by |omega_squared|, or by 1e-2 EI / (m l^3) with the rod's mass m if that is
-  /// larger, as for a zero mode.
+  /// terms, divided by |omega_squared|, or by 1e-2 EI / (m l^3) if that is larger, as for a zero
+  /// mode; m is the mass of the rod and its point masses.
   double error = std::numeric_limits<double>::infinity();
   /// Plane of the motion, relative to the plane of the shape.
   ModePlane plane = ModePlane::spatial;
