@@ -21,7 +21,7 @@ constexpr double least_load_step = 1e-4;
 constexpr double longest_load_step = 0.5;
 // Largest rotation of a tangent from its prediction [rad].
 constexpr double largest_correction = 0.5;
-// Rotation from the prediction after which the next step is twice as long [rad].
+// Rotation from the prediction below which the next step is twice as long [rad].
 constexpr double small_correction = 0.1;
 // Local error of the integrator before the full loads are applied.
 constexpr double path_tolerance = 1e-10;

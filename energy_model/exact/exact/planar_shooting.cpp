@@ -135,8 +135,8 @@ class TipScan {
     for (std::size_t i = 0; i < grid.size(); ++i) {
       const ScanPoint next = shooter_.point(grid[i]);
       if (i > 0) look_into(previous, next, 0);
-      // A root without a change of sign is only possible if the tip angle is constant along the
-      // rod.
+      // A root without a change of sign is only possible for a rod that is straight at this tip
+      // angle.
       const bool straight = next.start == 0 || std::abs(next.start) == pi;
       if (straight && is_zero(next)) roots_.push_back(next.start);
       previous = next;

@@ -19,7 +19,7 @@ struct TipFrame {
 
 [[nodiscard]] TipFrame tip_frame(const PlanarCantilever& rod);
 
-/// Returns the sum of the norms of weight and loads [EI/l^2].
+/// Returns the sum of the norms of weight and forces [EI/l^2] and of couples [EI/l].
 [[nodiscard]] double total_load(const PlanarCantilever& rod);
 
 /// Result of a shot at the clamp, NaN if the integrator failed: the angle psi of the tangent from

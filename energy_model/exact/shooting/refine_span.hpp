@@ -13,7 +13,8 @@ namespace dlo::energy_model {
 /// or of a similar one. If the shape has no `twists` for a round span, the span is refined without
 /// twist and then twisted. Material directors are those of the shape's d1. If it has none, they
 /// rotate from those of the first clamp by the torque that the grips' reactions imply.
-/// @throws std::invalid_argument if the span is not round and has no clamp
+/// @throws std::invalid_argument if the span is not round and has no clamp, or if its loads are too
+/// large (check_load())
 [[nodiscard]] SpanEquilibrium refine_span(const RodSpan& span, const Problem& problem,
                                           const Equilibrium& shape, double tolerance,
                                           const Deadline& deadline);

@@ -51,7 +51,7 @@ struct RodPiece {
   const NaturalStrain& natural;
   double begin = 0;   ///< s
   double length = 0;  ///< length to integrate over
-  /// Surface on which the piece lies, intrinsically straight; null: free.
+  /// Surface on which the piece lies; the piece must then be intrinsically straight. Null: free.
   const Surface* surface = nullptr;
 };
 

@@ -21,7 +21,8 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Returns the cross-sections just before the nodes of a span, which add to force and moment.
+/// Returns the cross-sections just before the nodes of a span. Force and moment jump at a node by
+/// what acts there.
 std::vector<RodState> before_nodes(const RodSpan& span, const SpanEquilibrium& equilibrium,
                                    double tolerance) {
   const RodMesh mesh = closed_mesh(span, equilibrium);

@@ -21,7 +21,8 @@ constexpr double confirmed_depth = 1e-9;
 // Largest accepted tensile contact force, divided by 1 + the largest force.
 constexpr double allowed_pull = 1e-7;
 constexpr int samples = 8;  // parts per interval at whose ends pressures are computed
-// In l: no point within a part of this width is deeper by more than this.
+// Width in l below which a part is not halved further: no point within it is deeper than its ends
+// by more than this.
 constexpr double least_halved_width = 1e-9;
 constexpr const char* integration_failed =
     "the rod between its nodes is not known: the integrator failed";

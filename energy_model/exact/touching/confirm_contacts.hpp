@@ -14,8 +14,9 @@ namespace dlo::energy_model {
 /// @param shape      shape of this problem or of a similar one, with the reactions of its grips and
 ///               its contacts
 /// @param tolerance  local error of the integrator
-/// @return std::nullopt for another kind of problem, and for contacts that are not supported: on
-/// both sides of a grip, or next to another part that lies
+/// @return std::nullopt for another kind of problem, and for contacts that are not supported: a
+/// point contact at a grip, a load or a change of section, a part that lies across one of these, or
+/// two parts that lie next to each other
 [[nodiscard]] std::optional<Equilibrium> confirm_contacts(const Problem& problem,
                                                           const Equilibrium& shape,
                                                           double tolerance,

@@ -39,7 +39,7 @@ struct SpanDrive {
   /// Directions to which directors of the last cross-section stay normal, if a clamp holds it.
   std::vector<AcrossDirector> across_end;
   Eigen::Vector3d end_spin = Eigen::Vector3d::Zero();  ///< angular velocity of that clamp
-  std::vector<BodyPlace> obstacles;                    ///< of the problem, by index
+  std::vector<BodyPlace> obstacles;                    ///< the problem's obstacles, by index
 };
 
 /// Mass and damping of a span, in its own units.
@@ -48,7 +48,8 @@ struct SpanInertia {
   std::vector<PointMass> points;   ///< each at the begin or end of an element
   double material_damping = 0;     ///< relaxation time tau
   double drag = 0;                 ///< drag coefficient per length
-  double quadratic_drag = 0;       ///< of drag normal to the rod, by length and squared velocity
+  /// Coefficient per length of the drag normal to the rod that grows as the squared velocity.
+  double quadratic_drag = 0;
 };
 
 /// Adds `times` times each entry of `of` to `to`.

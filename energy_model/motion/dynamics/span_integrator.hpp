@@ -44,8 +44,8 @@ class SpanIntegrator {
   /// Brings the roll of frames about points at rest, which has no mass, to its equilibrium at the
   /// begin. @return the reason of a failure; empty on success
   [[nodiscard]] std::string settle_twist(SpanInstant& at);
-  /// Integrates to a time. @param expired  called after each step. @return the reason of a failure;
-  /// empty on success
+  /// Integrates to a time. @param expired  called before each step. @return the reason of a
+  /// failure; empty on success
   [[nodiscard]] std::string advance(SpanInstant& at, double until,
                                     const std::function<bool()>& expired);
 

@@ -62,7 +62,7 @@ struct RodSpan {
   /// and not twisted().
   Eigen::Matrix3d first_frame = Eigen::Matrix3d::Identity();
   bool has_potential = true;  ///< whether all loads have a potential
-  bool has_axes = false;      ///< whether a load follows d1 or d2, for a round rod too
+  bool has_axes = false;      ///< whether a load follows d1 or d2 of a rod that is round()
   /// Roll that first_frame contains [rad]; zero for a rod that is cut at its clamps.
   double first_roll = 0;
 

@@ -44,7 +44,7 @@ struct Catenary {
                                                    const Eigen::Vector3d& up);
 
 /// Computes the catenary of length l between two points on a floor that carries its lowest part;
-/// std::nullopt if the floor carries none of it, or if they are above each other.
+/// std::nullopt if the floor carries none of it, or if the points are above each other.
 /// @param floor  height of the floor along `up` [m]
 [[nodiscard]] std::optional<Catenary> lie_between(const Eigen::Vector3d& begin,
                                                   const Eigen::Vector3d& end, double l,

@@ -37,7 +37,8 @@ constexpr double largest_h = 0.25;
 /// scale of forces: forces times angles of at most 1, those of positions counted three times.
 constexpr double largest_third_derivative = 4;
 
-/// Returns Newton's step of the coefficients; it has no component along near-null modes.
+/// Returns Newton's step of the coefficients; that of minimum norm, which has no component along
+/// near-null modes, if the system is too close to singular for another one.
 /// @param gradient  of E - mu . c
 Eigen::VectorXd newton_step(NewtonSystem& system, const SpanPoint& point,
                             const Eigen::VectorXd& gradient) {

@@ -13,7 +13,8 @@ class NewtonFactors;
 /// with the number of such directions, if the step is not small, or an eigenvalue is zero to
 /// `neutral` in a direction that is no rigid-body mode (rigid_body_modes.hpp). It also becomes
 /// `near_singular` if a positive eigenvalue might double or vanish within the error of the shape,
-/// as at a fold (Kantorovich's condition). The error is estimated in each case. A failed solution
+/// as at a fold (Kantorovich's condition). The error is estimated in each case. If the residual is
+/// not small, or the grips' forces are too large, the result becomes `failed`. A failed solution
 /// stays unchanged. On return the solution's factor is that at solution.x.
 /// @param load  weight plus loads, the scale of the residuals
 void certify(SpanSolution& solution, double load, NewtonFactors& factors);

@@ -64,8 +64,9 @@ Feature kink_at(const SpanSolution& solution, double at, double sense) {
   return {at, std::sqrt(stiffness_at(span, s) / force)};
 }
 
-/// Returns the local maxima of the curvature that are followed on both sides, within the length of
-/// an elastica that turns back there (2 / curvature), by a decrease to at most `fallen`.
+/// Returns the maxima of the curvature among the points up to twice 2 / curvature away, the length
+/// of an elastica that turns back there, if the curvature at that distance has decreased on both
+/// sides to at most `fallen` of the maximum.
 std::vector<Feature> peaks_of(const SpanSolution& solution, double begin, double end) {
   constexpr double fallen = 0.6;
   constexpr double widths = 2;

@@ -19,7 +19,7 @@ struct PenaltyPolygon {
   Eigen::VectorXd middles;    ///< arc lengths of the segments' middles
   Eigen::Matrix3Xd tangents;  ///< unit tangents of the segments, 3 x middles
   std::vector<Span::Contact> contacts;
-  double twist = 0;  ///< of a round rod with prescribed end frames [rad]
+  double twist = 0;  ///< twist angle of a round rod with prescribed end frames [rad]
 
   /// Returns its tangents as an initial guess.
   [[nodiscard]] TangentField field() const;

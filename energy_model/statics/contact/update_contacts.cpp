@@ -10,9 +10,10 @@ namespace {
 
 /// Largest pull of an obstacle, divided by the scale of all forces, that counts as rounding.
 constexpr double strongest_pull = 1e-7;
-/// Lengths, divided by the rod length: a shorter part in contact becomes a point, and a point that
-/// becomes a part starts with `first_part`.
+/// Length, divided by the rod length: a shorter part in contact becomes a point.
 constexpr double shortest_part = 1e-6;
+/// Length, divided by the rod length. A contact is extended to include the point of largest depth
+/// if that is less than twice this length away, and by at most half of this length beyond it.
 constexpr double first_part = 0.01;
 /// Length between two contacts, divided by the rod length, and rise of the free part between them,
 /// divided by its length, below which both contacts are joined.

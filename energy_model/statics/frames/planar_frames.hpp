@@ -61,8 +61,8 @@ class PlanarFrames {
   /// Computes the tangents and the state. @param[out] tangents  nodes x 3; z is not written
   void evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, Eigen::MatrixX3d& tangents,
                 State& state) const;
-  /// Computes state.by_unknown, the derivatives by x of the sum of nodes . t over the nodes. @param
-  /// nodes  gradient by the tangents, nodes x 3
+  /// Computes state.by_unknown, the derivatives by x of the sum of nodes . t over the nodes.
+  /// @param nodes  gradient by the tangents, nodes x 3
   void adjoint(const Eigen::MatrixX3d& nodes, State& state) const;
   /// Computes state.by_unknown for the sum of weights t_axis over the nodes.
   void adjoint(const Eigen::Ref<const Eigen::VectorXd>& weights, Eigen::Index axis,

@@ -119,7 +119,8 @@ class RodFrames {
   /// Computes state.couples (t x g at the panel's nodes) and state.moments (rows of the panel), the
   /// moment
   ///     M(s) = int_s^end t x dg
-  /// by the discrete rule for rotations. @param later  sum of t x g beyond the panel
+  /// by the discrete rule for rotations. @param later  sum of t x g and of f.couples beyond the
+  /// panel
   void moments(const Panel& panel, const FrameGradient& f, const Eigen::Vector3d& later,
                State& state) const;
   /// Computes state.ends.

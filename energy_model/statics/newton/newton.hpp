@@ -74,9 +74,10 @@ struct NewtonBuffers {
 };
 
 /// Solves for zero gradient of E - mu . c and zero constraint residuals by Newton's method from
-/// solution.x. It ends when the residual is at rounding and the next Newton step, evaluated at the
-/// result, is below 1e-8. A step is shortened while the next step, with the same factor, is not
-/// shorter. Without constraints the Hessian at the end distinguishes a minimum (`converged`) from a
+/// solution.x. It ends when the residual is small and the next Newton step, evaluated at the
+/// result, is at most NewtonOptions::step_tolerance, or at most coarsest_step if rounding prevents
+/// a shorter one. A step is shortened while the next step, with the same factor, is not shorter.
+/// Without constraints the Hessian at the end distinguishes a minimum (`converged`) from a
 /// `saddle`; with constraints the caller has to examine the second variation. The status is
 /// `near_singular` if the residual is at rounding but the step is not, and `failed` if the residual
 /// does not decrease. The solution keeps the last factor of its own, if there is one. Without

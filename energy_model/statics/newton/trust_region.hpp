@@ -20,7 +20,9 @@ struct TrustRegionOptions {
   double radius = first_radius;        ///< of the first step, in the unknowns; > 0
   int max_iterations = 100;            ///< maximum number of steps, accepted or not
   const Deadline* deadline = nullptr;  ///< checked once per step; null: none
-  double stiffness = 0;                ///< of the rod between its grips, force per length
+  /// Largest stiffness of a taut segment between grips [EI/l^3]; used by
+  /// descend_by_augmented_lagrangian() only.
+  double stiffness = 0;
 };
 
 /// Descends from solution.x to a point near a minimum of the energy under the constraints: Newton's

@@ -85,7 +85,8 @@ class ContactSearch {
 
   /// Searches from shapes that pass obstacles. Each is relaxed as a coarse polygon. It is dropped
   /// if a known equilibrium relaxes to the same polygon or, unless all equilibria are wanted, if
-  /// the polygon's energy exceeds that of the lowest known equilibrium's polygon.
+  /// the polygon's energy exceeds that of the lowest known equilibrium's polygon by more than the
+  /// errors of polygons (near_lowest, near_tie_of_polygons).
   void look_past() {
     const std::vector<Span> starts = held_past_obstacles(span_);
     if (starts.empty()) return;

@@ -97,7 +97,8 @@ class Found {
   [[nodiscard]] bool empty() const { return found_.empty(); }
   [[nodiscard]] const SpanSolution& operator[](std::size_t i) const { return found_[i]; }
   /// Returns the best solution; there has to be one. Stable shapes come first, then other
-  /// equilibria, then other solutions, each by energy.
+  /// equilibria, then other solutions; in each group those without lost turns come first, then
+  /// those of lower energy.
   [[nodiscard]] const SpanSolution& best() const;
   /// Whether the search may end: the best solution is stable, and not all equilibria are wanted.
   [[nodiscard]] bool suffices() const {

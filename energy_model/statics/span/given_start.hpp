@@ -7,9 +7,9 @@
 namespace dlo::energy_model {
 
 /// Solves for the equilibrium near SpanOptions::start and certifies it, by Newton's method or by
-/// descent as the start requests, and by the other method if that fails. If a known shape is
-/// followed (Approach::follow) or only a descent is allowed, a saddle is replaced by the minimum
-/// below it.
+/// descent as the start requests, and by the other method if that fails. A saddle is
+/// replaced by the equilibrium below it, if that is stable, in two cases: only a descent is allowed
+/// (Approach::descend_only), or the start is a known shape and not Approach::follow_only.
 [[nodiscard]] SpanSolution solve_from_given_start(const Span& span, const SpanOptions& options,
                                                   SpanWorkspace& workspace);
 

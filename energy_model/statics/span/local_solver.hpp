@@ -9,9 +9,9 @@
 
 namespace dlo::energy_model {
 
-/// Gradient norm at which a descent ends and Newton's method takes over: two Newton steps square it
-/// to below rounding, while a line search, which compares energies, would stall near the root of
-/// the rounding error.
+/// Gradient norm, divided by 1 + load, at which a descent ends and Newton's method takes over: two
+/// Newton steps square it to below rounding, while a line search, which compares energies, would
+/// stall near the root of the rounding error.
 inline constexpr double handover_gradient = 1e-5;
 
 /// Length of Newton's step [rad] below which Newton's method takes over.

@@ -12,7 +12,8 @@ namespace dlo::energy_model {
 /// @param solution  on the span of `on`, with its own elements
 [[nodiscard]] SpanSolution refined(LocalSolver& on, SpanSolution solution);
 
-/// Returns the span with a mesh adapted to a shape, unless its mesh is already adapted.
+/// Returns the span with a mesh adapted to a shape; std::nullopt if its mesh is already adapted, if
+/// nothing is to be cut, and for obstacles, material directors or a given number of coefficients.
 [[nodiscard]] std::optional<Span> adapted_mesh(const LocalSolver& on, const SpanSolution& shape);
 
 /// Certifies a solution. Evaluations of the certificate do not count. Near a fold truncation

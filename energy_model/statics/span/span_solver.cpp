@@ -27,9 +27,10 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 /// Number of initial guesses, in the order of their energy, that the search for the lowest minimum
 /// follows.
 constexpr std::size_t followed_starts = 2;
-/// Number for a rod with material directors, whose lowest shape is harder to predict.
+/// Number of such guesses for a rod with material directors, whose lowest shape is harder to
+/// predict.
 constexpr std::size_t followed_natural_starts = 6;
-/// Number if there are soft obstacles, which a rod may pass on either side.
+/// Number of such guesses if there are soft obstacles, which a rod may pass on either side.
 constexpr std::size_t followed_starts_beside_obstacles = 6;
 
 /// Difference between the cost of a start and that of the last start that is followed in any case,

@@ -21,7 +21,7 @@ struct SpanTraits {
   double longest_piece = 0;
   int natural_terms = 0;  ///< number of coefficients needed for natural strains and couples
   bool taut = false;      ///< elements end where layers at taut segments' ends have decayed
-  double stiffness = 0;   ///< of the tautest segment along its chord
+  double stiffness = 0;   ///< largest stiffness of a taut segment along its chord [EI/l^3]
 };
 
 /// Largest number of unknowns of a span's model before its shape is refined: its dense matrices

@@ -13,9 +13,10 @@ namespace dlo::energy_model {
 struct ContactForce {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< resultant
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();  ///< moment of all rows about the span's anchor
-  double total = 0;                                  ///< sum of the magnitudes
+  double total = 0;                                  ///< sum of the forces along the normals
   double begin = 0, end = 0;  ///< concentrated forces; `end` is 0 for a contact at one point
-  double least_pressure = 0;  ///< force per length along the part; 0 for a contact at one point
+  /// Smallest and largest force per length along the part; 0 for a contact at one point.
+  double least_pressure = 0;
   double largest_pressure = 0;
   /// Smallest concentrated force inside the part, at loads, grips and section changes. Jumps
   /// between the series of two elements elsewhere are truncation errors and do not count.

@@ -68,8 +68,8 @@ class GripRows {
   /// Computes the constraints' Jacobian for tilts out of the plane, one row per constraint.
   void tilt_jacobian(const PlanarFrames& frames, Eigen::MatrixXd& jacobian) const;
 
-  /// Returns the distance by which a shape with these tangents at the nodes (3 x nodes) misses the
-  /// grips.
+  /// Returns the root of the sum of the squared distances by which a shape with these tangents at
+  /// the nodes (3 x nodes) misses the grips.
   [[nodiscard]] double gap(const Eigen::Matrix3Xd& tangents) const;
   /// Shifts the clamps' angles by multiples of 2 pi to the winding of a shape, given by its angles
   /// at the nodes or by its unknowns; in the plane.

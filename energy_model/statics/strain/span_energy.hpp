@@ -108,7 +108,7 @@ class SpanEnergy {
   [[nodiscard]] double truncation(const Eigen::VectorXd& x) const { return truncation(x, terms()); }
   /// Truncation indicator of the first `terms` coefficients.
   [[nodiscard]] double truncation(const Eigen::VectorXd& x, int terms) const;
-  /// Twist: rotation of the end relative to the start [rad], natural twist included; 0 of a span
+  /// Twist: rotation of the end relative to the start [rad], natural twist included; 0 for a span
   /// without unknowns of twist, which is planar or has no material directors and no end rotation.
   [[nodiscard]] double twist(const Eigen::VectorXd& x) const;
   /// Torque of the clamp at the end about the tangent.

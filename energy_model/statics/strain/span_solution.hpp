@@ -20,8 +20,8 @@ struct [[nodiscard]] SpanSolution {
   double residual = -1;  ///< norm of the residual of gradient and constraints
   /// Norm of the Newton step from x that would come next: an estimate of the error of x.
   double next_step = std::numeric_limits<double>::infinity();
-  /// Eigenvalue of the last Newton factor that is nearest to zero, or a slight overestimate.
-  /// Rounding and truncation errors are divided by it. NaN: not computed.
+  /// Magnitude of the eigenvalue of the last Newton factor nearest to zero, or a slight
+  /// overestimate. Rounding and truncation errors are divided by it. NaN: not computed.
   double eigenvalue_nearest_zero = std::numeric_limits<double>::quiet_NaN();
   /// Estimated distance of the shape from an equilibrium, divided by the length; NaN: unknown.
   double error = std::numeric_limits<double>::quiet_NaN();
