@@ -15,13 +15,16 @@ namespace dlo::test {
 
 /// Violations of the conditions of equilibrium by a shape, from its samples and reactions alone.
 struct BalanceDefects {
-  double force = 0;     ///< |sum of all forces on the rod| over the largest of them
-  double torque = 0;    ///< of all torques about a section, the largest of all sections, over
-                        ///< largest force times l plus largest torque
-  double moment = 0;    ///< largest |EI t x t' + GJ tau t - torque of all that lies beyond|, over
-                        ///< the same; with material directors of what is across t, where there is
-                        ///< EI_1 (u1 - n1) d1 + EI_2 (u2 - n2) d2
-  double grips = 0;     ///< positions over l, and directions
+  /// |sum of all forces on the rod| over the largest of them, at least EI/l^2.
+  double force = 0;
+  /// |sum of all torques about the rod's begin| over largest force times l plus largest torque, at
+  /// least EI/l.
+  double torque = 0;
+  /// Largest |EI t x t' + GJ tau t - torque of all that lies beyond|, over the same. With material
+  /// directors only the components across t, with EI_1 (u1 - n1) d1 + EI_2 (u2 - n2) d2 in place of
+  /// EI t x t' + GJ tau t.
+  double moment = 0;
+  double grips = 0;     ///< largest error of positions over l, and of unit tangents
   double integral = 0;  ///< largest |r(b) - r(a) - int t ds| over l, and ||t| - 1|
 
   [[nodiscard]] double worst() const {
@@ -30,7 +33,7 @@ struct BalanceDefects {
   }
 };
 
-/// Force and torque of a part of the rod on its initial point.
+/// Sum of the forces on a part of the rod, and of all torques about the origin.
 struct CarriedLoad {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   Eigen::Vector3d torque_about_origin = Eigen::Vector3d::Zero();
@@ -54,7 +57,7 @@ inline energy_model::Section section_at(const energy_model::Problem& problem, do
           problem.bending_stiffness_2};
 }
 
-/// Returns the strains of the stress-free shape at an arc length.
+/// Returns Problem::natural_strains at an arc length; natural strains of sections are ignored.
 inline Eigen::Vector3d natural_at(const energy_model::Problem& problem, double at) {
   Eigen::Vector3d natural = Eigen::Vector3d::Zero();
   for (std::size_t j = 0; j < problem.natural_strains.size(); ++j) {
@@ -101,7 +104,8 @@ inline std::vector<double> events_of(const energy_model::Problem& problem) {
 /// Computes the balance of a shape. The shape is divided into panels of Gauss-Legendre quadrature
 /// no longer than `panel`; forces and moments beyond each cut are summed from the far end to the
 /// near one.
-/// @param panel  in arc length [m]; a quarter of the length over which the rod's shape changes
+/// @param panel  length of a panel [m], at most about half the length over which the rod's
+/// shape changes
 inline BalanceDefects balance_of(const energy_model::Problem& problem,
                                  const energy_model::Equilibrium& shape, double panel) {
   // Nodes and weights of the six-point rule on [-1, 1] (Abramowitz and Stegun, table 25.4).

@@ -54,7 +54,8 @@ struct Placement {
     double points = 0, curvature = 0, energy = 0, force = 0, torque = 0;
   };
 
-  /// @param own  result of a rod of unit length; @param placed  of the same placed here
+  /// @param own  result of a rod of unit length
+  /// @param placed  result of the same rod, transformed by of()
   [[nodiscard]] Differences between(const energy_model::Equilibrium& own,
                                     const energy_model::Equilibrium& placed) const {
     std::vector<double> s = energy_model::equal_arc_lengths(1, 11);

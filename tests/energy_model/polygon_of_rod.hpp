@@ -16,9 +16,9 @@ namespace dlo::test {
 /// middles of the end segments.
 struct PolygonOfRod {
   energy_model::PolygonProblem problem;
-  Eigen::Matrix3Xd points;  ///< where the rod has them [m]
+  Eigen::Matrix3Xd points;  ///< points of the rod's shape, the initial guess of at_rest() [m]
 
-  /// @param segments  between the clamps
+  /// @param segments  number of segments between the clamps
   PolygonOfRod(const energy_model::Problem& rod, const energy_model::Equilibrium& shape,
                Eigen::Index segments) {
     const Eigen::Index count = segments + 2;

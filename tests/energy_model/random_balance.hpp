@@ -45,8 +45,8 @@ struct LargestImbalance {
   }
 };
 
-/// One of the random rods of random_problem() by turns, every other one with a line load that
-/// grows, every third one with a couple across its plane where it has one.
+/// Returns a rod of random_problem(), of each kind by turns. One of two that are not curved has a
+/// line load that varies along it, three of ten in the plane have a couple across it.
 inline energy_model::Problem loaded_problem(std::uint64_t number) {
   constexpr std::array kinds = {RandomSpace::plane,  RandomSpace::space, RandomSpace::twisted,
                                 RandomSpace::curved, RandomSpace::mixed, RandomSpace::strip};

@@ -97,8 +97,9 @@ inline bool put_in_the_way(std::mt19937& random, bool space, energy_model::Probl
   return false;
 }
 
-/// A heavy rod, clamped at its begin and in one of two cases held at its end, in whose way there is
-/// a cylinder, a ball or a capsule, as drawn by a seed. @return nothing where none is in its way
+/// Returns a rod that is clamped at its begin and in one of two cases held at its end, with a
+/// cylinder, a ball or a capsule that its shape without it would penetrate, drawn by a seed;
+/// std::nullopt if no such body is found.
 inline std::optional<energy_model::Problem> random_problem_with_body(unsigned seed, bool space) {
   std::mt19937 random(seed + 977 * static_cast<unsigned>(space));
   const auto uniform = [&random](double low, double high) {
@@ -146,8 +147,9 @@ inline bool put_below(std::mt19937& random, bool space, energy_model::Problem& p
   return true;
 }
 
-/// A rod between clamps that hold its frame, twisted by up to a turn and a half, over a half-space
-/// or with a body in its way, as drawn by a seed. @return nothing where none is in its way
+/// Returns a rod between clamps that hold its frame, the last one rotated by up to one turn either
+/// way, with a half-space or a body that its shape without it would penetrate, drawn by a seed;
+/// std::nullopt if none is found.
 inline std::optional<energy_model::Problem> random_framed_problem(unsigned seed, bool space) {
   std::mt19937 random(seed + 1009 * static_cast<unsigned>(space));
   const auto uniform = [&random](double low, double high) {

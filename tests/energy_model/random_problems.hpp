@@ -13,9 +13,9 @@
 
 namespace dlo::test {
 
-/// Where a random rod, its grips and its forces lie: in the x-y plane or anywhere; there it may be
-/// twisted too, or curved by nature, or a strip of two bending stiffnesses. Mixed: everything that
-/// a straight rod may be held by.
+/// Kinds of random_problem(): in the x-y plane, anywhere in space, in space and twisted, not
+/// intrinsically straight (curved), straight with all kinds of grips (mixed), and with two bending
+/// stiffnesses (strip).
 enum class RandomSpace { plane, space, twisted, curved, mixed, strip };
 
 inline const char* name_of(RandomSpace space) {
@@ -57,9 +57,9 @@ class RandomNumbers {
   std::uint64_t state_;
 };
 
-/// A smooth inextensible curve of unit length: the tangent turns at a rate that is a short Fourier
-/// sum with random coefficients, in small rotations, so that no two points are further apart than
-/// the curve between them.
+/// A smooth curve of unit length, whose tangent rotates at a rate that is a constant plus three
+/// waves, all with random coefficients. It consists of 1000 straight steps of equal length, so that
+/// no two points are further apart than the curve between them.
 class RandomCurve {
  public:
   RandomCurve(RandomNumbers& random, RandomSpace space) {
@@ -170,25 +170,27 @@ inline energy_model::Problem random_rod_held(RandomNumbers& random, RandomSpace 
   return problem;
 }
 
-/// A rod of unit length and stiffness under a weight along -y with Gamma = w l^3 / (EI) between
-/// 1e-2 and 1e4, 1 to 3 clamps and pins and 0 to 3 loads of up to 0.6 (1 + Gamma) EI/l^2 each.
-/// Grips can be reached: they are read off a random curve, and then in one of three problems turned
-/// at random, in one of three moved towards each other. The same number always gives the same
-/// problem.
+/// Returns a rod of unit length and stiffness under a weight along -y with Gamma = w l^3 / (EI)
+/// between 1e-2 and 1e4, 1 to 3 clamps and pins and 0 to 3 loads of up to 0.6 (1 + Gamma) EI/l^2
+/// each. The rod can reach its grips: they are on a random curve, in one of three problems moved
+/// towards each other. Clamps have the curve's directions, in one of three problems random ones.
+/// The same number always gives the same problem.
 ///
-/// A twisted problem is in space with two grips or more, all of them clamps that hold frames,
-/// rotated by up to three turns, with GJ of 0.4 to 1.2 EI.
+/// A twisted problem is in space with two grips or more, all of them clamps that hold frames, each
+/// rotated by up to 1.5 turns either way, with GJ of 0.4 to 1.2 EI.
 ///
-/// A curved problem has natural strains of up to 5/l about each axis, in one of two cases a section
-/// of another kind, a clamp at its beginning, and in three of four cases another clamp or pin.
-/// Gamma is between 0.1 and 300. Every other one is in the x-y plane.
+/// A curved problem has natural strains about each axis, in the plane about d2 only: a constant of
+/// up to 5/l plus a part that is linear in the arc length, of up to 2/l at the ends. It has in one
+/// of two cases a section of another kind, a clamp at its beginning, and in three of four cases
+/// another clamp or pin. Gamma is between 0.1 and 300, the weight in any direction. Every other one
+/// is in the x-y plane.
 ///
 /// A strip is a curved problem, or in one of two cases straight, whose EI about d2 is a tenth to
 /// ten times that about d1. Its section is round in one of two cases.
 ///
 /// A mixed problem is straight, has 1 to 4 grips and Gamma up to 1e5. Every other one is in the x-y
-/// plane, and of the clamps of the others every other one holds a frame, rotated by up to three
-/// turns.
+/// plane, and of the clamps of the others every other one holds a frame, rotated by up to 1.5 turns
+/// either way.
 inline energy_model::Problem random_problem(std::uint64_t number, RandomSpace space) {
   if (space == RandomSpace::twisted) return twisted_problem(number);
   if (space == RandomSpace::curved) return curved_problem(number);
@@ -198,9 +200,10 @@ inline energy_model::Problem random_problem(std::uint64_t number, RandomSpace sp
   return random_rod_held(random, space);
 }
 
-/// A rod of unit length and stiffness between two clamps at its ends, which a random curve leads
-/// through, in one of three problems turned at random, in one of three moved towards each other;
-/// with `pin` a pin between them. Gamma is between 0.1 and 1e4.
+/// Returns a rod of unit length and stiffness between two clamps at its ends, with `pin` a pin
+/// between them. Grips and clamps' directions are those of a random curve; in one of three problems
+/// the directions are random ones, in one of three the grips are moved towards each other. Gamma is
+/// between 0.1 and 1e4.
 inline energy_model::Problem random_between_clamps(std::uint64_t number, RandomSpace space,
                                                    bool pin) {
   constexpr std::uint64_t of_their_own = 1U << 29U;
@@ -238,7 +241,7 @@ inline energy_model::Problem twisted_problem(std::uint64_t number) {
   for (energy_model::Grip& grip : problem.grips) {
     if (!grip.direction) grip.direction = random.direction(RandomSpace::space);
     grip.frame = energy_model::FrameHold{};
-    // Two of them are turned against each other by as much again.
+    // Two clamps are rotated against each other by up to twice the roll, most_turns.
     grip.frame->roll = std::numbers::pi * random.uniform(-most_turns, most_turns);
   }
   return problem;

@@ -20,7 +20,7 @@ namespace dlo::test {
 enum class Agreement {
   same,         ///< to 1e-8 l everywhere
   image,        ///< the same curvature and energy: a mirror image, or turned about a free axis
-  both_stable,  ///< two equilibria of different energy, each proven stable
+  both_stable,  ///< two different equilibria, each proven stable
   contradict,   ///< none of these
   missing       ///< one of them at least did not converge
 };
@@ -33,7 +33,8 @@ struct ComparedScene {
   BalanceDefects energy_defects;
   BalanceDefects exact_defects;
   Agreement agreement = Agreement::missing;
-  double distance = std::numeric_limits<double>::quiet_NaN();  ///< of the two shapes [l]
+  /// Largest distance of the two shapes' points at equal arc length [l].
+  double distance = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Returns the length over which a rod under these forces changes its shape: (EI / force)^(1/2), at
@@ -56,8 +57,8 @@ inline BalanceDefects defects_of(const energy_model::Problem& problem,
   return balance_of(problem, shape, shape_length(problem, shape) / 2);
 }
 
-/// Compares two shapes: same shape, its mirror image, or another one. `distance` is the largest of
-/// points at equal arc length.
+/// Compares two shapes: same shape, its mirror image, or another one.
+/// @param[out] distance  largest distance of points at equal arc length [l]
 inline Agreement agreement_of(const energy_model::Problem& problem,
                               const energy_model::Equilibrium& a,
                               const energy_model::Equilibrium& b, double& distance) {
@@ -82,11 +83,13 @@ inline Agreement agreement_of(const energy_model::Problem& problem,
   return proven ? Agreement::both_stable : Agreement::contradict;
 }
 
-/// Where exact comes from: a search of its own, or the energy model's shape, which it confirms or
-/// corrects without a search (and does not look at if there is none).
+/// Start of `exact`: a search of its own, or the energy model's shape, which it confirms or
+/// corrects without a search. In the second case it does not run if the energy model has not
+/// converged.
 enum class ExactFrom { search, energy };
 
-/// Whether a clamp lets the rod turn between two that hold its frame: exact refuses that.
+/// Whether there is a clamp without a frame between two clamps that hold frames; `exact` refuses
+/// this for a round straight rod.
 inline bool passes_torque(const energy_model::Problem& problem) {
   std::vector<const energy_model::Grip*> clamps;
   for (const energy_model::Grip& grip : problem.grips) {

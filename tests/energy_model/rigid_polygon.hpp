@@ -16,10 +16,11 @@ struct PolygonSurroundings {
 
 /// A cantilever (EI = l = rho A = 1) under its weight along -y as a polygon of rigid segments with
 /// point masses and springs at its joints, released at rest from straight along +x: Stoermer's and
-/// Verlet's method with the segments' lengths as constraints (SHAKE). Nothing of it is the energy
-/// model's. Of second order in the segments: the clamp holds the middle of the first one, the last
-/// point has half a mass; steps are as the square of a segment, or smaller where the damping of its
-/// joints is stiff. A floor is a spring and a critical dashpot under each point, which never pull.
+/// Verlet's method with the segments' lengths as constraints (SHAKE). It shares no code with the
+/// energy model. Its error is of second order in the length of a segment: the clamp holds the
+/// middle of the first one, and the last point has half a mass. A time step is a quarter of the
+/// squared length of a segment, or less if the damping of the joints is stiff. A floor is a spring
+/// and a critical dashpot under each point, which never pull.
 class RigidPolygon {
  public:
   RigidPolygon(int free_points, double gamma, PolygonSurroundings around = {})

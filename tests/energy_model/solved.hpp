@@ -41,7 +41,7 @@ Eigen::Vector3d point_at(const Shape& shape, double s) {
 }
 
 /// Returns the largest distance of two shapes' points at the same arc lengths [m].
-/// @param s  of a rod of unit length unless they are given
+/// @param s  arc lengths [m]; default: 41 of a rod of unit length
 template <typename Shape>
 double gap_between(const Shape& a, const Shape& b,
                    const std::vector<double>& s = energy_model::equal_arc_lengths(1, 41)) {

@@ -59,7 +59,7 @@ class StableStates {
     return found;
   }
 
-  /// Returns the largest distance of their points.
+  /// Returns the largest distance of two shapes' points at equal arc length.
   [[nodiscard]] static double distance(const energy_model::Equilibrium& a,
                                        const energy_model::Equilibrium& b) {
     const std::vector<double> at = energy_model::equal_arc_lengths(1, 33);
@@ -69,7 +69,7 @@ class StableStates {
  private:
   static constexpr double pi = std::numbers::pi;
   static constexpr Eigen::Index segments = 60;
-  static constexpr double near = 0.1;  // of a polygon's rod, in l
+  static constexpr double near = 0.1;  // largest distance of a shape from its polygon, in l
 
   [[nodiscard]] double unit(double from, double to) {
     return std::uniform_real_distribution<double>(from, to)(random_);

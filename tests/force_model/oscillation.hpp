@@ -15,7 +15,7 @@ struct Oscillation {
   force_model::Rod rod;
   Eigen::Matrix3Xd straight;
   double damping_rate = 0;
-  double time = 0;  ///< of about half a period of the first mode [s]
+  double time = 0;  ///< about half a period of the first mode [s]
   Eigen::Matrix3Xd exact;
 
   Oscillation() {
@@ -54,7 +54,8 @@ struct Oscillation {
     }
   }
 
-  /// Returns the error of a stepper's shape at `time`, divided by the movement until then [-].
+  /// Returns the distance of a stepper's shape at `time` from `exact`, divided by the movement
+  /// until then [-]; infinite if a step fails.
   [[nodiscard]] double error(force_model::Stepper stepper, int steps) const {
     force_model::StepOptions options;
     options.policy = force_model::policy(stepper);

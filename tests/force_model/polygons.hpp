@@ -5,7 +5,8 @@
 
 namespace dlo::test {
 
-/// A random walk of n segments with lengths around `length`, turning by moderate angles in space.
+/// Returns the points of a random walk in space with moderate angles between its segments, whose
+/// lengths are `length` times 1 - length_spread to 1 + length_spread.
 inline Eigen::Matrix3Xd random_polygon(unsigned seed, Eigen::Index segments, double length,
                                        double length_spread) {
   std::mt19937 engine(seed);
@@ -31,7 +32,7 @@ inline Eigen::Vector3d net_torque(const Eigen::Matrix3Xd& points, const Eigen::M
   return torque;
 }
 
-/// Forces as minus the central difference of an energy.
+/// Returns minus the central differences of an energy by the points, with steps of h: its forces.
 template <typename Energy>
 Eigen::Matrix3Xd difference_forces(const Energy& energy, Eigen::Matrix3Xd points, double h) {
   Eigen::Matrix3Xd forces(3, points.cols());

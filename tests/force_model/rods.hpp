@@ -6,7 +6,8 @@
 
 namespace dlo::test {
 
-/// The paper's spring steel rod (Table 5), consistent bookkeeping, held at the origin.
+/// The paper's spring steel rod (Table 5), held at the origin, with points and weights as for
+/// compare::Bookkeeping::consistent.
 struct SteelRod {
   double length = 0.5;
   double EI = 0.16493361431346418;

@@ -14,7 +14,7 @@ struct TwistedRod {
   double EI = 1;          ///< [N m^2]
   double GJ = 0.8;        ///< [N m^2]
   double c_c = 1e4;       ///< [N]
-  int points = 20;        ///< of the rod
+  int points = 20;        ///< number of points
   double distance = 0.8;  ///< of the clamps [m]
   double turn = 0;        ///< [rad]
 
