@@ -13,7 +13,7 @@ namespace dlo::force_model {
 /// Present shape of a rod that approaches rest.
 struct MovingShape {
   const Eigen::Matrix3Xd& points;  ///< [m]
-  const Eigen::Matrix3Xd& forces;  ///< on the free points, zero on rigidly held ones [N]
+  const Eigen::Matrix3Xd& forces;  ///< forces on free points, zero on rigidly held ones [N]
   double momentum = 0;             ///< RMS of the movements that the last movement still causes [m]
 };
 

@@ -64,7 +64,7 @@ class StepControl {
 
   StepOptions options_;
   ModeEstimate estimate_;
-  long descends_until_ = 0;  // in steps
+  long descends_until_ = 0;  // number of steps at which the descent ends
   double c_s_ = 1;
   long steps_ = 0;
   long damped_steps_ = 0;

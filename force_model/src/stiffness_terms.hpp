@@ -87,7 +87,7 @@ void add_joints(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points
     slope << by_a / a_length, by_b / b_length;
     const Eigen::Matrix3d aa = by_a * u.transpose();
     const Eigen::Matrix3d bb = by_b * v.transpose();
-    Matrix6d second;  // of c
+    Matrix6d second;  // second derivatives of c
     second.topLeftCorner<3, 3>() =
         -(aa + aa.transpose() + c * (one - u * u.transpose())) / (a_length * a_length);
     second.bottomRightCorner<3, 3>() =

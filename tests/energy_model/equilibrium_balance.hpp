@@ -124,7 +124,7 @@ inline BalanceDefects balance_of(const energy_model::Problem& problem,
     cuts.push_back(events[e + 1]);
   }
   std::vector<double> inner;
-  std::vector<double> share;  // of the arc length
+  std::vector<double> share;  // share of the arc length
   for (std::size_t c = 0; c + 1 < cuts.size(); ++c) {
     const double middle = (cuts[c] + cuts[c + 1]) / 2;
     const double half = (cuts[c + 1] - cuts[c]) / 2;

@@ -18,7 +18,7 @@ namespace dlo::test {
 
 /// Comparison of two solutions of one problem.
 enum class Agreement {
-  same,         ///< to 1e-8 l everywhere
+  same,         ///< equal points to 1e-8 l everywhere
   image,        ///< the same curvature and energy: a mirror image, or turned about a free axis
   both_stable,  ///< two different equilibria, each proven stable
   contradict,   ///< none of these

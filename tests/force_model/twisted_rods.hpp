@@ -15,7 +15,7 @@ struct TwistedRod {
   double GJ = 0.8;        ///< [N m^2]
   double c_c = 1e4;       ///< [N]
   int points = 20;        ///< number of points
-  double distance = 0.8;  ///< of the clamps [m]
+  double distance = 0.8;  ///< distance of the clamps [m]
   double turn = 0;        ///< [rad]
 
   [[nodiscard]] double segment() const { return length / (points - 2); }

@@ -166,12 +166,13 @@ class SpanDynamics {
   // State of the last move()
   SpanDrive drive_;
   Eigen::VectorXd x_, v_, a_;
-  Eigen::MatrixX3d t_, t_rate_;                          // at the nodes
-  Eigen::MatrixX3d position_, velocity_, acceleration_;  // of the points, in space
+  Eigen::MatrixX3d t_, t_rate_;                          // tangents at the nodes and their rates
+  Eigen::MatrixX3d position_, velocity_, acceleration_;  // motion of the points in space
   Moving end_tangent_, end_d1_;
-  Eigen::MatrixX3d quadratic_drag_;  // of the points; empty if there is none
+  Eigen::MatrixX3d quadratic_drag_;  // forces on the points; empty if there is none
   double mean_drag_ = 0;             // drag plus the derivative of quadratic drag, per length
-  Eigen::MatrixX3d forces_;  // of the points: inertia and drag minus loads and soft obstacles
+  // Forces of the points: inertia and drag minus loads and soft obstacles.
+  Eigen::MatrixX3d forces_;
   std::vector<Touch> soft_touches_;  // at the points; included in forces_
   std::vector<Touch> touches_;       // at the grid's points
 };

@@ -22,7 +22,7 @@ struct SpanInstant {
 };
 
 struct IntegratorOptions {
-  double tolerance = 1e-7;  ///< of a step, like DynamicsOptions::tolerance
+  double tolerance = 1e-7;  ///< tolerance of a step, as DynamicsOptions::tolerance
   double step = 0;          ///< fixed step; 0: adapted to the tolerance
   bool damped = false;      ///< damps fast decaying components (Radau IIA instead of Gauss)
 };
@@ -118,7 +118,7 @@ class SpanIntegrator {
   Eigen::MatrixXd mass_;
   Eigen::MatrixXd jacobian_;
   std::vector<Factor> factors_;
-  Factor of_points_;  // of the last step with its own matrices
+  Factor of_points_;  // factor of the last step with its own matrices
   Stages last_;
   double newton_enough_;      // Newton correction at which a step counts as solved
   double next_ = first_step;  // size of the next step

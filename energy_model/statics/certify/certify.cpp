@@ -39,7 +39,7 @@ constexpr double largest_third_derivative = 4;
 
 /// Returns Newton's step of the coefficients; that of minimum norm, which has no component along
 /// near-null modes, if the system is too close to singular for another one.
-/// @param gradient  of E - mu . c
+/// @param gradient  gradient of E - mu . c
 Eigen::VectorXd newton_step(NewtonSystem& system, const SpanPoint& point,
                             const Eigen::VectorXd& gradient) {
   Eigen::VectorXd right(gradient.size() + point.residual.size());
@@ -389,7 +389,7 @@ class Certification {
   const double scale_;  // scale of forces
   const bool obstacles_;
   std::shared_ptr<SpanPoint> point_;
-  Eigen::VectorXd gradient_;  // of E - mu . c
+  Eigen::VectorXd gradient_;  // gradient of E - mu . c
   Eigen::VectorXd next_step_;
   RigidBodyModes rigid_;
   double bound_ = neutral;  // magnitude up to which an eigenvalue counts as neutral

@@ -15,8 +15,8 @@ namespace dlo::energy_model {
 /// neither a fold nor a bifurcation. A rotation with the axis and rate omega is free if omega x v =
 /// 0 for every prescribed position and direction v and for every force; obstacles are ignored.
 struct RigidBodyModes {
-  Eigen::Index in_plane = 0;      ///< of a planar span: about its normal; in space: all of them
-  Eigen::Index out_of_plane = 0;  ///< of a planar span: about axes in its plane
+  Eigen::Index in_plane = 0;  ///< planar span: rotations about its normal; in space: all of them
+  Eigen::Index out_of_plane = 0;  ///< planar span: rotations about axes in its plane
 
   [[nodiscard]] Eigen::Index all() const { return in_plane + out_of_plane; }
 };

@@ -73,7 +73,7 @@ Mesh mesh_of(const Span& span, Segments segments) {
 /// Returns a block extended into a half-space that its face touches or lies within: a polygon
 /// pushed out of that face would be caught between the block and the half-space.
 obstacle::Body founded(const obstacle::Body& body, const Span& span) {
-  constexpr double flush = 1e-6;  // in l
+  constexpr double flush = 1e-6;  // largest height of a flush face [l]
   Eigen::Vector3d lower = body.lower().array() - body.radius();
   Eigen::Vector3d upper = body.upper().array() + body.radius();
   if (!(upper - lower).allFinite() || !(body.lower().array() < body.upper().array()).all()) {
@@ -85,7 +85,7 @@ obstacle::Body founded(const obstacle::Body& body, const Span& span) {
       for (const bool up : {false, true}) {
         const double outward = (up ? 1 : -1) * ground.body.normal().dot(body.axes().col(axis));
         if (!(outward < 0)) continue;  // the face does not point into the half-space
-        double highest = -std::numeric_limits<double>::infinity();  // of the face's corners
+        double highest = -std::numeric_limits<double>::infinity();  // highest corner
         for (int corner = 0; corner < 8; ++corner) {
           if (((corner >> axis) % 2 == 1) != up) continue;
           Eigen::Vector3d at = lower;

@@ -16,7 +16,7 @@ constexpr int turn_terms = 1;
 /// corrections suffice for all strains that the nodes resolve. For other strains a defect remains
 /// that no correction removes; it is recognised by exceeding the square of the previous defect.
 constexpr double finest_defect = 2e-15;
-constexpr double largest_square = 10;  // of a defect to the square of the previous one
+constexpr double largest_square = 10;  // ratio of a defect to the square of the previous one
 constexpr int most_corrections = 6;
 
 using Rows = Eigen::Ref<Eigen::MatrixX4d, 0, Eigen::OuterStride<>>;

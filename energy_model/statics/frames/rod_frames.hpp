@@ -56,7 +56,7 @@ class RodFrames {
     Eigen::MatrixX3d d1, d2, t;  ///< directors
     /// Quadrature weight times int_s^end t over the rest of the element, divided by its length.
     Eigen::MatrixX3d tails;
-    std::vector<Eigen::Quaterniond> panel_ends;  ///< at panel ends; of a free start first
+    std::vector<Eigen::Quaterniond> panel_ends;  ///< frames at panel ends
     /// Derivatives by x of the rotation of the end's frame, 3 x unknowns, from the last
     /// end_rotation_jacobian().
     Eigen::Matrix3Xd ends;
@@ -153,7 +153,7 @@ class RodFrames {
   Eigen::MatrixX3d natural_;  // strains at the nodes; empty with two fields
   Eigen::Index columns_ = 0;
   Eigen::Index turn_nodes_ = 0;
-  Eigen::Index nodes_ = 0;  // of all panels
+  Eigen::Index nodes_ = 0;  // number of nodes of all panels
   Eigen::Quaterniond start_ = Eigen::Quaterniond::Identity();
 };
 

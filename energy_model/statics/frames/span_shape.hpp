@@ -25,7 +25,9 @@ struct SpanSamples {
   Eigen::Matrix3Xd points;  ///< relative to the anchor
   Eigen::Matrix3Xd tangents;
   Eigen::Matrix3Xd curvature;
-  Eigen::Matrix3Xd d1;  ///< of the frame, own or Bishop's, with Span::first_d1() at the start
+  /// First directors of the rod's own frames or, without material directors, of Bishop's frames;
+  /// Span::first_d1() at the start.
+  Eigen::Matrix3Xd d1;
 };
 
 /// A shape as initial guess, at given arc lengths in ascending order.

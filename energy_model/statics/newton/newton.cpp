@@ -248,8 +248,8 @@ void NewtonIteration::move(double length) {
 /// constraints the next step is Broyden's, from all whole steps with this factor.
 /// @return whether such a length was found; if not, the solution is unchanged
 bool NewtonIteration::natural_move() {
-  constexpr double longest = 2;        // of a step; larger angles leave the path
-  constexpr double least_part = 1e-5;  // of a step
+  constexpr double longest = 2;        // largest step [rad]; longer ones leave the path
+  constexpr double least_part = 1e-5;  // smallest part of a step
   std::swap(buffers_.here, trial_);
   buffers_.trial_x = solution_.x;
   buffers_.trial_multipliers = solution_.multipliers;

@@ -45,7 +45,7 @@ class NewtonFactors {
   [[nodiscard]] std::shared_ptr<NewtonFactor> make(const Eigen::MatrixXd& jacobian, double scale);
 
   Pool<NewtonFactor> factors_;
-  Eigen::MatrixXd hessian_;  // of the next factor
+  Eigen::MatrixXd hessian_;  // Hessian of the next factor
 };
 
 /// Returns an approximate Hessian of a model with more coefficients: the Hessian of the model with

@@ -28,7 +28,7 @@ bool restore(SpanSolution& solution, SpanPoint& point, double gap, RestoreScratc
              double most_energy) {
   if (solution.model->constraints() == 0) return std::isfinite(point.energy);
   constexpr int most_steps = 60;
-  constexpr double longest = 1;  // of a step
+  constexpr double longest = 1;  // largest length of a step
   constexpr int most_bends = 3;
   SpanPoint& trial = scratch.trial;
   Eigen::MatrixXd& square = scratch.square;

@@ -123,7 +123,7 @@ class TrustRegionDescent {
   Eigen::VectorXd multipliers_, projected_gradient_;
   Eigen::MatrixXd hessian_;
   double predicted_ = 0;  // predicted decrease of E - lambda.c
-  double length_ = 0;     // of the step
+  double length_ = 0;     // length of the step
 };
 
 }  // namespace

@@ -12,12 +12,13 @@ inline constexpr double first_radius = 1;
 inline constexpr double largest_radius = 8;
 
 struct TrustRegionOptions {
-  double load = 0;                ///< weight plus loads, the scale of the gradient
-  double gradient_tolerance = 0;  ///< of the projected gradient, over 1 + load; > 0
+  double load = 0;  ///< weight plus loads, the scale of the gradient
+  /// Tolerance of the projected gradient, divided by 1 + load; > 0.
+  double gradient_tolerance = 0;
   /// Length of Newton's step up to which a minimum is close enough for Newton's method; used if the
   /// projected Hessian is positive definite.
   double nearest = 0;
-  double radius = first_radius;        ///< of the first step, in the unknowns; > 0
+  double radius = first_radius;        ///< radius of the first step, in the unknowns; > 0
   int max_iterations = 100;            ///< maximum number of steps, accepted or not
   const Deadline* deadline = nullptr;  ///< checked once per step; null: none
   /// Largest stiffness of a taut segment between grips [EI/l^3]; used by

@@ -81,7 +81,7 @@ class FreeBoundaryNewton {
   /// Whether two contacts are so close that they should be joined; separate contacts would take
   /// many steps to meet.
   [[nodiscard]] bool meet() const {
-    constexpr double near = 0.5;  // of the initial gap
+    constexpr double near = 0.5;  // fraction of the initial gap
     const Span& span = solution_.model->span();
     const std::vector<double> gaps = gaps_of(solution_);
     for (std::size_t i = 0; i < gaps.size(); ++i) {

@@ -28,7 +28,7 @@ struct Remembered {
 /// Memory of a span that clamps twist, for its solution without twist too.
 struct RememberedTwist {
   Remembered untwisted, twisted;
-  double twist = 0;   ///< of `twisted` [rad]
+  double twist = 0;   ///< twist of `twisted` [rad]
   double turned = 0;  ///< rotation of the end's frame relative to the untwisted rod's [rad]
 };
 

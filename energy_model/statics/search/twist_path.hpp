@@ -17,7 +17,7 @@ struct EndFrame {
 struct UntwistedShape {
   const SpanSolution& solution;
   Eigen::Vector3d end_d1;  ///< transported from Span::first_d1() at its start
-  double twist;            ///< of a rod with material directors; else 0 [rad]
+  double twist;            ///< twist of a rod with material directors; else 0 [rad]
   std::optional<Writhe> writhe;
 };
 

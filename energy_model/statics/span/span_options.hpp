@@ -27,7 +27,7 @@ struct KnownShape {
   std::shared_ptr<const SpanEnergy> model;  ///< null: nothing is known
   Eigen::VectorXd x;
   Eigen::VectorXd multipliers;
-  std::shared_ptr<NewtonFactor> factor = nullptr;  ///< at that shape; null: none is known
+  std::shared_ptr<NewtonFactor> factor = nullptr;  ///< factor at that shape; null: none is known
 
   /// Number of coefficients that resolve the shape.
   [[nodiscard]] int terms() const { return model ? model->terms() : 0; }
@@ -49,7 +49,7 @@ struct SpanOptions {
   int terms = 0;  ///< 0: as many as `tolerance` needs
   double tolerance = 1e-10;
   int max_evaluations = 2000;
-  Deadline deadline;  ///< of the whole solve
+  Deadline deadline;  ///< deadline of the whole solve
   SpanStart start;
   /// Log of a search for all equilibria; null: only the lowest one is wanted.
   SearchLog* log = nullptr;

@@ -26,12 +26,12 @@ struct Start {
 
 /// Parameters of a ranking of starts.
 struct StartRanking {
-  std::shared_ptr<SpanEnergy> model;  ///< with few coefficients
+  std::shared_ptr<SpanEnergy> model;  ///< model with few coefficients
   double load = 0;                    ///< weight plus loads [EI/l^2]
   std::size_t followed = 0;           ///< number of starts that are followed in any case
   bool keeps_unknowns = false;        ///< descents use as many coefficients as the model has
-  /// Stiffness of springs at the grips, for starts that need not satisfy the constraints; that of
-  /// the tautest segment.
+  /// Stiffness of springs at the grips, for starts that need not satisfy the constraints; the
+  /// largest stiffness of a taut segment [EI/l^3].
   double stiffness = 0;
   bool meets_grips = false;  ///< starts are first bent to satisfy the constraints
   const Deadline* deadline = nullptr;

@@ -32,7 +32,7 @@ struct ContactForce {
 struct ContactSeries {
   struct Slope {
     Eigen::Index first = 0, count = 0;
-    double length = 0;          ///< of the element
+    double length = 0;          ///< length of the element
     bool concentrates = false;  ///< whether a load, a section change or a grip is at its begin
   };
   Eigen::Index clearance = -1;

@@ -19,10 +19,12 @@ struct ContactPlace {
     Eigen::Vector3d tangent = Eigen::Vector3d::Zero();
     double rate = 0;  ///< second derivative of the clearance by s; 0 if no minimum was found
   };
-  Eigen::VectorXd residual;                   ///< of all rows
-  std::array<Eigen::MatrixXd, 3> by_tangent;  ///< by axis, nodes x rows
+  Eigen::VectorXd residual;  ///< residuals of all rows
+  /// Derivatives of the rows by the tangents: a matrix for each axis, nodes x rows.
+  std::array<Eigen::MatrixXd, 3> by_tangent;
   std::vector<Touch> touches;
-  std::vector<std::vector<obstacle::Gap>> gaps;  ///< of points from bodies other than half-spaces
+  /// Clearances of points from bodies other than half-spaces, a list for each contact with one.
+  std::vector<std::vector<obstacle::Gap>> gaps;
 
   /// Returns the products of the rows' derivatives with the vectors at the nodes, nodes x rows.
   [[nodiscard]] Eigen::MatrixXd along(const Eigen::MatrixX3d& vectors) const;

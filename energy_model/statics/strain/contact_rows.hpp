@@ -72,7 +72,7 @@ class ContactRows {
     obstacle::Body body;
     Eigen::Index first = 0;   // row
     Eigen::MatrixXd weights;  // rows = weights^T clearances, points x rows
-    PointsReach reach;        // of the points
+    PointsReach reach;        // positions of the points
 
     /// Returns the forces on the points from the multipliers of all rows.
     [[nodiscard]] Eigen::VectorXd forces(
@@ -98,7 +98,7 @@ class ContactRows {
   std::vector<ContactSeries> contacts_;
   std::vector<Curved> curved_;
   std::vector<Touch> touches_;
-  std::vector<Eigen::Vector3d> normals_;  // of half-spaces, by contact
+  std::vector<Eigen::Vector3d> normals_;  // normals of half-spaces, by contact
   PositionOperator reach_;
   // For rows that are linear in the tangents; zero for others.
   Eigen::MatrixXd linear_;   // weight times phi, nodes x rows

@@ -17,14 +17,14 @@ namespace dlo::energy_model {
 struct SpanPoint {
   Eigen::VectorXd x;
   double energy = 0;         ///< [EI/l]
-  Eigen::VectorXd gradient;  ///< of the energy
-  Eigen::VectorXd residual;  ///< of the constraints
-  Eigen::MatrixXd jacobian;  ///< of the constraints, constraints x unknowns
+  Eigen::VectorXd gradient;  ///< gradient of the energy
+  Eigen::VectorXd residual;  ///< residuals of the constraints
+  Eigen::MatrixXd jacobian;  ///< derivatives of the constraints, constraints x unknowns
 
   Eigen::MatrixX3d t;         ///< tangents at the nodes, nodes x 3
   Eigen::MatrixX3d force;     ///< -dE/dt without bending, nodes x 3: loads and soft obstacles
-  PlanarFrames::State plane;  ///< of a span in its plane
-  RodFrames::State frames;    ///< of a span in space
+  PlanarFrames::State plane;  ///< frames of a span in its plane
+  RodFrames::State frames;    ///< frames of a span in space
   ContactPlace contacts;
   SoftContact::Place pressed;
   /// SpanEnergy::revision() at the evaluation; 0: not evaluated.

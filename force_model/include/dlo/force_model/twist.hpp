@@ -28,7 +28,7 @@ struct Twist {
 /// Discrete elastic rods, SIGGRAPH 2008, with the sign of theta instead of the transported
 /// frame's).
 struct TwistedSpan {
-  Eigen::Index first_segment = 0;  ///< from P_k to P_{k+1}
+  Eigen::Index first_segment = 0;  ///< index k of the segment from P_k to P_{k+1}
   Eigen::Index last_segment = 0;   ///< > first_segment
   /// Only its component across the segment is used.
   Eigen::Vector3d first_d1 = Eigen::Vector3d::UnitX();
