@@ -157,7 +157,7 @@ bool run(int points, const Settings& settings) {
 }
 
 int usage() {
-  std::fputs("usage: dlo_haptic_loop [--seconds S] [--steps 10..30 | --stepper implicit]\n",
+  std::fputs("usage: dlo_haptic_loop [--seconds S] [--steps 1..1000 | --stepper implicit]\n",
              stderr);
   return 2;
 }

@@ -17,18 +17,21 @@ void require_alike(const std::vector<BatchRod>& rods) {
   require(!rods.empty(), "Batch", "number of rods", 0, ">= 1");
   const BatchRod& first = rods.front();
   const auto require_same = [](bool same, std::string_view what, std::size_t index) {
-    require(same, "Batch", what, static_cast<double>(index), "a rod like the first in this");
+    require(same, "Batch", what, static_cast<double>(index),
+            "that of a rod that agrees with the first in this");
   };
   for (std::size_t i = 0; i < rods.size(); ++i) {
     const BatchRod& rod = rods[i];
     const StepPolicy& policy = rod.options.policy;
-    require_same(rod.rod.points() == first.rod.points(), "rod with another number of points", i);
-    require_same(rod.rod.bending.law == first.rod.bending.law, "rod with another bending law", i);
+    require_same(rod.rod.points() == first.rod.points(),
+                 "index of a rod with a different number of points", i);
+    require_same(rod.rod.bending.law == first.rod.bending.law,
+                 "index of a rod with a different bending law", i);
     require_same(rod.rod.bending.natural_turns.size() == first.rod.bending.natural_turns.size(),
-                 "rod with another number of natural turns", i);
-    require_same(policy == first.options.policy, "rod with another step policy", i);
+                 "index of a rod with a different number of natural turns", i);
+    require_same(policy == first.options.policy, "index of a rod with a different step policy", i);
     require_same(rod.options.instruction_set == first.options.instruction_set,
-                 "rod with another instruction set", i);
+                 "index of a rod with a different instruction set", i);
   }
 }
 

@@ -35,7 +35,7 @@ void check(const Solid& solid) {
   require_not_negative("Solid", "stiffness", solid.stiffness);
   require(solid.samples >= 1, "Solid", "samples", solid.samples, ">= 1");
   require(solid.body.centre().allFinite() && solid.body.axes().allFinite(), "Solid", "centre",
-          solid.body.centre().norm(), "finite, as its axes");
+          solid.body.centre().norm(), "finite, like its axes");
 }
 
 void add_solid_forces(const Solid& solid, const Eigen::Ref<const Eigen::Matrix3Xd>& points,

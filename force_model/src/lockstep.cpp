@@ -32,14 +32,15 @@ std::vector<Rod> checked_rods(std::span<const BatchRod> start, bool together) {
     const Integration integration = one.options.policy.integration;
     require(!together || integration == Integration::along_force, "Batch", "integration of a rod",
             static_cast<double>(integration),
-            "0 (along_force): rods in lockstep have neither velocities nor implicit steps");
+            "0 (along_force): a batch supports neither velocities nor implicit steps");
     const Eigen::Index twisted = count_twisted(one.rod);
     require(!together || twisted == 0, "Batch", "number of grips with d1",
-            static_cast<double>(twisted + 1), "0 or 1: rods in lockstep have no twist");
+            static_cast<double>(twisted + 1), "0 or 1: a batch does not support twist");
     require_polygon("Simulation", one.points, one.rod.rest_lengths);
     const double across = one.points.row(2).cwiseAbs().maxCoeff();
     require(!is_bound_to_plane(one.rod) || across == 0, "Simulation", "largest z of a point",
-            across, "0 of a rod with natural turns, which have no sign in space");
+            across,
+            "0 for a rod with natural turns, whose sign is undefined out of the plane z = 0");
     rods.push_back(one.rod);
     if (one.rod.twist.angles.size() == 0) rods.back().twist.angles.setZero(twisted);
   }
@@ -270,18 +271,18 @@ void Lockstep::move_grip(std::size_t rod, std::size_t grip,
           "smaller than the number of grips");
   Grip& moved = held.grips[grip];
   require(targets.cols() == moved.targets.cols(), "Simulation::move_grip", "columns of targets",
-          static_cast<double>(targets.cols()), "the number of points held");
+          static_cast<double>(targets.cols()), "the number of points that the grip holds");
   require(targets.allFinite() && reference.allFinite(), "Simulation::move_grip", "targets",
           targets.norm(), "finite");
   require(!is_bound_to_plane(held) || targets.row(2).isZero(0), "Simulation::move_grip",
-          "z of targets", targets.row(2).cwiseAbs().maxCoeff(), "0 of a rod with natural turns");
+          "z of targets", targets.row(2).cwiseAbs().maxCoeff(), "0 for a rod with natural turns");
   const auto direction_of =
       [](const Eigen::Ref<const Eigen::Matrix3Xd>& of_grip) -> Eigen::Vector3d {
     return (of_grip.col(1) - of_grip.col(0)).normalized();
   };
   if (d1 != nullptr) {
     require(moved.d1.has_value(), "Simulation::move_grip", "grip", static_cast<double>(grip),
-            "one that holds the rod's frame");
+            "a grip with d1");
     const Eigen::Vector3d across = direction_of(targets).cross(*d1);
     require(across.norm() > 0 && across.allFinite(), "Simulation::move_grip",
             "part of d1 across the segment", across.norm(), "finite and > 0");
@@ -309,7 +310,7 @@ void Lockstep::move_wall(std::size_t rod, std::size_t wall, const Wall& moved) {
           "smaller than the number of walls");
   check(moved);
   require(!is_bound_to_plane(held) || moved.normal.z() == 0, "Simulation::move_wall",
-          "z of the normal", moved.normal.z(), "0 of a rod with natural turns");
+          "z of the normal", moved.normal.z(), "0 for a rod with natural turns");
   held.walls[wall] = moved;
   block_.set_walls(rods_);
   block_.update_dimension(rods_);

@@ -42,7 +42,7 @@ void require_polygon(std::string_view function, const Points& points, const Leng
   }
   if (!points.allFinite()) {
     throw std::invalid_argument(std::string(function) +
-                                ": points hold a number that is not finite");
+                                ": points contain a value that is not finite");
   }
   const double shortest = rest_lengths.minCoeff();
   require(shortest > 0 && rest_lengths.allFinite(), function, "smallest rest length", shortest,

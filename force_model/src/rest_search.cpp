@@ -135,7 +135,7 @@ RelaxResult RestSearch::finish(const MovingShape& shape) {
   }
   result_.message = to_string(result_.status);
   if (result_.status == RelaxStatus::at_rest && neutral_modes_ > 0) {
-    result_.message += ", but for " + std::to_string(neutral_modes_) +
+    result_.message += ", except for " + std::to_string(neutral_modes_) +
                        (neutral_modes_ == 1 ? " movement" : " movements") + " without stiffness";
   }
   return result_;

@@ -17,12 +17,12 @@ void check_grip(const Grip& grip, Eigen::Index points) {
   require(held == 1 || held == 2, "Rod", "points held by a grip", held, "1 or 2");
   require(grip.first_point >= 0 && grip.first_point + grip.targets.cols() <= points, "Rod",
           "first point of a grip", static_cast<double>(grip.first_point),
-          "so that the grip's points exist");
+          ">= 0, with all points of the grip on the rod");
   require(grip.targets.allFinite(), "Rod", "targets of a grip", grip.targets.norm(), "finite");
   if (grip.hold == GripHold::spring) require_positive("Rod", "grip stiffness", grip.stiffness);
   if (!grip.d1) return;
   require(held == 2 && grip.hold == GripHold::rigid, "Rod", "points held by a grip with d1", held,
-          "2, rigidly: the frame of a point or of a segment on springs is not held");
+          "2 with a rigid hold: one point, or a segment on springs, holds no frame");
   require(grip.d1->allFinite(), "Rod", "|d1| of a grip", grip.d1->norm(), "finite");
   // Below this fraction of its length, the direction of the transverse component is determined by
   // rounding.
@@ -66,7 +66,7 @@ void check_twist(const Rod& rod) {
   require(rod.bending.law == BendingLaw::hooke, "Rod", "number of grips with d1", framed,
           "0 or 1 with the paper's bending law, which has no twist");
   require(rod.bending.natural_turns.size() == 0, "Rod", "number of grips with d1", framed,
-          "0 or 1 of a rod with natural turns, which is bound to a plane");
+          "0 or 1 for a rod with natural turns, which stays in a plane");
 }
 
 /// Checks that no two rigid grips hold the same point, since each exerts all forces on its points.
@@ -79,7 +79,7 @@ void require_own_points(std::string_view function, const std::vector<Grip>& grip
       const Eigen::Index end = std::min(grips[i].first_point + grips[i].targets.cols(),
                                         grips[j].first_point + grips[j].targets.cols());
       require(begin >= end, function, "point held by two rigid grips", static_cast<double>(begin),
-              "held by one of them");
+              "held by only one of them");
     }
   }
 }

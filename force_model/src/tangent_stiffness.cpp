@@ -243,8 +243,8 @@ void bound_error(const Rod& rod, const Eigen::Matrix3Xd& points, const NewtonMat
 StiffnessMatrix tangent_stiffness(const Rod& rod,
                                   const Eigen::Ref<const Eigen::Matrix3Xd>& points) {
   require_polygon("tangent_stiffness", points, rod.rest_lengths);
-  require(rod.bending.natural_turns.size() == 0, "tangent_stiffness", "natural turns",
-          static_cast<double>(rod.bending.natural_turns.size()), "none");
+  require(rod.bending.natural_turns.size() == 0, "tangent_stiffness", "number of natural turns",
+          static_cast<double>(rod.bending.natural_turns.size()), "0");
   TangentStiffness stiffness(rod);
   StiffnessMatrix result;
   result.points = stiffness.point_indices();

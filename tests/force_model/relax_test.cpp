@@ -114,7 +114,7 @@ TEST(AtRest, IsClaimedForARodThatTurnsFreelyAndSaysSo) {
   Simulation simulation(start.rod, start.points, {});
   const RelaxResult result = simulation.relax();
   ASSERT_EQ(result.status, RelaxStatus::at_rest);
-  EXPECT_EQ(result.message, "at rest, but for 1 movement without stiffness");
+  EXPECT_EQ(result.message, "at rest, except for 1 movement without stiffness");
   EXPECT_EQ(check_equilibrium(start.rod, simulation.points()).neutral_modes, 1);
 }
 
