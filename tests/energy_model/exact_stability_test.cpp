@@ -158,7 +158,7 @@ TEST(Exact, ListsWhatItHasFoundWhenItsTimeIsOver) {
     for (const Equilibrium& found : all_exact(arch, {.time_limit = limit})) {
       if (found.status != SolveStatus::time_limit) continue;
       ++cut_short;
-      EXPECT_TRUE(says(found, "others may be lower")) << found.message;
+      EXPECT_TRUE(says(found, "other equilibria may have less energy")) << found.message;
       EXPECT_TRUE(says(found, "converged") || says(found, "saddle")) << found.message;
       EXPECT_EQ(says(found, "saddle"), found.smallest_eigenvalue < 0) << found.message;
       EXPECT_LT(test::balance_of(arch, found, 0.02).worst(), 1e-9);

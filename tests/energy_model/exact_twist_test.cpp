@@ -291,10 +291,10 @@ TEST(ExactTwist, RefusesWhatItCannotTwist) {
   EXPECT_NE(refusal(soft).find("torsional_stiffness"), std::string::npos) << refusal(soft);
   Problem pin = askew(1);
   pin.grips[1].direction.reset();
-  EXPECT_NE(refusal(pin).find("frame of a grip without direction"), std::string::npos);
+  EXPECT_NE(refusal(pin).find("grip with a frame but no direction"), std::string::npos);
   Problem open = askew(1);
   open.grips.push_back({0.5, {0.3, 0, 0}, Eigen::Vector3d::UnitX()});
-  EXPECT_NE(refusal(open).find("clamp without frame between"), std::string::npos);
+  EXPECT_NE(refusal(open).find("clamp without a frame between"), std::string::npos);
 }
 
 TEST(ExactTwist, SaysHowFarItCame) {

@@ -37,7 +37,7 @@ struct LargestImbalance {
   void add(const std::string& name, const energy_model::Problem& problem,
            const energy_model::Equilibrium& shape) {
     if (!shape.sample) return;
-    const bool refuses = shape.message.find("the forces leave") != std::string::npos;
+    const bool refuses = shape.message.find("unbalanced force") != std::string::npos;
     const bool claims =
         succeeded(shape.status) || shape.status == energy_model::SolveStatus::saddle ||
         (shape.status == energy_model::SolveStatus::not_verified && !has_potential(problem));
@@ -127,7 +127,7 @@ inline void add_polygons(const std::string& name, const energy_model::Problem& p
       }
     } catch (const std::exception& error) {
       const std::string message = error.what();
-      const bool refuses = message.find("the forces leave") != std::string::npos;
+      const bool refuses = message.find("unbalanced force") != std::string::npos;
       if (refuses) {
         std::printf("%s\n", message.c_str());
         largest.add(name, 0, true);

@@ -150,7 +150,7 @@ TEST(Stretch, IsRefusedByNameByWhatDoesNotStretch) {
   problem.grips = {{0, {0, 0, 0}, Vector3d::UnitX(), {}}};
   EXPECT_TRUE(
       test::says(test::error_of<std::invalid_argument>([&] { return solve_energy(problem); }),
-                 {"solve_exact() alone"}));
+                 {"only solve_exact()"}));
   problem.obstacles = {{obstacle::Body::half_space({0, -1, 0}, Vector3d::UnitY())}};
   EXPECT_THROW((void)solve_exact(problem), std::invalid_argument);
 }

@@ -77,11 +77,11 @@ Found scan_tip(const Problem& problem, const ReducedCantilever& cantilever,
                const ExactOptions& options, const Deadline& deadline) {
   TipShots shots = shoot_from_tip(problem, cantilever, options.tolerance, deadline);
   Found result{std::move(shots.equilibria), shots.out_of_time, ""};
-  if (!shots.complete) result.not_searched = "some of the tip's angles could not be shot from";
+  if (!shots.complete) result.not_searched = "shooting failed from some angles of the tip";
   if (result.equilibria.empty()) {
     result.equilibria.emplace_back();
     result.equilibria.front().status = SolveStatus::failed;
-    result.equilibria.front().message = "no shot from the tip met the clamp's direction";
+    result.equilibria.front().message = "no shot from the tip meets the direction of the clamp";
     result.equilibria.front().evaluations = shots.shots;
   }
   return result;
@@ -96,8 +96,8 @@ void refuse_passed_torque(const Problem& problem) {
   const auto last = std::find_if(grips.rbegin(), grips.rend(), holds).base();
   for (auto g = first; g < last; ++g) {
     require(!g->grip->direction || holds(*g), "solve_exact",
-            "arc length of a clamp without frame between two that hold it", g->grip->at,
-            "that of a clamp with a frame, or of a pin");
+            "arc length of a clamp without a frame between two clamps with frames", g->grip->at,
+            "that of a clamp with a frame or of a pin");
   }
 }
 
@@ -129,20 +129,20 @@ Found search_without_potential(const Problem& problem, const ExactOptions& optio
 Found search_touching(const Problem& problem, const ExactOptions& options,
                       const Deadline& deadline) {
   require(!problem.axial_stiffness, "solve_exact", "axial_stiffness",
-          problem.axial_stiffness.value_or(0), "none where there are obstacles");
-  require(!has_couples(problem), "solve_exact", "torque of a load", 1,
-          "0 where there are obstacles");
+          problem.axial_stiffness.value_or(0), "omitted if there are obstacles");
+  require(!has_couples(problem), "solve_exact", "torque of a load", 1, "0 if there are obstacles");
   for (const LineLoad& load : problem.line_loads) {
     require(load.at_begin == load.at_end, "solve_exact", "force per length of a line load",
-            load.at_end.norm(), "constant where there are obstacles");
+            load.at_end.norm(), "constant if there are obstacles");
   }
   const auto obstacles = static_cast<double>(problem.obstacles.size());
   require(options.start != nullptr, "solve_exact", "number of obstacles", obstacles,
-          "0, or a start with the contacts to confirm, such as solve_energy()'s");
+          "0 unless a start with its contacts is given, such as a result of solve_energy()");
   std::optional<Equilibrium> found =
       confirm_contacts(problem, *options.start, options.tolerance, deadline);
   require(found.has_value(), "solve_exact", "number of obstacles", obstacles,
-          "0, or rigid ones that a rod without natural strains touches between its grips");
+          "0 unless they are rigid, the rod has no natural strains, and its contacts are between "
+          "grips");
   return {{*std::move(found)}, false, ""};
 }
 
@@ -154,11 +154,11 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
   require_positive("solve_exact", "tolerance", options.tolerance);
   require(options.time_limit > 0, "solve_exact", "time_limit", options.time_limit, "> 0");
   require(!problem.confined_to_plane, "solve_exact", "confined_to_plane", 1,
-          "false: solve_energy() alone confines a rod");
+          "false: only solve_energy() confines a rod to a plane");
   const bool judged = has_potential(problem);
   require(judged || !problem.axial_stiffness, "solve_exact", "axial_stiffness",
           problem.axial_stiffness.value_or(0),
-          "none of a rod in a stream, with loads that follow it, or couples out of its plane");
+          "omitted for a rod with drag, follower loads, or couples out of its plane");
   if (judged && !problem.axial_stiffness) {
     if (std::optional<Equilibrium> line = line_without_search(problem)) return {*std::move(line)};
   }
@@ -178,7 +178,7 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
     equilibrium.status = SolveStatus::time_limit;
     equilibrium.message = std::string(to_string(equilibrium.status)) + " after " +
                           std::to_string(options.time_limit) + " s: " + reached +
-                          (holds ? ", others may be lower" : "");
+                          (holds ? "; other equilibria may have less energy" : "");
   }
   return std::move(found.equilibria);
 }

@@ -111,11 +111,12 @@ SpanEquilibrium follow_loads(const RodSpan& span, const SpanEquilibrium& unloade
     before = std::exchange(now, std::move(next));
   }
   if (now.factor < 1) {
-    result.message = deadline.passed()
-                         ? std::string(to_string(SolveStatus::time_limit))
-                         : "the equilibrium that begins with the dead loads ends at " +
-                               std::to_string(now.factor) +
-                               " of those without a potential: others are not looked for";
+    result.message =
+        deadline.passed()
+            ? std::string(to_string(SolveStatus::time_limit))
+            : "continuation from the equilibrium under the loads with a potential ends at " +
+                  std::to_string(now.factor) +
+                  " of the loads without a potential; other equilibria are not searched for";
   } else {
     options.tolerance = tolerance;
     result = shoot_span(span, mesh_at(span, now.equilibrium.s), now.equilibrium.nodes,

@@ -24,14 +24,14 @@ void refuse_unfollowable(const Problem& problem) {
   check(problem);
   require(problem.obstacles.empty(), "solve_exact", "number of obstacles",
           static_cast<double>(problem.obstacles.size()),
-          "0 where a load has no potential: drag, one that follows the rod, a couple in space");
+          "0 if a load has no potential (drag, a follower load, a couple in space)");
   for (const Load& load : problem.loads) {
     require(!load.follows || !clamp_under(problem, load), "solve_exact",
-            "arc length of a load that follows the rod", load.at, "that of no clamp");
+            "arc length of a follower load", load.at, "different from those of the clamps");
   }
   const int held = clamps_with_frames(problem);
   require(held <= 2 || has_material_directors(problem), "solve_exact",
-          "number of clamps that hold frames", held, "<= 2 where a load has no potential");
+          "number of clamps with frames", held, "<= 2 if a load has no potential");
 }
 
 /// Returns the problem without drag, couples and loads that follow the rod. Material directors keep
@@ -85,7 +85,7 @@ Problem frozen_on(const Problem& problem, const RodSpan& span, const Equilibrium
 Equilibrium no_dead_shape(const Equilibrium& dead) {
   Equilibrium result;
   result.status = SolveStatus::failed;
-  result.message = "under the loads that have a potential alone: " + dead.message;
+  result.message = "start under only the loads that have a potential: " + dead.message;
   result.evaluations = dead.evaluations;
   return result;
 }

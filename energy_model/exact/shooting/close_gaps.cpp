@@ -147,7 +147,7 @@ ClosedGaps close_gaps(const ShootingSystem& system, ShootingPoint& point, int ma
     Triplets derivatives;
     ++result.shots;
     if (!system.evaluate(point, equations, &derivatives)) {
-      result.message = "the integrator gave up";
+      result.message = "the integrator failed";
       break;
     }
     std::optional<double> step;
@@ -157,12 +157,12 @@ ClosedGaps close_gaps(const ShootingSystem& system, ShootingPoint& point, int ma
     if (!step) step = newton_step(system, derivatives, equations, point, result.shots);
     if (!step) step = levenberg_step(system, derivatives, equations, point, result.shots);
     if (!step) {
-      result.message = "Newton's method found no shorter step";
+      result.message = "Newton's method found no step that reduces the gaps";
       if (system.unknowns() > most_weighted) {
         result.message +=
             "; " + std::to_string(system.unknowns()) +
-            " unknowns are too many for Levenberg's (allowed: " + std::to_string(most_weighted) +
-            ")";
+            " unknowns are too many for the Levenberg-Marquardt method (allowed: at most " +
+            std::to_string(most_weighted) + ")";
       }
       break;
     }

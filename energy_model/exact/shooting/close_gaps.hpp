@@ -11,7 +11,7 @@ namespace dlo::energy_model {
 /// Outcome of Newton's method.
 struct [[nodiscard]] ClosedGaps {
   bool converged = false;
-  std::string message = "Newton's method took too many steps";
+  std::string message = "Newton's method reached its iteration limit";
   int shots = 0;
 };
 

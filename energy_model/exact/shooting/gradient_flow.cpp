@@ -127,7 +127,7 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
 SpanEquilibrium leave_saddle(const RodSpan& span, const SpanEquilibrium& saddle,
                              const ShootingOptions& options) {
   SpanEquilibrium failed;
-  failed.message = "its unstable mode is not known";
+  failed.message = "the unstable mode is unknown";
   if (saddle.stability.s.size() == 0) return failed;
   const RodMesh mesh = mesh_at(span, saddle.s);
   for (const double side : {1.0, -1.0}) {

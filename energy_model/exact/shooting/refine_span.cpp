@@ -125,8 +125,8 @@ SpanEquilibrium refine_span(const RodSpan& span, const Problem& problem, const E
                             double tolerance, const Deadline& deadline) {
   check_load(span);
   require(span.round() || !span.clamps.empty(), "solve_exact",
-          "number of clamps of a curved rod with a start", 0,
-          ">= 1: the frames of the start are not known");
+          "number of clamps of a rod with material directors and a start", 0,
+          ">= 1, because a start has no frames");
   const double torque_unit = bending_unit(problem) / problem.length;
   const double b = least_bending_stiffness(span);
   double force = total_load(span) / b;

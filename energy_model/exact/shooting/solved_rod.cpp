@@ -107,8 +107,8 @@ double energy_of_couples(const Problem& problem, const RodSpan& span,
 /// Returns the reason why the loads have no potential, for a message.
 std::string why_no_potential(const Problem& problem) {
   if (problem.drag) return "drag has no potential";
-  return has_dead_loads(problem) ? "out of a plane a couple has no potential"
-                                 : "a load that follows the rod has no potential";
+  return has_dead_loads(problem) ? "a couple in space has no potential"
+                                 : "a follower load has no potential";
 }
 
 /// Whether couples act on a shape that is not in its span's plane, so that its stability is
@@ -174,8 +174,8 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
       result.status = SolveStatus::failed;
       result.message = equilibrium.message;
       if (!rod->has_directors()) {
-        result.message = "the rod from " + std::to_string(span.begin * problem.length) +
-                         " m on: " + result.message;
+        result.message = "the span that begins at " + std::to_string(span.begin * problem.length) +
+                         " m: " + result.message;
       }
       continue;
     }
@@ -205,10 +205,8 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
   if (has_couples(problem)) result.message += in_the_plane;
   if (unjudged || !has_potential(problem)) {
     result.status = SolveStatus::not_verified;
-    result.message =
-        "an equilibrium, of which the balance alone is checked; its stability is not "
-        "judged: " +
-        why_no_potential(problem);
+    result.message = "an equilibrium whose balance is verified; its stability is not judged: " +
+                     why_no_potential(problem);
     result.smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   }
   result.sample = [problem, rod, tolerance](std::span<const double> arc_lengths) {

@@ -23,7 +23,7 @@ void add_energies(const RodSpan& span, double tolerance, SpanEquilibrium& equili
     RodIntegrals integrals;
     if (!follow_rod(piece_of(span, mesh, i), tolerance, state, integrals)) {
       equilibrium.converged = false;
-      equilibrium.message = "the integrator gave up on the energies";
+      equilibrium.message = "the integrator failed while computing the energies";
       equilibrium.energy = {NAN, NAN, NAN, NAN};
       return;
     }
@@ -74,7 +74,7 @@ SpanEquilibrium close_span(const RodSpan& span, const RodMesh& mesh,
   }
   if (!equilibrium.converged) return equilibrium;
   equilibrium.converged = equilibrium.residual <= system.closed();
-  equilibrium.message = equilibrium.converged ? "converged" : "the rod does not close at a node";
+  equilibrium.message = equilibrium.converged ? "converged" : "the rod has a gap at a node";
   return equilibrium;
 }
 
@@ -121,7 +121,7 @@ void judge_stability(const RodSpan& span, double tolerance, SpanEquilibrium& equ
       });
   if (equilibrium.stability.negative < 0) {
     equilibrium.converged = false;
-    equilibrium.message = "the integrator gave up on the second variation";
+    equilibrium.message = "the integrator failed while computing the second variation";
   }
 }
 

@@ -287,7 +287,7 @@ SpanSearchResult search_released(const RodSpan& span, double tolerance, const De
 void check_load(const RodSpan& span) {
   constexpr double largest_load = 1e6;
   const double load = total_load(span) / least_bending_stiffness(span);
-  require(load <= largest_load, "solve_exact", "sum of weight and loads over EI/l^2", load,
+  require(load <= largest_load, "solve_exact", "sum of weight and loads, divided by EI/l^2", load,
           "<= 1e6");
 }
 

@@ -60,7 +60,7 @@ class Continuation {
         step /= 2;
         continue;
       }
-      if (!fall(next)) return failure("no stable shape was found beyond it: " + problem_);
+      if (!fall(next)) return failure("no stable shape was found beyond this roll: " + problem_);
       step = first_step / 4;
     }
     now_.shots = shots_;
@@ -130,7 +130,7 @@ class Continuation {
   [[nodiscard]] SpanEquilibrium failure(const std::string& message) const {
     SpanEquilibrium failed;
     failed.shots = shots_;
-    failed.message = "twisted by a roll of " + std::to_string(reached_) + " of " +
+    failed.message = "followed up to a roll of " + std::to_string(reached_) + " of " +
                      std::to_string(target_) + " rad: " + message;
     return failed;
   }

@@ -24,8 +24,7 @@ constexpr int samples = 8;  // parts per interval at whose ends pressures are co
 // Width in l below which a part is not halved further: no point within it is deeper than its ends
 // by more than this.
 constexpr double least_halved_width = 1e-9;
-constexpr const char* integration_failed =
-    "the rod between its nodes is not known: the integrator failed";
+constexpr const char* integration_failed = "the integrator failed between two nodes";
 
 /// A rod in contact that Newton's method has closed, in its own units, with the forces of its
 /// contacts.
@@ -88,10 +87,10 @@ class ClosedRod {
     for (const RodContact& contact : closed_.contacts.nodes) least = std::min(least, contact.force);
     result.penetration = problem_.length * depth;
     if (depth > confirmed_depth) {
-      return "the rod is " + std::to_string(result.penetration) +
-             " m within an obstacle that it is not said to touch";
+      return "the rod penetrates by " + std::to_string(result.penetration) +
+             " m an obstacle that is not among the contacts of the start";
     }
-    return least < -allowed_pull * largest ? "an obstacle would have to pull" : "";
+    return least < -allowed_pull * largest ? "a contact force would have to be tensile" : "";
   }
 
  private:
@@ -237,7 +236,7 @@ std::optional<Equilibrium> confirm_contacts(const Problem& problem, const Equili
     failed.evaluations = closed.shots;
     failed.residual = closed.residual;
     failed.status = deadline.passed() ? SolveStatus::time_limit : SolveStatus::failed;
-    failed.message = "Newton's method did not close the shots with the contacts of the start";
+    failed.message = "Newton's method did not converge with the contacts of the start";
     return failed;
   }
   complete(start->span, tolerance, closed);

@@ -44,7 +44,7 @@ void check_rod(const MovingRod& rod) {
   check(rod.problem);
   check(rod.problem, rod.inertia, simulate_name);
   require(rod.motions.size() <= rod.problem.grips.size(), simulate_name, "motions.size()",
-          static_cast<double>(rod.motions.size()), "no more than grips");
+          static_cast<double>(rod.motions.size()), "<= the number of grips");
   const auto known = [](double x) { return x >= 0 && std::isfinite(x); };
   require(known(rod.material_damping), simulate_name, "material_damping", rod.material_damping,
           ">= 0 and finite");
@@ -56,7 +56,7 @@ void check_rod(const MovingRod& rod) {
   }
   require(rod.obstacle_motions.size() <= rod.problem.obstacles.size(), simulate_name,
           "obstacle_motions.size()", static_cast<double>(rod.obstacle_motions.size()),
-          "no more than obstacles");
+          "<= the number of obstacles");
 }
 
 /// Prescribes the frame at the end of a span between clamps with frames. A rod without material
@@ -83,7 +83,8 @@ void check_options(std::span<const double> times, const DynamicsOptions& options
   require(options.time_limit > 0, simulate_name, "time_limit", options.time_limit, "> 0");
   for (std::size_t i = 0; i < times.size(); ++i) {
     require(std::isfinite(times[i]), simulate_name, "times", times[i], "finite");
-    require(i == 0 || times[i] > times[i - 1], simulate_name, "times", times[i], "growing");
+    require(i == 0 || times[i] > times[i - 1], simulate_name, "times", times[i],
+            "strictly increasing");
   }
 }
 
@@ -209,9 +210,9 @@ Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<co
   const double begin = times.empty() ? 0 : std::min(0.0, times.front());
   const MovingRod complete = completed(rod, begin);
   require(!has_couples(complete.problem), simulate_name, "torque of a load", 1,
-          "0: a couple has no potential, but in a plane");
+          "0: simulate() does not support couples");
   require(!complete.problem.confined_to_plane, simulate_name, "confined_to_plane", 1,
-          "false: solve_energy() alone confines a rod");
+          "false: only solve_energy() confines a rod to a plane");
   std::vector<PlacedSpan> spans = split(complete.problem);
   for (PlacedSpan& placed : spans) {
     hold_last_frame(complete.problem, placed);

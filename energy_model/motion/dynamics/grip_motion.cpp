@@ -81,7 +81,8 @@ GripMotion interpolated(std::vector<TimedPose> poses) {
   require(poses.size() >= 2, "interpolated", "poses.size()", static_cast<double>(poses.size()),
           ">= 2");
   for (std::size_t i = 1; i < poses.size(); ++i) {
-    require(poses[i].time > poses[i - 1].time, "interpolated", "time", poses[i].time, "growing");
+    require(poses[i].time > poses[i - 1].time, "interpolated", "time", poses[i].time,
+            "strictly increasing");
   }
   const Eigen::MatrixX3d curvatures = spline_curvatures(poses);
   return [poses = std::move(poses), curvatures](double time) {

@@ -381,7 +381,7 @@ SpanRun MovingSpan::run_with(const ContactLaw& contact, const StartingShape& sta
   result.left_plane = left_plane;
   take(integrator, result);
   if (too_deep() && !deadline.passed()) {
-    result.message = "a rigid obstacle is struck too hard for the depth that contact may have";
+    result.message = "an impact penetrates a rigid obstacle by more than contact_depth";
   }
   result.status = result.message.empty() ? SolveStatus::converged
                   : deadline.passed()    ? SolveStatus::time_limit

@@ -230,7 +230,7 @@ std::string SpanIntegrator::project(SpanInstant& at) {
     at.x -= step;
     before = residual;
   }
-  return "the grips cannot be reached by the rod, or hold it straight between them";
+  return "the rod cannot reach its grips, or is straight between them";
 }
 
 std::string SpanIntegrator::settle_twist(SpanInstant& at) {
@@ -261,7 +261,7 @@ std::string SpanIntegrator::settle_twist(SpanInstant& at) {
     if (size < newton_enough_ || (size >= before && size < 1e3 * newton_enough_)) return {};
     before = size;
   }
-  return "the rod's twist finds no equilibrium at the begin";
+  return "no equilibrium of the twist was found at the start";
 }
 
 std::string SpanIntegrator::advance(SpanInstant& at, double until,
@@ -280,11 +280,10 @@ std::string SpanIntegrator::advance(SpanInstant& at, double until,
     const double count = std::ceil(left / (fixed ? options_.step : next_) * (1 - 1e-9));
     const double step = left / count;
     if (!fixed && step < least_step && count > 1) {
-      return "steps have become too small; more damping makes them longer, or another number of "
-             "terms";
+      return "the time step became too small; increase the damping or change the number of terms";
     }
     if (!(fixed ? take_step(at, step) : take_two_halves(at, step))) {
-      if (fixed) return "the equations of a step are not solved";
+      if (fixed) return "Newton's method did not converge in a time step";
       continue;
     }
     if (count <= 1) at.time = until;

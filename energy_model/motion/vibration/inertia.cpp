@@ -41,17 +41,17 @@ void check(const Problem& problem, const Inertia& inertia, std::string_view func
   require(known(inertia.mass_per_length), function, "mass_per_length", inertia.mass_per_length,
           ">= 0 and finite");
   require(inertia.of_sections.size() == problem.sections.size(), function, "of_sections.size()",
-          static_cast<double>(inertia.of_sections.size()), "as many as sections");
+          static_cast<double>(inertia.of_sections.size()), "the number of sections");
   for (const double mass : inertia.of_sections) {
     require(known(mass), function, "of_sections", mass, ">= 0 and finite");
   }
   for (const PointMass& point : inertia.point_masses) {
     require(known(point.mass), function, "point_masses", point.mass, ">= 0 and finite");
-    require(point.at >= 0 && point.at <= problem.length, function, "point_masses", point.at,
-            "on the rod");
+    require(point.at >= 0 && point.at <= problem.length, function, "arc length of a point mass",
+            point.at, "on the rod");
   }
   const double total = total_mass(problem, inertia);
-  require(total > 0, function, "mass of the rod and what hangs on it", total, "> 0");
+  require(total > 0, function, "mass of the rod and its point masses", total, "> 0");
 }
 
 }  // namespace dlo::energy_model

@@ -267,8 +267,9 @@ Vibrations resolved_vibrations(const Problem& problem, const Inertia& inertia,
     terms = next;
   }
   result.status = SolveStatus::not_verified;
-  result.message = rod.is_known() ? "the slowest modes still change with the number of terms"
-                                  : "the shape is not found again with the terms of its modes";
+  result.message = rod.is_known()
+                       ? "the lowest frequencies still change with the number of terms"
+                       : "the equilibrium was not found with the number of terms of the modes";
   return result;
 }
 

@@ -43,9 +43,9 @@ Problem with_slack(const Problem& problem) {
 
 void require_energy_in_space(const Problem& problem) {
   require(!problem.confined_to_plane, "vibrations", "confined_to_plane", 1,
-          "false: solve_energy() alone confines a rod");
+          "false: only solve_energy() confines a rod to a plane");
   require(!has_couples(problem), "vibrations", "torque of a load", 1,
-          "0: out of the plane of the rod a couple has no potential");
+          "0: a couple has no potential out of the plane of the rod");
 }
 
 /// Checks that nothing bends or twists the rod. @throws std::invalid_argument otherwise
@@ -59,14 +59,14 @@ void require_nothing_bends(const Problem& problem) {
     weight = std::max({weight, load.at_begin.norm(), load.at_end.norm()});
   }
   require(weight == 0, where, "weight_per_length", weight,
-          "0: what weighs does not hang straight, or is pulled endlessly");
+          "0: a rod with weight is not straight under a finite uniform tension");
   for (const Load& load : problem.loads) {
-    require(load.force.norm() == 0, where, "load", load.force.norm(), "0 of a rod held straight");
+    require(load.force.norm() == 0, where, "load", load.force.norm(), "0 for a rod held straight");
   }
-  require(problem.obstacles.empty(), where, "obstacles",
-          static_cast<double>(problem.obstacles.size()), "none of a rod held straight");
-  require(problem.natural_strains.empty(), where, "natural_strains",
-          static_cast<double>(problem.natural_strains.size()), "none of a rod held straight");
+  require(problem.obstacles.empty(), where, "number of obstacles",
+          static_cast<double>(problem.obstacles.size()), "0 for a rod held straight");
+  require(problem.natural_strains.empty(), where, "number of natural_strains",
+          static_cast<double>(problem.natural_strains.size()), "0 for a rod held straight");
 }
 
 }  // namespace
@@ -86,7 +86,7 @@ Vibrations vibrations(const Problem& problem, const Inertia& inertia, const Equi
     return result;
   }
   if (!known.contacts.empty()) {
-    result.message = "the rod touches a rigid obstacle, which it would leave as it vibrates";
+    result.message = "the rod touches a rigid obstacle and would lift off while it vibrates";
     return result;
   }
   const Deadline deadline(options.time_limit);

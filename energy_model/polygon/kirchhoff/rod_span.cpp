@@ -259,7 +259,7 @@ RodSpan with_own_axes(const Problem& problem) {
                (load.force.y() != 0 || load.couple.x() != 0 || load.couple.z() != 0);
       });
   require(!asks_for_d1 || !span.clamps.empty(), "solve_exact",
-          "number of clamps of a rod that a load follows along d1 or d2", 0, ">= 1");
+          "number of clamps of a rod with a follower load along d1 or d2", 0, ">= 1");
   if (asks_for_d1) {
     span.has_axes = true;
     span.first_frame = first_frame(problem);
@@ -271,7 +271,7 @@ RodSpan with_own_axes(const Problem& problem) {
   }
   if (leaves_d2) span.plane.reset();
   require(span.plane || !asks_for_d1 || problem.torsional_stiffness > 0, "solve_exact",
-          "torsional_stiffness of a rod that a load follows along d1 or d2 out of a plane",
+          "torsional_stiffness of a rod with a follower load along d1 or d2 out of a plane",
           problem.torsional_stiffness, "> 0");
   return span;
 }

@@ -87,18 +87,19 @@ class PolygonDescent {
       const double acting = evaluate();
       if (!succeeded(result_.status) || free_ == 0) return;
       assemble(HessianTerms::all);
-      if (!factor(0)) return refuse("the second derivative is not positive");
+      if (!factor(0)) return refuse("the Hessian is not positive definite");
       const Eigen::VectorXd step = solver_.solve(free_part(-gradient_));
       const double size = step.norm() / std::sqrt(static_cast<double>(free_)) / length_;
       const double rounding = 16 * epsilon * largest_ * result_.points.cwiseAbs().maxCoeff();
       std::ostringstream why;
       if (!(size <= rounding_step)) {
-        why << "Newton's step is " << size << " lengths";
+        why << "the Newton step is " << size << " of the length";
         return refuse(why.str());
       }
       if (result_.residual <= std::max(rounding, force_left * acting)) return;
       if (taken == most_steps) {
-        why << result_.residual << " N are left on a point among forces of " << acting << " N";
+        why << "the largest residual force on a point is " << result_.residual
+            << " N, with acting forces of " << acting << " N";
         return refuse(why.str());
       }
       result_.points = moved(step);

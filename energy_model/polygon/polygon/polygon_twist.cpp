@@ -83,7 +83,7 @@ void require_twists(const PolygonProblem& problem) {
     for (const Eigen::Index segment : {twist.first_segment, twist.last_segment}) {
       const bool held = segment >= 0 && segment < n && is_held(segment) && is_held(segment + 1);
       require(held, name, "segment of a twist", static_cast<double>(segment),
-              "one whose points are held");
+              "one whose two points are held");
     }
     require(twist.first_segment < twist.last_segment, name, "first_segment of a twist",
             static_cast<double>(twist.first_segment), "less than its last_segment");

@@ -43,7 +43,7 @@ void require_polygon(const PolygonProblem& problem, const Points& start,
   for (const HeldPoint& held : problem.held) {
     const bool exists = held.point >= 0 && held.point <= n;
     require(exists && !taken[static_cast<std::size_t>(held.point)], name, "a held point",
-            static_cast<double>(held.point), "a point of the polygon, held once");
+            static_cast<double>(held.point), "a point of the polygon that is held only once");
     taken[static_cast<std::size_t>(held.point)] = true;
     require(held.position.allFinite(), name, "position of a held point", held.position.norm(),
             "finite");
@@ -52,7 +52,7 @@ void require_polygon(const PolygonProblem& problem, const Points& start,
     require(obstacle.stiffness >= 0 && std::isfinite(obstacle.stiffness), name,
             "stiffness of an obstacle", obstacle.stiffness, "finite and >= 0");
     require(obstacle.body.centre().allFinite() && obstacle.body.axes().allFinite(), name,
-            "point of an obstacle", obstacle.body.centre().norm(), "finite, as its axes");
+            "point of an obstacle", obstacle.body.centre().norm(), "finite, like its axes");
     require(obstacle.samples >= 1, name, "samples per segment", obstacle.samples, ">= 1");
   }
   require_positive("PolygonOptions", "tolerance", options.tolerance);
@@ -72,7 +72,7 @@ void require_polygon(const PolygonProblem& problem, const Points& start,
       require(obstacle.body.is_symmetric(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ(),
                                          problem.rest_lengths.sum()),
               name, "z of an obstacle's centre", obstacle.body.centre().z(),
-              "0, its own mirror image in the plane z = 0");
+              "0, with an obstacle that is symmetric about the plane z = 0");
     }
   }
   require(start.allFinite() && closest > 0, "solve_polygon", "shortest segment of start", closest,

@@ -122,8 +122,8 @@ PolygonResult twist_polygon(const PolygonProblem& problem,
       }
       now.status = found.status;
     }
-    now.message = std::string(to_string(now.status)) + ", twisted by " + std::to_string(part) +
-                  " of its turn";
+    now.message = std::string(to_string(now.status)) + " after " + std::to_string(part) +
+                  " of the twist was applied";
     break;
   }
   now.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -13,6 +13,6 @@ namespace dlo::energy_model {
 
 /// End of a message about a shape that couples bend.
 inline constexpr const char* in_the_plane =
-    "; in the plane alone: out of it a couple has no potential";
+    "; checked in the plane alone, because a couple has no potential out of it";
 
 }  // namespace dlo::energy_model

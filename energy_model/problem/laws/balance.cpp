@@ -235,9 +235,9 @@ double Imbalance::share() const {
 
 std::string Imbalance::text() const {
   std::ostringstream text;
-  text << std::setprecision(2) << "the forces leave " << force << " N (" << force / largest_force
-       << " of the largest) and the moments " << moment << " N m (" << moment / largest_moment
-       << " of the largest)";
+  text << std::setprecision(2) << "unbalanced force of " << force << " N (" << force / largest_force
+       << " of the largest force) and moment of " << moment << " N m (" << moment / largest_moment
+       << " of the largest moment)";
   return text.str();
 }
 

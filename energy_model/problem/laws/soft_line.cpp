@@ -285,7 +285,7 @@ class SoftLine {
     result.status = SolveStatus::converged;
     result.message =
         "converged: a catenary with bending layers at its ends, the limit of small EI / (w l^3); "
-        "what the limit neglects moves points by about " +
+        "neglected terms move points by about " +
         text_of(result.error_estimate) + " of l";
     const double first = line_.own(0);
     const double last = line_.own(l);

@@ -41,7 +41,8 @@ class TautLine {
       require(held.direction->normalized().cross(line_).norm() <= line_rounding &&
                   held.direction->dot(line_) > 0,
               "Problem", "arc length of a clamp of a taut rod", held.at,
-              "that of one whose direction is along the line on which grips hold all of the rod");
+              "that of a clamp whose direction is along the line of the grips, which hold the "
+              "whole rod straight");
     }
   }
 
@@ -51,8 +52,9 @@ class TautLine {
     add_twist();
     result_.status = SolveStatus::converged;
     result_.message =
-        "converged: the grips hold the rod taut on a line, its only shape; without stretch its "
-        "tension is undetermined, that of an unstressed rod is taken";
+        "converged: the grips hold the rod straight, which is its only shape; the tension of an "
+        "inextensible rod is undetermined and is computed for a rod that is unstressed without "
+        "loads";
     result_.residual = 0;
     result_.error_estimate = 0;
     result_.sample = sampler();
@@ -77,8 +79,8 @@ class TautLine {
   void require_along(const Eigen::Vector3d& force, double s) const {
     require(
         force.cross(line_).norm() <= line_rounding * force.norm(), "Problem",
-        "arc length where a force across a taut rod acts", s,
-        "none: nothing that does not stretch holds it on a line (grips nearer to each other, or "
+        "arc length of a force across a taut rod", s,
+        "none: an inextensible rod cannot hold it on a line (allowed: grips closer together, or "
         "forces along the line)");
   }
 
@@ -103,10 +105,10 @@ class TautLine {
   void add_load(const Load& load) {
     result_.energy.load -= load.force.dot(point(load.at) - problem_.grips.front().position);
     const std::optional<std::size_t> clamp = clamp_under(problem_, load);
-    require(clamp || load.torque.isZero(0), "Problem",
-            "arc length where a couple on a taut rod acts", load.at,
-            "that of a clamp: how the grips share a couple depends on the tension, which nothing "
-            "determines in a rod that does not stretch");
+    require(clamp || load.torque.isZero(0), "Problem", "arc length of a couple on a taut rod",
+            load.at,
+            "that of a clamp: the share of each grip in a couple depends on the tension, which is "
+            "undetermined in an inextensible rod");
     if (clamp) result_.grips[*clamp].torque -= load.torque;
     for (std::size_t i = 0; i < along_.size(); ++i) {
       if (std::abs(load.at - grip(i).at) > line_rounding * problem_.length) continue;

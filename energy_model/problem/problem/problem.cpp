@@ -22,8 +22,9 @@ void require_on_rod(const char* argument, double at, double length) {
 
 void check_frame(const Grip& grip) {
   constexpr double least_across = 1e-6;
-  require(grip.direction.has_value(), "Problem", "frame of a grip without direction", grip.at,
-          "that of a clamp");
+  require(grip.direction.has_value(), "Problem",
+          "arc length of a grip with a frame but no direction", grip.at,
+          "that of a clamp, which has a direction");
   require(std::isfinite(grip.frame->roll), "Problem", "roll of a clamp", grip.frame->roll,
           "finite");
   if (!grip.frame->d1) return;
@@ -35,7 +36,7 @@ void check_frame(const Grip& grip) {
 void check_twist(const Problem& problem) {
   if (clamps_with_frames(problem) < 2) return;
   require(problem.torsional_stiffness > 0, "Problem", "torsional_stiffness",
-          problem.torsional_stiffness, "> 0 where two clamps hold the rod's frame");
+          problem.torsional_stiffness, "> 0 if two clamps hold the rod's frame");
 }
 
 void check_sections(const Problem& problem) {
@@ -46,7 +47,7 @@ void check_sections(const Problem& problem) {
     require(section.end > section.begin, "Problem", "end of a section", section.end,
             "> its begin, " + std::to_string(section.begin));
     require(section.begin >= before, "Problem", "begin of a section", section.begin,
-            ">= " + std::to_string(before) + ", where the one before it ends");
+            ">= " + std::to_string(before) + ", the end of the previous section");
     before = section.end;
     require_positive("Problem", "bending_stiffness of a section", section.bending_stiffness);
     require_positive("Problem", "bending_stiffness_2 of a section",
@@ -54,7 +55,7 @@ void check_sections(const Problem& problem) {
     require(section.torsional_stiffness >= 0 && std::isfinite(section.torsional_stiffness) &&
                 (section.torsional_stiffness > 0 || !(problem.torsional_stiffness > 0)),
             "Problem", "torsional_stiffness of a section", section.torsional_stiffness,
-            "finite, and > 0 where the rod's is");
+            "finite, and > 0 if the rod's torsional_stiffness is");
     require(section.weight_per_length.allFinite(), "Problem", "weight_per_length of a section",
             section.weight_per_length.norm(), "finite");
     const Eigen::Vector2d bend = section.natural_curvature.value_or(Eigen::Vector2d::Zero());
@@ -63,7 +64,8 @@ void check_sections(const Problem& problem) {
             bend.norm() + std::abs(twist), "finite");
     require(
         !(section.natural_curvature || section.natural_twist) || !problem.natural_strains.empty(),
-        "Problem", "number of natural_strains, of a rod whose sections have their own", 0, ">= 1");
+        "Problem", "number of natural_strains of a rod whose sections have natural strains", 0,
+        ">= 1");
   }
 }
 
@@ -76,8 +78,8 @@ void check_material_directors(const Problem& problem) {
   if (!has_material_directors(problem)) return;
   require_positive("Problem",
                    problem.natural_strains.empty()
-                       ? "torsional_stiffness, of a rod with two bending stiffnesses"
-                       : "torsional_stiffness, of a rod that is not intrinsically straight",
+                       ? "torsional_stiffness of a rod with two bending stiffnesses"
+                       : "torsional_stiffness of a rod that is not intrinsically straight",
                    problem.torsional_stiffness);
 }
 
@@ -115,11 +117,12 @@ bool has_potential(const Problem& problem) {
 }
 
 void require_dead_loads(const Problem& problem, const char* function) {
-  require(!problem.drag, function, "velocity of drag", problem.drag ? 1 : 0,
-          "none: drag has no potential (solve_exact() takes it)");
+  require(!problem.drag, function, "drag", problem.drag ? 1 : 0,
+          "omitted: drag has no potential (only solve_exact() supports it)");
   for (const Load& load : problem.loads) {
-    require(!load.follows, function, "arc length of a load that follows the rod", load.at,
-            "that of a dead one: what follows has no potential (solve_exact() takes it)");
+    require(
+        !load.follows, function, "arc length of a follower load", load.at,
+        "that of a dead load: a follower load has no potential (only solve_exact() supports it)");
   }
 }
 
@@ -149,7 +152,7 @@ void check(const Problem& problem) {
     require(body.centre().allFinite(), "Problem", "point of an obstacle", body.centre().norm(),
             "finite");
     require(body.axes().allFinite(), "Problem", "axes of an obstacle", body.axes().norm(),
-            "finite, of a length > 0");
+            "finite, with lengths > 0");
     require(body.smallest_radius() > 0, "Problem", "radius of an obstacle's edges",
             body.smallest_radius(), "> 0");
     require(obstacle.stiffness > 0, "Problem", "stiffness of an obstacle", obstacle.stiffness,

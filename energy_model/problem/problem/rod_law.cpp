@@ -133,7 +133,7 @@ int clamps_with_frames(const Problem& problem) {
 void require_inextensible(const Problem& problem, std::string_view function) {
   require(!problem.axial_stiffness, function, "axial_stiffness",
           problem.axial_stiffness.value_or(0),
-          "none: solve_exact() alone takes a rod that stretches");
+          "omitted: only solve_exact() supports an extensible rod");
 }
 
 double bending_unit(const Problem& problem) {
@@ -222,7 +222,7 @@ Eigen::Matrix3d first_frame(const Problem& problem) {
   const std::optional<Eigen::Vector3d> normal = natural_normal(problem);
   require(normal.has_value(), "Problem", "arc length of the first clamp, whose frame lacks d1",
           clamp.at,
-          "that of a clamp with d1: the rod is not round or not straight, and lies in no plane");
+          "that of a clamp with d1: the rod is not both round and straight, and lies in no plane");
   return held_frame(clamp, normal->cross(*clamp.direction));
 }
 

@@ -147,12 +147,12 @@ std::optional<HeldFrames> frames_of(const Problem& problem, const OrderedGrip& s
 }
 
 constexpr const char* confined_need =
-    "false, or true of a rod whose grips, forces and natural curvature share a plane, without "
-    "obstacles and held frames";
+    "false unless grips, forces and natural curvature lie in one plane, at most one clamp has a "
+    "frame, and there are no obstacles";
 
 constexpr const char* couples_need =
-    "0, or across the plane of grips and forces, of a rod that keeps to it, without obstacles and "
-    "held frames: elsewhere a couple has no potential";
+    "0, or normal to the plane of grips and forces if the rod stays in it, at most one clamp has a "
+    "frame, and there are no obstacles: any other couple has no potential";
 
 /// Adds couples about the normal of the span's plane to the loads of the span.
 void place_couples(const Problem& problem, const Stretch& stretch, PlacedSpan& placed) {

@@ -66,8 +66,8 @@ Eigen::Vector3d reference_d1(const Problem& problem, const Grip& clamp) {
 }  // namespace
 
 Eigen::Vector3d held_d1(const Problem& problem, const Grip& grip) {
-  require(grip.direction && grip.frame, "held_d1", "arc length of a grip that holds no frame",
-          grip.at, "that of a clamp with a frame");
+  require(grip.direction && grip.frame, "held_d1", "arc length of a grip without a frame", grip.at,
+          "that of a clamp with a frame");
   if (grip.frame->d1) return part_across(*grip.frame->d1, grip.direction->normalized());
   const Grip& first = reference_clamp(problem);
   Eigen::Vector3d d1 = reference_d1(problem, first);

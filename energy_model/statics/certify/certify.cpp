@@ -273,7 +273,7 @@ class Certification {
     solution_.energy = point_->energy;
     gradient_ = point_->gradient - point_->jacobian.transpose() * solution_.multipliers;
     if (!(solution_.multipliers.norm() <= largest_pull * (1 + load_))) {
-      solution_.fail("the grips would have to pull without bound");
+      solution_.fail("the reactions of the grips are unbounded");
       return false;
     }
     solution_.residual = std::hypot(gradient_.norm(), scale_ * point_->residual.norm());

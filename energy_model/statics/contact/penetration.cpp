@@ -100,8 +100,9 @@ Penetration judge_penetration(const Problem& problem, Equilibrium& equilibrium) 
   if (equilibrium.penetration <= allowed_penetration * l) return deepest;
   std::ostringstream why;
   why.precision(2);
-  why << "the shape is " << equilibrium.penetration << " m = " << equilibrium.penetration / l
-      << " l within a rigid obstacle (allowed: " << allowed_penetration << " l)";
+  why << "the shape penetrates a rigid obstacle by " << equilibrium.penetration
+      << " m = " << equilibrium.penetration / l << " l (allowed: at most " << allowed_penetration
+      << " l)";
   equilibrium.status = SolveStatus::not_verified;
   equilibrium.message = std::string(to_string(equilibrium.status)) + ": " + why.str();
   return deepest;

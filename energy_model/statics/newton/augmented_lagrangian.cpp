@@ -38,7 +38,7 @@ class AugmentedLagrangian {
     }
     if (out_of_time()) return finish(SolveStatus::time_limit);
     finish(SolveStatus::failed);
-    solution_.fail("the grips' positions could not be met from this start");
+    solution_.fail("no shape at the positions of the grips was found from this start");
   }
 
  private:

@@ -229,7 +229,7 @@ void NewtonIteration::finish() {
   solution_.eigenvalue_nearest_zero =
       step_.is_minimum() ? step_.smallest_eigenvalue() : std::numeric_limits<double>::quiet_NaN();
   if (!(solution_.multipliers.norm() <= largest_pull * (1 + options_.load))) {
-    return solution_.fail("Newton's method left for forces without bound");
+    return solution_.fail("Newton's method diverged to unbounded forces");
   }
   const bool minimum = step_.is_minimum() || model_.constraints() > 0;
   solution_.finish(minimum ? SolveStatus::converged : SolveStatus::saddle);

@@ -29,7 +29,7 @@ class TrustRegionDescent {
     solution_.evaluate(solution_.x, here);
     if (!restore(solution_, here, loosest_gap, scratch_)) {
       solution_.multipliers = multipliers_;
-      return solution_.fail("the grips' positions could not be met from this start");
+      return solution_.fail("no shape at the positions of the grips was found from this start");
     }
     double radius = options_.radius;
     for (int i = 0; i < options_.max_iterations; ++i) {

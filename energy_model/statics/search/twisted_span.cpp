@@ -23,7 +23,7 @@ constexpr double largest_followed_turn = 1;
 constexpr int terms_of_guess = 24;
 
 constexpr const char* turned_little_by_little =
-    "stable shapes without twist, turned little by little";
+    "stable shapes without twist, rotated in small steps";
 
 /// Whether a shape may be followed: an equilibrium, or a singular point.
 bool is_known(const SpanSolution& solution) {

@@ -74,7 +74,7 @@ SpanSolution with_found_pieces(
   }
   if (solution.is_equilibrium()) {
     solution.resolved = false;
-    solution.fail("where contact with obstacles that yield begins and ends has not been found");
+    solution.fail("the ends of contact with soft obstacles were not found");
   }
   return solution;
 }

@@ -61,7 +61,7 @@ inline constexpr double same_points = 1e-6;
 /// Message of a search with prescribed end frames if all equilibria belong to another homotopy
 /// class.
 inline constexpr const char* no_equilibrium_of_class =
-    "no equilibrium was found with the turns of the clamps";
+    "no equilibrium was found with the number of turns that the clamps prescribe";
 
 /// Returns the writhe of a shape from its start to its end; std::nullopt as writhe().
 [[nodiscard]] std::optional<Writhe> writhe_of(const SpanSolution& solution);

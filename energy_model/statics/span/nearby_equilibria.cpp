@@ -24,8 +24,8 @@ constexpr std::size_t most_joined = 6;
 /// Number of equilibria next to which look_beside() searches.
 constexpr std::size_t most_left_aside = 8;
 
-constexpr const char* between_found = "between two of those found, by Newton's method";
-constexpr const char* beside_found = "beside what was found, by Newton's method";
+constexpr const char* between_found = "between two equilibria found, by Newton's method";
+constexpr const char* beside_found = "adjacent to an equilibrium found, by Newton's method";
 
 /// Returns the solution without its own contact ends, so that it can be combined with another one.
 SpanSolution on_shared_pieces(const SpanSolution& solution, const SpanOptions& options,
@@ -127,7 +127,7 @@ void look_between(const SpanOptions& options, SpanWorkspace& workspace, Found& f
     }
   }
   if (found.size() > most_joined) {
-    options.log->leave_out("what lies between the equilibria found, but for the first " +
+    options.log->leave_out("shapes between equilibria found, except for the first " +
                            std::to_string(most_joined));
   }
 }
@@ -149,7 +149,7 @@ void look_beside(const SpanOptions& options, SpanWorkspace& workspace, Found& fo
     }
   }
   if (i >= found.size()) return;
-  options.log->leave_out("what lies beside the equilibria found, but for the first " +
+  options.log->leave_out("shapes adjacent to equilibria found, except for the first " +
                          std::to_string(i));
 }
 

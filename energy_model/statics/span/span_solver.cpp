@@ -44,8 +44,8 @@ constexpr double same_coarse_points = 10 * rough_step;
 /// Maximum number of unstable equilibria from which a descent is started.
 constexpr std::size_t most_saddles = 8;
 
-constexpr const char* left_downhill = "unstable equilibria, left downhill";
-constexpr const char* out_of_plane = "the same and others, out of the plane";
+constexpr const char* left_downhill = "unstable equilibria, followed downhill";
+constexpr const char* out_of_plane = "the same starts and others, out of the plane";
 
 /// Describes start_fields() and natural_fields() in words.
 std::string starts_of(const Span& span) {
@@ -148,7 +148,8 @@ class Search {
     }
     if (left_ < most_saddles || not_left == 0) return;
     options_.log->leave_out(std::to_string(not_left) + " unstable equilibria, beyond the first " +
-                            std::to_string(most_saddles) + " found, which were not left downhill");
+                            std::to_string(most_saddles) +
+                            " found, which were not followed downhill");
   }
 
   /// Whether the first of the other starts costs about as much as the last of those followed in any

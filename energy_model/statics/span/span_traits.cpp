@@ -76,8 +76,8 @@ void require_affordable(const Span& span, int terms, std::string_view function) 
   const std::size_t pieces = pieces_of(span).size();
   std::ostringstream message;
   message << function << ": " << span.loads.size() << " loads, " << span.holds.size()
-          << " grips and " << span.parts.size() << " sections of a span cut it into " << pieces
-          << " pieces, must be at most "
+          << " grips and " << span.parts.size() << " sections of a span divide it into " << pieces
+          << " elements, must be at most "
           << most_model_unknowns / (least * SpanTraits::fields_of(span)) << " of " << least
           << (terms > 0 ? "" : " or more") << " terms";
   throw std::invalid_argument(message.str());

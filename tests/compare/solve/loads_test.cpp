@@ -192,8 +192,8 @@ TEST(Loads, WhatHasNoPotentialIsForExactWhichSaysWhatItHasChecked) {
   const std::string stream =
       "[medium]\ndensity = 1000\nvelocity = [1, 0, 0.5]\nnormal_drag = 1.2\n";
   const std::vector<std::array<std::string, 3>> cases = {
-      {turning, "load.follows", "follows the rod"},
-      {in_space + "[[load]]\nat = 0.4\nforce = [1, 0, 0]\n", "load.torque", "out of a plane"},
+      {turning, "load.follows", "follower load"},
+      {in_space + "[[load]]\nat = 0.4\nforce = [1, 0, 0]\n", "load.torque", "couple in space"},
       {stream, "medium.velocity", "drag"}};
   for (const auto& [text, key, why] : cases) {
     const Scene scene = parse_scene(thick_rod_held + text, "my.toml");
