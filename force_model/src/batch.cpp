@@ -13,7 +13,7 @@ namespace dlo::force_model {
 namespace {
 
 /// Throws unless all rods can share one kernel.
-void require_alike(const std::vector<BatchRod>& rods) {
+void require_common_kernel(const std::vector<BatchRod>& rods) {
   require(!rods.empty(), "Batch", "number of rods", 0, ">= 1");
   const BatchRod& first = rods.front();
   const auto require_same = [](bool same, std::string_view what, std::size_t index) {
@@ -38,7 +38,7 @@ void require_alike(const std::vector<BatchRod>& rods) {
 }  // namespace
 
 Batch::Batch(const std::vector<BatchRod>& rods) : size_(rods.size()) {
-  require_alike(rods);
+  require_common_kernel(rods);
   const std::span<const BatchRod> all = rods;
   blocks_.reserve((size_ + rods_per_block - 1) / rods_per_block);
   for (std::size_t first = 0; first < size_; first += rods_per_block) {

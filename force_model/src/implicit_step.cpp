@@ -29,7 +29,7 @@ constexpr double most_pressed = 0.01;
 constexpr double sufficient = 0.05;
 /// Largest number of solves in the search for the points that touch walls. If the set is not found,
 /// the last one is used until the next step.
-constexpr int most_looks = 30;
+constexpr int most_active_set_iterations = 30;
 /// Number of halvings of a movement before a larger shift is tried.
 constexpr int most_halvings = 6;
 /// Number of shifts that are tried. Each is shift_growth times the previous one, beginning with the
@@ -163,7 +163,7 @@ bool ImplicitStep::solve(const Rod& rod) {
     if (depth > 0) press(wall, i, depth, 1);
   });
   walls_energy_ = 0;  // that of now is part of energy_
-  for (int look = 0; look < most_looks; ++look) {
+  for (int iteration = 0; iteration < most_active_set_iterations; ++iteration) {
     ++newton_steps_;
     lead_held_points(rod);
     if (!factor_.compute(stiffness_, is_free_, shift_) || !solve_linear()) return false;

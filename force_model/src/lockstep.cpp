@@ -102,21 +102,22 @@ void Lockstep::compute_forces() {
   block_.compute_forces(rods_, active_);
 }
 
-void Lockstep::look_at_modes() {
+void Lockstep::measure_modes() {
   bool due = false;
   for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
-    due = due || (active(rod) && controls_[rod].looks_at_modes());
+    due = due || (active(rod) && controls_[rod].measures_modes());
   }
   if (!due) return;
-  block_.look_at_modes(look_);
+  block_.measure_modes(measured_modes_);
   if (block_.twisted()) {
     copy_points(0, points_);
-    look_.bending.lane[0] += fastest_twist_mode(rods_.front(), points_);
+    measured_modes_.bending.lane[0] += fastest_twist_mode(rods_.front(), points_);
   }
   for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
     if (!active(rod)) continue;
-    controls_[rod].update_modes(look_.contraction.lane[rod] + look_.bending.lane[rod],
-                                look_.force_change.lane[rod], look_.point_change.lane[rod]);
+    controls_[rod].update_modes(
+        measured_modes_.contraction.lane[rod] + measured_modes_.bending.lane[rod],
+        measured_modes_.force_change.lane[rod], measured_modes_.point_change.lane[rod]);
     c_F_.lane[rod] = controls_[rod].options().c_F;
   }
 }
@@ -144,7 +145,7 @@ void Lockstep::step(std::span<StepResult> results) {
     return;
   }
   compute_forces();
-  look_at_modes();
+  measure_modes();
   if (verlet_) {
     if (active(0)) results[0] = step_by_velocities();
     return;
@@ -245,7 +246,7 @@ std::vector<RelaxResult> Lockstep::relax(const RelaxOptions& options) {
         if (!due[rod]) continue;
         // The equilibrium is unstable, as that of an upright rod: it is displaced, as any
         // disturbance would do.
-        const Eigen::Matrix3Xd descent = searches[rod].look(shape(rod));
+        const Eigen::Matrix3Xd descent = searches[rod].check_rest(shape(rod));
         if (descent.cols() > 0) nudge(rod, descent);
         controls_[rod].correct_slowest_mode(searches[rod].slowest_mode());
         if (searches[rod].bounces()) controls_[rod].descend();

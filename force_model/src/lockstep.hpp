@@ -56,7 +56,7 @@ class Lockstep {
 
  private:
   void compute_forces();
-  void look_at_modes();
+  void measure_modes();
   [[nodiscard]] StepResult step_implicitly();
   [[nodiscard]] StepResult step_by_velocities();
   RelaxResult relax_implicitly(const RelaxOptions& options);
@@ -75,7 +75,7 @@ class Lockstep {
   std::optional<ImplicitStep> implicit_;  // for a single rod whose policy uses it
   std::optional<VerletStep> verlet_;
   ProposedStep proposed_;
-  ModeLook look_;
+  ModeMeasurement measured_modes_;
   Eigen::Matrix3Xd points_;  // points of the rod that is examined
   Eigen::Matrix3Xd forces_;
 };

@@ -11,7 +11,7 @@ constexpr double memory = 0.8;  // weight of older blocks
 
 /// Ratio of estimate to true stiffness up to which the estimate is kept [-]. Below it, heavy_ball's
 /// steps move the slowest mode at least half as fast as possible, which does not justify a restart.
-constexpr double misled = 2;
+constexpr double largest_kept_ratio = 2;
 
 }  // namespace
 
@@ -40,7 +40,7 @@ void ModeEstimate::update_fastest(double inner_mode) {
 }
 
 void ModeEstimate::correct_slowest(double slowest) {
-  if (!(modes_.slowest > misled * slowest)) return;
+  if (!(modes_.slowest > largest_kept_ratio * slowest)) return;
   modes_.slowest = std::max(slowest, smallest_mode_ratio * modes_.fastest);
   force_change_ = 0;
   point_change_ = 0;

@@ -51,11 +51,11 @@ bool RestSearch::count(const StepResult& step) {
     return false;
   }
   ++result_.steps;
-  if (result_.steps % clock_steps == 0) look_at_clock();
+  if (result_.steps % clock_steps == 0) check_clock();
   return result_.steps % block_steps == 0 && result_.steps >= next_check_;
 }
 
-void RestSearch::look_at_clock() {
+void RestSearch::check_clock() {
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin_;
   const bool stopped = options_.interrupted != nullptr && options_.interrupted();
   if (stopped || taken.count() > options_.time_limit) result_.status = RelaxStatus::time_limit;
@@ -67,7 +67,7 @@ void RestSearch::count_newton_steps(const StepResult& step, long solves) {
     return;
   }
   result_.steps += solves;
-  look_at_clock();
+  check_clock();
 }
 
 Eigen::Matrix3Xd RestSearch::judge(const MovingShape& shape) {
@@ -89,7 +89,7 @@ EquilibriumCheck RestSearch::measure(const MovingShape& shape) {
   return check;
 }
 
-Eigen::Matrix3Xd RestSearch::look(const MovingShape& shape) {
+Eigen::Matrix3Xd RestSearch::check_rest(const MovingShape& shape) {
   // Simple signs are checked first. The proof of rest is the Newton step and the stiffness.
   const double root_points = std::sqrt(static_cast<double>(shape.points.cols()));
   const double distance = shape.forces.norm() / estimate_.modes().slowest / root_points;
@@ -102,8 +102,8 @@ Eigen::Matrix3Xd RestSearch::look(const MovingShape& shape) {
   const double rounding = 64 * std::numeric_limits<double>::epsilon() * rod_.c_c *
                           shape.points.cwiseAbs().maxCoeff() / rod_.rest_lengths.minCoeff();
   const bool forceless = shape.forces.cwiseAbs().maxCoeff() <= rounding;
-  const bool due = result_.steps >= next_measurement_ || (forceless && !looked_without_force_);
-  looked_without_force_ = looked_without_force_ || forceless;
+  const bool due = result_.steps >= next_measurement_ || (forceless && !measured_without_force_);
+  measured_without_force_ = measured_without_force_ || forceless;
   if (!seems_at_rest && !due) return {};
   next_measurement_ = std::max(next_measurement_, result_.steps + result_.steps / 4);
   EquilibriumCheck check = measure(shape);

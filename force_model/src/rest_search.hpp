@@ -26,13 +26,13 @@ class RestSearch {
   /// Whether another step is to be made.
   [[nodiscard]] bool open() const;
 
-  /// Counts a step. @return whether look() is due
+  /// Counts a step. @return whether check_rest() is due
   [[nodiscard]] bool count(const StepResult& step);
 
   /// Counts a step that took several linear solves.
   void count_newton_steps(const StepResult& step, long solves);
 
-  /// Measures the shape and ends the search if it is at rest. @return as look()
+  /// Measures the shape and ends the search if it is at rest. @return as check_rest()
   [[nodiscard]] Eigen::Matrix3Xd judge(const MovingShape& shape);
 
   /// Ends the search, because no step changes the shape any more.
@@ -40,14 +40,15 @@ class RestSearch {
 
   /// Ends the search if the shape is at rest. @return for an unstable equilibrium its direction of
   /// negative curvature, see EquilibriumCheck; else empty, 3 x 0
-  [[nodiscard]] Eigen::Matrix3Xd look(const MovingShape& shape);
+  [[nodiscard]] Eigen::Matrix3Xd check_rest(const MovingShape& shape);
 
-  /// Whether the last look() found the rod close to an equilibrium after many steps, but still
-  /// moving. A point that barely touches a wall may bounce on it forever, by an amount that matters
-  /// for the forces but not for the shape. Steps without momentum (StepControl::descend) end this.
+  /// Whether the last check_rest() found the rod close to an equilibrium after many steps, but
+  /// still moving. A point that barely touches a wall may bounce on it forever, by an amount that
+  /// matters for the forces but not for the shape. Steps without momentum (StepControl::descend)
+  /// end this.
   [[nodiscard]] bool bounces() const { return bounces_; }
 
-  /// Returns the stiffness of the slowest mode if the last look() found the rod near a proven
+  /// Returns the stiffness of the slowest mode if the last check_rest() found the rod near a proven
   /// equilibrium but not at rest, or found the simple signs of rest wrong; else infinity [N/m].
   [[nodiscard]] double slowest_mode() const { return slowest_mode_; }
 
@@ -56,7 +57,7 @@ class RestSearch {
   [[nodiscard]] RelaxResult finish(const MovingShape& shape);
 
  private:
-  void look_at_clock();
+  void check_clock();
   EquilibriumCheck measure(const MovingShape& shape);
   /// Whether the last measured shape is at rest.
   [[nodiscard]] bool rests(const EquilibriumCheck& check) const;
@@ -69,9 +70,9 @@ class RestSearch {
   long next_check_ = 2 * block_steps;
   long next_measurement_ = 0;  // at the latest at this step
   bool bounces_ = false;
-  /// Distance from rest before the last descent; infinite if the last look() started none.
+  /// Distance from rest before the last descent; infinite if the last check_rest() started none.
   double descended_from_ = std::numeric_limits<double>::infinity();
-  bool looked_without_force_ = false;
+  bool measured_without_force_ = false;
   int neutral_modes_ = 0;
   double slowest_mode_ = std::numeric_limits<double>::infinity();
   RelaxResult result_;

@@ -50,7 +50,7 @@ class RodBlock {
   void compute_forces(std::span<const Rod> rods, const PerLane& active);
 
   /// Measures the modes of the present shape, whose forces must have been computed.
-  void look_at_modes(ModeLook& look) { kernel_->look_at_modes(block(), look); }
+  void measure_modes(ModeMeasurement& measured) { kernel_->measure_modes(block(), measured); }
 
   /// Proposes movements, c_F forces + `kept` times the last proposed ones, and measures them.
   void propose(const PerLane& c_F, const PerLane& kept, const PerLane& rounding_squared,

@@ -20,7 +20,7 @@ class StepControl {
   StepControl(const Rod& rod, const Eigen::Matrix3Xd& points, const StepOptions& options);
 
   /// Whether this step begins with a measurement of the modes.
-  [[nodiscard]] bool looks_at_modes() const { return steps_ % block_steps == 0; }
+  [[nodiscard]] bool measures_modes() const { return steps_ % block_steps == 0; }
 
   /// Updates the modes and, for the automatic policy, c_F and c_h. Arguments as ModeEstimate's.
   void update_modes(double inner_mode, double force_change, double point_change);

@@ -155,7 +155,7 @@ Lanes joint_mode(Lanes stiffness, Lanes ab, Lanes product, Lanes L, Lanes lever)
 }
 
 template <BendingLaw law, int dimension, std::ptrdiff_t stride, JointExtra extra>
-void look_at_modes(const PointBlock& block, ModeLook& look) {
+void measure_modes(const PointBlock& block, ModeMeasurement& measured) {
   using All = Registers<dimension, stride>;
   using Vector = LaneVector<dimension>;
   const All all{block};
@@ -201,10 +201,10 @@ void look_at_modes(const PointBlock& block, ModeLook& look) {
       rest_previous = rest;
       bounded_previous = bounded;
     }
-    All::template gather<max>(contraction, column, look.contraction);
-    All::template gather<max>(bending, column, look.bending);
-    All::template gather<sum>(force_change, column, look.force_change);
-    All::template gather<sum>(point_change, column, look.point_change);
+    All::template gather<max>(contraction, column, measured.contraction);
+    All::template gather<max>(bending, column, measured.bending);
+    All::template gather<sum>(force_change, column, measured.force_change);
+    All::template gather<sum>(point_change, column, measured.point_change);
   }
 }
 
@@ -297,7 +297,7 @@ template <BendingLaw law, int dimension, std::ptrdiff_t stride, JointExtra extra
 constexpr StepKernel kernel = {
     .add_walls = add_walls<dimension, stride>,
     .compute_forces = compute_forces<law, dimension, stride, extra>,
-    .look_at_modes = look_at_modes<law, dimension, stride, extra>,
+    .measure_modes = measure_modes<law, dimension, stride, extra>,
     .propose_relative = propose<true, dimension, stride>,
     .propose_absolute = propose<false, dimension, stride>,
     .move = move<dimension, stride>,

@@ -63,7 +63,7 @@ struct ProposedStep {
 };
 
 /// Results of a measurement of the modes, see mode_bounds and ModeEstimate.
-struct ModeLook {
+struct ModeMeasurement {
   PerLane contraction;   ///< largest 4 c_c / L [N/m]
   PerLane bending;       ///< largest (16 M' + 4 M) / L^2 [N/m]
   PerLane force_change;  ///< -dF.dP since the last measurement [N m]
@@ -88,7 +88,7 @@ struct StepKernel {
   /// no direction or a joint is folded beyond hooke_fold_angle: then `forces` is undefined.
   void (*compute_forces)(const PointBlock& block, PointArray applied, PerLane& regular);
   /// Compares positions and forces with those of the last measurement and replaces the latter.
-  void (*look_at_modes)(const PointBlock& block, ModeLook& look);
+  void (*measure_modes)(const PointBlock& block, ModeMeasurement& measured);
   /// Computes proposals = c_F forces + kept * those of the last step, compared with their
   /// neighbours (18).
   /// @param turn  set of proposals of this step, 0 or 1; the other is the last step's

@@ -56,7 +56,7 @@ BorderedMatrix BorderedMatrix::shifted(double shift) const {
   return result;
 }
 
-double BorderedMatrix::largest_eigenvalue() const {
+double BorderedMatrix::eigenvalue_bound() const {
   return (Eigen::RowVectorXd::Ones(A.rows()) * A.cwiseAbs()).maxCoeff() + B.squaredNorm();
 }
 
@@ -99,7 +99,7 @@ Eigen::VectorXd StiffnessFactor::negative_curvature(const BorderedMatrix& K) con
   // The pivots of the bordered matrix do not give directions of K. The lowest mode is found by
   // inverse iteration with a shift: the first of eps 4^k largest, k = 0, 1, .., that makes K
   // positive definite.
-  const double largest = K.largest_eigenvalue();
+  const double largest = K.eigenvalue_bound();
   for (double share = std::numeric_limits<double>::epsilon(); share < 2; share *= 4) {
     const BorderedMatrix shifted = K.shifted(share * largest);
     const StiffnessFactor factor(shifted);

@@ -16,7 +16,7 @@ struct BorderedMatrix {
   /// Returns K plus a multiple of the identity.
   [[nodiscard]] BorderedMatrix shifted(double shift) const;
   /// Returns a bound of the largest eigenvalue (Gershgorin, and |B|^2).
-  [[nodiscard]] double largest_eigenvalue() const;
+  [[nodiscard]] double eigenvalue_bound() const;
 };
 
 /// L D L^T factorisation of a bordered matrix in O(rows), computed from

@@ -270,7 +270,7 @@ EquilibriumCheck check_equilibrium(const Rod& rod,
   StiffnessFactor factor(K);
   if (!factor.succeeded()) return result;
   // Rounding of K, which is banded, makes the sign of modes below this undefined.
-  const double rounding = 64 * std::numeric_limits<double>::epsilon() * K.largest_eigenvalue();
+  const double rounding = 64 * std::numeric_limits<double>::epsilon() * K.eigenvalue_bound();
   SlowModes slow;
   const bool positive = factor.is_positive();
   if (positive) slow = slow_modes(K, factor);
