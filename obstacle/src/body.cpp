@@ -98,8 +98,8 @@ Body Body::grown(double by) const {
   return body;
 }
 
-Body Body::seen_from(const Eigen::Vector3d& origin, const Eigen::Matrix3d& turn,
-                     double unit) const {
+Body Body::transformed(const Eigen::Vector3d& origin, const Eigen::Matrix3d& turn,
+                       double unit) const {
   Body body;
   body.centre_ = turn * (centre_ - origin) / unit;
   body.axes_ = turn * axes_;

@@ -8,11 +8,11 @@
 namespace dlo::obstacle {
 namespace {
 
-constexpr int directions = 120;        // number of points on a full circle
-constexpr double seen_on_edge = 1e-9;  // components of a unit vector below this are rounding
+constexpr int directions = 120;         // number of points on a full circle
+constexpr double edge_rounding = 1e-9;  // components of a unit vector below this are rounding
 
 /// Projected core of a body: its middle and three edges, any of them zero.
-struct SeenCore {
+struct ProjectedCore {
   Eigen::Vector2d middle;
   Eigen::Matrix<double, 2, 3> axes;
   Eigen::Vector3d lower;
@@ -28,20 +28,20 @@ struct SeenCore {
   }
 };
 
-SeenCore seen(const Body& body, const Eigen::Matrix<double, 2, 3>& view, double far) {
+ProjectedCore project(const Body& body, const Eigen::Matrix<double, 2, 3>& view, double far) {
   const auto ended = [far](double end) { return std::clamp(end, -far, far); };
-  SeenCore core{.middle = view * body.centre(),
-                .axes = view * body.axes(),
-                .lower = body.lower().unaryExpr(ended),
-                .upper = body.upper().unaryExpr(ended)};
+  ProjectedCore core{.middle = view * body.centre(),
+                     .axes = view * body.axes(),
+                     .lower = body.lower().unaryExpr(ended),
+                     .upper = body.upper().unaryExpr(ended)};
   for (Eigen::Index k = 0; k < 3; ++k) {
-    if (core.axes.col(k).norm() < seen_on_edge) core.axes.col(k).setZero();
+    if (core.axes.col(k).norm() < edge_rounding) core.axes.col(k).setZero();
   }
   return core;
 }
 
 /// Returns the angles of the points of a rounded outline, including those normal to its edges.
-std::vector<double> angles_of(const SeenCore& core) {
+std::vector<double> angles_of(const ProjectedCore& core) {
   std::vector<double> angles;
   angles.reserve(directions + 6);
   for (int i = 0; i < directions; ++i) {
@@ -63,8 +63,8 @@ Eigen::Matrix2Xd outline(const Body& body, const Eigen::Vector3d& right, const E
                          double far) {
   Eigen::Matrix<double, 2, 3> view;
   view << right.transpose(), up.transpose();
-  if (body.is_half_space() && (view * body.normal()).norm() < 1 - seen_on_edge) return {};
-  const SeenCore core = seen(body, view, far);
+  if (body.is_half_space() && (view * body.normal()).norm() < 1 - edge_rounding) return {};
+  const ProjectedCore core = project(body, view, far);
   std::vector<Eigen::Vector2d> points;
   const auto add = [&points](const Eigen::Vector2d& point) {
     if (points.empty() || point != points.back()) points.push_back(point);

@@ -63,7 +63,7 @@ std::vector<YieldingScene> yielding_scenes() {
 
 Problem with_moved_obstacle(Problem problem, const Eigen::Vector3d& by) {
   obstacle::Body& body = problem.obstacles.front().body;
-  body = body.seen_from(-by, Eigen::Matrix3d::Identity(), 1);
+  body = body.transformed(-by, Eigen::Matrix3d::Identity(), 1);
   return problem;
 }
 

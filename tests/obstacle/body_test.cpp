@@ -98,7 +98,7 @@ TEST(Body, SeenFromElsewhereItIsTheSame) {
   constexpr double unit = 0.5;
   const Vector3d point(0.3, 0.9, -0.8);
   for (const Body& body : bodies()) {
-    const Body seen = body.seen_from(origin, turn, unit);
+    const Body seen = body.transformed(origin, turn, unit);
     EXPECT_NEAR(seen.clearance(turn * (point - origin) / unit), body.clearance(point) / unit,
                 1e-14);
     EXPECT_NEAR(body.grown(0.1).clearance(point), body.clearance(point) - 0.1, 1e-15);

@@ -83,7 +83,7 @@ Scene PlaneTurn::laid(const Scene& scene) const {
     for (Eigen::Vector3d& q : load.force_per_length) q = flat(q);
   }
   for (Obstacle& obstacle : result.obstacles) {
-    obstacle.body = obstacle.body.seen_from(origin_, turn_, 1);
+    obstacle.body = obstacle.body.transformed(origin_, turn_, 1);
   }
   for (const std::size_t i : obstacles_in_reach(scene)) {
     obstacle::Body& body = result.obstacles[i].body;

@@ -229,7 +229,7 @@ Scene scene_at(const Scene& scene, double time, double obstacle_time) {
     if (obstacle.trajectory.empty()) continue;
     const Eigen::Vector3d moved = obstacle.trajectory.pose_at(obstacle_time).position -
                                   obstacle.trajectory.poses().front().position;
-    obstacle.body = obstacle.body.seen_from(-moved, Eigen::Matrix3d::Identity(), 1);
+    obstacle.body = obstacle.body.transformed(-moved, Eigen::Matrix3d::Identity(), 1);
     obstacle.trajectory = {};
   }
   return result;

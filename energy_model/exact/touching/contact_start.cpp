@@ -30,7 +30,7 @@ class Layout {
     start_.span = whole(problem);
     const Eigen::Vector3d& origin = problem.grips.front().position;
     for (const Obstacle& obstacle : problem.obstacles) {
-      start_.bodies.push_back(obstacle.body.seen_from(origin, Eigen::Matrix3d::Identity(), l_));
+      start_.bodies.push_back(obstacle.body.transformed(origin, Eigen::Matrix3d::Identity(), l_));
     }
     start_.frames = held_frames(start_.span);
   }

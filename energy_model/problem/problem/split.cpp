@@ -70,7 +70,7 @@ void turn_vectors(Span& span, const Eigen::Matrix3d& rotation) {
   for (Span::Load& load : span.loads) turn(load.force);
   const Eigen::Vector3d anchor = Eigen::Vector3d::Zero();
   const auto turn_body = [&](Span::Obstacle& obstacle) {
-    obstacle.body = obstacle.body.seen_from(anchor, rotation, 1);
+    obstacle.body = obstacle.body.transformed(anchor, rotation, 1);
   };
   for (Span::SoftObstacle& obstacle : span.soft_obstacles) turn_body(obstacle);
   for (Span::Obstacle& obstacle : span.rigid_obstacles) turn_body(obstacle);
@@ -241,7 +241,7 @@ void place_obstacles(const Problem& problem, PlacedSpan& placed, Directions& dir
   for (std::size_t i = 0; i < problem.obstacles.size(); ++i) {
     const Obstacle& obstacle = problem.obstacles[i];
     const Span::Obstacle placed_obstacle{
-        i, obstacle.body.seen_from(placed.anchor_position, Eigen::Matrix3d::Identity(), l)};
+        i, obstacle.body.transformed(placed.anchor_position, Eigen::Matrix3d::Identity(), l)};
     if (std::isinf(obstacle.stiffness)) {
       span.rigid_obstacles.push_back(placed_obstacle);
     } else {

@@ -50,8 +50,8 @@ class Body {
   /// Returns the body with its surface moved outwards by `by` [m].
   [[nodiscard]] Body grown(double by) const;
   /// Returns the body in coordinates in which a point x is turn (x - origin) / unit.
-  [[nodiscard]] Body seen_from(const Eigen::Vector3d& origin, const Eigen::Matrix3d& turn,
-                               double unit) const;
+  [[nodiscard]] Body transformed(const Eigen::Vector3d& origin, const Eigen::Matrix3d& turn,
+                                 double unit) const;
 
   /// Returns the signed distance of a point, with derivatives.
   [[nodiscard]] Gap gap(const Eigen::Vector3d& point) const;
