@@ -20,23 +20,23 @@ using test::two_clamps;
 
 int found_first(const EnergySearch& search) {
   int sum = 0;
-  for (const SearchStrategy& strategy : search.looked_from) sum += strategy.found_first;
+  for (const SearchStrategy& strategy : search.strategies) sum += strategy.found_first;
   return sum;
 }
 
 std::string left_out(const EnergySearch& search) {
   std::string all;
-  for (const std::string& what : search.not_looked) all += what + "\n";
+  for (const std::string& what : search.omitted) all += what + "\n";
   return all;
 }
 
 /// Every equilibrium of a rod of one span is the first find of one start.
 void expect_accounted(const Problem& problem) {
   const EnergySearch search = search_energy(problem);
-  ASSERT_FALSE(search.looked_from.empty());
+  ASSERT_FALSE(search.strategies.empty());
   const bool any = search.equilibria.front().status != SolveStatus::failed;
   EXPECT_EQ(found_first(search), any ? static_cast<int>(search.equilibria.size()) : 0);
-  for (const SearchStrategy& strategy : search.looked_from) {
+  for (const SearchStrategy& strategy : search.strategies) {
     EXPECT_GE(strategy.tried, strategy.found_first) << strategy.name;
     EXPECT_GT(strategy.tried, 0) << strategy.name;
   }

@@ -130,10 +130,10 @@ TEST(SidesOfBodies, ARopeNearPointsOverAPegLiesOnIt) {
   EXPECT_NE(find_stable(search.equilibria, rod), nullptr);
   EXPECT_NE(find_stable(search.equilibria, lowest), nullptr);
   const auto past = std::find_if(
-      search.looked_from.begin(), search.looked_from.end(), [](const SearchStrategy& strategy) {
+      search.strategies.begin(), search.strategies.end(), [](const SearchStrategy& strategy) {
         return strategy.name.find("pass one or two obstacles") != std::string::npos;
       });
-  ASSERT_NE(past, search.looked_from.end());
+  ASSERT_NE(past, search.strategies.end());
   EXPECT_EQ(past->tried, 2);
   EXPECT_EQ(past->found_first, 1);
 }

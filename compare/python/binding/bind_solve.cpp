@@ -211,7 +211,7 @@ void bind_equilibria(py::module_& module) {
              return py::reinterpret_steal<py::iterator>(PySeqIter_New(self.ptr()));
            })
       .def_property_readonly(
-          "not_looked", [](const SolvedStates& solved) { return solved.all.not_looked; },
+          "not_looked", [](const SolvedStates& solved) { return solved.all.omitted; },
           "What a limit has cut short, or the search does not cover.");
 }
 

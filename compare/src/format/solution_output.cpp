@@ -380,11 +380,11 @@ std::string equilibria_text(const compare::AllSolutions& all, const compare::Sce
   }
   append(out, "\nlooked from (a search: there may be others)\n{:>8} {:>12}\n", "starts",
          "found first");
-  for (const energy_model::SearchStrategy& strategy : all.looked_from) {
+  for (const energy_model::SearchStrategy& strategy : all.strategies) {
     append(out, "{:8} {:12}   {}\n", strategy.tried, strategy.found_first, strategy.name);
   }
-  for (std::size_t i = 0; i < all.not_looked.size(); ++i) {
-    append(out, "{:<11}{}\n", i == 0 ? "not looked" : "", all.not_looked[i]);
+  for (std::size_t i = 0; i < all.omitted.size(); ++i) {
+    append(out, "{:<11}{}\n", i == 0 ? "not looked" : "", all.omitted[i]);
   }
   return out;
 }
@@ -401,12 +401,12 @@ Json equilibria_json(const compare::AllSolutions& all, const compare::Scene& sce
             {"points_m", points_json(solution.shape.points)}};
   });
   document["looked_from"] =
-      json_list(all.looked_from, [&](const energy_model::SearchStrategy& strategy) -> Json {
+      json_list(all.strategies, [&](const energy_model::SearchStrategy& strategy) -> Json {
         return {{"strategy", strategy.name},
                 {"starts", strategy.tried},
                 {"found_first", strategy.found_first}};
       });
-  document["not_looked"] = all.not_looked;
+  document["not_looked"] = all.omitted;
   return document;
 }
 

@@ -171,8 +171,8 @@ AllSolutions solve_all(const Scene& scene, const SolveOptions& options,
                        const std::vector<double>& arc_lengths) {
   energy_model::EnergySearch search = search_states(scene, options);
   AllSolutions all;
-  all.looked_from = std::move(search.looked_from);
-  all.not_looked = std::move(search.not_looked);
+  all.strategies = std::move(search.strategies);
+  all.omitted = std::move(search.omitted);
   const std::vector<std::size_t> obstacles = obstacles_in_reach(scene);
   for (const energy_model::Equilibrium& state : search.equilibria) {
     all.solutions.push_back(told_solution(told_of_stretch(scene, Model::energy, state, options),

@@ -37,7 +37,7 @@ class VariationProblem {
     std::vector<RodState> at_ends;
     if (touches()) at_ends = states({elements_.begin(), elements_.end()});
     number_unknowns(frames, at_ends);
-    if (free_twist_ && !in_plane_) leave_out_twist(states);
+    if (free_twist_ && !in_plane_) omit_twist(states);
     const std::vector<RodState> inside = states(gauss_points(elements_));
     for (Eigen::Index e = 0; e < count; ++e) add_element(e, inside);
     for (std::size_t k = 0; k + 1 < places_.size(); ++k) join(places_[k], places_[k + 1]);
@@ -163,7 +163,7 @@ class VariationProblem {
   }
 
   /// Restricts spins to directions across the tangents.
-  void leave_out_twist(const SpanStates& states) {
+  void omit_twist(const SpanStates& states) {
     const Eigen::VectorXd s = arc_lengths();
     const std::vector<RodState> at_nodes = states({s.begin(), s.end()});
     for (std::size_t k = 0; k < nodes_.size(); ++k) {

@@ -98,7 +98,7 @@ class ContactSearch {
     const std::size_t before = known.size();
     for (const Span& start : starts) {
       if (options_.deadline.passed()) {
-        note_not_tried(options_.log, "starts after the time limit");
+        note_omitted(options_.log, "starts after the time limit");
         break;
       }
       note_tried(options_.log, past_obstacles);
@@ -213,7 +213,7 @@ class ContactSearch {
     for (std::size_t i = 0; i < polygons.size(); ++i) {
       const PenaltyPolygon& polygon = polygons[i];
       if (options_.deadline.passed() && !found_.empty()) {
-        note_not_tried(options_.log, "starts after the time limit");
+        note_omitted(options_.log, "starts after the time limit");
         return;
       }
       if (found_.add(from_polygon(polygon))) note_found(options_.log, polygons_at_rest);
@@ -231,7 +231,7 @@ class ContactSearch {
     std::vector<PenaltyPolygon> polygons;
     for (std::size_t i = 0; i < count; ++i) {
       if (options_.deadline.passed() && !polygons.empty()) {
-        note_not_tried(options_.log, "starts after the time limit");
+        note_omitted(options_.log, "starts after the time limit");
         break;
       }
       note_tried(options_.log, polygons_at_rest);

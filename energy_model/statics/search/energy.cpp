@@ -67,8 +67,8 @@ std::vector<Equilibrium> combine(const Problem& problem, const std::vector<Place
       equilibrium.message += "; the " + std::to_string(most_combinations) +
                              " lowest combinations of the spans' equilibria, there are more";
     }
-    log.leave_out("combinations of the spans' equilibria beyond the " +
-                  std::to_string(most_combinations) + " lowest");
+    log.add_omitted("combinations of the spans' equilibria beyond the " +
+                    std::to_string(most_combinations) + " lowest");
   }
   return result;
 }
@@ -336,8 +336,8 @@ Equilibrium EnergySolver::near(const Problem& problem, const std::vector<double>
 EnergySearch EnergySolver::search(const Problem& problem) {
   EnergySearch result;
   result.equilibria = state_->solve(problem, State::Wanted::all, State::From::nothing);
-  result.looked_from = state_->log().looked_from();
-  result.not_looked = state_->log().not_looked();
+  result.strategies = state_->log().strategies();
+  result.omitted = state_->log().omitted();
   return result;
 }
 

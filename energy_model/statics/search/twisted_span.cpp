@@ -22,7 +22,7 @@ constexpr double largest_followed_turn = 1;
 /// Number of coefficients for the writhe of a shape that is only a guess.
 constexpr int terms_of_guess = 24;
 
-constexpr const char* turned_little_by_little =
+constexpr const char* rotated_in_small_steps =
     "stable shapes without twist, rotated in small steps";
 
 /// Whether a shape may be followed: an equilibrium, or a singular point.
@@ -121,13 +121,13 @@ class TwistedSpan {
       SpanSolution solution = twist_to(end_frame(held, shape), placed_.span, held.stiffness, shape,
                                        options_, workspace_);
       if (!is_of_class(solution, held.turns.turns)) solution.fail(no_equilibrium_of_class);
-      (void)found.add(std::move(solution), turned_little_by_little);
+      (void)found.add(std::move(solution), rotated_in_small_steps);
     }
     if (placed_.span.has_material_directors() && placed_.span.rigid_obstacles.empty()) {
       search_with_frame(held, found);
     } else {
-      note_not_tried(options_.log,
-                     "unstable twisted shapes, and those that no stable one is turned to");
+      note_omitted(options_.log,
+                   "unstable twisted shapes, and those that no stable one is turned to");
     }
     return std::move(found).take();
   }

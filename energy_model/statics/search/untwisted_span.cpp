@@ -55,13 +55,13 @@ SpanSolution from_start(const Span& span, SpanOptions options, SpanWorkspace& wo
 void add_polygon_minima(const PlacedSpan& placed, const Problem& problem, SpanOptions options,
                         SpanWorkspace& workspace, Found& found) {
   if (!problem.obstacles.empty()) {
-    note_not_tried(options.log, "minima of coarse polygons, which know no obstacles");
+    note_omitted(options.log, "minima of coarse polygons, which know no obstacles");
     return;
   }
   const PolygonFields fields(problem, placed, options.deadline);
   for (std::size_t i = 0; i < fields.size(); ++i) {
     if (options.deadline.passed()) {
-      note_not_tried(options.log, "starts after the time limit");
+      note_omitted(options.log, "starts after the time limit");
       return;
     }
     // A minimum of the polygon is near one of the rod; with too few coefficients the solver could

@@ -25,28 +25,28 @@ bool is_better(const SpanSolution& a, const SpanSolution& b) {
 
 SearchStrategy& SearchLog::of(const std::string& strategy) {
   const auto known =
-      std::find_if(looked_from_.begin(), looked_from_.end(),
+      std::find_if(strategies_.begin(), strategies_.end(),
                    [&](const SearchStrategy& other) { return other.name == strategy; });
-  if (known != looked_from_.end()) return *known;
-  looked_from_.push_back({strategy, 0, 0});
-  return looked_from_.back();
+  if (known != strategies_.end()) return *known;
+  strategies_.push_back({strategy, 0, 0});
+  return strategies_.back();
 }
 
-void SearchLog::leave_out(const std::string& what) {
-  if (std::find(not_looked_.begin(), not_looked_.end(), what) != not_looked_.end()) return;
-  not_looked_.push_back(what);
+void SearchLog::add_omitted(const std::string& what) {
+  if (std::find(omitted_.begin(), omitted_.end(), what) != omitted_.end()) return;
+  omitted_.push_back(what);
 }
 
 void SearchLog::add_starts(const SearchLog& other, const std::string& suffix) {
-  for (const SearchStrategy& strategy : other.looked_from_) {
+  for (const SearchStrategy& strategy : other.strategies_) {
     tried(strategy.name + suffix, strategy.tried);
   }
-  for (const std::string& what : other.not_looked_) leave_out(what);
+  for (const std::string& what : other.omitted_) add_omitted(what);
 }
 
 int SearchLog::starts() const {
   int sum = 0;
-  for (const SearchStrategy& strategy : looked_from_) sum += strategy.tried;
+  for (const SearchStrategy& strategy : strategies_) sum += strategy.tried;
   return sum;
 }
 

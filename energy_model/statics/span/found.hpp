@@ -22,20 +22,20 @@ class SearchLog {
   void found(const std::string& strategy, int equilibria = 1) {
     of(strategy).found_first += equilibria;
   }
-  void leave_out(const std::string& what);
+  void add_omitted(const std::string& what);
 
   /// Adds what another search has tried and omitted; its equilibria do not count.
   void add_starts(const SearchLog& other, const std::string& suffix);
 
   [[nodiscard]] int starts() const;
-  [[nodiscard]] const std::vector<SearchStrategy>& looked_from() const { return looked_from_; }
-  [[nodiscard]] const std::vector<std::string>& not_looked() const { return not_looked_; }
+  [[nodiscard]] const std::vector<SearchStrategy>& strategies() const { return strategies_; }
+  [[nodiscard]] const std::vector<std::string>& omitted() const { return omitted_; }
 
  private:
   SearchStrategy& of(const std::string& strategy);
 
-  std::vector<SearchStrategy> looked_from_;
-  std::vector<std::string> not_looked_;
+  std::vector<SearchStrategy> strategies_;
+  std::vector<std::string> omitted_;
 };
 
 /// Adds to the log if there is one.
@@ -45,8 +45,8 @@ inline void note_tried(SearchLog* log, const std::string& strategy) {
 inline void note_found(SearchLog* log, const std::string& strategy) {
   if (log != nullptr) log->found(strategy);
 }
-inline void note_not_tried(SearchLog* log, const std::string& what) {
-  if (log != nullptr) log->leave_out(what);
+inline void note_omitted(SearchLog* log, const std::string& what) {
+  if (log != nullptr) log->add_omitted(what);
 }
 
 /// Largest difference of points, divided by the length, up to which converged shapes count as one.

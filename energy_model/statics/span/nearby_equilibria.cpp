@@ -19,13 +19,13 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Number of equilibria whose pairs look_between() uses.
-constexpr std::size_t most_joined = 6;
-/// Number of equilibria next to which look_beside() searches.
-constexpr std::size_t most_left_aside = 8;
+/// Number of equilibria whose pairs search_between() uses.
+constexpr std::size_t most_paired = 6;
+/// Number of equilibria next to which search_adjacent() searches.
+constexpr std::size_t most_searched_adjacent = 8;
 
 constexpr const char* between_found = "between two equilibria found, by Newton's method";
-constexpr const char* beside_found = "adjacent to an equilibrium found, by Newton's method";
+constexpr const char* adjacent_to_found = "adjacent to an equilibrium found, by Newton's method";
 
 /// Returns the solution without its own contact ends, so that it can be combined with another one.
 SpanSolution on_shared_pieces(const SpanSolution& solution, const SpanOptions& options,
@@ -100,9 +100,9 @@ std::optional<SpanSolution> leave_saddle(const SpanSolution& solution, const Spa
   return descended(solution.model->span(), push * *mode);
 }
 
-void look_between(const SpanOptions& options, SpanWorkspace& workspace, Found& found) {
+void search_between(const SpanOptions& options, SpanWorkspace& workspace, Found& found) {
   constexpr std::array<double, 5> shares = {0.2, 0.3, 0.5, 0.7, 0.8};
-  for (std::size_t j = 1; j < found.size() && j < most_joined; ++j) {
+  for (std::size_t j = 1; j < found.size() && j < most_paired; ++j) {
     for (std::size_t i = 0; i < j && !options.deadline.passed(); ++i) {
       const SpanSolution a = on_shared_pieces(found[i], options, workspace);
       const SpanSolution b = on_shared_pieces(found[j], options, workspace);
@@ -126,16 +126,16 @@ void look_between(const SpanOptions& options, SpanWorkspace& workspace, Found& f
       }
     }
   }
-  if (found.size() > most_joined) {
-    options.log->leave_out("shapes between equilibria found, except for the first " +
-                           std::to_string(most_joined));
+  if (found.size() > most_paired) {
+    options.log->add_omitted("shapes between equilibria found, except for the first " +
+                             std::to_string(most_paired));
   }
 }
 
-void look_beside(const SpanOptions& options, SpanWorkspace& workspace, Found& found) {
+void search_adjacent(const SpanOptions& options, SpanWorkspace& workspace, Found& found) {
   constexpr std::array<double, 6> steps = {0.5, -0.5, 1, -1, 2, -2};
   std::size_t i = 0;
-  for (; i < found.size() && i < most_left_aside && !options.deadline.passed(); ++i) {
+  for (; i < found.size() && i < most_searched_adjacent && !options.deadline.passed(); ++i) {
     if (!counts(found[i], options)) continue;
     const SpanSolution from = found[i];
     const std::optional<Eigen::VectorXd> mode = mode_nearest_zero(from);
@@ -145,12 +145,13 @@ void look_beside(const SpanOptions& options, SpanWorkspace& workspace, Found& fo
       SpanSolution beside = workspace.with_terms(from, from.terms);
       beside.x += step * *mode;
       own.newton(beside);
-      (void)found.add(judged(refined(own, std::move(beside)), options, workspace), beside_found);
+      (void)found.add(judged(refined(own, std::move(beside)), options, workspace),
+                      adjacent_to_found);
     }
   }
   if (i >= found.size()) return;
-  options.log->leave_out("shapes adjacent to equilibria found, except for the first " +
-                         std::to_string(i));
+  options.log->add_omitted("shapes adjacent to equilibria found, except for the first " +
+                           std::to_string(i));
 }
 
 }  // namespace dlo::energy_model

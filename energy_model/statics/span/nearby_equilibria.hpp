@@ -34,11 +34,11 @@ struct NegativeCurvature {
 
 /// Searches for saddles between pairs of equilibria found, by Newton's method from points on the
 /// line between their unknowns: between two minima there is a pass, and a saddle on it.
-void look_between(const SpanOptions& options, SpanWorkspace& workspace, Found& found);
+void search_between(const SpanOptions& options, SpanWorkspace& workspace, Found& found);
 
 /// Searches for equilibria next to those found, including the new ones, by Newton's method from
 /// points along the eigenvector nearest zero: at a fold two equilibria coincide, and near it they
 /// lie on both sides along this direction.
-void look_beside(const SpanOptions& options, SpanWorkspace& workspace, Found& found);
+void search_adjacent(const SpanOptions& options, SpanWorkspace& workspace, Found& found);
 
 }  // namespace dlo::energy_model

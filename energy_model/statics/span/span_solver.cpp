@@ -74,14 +74,14 @@ class Search {
     }
     if (options_.wants_all()) {
       descend_from_all_starts();
-      look_between(options_, workspace_, found_);
-      look_beside(options_, workspace_, found_);
+      search_between(options_, workspace_, found_);
+      search_adjacent(options_, workspace_, found_);
     } else {
       descend_from_lowest_starts();
     }
     const bool may_leave = span_.planar && !span_.stays_in_plane();
-    if (may_leave && span_.has_material_directors()) look_in_space();
-    if (options_.wants_all()) tell_what_was_not_tried();
+    if (may_leave && span_.has_material_directors()) search_in_space();
+    if (options_.wants_all()) log_omitted();
     if (found_.empty()) (void)found_.add(none());
     return std::move(found_).take();
   }
@@ -140,16 +140,16 @@ class Search {
     }
   }
 
-  void tell_what_was_not_tried() const {
-    if (on_.out_of_time()) options_.log->leave_out("starts after the time limit");
+  void log_omitted() const {
+    if (on_.out_of_time()) options_.log->add_omitted("starts after the time limit");
     std::ptrdiff_t not_left = 0;
     for (std::size_t i = left_; i < found_.size(); ++i) {
       not_left += found_[i].status == SolveStatus::saddle ? 1 : 0;
     }
     if (left_ < most_saddles || not_left == 0) return;
-    options_.log->leave_out(std::to_string(not_left) + " unstable equilibria, beyond the first " +
-                            std::to_string(most_saddles) +
-                            " found, which were not followed downhill");
+    options_.log->add_omitted(std::to_string(not_left) + " unstable equilibria, beyond the first " +
+                              std::to_string(most_saddles) +
+                              " found, which were not followed downhill");
   }
 
   /// Whether the first of the other starts costs about as much as the last of those followed in any
@@ -201,7 +201,7 @@ class Search {
 
   /// Searches in space for a curved rod or a strip in a plane, if an equilibrium found is a saddle
   /// or all equilibria are wanted: out of its plane such a rod twists far and has other shapes.
-  void look_in_space() {
+  void search_in_space() {
     const auto is_saddle = [](const auto& solution) {
       return solution.status == SolveStatus::saddle;
     };
@@ -221,7 +221,7 @@ class Search {
     if (!options_.wants_all()) return;
     options_.log->tried(out_of_plane, own.starts());
     options_.log->found(out_of_plane, first);
-    for (const std::string& what : own.not_looked()) options_.log->leave_out(what);
+    for (const std::string& what : own.omitted()) options_.log->add_omitted(what);
   }
 
   bool add(SpanSolution solution) {

@@ -37,9 +37,9 @@ namespace dlo::compare {
 
 /// Results of a search for all equilibria, and its start shapes, as in energy_model::EnergySearch.
 struct AllSolutions {
-  std::vector<Solution> solutions;                        ///< stable ones first, by energy
-  std::vector<energy_model::SearchStrategy> looked_from;  ///< kinds of start shapes
-  std::vector<std::string> not_looked;  ///< searches that were incomplete or not made
+  std::vector<Solution> solutions;                       ///< stable ones first, by energy
+  std::vector<energy_model::SearchStrategy> strategies;  ///< kinds of start shapes
+  std::vector<std::string> omitted;  ///< searches that were incomplete or not made
 };
 
 /// Finds all equilibria of the energy model that a search can find; an unstable one has a negative

@@ -82,9 +82,9 @@ struct EnergySearch {
   std::vector<Equilibrium> equilibria;
   /// Kinds of initial guess in the order of their first use. Each span counts separately; the
   /// equilibria of the spans are combined to those of the rod.
-  std::vector<SearchStrategy> looked_from;
+  std::vector<SearchStrategy> strategies;
   /// Initial guesses that were interrupted or omitted, and why; in words.
-  std::vector<std::string> not_looked;
+  std::vector<std::string> omitted;
 };
 
 /// Returns every equilibrium to which the search's initial guesses converge, and describes these
