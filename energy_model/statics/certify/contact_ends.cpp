@@ -9,7 +9,7 @@ namespace dlo::energy_model {
 namespace {
 
 /// Number of intervals at whose ends a shape is sampled first.
-constexpr Eigen::Index first_looks = 400;
+constexpr Eigen::Index first_intervals = 400;
 
 /// Distance, divided by the rod length, below which two ends count as one.
 constexpr double closest_contact_ends = 1e-7;
@@ -47,8 +47,8 @@ Eigen::Matrix3Xd points_at(const SpanShape& shape, const std::vector<double>& s)
 
 std::vector<double> evenly_spaced(double length) {
   std::vector<double> s;
-  for (Eigen::Index i = 0; i <= first_looks; ++i) {
-    s.push_back(length * static_cast<double>(i) / static_cast<double>(first_looks));
+  for (Eigen::Index i = 0; i <= first_intervals; ++i) {
+    s.push_back(length * static_cast<double>(i) / static_cast<double>(first_intervals));
   }
   return s;
 }
@@ -72,7 +72,7 @@ std::vector<Bracket> brackets_of(const std::vector<Span::SoftObstacle>& obstacle
                                  const SpanShape& shape, double length) {
   const std::vector<double> s = evenly_spaced(length);
   const Eigen::Matrix3Xd points = points_at(shape, s);
-  const double spacing = length / static_cast<double>(first_looks);
+  const double spacing = length / static_cast<double>(first_intervals);
   std::vector<Bracket> brackets;
   std::vector<Bracket> dips;
   for (std::size_t o = 0; o < obstacles.size(); ++o) {
@@ -139,7 +139,7 @@ std::vector<Bracket> narrowed(const std::vector<Span::SoftObstacle>& obstacles,
 
 std::vector<Bracket> shortest_brackets(const Span& span, const SpanShape& shape) {
   std::vector<Bracket> brackets = brackets_of(span.soft_obstacles, shape, span.length);
-  for (double width = span.length / first_looks;
+  for (double width = span.length / first_intervals;
        !brackets.empty() && width > shortest_bracket * span.length; width /= parts) {
     brackets = narrowed(span.soft_obstacles, shape, brackets);
   }
@@ -208,7 +208,7 @@ MiddlePassed middle_passed(const SpanSolution& solution) {
   const std::vector<double> s = evenly_spaced(span.length);
   const Eigen::Matrix3Xd points = points_at(shape, s);
   constexpr double lengths_to_see = 4;
-  const double seen = lengths_to_see * span.length / first_looks;
+  const double seen = lengths_to_see * span.length / first_intervals;
   MiddlePassed passed = MiddlePassed::none;
   for (const Span::SoftObstacle& obstacle : span.soft_obstacles) {
     const obstacle::Body& body = obstacle.body;

@@ -150,7 +150,7 @@ RigidBodyModes rigid_body_modes(const Span& span, const Eigen::Matrix3Xd& tangen
           .out_of_plane = moving(axes_that_keep(kept, axes.leftCols(2)), shape)};
 }
 
-bool is_turned_copy(const Span& span, const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
+bool is_rotated_copy(const Span& span, const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
   constexpr double same = 1e-6;
   if (span.has_material_directors()) return false;
   const std::vector<Eigen::Vector3d> kept = kept_vectors(span);

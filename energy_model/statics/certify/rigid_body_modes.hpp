@@ -40,7 +40,7 @@ struct RigidBodyModes {
 /// Whether a rotation that keeps all prescribed vectors and forces maps one shape to the other, so
 /// that both belong to the same circle of equilibria.
 /// @param a, b  points of both shapes at the same arc lengths, relative to the anchor, 3 x M
-[[nodiscard]] bool is_turned_copy(const Span& span, const Eigen::Matrix3Xd& a,
-                                  const Eigen::Matrix3Xd& b);
+[[nodiscard]] bool is_rotated_copy(const Span& span, const Eigen::Matrix3Xd& a,
+                                   const Eigen::Matrix3Xd& b);
 
 }  // namespace dlo::energy_model

@@ -23,7 +23,7 @@ constexpr int refinements = 6;
 constexpr int halvings_beside_contact = 10;
 
 /// Clearance of points that are not evaluated, as no point near them is low enough.
-constexpr double not_looked_at = std::numeric_limits<double>::infinity();
+constexpr double not_evaluated = std::numeric_limits<double>::infinity();
 
 /// Finds the smallest clearance between `low` and `high` by Newton's method from `at`.
 GapMinimum lowest_between(const Span::Obstacle& obstacle, const SpanShape& shape, double low,
@@ -101,19 +101,19 @@ std::vector<GapMinimum> gap_minima(const Span& span, const SpanShape& shape, dou
   const std::vector<double> s = equal_arc_lengths(span.length, grid_points);
   // Half a coarse interval, plus one neighbouring point and the sag between points.
   const double most = below + (static_cast<double>(coarse_stride) / 2 + 3) * s[1];
-  std::vector<std::size_t> looked_at =
+  std::vector<std::size_t> evaluated =
       near_points(s, coarse_stride, most, [&](const std::vector<double>& coarse) {
         const SpanSamples samples = shape.sample(coarse);
-        Eigen::VectorXd least = Eigen::VectorXd::Constant(samples.points.cols(), not_looked_at);
+        Eigen::VectorXd least = Eigen::VectorXd::Constant(samples.points.cols(), not_evaluated);
         for (const Span::Obstacle& obstacle : span.rigid_obstacles) {
           least = least.cwiseMin(obstacle.body.clearances(samples.points));
         }
         return least;
       });
-  if (looked_at.empty()) looked_at.push_back(0);
+  if (evaluated.empty()) evaluated.push_back(0);
   std::vector<double> near;
-  near.reserve(looked_at.size());
-  for (const std::size_t i : looked_at) near.push_back(s[i]);
+  near.reserve(evaluated.size());
+  for (const std::size_t i : evaluated) near.push_back(s[i]);
   const SpanSamples grid = shape.sample(near);
   const double h = s[1];
   const double bent = grid.curvature.colwise().norm().maxCoeff();
@@ -121,10 +121,10 @@ std::vector<GapMinimum> gap_minima(const Span& span, const SpanShape& shape, dou
   for (const Span::Obstacle& obstacle : span.rigid_obstacles) {
     // Between two grid points the clearance may be lower by this amount.
     const double sag = h * h / 8 * (bent + 1 / obstacle.body.smallest_radius());
-    Eigen::VectorXd clearance = Eigen::VectorXd::Constant(grid_points, not_looked_at);
+    Eigen::VectorXd clearance = Eigen::VectorXd::Constant(grid_points, not_evaluated);
     const Eigen::VectorXd found_near = obstacle.body.clearances(grid.points);
-    for (std::size_t k = 0; k < looked_at.size(); ++k) {
-      clearance[static_cast<Eigen::Index>(looked_at[k])] = found_near[static_cast<Eigen::Index>(k)];
+    for (std::size_t k = 0; k < evaluated.size(); ++k) {
+      clearance[static_cast<Eigen::Index>(evaluated[k])] = found_near[static_cast<Eigen::Index>(k)];
     }
     for (Eigen::Index i = 0; i < grid_points; ++i) {
       const bool falls_to = i == 0 || clearance[i] < clearance[i - 1];

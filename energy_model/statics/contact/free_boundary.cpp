@@ -44,13 +44,13 @@ std::vector<FreeBoundary> free_boundaries(const Span& span) {
   return ends;
 }
 
-Room room_of(const Span& span, const FreeBoundary& end) {
+MoveLimits move_limits(const Span& span, const FreeBoundary& end) {
   const double at = end.at(span);
   const Span::Contact& own = span.contacts[end.contact];
-  Room room{at, span.length - at};
+  MoveLimits limits{at, span.length - at};
   const auto beside = [&](double other) {
-    if (other < at) room.down = std::min(room.down, at - other);
-    if (other > at) room.up = std::min(room.up, other - at);
+    if (other < at) limits.down = std::min(limits.down, at - other);
+    if (other > at) limits.up = std::min(limits.up, other - at);
   };
   beside(span.anchor);
   for (const Span::Hold& hold : span.holds) beside(hold.at);
@@ -60,7 +60,7 @@ Room room_of(const Span& span, const FreeBoundary& end) {
     beside(contact.end);
   }
   if (own.lies()) beside(end.begins ? own.end : own.begin);
-  return room;
+  return limits;
 }
 
 Eigen::VectorXd free_boundary_residual(const SpanSolution& solution,
@@ -81,13 +81,13 @@ Eigen::VectorXd free_boundary_residual(const SpanSolution& solution,
     const auto column = static_cast<Eigen::Index>(i);
     const Span::Contact& contact = span.contacts[ends[i].contact];
     const Clearance here = clearance_at(contact.obstacle.body, samples, column);
-    const Room room = room_of(span, ends[i]);
+    const MoveLimits limits = move_limits(span, ends[i]);
     if (contact.lies()) {
-      result[column] = here.rate * (ends[i].begins ? room.down : room.up);
+      result[column] = here.rate * (ends[i].begins ? limits.down : limits.up);
     } else if (const auto at = solution.model->touches_at(*point, ends[i].contact)) {
       result[column] = contact.begin - *at;
     } else {
-      result[column] = here.slope * std::min(room.down, room.up);
+      result[column] = here.slope * std::min(limits.down, limits.up);
     }
   }
   return result;

@@ -33,9 +33,9 @@ struct FreeBoundary {
 
 /// Distances by which a free boundary may move down and up without passing a grip, an end or
 /// another contact.
-struct Room {
+struct MoveLimits {
   double down = 0, up = 0;
 };
-[[nodiscard]] Room room_of(const Span& span, const FreeBoundary& end);
+[[nodiscard]] MoveLimits move_limits(const Span& span, const FreeBoundary& end);
 
 }  // namespace dlo::energy_model

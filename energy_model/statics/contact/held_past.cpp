@@ -20,10 +20,10 @@ constexpr double beside_body = 1.1;
 
 /// Length of rod on the path past a body to a free end, divided by the path's length; > 1, because
 /// without slack the initial guess would be a taut rod.
-constexpr double slack_of_way = 1.01;
+constexpr double slack_of_path = 1.01;
 
 /// Length, divided by the span's length, below which a length counts as rounding.
-constexpr double shortest_way = 1e-9;
+constexpr double rounding_length = 1e-9;
 
 /// An interval of a span between two neighbouring grips, or from the outermost grip to a free end.
 struct Reach {
@@ -36,14 +36,14 @@ struct Reach {
 };
 
 /// Points that the rod passes, in order from Reach::from.
-using Way = std::vector<Eigen::Vector3d>;
+using PathPoints = std::vector<Eigen::Vector3d>;
 
 std::vector<Reach> reaches_of(const Span& span) {
   std::vector<Span::Hold> grips = {{span.anchor, Eigen::Vector3d::Zero()}};
   grips.insert(grips.end(), span.holds.begin(), span.holds.end());
   std::stable_sort(grips.begin(), grips.end(),
                    [](const auto& a, const auto& b) { return a.at < b.at; });
-  const double shortest = shortest_way * span.length;
+  const double shortest = rounding_length * span.length;
   std::vector<Reach> reaches;
   for (std::size_t i = 0; i + 1 < grips.size(); ++i) {
     reaches.push_back({grips[i].at, grips[i + 1].at - grips[i].at, 1, grips[i].offset, true,
@@ -87,8 +87,8 @@ double half_size(const obstacle::Body& body, const Eigen::Vector3d& direction) {
 /// opposite one. The direction lies in the plane of a planar span, is normal to the axis of an
 /// endless body, and otherwise lies in the plane of the loads. Returns std::nullopt if the body is
 /// endless along the path or on two axes.
-std::optional<Eigen::Vector3d> side_of_way(const Span& span, const obstacle::Body& body,
-                                           const Eigen::Vector3d& along) {
+std::optional<Eigen::Vector3d> side_of_path(const Span& span, const obstacle::Body& body,
+                                            const Eigen::Vector3d& along) {
   std::vector<Eigen::Vector3d> endless;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     if (!std::isfinite(body.lower()[axis])) endless.emplace_back(body.axes().col(axis));
@@ -99,47 +99,47 @@ std::optional<Eigen::Vector3d> side_of_way(const Span& span, const obstacle::Bod
     Eigen::Vector3d pull = span.weight_between(0, span.length);
     for (const Span::Load& load : span.loads) pull += load.force;
     side = pull - pull.dot(along) * along;
-    if (!(side.norm() > shortest_way * (1 + pull.norm()))) side = along.unitOrthogonal();
+    if (!(side.norm() > rounding_length * (1 + pull.norm()))) side = along.unitOrthogonal();
   }
   if (!endless.empty()) side = endless.front().cross(along);
-  if (!(side.norm() > shortest_way)) return std::nullopt;
+  if (!(side.norm() > rounding_length)) return std::nullopt;
   return side.normalized();
 }
 
 /// Returns the points of a path past a body: one next to its middle and, for a free end, one at its
 /// far corner, from where the rod hangs clear of the body.
 /// @param from  last point of the path so far;  @param sense  1 or -1: the side
-std::optional<Way> past(const Span& span, const obstacle::Body& body, const Reach& reach,
-                        const Eigen::Vector3d& from, double sense) {
+std::optional<PathPoints> past(const Span& span, const obstacle::Body& body, const Reach& reach,
+                               const Eigen::Vector3d& from, double sense) {
   const Eigen::Vector3d near = reach.is_closed ? (reach.from + reach.to) / 2 : reach.from;
   const Eigen::Vector3d middle = middle_of(body, near);
   Eigen::Vector3d along = reach.is_closed ? reach.to - reach.from : middle - from;
-  if (!(along.norm() > shortest_way * span.length)) along = middle - from;
-  if (!(along.norm() > shortest_way * span.length)) return std::nullopt;
+  if (!(along.norm() > rounding_length * span.length)) along = middle - from;
+  if (!(along.norm() > rounding_length * span.length)) return std::nullopt;
   along.normalize();
-  const std::optional<Eigen::Vector3d> side = side_of_way(span, body, along);
+  const std::optional<Eigen::Vector3d> side = side_of_path(span, body, along);
   if (!side) return std::nullopt;
   const Eigen::Vector3d beside = middle + sense * beside_body * half_size(body, *side) * *side;
-  if (reach.is_closed) return Way{beside};
-  return Way{beside, beside + half_size(body, along) * along};
+  if (reach.is_closed) return PathPoints{beside};
+  return PathPoints{beside, beside + half_size(body, along) * along};
 }
 
 /// Returns the span with pins at the points of a path; std::nullopt if the rod is too short for it.
-std::optional<Span> held_on_way(const Span& span, const Reach& reach, const Way& way) {
+std::optional<Span> pinned_on_path(const Span& span, const Reach& reach, const PathPoints& path) {
   std::vector<double> at;
   Eigen::Vector3d last = reach.from;
   double sum = 0;
-  for (const Eigen::Vector3d& point : way) {
+  for (const Eigen::Vector3d& point : path) {
     sum += (point - last).norm();
     at.push_back(sum);
     last = point;
   }
-  const double whole = reach.is_closed ? sum + (reach.to - last).norm() : sum * slack_of_way;
+  const double whole = reach.is_closed ? sum + (reach.to - last).norm() : sum * slack_of_path;
   if (!(whole < reach.length)) return std::nullopt;
-  const double per_way = reach.is_closed ? reach.length / whole : slack_of_way;
+  const double per_path = reach.is_closed ? reach.length / whole : slack_of_path;
   Span held = span;
-  for (std::size_t i = 0; i < way.size(); ++i) {
-    held.holds.push_back({.at = reach.from_s + reach.sense * per_way * at[i], .offset = way[i]});
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    held.holds.push_back({.at = reach.from_s + reach.sense * per_path * at[i], .offset = path[i]});
   }
   std::stable_sort(held.holds.begin(), held.holds.end(),
                    [](const auto& a, const auto& b) { return a.at < b.at; });
@@ -147,9 +147,9 @@ std::optional<Span> held_on_way(const Span& span, const Reach& reach, const Way&
 }
 
 /// Collects the copies with pins past single bodies, then past pairs, up to most_spans.
-class SpansHeldPast {
+class SpansPinnedPast {
  public:
-  explicit SpansHeldPast(const Span& span) : span_(span) {
+  explicit SpansPinnedPast(const Span& span) : span_(span) {
     for (const Span::SoftObstacle& obstacle : span.soft_obstacles) add_body(obstacle.body);
     for (const Span::Obstacle& obstacle : span.rigid_obstacles) add_body(obstacle.body);
     std::stable_sort(bodies_.begin(), bodies_.end(), [](const auto& a, const auto& b) {
@@ -184,25 +184,25 @@ class SpansHeldPast {
               [&](const auto* a, const auto* b) { return distance(a) < distance(b); });
     for (unsigned sides = 0; sides < 1U << row.size(); ++sides) {
       if (spans_.size() == most_spans) return;
-      Way way;
+      PathPoints path;
       for (std::size_t k = 0; k < row.size(); ++k) {
-        const Eigen::Vector3d& from = way.empty() ? reach.from : way.back();
+        const Eigen::Vector3d& from = path.empty() ? reach.from : path.back();
         const double sense = (sides >> k & 1U) == 0 ? 1 : -1;
-        const std::optional<Way> next = past(span_, *row[k], reach, from, sense);
+        const std::optional<PathPoints> next = past(span_, *row[k], reach, from, sense);
         if (!next) return;
-        way.insert(way.end(), next->begin(), next->end());
+        path.insert(path.end(), next->begin(), next->end());
       }
-      if (!is_clear(way)) continue;
-      std::optional<Span> held = held_on_way(span_, reach, way);
+      if (!is_clear(path)) continue;
+      std::optional<Span> held = pinned_on_path(span_, reach, path);
       if (!held) continue;
       spans_.push_back(*std::move(held));
     }
   }
 
   /// Whether all points of a path are outside the rigid obstacles.
-  [[nodiscard]] bool is_clear(const Way& way) const {
+  [[nodiscard]] bool is_clear(const PathPoints& path) const {
     const auto is_inside = [&](const Span::Obstacle& obstacle) {
-      return std::any_of(way.begin(), way.end(), [&](const Eigen::Vector3d& point) {
+      return std::any_of(path.begin(), path.end(), [&](const Eigen::Vector3d& point) {
         return obstacle.body.clearance(point) < 0;
       });
     };
@@ -216,6 +216,6 @@ class SpansHeldPast {
 
 }  // namespace
 
-std::vector<Span> held_past_obstacles(const Span& span) { return SpansHeldPast(span).all(); }
+std::vector<Span> pinned_past_obstacles(const Span& span) { return SpansPinnedPast(span).all(); }
 
 }  // namespace dlo::energy_model

@@ -11,6 +11,6 @@ namespace dlo::energy_model {
 /// most ten copies. Between two grips such a shape continues to the second grip; beyond the
 /// outermost grip the rod hangs from the obstacle. There is no copy for half-spaces, for obstacles
 /// that the rod is too short to pass, and for paths through a rigid obstacle.
-[[nodiscard]] std::vector<Span> held_past_obstacles(const Span& span);
+[[nodiscard]] std::vector<Span> pinned_past_obstacles(const Span& span);
 
 }  // namespace dlo::energy_model

@@ -180,8 +180,8 @@ void ReducedHessian::solve(const Eigen::VectorXd& right, Eigen::VectorXd& step) 
 
 /// Runs Lanczos' method on the inverse with full reorthogonalisation. It ends when the largest
 /// eigenvalue, which is computed at some of the steps, has changed by at most `settled` of itself.
-ReducedHessian::Lanczos ReducedHessian::look_for_smallest(double settled, Eigen::Index most_steps) {
-  const auto is_time_to_look = [](Eigen::Index k) { return k == 4 || (k >= 8 && k % 6 == 2); };
+ReducedHessian::Lanczos ReducedHessian::run_lanczos(double settled, Eigen::Index most_steps) {
+  const auto is_time_to_check = [](Eigen::Index k) { return k == 4 || (k >= 8 && k % 6 == 2); };
   // A vector that orthogonalisation shortens by more than this factor is orthogonalised again: its
   // remaining components would grow by the same factor with each step.
   constexpr double much_shorter = 0.5;
@@ -209,7 +209,7 @@ ReducedHessian::Lanczos ReducedHessian::look_for_smallest(double settled, Eigen:
     result.beside[k] = size;
     const bool last = k + 1 == most || !(size > 1e-12 * result.along[k]);
     if (!last) next /= size;
-    if (!is_time_to_look(k) && !last) continue;
+    if (!is_time_to_check(k) && !last) continue;
     const double before = result.largest;
     result.largest = largest_eigenvalue(result.along.head(k + 1), result.beside.head(k));
     const bool done = std::abs(result.largest - before) <= settled * result.largest;
@@ -226,7 +226,7 @@ std::optional<double> ReducedHessian::smallest_eigenvalue_of_definite() {
   constexpr double settled = 1e-4;  // between two checks; the later is accurate to its square
   constexpr Eigen::Index most_steps = 24;
   if (!definite_ || free() == 0) return std::nullopt;
-  const double smallest = 1 / look_for_smallest(settled, most_steps).largest;
+  const double smallest = 1 / run_lanczos(settled, most_steps).largest;
   if (!factor_shifted(-(1 - slack) * smallest)) return std::nullopt;
   return smallest;
 }
@@ -235,7 +235,7 @@ std::optional<Eigen::VectorXd> ReducedHessian::lowest_mode_of_definite() {
   constexpr double settled = 1e-12;
   constexpr Eigen::Index most_steps = 80;
   if (!definite_ || free() == 0) return std::nullopt;
-  const Lanczos found = look_for_smallest(settled, most_steps);
+  const Lanczos found = run_lanczos(settled, most_steps);
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
   eigen.computeFromTridiagonal(found.along, found.beside);
   const Eigen::Index steps = found.along.size();

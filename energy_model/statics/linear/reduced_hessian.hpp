@@ -97,7 +97,7 @@ class ReducedHessian {
     Eigen::VectorXd along, beside;  // diagonal and off-diagonal
     double largest = 0;             // largest eigenvalue
   };
-  [[nodiscard]] Lanczos look_for_smallest(double settled, Eigen::Index most_steps);
+  [[nodiscard]] Lanczos run_lanczos(double settled, Eigen::Index most_steps);
 
   Eigen::Index n_ = 0, constraints_ = 0;
   bool definite_ = false, independent_ = false;

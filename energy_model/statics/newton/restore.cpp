@@ -10,7 +10,7 @@ namespace dlo::energy_model {
 namespace {
 
 /// Smallest residual at which a bend is added; near the solution it would lead away from it.
-constexpr double largest_bent_gap = 1e-3;
+constexpr double least_bent_gap = 1e-3;
 
 /// Adds a perturbation without any symmetry, mainly in the lower coefficients of every element.
 void bend(SpanSolution& solution, SpanPoint& point, int which) {
@@ -59,7 +59,7 @@ bool restore(SpanSolution& solution, SpanPoint& point, double gap, RestoreScratc
       mu = std::max(1e-15, mu * 1e-3);
       continue;
     }
-    if (size < largest_bent_gap || bends++ == most_bends) return false;
+    if (size < least_bent_gap || bends++ == most_bends) return false;
     bend(solution, point, bends);
     mu = 1e-3;
   }

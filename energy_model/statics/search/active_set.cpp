@@ -40,7 +40,7 @@ bool meets_free_boundaries(const SpanSolution& solution) {
   constexpr double share = 1e-7;
   for (std::size_t i = 0; i < ends.size(); ++i) {
     if (span.contacts[ends[i].contact].lies()) continue;
-    const Room room = room_of(span, ends[i]);
+    const MoveLimits room = move_limits(span, ends[i]);
     const double off = std::abs(residual[static_cast<Eigen::Index>(i)]);
     if (!(off <= share * std::min(room.down, room.up))) return false;
   }

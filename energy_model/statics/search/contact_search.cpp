@@ -88,7 +88,7 @@ class ContactSearch {
   /// the polygon's energy exceeds that of the lowest known equilibrium's polygon by more than the
   /// errors of polygons (near_lowest, near_tie_of_polygons).
   void look_past() {
-    const std::vector<Span> starts = held_past_obstacles(span_);
+    const std::vector<Span> starts = pinned_past_obstacles(span_);
     if (starts.empty()) return;
     std::vector<PenaltyPolygon> known;
     for (const SpanSolution& solution : found_.in_order()) {

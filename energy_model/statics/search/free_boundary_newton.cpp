@@ -98,7 +98,7 @@ class FreeBoundaryNewton {
     double share = 1;
     for (std::size_t i = 0; i < ends_.size(); ++i) {
       const double size = std::abs(way[static_cast<Eigen::Index>(i)]);
-      const Room room = room_of(span, ends_[i]);
+      const MoveLimits room = move_limits(span, ends_[i]);
       const bool down = way[static_cast<Eigen::Index>(i)] < 0;
       const double most =
           std::min(largest_room_share * (down ? room.down : room.up), longest_step * span.length);
@@ -183,7 +183,7 @@ class FreeBoundaryNewton {
         jacobian_.col(i) = Eigen::VectorXd::Unit(residual_.size(), i);
         continue;
       }
-      const Room room = room_of(solution_.model->span(), end);
+      const MoveLimits room = move_limits(solution_.model->span(), end);
       way[i] = difference * (room.down > room.up ? -room.down : room.up);
       SpanSolution beside = with_moved(way, NewtonMethod::simplified);
       if (!beside.is_equilibrium()) beside = with_moved(way, NewtonMethod::newton);

@@ -93,7 +93,7 @@ bool is_same_shape(const SpanSolution& a, const SpanSolution& b, double toleranc
   const Eigen::Matrix3Xd of_b = b.model->shape(b.x).sample(s).points;
   if ((of_a - of_b).norm() < tolerance * span.length) return true;
   const bool planar = span.planar && b.model->span().planar;
-  return !planar && is_turned_copy(span, of_a, of_b);
+  return !planar && is_rotated_copy(span, of_a, of_b);
 }
 
 bool Found::add(SpanSolution solution) {

@@ -14,7 +14,7 @@ namespace dlo::energy_model {
 namespace {
 
 /// Returns tangents of a shape at 65 arc lengths that are the same for every shape.
-Eigen::Matrix3Xd looked_at(const SpanSolution& solution) {
+Eigen::Matrix3Xd tangents_to_compare(const SpanSolution& solution) {
   constexpr Eigen::Index samples = 65;
   const Eigen::VectorXd s = Eigen::VectorXd::LinSpaced(samples, 0, solution.model->span().length);
   return solution.model->shape(solution.x).sample({s.data(), s.data() + samples}).tangents;
@@ -84,11 +84,11 @@ SpanSolution solve_from_given_start(const Span& span, const SpanOptions& options
   const bool came_by_newton = solution.followed;
   // A shape on soft obstacles may jump to another one when contact is found during refinement.
   const bool may_fall = came_by_newton && !span.soft_obstacles.empty();
-  const Eigen::Matrix3Xd near = may_fall ? looked_at(solution) : Eigen::Matrix3Xd();
+  const Eigen::Matrix3Xd near = may_fall ? tangents_to_compare(solution) : Eigen::Matrix3Xd();
   solution = finish(std::move(solution), options, workspace);
   solution.followed =
-      came_by_newton &&
-      !(may_fall && (looked_at(solution) - near).cwiseAbs().maxCoeff() > followed_tangents);
+      came_by_newton && !(may_fall && (tangents_to_compare(solution) - near).cwiseAbs().maxCoeff() >
+                                          followed_tangents);
   const bool leaves =
       (options.only_descends() || (options.start.known.model && !options.only_follows())) &&
       solution.status == SolveStatus::saddle;

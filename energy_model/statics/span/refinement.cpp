@@ -21,7 +21,7 @@ constexpr int most_adapted_unknowns = 2 * most_unknowns;
 
 /// Error, divided by the length, above which a shape is certified again with more coefficients than
 /// seem necessary.
-constexpr double largest_told_error = 1e-5;
+constexpr double largest_unrefined_error = 1e-5;
 
 /// Largest gradient, divided by 1 + load, that a shape may have in a model with more coefficients.
 constexpr double largest_residual = 1e-5;
@@ -219,7 +219,7 @@ SpanSolution judged(SpanSolution solution, const SpanOptions& options, SpanWorks
   certify(solution, load, workspace.factors());
   solution.evaluations = spent;
   const bool asks = solution.status == SolveStatus::near_singular ||
-                    (counts(solution, options) && solution.error > largest_told_error);
+                    (counts(solution, options) && solution.error > largest_unrefined_error);
   const int more = std::min(max_terms, 3 * solution.terms / 2);
   if (!asks || options.terms > 0 || options.deadline.passed() ||
       more * SpanTraits::fields_of(solution.model->span()) * solution.model->pieces() >

@@ -188,14 +188,15 @@ class Search {
     const std::shared_ptr<SpanEnergy> model = workspace_.model(
         span_, keeps ? coarse : std::max(8, std::min(traits_.natural_terms, coarse)));
     found_.spend(rank_starts(
-        ranked, {.model = model,
-                 .load = traits_.load,
-                 .followed = followed(),
-                 .keeps_unknowns = model->terms() == on_.coarse_terms(),
-                 .stiffness = traits_.stiffness,
-                 .meets_grips = model->constraints() > 0 && !traits_.taut &&
-                                !model->has_soft_obstacles() && !span_.has_material_directors(),
-                 .deadline = &options_.deadline}));
+        ranked,
+        {.model = model,
+         .load = traits_.load,
+         .followed = followed(),
+         .keeps_unknowns = model->terms() == on_.coarse_terms(),
+         .stiffness = traits_.stiffness,
+         .satisfies_constraints = model->constraints() > 0 && !traits_.taut &&
+                                  !model->has_soft_obstacles() && !span_.has_material_directors(),
+         .deadline = &options_.deadline}));
     return ranked;
   }
 

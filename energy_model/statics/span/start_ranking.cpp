@@ -13,8 +13,8 @@ constexpr int no_corrections = 0;
 
 bool is_cheaper(const Start& a, const Start& b) { return a.cost < b.cost; }
 
-void weigh_with_springs(SpanSolution& looked, const StartRanking& ranking,
-                        std::vector<Start>& starts) {
+void rank_with_springs(SpanSolution& looked, const StartRanking& ranking,
+                       std::vector<Start>& starts) {
   SpanPoint point;
   for (Start& start : starts) {
     looked.evaluate(looked.model->fit(start.field(looked.model->nodes())), point);
@@ -29,7 +29,8 @@ void weigh_with_springs(SpanSolution& looked, const StartRanking& ranking,
 /// Ranks starts by their energy once the constraints are satisfied, for those starts that may still
 /// be among the ones followed in any case. With a remaining constraint residual a shape would seem
 /// cheaper than any that satisfies the constraints.
-void meet_grips(SpanSolution& looked, const StartRanking& ranking, std::vector<Start>& starts) {
+void rank_with_constraints(SpanSolution& looked, const StartRanking& ranking,
+                           std::vector<Start>& starts) {
   // Springs at the grips, as at the begin of a penalty method: a lower bound of the cost of the
   // residual.
   const double kappa = 100 * (1 + ranking.load);
@@ -68,10 +69,10 @@ void meet_grips(SpanSolution& looked, const StartRanking& ranking, std::vector<S
 int rank_starts(std::vector<Start>& starts, const StartRanking& ranking) {
   SpanSolution looked;
   looked.model = ranking.model;
-  if (ranking.meets_grips) {
-    meet_grips(looked, ranking, starts);
+  if (ranking.satisfies_constraints) {
+    rank_with_constraints(looked, ranking, starts);
   } else {
-    weigh_with_springs(looked, ranking, starts);
+    rank_with_springs(looked, ranking, starts);
   }
   std::stable_sort(starts.begin(), starts.end(), is_cheaper);
   return looked.evaluations;

@@ -33,7 +33,7 @@ struct StartRanking {
   /// Stiffness of springs at the grips, for starts that need not satisfy the constraints; the
   /// largest stiffness of a taut segment [EI/l^3].
   double stiffness = 0;
-  bool meets_grips = false;  ///< starts are first bent to satisfy the constraints
+  bool satisfies_constraints = false;  ///< starts are first bent to satisfy the constraints
   const Deadline* deadline = nullptr;
 };
 
