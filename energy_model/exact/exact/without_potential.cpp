@@ -20,7 +20,7 @@
 namespace dlo::energy_model {
 namespace {
 
-void refuse_unfollowable(const Problem& problem) {
+void require_followable(const Problem& problem) {
   check(problem);
   require(problem.obstacles.empty(), "solve_exact", "number of obstacles",
           static_cast<double>(problem.obstacles.size()),
@@ -36,7 +36,7 @@ void refuse_unfollowable(const Problem& problem) {
 
 /// Returns the problem without drag, couples and loads that follow the rod. Material directors keep
 /// their direction, which a plane of the remaining forces might otherwise change.
-Problem without_those(Problem problem, const RodSpan& span) {
+Problem without_nonpotential_loads(Problem problem, const RodSpan& span) {
   const std::optional<std::size_t> first = first_clamp(problem);
   if (has_material_directors(problem) && first) {
     Grip& clamp = problem.grips[*first];
@@ -82,7 +82,7 @@ Problem frozen_on(const Problem& problem, const RodSpan& span, const Equilibrium
   return dead;
 }
 
-Equilibrium no_dead_shape(const Equilibrium& dead) {
+Equilibrium failed_start(const Equilibrium& dead) {
   Equilibrium result;
   result.status = SolveStatus::failed;
   result.message = "start under only the loads that have a potential: " + dead.message;
@@ -94,18 +94,18 @@ Equilibrium no_dead_shape(const Equilibrium& dead) {
 
 Equilibrium solve_without_potential(const Problem& problem, const ExactOptions& options,
                                     const Deadline& deadline) {
-  refuse_unfollowable(problem);
+  require_followable(problem);
   const RodSpan span = with_own_axes(problem);
   if (options.start != nullptr) {
     SpanEquilibrium found = refine_span(span, frozen_on(problem, span, *options.start),
                                         *options.start, options.tolerance, deadline);
     return assemble(problem, {{span}, {std::move(found)}}, options.tolerance);
   }
-  const Problem base = without_those(problem, span);
+  const Problem base = without_nonpotential_loads(problem, span);
   const Equilibrium dead = solve_exact(
       base, {.tolerance = options.tolerance,
              .time_limit = std::max(deadline.remaining(), std::numeric_limits<double>::min())});
-  if (!dead.sample) return no_dead_shape(dead);
+  if (!dead.sample) return failed_start(dead);
   SpanEquilibrium found = refine_span(loaded_by(span, 0), base, dead, options.tolerance, deadline);
   if (found.converged) {
     found.shots += dead.evaluations;

@@ -230,21 +230,21 @@ SpanEquilibrium shoot_from_lines(const RodSpan& span, double tolerance, const De
 }
 
 /// Returns the span with a share of its stretch.
-RodSpan stretching(RodSpan span, double share) {
+RodSpan with_stretch(RodSpan span, double share) {
   for (RodSpan::Part& part : span.parts) part.section.stretch *= share;
   return span;
 }
 
 /// Continues an equilibrium of the inextensible span to the span that stretches, by continuation in
 /// the stretch.
-SpanEquilibrium let_stretch(const RodSpan& span, SpanEquilibrium rigid, double tolerance,
-                            const Deadline& deadline) {
+SpanEquilibrium continue_in_stretch(const RodSpan& span, SpanEquilibrium rigid, double tolerance,
+                                    const Deadline& deadline) {
   constexpr double least_step = 1.0 / 256;
   int shots = rigid.shots;
   double reached = 0;
   double step = 1;
   while (rigid.converged && reached < 1) {
-    const RodSpan next = stretching(span, std::min(1.0, reached + step));
+    const RodSpan next = with_stretch(span, std::min(1.0, reached + step));
     SpanEquilibrium solved = shoot_span(next, mesh_at(next, rigid.s), rigid.nodes, rigid.frames,
                                         {.tolerance = tolerance, .deadline = deadline});
     shots += solved.shots;
@@ -266,9 +266,9 @@ SpanEquilibrium let_stretch(const RodSpan& span, SpanEquilibrium rigid, double t
 SpanSearchResult search_released(const RodSpan& span, double tolerance, const Deadline& deadline) {
   if (span.parts.front().section.stretch == 0) return SpanSearch(span, tolerance, deadline).run();
   if (is_pulled_straight(span)) return {{shoot_from_lines(span, tolerance, deadline)}, true};
-  SpanSearchResult search = SpanSearch(stretching(span, 0), tolerance, deadline).run();
+  SpanSearchResult search = SpanSearch(with_stretch(span, 0), tolerance, deadline).run();
   for (SpanEquilibrium& found : search.found) {
-    found = let_stretch(span, std::move(found), tolerance, deadline);
+    found = continue_in_stretch(span, std::move(found), tolerance, deadline);
   }
   // A rod that would have to bend may be compressed instead.
   if (span.holds.size() > 1) {

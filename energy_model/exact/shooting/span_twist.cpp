@@ -60,7 +60,8 @@ class Continuation {
         step /= 2;
         continue;
       }
-      if (!fall(next)) return failure("no stable shape was found beyond this roll: " + problem_);
+      if (!follow_flow(next))
+        return failure("no stable shape was found beyond this roll: " + problem_);
       step = first_step / 4;
     }
     now_.shots = shots_;
@@ -186,7 +187,7 @@ class Continuation {
   }
 
   /// Follows the gradient flow at a roll beyond the end of the branch.
-  bool fall(double next) {
+  bool follow_flow(double next) {
     const RodMesh mesh = mesh_at(span_, now_.s);
     SpanEquilibrium found =
         follow_gradient(span_, mesh, now_.nodes, frames_of(now_.nodes), frames(next), options());

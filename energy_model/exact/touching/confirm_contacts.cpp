@@ -62,7 +62,7 @@ class ClosedRod {
   }
 
   /// Returns the reason why the contacts are not confirmed; empty: they are.
-  [[nodiscard]] std::string objection(Equilibrium& result) const {
+  [[nodiscard]] std::string contact_failure(Equilibrium& result) const {
     double largest = 1 + total_load(start_.span);
     for (const Reaction& grip : result.grips) {
       largest = std::max(largest, grip.force.norm() / force_unit_);
@@ -243,10 +243,10 @@ std::optional<Equilibrium> confirm_contacts(const Problem& problem, const Equili
   Equilibrium result = assemble(problem, {{start->span}, {closed}}, tolerance);
   const ClosedRod rod(problem, *start, closed, tolerance);
   rod.add_contacts(result);
-  const std::string objection = rod.objection(result);
-  if (!objection.empty()) {
+  const std::string contact_failure = rod.contact_failure(result);
+  if (!contact_failure.empty()) {
     result.status = SolveStatus::not_verified;
-    result.message = objection;
+    result.message = contact_failure;
   }
   return result;
 }

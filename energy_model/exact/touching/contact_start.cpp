@@ -15,7 +15,7 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double same_place = 1e-9;  // difference of equal arc lengths, in l
+constexpr double arc_length_rounding = 1e-9;  // difference of equal arc lengths, in l
 // Length of an interval times the square root of the force that bends.
 constexpr double growth_of_interval = 3;
 constexpr double twist_step = 1e-4;  // distance over which the rotation of d1 is measured, in l
@@ -37,7 +37,7 @@ class Layout {
 
   [[nodiscard]] std::optional<ContactStart> run(double tolerance) {
     make_nodes();
-    if (!place_contacts() || !lies_alone()) return std::nullopt;
+    if (!place_contacts() || !are_contacts_separate()) return std::nullopt;
     sample();
     if (!has_material_directors(problem_)) {
       carry_frames(start_.span, start_.mesh, tolerance, start_.states);
@@ -55,7 +55,7 @@ class Layout {
     for (const RodSpan::Load& load : start_.span.loads) fixed.push_back(load.at);
     for (const RodSpan::Part& part : start_.span.parts) fixed.push_back(part.begin);
     for (const double at : fixed) {
-      if (std::abs(at - s) < same_place) return at;
+      if (std::abs(at - s) < arc_length_rounding) return at;
     }
     return s;
   }
@@ -70,7 +70,7 @@ class Layout {
       for (const double at : {contact.begin, contact.end}) touched.push_back(snapped(at / l_));
     }
     std::sort(touched.begin(), touched.end());
-    const auto same = [](double a, double b) { return b - a < same_place; };
+    const auto same = [](double a, double b) { return b - a < arc_length_rounding; };
     touched.erase(std::unique(touched.begin(), touched.end(), same), touched.end());
     force = std::max(1.0, force / least_bending_stiffness(start_.span));
     const double longest = std::min(start_.span.length / 8, growth_of_interval / std::sqrt(force));
@@ -80,7 +80,8 @@ class Layout {
 
   [[nodiscard]] Eigen::Index node_at(double arc_length) const {
     const Eigen::VectorXd& s = start_.mesh.s;
-    return std::lower_bound(s.begin(), s.end(), snapped(arc_length / l_) - same_place) - s.begin();
+    return std::lower_bound(s.begin(), s.end(), snapped(arc_length / l_) - arc_length_rounding) -
+           s.begin();
   }
 
   [[nodiscard]] bool place_contacts() {
@@ -124,7 +125,7 @@ class Layout {
 
   /// Whether no grip, load or part is within a part that lies, and no such part is adjacent to
   /// another one.
-  [[nodiscard]] bool lies_alone() const {
+  [[nodiscard]] bool are_contacts_separate() const {
     for (const PlacedContact& contact : start_.contacts) {
       for (Eigen::Index i = contact.begin + 1; i < contact.end; ++i) {
         if (start_.mesh.is_fixed(i)) return false;
@@ -161,7 +162,8 @@ class Layout {
     const bool directors = has_material_directors(problem_);
     // The shape is sampled just after the nodes, at which its curvature may jump.
     std::vector<double> after;
-    for (const double s : start_.mesh.s) after.push_back(std::min(s + same_place, 1.0) * l_);
+    for (const double s : start_.mesh.s)
+      after.push_back(std::min(s + arc_length_rounding, 1.0) * l_);
     const Samples at = shape_.sample(after);
     for (Eigen::Index i = 0; i < start_.mesh.s.size(); ++i) {
       const double s = start_.mesh.s[i];

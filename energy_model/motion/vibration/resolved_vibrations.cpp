@@ -26,7 +26,7 @@ constexpr double rounding_share = 1e-9;
 constexpr double plane_rounding = 1e-9;
 
 /// Largest difference of tangents between two solutions of the same equilibrium.
-constexpr double found_again = 1e-6;
+constexpr double same_tangents = 1e-6;
 /// Value of omega_squared, divided by EI / (m l^3), below which errors are no longer relative:
 /// smaller values belong to rigid-body modes and rounding.
 constexpr double neutral_share = 1e-2;
@@ -116,7 +116,7 @@ class RodVibrations {
 
   /// Whether the vibrating shape is the known one: Newton's method may have converged to another
   /// one, and few coefficients do not resolve it.
-  [[nodiscard]] bool is_known() const { return farthest_ <= found_again; }
+  [[nodiscard]] bool is_known() const { return farthest_ <= same_tangents; }
 
   /// Number of unknowns of the largest span.
   [[nodiscard]] Eigen::Index unknowns() const {

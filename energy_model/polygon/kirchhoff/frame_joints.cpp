@@ -47,8 +47,8 @@ Eigen::Quaterniond clamp_frame(const RodSpan& span, std::size_t clamp, double tu
   return frame * Eigen::Quaterniond(Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()));
 }
 
-std::vector<double> turns_beside(const RodSpan& span, const RodMesh& mesh,
-                                 const std::vector<Eigen::Quaterniond>& frames) {
+std::vector<double> adjacent_interval_turns(const RodSpan& span, const RodMesh& mesh,
+                                            const std::vector<Eigen::Quaterniond>& frames) {
   std::vector<double> turns(span.clamps.size(), 0);
   for (std::size_t k = 1; k < turns.size(); ++k) {
     const Eigen::Index node = node_at(mesh.s, span.clamps[k].at);

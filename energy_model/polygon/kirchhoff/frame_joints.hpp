@@ -36,7 +36,7 @@ struct FrameJoint {
 
 /// Returns the rotation of the frame of each clamp about its direction that the adjacent interval
 /// has [rad]; that of the first clamp, which holds its frame, is 0.
-[[nodiscard]] std::vector<double> turns_beside(const RodSpan& span, const RodMesh& mesh,
-                                               const std::vector<Eigen::Quaterniond>& frames);
+[[nodiscard]] std::vector<double> adjacent_interval_turns(
+    const RodSpan& span, const RodMesh& mesh, const std::vector<Eigen::Quaterniond>& frames);
 
 }  // namespace dlo::energy_model

@@ -36,7 +36,7 @@ class PolygonEnergy {
 
   [[nodiscard]] Eigen::VectorXd unknowns(const std::vector<Quaterniond>& frames) const {
     const Eigen::Index count = mesh_.intervals();
-    const std::vector<double> turns = turns_beside(span_, mesh_, frames);
+    const std::vector<double> turns = adjacent_interval_turns(span_, mesh_, frames);
     Eigen::VectorXd x(4 * count + static_cast<Eigen::Index>(turns.size()));
     for (Eigen::Index i = 0; i < count; ++i) {
       x.segment<4>(4 * i) = vector_of(frames[static_cast<std::size_t>(i)]);

@@ -54,7 +54,7 @@ RelaxedPolygon relax_round(const RodSpan& span, const RodMesh& mesh,
       relax_tangents(span, mesh, tangents_along(start), motion, deadline);
   RelaxedPolygon polygon;
   polygon.frames = frames_along(relaxed.tangents, start.front());
-  polygon.turns = turns_beside(span, mesh, polygon.frames);
+  polygon.turns = adjacent_interval_turns(span, mesh, polygon.frames);
   polygon.force = relaxed.force;
   polygon.energy = relaxed.energy;
   polygon.motion = motion;

@@ -24,9 +24,9 @@ constexpr double turning_at_jump = 0.02;
 constexpr double least_turning = 1e-4;
 
 /// Intermediate problems between no twist and the prescribed twist.
-class TwistedWay {
+class TwistHomotopy {
  public:
-  TwistedWay(PolygonProblem problem, const Eigen::Matrix3Xd& start) : last_(std::move(problem)) {
+  TwistHomotopy(PolygonProblem problem, const Eigen::Matrix3Xd& start) : last_(std::move(problem)) {
     for (PolygonTwist& twist : last_.twists) {
       twist.angle = polygon_twist_angle(twist, start);
       angles_.push_back(twist.angle);
@@ -80,7 +80,7 @@ PolygonResult twist_polygon(const PolygonProblem& problem,
   const auto begin = std::chrono::steady_clock::now();
   require_polygon(problem, start, options);
   const Deadline deadline(options.time_limit);
-  const TwistedWay way(problem, start);
+  const TwistHomotopy homotopy(problem, start);
   const double length = problem.rest_lengths.sum();
   PolygonOptions step_options = options;
   step_options.in_stages = false;
@@ -91,8 +91,8 @@ PolygonResult twist_polygon(const PolygonProblem& problem,
   double part = 0;
   double turning = first_turning;
   while (part < 1) {
-    const double next = std::min(1.0, part + turning / std::max(turning, way.length()));
-    const PolygonProblem there = way.at(next, now.twists, part);
+    const double next = std::min(1.0, part + turning / std::max(turning, homotopy.length()));
+    const PolygonProblem there = homotopy.at(next, now.twists, part);
     step_options.time_limit = deadline.remaining();
     step_options.max_evaluations = options.max_evaluations - now.evaluations;
     if (step_options.time_limit <= 0 || step_options.max_evaluations < 1) {

@@ -3,14 +3,14 @@
 namespace dlo::energy_model {
 namespace {
 
-thread_local bool (*question)() = nullptr;
+thread_local bool (*should_stop)() = nullptr;
 
 }  // namespace
 
-Interruption::Interruption(bool (*asked)()) : before_(question) { question = asked; }
+Interruption::Interruption(bool (*asked)()) : before_(should_stop) { should_stop = asked; }
 
-Interruption::~Interruption() { question = before_; }
+Interruption::~Interruption() { should_stop = before_; }
 
-bool interrupted() { return question != nullptr && question(); }
+bool interrupted() { return should_stop != nullptr && should_stop(); }
 
 }  // namespace dlo::energy_model

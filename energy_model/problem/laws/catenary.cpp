@@ -71,7 +71,8 @@ std::optional<Catenary> hang_between(const Vector& begin, const Vector& end, dou
   const double rise = way.dot(up);
   const Vector flat = way - rise * up;
   const double x = flat.norm();
-  if (!(x > negligible_way * l) || !(way.norm() < l * (1 - negligible_way))) return std::nullopt;
+  if (!(x > negligible_length * l) || !(way.norm() < l * (1 - negligible_length)))
+    return std::nullopt;
   const double ratio = std::sqrt((l - rise) * (l + rise)) / x;
   const double excess = (l - way.norm()) * (l + way.norm()) / (x * x * (ratio + 1));
   const double u = root_of_sinh_ratio(excess);
@@ -91,7 +92,7 @@ std::optional<Catenary> lie_between(const Vector& begin, const Vector& end, doub
   const Vector way = end - begin;
   const Vector flat = way - way.dot(up) * up;
   const double x = flat.norm();
-  if (!(x > negligible_way * l)) return std::nullopt;
+  if (!(x > negligible_length * l)) return std::nullopt;
   const std::array<double, 2> heights = {std::max(0.0, begin.dot(up) - floor),
                                          std::max(0.0, end.dot(up) - floor)};
   const auto length = [](double h, double a) { return std::sqrt(h * (h + 2 * a)); };

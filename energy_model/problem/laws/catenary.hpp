@@ -7,7 +7,7 @@ namespace dlo::energy_model {
 
 /// Difference of arc lengths or heights, divided by the length, up to which they are treated as
 /// equal.
-inline constexpr double negligible_way = 1e-9;
+inline constexpr double negligible_length = 1e-9;
 
 /// A line without bending stiffness under its weight w per length, part of which may lie at the
 /// level of its lowest point. Its arc length s begins at one end of it [m]. With q the arc length

@@ -25,7 +25,7 @@ using Vector = Eigen::Vector3d;
 
 /// Largest angle by which a clamp may bend the rod [rad]. The side to which a rod folds at 180 deg
 /// is undetermined.
-constexpr double most_turned = 170 * std::numbers::pi / 180;
+constexpr double largest_clamp_angle = 170 * std::numbers::pi / 180;
 /// Distance in layer lengths after which a layer has decayed: exp(-40) = 4e-18.
 constexpr double layer_reach = 40;
 /// Largest error_estimate divided by the length with which a soft line is returned. The models' own
@@ -148,7 +148,7 @@ class SoftLine {
       if (!find_catenary()) return std::nullopt;
       for (Layer& layer : layers_) bend(layer);
     }
-    if (!find_catenary() || !is_well_apart()) return std::nullopt;
+    if (!find_catenary() || !are_layers_separate()) return std::nullopt;
     return result();
   }
 
@@ -156,7 +156,7 @@ class SoftLine {
   [[nodiscard]] bool is_taken() const {
     const double l = problem_.length;
     const auto at_end = [&](const Grip& grip) {
-      return grip.at < negligible_way * l || grip.at > l * (1 - negligible_way);
+      return grip.at < negligible_length * l || grip.at > l * (1 - negligible_length);
     };
     const std::vector<Grip>& grips = problem_.grips;
     if (problem_.axial_stiffness || problem_.confined_to_plane || !has_dead_loads(problem_) ||
@@ -176,7 +176,7 @@ class SoftLine {
     const Obstacle& obstacle = problem_.obstacles.front();
     if (!std::isinf(obstacle.stiffness) || !obstacle.body.is_half_space()) return std::nullopt;
     const obstacle::Body& body = obstacle.body;
-    if ((body.normal() - up_).norm() > negligible_way) return std::nullopt;
+    if ((body.normal() - up_).norm() > negligible_length) return std::nullopt;
     return (body.centre() + body.radius() * body.normal()).dot(up_);
   }
 
@@ -209,7 +209,7 @@ class SoftLine {
     const std::optional<double> ground = floor();
     if (!ground) return false;
     const double lowest = line_.point(std::clamp(line_.low, 0.0, l)).dot(up_);
-    if (lowest > *ground + negligible_way * l) return true;
+    if (lowest > *ground + negligible_length * l) return true;
     const std::optional<Catenary> lying = lie_between(begin, end, l, up_, *ground);
     if (!lying) return false;
     line_ = *lying;
@@ -238,10 +238,10 @@ class SoftLine {
 
   /// Whether layers decay before others begin and above the floor, and each bends to a definite
   /// side.
-  [[nodiscard]] bool is_well_apart() const {
+  [[nodiscard]] bool are_layers_separate() const {
     const std::optional<double> ground = floor();
     for (const Layer& layer : layers_) {
-      if (!(layer.turn < most_turned)) return false;
+      if (!(layer.turn < largest_clamp_angle)) return false;
       if (!(2 * layer_reach * layer.length < problem_.length)) return false;
       const double above = ground ? grip_of(layer).position.dot(up_) - *ground : 1.0;
       if (!ground) continue;
@@ -249,7 +249,7 @@ class SoftLine {
                               line_.own(at(layer)) == 0;
       if (lies_there) {
         // The end has to be on the floor and along it.
-        if (std::abs(above) > negligible_way * problem_.length || layer.turn > negligible_way)
+        if (std::abs(above) > negligible_length * problem_.length || layer.turn > negligible_length)
           return false;
       } else if (!(above > layer_reach * layer.length)) {
         return false;
@@ -327,7 +327,7 @@ class SoftLine {
     const double pressed = weight_ * edge_layer();
     const double end = line_.low + line_.lying;
     const bool rises_at_begin = line_.low > 0;
-    const bool rises_at_end = end < problem_.length * (1 - negligible_way);
+    const bool rises_at_end = end < problem_.length * (1 - negligible_length);
     result.obstacles.front() = weight_ * line_.lying * up_;
     ContactPart part;
     part.kind = ContactKind::lying;

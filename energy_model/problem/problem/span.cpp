@@ -51,7 +51,7 @@ bool Span::has_couples() const {
   return std::any_of(loads.begin(), loads.end(), [](const Load& load) { return load.couple != 0; });
 }
 
-bool Span::pulled_one_way() const {
+bool Span::has_unidirectional_load() const {
   Eigen::Vector3d sum = weight_between(0, length);
   for (const Load& load : loads) sum += load.force;
   constexpr double rounding = 1e-12;

@@ -135,7 +135,7 @@ struct Span {
   /// potential there.
   [[nodiscard]] bool stays_in_plane() const { return planar && (confined || has_couples()); }
   /// Whether weight and loads all point in the same direction.
-  [[nodiscard]] bool pulled_one_way() const;
+  [[nodiscard]] bool has_unidirectional_load() const;
   /// Whether this is a uniform straight rod in a plane with one clamp, loaded by nothing but weight
   /// and point forces. Such spans are solved and certified by separate methods, so a new kind of
   /// load or constraint has to be excluded here.

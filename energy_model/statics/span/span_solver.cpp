@@ -66,7 +66,7 @@ class Search {
         found_(options) {}
 
   [[nodiscard]] std::vector<SpanSolution> run() {
-    if (!options_.wants_all() && span_.is_plain_cantilever() && span_.pulled_one_way()) {
+    if (!options_.wants_all() && span_.is_plain_cantilever() && span_.has_unidirectional_load()) {
       SpanSolution solution = plain_cantilever(on_);
       if (!span_.confined) certify_out_of_plane(solution, traits_.load, workspace_.factors());
       if (solution.status != SolveStatus::saddle) return list_of(std::move(solution));
