@@ -101,7 +101,7 @@ std::vector<BalancedRod> balanced_rods() {
   return rods;
 }
 
-TEST(Balance, HoldsOfWhatBothModelsReturn) {
+TEST(Balance, HoldsForResultsOfBothModels) {
   for (const BalancedRod& rod : balanced_rods()) {
     SCOPED_TRACE(rod.name + ": " + rod.shape.message);
     const bool unjudged = !has_potential(rod.problem);
@@ -191,7 +191,7 @@ TEST(Balance, IsLostWithEverythingThatActsOnTheRod) {
 
 // Two terms leave an error in where contact with a soft peg begins; shooting with a loose tolerance
 // leaves a moment at the tip.
-TEST(Balance, IsRequiredOfWhatBothModelsReturn) {
+TEST(Balance, IsRequiredOfResultsOfBothModels) {
   Problem peg = heavy_cantilever(12, 0);
   peg.obstacles = {{obstacle::Body::cylinder({0.5, -0.4, 0}, {0, 0, 1}, 0.1), 130}};
   EnergyOptions few;
@@ -206,7 +206,7 @@ TEST(Balance, IsRequiredOfWhatBothModelsReturn) {
 }
 
 // A shape whose status is not that of an equilibrium keeps its message; a saddle is an equilibrium.
-TEST(Balance, IsAskedOfEquilibriaAlone) {
+TEST(Balance, IsCheckedForEquilibriaOnly) {
   const Problem problem = heavy_cantilever(5, 10);
   Equilibrium shape = test::converged(solve_energy(problem));
   shape.grips[0].force += Eigen::Vector3d(1, 0, 0);

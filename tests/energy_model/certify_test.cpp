@@ -14,7 +14,7 @@ namespace {
 
 // Between two clamps in a plane three constraints fix all that three terms leave free: there is no
 // direction in which a fold could be searched for.
-TEST(Certify, TakesAShapeThatNothingIsFreeIn) {
+TEST(Certify, AcceptsAShapeWithoutFreeUnknowns) {
   Span span;
   span.planar = true;
   span.length = 1;

@@ -197,7 +197,7 @@ TEST(Contact, OutOfReachChangesNothing) {
 
 // From a rod that touches at a point: kept there, the obstacle would pull with three times the way
 // over l^3, in EI/l^2, at the tip.
-TEST(Contact, APointIsLetGoByAnObstacleThatMovesAway) {
+TEST(Contact, APointIsReleasedByAnObstacleThatMovesAway) {
   const Problem free = heavy_cantilever(0.3, 0);
   const double reach = -test::point_at(solve_energy(free), 1).y();
   const std::vector<double> at = equal_arc_lengths(free.length, 10001);

@@ -36,14 +36,14 @@ std::vector<const DenseKernel*> available_kernels() {
 
 const std::vector<const DenseKernel*> kernels = available_kernels();
 
-TEST(DenseKernel, OfASetThatIsUnknownIsRefusedWithThoseThatThereAre) {
+TEST(DenseKernel, UnknownNameIsRefusedWithTheAvailableOnes) {
   EXPECT_TRUE(test::error_of<std::invalid_argument>([] { return &dense_kernel_named("sse9"); })
                   .starts_with("dense_kernel_named: DLO_INSTRUCTION_SET = sse9, must be one that "
                                "this machine has (baseline"));
 }
 
 // CMakeLists.txt runs it with each name.
-TEST(DenseKernel, IsTheOneThatTheEnvironmentNamesElseTheFastest) {
+TEST(DenseKernel, IsThatOfTheEnvironmentVariableElseTheFastest) {
   const char* name = std::getenv("DLO_INSTRUCTION_SET");
   EXPECT_EQ(&dense_kernel(),
             name != nullptr && *name != '\0' ? &dense_kernel_named(name) : kernels.back());
@@ -75,7 +75,7 @@ TEST(DenseProducts, AreThoseOfTheLibraryInAllSizes) {
   }
 }
 
-TEST(DenseProducts, WorkOutHalfOfWhatIsSymmetric) {
+TEST(DenseProducts, ComputeSymmetricProducts) {
   for (const Index inner : {1, 3, 4, 9, 47}) {
     for (const Index n : {1, 2, 3, 4, 5, 7, 20}) {
       const MatrixXd a = MatrixXd::Random(n, inner);
@@ -90,7 +90,7 @@ TEST(DenseProducts, WorkOutHalfOfWhatIsSymmetric) {
   }
 }
 
-TEST(DenseProducts, FactorWhatIsPositiveDefiniteAndNothingElse) {
+TEST(DenseProducts, FactorOnlyPositiveDefiniteMatrices) {
   for (const Index n : {1, 2, 3, 4, 5, 8, 9, 13, 20, 47}) {
     const MatrixXd root = MatrixXd::Random(n, n);
     const MatrixXd matrix = root * root.transpose() + MatrixXd::Identity(n, n);

@@ -266,7 +266,7 @@ TEST(Dynamics, ClampsAtBothEndsMoveTheRodAndHoldIt) {
   }
 }
 
-TEST(Dynamics, DampedGripsComeToHoldWhatTheyHoldInEquilibrium) {
+TEST(Dynamics, DampedReactionsConvergeToThoseOfTheEquilibrium) {
   for (const bool pinned : {false, true}) {
     MovingRod rod = closed_rod(20);
     rod.material_damping = 0.02;
@@ -381,7 +381,7 @@ TEST(Dynamics, AClampThatStartsAtOnceStrikesTheRod) {
 
 // Radau's rule evaluates the motion at the end of a step. At a break, where the motion has two
 // values, the one before the break is used, whichever of them the motion itself returns there.
-TEST(Dynamics, AStepThatEndsAtABreakKnowsOnlyWhatWasBefore) {
+TEST(Dynamics, AStepThatEndsAtABreakUsesOnlyTheMotionBefore) {
   constexpr double stop = 0.1;
   for (const bool pinned : {false, true}) {
     MovingRod rod = pinned ? closed_rod(5) : moving_cantilever(5);
@@ -453,7 +453,7 @@ TEST(Dynamics, ARodThatFallsOnAFloorThatYieldsKeepsItsEnergy) {
 }
 
 // The clamp in the middle: two spans, of which one runs against the arc length.
-TEST(Dynamics, BothSidesOfAClampMoveAlike) {
+TEST(Dynamics, BothSidesOfAClampMoveEqually) {
   MovingRod rod = moving_cantilever(8);
   rod.problem.grips[0].at = 0.5;
   const Dynamics result = run(rod, straight_rod(Vector3d::UnitX()), {0.1, 0.2});

@@ -116,7 +116,7 @@ TEST(Exact, ReturnsTheStableShapeOfTwoPinsNearEachOther) {
   EXPECT_LT(test::balance_of(problem, result, 0.01).worst(), 1e-9);
 }
 
-TEST(Exact, SaysThatCombinationsAreLeftOutAndKeepsTheLowest) {
+TEST(Exact, ReportsOmittedCombinationsAndKeepsTheLowest) {
   // Five arches between clamps, each with several shapes.
   Problem problem = heavy_cantilever(0, 0);
   problem.grips.clear();

@@ -297,7 +297,7 @@ TEST(ExactTwist, RefusesWhatItCannotTwist) {
   EXPECT_NE(refusal(open).find("clamp without a frame between"), std::string::npos);
 }
 
-TEST(ExactTwist, SaysHowFarItCame) {
+TEST(ExactTwist, ReportsTheRollThatItReached) {
   const Equilibrium result = solve_exact(askew(1e7), {.time_limit = 1});
   EXPECT_EQ(result.status, SolveStatus::time_limit);
   EXPECT_NE(result.message.find("of 1000000"), std::string::npos) << result.message;

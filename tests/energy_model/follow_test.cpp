@@ -44,7 +44,7 @@ double apart(const Equilibrium& a, const Equilibrium& b) {
   return (a.sample(s).points - b.sample(s).points).norm();
 }
 
-TEST(Keep, IsFollowAsLongAsTheBranchIsKept) {
+TEST(Keep, AgreesWithFollowOnTheSameBranch) {
   EnergySolver keeps;
   EnergySolver follows;
   EXPECT_FALSE(keeps.try_follow(heavy_cantilever(10, 0)));
@@ -77,7 +77,7 @@ TEST(Keep, StaysWhereItWasWhenTheBranchHasEnded) {
   EXPECT_GT(apart(fallen, *last), 0.1);
 }
 
-TEST(Keep, GoesBackToTheShapeBefore) {
+TEST(Keep, UndoRestoresTheShapeBefore) {
   EnergySolver solver;
   ASSERT_TRUE(succeeded(solver.solve(heavy_cantilever(10, 80)).status));
   const std::optional<Equilibrium> near = solver.try_follow(heavy_cantilever(10, 85));

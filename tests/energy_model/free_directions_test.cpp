@@ -42,7 +42,7 @@ TEST(FreeDirections, SmallestEigenvalueIsProven) {
 }
 
 // The vectors of the iteration become short among such, and have to stay orthogonal.
-TEST(FreeDirections, SmallestEigenvalueOfManyThatAreHardlyLargerIsNoneBelowThem) {
+TEST(FreeDirections, SmallestOfManyCloseEigenvaluesIsNotTooLow) {
   for (const double largest : {1.003, 1.03, 1.3}) {
     const Eigen::MatrixXd hessian = with_eigenvalues(Eigen::VectorXd::LinSpaced(60, 1, largest));
     EXPECT_NEAR(smallest_without_constraints(hessian), 1, 1e-2) << largest;

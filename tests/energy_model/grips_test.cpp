@@ -178,7 +178,7 @@ TEST(AllEquilibria, OfAHorizontalClampAreThoseOfTheExactScan) {
   }
 }
 
-TEST(AllEquilibria, AreCalledConvergedOnlyIfNothingMakesThemFall) {
+TEST(AllEquilibria, AreCalledConvergedOnlyIfStable) {
   // The prototype's trap: an S of energy about 16.8 that a solver called a success
   for (const double gamma : {0.0, 10.0, 60.0}) {
     for (const Problem& problem : {two_clamps(gamma, 0.8), heavy_cantilever(gamma, 50)}) {
@@ -254,7 +254,7 @@ TEST(Clamps, LiftTheWeightOfEverySpan) {
   EXPECT_NEAR(found.energy.gravity, solve_exact(problem).energy.gravity, 1e-8);
 }
 
-TEST(Clamps, ASpanThatGivesWayMakesTheRodUnstable) {
+TEST(Clamps, AnUnstableSpanMakesTheRodUnstable) {
   // The rod comes down to its clamp, at last too heavy to stand on it, and hangs below.
   Problem problem = heavy_cantilever(40, -90);
   problem.grips[0].at = 0.5;

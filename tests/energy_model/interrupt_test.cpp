@@ -23,12 +23,12 @@ TEST(Interruption, EndsASolveAsItsTimeLimitDoes) {
   EXPECT_EQ(solve_exact(heavy_cantilever(100, 0)).status, SolveStatus::time_limit);
 }
 
-TEST(Interruption, LeavesNoResidualThatNobodyHasLookedAt) {
+TEST(Interruption, LeavesTheResidualUnset) {
   const Interruption interruption(always_stop);
   EXPECT_LT(solve_energy(heavy_cantilever(100, 0)).residual, 0);
 }
 
-TEST(Interruption, IsOfItsScopeAndOfItsThread) {
+TEST(Interruption, AppliesToItsScopeAndThreadOnly) {
   EXPECT_FALSE(interrupted());
   {
     const Interruption outer(always_stop);

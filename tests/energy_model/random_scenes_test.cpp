@@ -16,7 +16,7 @@ using test::RandomSpace;
 
 class RandomScenes : public testing::TestWithParam<RandomSpace> {};
 
-TEST_P(RandomScenes, HoldTheEnergyModelAgainstMultipleShooting) {
+TEST_P(RandomScenes, CompareTheEnergyModelWithMultipleShooting) {
   // A sanitizer build tests code paths; the release build proves the counts.
   const bool curved = GetParam() == RandomSpace::curved || GetParam() == RandomSpace::strip;
   const bool twisted = GetParam() == RandomSpace::twisted || GetParam() == RandomSpace::mixed;
@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(PlaneAndSpace, RandomScenes,
                                          RandomSpace::mixed, RandomSpace::strip),
                          [](const auto& space) { return test::name_of(space.param); });
 
-TEST(RankedStarts, LeadAsLowAsASearchOfAnotherKind) {
+TEST(RankedStarts, ReachEnergiesAsLowAsAnotherSearch) {
   // In 911 three starts cost as much as the second one but for a twentieth of what they fall by;
   // one of them leads to the lowest shape.
   constexpr double softest = 30;  // Gamma

@@ -115,14 +115,14 @@ TEST(SearchLog, AccountsForEveryEquilibriumOfOneSpan) {
   expect_accounted(test::framed_clamps(1, 0.7, 0.7, 2));
 }
 
-TEST(SearchLog, TellsWhatAFloorLeavesOutAndAccountsForWhatLiesOnIt) {
+TEST(SearchLog, ReportsWhatAFloorOmitsAndCountsShapesThatLieOnIt) {
   Problem problem = heavy_cantilever(50, 0);
   problem.obstacles = {{obstacle::Body::half_space({0, -0.1, 0}, {0, 1, 0})}};
   expect_accounted(problem);
   EXPECT_NE(left_out(search_energy(problem)).find("polygons"), std::string::npos);
 }
 
-TEST(SearchLog, TellsThatTheTimeLimitCutItShort) {
+TEST(SearchLog, ReportsThatTheTimeLimitInterruptedIt) {
   const EnergySearch search = search_energy(two_clamps(10, 0.6), {.time_limit = 1e-6});
   EXPECT_NE(left_out(search).find("time limit"), std::string::npos) << left_out(search);
   for (const Equilibrium& found : search.equilibria) {
@@ -132,7 +132,7 @@ TEST(SearchLog, TellsThatTheTimeLimitCutItShort) {
   EXPECT_EQ(left_out(whole).find("time limit"), std::string::npos) << left_out(whole);
 }
 
-TEST(SearchLog, TellsThatThereAreMoreCombinationsThanItLists) {
+TEST(SearchLog, ReportsThatThereAreMoreCombinationsThanItLists) {
   // Five clamps: four spans of several equilibria each.
   Problem problem = heavy_cantilever(10, 0);
   for (int i = 1; i < 5; ++i) {

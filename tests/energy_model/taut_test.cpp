@@ -78,7 +78,7 @@ TEST(TautLine, IsStraightAndTwistsAsTwoSpringsInBothModels) {
   }
 }
 
-TEST(TautLine, IsWhereLessAndLessSlackLeads) {
+TEST(TautLine, IsTheLimitOfVanishingSlack) {
   Problem problem = taut_between_clamps();
   problem.grips[0].frame = FrameHold{Eigen::Vector3d::UnitY(), 0};
   problem.grips[1].frame = FrameHold{Eigen::Vector3d::UnitY(), 2};
@@ -158,7 +158,7 @@ TEST(TautLine, RefusesACoupleThatNoClampTakes) {
   }
 }
 
-TEST(TautLine, IsRefusedWhereNoTensionWouldDo) {
+TEST(TautLine, IsRefusedIfNoTensionHoldsItStraight) {
   const auto refused = [](const Problem& problem) {
     EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
     EXPECT_THROW((void)solve_exact(problem), std::invalid_argument);
@@ -179,7 +179,7 @@ TEST(TautLine, IsRefusedWhereNoTensionWouldDo) {
   refused(problem);
 }
 
-TEST(Taut, TensionIsWhatTheSlackAsksFor) {
+TEST(Taut, TensionFollowsFromTheSlack) {
   int taut = 0;
   for (const double slack : {1e-2, 1e-3}) {
     for (const double angle : {0.5, 1.5, 3.0}) {

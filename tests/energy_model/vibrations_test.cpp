@@ -295,7 +295,7 @@ TEST(Vibrations, OfSpansBetweenClampsAreTheirOwn) {
   EXPECT_NEAR(shape.col(first ? 0 : 3).norm(), 1, 1e-9);
 }
 
-TEST(Vibrations, RefuseContactAndMassesThatAreNone) {
+TEST(Vibrations, RefuseContactAndZeroMasses) {
   Problem problem = unit_rod({0, -50, 0}, {clamped(0, Vector3d(0, 0.1, 0), Vector3d::UnitX())});
   const Inertia inertia{.mass_per_length = 1, .of_sections = {}, .point_masses = {}};
   problem.obstacles.push_back({obstacle::Body::half_space({0, 0, 0}, {0, 1, 0})});

@@ -83,7 +83,7 @@ TEST(Batch, LeavesFoldedRodsToThePlainForces) {
   expect_agreement(rods, 3);
 }
 
-TEST(Batch, KeepsWhatDivergesAndStepsTheOthers) {
+TEST(Batch, StopsDivergedRodsAndStepsTheOthers) {
   const Variant variant{BendingLaw::hooke, Stepper::basic, GripHold::rigid, Walls::none,
                         Space::full};
   std::vector<BatchRod> rods = random_rods(8, 12, variant);
@@ -137,7 +137,7 @@ TEST(Batch, MovesTheGripperOfOneRod) {
   EXPECT_THROW(batch.move_grip(2, 0, targets, {0, 0, 0}), std::invalid_argument);
 }
 
-TEST(Batch, RefusesRodsThatCannotGoTogether) {
+TEST(Batch, RefusesRodsThatCannotShareAKernel) {
   const test::SteelRod steel;
   const BatchRod one{steel.rod({BendingLaw::hooke, steel.EI}, 660), steel.straight(), {}};
   test::SteelRod longer;

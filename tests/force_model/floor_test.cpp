@@ -109,7 +109,7 @@ TEST(RigidFloor, RodsOnItComeToRestFromEveryRoundingOfTheirStart) {
 
 /// Between two heights of a clamp with which one point more or less touches, that point is on the
 /// floor without a force: whether it is pressed is rounding.
-TEST(RigidFloor, APointThatBarelyTouchesItKeepsNoRodFromRest) {
+TEST(RigidFloor, APointThatBarelyTouchesItDoesNotPreventRest) {
   constexpr Eigen::Index points = 24;
   const auto touching_at = [](double height) {
     const FloorStart start = over_floor(points, height);

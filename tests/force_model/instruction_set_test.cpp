@@ -29,7 +29,7 @@ TEST(InstructionSet, ThatIsUnknownIsNamedWithThoseThatThereAre) {
 }
 
 // CMakeLists.txt runs it, as all tests, with each name.
-TEST(InstructionSet, IsTheOneThatTheEnvironmentNamesElseTheFastest) {
+TEST(InstructionSet, IsThatOfTheEnvironmentVariableElseTheFastest) {
   const char* name = std::getenv("DLO_INSTRUCTION_SET");
   EXPECT_EQ(fastest_instruction_set(), name != nullptr && *name != '\0'
                                            ? instruction_set_named(name)

@@ -30,7 +30,7 @@ TEST(TotalForces, AreTheGradientOfTheEnergyForHooke) {
 
 // A point within a segment is pushed as a lever would be: no net force or torque is added to or
 // lost from what the solid does there.
-TEST(Solid, PushesWithinSegmentsAsALeverDoes) {
+TEST(Solid, DistributesForcesWithinSegmentsByTheLeverRule) {
   const Solid ball{obstacle::Body::sphere({0.5, -0.9, 0}, 1), 40, 4};
   Eigen::Matrix3Xd points(3, 2);
   points << 0, 1, 0.2, -0.1, 0, 0;

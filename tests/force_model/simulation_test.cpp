@@ -121,7 +121,7 @@ TEST(CatchUpLoop, RepeatsUntilTheSumOfScalingsIsReached) {
   EXPECT_EQ(free.steps(), 10);
 }
 
-TEST(CatchUpLoop, SaysWhatItOwesWhenItsStepsAreUsedUp) {
+TEST(CatchUpLoop, ReportsTheRemainderWhenItsStepsAreUsedUp) {
   Simulation simulation(steel_rod(), SteelRod().straight(), options(Stepper::basic, 1e-5));
   EXPECT_EQ(simulation.advance(1000, 3).status, StepStatus::behind);
   EXPECT_EQ(simulation.steps(), 3);
@@ -142,7 +142,7 @@ TEST(CatchUpLoop, CarriesTheOvershootToTheNextCall) {
   EXPECT_EQ(simulation.steps(), 5);
 }
 
-TEST(Simulation, ACopyGoesOnAsTheOriginalAndLeavesItAlone) {
+TEST(Simulation, ACopyContinuesLikeTheOriginalAndDoesNotChangeIt) {
   const StepOptions dynamic = options(Stepper::dynamic, 1e-5, 1e-4, 0.9);
   Simulation original(steel_rod(), SteelRod().straight(), dynamic);
   for (int i = 0; i < 50; ++i) (void)original.step();
@@ -221,7 +221,7 @@ TEST(Relax, FindsRestBetweenModesThatAreFarApart) {
             4e-5 * steel.length);
 }
 
-TEST(Relax, LeavesAnUprightEquilibriumThatDoesNotHold) {
+TEST(Relax, LeavesAnUnstableUprightEquilibrium) {
   SteelRod steel;
   steel.angle = 1.5707963267948966;
   const double gamma_unit = steel.weight_per_length * 0.125;  // w l^3: EI = gamma_unit / Gamma
@@ -305,7 +305,7 @@ TEST(Simulation, MovedGripperTakesItsPointsAlong) {
   EXPECT_THROW(simulation.move_grip(1, targets, {0, 0, 0}), std::invalid_argument);
 }
 
-TEST(Relax, LeavesThePlaneWhereAShapeHoldsInItOnly) {
+TEST(Relax, LeavesThePlaneIfAShapeIsStableInItOnly) {
   // A tall arch, up from one clamp and down into the other, heavy enough to lean over sideways.
   const Eigen::Index n = 31;
   const double L = 1.0 / (n - 2);

@@ -174,7 +174,7 @@ TEST(Kernel, LeavesThePlaneWhenATargetDoes) {
   EXPECT_GT(std::abs(simulation.points()(2, 2)), 0);
 }
 
-TEST(Kernel, CopiesOfASimulationGoTheirOwnWays) {
+TEST(Kernel, CopiesOfASimulationAreIndependent) {
   const Variant variant{BendingLaw::hooke, Stepper::dynamic, GripHold::rigid, Walls::none,
                         Space::full};
   const Rod rod = random_rod(4, 16, variant);

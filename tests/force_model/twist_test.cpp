@@ -241,7 +241,7 @@ TEST(Twist, IsCountedThroughWholeTurns) {
   EXPECT_LT((carried - expected).norm(), 1e-12);
 }
 
-TEST(Twist, StepsAreThePlainOnesOnEveryInstructionSet) {
+TEST(Twist, StepsAgreeWithPlainStepsOnEveryInstructionSet) {
   for (const InstructionSet set : available_instruction_sets()) {
     for (const int points : {4, 5, 8, 9, 20, 33, 64}) {
       TwistedRod twisted;
@@ -288,7 +288,7 @@ TEST(Twist, PassesAPinAndAClampThatLeavesTheRodFree) {
   EXPECT_NEAR(spans[0].compliance, compliance, 1e-14);
 }
 
-TEST(Twist, OfOneFrameAloneIsNone) {
+TEST(Twist, OneFrameAloneChangesNothing) {
   const TwistedRod twisted;
   Rod framed = twisted.rod();
   framed.grips[1].d1.reset();

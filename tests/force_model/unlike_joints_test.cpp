@@ -66,7 +66,7 @@ TEST(UnlikeJoints, ForcesAreTheGradientOfTheEnergyAndBalance) {
   }
 }
 
-TEST(UnlikeJoints, AreWhatTheSameStiffnessIsIfTheyAreAlike) {
+TEST(UnlikeJoints, EqualStiffnessesAreOneStiffness) {
   constexpr Eigen::Index n = 9;
   const Eigen::VectorXd rest = Eigen::VectorXd::Constant(n, 0.04);
   const Eigen::Matrix3Xd points = random_polygon(6, n, 0.04, 0.1);
@@ -137,7 +137,7 @@ TEST(NaturalTurns, AreRefusedWhereTheyHaveNoSign) {
   EXPECT_THROW(simulation.move_grip(0, targets, Eigen::Vector3d::Zero()), std::invalid_argument);
 }
 
-TEST(NaturalTurns, StepAsThePlainForcesSayOnEveryInstructionSet) {
+TEST(NaturalTurns, StepsAgreeWithPlainForcesOnEveryInstructionSet) {
   for (const InstructionSet set : available_instruction_sets()) {
     for (const Eigen::Index points : {4, 7, 8, 9, 16, 17, 40, 200}) {
       const auto seed = static_cast<unsigned>(points);

@@ -92,7 +92,7 @@ TEST(Body, ManyClearancesAreThoseOfEach) {
   }
 }
 
-TEST(Body, SeenFromElsewhereItIsTheSame) {
+TEST(Body, DistancesAreInvariantUnderTransformation) {
   const Matrix3d turn = turned();
   const Vector3d origin(0.4, -0.3, 0.2);
   constexpr double unit = 0.5;
@@ -146,7 +146,7 @@ TEST(Body, RoundedIsWithinItself) {
   EXPECT_NEAR(box.rounded(1).radius(), 0.2, 1e-15);
 }
 
-TEST(Body, LooksFollowItsSmallestRadius) {
+TEST(Body, SamplesFollowItsSmallestRadius) {
   EXPECT_EQ(samples_per_segment(Body::half_space({0, 0, 0}, {0, 1, 0}), 1), 1);
   EXPECT_EQ(samples_per_segment(Body::sphere({0, 0, 0}, 2), 1), 1);
   EXPECT_EQ(samples_per_segment(Body::sphere({0, 0, 0}, 0.5), 1), 4);

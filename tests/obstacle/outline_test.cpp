@@ -54,7 +54,7 @@ TEST(Outline, IsTheSurfaceInAPlaneOfSymmetry) {
   }
 }
 
-TEST(Outline, OfWhatIsEndlessGoesFar) {
+TEST(Outline, OfAnInfiniteBodyExtendsFar) {
   const Eigen::Vector3d normal = Eigen::Vector3d(-1, 2, 0).normalized();
   const Body slope = Body::half_space({0.5, 0.1, 7}, normal).grown(0.02);
   const Eigen::Matrix2Xd points = seen_along_z(slope);
