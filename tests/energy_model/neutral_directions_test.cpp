@@ -166,6 +166,25 @@ TEST(NeutralDirections, AHelixThatMaySlideAlongTheRodHasAZeroMode) {
   expect_sliding_helix(0.025, "converged, 2 zero modes");
 }
 
+// The straight rod with few coefficients is unstable at 24 turns. The helix needs twice as many.
+TEST(NeutralDirections, TheHelixOf25TurnsIsListed) {
+  constexpr double slack = 0.03;
+  constexpr double torsion = 0.6;
+  constexpr double roll = 50 * std::numbers::pi;
+  Problem problem = two_clamps(0, 1 - slack);
+  problem.torsional_stiffness = torsion;
+  problem.grips[0].direction = Eigen::Vector3d::UnitX();
+  problem.grips[0].frame = FrameHold{};
+  problem.grips[1].frame = FrameHold{.roll = roll};
+  const Equilibrium found = all_energy(problem).front();
+  ASSERT_EQ(found.status, SolveStatus::converged) << found.message;
+  const double tension = found.grips[1].force.x();
+  const double torque = found.twists.at(0).torque;
+  const double theta = std::acos(torque / (2 * std::sqrt(tension)));
+  EXPECT_NEAR(4 * std::sin(theta) / std::sqrt(tension), slack, 1e-3 * slack);
+  EXPECT_NEAR(torque / torsion + 4 * theta, roll, 1e-3 * roll);
+}
+
 // The eigenvalue of the shift is small, of the order of exp(-4 sin(theta)^2 / D), but not zero.
 TEST(NeutralDirections, AHelixThatSlidesAgainstItsEndsIsDetermined) {
   for (const double slack : {0.0361, 0.0353, 0.0345, 0.033}) {

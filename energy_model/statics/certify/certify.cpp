@@ -247,11 +247,9 @@ class Certification {
     rigid_ = rigid_body_modes(model_.span(), point_->tangents());
     factorise();
     solution_.rigid_body_modes = static_cast<int>(rigid_.all());
-    const bool at_fold = estimate_error();
+    estimate_error();
     if (model_.span().planar && !model_.span().stays_in_plane()) look_out_of_plane();
-    if (undetermined || !small_step_ || at_fold) {
-      return solution_.finish(SolveStatus::near_singular);
-    }
+    if (undetermined || !small_step_) return solution_.finish(SolveStatus::near_singular);
     const MiddlePassed middle = middle_passed(solution_);
     if (middle == MiddlePassed::near) {
       solution_.neutral_directions = std::max(1, solution_.neutral_directions);
@@ -348,9 +346,9 @@ class Certification {
     found_ = eigenvalues_of(reduced, rigid_.in_plane);
   }
 
-  /// Estimates solution_.error. @return whether the shape is so close to a fold that there may be
-  /// no equilibrium
-  [[nodiscard]] bool estimate_error() {
+  /// Estimates solution_.error, and counts a neutral direction if the shape is so close to a fold
+  /// that there may be no equilibrium.
+  void estimate_error() {
     double moved = eta_;
     bool at_fold = false;
     // If there are as many coefficients as constraints, no direction is left for a fold.
@@ -369,7 +367,6 @@ class Certification {
       const double measured = measured_error(solution_, *point_, next_step_, load_);
       solution_.error = std::min(solution_.error, moved / eta_ * measured);
     }
-    return at_fold;
   }
 
   void look_out_of_plane() {

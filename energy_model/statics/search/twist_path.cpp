@@ -271,17 +271,37 @@ class TwistPath {
   void leave() {
     if (++branch_jumps_ > most_branch_jumps)
       return here_.fail("the rod jumps from branch to branch");
-    const SecondDerivatives at = second_derivatives(here_);
+    std::optional<SpanSolution> next = descended(here_);
+    // A stable shape far away may need more coefficients than the branch that ends here.
+    SpanSolution finer = here_;
+    while (!next && finer.terms < max_terms && 2 * finer.model->size() < most_unknowns &&
+           !options_.deadline.passed()) {
+      finer = workspace_.with_terms(finer, std::min(max_terms, 2 * finer.terms));
+      next = descended(finer);
+    }
+    if (!next) {
+      return here_.fail("nothing stable was found below a twist of " + std::to_string(angle_) +
+                        " rad");
+    }
+    here_ = std::move(*next);
+    slope_x_.resize(0);
+    last_step_.resize(0);
+  }
+
+  /// Displaces an unstable shape and descends. @return a stable equilibrium
+  [[nodiscard]] std::optional<SpanSolution> descended(const SpanSolution& from) {
+    const SecondDerivatives at = second_derivatives(from);
     ReducedHessian reduced;
     reduced.compute(at.hessian, at.jacobian);
     std::optional<Eigen::VectorXd> way = negative_curvature_direction(reduced);
     // Near a fold the shape moves along the unstable direction, as in the last step.
-    if (!way && last_step_.norm() > 0) way = last_step_.normalized();
+    if (!way && last_step_.size() == from.x.size() && last_step_.norm() > 0) {
+      way = last_step_.normalized();
+    }
     if (!way) way = direction_by_size(reduced, 0);
-    slope_x_.resize(0);
     double push = first_push;
     for (int i = 0; i < 2 * most_pushes; ++i) {
-      SpanSolution next = here_;
+      SpanSolution next = from;
       next.evaluations = 0;
       if (way) next.x += push * *way;
       if (i % 2 == 0) {
@@ -296,31 +316,23 @@ class TwistPath {
       next = on_obstacles(std::move(next));
       spent_ += next.evaluations;
       next.evaluations = 0;
-      if (!next.is_equilibrium() || !is_stable(next)) continue;
-      here_ = std::move(next);
-      last_step_.resize(0);
-      return;
+      if (next.is_equilibrium() && is_stable(next)) return next;
     }
-    if (std::optional<SpanSolution> next = from_polygon(way)) {
-      here_ = std::move(*next);
-      last_step_.resize(0);
-      return;
-    }
-    here_.fail("nothing stable was found below a twist of " + std::to_string(angle_) + " rad");
+    return from_polygon(from, way);
   }
 
   /// Relaxes a polygon from the same shape to find contacts elsewhere.
   [[nodiscard]] std::optional<SpanSolution> from_polygon(
-      const std::optional<Eigen::VectorXd>& way) {
-    Span span = here_.model->span();
+      const SpanSolution& from, const std::optional<Eigen::VectorXd>& way) {
+    Span span = from.model->span();
     if (span.rigid_obstacles.empty() || span.has_material_directors()) return std::nullopt;
     if (++polygons_ > most_polygons) return std::nullopt;
-    const Eigen::VectorXd x = way ? here_.x + first_push * *way : here_.x;
+    const Eigen::VectorXd x = way ? from.x + first_push * *way : from.x;
     const PenaltyPolygon polygon =
-        rest_on_obstacles(span, here_.model->field(x), Segments::all, options_.deadline);
+        rest_on_obstacles(span, from.model->field(x), Segments::all, options_.deadline);
     spent_ += polygon.evaluations;
     span.contacts = polygon.contacts;
-    SpanSolution next = active_set_.update(std::move(span), polygon.field(), here_.terms);
+    SpanSolution next = active_set_.update(std::move(span), polygon.field(), from.terms);
     spent_ += std::exchange(next.evaluations, 0);
     if (!next.is_equilibrium() || !is_stable(next)) return std::nullopt;
     return next;
