@@ -139,11 +139,9 @@ class Chain {
     return true;
   }
 
-  /// Returns the file's points minus the chain's points at rest, zero for a last point that is
-  /// missing in the file; std::nullopt if the chain does not come to rest, or a segment is strained
-  /// by more than largest_chain_strain.
+  /// Returns the chain's points at rest; std::nullopt if the chain does not come to rest.
   /// @param factor  factor on the stiffness of the springs
-  [[nodiscard]] std::optional<Eigen::Matrix3Xd> gaps(
+  [[nodiscard]] std::optional<Eigen::Matrix3Xd> at_rest(
       double factor, JointLaw law, int max_evaluations = most_evaluations_near_file) const {
     energy_model::PolygonProblem problem = problem_;
     problem.law = law;
@@ -155,13 +153,26 @@ class Chain {
     options.in_stages = false;
     const energy_model::PolygonResult rest = energy_model::solve_polygon(problem, start(), options);
     if (!energy_model::succeeded(rest.status) || is_strained(rest.points)) return std::nullopt;
-    Eigen::Matrix3Xd gaps = points_ - rest.points.middleCols(before_, points_.cols());
+    return rest.points.middleCols(before_, points_.cols());
+  }
+
+  /// Returns the file's points minus the chain's points; zero at a point that the file lacks.
+  [[nodiscard]] Eigen::Matrix3Xd gaps(const Eigen::Matrix3Xd& rest) const {
+    Eigen::Matrix3Xd gaps = points_ - rest;
     if (last_ == LastPoint::missing) gaps.rightCols<1>().setZero();
     return gaps;
   }
 
-  /// Sets the stiffness of the paper's joint law, and, if the chain is welded, the paper's equal
-  /// weights of all points.
+  /// Returns the chain as a result. @param rest  its points at rest
+  [[nodiscard]] OwnPolygon polygon(Eigen::Matrix3Xd rest, double stiffness, JointLaw law) const {
+    const Eigen::Matrix3Xd gaps = this->gaps(rest);
+    OwnPolygon result{.clamp = clamp_, .rms_m = rms_of(gaps), .stiffness = stiffness, .law = law};
+    result.max_m = std::sqrt(gaps.colwise().squaredNorm().maxCoeff());
+    result.rest = {s_, std::move(rest)};
+    return result;
+  }
+
+  /// Sets the paper's joint law, and, if the chain is welded, the paper's points of equal weight.
   void set_paper_law() {
     problem_.stiffness = paper_stiffness(scene_, inner_.size(), clamp_);
     problem_.stiffnesses.resize(0);
@@ -189,9 +200,6 @@ class Chain {
   }
 
   [[nodiscard]] double rms_of(const Eigen::Matrix3Xd& gaps) const { return rms(s_, gaps); }
-
-  /// Returns the chain's points at rest from the gaps between them and the file's points.
-  [[nodiscard]] Shape at_rest(const Eigen::Matrix3Xd& gaps) const { return {s_, points_ - gaps}; }
 
  private:
   [[nodiscard]] bool is_strained(const Eigen::Matrix3Xd& points) const {
@@ -388,53 +396,44 @@ class Chain {
   bool is_clamped_at_start_ = false, is_clamped_at_end_ = false, has_inner_clamp_ = false;
 };
 
-double largest(const Eigen::Matrix3Xd& gaps) {
-  return std::sqrt(gaps.colwise().squaredNorm().maxCoeff());
-}
-
 /// Returns the chain with the springs that fit best, by Gauss-Newton steps along the logarithm of
 /// their stiffness.
-std::optional<OwnPolygon> fitted(const Chain& chain, Eigen::Matrix3Xd gaps, ChainClamp clamp,
-                                 JointLaw law) {
+std::optional<OwnPolygon> fitted(const Chain& chain, Eigen::Matrix3Xd rest, JointLaw law) {
   constexpr int most_steps = 10;
   constexpr double stride = 0.01;
   constexpr double found = 1e-4;
   double log_factor = 0;
   for (int step = 0; step < most_steps; ++step) {
-    const std::optional<Eigen::Matrix3Xd> beside = chain.gaps(std::exp(log_factor + stride), law);
+    const std::optional<Eigen::Matrix3Xd> beside =
+        chain.at_rest(std::exp(log_factor + stride), law);
     if (!beside) return std::nullopt;
-    const Eigen::Matrix3Xd slope = (*beside - gaps) / stride;
+    const Eigen::Matrix3Xd gaps = chain.gaps(rest);
+    const Eigen::Matrix3Xd slope = (chain.gaps(*beside) - gaps) / stride;
     if (!(slope.squaredNorm() > 0)) break;  // a straight chain does not depend on its springs
     const double way = std::clamp(-slope.cwiseProduct(gaps).sum() / slope.squaredNorm(), -1.0, 1.0);
-    std::optional<Eigen::Matrix3Xd> next = chain.gaps(std::exp(log_factor + way), law);
-    if (!next || !(chain.rms_of(*next) < chain.rms_of(gaps))) break;
+    std::optional<Eigen::Matrix3Xd> next = chain.at_rest(std::exp(log_factor + way), law);
+    if (!next || !(chain.rms_of(chain.gaps(*next)) < chain.rms_of(gaps))) break;
     log_factor += way;
-    gaps = std::move(*next);
+    rest = std::move(*next);
     if (std::abs(way) < found) break;
   }
-  OwnPolygon result{clamp, chain.rms_of(gaps), largest(gaps), std::exp(log_factor), law};
-  result.rest = chain.at_rest(gaps);
-  return result;
+  return chain.polygon(std::move(rest), std::exp(log_factor), law);
 }
 
-std::optional<OwnPolygon> with_law(const Chain& chain, ChainClamp clamp, Springs springs,
-                                   JointLaw law) {
-  std::optional<Eigen::Matrix3Xd> gaps = chain.gaps(1, law);
-  if (!gaps) return std::nullopt;
-  if (springs == Springs::fitted) return fitted(chain, std::move(*gaps), clamp, law);
-  OwnPolygon found{clamp, chain.rms_of(*gaps), largest(*gaps), 1, law};
-  found.rest = chain.at_rest(*gaps);
-  return found;
+std::optional<OwnPolygon> with_law(const Chain& chain, Springs springs, JointLaw law) {
+  std::optional<Eigen::Matrix3Xd> rest = chain.at_rest(1, law);
+  if (!rest) return std::nullopt;
+  if (springs == Springs::fitted) return fitted(chain, std::move(*rest), law);
+  return chain.polygon(std::move(*rest), 1, law);
 }
 
 /// Returns the chain with the law that fits best, or with the first law if none is identified.
-std::optional<OwnPolygon> with_best_law(const Chain& chain, ChainClamp clamp, Springs springs,
-                                        double length) {
+std::optional<OwnPolygon> with_best_law(const Chain& chain, Springs springs, double length) {
   std::optional<OwnPolygon> first;
   std::optional<OwnPolygon> best;
   double next = std::numeric_limits<double>::infinity();  // distance with the second-best law
   for (const JointLaw law : hookean_laws) {
-    const std::optional<OwnPolygon> one = with_law(chain, clamp, springs, law);
+    const std::optional<OwnPolygon> one = with_law(chain, springs, law);
     if (!one) continue;
     if (!first) first = one;
     if (!best || one->rms_m < best->rms_m) {
@@ -496,8 +495,8 @@ std::vector<OwnPolygon> own_polygons(const Scene& scene, const Shape& shape, Spr
     Chain chain(scene, shape.points, rest_lengths(scene, shape.points), clamp, last);
     if (!chain.exists()) continue;
     if (law == JointLaw::paper) chain.set_paper_law();
-    const std::optional<OwnPolygon> one = law ? with_law(chain, clamp, springs, *law)
-                                              : with_best_law(chain, clamp, springs, scene.length);
+    const std::optional<OwnPolygon> one =
+        law ? with_law(chain, springs, *law) : with_best_law(chain, springs, scene.length);
     if (!one) continue;
     found.push_back(*one);
     chain.add_springs(found.back());
@@ -510,10 +509,10 @@ std::optional<Shape> chain_at_rest(const Scene& scene, const Shape& start, const
   const Eigen::Map<const Eigen::VectorXd> s(start.arc_length.data(), n + 1);
   Chain chain(scene, start.points, s.tail(n) - s.head(n), like.clamp, LastPoint::there);
   if (!chain.exists()) return std::nullopt;
-  const std::optional<Eigen::Matrix3Xd> gaps =
-      chain.gaps(like.stiffness, like.law, most_evaluations_refined);
-  if (!gaps) return std::nullopt;
-  return chain.at_rest(*gaps);
+  std::optional<Eigen::Matrix3Xd> rest =
+      chain.at_rest(like.stiffness, like.law, most_evaluations_refined);
+  if (!rest) return std::nullopt;
+  return chain.polygon(*std::move(rest), like.stiffness, like.law).rest;
 }
 
 }  // namespace dlo::compare

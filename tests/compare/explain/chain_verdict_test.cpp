@@ -283,6 +283,21 @@ TEST(ChainVerdict, AMissingLastEndIsAppended) {
   EXPECT_EQ(checked(clamped(), rod.leftCols(100)).notes.size(), 1U);
 }
 
+// A file without its last point is extended straight, but the chain has a joint before that point.
+TEST(ChainVerdict, AMissingLastPointIsTheChains) {
+  const Matrix3Xd chain = hinged_chain(std::vector<double>(8, 0.125), 0.125, 1, false);
+  Shape file{equal_arc_lengths(1, 9), chain};
+  file.points.col(8) = 2 * chain.col(7) - chain.col(6);
+  EXPECT_GT((file.points.col(8) - chain.col(8)).norm(), 3e-4);
+  for (const Springs springs : {Springs::as_the_rod, Springs::fitted}) {
+    const std::vector<OwnPolygon> found =
+        own_polygons(clamped(), file, springs, energy_model::JointLaw::linear, LastPoint::missing);
+    ASSERT_FALSE(found.empty());
+    EXPECT_LT(found.front().max_m, 1e-5);
+    EXPECT_LT((found.front().rest.points - chain).colwise().norm().maxCoeff(), 1e-5);
+  }
+}
+
 // Three coordinates of a point say as much of three numbers as of one.
 TEST(ChainVerdict, OneMeasuredPointIsJudgedByItsDistance) {
   const Vector3d tip = right_file(clamped(), 2).points.col(1);
