@@ -69,6 +69,21 @@ std::vector<energy_model::Action> actions_on(const force_model::Rod& rod,
   return actions;
 }
 
+/// Returns the potential of a solid's forces on samples of which a free point bears a part [J].
+double contact_energy(const force_model::Solid& solid, const Eigen::Matrix3Xd& points,
+                      const std::vector<bool>& held) {
+  double energy = force_model::solid_energy(solid, points);
+  for (auto begin = held.begin(); begin != held.end();) {
+    const auto end = std::find(begin, held.end(), !*begin);
+    if (*begin) {
+      energy -=
+          force_model::solid_energy(solid, points.middleCols(begin - held.begin(), end - begin));
+    }
+    begin = end;
+  }
+  return energy;
+}
+
 }  // namespace
 
 Solution polygon_solution(const Scene& scene, const ForceModelSettings& settings,
@@ -104,7 +119,7 @@ Solution polygon_solution(const Scene& scene, const ForceModelSettings& settings
   for (std::size_t k = 0; k < rod.solids.size(); ++k) {
     Eigen::Matrix3Xd forces = Eigen::Matrix3Xd::Zero(3, points.cols());
     force_model::add_solid_forces(rod.solids[k], points, forces);
-    energy.contact += force_model::solid_energy(rod.solids[k], points);
+    energy.contact += contact_energy(rod.solids[k], points, held);
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
       if (held[static_cast<std::size_t>(i)]) continue;
       solution.obstacles[discretisation.solids[k]] += forces.col(i);

@@ -197,6 +197,65 @@ TEST(Walls, EveryNumberOfPointsComesToRestOnARigidOne) {
   }
 }
 
+// A clamp in the middle of a segment holds a point beyond the rod's end.
+TEST(Walls, AHeldPointHasNoEnergyOfContact) {
+  Scene scene = heavy_scene(1, 0);
+  scene.force_model = {
+      .points = 11, .law = BendingLaw::hooke, .bookkeeping = Bookkeeping::consistent};
+  for (const obstacle::Body& body :
+       {obstacle::Body::sphere({-0.1, 0, 0}, 0.09),
+        obstacle::Body::half_space({-0.01, 0, 0}, Vector3d::UnitX())}) {
+    scene.obstacles = {{.body = body}};
+    for (const Model model : {Model::chain, Model::force}) {
+      const Solution solution = solve(scene, model);
+      EXPECT_EQ(solution.energy.contact, 0);
+      EXPECT_EQ(solution.obstacles.front().norm(), 0);
+    }
+  }
+}
+
+// A wire pushed against a wall, which its tip slides along.
+TEST(Walls, ATipAgainstAWallIsWhereOtherModelsHaveIt) {
+  Scene scene = parse_scene(R"(
+gravity = [0, -9.81, 0]
+[rod]
+length = "30 cm"
+diameter = "0.5 mm"
+material = "copper"
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = "0 deg"
+[[obstacle]]
+point = ["25 cm", 0, 0]
+normal = [-1, 0, 0]
+[force_model]
+law = "hooke"
+bookkeeping = "consistent"
+)",
+                            "copper.toml");
+  const Solution energy = solve(scene, Model::energy);
+  ASSERT_EQ(energy.contacts.size(), 1);
+  EXPECT_EQ(energy.contacts[0].kind, energy_model::ContactKind::tip);
+  EXPECT_EQ(energy.contacts[0].obstacle, 0);
+  // Its surface touches.
+  EXPECT_NEAR(energy.shape.points(0, 100), 0.25 - 0.25e-3, 1e-12);
+  EXPECT_NEAR(energy.grippers[0].force.x(), -energy.contacts[0].force.x(), 1e-12);
+  ASSERT_EQ(energy.tension.size(), energy.shape.arc_length.size());
+  const Eigen::Vector3d tip = energy.shape.points.col(100) - energy.shape.points.col(99);
+  EXPECT_NEAR(energy.tension.back(), energy.contacts[0].force.dot(tip.normalized()),
+              2e-2 * energy.contacts[0].force.norm());
+  // The force model approaches it with the square of its segments.
+  const SolveOptions patient{.time_limit = 300};  // of sanitizers
+  scene.force_model.points = 12;
+  const double coarse = compare(scene, patient).deviation.rms_over_length;
+  scene.force_model.points = 24;
+  const Comparison fine = compare(scene, patient);
+  EXPECT_LT(fine.deviation.rms_over_length, 4e-4);
+  EXPECT_GT(coarse, 3.5 * fine.deviation.rms_over_length);
+  EXPECT_NEAR(fine.effective_modulus.ratio, 1, 4e-2);
+}
+
 // A clamp on the floor points into it: no rod above the floor can leave it in this direction.
 TEST(Walls, AShapeThatIsNotVerifiedIsShownOnlyToWhoAcceptsIt) {
   const Scene scene = parse_scene(R"(
