@@ -30,7 +30,7 @@ constexpr double least_step = 0.02;
 /// Accuracy of ln(E*/E).
 constexpr double log_tolerance = 1e-6;
 
-/// Thrown if the time limit of the whole search is exceeded, or the search is interrupted.
+/// Thrown if the time limit of the whole search is exceeded, or if the thread is interrupted.
 struct OutOfTime {};
 
 /// One equilibrium of a scene as a function of the modulus; each solve starts from the nearest
@@ -265,7 +265,9 @@ EffectiveModulus fit_effective_modulus(const Scene& scene, const ShapeDistance& 
   try {
     result = search(mean_square, modulus_resolution * scene.length);
   } catch (const OutOfTime&) {
-    result = no_modulus(fmt::format("time limit of {:g} s reached", options.time_limit));
+    result = no_modulus(energy_model::interrupted()
+                            ? "interrupted, or out of the time of the whole command"
+                            : fmt::format("time limit of {:g} s reached", options.time_limit));
   }
   result.solves = mean_square.solves();
   result.optimum = without_small_movement(result, movement_of(scene, state));

@@ -11,6 +11,7 @@
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"
 #include "dlo/compare/solve.hpp"
+#include "dlo/energy_model/interrupt.hpp"
 #include "scenes.hpp"
 
 namespace dlo::compare {
@@ -117,6 +118,9 @@ TEST(EffectiveModulus, TheTimeLimitIsForTheWholeSearch) {
   EXPECT_TRUE(std::isnan(fit.ratio));
   EXPECT_EQ(fit.why_none, "time limit of 1e-09 s reached");
   EXPECT_EQ(fit.solves, 0);
+  const energy_model::Interruption interruption([] { return true; });
+  EXPECT_EQ(fit_effective_modulus(scene, distance_from(shape), state, {}).why_none,
+            "interrupted, or out of the time of the whole command");
 }
 
 }  // namespace
