@@ -3,7 +3,6 @@
 #include "command/commands.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solution.hpp"
-#include "format/json.hpp"
 #include "option/exit_status.hpp"
 #include "option/option_values.hpp"
 #include "option/output.hpp"
@@ -40,9 +39,7 @@ void run(const BenchOptions& options) {
     return compare::run_benchmark(scenes, benchmark,
                                   [&](const std::string& what) { bar.stage(what); });
   }();
-  write_output(options.output, {.text = [&] { return benchmark_text(report); },
-                                .json = [&] { return json_text(benchmark_json(report)); },
-                                .csv = [&] { return benchmark_csv(report); }});
+  write_output(options.output, benchmark_document(report), [&] { return benchmark_csv(report); });
   options.plot.draw([&] {
     compare::PictureRow fronts;
     for (const compare::SceneBenchmark& scene : report.scenes) {

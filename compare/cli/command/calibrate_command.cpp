@@ -119,9 +119,10 @@ void run_motion(const CalibrateOptions& options, bool format_is_given) {
                           {.damping = DampingOptions{}.of(options.overrides.calibrated()),
                            .solve = options.overrides.solve()},
                           [&bar](const std::string& what) { bar.stage(what); });
+  const compare::Document document = motion_fit_document(found, scene);
   write_calibration(options.output, format_is_given,
-                    {.text = [&] { return motion_fit_text(found, scene); },
-                     .json = [&] { return json_text(motion_fit_json(found, scene)); },
+                    {.text = [&] { return document.text(); },
+                     .json = [&] { return json_text(document.json); },
                      .toml = [&] { return motion_toml(found, scene); }});
   if (!found.not_identified.empty()) end_with(ExitStatus::not_converged);
 }

@@ -107,9 +107,10 @@ void run_motion(const CheckOptions& options) {
   });
   const std::string verdict =
       verdict_word(result.passes ? "pass" : "fail", result.passes, options.output.file);
+  const compare::Document document = motion_check_document(result);
   write_output(options.output, {.text = [&] { return motion_check_text(result, verdict); },
-                                .json = [&] { return json_text(motion_check_json(result)); },
-                                .csv = [&] { return motion_check_csv(result); }});
+                                .json = [&] { return json_text(document.json); },
+                                .csv = [&] { return document.csv(); }});
   const auto picture = [&] { return compare::motion_check_picture(result); };
   options.plot.draw(picture);
   write_page(options, result, picture, motion_check_text(result));

@@ -4,7 +4,6 @@
 
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
-#include "format/json.hpp"
 #include "motion/scene_modes.hpp"
 #include "option/option_values.hpp"
 #include "option/output.hpp"
@@ -30,12 +29,7 @@ void run(const ModesOptions& options) {
   compare::ModeOptions mode_options = options.modes;
   mode_options.solve = options.overrides.solve();
   const SceneModes modes = compare::scene_modes(scene, mode_options);
-  write_output(
-      options.output,
-      {.text = [&] { return modes_text(modes, scene, options.modes.rate); },
-       .json =
-           [&] { return json_text(modes_json(modes, scene, options.modes.rate, options.samples)); },
-       .csv = [&] { return modes_csv(modes); }});
+  write_output(options.output, modes_document(modes, scene, options.modes.rate, options.samples));
   if (!succeeded(modes.status)) {
     throw compare::ConvergenceError(fmt::format("{}: {}", scene.file, modes.message));
   }

@@ -1,7 +1,6 @@
 #include <memory>
 
 #include "command/commands.hpp"
-#include "format/json.hpp"
 #include "option/output.hpp"
 #include "option/scene_options.hpp"
 #include "option/terminal.hpp"
@@ -20,14 +19,8 @@ void run(const OutputOptions& options) {
     bar.stage("moving grippers, Tables 2 to 4");
     moving = compare::moving_report();
   }
-  write_output(options, {.text = [&] { return paper_text(report) + moving_text(moving); },
-                         .json =
-                             [&] {
-                               Json document = paper_json(report);
-                               document["moving"] = moving_json(moving);
-                               return json_text(document);
-                             },
-                         .csv = [&] { return paper_csv(report) + moving_csv(moving); }});
+  const compare::Document paper = paper_document(report, moving);
+  write_output(options, paper, [&] { return paper_csv(paper); });
 }
 
 }  // namespace

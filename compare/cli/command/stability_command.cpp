@@ -7,7 +7,6 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/scene_file.hpp"
-#include "format/json.hpp"
 #include "option/exit_status.hpp"
 #include "option/option_values.hpp"
 #include "option/output.hpp"
@@ -57,9 +56,7 @@ void run_map(StabilityOptions& options) {
     options.grid.progress = progress;
     return compare::stability_map(scene, options.grid);
   });
-  write_output(options.output, {.text = [&] { return stability_map_text(map); },
-                                .json = [&] { return json_text(stability_map_json(map)); },
-                                .csv = [&] { return stability_map_csv(map); }});
+  write_output(options.output, stability_map_document(map), [&] { return stability_map_csv(map); });
   options.plot.draw([&] { return compare::Picture{{{{compare::map_figure(map)}}}}; });
 }
 
@@ -75,10 +72,7 @@ void run_cases(StabilityOptions& options) {
     options.cases.progress = progress;
     return compare::stability(options.cases);
   });
-  const std::size_t steppers = options.cases.steppers.size();
-  write_output(options.output, {.text = [&] { return hard_cases_text(results, steppers); },
-                                .json = [&] { return json_text(hard_cases_json(results)); },
-                                .csv = [&] { return hard_cases_csv(results); }});
+  write_output(options.output, hard_cases_document(results));
   if (std::any_of(results.begin(), results.end(), fails)) {
     end_with(ExitStatus::outside_tolerance);
   }

@@ -55,17 +55,13 @@ void run(const TrackCommand& command) {
   const compare::Track& track = result.track;
   const compare::DynamicTrack* dynamic = result.moving();
   if (!command.paraview.empty()) {
-    write_series(track, scene, command.frames, command.paraview, dynamic);
+    write_series(result, scene, command.frames, command.paraview);
   }
   write_output(
       command.output,
-      {.text =
-           [&] {
-             return track_text(track, scene, result.options) +
-                    (dynamic ? dynamic_text(*dynamic) : "");
-           },
-       .json = [&] { return track_json(track, scene, result.options, command.frames, dynamic); },
-       .csv = [&] { return track_csv(track, scene, command.frames, dynamic); }});
+      {.text = [&] { return track_text(result, scene); },
+       .json = [&] { return json_text(track_document(result, scene, command.frames).json); },
+       .csv = [&] { return track_csv(result, scene, command.frames); }});
   command.plot.draw([&] {
     return compare::track_picture(scene, {track, dynamic}, result.options);
   });

@@ -17,6 +17,7 @@
 #include "base/output_file.hpp"
 #include "base/text.hpp"
 #include "dlo/compare/error.hpp"
+#include "format/json.hpp"
 #include "option/help.hpp"
 #include "trajectory/trajectory_files.hpp"
 
@@ -150,6 +151,13 @@ void write_output(const OutputOptions& options, const Formats& formats) {
     case Format::csv:
       return write_output(options, formats.csv());
   }
+}
+
+void write_output(const OutputOptions& options, const compare::Document& document,
+                  const std::function<std::string()>& csv) {
+  write_output(options, {.text = [&] { return document.text(); },
+                         .json = [&] { return json_text(document.json); },
+                         .csv = [&] { return csv ? csv() : document.csv(); }});
 }
 
 RedirectedOutput::RedirectedOutput(std::string& out, std::string& err)

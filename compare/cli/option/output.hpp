@@ -11,6 +11,7 @@
 
 #include "base/quote.hpp"
 #include "dlo/compare/choice.hpp"
+#include "record/csv_table.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): the library's own
 class App;
@@ -62,6 +63,10 @@ void write_output(const OutputOptions& options, const std::string& content);
 
 /// Writes a result in the requested format.
 void write_output(const OutputOptions& options, const Formats& formats);
+/// Writes a document in the requested format.
+/// @param csv  makes the CSV table, if it is not the document's own
+void write_output(const OutputOptions& options, const compare::Document& document,
+                  const std::function<std::string()>& csv = {});
 
 /// Writes to standard output. @throws compare::OutputError if it cannot be written,
 /// compare::BrokenPipe if nobody reads it

@@ -18,56 +18,6 @@ using compare::SceneBenchmark;
 constexpr const char* not_run = "not run";
 constexpr const char* none_within = "no run is within the error";
 
-void add_runs(std::string& out, const std::vector<BenchmarkRun>& runs) {
-  if (runs.empty()) {
-    append(out, "  {}: all were skipped, see below\n", not_run);
-    return;
-  }
-  append(out, "  {:<52} {:>10} {:>21} {:>11} {:>10}\n", "", "median", "quartiles [ms]",
-         "evaluations", "error/l");
-  for (const BenchmarkRun& run : runs) {
-    append(out, "{} {:<52} {:>10.4g} {:>10.4g} {:>10.4g} {:>11} {:>10.2e}\n", run.front ? "*" : " ",
-           name_of(run), run.time.median_s * 1e3, run.time.lower_quartile_s * 1e3,
-           run.time.upper_quartile_s * 1e3,  // Nobody counts those of somebody else's program.
-           run.program.empty() ? fmt::format("{}", run.evaluations) : "", run.rms_over_length);
-  }
-}
-
-void add_answers(std::string& out, const std::vector<BenchmarkRun>& runs,
-                 const std::vector<BenchmarkAnswer>& answers) {
-  for (const BenchmarkAnswer& answer : answers) {
-    append(out, "    {:>5g} %: ", answer.error * 100);
-    const auto add = [&](std::optional<std::size_t> best, std::optional<compare::Model> model) {
-      if (!best) return append(out, "{}", compare::has_run(runs, model) ? "none" : not_run);
-      append(out, "{}, {:.3g} ms", name_of(runs[*best]), runs[*best].time.median_s * 1e3);
-    };
-    add(answer.best, {});
-    out += "; with points and forces: ";
-    add(compare::fastest_within(runs, answer.error, compare::Model::force), compare::Model::force);
-    out += "\n";
-  }
-}
-
-void add_claim(std::string& out, const SceneBenchmark& scene) {
-  if (!scene.energy_at_1e6 || !scene.force_at_1e3) {
-    const compare::Model model =
-        scene.energy_at_1e6 ? compare::Model::force : compare::Model::energy;
-    const std::string name = compare::to_string(model);
-    append(out, "  energy at 1e-6 l against force at 1e-3 l: {}\n",
-           compare::has_run(scene.runs, model) ? "no " + name + " run came that near"
-                                               : name + " was not run");
-    return;
-  }
-  const BenchmarkRun& energy = scene.runs[*scene.energy_at_1e6];
-  const BenchmarkRun& force = scene.runs[*scene.force_at_1e3];
-  const double ratio = force.time.median_s / energy.time.median_s;
-  append(out,
-         "  energy at 1e-6 l ({}, {:.3g} ms) is {:.3g} times {} the best force run at 1e-3 l ({}, "
-         "{:.3g} ms)\n",
-         name_of(energy), energy.time.median_s * 1e3, ratio >= 1 ? ratio : 1 / ratio,
-         ratio >= 1 ? "faster than" : "slower than", name_of(force), force.time.median_s * 1e3);
-}
-
 Json run_json(const BenchmarkRun& run, const char* kind) {
   Json result = {{"scene", run.scene},
                  {"kind", kind},
@@ -114,41 +64,7 @@ Json answers_json(const std::vector<BenchmarkAnswer>& answers,
 
 }  // namespace
 
-std::string benchmark_text(const compare::BenchmarkReport& report) {
-  std::string out;
-  for (const SceneBenchmark& scene : report.scenes) {
-    append(out, "{}   Gamma = {:.4g}, error against {}\n\n", compare::display(scene.scene),
-           scene.gamma, compare::to_string(scene.reference));
-    append(out, "  static: from straight to the shape (* no run is both faster and nearer)\n");
-    add_runs(out, scene.runs);
-    append(
-        out,
-        "\n  tracking: a frame of 1 ms behind a gripper that moves at v = {:g} m/s and rotates by "
-        "v/l\n",
-        report.options.gripper_speed);
-    add_runs(out, scene.tracking);
-    out += "\n";
-  }
-  for (const std::string& skipped : report.skipped)
-    append(out, "skipped: {}\n", compare::display(skipped));
-  for (const compare::BenchmarkFailure& failure : report.failures) {
-    append(out, "failed: {}: {} N = {}: {}\n", compare::display(failure.scene), failure.program,
-           failure.points, compare::display(failure.problem));
-  }
-  out += "\nWhat to use\n";
-  for (const SceneBenchmark& scene : report.scenes) {
-    append(out, "\n{}   Gamma = {:.4g}\n  for a static error of\n", compare::display(scene.scene),
-           scene.gamma);
-    add_answers(out, scene.runs, scene.answers);
-    append(out, "  for an error behind the moving gripper of\n");
-    add_answers(out, scene.tracking, scene.tracking_answers);
-    add_claim(out, scene);
-  }
-  append(out, "\n{:.3g} s in all, one thread\n", report.seconds);
-  return out;
-}
-
-Json benchmark_json(const compare::BenchmarkReport& report) {
+compare::Document benchmark_document(const compare::BenchmarkReport& report) {
   Json runs = Json::array();
   Json answers = Json::array();
   for (const SceneBenchmark& scene : report.scenes) {
@@ -179,17 +95,25 @@ Json benchmark_json(const compare::BenchmarkReport& report) {
             {"points", failure.points},
             {"problem", failure.problem}};
   });
-  return {{"schema", "dlo/bench/2"},       {"runs", std::move(runs)},
-          {"answers", std::move(answers)}, {"gripper_speed_m_per_s", report.options.gripper_speed},
-          {"skipped", report.skipped},     {"failures", std::move(failures)},
-          {"wall_s", report.seconds}};
+  return {.json = {{"schema", "dlo/bench/2"},
+                   {"runs", std::move(runs)},
+                   {"answers", std::move(answers)},
+                   {"gripper_speed_m_per_s", report.options.gripper_speed},
+                   {"skipped", report.skipped},
+                   {"failures", std::move(failures)},
+                   {"wall_s", report.seconds}},
+          .columns = {{"runs",
+                       "scene,kind,model,size,setting,time_s,lower_quartile_s,upper_quartile_s,"
+                       "evaluations,rms_over_length,front"},
+                      {"answers/#/static", "error_over_length,use,reason"},
+                      {"answers/#/tracking", "error_over_length,use,reason"}}};
 }
 
 std::string benchmark_csv(const compare::BenchmarkReport& report) {
   const compare::CsvTable table(
       "scene,kind,model,size,setting,time_s:4,lower_quartile_s:4,upper_quartile_s:4,repeats,"
       "evaluations,rms_over_length:6,front,problem");
-  const Json document = benchmark_json(report);
+  const Json document = benchmark_document(report).json;
   std::string out = table.text(document.at("runs"));
   for (Json failure : document.at("failures")) {
     failure.update(

@@ -12,15 +12,6 @@ namespace {
 
 using compare::MotionNumber;
 
-std::string number_text(const MotionNumber& number, const char* unit) {
-  if (!number.identified) {
-    return fmt::format("not identified: {:.3g} to {:.3g} {} are as near", number.low, number.high,
-                       unit);
-  }
-  return fmt::format("{:.5g} {}, 95 %: {:.4g} to {:.4g} {}", number.value, unit, number.low,
-                     number.high, unit);
-}
-
 Json motion_number_json(const MotionNumber& number) {
   return {{"value", number.identified ? Json(number.value) : Json()},
           {"low", number.low},
@@ -29,51 +20,7 @@ Json motion_number_json(const MotionNumber& number) {
 
 }  // namespace
 
-std::string motion_fit_text(const compare::MotionFit& fit, const compare::Scene& scene) {
-  const compare::NamedValue given = scene.stiffness();
-  std::string out;
-  if (fit.not_identified.empty()) {
-    append(out, "{:12}{}   (scene: {:.4g} {}), with the scene's {}\n", given.name,
-           number_text(fit.scene_stiffness, given.unit), given.value, given.unit,
-           scene.heaviness().name);
-    append(out, "            over the mass per length, which motion alone shows: {}\n",
-           number_text(fit.stiffness, "m^4/s^2"));
-  } else {
-    append(out, "{:12}not identified: {}\n", given.name, fit.not_identified);
-  }
-  const auto line = [&](const std::optional<MotionNumber>& number, const char* name,
-                        const char* unit) {
-    if (number && fit.not_identified.empty()) {
-      append(out, "{:12}{}\n", name, number_text(*number, unit));
-    }
-  };
-  line(fit.material, "damping", "s");
-  line(fit.air, "drag", "N s/m^2");
-  line(fit.quadratic, "quadratic", "N s^2/m^3");
-  append(out, "noise       {:.4g} mm in each coordinate, estimated from the residuals\n",
-         fit.noise * 1e3);
-  append(out,
-         "            {} coordinates count as {:.4g} independent ones: residuals are correlated in "
-         "time\n",
-         fit.coordinates, fit.effective_coordinates);
-  append(out, "residual    {:.4g} mm between markers and rod (RMS), {:.4g} mm as the scene was\n",
-         fit.rms * 1e3, fit.given_rms * 1e3);
-  for (const compare::MarkerError& marker : fit.by_marker) {
-    append(out, "            marker at s = {:.4g} m: {:.4g} mm\n", marker.at, marker.rms * 1e3);
-  }
-  for (const compare::FittedRecording& recording : fit.recordings) {
-    append(out, "motion      {}: {} times, {:.6g} to {:.6g} s, from {}\n",
-           compare::display(recording.file), recording.times, recording.from, recording.to,
-           recording.starts_as_recorded ? "the recorded shape and velocities"
-                                        : "equilibrium (too few markers for a shape)");
-    append(out, "            {:.4g} mm (RMS), worst at {:.6g} s: {:.4g} mm\n", recording.rms * 1e3,
-           recording.worst_time, recording.worst_rms * 1e3);
-  }
-  append(out, "            {} terms, {} simulations\n", fit.terms, fit.simulations);
-  return out;
-}
-
-Json motion_fit_json(const compare::MotionFit& fit, const compare::Scene& scene) {
+compare::Document motion_fit_document(const compare::MotionFit& fit, const compare::Scene& scene) {
   const auto optional = [](const std::optional<MotionNumber>& number) {
     return number ? motion_number_json(*number) : Json(nullptr);
   };
@@ -97,23 +44,24 @@ Json motion_fit_json(const compare::MotionFit& fit, const compare::Scene& scene)
   stiffness["name"] = given.name;
   stiffness["unit"] = given.unit;
   stiffness["scene"] = given.value;
-  return {{"schema", "dlo/motion_fit/1"},
-          {"recordings", recordings},
-          {"identified", fit.not_identified.empty()},
-          {"not_identified", fit.not_identified},
-          {"stiffness", stiffness},
-          {"stiffness_over_mass_m4_per_s2", motion_number_json(fit.stiffness)},
-          {"damping_s", optional(fit.material)},
-          {"drag_N_s_per_m2", optional(fit.air)},
-          {"quadratic_drag_N_s2_per_m3", optional(fit.quadratic)},
-          {"noise_m", fit.noise},
-          {"coordinates", fit.coordinates},
-          {"effective_coordinates", fit.effective_coordinates},
-          {"rms_m", fit.rms},
-          {"given_rms_m", fit.given_rms},
-          {"markers", markers},
-          {"terms", fit.terms},
-          {"simulations", fit.simulations}};
+  Json result = {{"schema", "dlo/motion_fit/1"},
+                 {"recordings", recordings},
+                 {"identified", fit.not_identified.empty()},
+                 {"not_identified", fit.not_identified},
+                 {"stiffness", stiffness},
+                 {"stiffness_over_mass_m4_per_s2", motion_number_json(fit.stiffness)},
+                 {"damping_s", optional(fit.material)},
+                 {"drag_N_s_per_m2", optional(fit.air)},
+                 {"quadratic_drag_N_s2_per_m3", optional(fit.quadratic)},
+                 {"noise_m", fit.noise},
+                 {"coordinates", fit.coordinates},
+                 {"effective_coordinates", fit.effective_coordinates},
+                 {"rms_m", fit.rms},
+                 {"given_rms_m", fit.given_rms},
+                 {"markers", markers},
+                 {"terms", fit.terms},
+                 {"simulations", fit.simulations}};
+  return {.json = std::move(result)};
 }
 
 std::string motion_toml(const compare::MotionFit& fit, const compare::Scene& scene) {

@@ -8,33 +8,28 @@
 #include "format/json.hpp"
 #include "paper/moving_tables.hpp"
 #include "paper/paper.hpp"
+#include "record/csv_table.hpp"
 #include "study/benchmark.hpp"
 #include "study/stability.hpp"
 #include "study/stability_map.hpp"
 
 namespace dlo::cli {
 
-/// Returns a benchmark as text.
-[[nodiscard]] std::string benchmark_text(const compare::BenchmarkReport& report);
+/// Returns the document `dlo/bench/2`.
+[[nodiscard]] compare::Document benchmark_document(const compare::BenchmarkReport& report);
 
-[[nodiscard]] Json benchmark_json(const compare::BenchmarkReport& report);
-
+/// Returns one row per run, then one per failure.
 [[nodiscard]] std::string benchmark_csv(const compare::BenchmarkReport& report);
 
-/// Returns the section on Tables 2 to 4 as text.
-[[nodiscard]] std::string moving_text(const compare::MovingReport& report);
-
-/// Returns the lines of Tables 2 to 4 in the CSV output: section, scene, item, quantity, value.
-[[nodiscard]] std::string moving_csv(const compare::MovingReport& report);
-
+/// Returns Tables 2 to 4, the key `moving` of the document of the paper.
 [[nodiscard]] Json moving_json(const compare::MovingReport& report);
 
-[[nodiscard]] std::string paper_text(const compare::PaperReport& report);
+/// Returns the document `dlo/paper/1`. @param moving  Tables 2 to 4
+[[nodiscard]] compare::Document paper_document(const compare::PaperReport& report,
+                                               const compare::MovingReport& moving);
 
-[[nodiscard]] Json paper_json(const compare::PaperReport& report);
-
-/// Returns one number per line: section, scene, item, quantity, value.
-[[nodiscard]] std::string paper_csv(const compare::PaperReport& report);
+/// Returns one number of the document per line: its path and its value.
+[[nodiscard]] std::string paper_csv(const compare::Document& paper);
 
 /// Returns the effect of --update on each case of the baseline.
 [[nodiscard]] std::string baseline_update_text(
@@ -56,21 +51,14 @@ namespace dlo::cli {
 
 [[nodiscard]] std::string regression_csv(const std::vector<compare::RegressionResult>& results);
 
-/// Returns the hard cases as text.
-/// @param results  for each case the results of all steppers in turn
-/// @param steppers  number of steppers
-[[nodiscard]] std::string hard_cases_text(const std::vector<compare::StabilityResult>& results,
-                                          std::size_t steppers);
+/// Returns the document `dlo/stability/1`.
+[[nodiscard]] compare::Document hard_cases_document(
+    const std::vector<compare::StabilityResult>& results);
 
-[[nodiscard]] Json hard_cases_json(const std::vector<compare::StabilityResult>& results);
+/// Returns the largest stable c_F, measured and predicted: the document `dlo/stability-map/1`.
+[[nodiscard]] compare::Document stability_map_document(const compare::StabilityMap& map);
 
-[[nodiscard]] std::string hard_cases_csv(const std::vector<compare::StabilityResult>& results);
-
-/// Returns the largest stable c_F, measured and predicted, as text.
-[[nodiscard]] std::string stability_map_text(const compare::StabilityMap& map);
-
-[[nodiscard]] Json stability_map_json(const compare::StabilityMap& map);
-
+/// Returns one row per point of the map.
 [[nodiscard]] std::string stability_map_csv(const compare::StabilityMap& map);
 
 }  // namespace dlo::cli

@@ -19,17 +19,15 @@
 namespace dlo::cli {
 namespace {
 
+using compare::DynamicFrame;
+using compare::DynamicTrack;
 using compare::Track;
+using compare::TrackErrors;
 using compare::TrackEvent;
 using compare::TrackFrame;
 using compare::TrackOptions;
 using energy_model::ContactKind;
 using energy_model::ContactPart;
-
-std::string vector_text(const Eigen::Vector3d& vector, double magnitude) {
-  const Eigen::Vector3d v = shown(vector, magnitude);
-  return compare::formatted("[{:.4g}, {:.4g}, {:.4g}]", v.x(), v.y(), v.z());
-}
 
 std::string part_text(const ContactPart& part) {
   const std::string kind = energy_model::to_string(part.kind);
@@ -48,78 +46,6 @@ std::string state_text(const TrackFrame& frame, const char* separator) {
                         energy_model::to_string(part.kind));
   }
   return text.empty() ? "-" : text;
-}
-
-std::string event_text(const Track& track, const TrackEvent& event,
-                       const compare::Magnitudes& large) {
-  const TrackFrame& after = track.frames[event.frame];
-  const TrackFrame& before = track.frames[event.frame - 1];
-  std::string out = fmt::format("{:11.6g} s  {:8}", after.time, to_string(event.kind));
-  if (event.contact) {
-    append(out, "{}", part_text(event.contact->part));
-    if (event.contact->goes_on) {
-      out += event.contact->begins ? ", touched before" : ", goes on touching";
-    }
-    out += "\n";
-  } else {
-    const bool balanced = std::isfinite(event.released);
-    out += balanced ? fmt::format("{:.4g} J released (+- {:.2g} J)", event.released,
-                                  event.released_bound)
-                    : "the shape is another one";
-    append(out, "; smallest eigenvalue before {:.3g}\n", event.smallest_eigenvalue);
-    if (event.kind == TrackEvent::Kind::lost) {
-      append(out, "{:23}its branch has not been seen to end: the solver may have lost it\n", "");
-    }
-  }
-  for (std::size_t i = 0; i < after.grippers.size(); ++i) {
-    const compare::GripperLoad& from = before.grippers[i];
-    const compare::GripperLoad& to = after.grippers[i];
-    append(out, "{:22} gripper {}: force {} -> {} N\n", "", i + 1,
-           vector_text(from.force, large.force), vector_text(to.force, large.force));
-    append(out, "{:22}            torque {} -> {} Nm\n", "", vector_text(from.torque, large.torque),
-           vector_text(to.torque, large.torque));
-  }
-  return out;
-}
-
-std::string force_text(const Track& track, const compare::Scene& scene,
-                       const TrackOptions& options) {
-  const compare::ForceTrackSummary& force = track.force;
-  std::string out = "force model ";
-  if (track.frames.front().force) {
-    append(out, "law {}, stepper {}, N = {}, {} steps a frame, {:.3g} ms (median)\n",
-           compare::to_string(scene.force_model.law), compare::to_string(scene.force_model.stepper),
-           scene.force_model.points, force.steps_per_frame, force.median_seconds * 1e3);
-    append(out,
-           "            error {:.4g} % of l at first (at rest), mean {:.4g} %, largest {:.4g} % "
-           "at {:.6g} s\n",
-           force.rest_error * 100, force.mean * 100, force.largest * 100, force.largest_time);
-    out += lag_text(force.lag, force.error_without_lag);
-    const double spare = 1 / options.rates.frames;
-    if (force.median_seconds > spare) {
-      append(out, "            not in real time: a frame has {:.4g} ms\n", spare * 1e3);
-    }
-    if (!force.none.empty())
-      append(out, "            then none: {}\n", compare::display(force.none));
-    return out;
-  }
-  append(out, "none: {}\n", compare::display(force.none));
-  return out;
-}
-
-std::string table_text(const Track& track, const compare::Magnitudes& large) {
-  std::string out;
-  append(out, "\n{:>10} {:>14} {:>12} {:>12}   {}\n", "t [s]", "energy [J]", "force 1 [N]",
-         "error/l", "touches");
-  for (const std::size_t i : listed_frames(track.frames.size())) {
-    const TrackFrame& frame = track.frames[i];
-    append(out, "{:10.5g} {:14.8g} {:12.5g} {:>12}   {}\n", frame.time,
-           compare::shown(frame.energy.total(), large.energy),
-           compare::shown(frame.grippers.front().force.norm(), large.force),
-           frame.force ? fmt::format("{:.3g}", frame.force->error_over_length) : "-",
-           state_text(frame, ", "));
-  }
-  return out;
 }
 
 Json event_json(const Track& track, const TrackEvent& event) {
@@ -217,6 +143,69 @@ Json force_json(const compare::ForceTrackSummary& force, const compare::Scene& s
           {"frame_s", force.median_seconds}};
 }
 
+Json track_errors_json(const TrackErrors& errors) {
+  return {{"mean_error_over_length", errors.mean},
+          {"largest_error_over_length", errors.largest},
+          {"largest_error_time_s", errors.largest_time}};
+}
+
+Json stop_json(const compare::TrackStop& stop) {
+  return {{"time_s", stop.time}, {"why", stop.why}};
+}
+
+Json moving_frame_json(const DynamicFrame& frame, bool points) {
+  const energy_model::EnergyBalance& energy = frame.energy;
+  Json result = {{"time_s", frame.time},
+                 {"grippers", loads_json(frame.grippers)},
+                 {"energy_J",
+                  {{"kinetic", energy.kinetic},
+                   {"bending", energy.bending},
+                   {"twisting", energy.twisting},
+                   {"gravity", energy.gravity},
+                   {"load", energy.load},
+                   {"obstacles", energy.obstacles},
+                   {"total", energy.total()},
+                   {"dissipated", energy.dissipated},
+                   {"lost", energy.lost},
+                   {"work", energy.work}}},
+                 {"obstacles", obstacles_json(frame.obstacles)},
+                 {"quasi_static_error_over_length", frame.quasi_static_error}};
+  result["force_error_over_length"] = json_or_null(frame.force_error);
+  if (points) result["points_m"] = points_json(frame.points);
+  return result;
+}
+
+Json dynamic_json(const DynamicTrack& dynamic, const compare::Track& track,
+                  const TrackFrames& frames) {
+  Json result = {
+      {"damping_s", dynamic.damping.material},
+      {"drag_N_s_per_m2", dynamic.damping.air},
+      {"in_motion", dynamic.in_motion},
+      {"terms", dynamic.terms},
+      {"too_few_terms", dynamic.too_few_terms ? Json(dynamic.too_few_terms->terms) : Json(nullptr)},
+      {"steps", dynamic.steps},
+      {"run_s", dynamic.seconds},
+      {"energy_error", dynamic.energy_error},
+      {"largest_energy_J", dynamic.largest_energy},
+      {"step_error_over_length", dynamic.step_error},
+      {"deepest_contact_over_length", json_or_null(dynamic.deepest_contact)},
+      {"fewer_terms", dynamic.fewer_terms},
+      {"fewer_terms_change_over_length", dynamic.term_difference},
+      {"quasi_static", track_errors_json(dynamic.quasi_static)}};
+  result["force_model"] = json_or_null(dynamic.force, [&](const TrackErrors& errors) {
+    Json entry = track_errors_json(errors);
+    entry["lag_s"] = dynamic.force_lag;
+    entry["error_without_lag_over_length"] = dynamic.force_error_without_lag;
+    return entry;
+  });
+  result["stopped"] = json_or_null(dynamic.stopped, stop_json);
+  std::vector<std::size_t> listed = frames.of(track);
+  std::erase_if(listed, [&](std::size_t i) { return i >= dynamic.frames.size(); });
+  result["frames"] = json_list(
+      listed, [&](std::size_t i) { return moving_frame_json(dynamic.frames[i], frames.points); });
+  return result;
+}
+
 }  // namespace
 
 std::vector<std::size_t> TrackFrames::of(const Track& track) const {
@@ -230,72 +219,11 @@ std::vector<std::size_t> TrackFrames::of(const Track& track) const {
   return result;
 }
 
-std::vector<std::size_t> listed_frames(std::size_t count) {
-  constexpr std::size_t most_rows = 11;
-  const std::size_t rows = std::min(count, most_rows);
-  std::vector<std::size_t> result;
-  result.reserve(rows);
-  for (std::size_t row = 0; row < rows; ++row) {
-    result.push_back(rows == 1 ? 0 : row * (count - 1) / (rows - 1));
-  }
-  return result;
-}
-
-std::string lag_text(double lag, double error_without_lag) {
-  if (!std::isfinite(lag)) return "";
-  return fmt::format(
-      "            it lags by {:.4g} ms: from where the rod was then it is {:.4g} % of l (RMS) "
-      "off\n",
-      lag * 1e3, error_without_lag * 100);
-}
-
-std::string stop_text(const std::optional<compare::TrackStop>& stop) {
-  if (!stop) return "";
-  return fmt::format("stopped     at {:.6g} s: {}\n", stop->time, compare::display(stop->why));
-}
-
-Json stop_json(const compare::TrackStop& stop) {
-  return {{"time_s", stop.time}, {"why", stop.why}};
-}
-
-std::string track_text(const Track& track, const compare::Scene& scene,
-                       const TrackOptions& options) {
-  std::string out;
-  const TrackFrame& first = track.frames.front();
-  const TrackFrame& last = track.frames.back();
-  const compare::Magnitudes large = compare::magnitudes(scene);
-  append(out, "scene       {}\n", compare::display(scene.name));
-  append(out, "motion      {:.6g} to {:.6g} s, {} frames at {:g} Hz{}\n", first.time, last.time,
-         track.frames.size(), options.rates.frames,
-         options.rates.obstacles ? fmt::format(", obstacles at {:g} Hz", *options.rates.obstacles)
-                                 : "");
-  append(out, "energy      {:.3g} ms a frame (median): {:.4g} frames a second\n",
-         track.median_seconds * 1e3, 1 / track.median_seconds);
-  append(out, "branch      left in {} of them, kept in {} in smaller steps only\n", track.lost,
-         track.repeated);
-  double released = 0;
-  for (const TrackEvent& event : track.events) {
-    if (!event.contact) released += event.released;
-  }
-  if (!std::isnan(last.released)) {
-    append(
-        out,
-        "balance     work of grippers and obstacles {:.6g} J, change of energy {:.6g} J, released "
-        "by snap-through {:.4g} J\n",
-        compare::shown(last.work, large.energy),
-        compare::shown(last.energy.total() - first.energy.total(), large.energy),
-        compare::shown(released, large.energy));
-  }
-  out += force_text(track, scene, options);
-  out += stop_text(track.stopped);
-  append(out, "events      {}\n",
-         track.events.empty() ? "none" : std::to_string(track.events.size()));
-  for (const TrackEvent& event : track.events) out += event_text(track, event, large);
-  return out + table_text(track, large);
-}
-
-std::string track_json(const Track& track, const compare::Scene& scene, const TrackOptions& options,
-                       const TrackFrames& frames, const compare::DynamicTrack* dynamic) {
+compare::Document track_document(const compare::TrackResult& found, const compare::Scene& scene,
+                                 const TrackFrames& frames) {
+  const Track& track = found.track;
+  const TrackOptions& options = found.options;
+  const DynamicTrack* dynamic = found.moving();
   Json result = {{"schema", "dlo/track/1"},
                  {"scene", scene.name},
                  {"model", "energy"},
@@ -315,11 +243,40 @@ std::string track_json(const Track& track, const compare::Scene& scene, const Tr
   result["frames"] = json_list(frames.of(track), [&](const std::size_t i) -> Json {
     return frame_json(track.frames[i], scene, frames.points);
   });
-  return json_text(result);
+  return {.json = std::move(result), .large = magnitudes(scene)};
 }
 
-std::string track_csv(const Track& track, const compare::Scene& scene, const TrackFrames& frames,
-                      const compare::DynamicTrack* dynamic) {
+std::string track_text(const compare::TrackResult& found, const compare::Scene& scene) {
+  constexpr std::size_t rows = 10;
+  const Track& track = found.track;
+  const TrackFrames frames{
+      .every = static_cast<int>(std::max(std::size_t{1}, track.frames.size() / rows))};
+  compare::Document document = track_document(found, scene, frames);
+  const std::vector<std::size_t> listed = frames.of(track);
+  for (std::size_t i = 0; i < listed.size(); ++i) {
+    document.json["frames"][i]["touches"] = state_text(track.frames[listed[i]], ", ");
+  }
+  for (std::size_t i = 0; i < track.events.size(); ++i) {
+    const std::optional<compare::ContactChange>& contact = track.events[i].contact;
+    document.json["events"][i]["contact"] = contact ? part_text(contact->part) : "-";
+  }
+  document.columns = {
+      {"events",
+       "time_s,kind,contact,released_J,released_bound_J,smallest_eigenvalue_before,"
+       "gripper_1_before_N=grippers/0/force_before_N,gripper_1_after_N=grippers/0/force_after_N"},
+      {"frames",
+       "time_s,energy_J=energy_J/total,work_J=energy_J/work,gripper_1_N=grippers/0/"
+       "force_N,error_over_length,touches"},
+      {"dynamic/frames",
+       "time_s,energy_J=energy_J/total,kinetic_J=energy_J/kinetic,gripper_1_N=grippers/0/force_N,"
+       "quasi_static_error_over_length,force_error_over_length"}};
+  return document.text();
+}
+
+std::string track_csv(const compare::TrackResult& found, const compare::Scene& scene,
+                      const TrackFrames& frames) {
+  const Track& track = found.track;
+  const DynamicTrack* dynamic = found.moving();
   compare::CsvTable table(
       "time_s,energy_J=energy_J/total,work_J=energy_J/work,released_J=energy_J/released,touches,"
       "error_over_length");
@@ -349,9 +306,10 @@ std::string track_csv(const Track& track, const compare::Scene& scene, const Tra
   return out;
 }
 
-void write_series(const compare::Track& track, const compare::Scene& scene,
-                  const TrackFrames& frames, const std::string& file,
-                  const compare::DynamicTrack* dynamic) {
+void write_series(const compare::TrackResult& found, const compare::Scene& scene,
+                  const TrackFrames& frames, const std::string& file) {
+  const Track& track = found.track;
+  const DynamicTrack* dynamic = found.moving();
   namespace fs = std::filesystem;
   const std::string stem = compare::series_stem(file);
   const fs::path folder = fs::path(file).parent_path();

@@ -54,10 +54,9 @@ py::object track(const SharedScene& shared, const py::dict& what, const py::obje
     return compare::follow(scene, request, [&](auto, auto) { signals.throw_if_stopped(); });
   });
   const compare::DynamicTrack* dynamic = found.moving();
-  std::string text = cli::track_text(found.track, scene, found.options);
-  if (dynamic != nullptr) text += cli::dynamic_text(*dynamic);
-  py::object result = make_result(text, cli::track_json(found.track, scene, found.options,
-                                                        {.every = 1, .points = true}, dynamic));
+  const cli::TrackFrames all{.every = 1, .points = true};
+  py::object result = make_result(cli::track_text(found, scene),
+                                  cli::json_text(cli::track_document(found, scene, all).json));
   result.attr("_strip") = panel_dict(
       compare::track_figures(scene, {found.track, dynamic}, found.options).strip.panels.front());
   const std::optional<compare::TrackStop>& stopped =
@@ -96,9 +95,8 @@ std::tuple<std::string, std::string, std::string> calibrate_motion(const SharedS
         {.damping = cli::DampingOptions{}.of(shared->calibrated), .solve = solve},
         [&](const std::string&) { signals.throw_if_stopped(); });
   });
-  return {cli::motion_fit_text(found, shared->scene),
-          cli::json_text(cli::motion_fit_json(found, shared->scene)),
-          found.not_identified.empty() ? cli::motion_toml(found, shared->scene) : ""};
+  const auto [text, json] = texts_of(cli::motion_fit_document(found, shared->scene));
+  return {text, json, found.not_identified.empty() ? cli::motion_toml(found, shared->scene) : ""};
 }
 
 std::pair<std::string, std::string> check_motion(const SharedScene& shared,
@@ -123,7 +121,7 @@ std::pair<std::string, std::string> check_motion(const SharedScene& shared,
     return compare::check_motion(scene, recorded, request,
                                  [&](auto, auto) { signals.throw_if_stopped(); });
   });
-  return {cli::motion_check_text(found), cli::json_text(cli::motion_check_json(found))};
+  return {cli::motion_check_text(found), cli::json_text(cli::motion_check_document(found).json)};
 }
 
 }  // namespace

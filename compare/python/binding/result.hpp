@@ -4,9 +4,12 @@
 #include <pybind11/stl.h>
 
 #include <string>
+#include <utility>
 
 #include "figure/layout.hpp"
 #include "figure/series.hpp"
+#include "format/json.hpp"
+#include "record/csv_table.hpp"
 
 namespace dlo::python {
 
@@ -52,6 +55,12 @@ void refuse_new(Class& bound, const char* maker) {
 
 /// Returns a panel as _plot.py draws it.
 [[nodiscard]] py::dict panel_dict(const compare::Panel& described);
+
+/// Returns text and JSON of a document.
+[[nodiscard]] inline std::pair<std::string, std::string> texts_of(
+    const compare::Document& document) {
+  return {document.text(), cli::json_text(document.json)};
+}
 
 /// Result with a shape. It never changes after its construction.
 struct Result {

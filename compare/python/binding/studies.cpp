@@ -21,6 +21,7 @@
 #include "module.hpp"
 #include "motion/scene_modes.hpp"
 #include "option/share.hpp"
+#include "result.hpp"
 #include "series/series_output.hpp"
 #include "series/study_output.hpp"
 #include "study/benchmark.hpp"
@@ -175,9 +176,7 @@ StudyDocuments hard_cases(const std::string& name_contains,
   }
   return run_long([&](Signals& signals) {
     options.progress = [&signals](auto, auto) { signals.throw_if_stopped(); };
-    const std::vector<compare::StabilityResult> results = compare::stability(options);
-    return StudyDocuments(cli::hard_cases_text(results, options.steppers.size()),
-                          cli::json_text(cli::hard_cases_json(results)));
+    return texts_of(cli::hard_cases_document(compare::stability(options)));
   });
 }
 
@@ -192,19 +191,16 @@ StudyDocuments stability_map(const std::optional<SharedScene>& scene, const std:
       .threads = threads};
   return run_long([&](Signals& signals) {
     options.progress = [&signals](auto, auto) { signals.throw_if_stopped(); };
-    const compare::StabilityMap map =
-        compare::stability_map(scene ? (*scene)->scene : compare::hard_case_scene(), options);
-    return StudyDocuments(cli::stability_map_text(map),
-                          cli::json_text(cli::stability_map_json(map)));
+    return texts_of(cli::stability_map_document(
+        compare::stability_map(scene ? (*scene)->scene : compare::hard_case_scene(), options)));
   });
 }
 
 StudyDocuments bench(const std::vector<SharedScene>& shared, double seconds, int repeats) {
   return run_long([&](Signals& signals) {
-    const compare::BenchmarkReport report =
+    return texts_of(cli::benchmark_document(
         compare::run_benchmark(scenes_of(shared), {.budget_s = seconds, .repeats = repeats},
-                               [&signals](const auto&) { signals.throw_if_stopped(); });
-    return StudyDocuments(cli::benchmark_text(report), cli::json_text(cli::benchmark_json(report)));
+                               [&signals](const auto&) { signals.throw_if_stopped(); })));
   });
 }
 
@@ -222,9 +218,8 @@ py::object modes(const SharedScene& scene, const py::dict& what, const py::objec
       .count = count, .rate = rate, .damping = damping, .solve = solve_options(limits)};
   const compare::SceneModes found =
       run_long([&](Signals& /*signals*/) { return compare::scene_modes(scene->scene, options); });
-  py::object result =
-      make_result(cli::modes_text(found, scene->scene, rate),
-                  cli::json_text(cli::modes_json(found, scene->scene, rate, samples)));
+  const auto [text, json] = texts_of(cli::modes_document(found, scene->scene, rate, samples));
+  py::object result = make_result(text, json);
   if (!succeeded(found.status)) {
     raise_convergence(scene->scene.file + ": " + found.message, result);
   }

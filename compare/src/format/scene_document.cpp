@@ -10,19 +10,18 @@
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/force_model/bending.hpp"
 #include "polygon/point_layout.hpp"
+#include "record/field.hpp"
 #include "scene/scene_problem.hpp"
 
 namespace dlo::compare {
 namespace {
 
-using Document = nlohmann::ordered_json;
-
-Document vector_document(const Eigen::Vector3d& vector) {
+Json vector_document(const Eigen::Vector3d& vector) {
   return {vector.x() + 0.0, vector.y() + 0.0, vector.z() + 0.0};  // never -0
 }
 
-Document columns_document(const Eigen::Matrix3Xd& columns) {
-  Document result = Document::array();
+Json columns_document(const Eigen::Matrix3Xd& columns) {
+  Json result = Json::array();
   for (Eigen::Index i = 0; i < columns.cols(); ++i) {
     result.push_back(vector_document(columns.col(i)));
   }
@@ -31,14 +30,14 @@ Document columns_document(const Eigen::Matrix3Xd& columns) {
 
 /// Returns null for zero, which represents a quantity that is unknown, or that the rod does not
 /// need.
-Document known(double value) { return value > 0 ? Document(value) : Document(); }
+Json known(double value) { return value > 0 ? Json(value) : Json(); }
 
-Document stiffnesses_document(double first, const std::optional<double>& second) {
+Json stiffnesses_document(double first, const std::optional<double>& second) {
   return {first, second.value_or(first)};
 }
 
-Document sections_document(const Scene& scene) {
-  Document result = Document::array();
+Json sections_document(const Scene& scene) {
+  Json result = Json::array();
   const energy_model::Problem problem = scene_problem(scene);
   for (std::size_t i = 0; i < scene.sections.size(); ++i) {
     const Section& section = scene.sections[i];
@@ -48,18 +47,18 @@ Document sections_document(const Scene& scene) {
                                                                      section.bending_stiffness_2)},
                       {"torsional_stiffness_Nm2", known(problem.sections[i].torsional_stiffness)},
                       {"mass_per_length_kg_per_m", section.mass_per_length},
-                      {"natural_curvature_per_m", section.natural_curvature
-                                                      ? Document{section.natural_curvature->x(),
-                                                                 section.natural_curvature->y()}
-                                                      : Document()},
+                      {"natural_curvature_per_m",
+                       section.natural_curvature
+                           ? Json{section.natural_curvature->x(), section.natural_curvature->y()}
+                           : Json()},
                       {"natural_twist_rad_per_m",
-                       section.natural_twist ? Document(*section.natural_twist) : Document()}});
+                       section.natural_twist ? Json(*section.natural_twist) : Json()}});
   }
   return result;
 }
 
-Document rod_document(const Scene& scene) {
-  Document curvature = Document::array();
+Json rod_document(const Scene& scene) {
+  Json curvature = Json::array();
   if (scene.naturally_curved()) {
     curvature.push_back({scene.natural_strain.x(), scene.natural_strain.y()});
     for (const Eigen::Vector2d& term : scene.natural_variation) {
@@ -72,7 +71,7 @@ Document rod_document(const Scene& scene) {
           {"width_m", known(scene.width)},
           {"thickness_m", known(scene.thickness)},
           {"cross_section_m2", known(scene.cross_section())},
-          {"material", scene.material.name.empty() ? Document() : Document(scene.material.name)},
+          {"material", scene.material.name.empty() ? Json() : Json(scene.material.name)},
           {"youngs_modulus_Pa", known(scene.material.youngs_modulus)},
           {"density_kg_per_m3", known(scene.material.density)},
           {"bending_stiffness_Nm2",
@@ -89,32 +88,32 @@ Document rod_document(const Scene& scene) {
           {"layers", layers_document(scene)},
           {"rest_shape", rest_shape_document(scene)},
           {"first_frame",
-           scene.has_material_directors() ? columns_document(scene.first_frame()) : Document()},
+           scene.has_material_directors() ? columns_document(scene.first_frame()) : Json()},
           {"sections", sections_document(scene)}};
 }
 
-Document gripper_document(const Gripper& gripper) {
-  Document frame;
+Json gripper_document(const Gripper& gripper) {
+  Json frame;
   if (gripper.frame) {
     const std::optional<Eigen::Vector3d>& d1 = gripper.frame->d1;
-    frame = {{"d1", d1 ? vector_document(*d1) : Document()}, {"roll_rad", gripper.frame->roll}};
+    frame = {{"d1", d1 ? vector_document(*d1) : Json()}, {"roll_rad", gripper.frame->roll}};
   }
   return {{"at_m", gripper.at},
           {"position_m", vector_document(gripper.position)},
           {"hold", gripper.direction ? "clamp" : "pin"},
-          {"direction", gripper.direction ? vector_document(*gripper.direction) : Document()},
+          {"direction", gripper.direction ? vector_document(*gripper.direction) : Json()},
           {"frame", std::move(frame)}};
 }
 
 /// Describes a body with the words of a scene file, from its core.
-Document body_document(const obstacle::Body& body) {
+Json body_document(const obstacle::Body& body) {
   if (body.is_half_space()) {
     return {{"shape", "plane"},
             {"point_m", vector_document(body.centre() + body.radius() * body.normal())},
             {"normal", vector_document(body.normal())}};
   }
   const Eigen::Vector3d size = body.upper() - body.lower();
-  Document result = {
+  Json result = {
       {"shape", "box"}, {"point_m", vector_document(body.centre())}, {"radius_m", body.radius()}};
   Eigen::Index longest = 0;
   const double length = size.maxCoeff(&longest);
@@ -134,19 +133,19 @@ Document body_document(const obstacle::Body& body) {
   return result;
 }
 
-Document obstacle_document(const Obstacle& obstacle) {
-  Document result = body_document(obstacle.body);
+Json obstacle_document(const Obstacle& obstacle) {
+  Json result = body_document(obstacle.body);
   const bool rigid = !std::isfinite(obstacle.stiffness);
-  result["stiffness_N_per_m2"] = rigid ? Document() : Document(obstacle.stiffness);
+  result["stiffness_N_per_m2"] = rigid ? Json() : Json(obstacle.stiffness);
   result["friction"] = obstacle.friction;
   return result;
 }
 
 /// Returns dM/d alpha of each joint at zero angle: EI/h; null for the paper's law, which has no
 /// such stiffness.
-Document joints_document(const force_model::Rod& rod) {
+Json joints_document(const force_model::Rod& rod) {
   if (rod.bending.law == BendingLaw::paper) return nullptr;
-  Document result = Document::array();
+  Json result = Json::array();
   for (Eigen::Index i = 1; i + 1 < rod.points(); ++i) {
     const double h = (rod.rest_lengths[i - 1] + rod.rest_lengths[i]) / 2;
     result.push_back(force_model::joint_stiffness(force_model::bending_at(rod.bending, i), h, 0));
@@ -154,20 +153,20 @@ Document joints_document(const force_model::Rod& rod) {
   return result;
 }
 
-void add_polygon(const Scene& scene, const ForceModelSettings& settings, Document& result) {
+void add_polygon(const Scene& scene, const ForceModelSettings& settings, Json& result) {
   const Discretisation polygon = discretise(scene, settings);
   const force_model::Rod& rod = polygon.rod;
   const Parameters& parameters = polygon.parameters;
   const bool paper = settings.law == BendingLaw::paper;
   result["segment_length_m"] = parameters.segment_length;
   result["c_c"] = parameters.c_c;
-  result["c_b"] = paper ? Document(parameters.c_b) : Document();
+  result["c_b"] = paper ? Json(parameters.c_b) : Json();
   const force_model::StepOptions steps = step_options(settings, polygon);
   const bool chosen =
       steps.policy.automatic || steps.policy.integration != force_model::Integration::along_force;
-  result["c_F"] = chosen ? Document() : Document(steps.c_F);
-  result["c_h"] = settings.stepper == Stepper::dynamic ? Document(steps.c_h) : Document();
-  result["l_s_m"] = chosen ? Document() : Document(steps.l_s);
+  result["c_F"] = chosen ? Json() : Json(steps.c_F);
+  result["c_h"] = settings.stepper == Stepper::dynamic ? Json(steps.c_h) : Json();
+  result["l_s_m"] = chosen ? Json() : Json(steps.l_s);
   result["point_at_m"] = polygon.arc_length;
   result["point_mass_kg"] = point_masses(scene, settings).rod;
   result["point_force_N"] = columns_document(rod.loads);
@@ -175,7 +174,7 @@ void add_polygon(const Scene& scene, const ForceModelSettings& settings, Documen
   result["joint_stiffness_Nm"] = joints_document(rod);
   const Eigen::VectorXd& turns = rod.bending.natural_turns;
   result["joint_turn_at_rest_rad"] = std::vector<double>(turns.begin(), turns.end());
-  Document held = Document::array();
+  Json held = Json::array();
   for (const force_model::Grip& grip : rod.grips) {
     held.push_back(
         {{"first_point", grip.first_point}, {"points_m", columns_document(grip.targets)}});
@@ -184,15 +183,15 @@ void add_polygon(const Scene& scene, const ForceModelSettings& settings, Documen
   result["start_m"] = columns_document(polygon.starts.front());
 }
 
-Document force_model_document(const Scene& scene) {
+Json force_model_document(const Scene& scene) {
   ForceModelSettings settings = scene.force_model;
   const std::optional<energy_model::JointLaw> joint_law = std::exchange(settings.joint_law, {});
-  Document result = {{"points", settings.points},
-                     {"law", to_string(settings.law)},
-                     {"joint_law", joint_law ? Document(to_string(*joint_law)) : Document()},
-                     {"bookkeeping", to_string(settings.bookkeeping)},
-                     {"stepper", to_string(settings.stepper)},
-                     {"refused", nullptr}};
+  Json result = {{"points", settings.points},
+                 {"law", to_string(settings.law)},
+                 {"joint_law", joint_law ? Json(to_string(*joint_law)) : Json()},
+                 {"bookkeeping", to_string(settings.bookkeeping)},
+                 {"stepper", to_string(settings.stepper)},
+                 {"refused", nullptr}};
   try {
     add_polygon(scene, settings, result);
   } catch (const InputError& error) {
@@ -221,46 +220,45 @@ nlohmann::ordered_json rest_shape_document(const Scene& scene) {
           {"arcs", shape.arcs.size()},
           {"largest_error_m", shape.largest_error},
           {"rms_error_m", shape.rms_error},
-          {"largest_angle_rad", shape.largest_angle ? Document(*shape.largest_angle) : Document()},
+          {"largest_angle_rad", shape.largest_angle ? Json(*shape.largest_angle) : Json()},
           {"begin_m", vector_document(shape.begin)},
           {"first_frame", columns_document(shape.first_frame)}};
 }
 
 nlohmann::ordered_json scene_document(const Scene& scene) {
-  Document grippers = Document::array();
+  Json grippers = Json::array();
   for (const Gripper& gripper : scene.grippers) grippers.push_back(gripper_document(gripper));
-  Document loads = Document::array();
+  Json loads = Json::array();
   for (const PointLoad& load : scene.loads) {
-    loads.push_back(
-        {{"at_m", load.at},
-         {"force_N", vector_document(load.force)},
-         {"torque_Nm", load.torque.isZero(0) ? Document() : vector_document(load.torque)}});
+    loads.push_back({{"at_m", load.at},
+                     {"force_N", vector_document(load.force)},
+                     {"torque_Nm", load.torque.isZero(0) ? Json() : vector_document(load.torque)}});
     if (load.follows) loads.back()["follows"] = true;
   }
-  Document distributed = Document::array();
+  Json distributed = Json::array();
   for (const DistributedLoad& load : scene.distributed_loads) {
-    Document forces = Document::array();
+    Json forces = Json::array();
     for (const Eigen::Vector3d& q : load.force_per_length) forces.push_back(vector_document(q));
     distributed.push_back(
         {{"from_m", load.from}, {"to_m", load.to}, {"force_per_length_N_per_m", forces}});
   }
-  Document obstacles = Document::array();
+  Json obstacles = Json::array();
   for (const Obstacle& obstacle : scene.obstacles) {
     obstacles.push_back(obstacle_document(obstacle));
   }
   const std::optional<Eigen::Vector3d> normal = scene.plane_normal();
-  Document document = {{"schema", "dlo/scene/1"},
-                       {"scene", scene.name},
-                       {"file", scene.file},
-                       {"gravity_m_per_s2", vector_document(scene.gravity)},
-                       {"gamma", scene.gamma()},
-                       {"plane_normal", normal ? vector_document(*normal) : Document()},
-                       {"rod", rod_document(scene)},
-                       {"grippers", std::move(grippers)},
-                       {"loads", std::move(loads)},
-                       {"distributed_loads", std::move(distributed)},
-                       {"obstacles", std::move(obstacles)},
-                       {"force_model", force_model_document(scene)}};
+  Json document = {{"schema", "dlo/scene/1"},
+                   {"scene", scene.name},
+                   {"file", scene.file},
+                   {"gravity_m_per_s2", vector_document(scene.gravity)},
+                   {"gamma", scene.gamma()},
+                   {"plane_normal", normal ? vector_document(*normal) : Json()},
+                   {"rod", rod_document(scene)},
+                   {"grippers", std::move(grippers)},
+                   {"loads", std::move(loads)},
+                   {"distributed_loads", std::move(distributed)},
+                   {"obstacles", std::move(obstacles)},
+                   {"force_model", force_model_document(scene)}};
   if (scene.drag) {
     document["drag"] = {{"velocity_m_per_s", vector_document(scene.drag->velocity)},
                         {"normal_kg_per_m2", scene.drag->normal},
@@ -270,7 +268,7 @@ nlohmann::ordered_json scene_document(const Scene& scene) {
 }
 
 std::string scene_document_text(const Scene& scene) {
-  return scene_document(scene).dump(2, ' ', false, Document::error_handler_t::replace) + "\n";
+  return scene_document(scene).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 }  // namespace dlo::compare

@@ -284,7 +284,6 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
   add_energies(out, solution, large);
   add_twists(out, solution, large);
   add_search(out, solution, large);
-  out += compare::text_rows(compare::shape_numbers(), {scene, solution}, scene);
   add_forces(out, solution, scene, large);
   add_points(out, solution.shape);
   return out;

@@ -1,11 +1,5 @@
 #include "record/field.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
-
-#include "base/number.hpp"
 #include "base/quote.hpp"
 
 namespace dlo::compare {
@@ -34,19 +28,6 @@ Magnitudes magnitudes(const Scene& scene) {
   const double force = scene.softer_bending_stiffness() / (l * l) +
                        scene.weight_between(0, l).norm() + scene.total_of_loads();
   return {.length = l, .force = force, .torque = force * l, .energy = force * l};
-}
-
-std::string text_row(std::string_view name, std::string_view unit, const Json& value,
-                     const Magnitudes& large) {
-  std::string label(name);
-  std::ranges::replace(label, '_', ' ');
-  std::string text = value.is_string() ? value.get<std::string>() : value.dump();
-  if (value.is_number_float()) {
-    const auto number = value.get<double>();
-    if (!std::isfinite(number)) return "";
-    text = formatted("{:.6g}", shown(number, large.of(unit)));
-  }
-  return fmt::format("{:<10} {}{}{}\n", label, text, unit.empty() ? "" : " ", unit);
 }
 
 Json to_json(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }

@@ -21,16 +21,14 @@ using Numbers = std::vector<std::pair<std::string, double>>;
 
 /// Outputs that show a field; combined by |.
 enum FieldPlace : unsigned {
-  in_text = 1,    ///< in a row of its own, with six digits and its unit
-  in_json = 2,    ///< by its path
-  in_csv = 4,     ///< in a column
-  in_python = 8,  ///< as an attribute
-  everywhere = in_text | in_json | in_csv | in_python
+  in_json = 1,    ///< by its path
+  in_csv = 2,     ///< in a column
+  in_python = 4,  ///< as an attribute
+  everywhere = in_json | in_csv | in_python
 };
 
-/// Description of one quantity of a result T. Its row of text, its key in JSON, its column in CSV,
-/// its attribute in Python with the line of the stub, and its row in a page's table of keys are
-/// generated from it.
+/// Description of one quantity of a result T. Its key in JSON, its column in CSV, its attribute in
+/// Python with the line of the stub, and its row in a page's table of keys are generated from it.
 template <typename T>
 struct Field {
   /// Function that returns the value; NaN means that there is none.
@@ -119,22 +117,6 @@ struct Magnitudes {
 };
 
 [[nodiscard]] Magnitudes magnitudes(const Scene& scene);
-
-/// Returns a row of text for people. @param name  name of the field
-[[nodiscard]] std::string text_row(std::string_view name, std::string_view unit, const Json& value,
-                                   const Magnitudes& large);
-
-/// Returns the rows of all fields of text that have a value.
-template <typename T>
-[[nodiscard]] std::string text_rows(std::span<const Field<T>> fields, const T& result,
-                                    const Scene& scene) {
-  std::string rows;
-  const Magnitudes large = magnitudes(scene);
-  for (const Field<T>& field : fields_in(in_text, fields, scene)) {
-    rows += text_row(field.name, field.unit, value_of(field, result), large);
-  }
-  return rows;
-}
 
 /// Returns a list of the results of `make` for each element.
 template <typename List, typename Make>

@@ -97,16 +97,14 @@ std::span<const Field<SolvedShape>> solution_fields() {
 
 std::span<const Field<SolvedShape>> shape_numbers() {
   using S = const SolvedShape&;
-  // Text shows these numbers for each interval.
-  constexpr unsigned but_text = in_json | in_csv | in_python;
   static const Field<SolvedShape> fields[] = {
       {"link", "turns", "Turns of the rod's frames: twist and writhe",
-       [](S s) { return turns(s, &Linking::twist) + turns(s, &Linking::writhe); }, but_text, "",
+       [](S s) { return turns(s, &Linking::twist) + turns(s, &Linking::writhe); }, everywhere, "",
        holds_twist},
       {"twist", "turns", "Of them, twist of the rod about its axis",
-       [](S s) { return turns(s, &Linking::twist); }, but_text, "", holds_twist},
+       [](S s) { return turns(s, &Linking::twist); }, everywhere, "", holds_twist},
       {"writhe", "turns", "Of them, writhe of the axis",
-       [](S s) { return turns(s, &Linking::writhe); }, but_text, "", holds_twist}};
+       [](S s) { return turns(s, &Linking::writhe); }, everywhere, "", holds_twist}};
   return fields;
 }
 

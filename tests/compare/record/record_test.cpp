@@ -9,12 +9,15 @@
 
 #include "command_fixture.hpp"
 #include "dlo/compare/scene_file.hpp"
+#include "record/csv_table.hpp"
 #include "record/field.hpp"
 #include "record/solution_fields.hpp"
 #include "scenes.hpp"
 
 namespace {
 
+using dlo::compare::Deviation;
+using dlo::compare::Document;
 using dlo::compare::Field;
 using dlo::compare::Json;
 using dlo::compare::Scene;
@@ -55,9 +58,6 @@ TEST_F(Record, ANumberOfAShapeStandsInEachCommandsOutput) {
         << number.key();
     EXPECT_TRUE(std::isfinite(std::stod(dlo::test::in_first_row(swept, number.key()))))
         << number.key();
-    if ((number.places & dlo::compare::in_text) != 0) {
-      EXPECT_TRUE(says(text, {std::string(number.words)})) << number.key();
-    }
     ++places;
   }
   EXPECT_GE(places, 3);
@@ -89,21 +89,102 @@ TEST_F(Record, OneDescriptionMakesRowKeyAndColumn) {
   solution.tension = {1, 2.5};
   const SolvedShape shape{scene, solution};
   const std::span<const Field<SolvedShape>> fields = mean_tension;
-  EXPECT_EQ(dlo::compare::text_rows(fields, shape, scene), "mean tension 1.75 N\n");
   Json document = {{"schema", "test"}};
   dlo::compare::add_json(document, fields, shape, scene);
   EXPECT_EQ(document.dump(), R"({"schema":"test","mean_tension_N":1.75})");
+  EXPECT_EQ(Document{document}.text(), "mean tension  1.75 N\n");
   EXPECT_EQ(fields[0].key(), "mean_tension_N");
   EXPECT_EQ(dlo::compare::csv_value(dlo::compare::value_of(fields[0], shape)), "1.75");
   EXPECT_EQ(fields[0].name, "mean_tension");
   EXPECT_EQ(fields[0].python_words(), "Mean of the tension along the rod [N].");
-  // A value that is only rounding compared with the scene's forces is 0, and an unknown value has
-  // no row.
-  solution.tension = {1e-30};
-  EXPECT_EQ(dlo::compare::text_rows(fields, shape, scene), "mean tension 0 N\n");
   solution.tension.clear();
-  EXPECT_EQ(dlo::compare::text_rows(fields, shape, scene), "");
   EXPECT_EQ(dlo::compare::csv_value(dlo::compare::value_of(fields[0], shape)), "");
+}
+
+TEST(Document, TextIsALineForEachValueAndATableForEachList) {
+  const Json json = {
+      {"schema", "test"},
+      {"model", "energy"},
+      {"reached", true},
+      {"rms_over_length", 0.012345678},
+      {"drag_N_s_per_m2", 0.25},
+      {"curvature_per_m", 2.0},
+      {"l_s", 0.5},
+      {"force_N", {1e-30, 0.0, -2.5}},
+      {"unknown_m", NAN},
+      {"none", nullptr},
+      {"notes", {"a\nb", "c"}},
+      {"energy_J", {{"bending", 1.0}, {"load", 0.0}}},
+      {"points_m", {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}},
+      {"events", {{{"time_s", 0.5}, {"kind", "snap"}}, {{"time_s", 12.0}, {"at", {{"rms_m", 3}}}}}},
+      {"cases", {{{"scene", "x"}, {"seconds", 3}, {"inner", {{{"a", 1}}}}}}}};
+  const Document document{.json = json,
+                          .columns = {{"cases", "case=#,seconds"}, {"cases/#/inner", "a"}},
+                          .large = {.force = 1},
+                          .table = "cases"};
+  EXPECT_EQ(document.text(),
+            "model      energy\n"
+            "reached    yes\n"
+            "rms        1.235 % of l\n"
+            "drag       0.25 N s/m^2\n"
+            "curvature  2 1/m\n"
+            "l_s        0.5\n"
+            "force      [0, 0, -2.5] N\n"
+            "notes      a?b\n"
+            "           c\n"
+            "energy\n"
+            "  bending  1 J\n"
+            "  load     0 J\n"
+            "\nevents\n"
+            "  time [s]  kind  at rms [m]\n"
+            "       0.5  snap           -\n"
+            "        12  -              3\n"
+            "\ncases\n"
+            "  case  seconds\n"
+            "     1        3\n"
+            "\ncases 1, x: inner\n"
+            "  a\n"
+            "  1\n");
+  EXPECT_EQ(document.csv(), "case,seconds\n1,3\n");
+}
+
+TEST_F(Record, AFieldStandsWhereItSaysAndAtItsPath) {
+  const Scene scene = dlo::test::heavy_scene(1, 0);
+  const Field<Deviation> all[] = {{.name = "a",
+                                   .get = [](const Deviation& d) { return d.rms_m; },
+                                   .places = dlo::compare::in_json,
+                                   .path = "in/a"},
+                                  {.name = "b",
+                                   .unit = "m",
+                                   .get = [](const Deviation&) -> std::string { return "x, y"; },
+                                   .places = dlo::compare::in_csv},
+                                  {.name = "c",
+                                   .get = [](const Deviation&) { return true; },
+                                   .when = [](const Scene& s) { return s.holds_twist(); }}};
+  const std::span<const Field<Deviation>> fields = all;
+  Json document;
+  dlo::compare::add_json(document, fields, {.rms_m = 2}, scene);
+  EXPECT_EQ(document.dump(), R"({"in":{"a":2.0}})");
+  const auto columns = dlo::compare::fields_in(dlo::compare::in_csv, fields, scene);
+  ASSERT_EQ(columns.size(), 1U);
+  EXPECT_EQ(columns[0].key(), "b_m");
+  EXPECT_EQ(dlo::compare::csv_value(dlo::compare::value_of(columns[0], {})), "\"x, y\"");
+}
+
+TEST_F(Record, ADeviationIsSaidByItsKeys) {
+  const Deviation deviation{.rms_m = 1,
+                            .max_m = 2,
+                            .max_at_m = 3,
+                            .tip_m = 4,
+                            .rms_over_length = 5,
+                            .rms_over_movement = 6,
+                            .angle_rms_rad = 7,
+                            .curvature_rms_per_m = 8};
+  EXPECT_EQ(
+      dlo::compare::json_of(dlo::compare::numbers_of(dlo::compare::deviation_fields(), deviation))
+          .dump(),
+      R"({"rms_m":1.0,"max_m":2.0,"max_at_m":3.0,"tip_m":4.0,"rms_over_length":5.0,)"
+      R"("rms_over_movement":6.0,"angle_rms_rad":7.0,"curvature_rms_per_m":8.0})");
 }
 
 }  // namespace
