@@ -136,8 +136,8 @@ void build(CLI::App& app, std::optional<CommandTimeLimit>& limit) {
 int run_command(std::vector<std::string> words) {
   const compare::InputsKept kept;
   CLI::App app(
-      "Is the shape of a simulated rod, wire or cable the shape that its material would take? "
-      "dlo computes it from bending energy and gravity, and says how far others are from it.",
+      "Is the shape of a simulated rod, wire or cable the shape that its material would take? dlo "
+      "computes it from bending energy and gravity, and says how far others are from it.",
       "dlo");
   std::optional<CommandTimeLimit> limit;
   build(app, limit);

@@ -83,61 +83,51 @@ void CalibrateOptions::add_numbers_of_wire(CLI::App& command, CLI::Option* shape
       "--noise", noise,
       "standard deviation of one coordinate such as \"0.5 mm\"; default: estimated"));
   of_shapes(command
-                .add_option(
-                    "--natural-curvature", natural_curvature_terms,
-                    "fit this many terms of the wire's natural curvature as well (1: the same all "
-                    "along; Legendre's polynomials)")
+                .add_option("--natural-curvature", natural_curvature_terms,
+                            "fit this many terms of the wire's natural curvature as well (1: the "
+                            "same all along; Legendre's polynomials)")
                 ->check(CLI::Range(0, 24)));
-  of_shapes(command.add_option(
-      "--clamp-angles", clamp_angles,
-      "how well the clamps' directions are known, as standard deviation such as \"5 "
-      "deg\"; each shape's own are fitted as well"));
+  of_shapes(command.add_option("--clamp-angles", clamp_angles,
+                               "how well the clamps' directions are known, as standard deviation "
+                               "such as \"5 deg\"; each shape's own are fitted as well"));
   of_shapes(command.add_option("--clamp-positions", clamp_positions,
                                "the same of the grippers' positions, such as \"2 mm\""));
   of_shapes(command.add_option(
       "--clamp-rolls", clamp_rolls,
-      "the same of how they hold the wire about its tangent, in space: \"180 deg\" if "
-      "nothing is known; each shape has its own, with --same-clamps too"));
+      "the same of how they hold the wire about its tangent, in space: \"180 deg\" if nothing is "
+      "known; each shape has its own, with --same-clamps too"));
   of_shapes(command.add_flag(
       "--same-clamps", same_clamps,
-      "the clamps are misaligned alike in all shapes, as in one fixture: what is found of "
-      "them is shared, and -o writes it; with --clamp-angles or --clamp-positions"));
-  of_shapes(command.add_option(
-      "--clamp-scatter", clamp_scatter,
-      "with --same-clamps: how far each shape's own directions are from the shared "
-      "ones, such as \"5 deg\"; they are fitted as well"));
-  of_shapes(command.add_option(
-      "--camera-tilt", camera_tilt,
-      "how level the camera is, such as \"2 deg\" (standard deviation); one tilt of "
-      "all shapes is fitted as well, and -o writes it"));
-  of_shapes(command.add_flag(
-      "--predict", predict,
-      "leave out each shape in turn and predict it by the fit to the others: says which "
-      "options predict best (three shapes or more)"));
+      "the clamps are misaligned alike in all shapes, as in one fixture: what is found of them is "
+      "shared, and -o writes it; with --clamp-angles or --clamp-positions"));
+  of_shapes(command.add_option("--clamp-scatter", clamp_scatter,
+                               "with --same-clamps: how far each shape's own directions are from "
+                               "the shared ones, such as \"5 deg\"; they are fitted as well"));
+  of_shapes(command.add_option("--camera-tilt", camera_tilt,
+                               "how level the camera is, such as \"2 deg\" (standard deviation); "
+                               "one tilt of all shapes is fitted as well, and -o writes it"));
+  of_shapes(command.add_flag("--predict", predict,
+                             "leave out each shape in turn and predict it by the fit to the "
+                             "others: says which options predict best (three shapes or more)"));
   of_shapes(
       command
           .add_option(
               "--options", chosen,
-              "given, or auto: where residuals are systematic, the terms of natural curvature, "
-              "and clamps as said, misaligned alike or each on its own, that predict "
-              "shapes "
-              "best that are left out; default: auto of three shapes or more, without the "
-              "six above")
+              "given, or auto: where residuals are systematic, the terms of natural curvature, and "
+              "clamps as said, misaligned alike or each on its own, that predict shapes best that "
+              "are left out; default: auto of three shapes or more, without the six above")
           ->check(CLI::IsMember({"given", "auto"})));
 }
 
 void CalibrateOptions::add_output(CLI::App& command) {
   std::vector<std::string> formats = compare::names<Format>();
   formats.emplace_back("toml");
-  command.add_option("--format", output.format, "text, json, csv or toml")
-      ->check(CLI::IsMember(formats))
-      ->capture_default_str();
-  command
-      .add_option("-o,--output", output.file,
-                  "write to FILE instead of standard output; .json and .csv are formats, a .toml "
-                  "gets what --parameters (with --shape: --materials and --calibrated, with "
-                  "--motion: --calibrated) reads, and the text still goes to standard output")
-      ->type_name("FILE");
+  add_checked(command, "--format", output.format, CLI::IsMember(formats),
+              "text, json, csv or toml");
+  add_file(command, "-o,--output", output.file,
+           "write to FILE instead of standard output; .json and .csv are formats, a .toml gets "
+           "what --parameters (with --shape: --materials and --calibrated, with --motion: "
+           "--calibrated) reads, and the text still goes to standard output");
   take_format_of_file(command, output, formats);
 }
 
@@ -166,22 +156,20 @@ void CalibrateOptions::add_to(CLI::App& command) {
           ->group(measured);
   add_numbers_of_wire(command, shape);
   command
-      .add_option("--motion", motions,
-                  "recorded motions of the rod, CSV files of markers, time,s,x,y,z in s and m: "
-                  "stiffness over mass and damping. Exit status 3 if the stiffness is not "
-                  "identified")
+      .add_option(
+          "--motion", motions,
+          "recorded motions of the rod, CSV files of markers, time,s,x,y,z in s and m: stiffness "
+          "over mass and damping. Exit status 3 if the stiffness is not identified")
       ->type_name("FILE ...")
       ->excludes(shape)
       ->excludes(holdout)
       ->excludes(wanted)
       ->group("Stiffness and damping from a recorded motion");
   command
-      .add_option(
-          "--segments", segments,
-          "of your simulator's chain, 4 to 200, or a file of its points where they are unequal: "
-          "the "
-          "stiffness of its joints with which it comes nearest to the rod, for three ways to hold "
-          "it; with --shape: to the fitted one")
+      .add_option("--segments", segments,
+                  "of your simulator's chain, 4 to 200, or a file of its points where they are "
+                  "unequal: the stiffness of its joints with which it comes nearest to the rod, "
+                  "for three ways to hold it; with --shape: to the fitted one")
       ->type_name("N|FILE")
       ->check(check_segments)
       ->excludes(wanted)

@@ -59,21 +59,15 @@ void add_bench(CLI::App& app) {
   const auto options = std::make_shared<BenchOptions>();
   command->add_option("SCENE", options->scenes,
                       "scene files (TOML); none: a steel rod and one a hundred times softer");
-  command->add_option("--seconds", options->benchmark.budget_s, "time for all runs together")
-      ->check(number_between(0.1, 86400))
-      ->capture_default_str();
-  command->add_option("--repeats", options->benchmark.repeats, "runs that a median is taken of")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command->add_option("--speed", options->benchmark.gripper_speed, "of the moving gripper [m/s]")
-      ->check(number_between(1e-9, 1e3))
-      ->capture_default_str();
+  add_checked(*command, "--seconds", options->benchmark.budget_s, number_between(0.1, 86400),
+              "time for all runs together");
+  add_checked(*command, "--repeats", options->benchmark.repeats, CLI::Range(1, 1000),
+              "runs that a median is taken of");
+  add_checked(*command, "--speed", options->benchmark.gripper_speed, number_between(1e-9, 1e3),
+              "of the moving gripper [m/s]");
   add_program_options(*command, options->programs);
-  command
-      ->add_option("--time-limit", options->benchmark.program_time_limit,
-                   "of each run of a program [s]")
-      ->check(number_between(1e-3, 1e9))
-      ->capture_default_str();
+  add_checked(*command, "--time-limit", options->benchmark.program_time_limit,
+              number_between(1e-3, 1e9), "of each run of a program [s]");
   add_output_options(*command, options->output);
   options->plot.add_to(*command, "error against time, with the front,");
   command->footer(

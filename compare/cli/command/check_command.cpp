@@ -121,11 +121,8 @@ void run_motion(const CheckOptions& options) {
 void add_motion_to(CLI::App& command, CheckOptions& options) {
   const OptionGroup group(command, "Recorded motion");
   CLI::Option* motion =
-      command
-          .add_option("--motion", options.motion,
-                      "instead of a shape: a CSV file of markers on the rod, time,s,x,y,z in s and "
-                      "m")
-          ->type_name("FILE");
+      add_file(command, "--motion", options.motion,
+               "instead of a shape: a CSV file of markers on the rod, time,s,x,y,z in s and m");
   command
       .add_flag("--dynamic", options.dynamic,
                 "with --motion: hold it against the rod with its inertia, not at rest")
@@ -133,9 +130,9 @@ void add_motion_to(CLI::App& command, CheckOptions& options) {
   options.damping.add_to(command, motion);
   constexpr double most = 1e12;  // [s], the limit of times in files
   command
-      .add_option("--from", options.moving.from,
-                  "with --motion: when the rod's motion begins [s], default the recording's first "
-                  "time")
+      .add_option(
+          "--from", options.moving.from,
+          "with --motion: when the rod's motion begins [s], default the recording's first time")
       ->check(number_between(-most, most))
       ->needs(motion);
   command
@@ -161,26 +158,19 @@ void add_check(CLI::App& app) {
       ->add_option("SCENE", options->scene,
                    "scene file (TOML), or a MuJoCo model of a cable (MJCF)")
       ->required();
+  add_file(*command, "--shape", options->shape,
+           "CSV, JSON, legacy VTK polyline or NumPy array (FILE.npy)");
+  command->add_option("--tolerance", options->tolerance.allowed,
+                      "the deviation allowed: 1% or 0.01 of the length, \"5% of deflection\" (of a "
+                      "stiff rod, by its weight and loads) or \"2 mm\"; exit status 1 beyond it. "
+                      "Without it the verdict is that of 1%, and the exit status 0");
+  add_checked(*command, "--measure", options->tolerance.measure, CLI::IsMember({"rms", "max"}),
+              "the deviation that is held against the tolerance");
   command
-      ->add_option("--shape", options->shape,
-                   "CSV, JSON, legacy VTK polyline or NumPy array (FILE.npy)")
-      ->type_name("FILE");
-  command->add_option(
-      "--tolerance", options->tolerance.allowed,
-      "the deviation allowed: 1% or 0.01 of the length, \"5% of deflection\" (of a stiff rod, by "
-      "its weight and loads) or \"2 mm\"; exit status 1 beyond it. Without it the verdict is that "
-      "of 1%, and the exit status 0");
-  command
-      ->add_option("--measure", options->tolerance.measure,
-                   "the deviation that is held against the tolerance")
-      ->check(CLI::IsMember({"rms", "max"}))
-      ->capture_default_str();
-  command
-      ->add_option(
-          "--min-seen", options->tolerance.min_seen,
-          "the file is a part of the rod, and only that part is judged; it fails if less than "
-          "this share of the rod is seen, such as 10%. Without it the whole rod is judged, and "
-          "half of it is needed")
+      ->add_option("--min-seen", options->tolerance.min_seen,
+                   "the file is a part of the rod, and only that part is judged; it fails if less "
+                   "than this share of the rod is seen, such as 10%. Without it the whole rod is "
+                   "judged, and half of it is needed")
       ->transform(share_of_length());
   command->add_flag("--no-modulus", options->no_modulus, "leave E*/E out");
   command->add_flag("--no-explanation", options->no_explanation,
@@ -190,14 +180,11 @@ void add_check(CLI::App& app) {
   std::vector<std::string> formats = compare::names<Format>();
   formats.emplace_back("markdown");
   add_output_options(*command, options->output, formats);
-  command
-      ->add_option("--report", options->report,
-                   "write a page of one screen, FILE.html: verdict, picture, cause, numbers")
-      ->type_name("FILE");
-  options->plot.add_to(
-      *command,
-      "the points on the rod, and their distances along it; of a motion the worst frame, "
-      "and the distances against time");
+  add_file(*command, "--report", options->report,
+           "write a page of one screen, FILE.html: verdict, picture, cause, numbers");
+  options->plot.add_to(*command,
+                       "the points on the rod, and their distances along it; of a motion the worst "
+                       "frame, and the distances against time");
   add_motion_to(*command, *options);
   command->footer(
       "Example, with dlo in place of your simulator:\n"

@@ -8,6 +8,7 @@
 #include "dlo/compare/solution.hpp"
 #include "format/json.hpp"
 #include "format/result_output.hpp"
+#include "option/option_values.hpp"
 #include "option/output.hpp"
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
@@ -116,11 +117,8 @@ void add_compare(CLI::App& app) {
   options->plan.add_to(*command);
   add_output_options(*command, options->output);
   options->plot.add_to(*command, "both shapes, curvature, deviation along the rod and its budget");
-  command
-      ->add_option("--report", options->report,
-                   "write a page, FILE.html: verdict, pictures, numbers and error budget of each "
-                   "scene")
-      ->type_name("FILE");
+  add_file(*command, "--report", options->report,
+           "write a page, FILE.html: verdict, pictures, numbers and error budget of each scene");
   command->footer(
       "Examples:\n  dlo compare data/scenes/spring_steel_175.toml --law hooke --bookkeeping "
       "consistent\n  dlo compare data/scenes/spring_steel_175.toml --plot both.svg");

@@ -43,28 +43,19 @@ void add_modes(CLI::App& app) {
       "natural frequencies about a scene's shape: of the rod, its polygon, and as it steps");
   const auto options = std::make_shared<ModesOptions>();
   command->add_option("SCENE", options->scene, "scene file (TOML)")->required();
-  command->add_option("--count", options->modes.count, "modes, the slowest ones")
-      ->check(CLI::Range(1, 40))
-      ->capture_default_str();
+  add_checked(*command, "--count", options->modes.count, CLI::Range(1, 40),
+              "modes, the slowest ones");
+  add_checked(*command, "--rate", options->modes.rate, number_between(1e-6, 1e9),
+              "steps of the force model a second, of which a step makes its mass dt^2 / c_F");
+  add_checked(*command, "--damping", options->modes.damping, number_between(1e-6, 1),
+              "damping ratio of the slowest mode that the material has, for c_h");
   command
-      ->add_option("--rate", options->modes.rate,
-                   "steps of the force model a second, of which a step makes its mass "
-                   "dt^2 / c_F")
-      ->check(number_between(1e-6, 1e9))
-      ->capture_default_str();
-  command
-      ->add_option("--damping", options->modes.damping,
-                   "damping ratio of the slowest mode that the material has, for c_h")
-      ->check(number_between(1e-6, 1))
-      ->capture_default_str();
-  command
-      ->add_option("--tension", options->modes.tension,
-                   "of a rod that clamps hold straight [N], not identifiable from its shape; "
-                   "default 0")
+      ->add_option(
+          "--tension", options->modes.tension,
+          "of a rod that clamps hold straight [N], not identifiable from its shape; default 0")
       ->check(number_between(-1e12, 1e12));
-  command->add_option("--samples", options->samples, "points of each mode's shape in JSON")
-      ->check(CLI::Range(2, 100000))
-      ->capture_default_str();
+  add_checked(*command, "--samples", options->samples, CLI::Range(2, 100000),
+              "points of each mode's shape in JSON");
   options->overrides.add_to(*command, Steps::none);
   add_output_options(*command, options->output);
   command->footer(

@@ -76,16 +76,12 @@ void add_regress(CLI::App& app) {
       app.add_subcommand("regress", "shape errors against a baseline under version control");
   const auto options = std::make_shared<RegressOptions>();
   command->add_option("SCENE", options->scenes, "scene files (TOML)")->required();
-  command->add_option("--baseline", options->baseline, "the baseline (TOML)")
-      ->type_name("FILE")
-      ->required();
+  add_file(*command, "--baseline", options->baseline, "the baseline (TOML)")->required();
   command->add_flag("--update", options->update,
                     "write the baseline anew, of these scenes and no others");
-  command->add_option("--junit", options->junit, "write the verdicts as JUnit XML too")
-      ->type_name("FILE");
-  command->add_option("--model", options->model, "force or chain")
-      ->check(CLI::IsMember({"force", "chain"}))
-      ->capture_default_str();
+  add_file(*command, "--junit", options->junit, "write the verdicts as JUnit XML too");
+  add_checked(*command, "--model", options->model, CLI::IsMember({"force", "chain"}),
+              "force or chain");
   add_growth_options(*command, options->tolerance);
   command
       ->add_option("--tolerance", options->growth,

@@ -10,6 +10,7 @@
 #include "dlo/compare/solve.hpp"
 #include "format/json.hpp"
 #include "format/result_output.hpp"
+#include "option/option_values.hpp"
 #include "option/output.hpp"
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
@@ -178,11 +179,9 @@ void add_solve(CLI::App& app) {
           ->type_name("N")
           ->check(CLI::Range(1, 1000))
           ->excludes(all);
-  command
-      ->add_option("--near", options->near,
-                   "the equilibrium that a local search from the points of FILE leads to, in place "
-                   "of the lowest: a shape in metres, as check --shape reads it")
-      ->type_name("FILE")
+  add_file(*command, "--near", options->near,
+           "the equilibrium that a local search from the points of FILE leads to, in place of the "
+           "lowest: a shape in metres, as check --shape reads it")
       ->excludes(all)
       ->excludes(number);
   options->overrides.add_to(*command);

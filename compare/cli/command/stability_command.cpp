@@ -86,9 +86,7 @@ void add_case_options(CLI::App& command, StabilityOptions& options) {
   command.add_option("--stepper", options.steppers, "only these steppers")
       ->check(CLI::IsMember(compare::names<compare::Stepper>()));
   const auto add_steps = [&](const char* name, long& value, const char* words) {
-    command.add_option(name, value, words)
-        ->check(CLI::Range(1L, most_steps))
-        ->capture_default_str();
+    add_checked(command, name, value, CLI::Range(1L, most_steps), words);
   };
   add_steps("--max-steps", options.cases.max_steps, "of the paper's steppers and verlet");
   add_steps("--max-steps-auto", options.cases.max_steps_auto, "of steppers auto and implicit");
@@ -98,15 +96,11 @@ void add_case_options(CLI::App& command, StabilityOptions& options) {
 
 void add_map_options(CLI::App& command, StabilityOptions& options) {
   const OptionGroup group(command, "Map");
-  command.add_option("--columns", options.grid.columns, "values of c_c or c_h")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
-  command.add_option("--rows", options.grid.rows, "values of c_F")
-      ->check(CLI::Range(2, 1000))
-      ->capture_default_str();
-  command.add_option("--map-steps", options.grid.steps, "of each rod")
-      ->check(CLI::Range(1L, most_steps))
-      ->capture_default_str();
+  add_checked(command, "--columns", options.grid.columns, CLI::Range(1, 1000),
+              "values of c_c or c_h");
+  add_checked(command, "--rows", options.grid.rows, CLI::Range(2, 1000), "values of c_F");
+  add_checked(command, "--map-steps", options.grid.steps, CLI::Range(1L, most_steps),
+              "of each rod");
 }
 
 }  // namespace
@@ -122,9 +116,8 @@ void add_stability(CLI::App& app) {
           ->add_option("--map", options->map,
                        "cF-cc or cF-ch: where steps stop being stable, predicted and measured")
           ->check(CLI::IsMember({"cF-cc", "cF-ch"}));
-  command->add_option("--threads", options->threads, "at most; 0: as many as the machine has")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
+  add_checked(*command, "--threads", options->threads, CLI::Range(0, 1024),
+              "at most; 0: as many as the machine has");
   add_case_options(*command, *options);
   add_map_options(*command, *options);
   add_output_options(*command, options->output);

@@ -13,6 +13,7 @@
 #include "batch/sweep.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
+#include "option/option_values.hpp"
 #include "option/output.hpp"
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
@@ -188,24 +189,19 @@ void add_sweep(CLI::App& app) {
   const auto options = std::make_shared<SweepOptions>();
   command->add_option("FILE", options->files, "scene file (TOML)")->required();
   command
-      ->add_option("--vary", options->vary,
-                   "a field and its values, once for each field: a dotted path such as "
-                   "rod.length or gripper.0.direction, or gamma, which scales gravity; values "
-                   "a,b,c or lin:a:b:n or log:a:b:n, with units as in scene files. The last field "
-                   "changes fastest")
+      ->add_option(
+          "--vary", options->vary,
+          "a field and its values, once for each field: a dotted path such as rod.length or "
+          "gripper.0.direction, or gamma, which scales gravity; values a,b,c or lin:a:b:n or "
+          "log:a:b:n, with units as in scene files. The last field changes fastest")
       ->type_name("FIELD=VALUES")
       ->allow_extra_args(false);
-  command->add_option("--format", options->format, "csv")
-      ->check(CLI::IsMember({"csv"}))
-      ->capture_default_str();
-  command->add_option("--model", options->model, compare::meanings<compare::SweepModel>())
-      ->check(CLI::IsMember(compare::names<compare::SweepModel>()))
-      ->capture_default_str();
-  command->add_option("-o,--output", options->output, "write to FILE instead of standard output")
-      ->type_name("FILE");
-  command->add_option("--threads", options->threads, "0: all cores")
-      ->check(CLI::Range(0, 4096))
-      ->capture_default_str();
+  add_checked(*command, "--format", options->format, CLI::IsMember({"csv"}), "csv");
+  add_checked(*command, "--model", options->model,
+              CLI::IsMember(compare::names<compare::SweepModel>()),
+              compare::meanings<compare::SweepModel>());
+  add_file(*command, "-o,--output", options->output, "write to FILE instead of standard output");
+  add_checked(*command, "--threads", options->threads, CLI::Range(0, 4096), "0: all cores");
   command->add_option("--part", options->part, "compute only the rows I, I+N, I+2N, ..., from 1")
       ->type_name("I/N");
   options->plot.add_to(*command, "the results over one field, or over two,");

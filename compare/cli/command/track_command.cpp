@@ -36,9 +36,8 @@ void throw_if_stopped(const compare::Scene& scene, const std::optional<compare::
                       const char* what, std::size_t frames) {
   if (!stopped) return;
   throw compare::ConvergenceError(
-      fmt::format("{}:{} stopped at {:g} s: {} ({} frames before it "
-                  "are written)",
-                  scene.file, what, stopped->time, stopped->why, frames));
+      fmt::format("{}:{} stopped at {:g} s: {} ({} frames before it are written)", scene.file, what,
+                  stopped->time, stopped->why, frames));
 }
 
 void run(const TrackCommand& command) {
@@ -96,25 +95,17 @@ void add_track(CLI::App& app) {
   rate("--step-rate", options->request.step_rate,
        "steps of the force model a second, default [track] step_rate, or 30000");
   command->add_flag("--no-force", options->no_force, "leave the force model out");
-  CLI::Option* const dynamic = command->add_flag(
-      "--dynamic", options->dynamic,
-      "the rod with its inertia too, as its shapes at rest move at first; the force model against "
-      "it");
+  CLI::Option* const dynamic = command->add_flag("--dynamic", options->dynamic,
+                                                 "the rod with its inertia too, as its shapes at "
+                                                 "rest move at first; the force model against it");
   options->damping.add_to(*command, dynamic);
-  command->add_option("--samples", options->request.options.samples, "points of a frame's shape")
-      ->check(CLI::Range(2, 10000))
-      ->capture_default_str();
-  command
-      ->add_option("--every", options->frames.every,
-                   "write every so many-th frame to JSON, CSV and ParaView, and those of events")
-      ->check(CLI::Range(1, 100000000))
-      ->capture_default_str();
+  add_checked(*command, "--samples", options->request.options.samples, CLI::Range(2, 10000),
+              "points of a frame's shape");
+  add_checked(*command, "--every", options->frames.every, CLI::Range(1, 100000000),
+              "write every so many-th frame to JSON, CSV and ParaView, and those of events");
   command->add_flag("--shapes", options->frames.points, "in JSON the frames' points too");
-  command
-      ->add_option(
-          "--paraview", options->paraview,
-          "write FILE such as rod.vtk.series for ParaView, and rod_00000.vtk, .. beside it")
-      ->type_name("FILE");
+  add_file(*command, "--paraview", options->paraview,
+           "write FILE such as rod.vtk.series for ParaView, and rod_00000.vtk, .. beside it");
   options->overrides.add_moving_to(*command);
   options->plot.add_to(*command, "shapes over time and the grippers' forces");
   add_output_options(*command, options->output);

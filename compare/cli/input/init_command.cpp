@@ -12,6 +12,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/scene_file.hpp"
+#include "option/option_values.hpp"
 #include "option/output.hpp"
 #include "reading/new_scene.hpp"
 
@@ -139,18 +140,16 @@ void add_init(CLI::App& app) {
                    "vector such as \"[1, 0, 0]\"")
       ->type_name("ANGLE")
       ->capture_default_str();
-  command->add_option("--up", choices.up, "the axis against gravity, y or z")
-      ->check(CLI::IsMember({"y", "z"}))
-      ->capture_default_str();
-  command
-      ->add_option("--materials", options->materials, "materials file instead of the built-in one")
-      ->type_name("FILE");
+  add_checked(*command, "--up", choices.up, CLI::IsMember({"y", "z"}),
+              "the axis against gravity, y or z");
+  add_file(*command, "--materials", options->materials,
+           "materials file instead of the built-in one");
   command->add_flag("--force", options->force, "replace the file if it exists");
   command->footer(
       "Examples:\n"
       "  dlo init cable.toml --length \"2 m\" --diameter \"6 mm\" --material silicone\n"
-      "  dlo init hose --youngs-modulus \"5 MPa\" --density \"1100 kg/m^3\" --direction \"30 "
-      "deg\" --up z");
+      "  dlo init hose --youngs-modulus \"5 MPa\" --density \"1100 kg/m^3\" --direction \"30 deg\" "
+      "--up z");
   command->callback([options] { run(*options); });
 }
 

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <string_view>
+#include <utility>
 
 #include "dlo/compare/choice.hpp"
 #include "dlo/compare/error.hpp"
@@ -15,121 +18,99 @@ using Names = std::vector<std::string>;
 
 const std::string law_setting = "law";
 
-const Names force_options = {
-    "--parameters",       "--points", "--law", "--bookkeeping", "--stepper", "--bending-rule",
-    "--design-curvature", "--c-b",    "--c-c", "--c-F",         "--c-h",     "--l-s"};
-const Names step_limits = {"--max-steps", "--rest-tolerance"};
-const Names step_constants = {"--stepper", "--c-F", "--c-h", "--l-s"};
-const Names table_formats = {"csv", "toml"};
+/// Names for several options in the table.
+constexpr std::pair<std::string_view, std::string_view> option_groups[] = {
+    {"FORCE",
+     "--parameters --points --law --bookkeeping --stepper --bending-rule --design-curvature --c-b "
+     "--c-c --c-F --c-h --l-s"},
+    {"LIMITS", "--max-steps --rest-tolerance"},
+    {"CONSTANTS", "--stepper --c-F --c-h --l-s"}};
 
-Names joined(Names names, const Names& more) {
-  names.insert(names.end(), more.begin(), more.end());
-  return names;
+constexpr const char* fits_force = "a fit of the force model: no --shape, --motion, --segments";
+constexpr const char* writes_plan = "--explain, --format json";
+
+/// IneffectiveOptions as words that are separated by blanks.
+struct Row {
+  std::string_view command, options;
+  /// "--x": it is given; "!--x": it is not; "--x=a,b": it has one of these values.
+  std::string_view conditions;
+  std::string allowed;
+  NoEffect response = NoEffect::refused;
+};
+
+const Row table[] = {
+    {"", "--design-curvature --bending-rule", "law=hooke", "--law paper"},
+    {"calibrate", "--register --arc-lengths", "!--shape", "--shape FILE"},
+    {"calibrate", "--unit", "!--shape !--segments", "--shape FILE, --segments FILE"},
+    {"calibrate", "--unit", "!--shape --segments=N", "--shape FILE, --segments FILE"},
+    {"calibrate", "--segments", "--motion", "no --motion"},
+    {"calibrate", "FORCE LIMITS", "--shape", fits_force},
+    {"calibrate", "FORCE LIMITS", "--motion", fits_force},
+    {"calibrate", "FORCE LIMITS", "--segments", fits_force},
+    {"calibrate", "--bending-rule --c-F --c-h --l-s", "",
+     "other options of the force model; calibrate finds these"},
+    {"calibrate", "--format", "--format=csv --motion", "text, json, toml"},
+    {"calibrate", "--format", "--format=csv,toml --segments !--shape", "text, json"},
+    {"check", "--format", "--format=markdown --motion", "text, json, csv"},
+    {"compare", "--target-error", "!--explain --format=text,csv", writes_plan},
+    {"solve", "--format", "--format=csv,vtk --all", "text, json"},
+    {"solve", "--format", "--format=csv,vtk --explain", "text, json"},
+    {"solve", "--target-error", "--model=chain,force !--explain --format=text,csv,vtk",
+     std::string(writes_plan) + ", --model energy, exact"},
+    {"solve", "FORCE", "--model=energy,exact !--explain --format=text,csv,vtk",
+     std::string(writes_plan) + ", --model chain, force", NoEffect::stated},
+    {"solve", "LIMITS", "--model=energy,exact,chain", "--model force", NoEffect::stated},
+    {"solve", "--terms", "--model=exact,chain,force", "--model energy", NoEffect::stated},
+    {"solve", "CONSTANTS", "--model=chain", "--model force", NoEffect::stated},
+    {"regress", "CONSTANTS LIMITS", "--model=chain", "--model force"},
+    {"sweep", "LIMITS", "--model=energy,exact,chain,compare-chain", "--model force, compare"},
+    {"sweep", "--terms", "--model=exact,chain,force", "--model energy, compare, compare-chain"},
+    {"track", "FORCE LIMITS --step-rate", "--no-force", "no --no-force"},
+    {"track", "--shapes", "--format=text,csv", "--format json"},
+    {"track", "--every", "--format=text !--paraview", "--format json, csv, --paraview FILE"},
+    {"modes", "--samples", "--format=text,csv", "--format json"},
+    {"stability", "--case --stepper --max-steps --max-steps-auto --steps-at-rest", "--map",
+     "no --map"},
+    {"stability", "SCENE --columns --rows --map-steps", "!--map", "--map cF-cc, cF-ch"},
+    {"bench", "--time-limit", "!--with", "--with NAME=COMMAND"},
+    {"suite", "--points --time-limit --state --baseline --markdown --junit --report --output",
+     "!--with", "--with NAME=COMMAND"},
+    {"suite", "--relative --absolute", "!--baseline", "--baseline FILE"}};
+
+/// Returns the words of a text, each group replaced by its options.
+Names split_words(std::string_view text) {
+  Names words;
+  for (const std::string& word : CLI::detail::split(std::string(text), ' ')) {
+    const auto* const group =
+        std::ranges::find(option_groups, word, [](const auto& one) { return one.first; });
+    if (group == std::end(option_groups)) {
+      if (!word.empty()) words.push_back(word);
+      continue;
+    }
+    const Names options = split_words(group->second);
+    words.insert(words.end(), options.begin(), options.end());
+  }
+  return words;
 }
 
-OptionCondition if_given(const char* option) { return {option, {any_value}}; }
-OptionCondition if_absent(const char* option) { return {option, {}}; }
+OptionCondition condition_of(const std::string& word) {
+  if (word.front() == '!') return {word.substr(1), {}};
+  const std::size_t equals = word.find('=');
+  if (equals == std::string::npos) return {word, {any_value}};
+  return {word.substr(0, equals), CLI::detail::split(word.substr(equals + 1), ',')};
+}
 
-const Names of_force = joined(force_options, step_limits);
-constexpr const char* fits_force = "a fit of the force model: no --shape, --motion, --segments";
-const std::vector<IneffectiveOptions> ineffective = {
-    {"", {"--design-curvature", "--bending-rule"}, {{law_setting, {"hooke"}}}, "--law paper"},
-
-    {"calibrate", {"--register", "--arc-lengths"}, {if_absent("--shape")}, "--shape FILE"},
-    {"calibrate",
-     {"--unit"},
-     {if_absent("--shape"), if_absent("--segments")},
-     "--shape FILE, --segments FILE"},
-    {"calibrate",
-     {"--unit"},
-     {if_absent("--shape"), {"--segments", {whole_number}}},
-     "--shape FILE, --segments FILE"},
-    {"calibrate", {"--segments"}, {if_given("--motion")}, "no --motion"},
-    {"calibrate", of_force, {if_given("--shape")}, fits_force},
-    {"calibrate", of_force, {if_given("--motion")}, fits_force},
-    {"calibrate", of_force, {if_given("--segments")}, fits_force},
-    {"calibrate",
-     {"--bending-rule", "--c-F", "--c-h", "--l-s"},
-     {},
-     "other options of the force model; calibrate finds these"},
-    {"calibrate", {"--format"}, {{"--format", {"csv"}}, if_given("--motion")}, "text, json, toml"},
-    {"calibrate",
-     {"--format"},
-     {{"--format", table_formats}, if_given("--segments"), if_absent("--shape")},
-     "text, json"},
-
-    {"check", {"--format"}, {{"--format", {"markdown"}}, if_given("--motion")}, "text, json, csv"},
-
-    {"compare",
-     {"--target-error"},
-     {if_absent("--explain"), {"--format", {"text", "csv"}}},
-     "--explain, --format json"},
-
-    {"solve", {"--format"}, {{"--format", {"csv", "vtk"}}, if_given("--all")}, "text, json"},
-    {"solve", {"--format"}, {{"--format", {"csv", "vtk"}}, if_given("--explain")}, "text, json"},
-    {"solve",
-     {"--target-error"},
-     {{"--model", {"chain", "force"}},
-      if_absent("--explain"),
-      {"--format", {"text", "csv", "vtk"}}},
-     "--explain, --format json, --model energy, exact"},
-    {"solve",
-     force_options,
-     {{"--model", {"energy", "exact"}},
-      if_absent("--explain"),
-      {"--format", {"text", "csv", "vtk"}}},
-     "--explain, --format json, --model chain, force",
-     NoEffect::stated},
-    {"solve",
-     step_limits,
-     {{"--model", {"energy", "exact", "chain"}}},
-     "--model force",
-     NoEffect::stated},
-    {"solve",
-     {"--terms"},
-     {{"--model", {"exact", "chain", "force"}}},
-     "--model energy",
-     NoEffect::stated},
-    {"solve", step_constants, {{"--model", {"chain"}}}, "--model force", NoEffect::stated},
-
-    {"regress", joined(step_constants, step_limits), {{"--model", {"chain"}}}, "--model force"},
-
-    {"sweep",
-     step_limits,
-     {{"--model", {"energy", "exact", "chain", "compare-chain"}}},
-     "--model force, compare"},
-    {"sweep",
-     {"--terms"},
-     {{"--model", {"exact", "chain", "force"}}},
-     "--model energy, compare, compare-chain"},
-
-    {"track", joined(of_force, {"--step-rate"}), {if_given("--no-force")}, "no --no-force"},
-    {"track", {"--shapes"}, {{"--format", {"text", "csv"}}}, "--format json"},
-    {"track",
-     {"--every"},
-     {{"--format", {"text"}}, if_absent("--paraview")},
-     "--format json, csv, --paraview FILE"},
-
-    {"modes", {"--samples"}, {{"--format", {"text", "csv"}}}, "--format json"},
-
-    {"stability",
-     {"--case", "--stepper", "--max-steps", "--max-steps-auto", "--steps-at-rest"},
-     {if_given("--map")},
-     "no --map"},
-    {"stability",
-     {"SCENE", "--columns", "--rows", "--map-steps"},
-     {if_absent("--map")},
-     "--map cF-cc, cF-ch"},
-
-    {"bench", {"--time-limit"}, {if_absent("--with")}, "--with NAME=COMMAND"},
-
-    {"suite",
-     {"--points", "--time-limit", "--state", "--baseline", "--markdown", "--junit", "--report",
-      "--output"},
-     {if_absent("--with")},
-     "--with NAME=COMMAND"},
-    {"suite", {"--relative", "--absolute"}, {if_absent("--baseline")}, "--baseline FILE"},
-};
+std::vector<IneffectiveOptions> rows_of_table() {
+  std::vector<IneffectiveOptions> rows;
+  for (const Row& row : table) {
+    IneffectiveOptions& made = rows.emplace_back(IneffectiveOptions{
+        std::string(row.command), split_words(row.options), {}, row.allowed, row.response});
+    for (const std::string& word : split_words(row.conditions)) {
+      made.conditions.push_back(condition_of(word));
+    }
+  }
+  return rows;
+}
 
 /// Returns the value of an option or its default; for --format also the output file's extension.
 std::string value_of(const CLI::App& command, const std::string& name) {
@@ -190,10 +171,13 @@ bool is_of_scene(const IneffectiveOptions& row) {
 
 }  // namespace
 
-std::span<const IneffectiveOptions> ineffective_options() { return ineffective; }
+std::span<const IneffectiveOptions> ineffective_options() {
+  static const std::vector<IneffectiveOptions> rows = rows_of_table();
+  return rows;
+}
 
 void check_effects(const CLI::App& command, const compare::ForceModelSettings* settings) {
-  for (const IneffectiveOptions& row : ineffective) {
+  for (const IneffectiveOptions& row : ineffective_options()) {
     if (!row.command.empty() && row.command != command.get_name()) continue;
     // A notice is given only after the scene has been read, so that an error remains the only line.
     const bool at_scene = is_of_scene(row) || row.response == NoEffect::stated;

@@ -27,6 +27,20 @@ class OptionGroup {
 /// Returns a check for numbers in [low, high]. NaN and infinity are refused.
 [[nodiscard]] CLI::Validator number_between(double low, double high);
 
+/// Adds an option whose default is part of the help.
+template <typename Value>
+CLI::Option* add_checked(CLI::App& command, const std::string& name, Value& value,
+                         const CLI::Validator& check, const std::string& words) {
+  return command.add_option(name, value, words)->check(check)->capture_default_str();
+}
+
+/// Adds an option that names files.
+template <typename Value>
+CLI::Option* add_file(CLI::App& command, const std::string& name, Value& value,
+                      const std::string& words) {
+  return command.add_option(name, value, words)->type_name("FILE");
+}
+
 /// Makes all commands refuse empty values of options and arguments, which result from unset
 /// variables in scripts. Must be called after all options have been added.
 void refuse_empty_values(CLI::App& app);

@@ -11,6 +11,7 @@
 #include "base/temporary_path.hpp"
 #include "dlo/compare/error.hpp"
 #include "figure/gnuplot.hpp"
+#include "option/option_values.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -33,10 +34,8 @@ std::optional<compare::PictureFormat> format_of(const std::string& file) {
 }  // namespace
 
 CLI::Option* PlotOptions::add_to(CLI::App& command, const std::string& what) {
-  return command
-      .add_option("--plot", file_,
-                  "draw " + what + " into FILE.svg, FILE.png or FILE.pdf (by gnuplot)")
-      ->type_name("FILE");
+  return add_file(command, "--plot", file_,
+                  "draw " + what + " into FILE.svg, FILE.png or FILE.pdf (by gnuplot)");
 }
 
 void PlotOptions::require_drawable() const {
@@ -48,10 +47,8 @@ void PlotOptions::require_drawable() const {
                     file_));
   }
   if (compare::gnuplot_version(drawing_folder("--plot").path()).empty()) {
-    throw compare::InputError(
-        fmt::format("--plot {}: needs the program gnuplot, which is not found (Debian: "
-                    "gnuplot-nox)",
-                    file_));
+    throw compare::InputError(fmt::format(
+        "--plot {}: needs the program gnuplot, which is not found (Debian: gnuplot-nox)", file_));
   }
 }
 

@@ -87,14 +87,11 @@ void warn_of_polygons(const compare::Scene& scene) {
 
 void add_output_options(CLI::App& command, OutputOptions& options,
                         const std::vector<std::string>& formats) {
-  command.add_option("--format", options.format, fmt::format("{}", fmt::join(formats, ", ")))
-      ->check(CLI::IsMember(formats))
-      ->capture_default_str();
-  command
-      .add_option("-o,--output", options.file,
-                  "write to FILE instead of standard output; its extension is the format unless "
-                  "--format is given")
-      ->type_name("FILE");
+  add_checked(command, "--format", options.format, CLI::IsMember(formats),
+              fmt::format("{}", fmt::join(formats, ", ")));
+  add_file(command, "-o,--output", options.file,
+           "write to FILE instead of standard output; its extension is the format unless --format "
+           "is given");
   take_format_of_file(command, options, formats);
 }
 
@@ -148,10 +145,8 @@ void SceneOptions::add_settings_to(CLI::App& command) {
 void SceneOptions::add_force_model_to(CLI::App& command) {
   const OptionGroup group(command, force_model_group);
   command_ = &command;
-  command
-      .add_option("--parameters", parameters_,
-                  "[force_model] of a file such as dlo calibrate writes, instead of the scene's")
-      ->type_name("FILE");
+  add_file(command, "--parameters", parameters_,
+           "[force_model] of a file such as dlo calibrate writes, instead of the scene's");
   command.add_option("--points", points_, "N")->check(CLI::Range(4, 1000000));
   const auto add = [this, &command](const char* name, const std::string& words, const auto& set) {
     return command.add_option_function<std::string>(
@@ -192,37 +187,24 @@ void SceneOptions::add_solvers_to(CLI::App& command, Steps steps) {
   const OptionGroup group(command, solvers_group);
   command.add_option("--terms", solve_.terms, "curvature terms of the energy model, 0: as needed")
       ->check(CLI::Range(0, 128));
-  command.add_option("--max-evaluations", solve_.max_evaluations, "of the minimisers")
-      ->check(CLI::Range(1, 1000000000))
-      ->capture_default_str();
-  command
-      .add_option(
-          "--time-limit", solve_.time_limit,
-          "of each solve [s]; if given, of the whole command too (not of sweep and regress)")
-      ->check(number_between(1e-3, 1e9))
-      ->capture_default_str();
+  add_checked(command, "--max-evaluations", solve_.max_evaluations, CLI::Range(1, 1000000000),
+              "of the minimisers");
+  add_checked(command, "--time-limit", solve_.time_limit, number_between(1e-3, 1e9),
+              "of each solve [s]; if given, of the whole command too (not of sweep and regress)");
   add_materials_to(command);
   if (steps == Steps::none) return;
-  command.add_option("--max-steps", solve_.max_steps, "of the force model")
-      ->check(CLI::Range(1L, 1000000000000L))
-      ->capture_default_str();
-  command
-      .add_option("--rest-tolerance", solve_.rest_tolerance,
-                  "distance from rest at which the force model stops, share of the length")
-      ->check(number_between(1e-12, 1e-1))
-      ->capture_default_str();
+  add_checked(command, "--max-steps", solve_.max_steps, CLI::Range(1L, 1000000000000L),
+              "of the force model");
+  add_checked(command, "--rest-tolerance", solve_.rest_tolerance, number_between(1e-12, 1e-1),
+              "distance from rest at which the force model stops, share of the length");
 }
 
 void SceneOptions::add_materials_to(CLI::App& command) {
   const OptionGroup group(command, solvers_group);
-  command.add_option("--materials", materials_, "materials file instead of the built-in one")
-      ->type_name("FILE");
-  command
-      .add_option(
-          "--calibrated", calibrated_,
-          "what dlo calibrate -o FILE.toml wrote: its rod, how its clamps are held, and its "
-          "damping in motion, in the place of the scene's")
-      ->type_name("FILE");
+  add_file(command, "--materials", materials_, "materials file instead of the built-in one");
+  add_file(command, "--calibrated", calibrated_,
+           "what dlo calibrate -o FILE.toml wrote: its rod, how its clamps are held, and its "
+           "damping in motion, in the place of the scene's");
 }
 
 void SceneOptions::apply(compare::Scene& scene) const {
@@ -248,10 +230,10 @@ compare::Scene SceneOptions::load(const std::string& path) const {
   apply(scene);
   if (!time_) return scene;
   if (!compare::motion_of(scene)) {
-    throw InputError(fmt::format(
-        "{}: --time {:g}: nothing moves (allowed: no --time, or a scene with [[gripper.pose]] or "
-        "[[obstacle.pose]])",
-        scene.file, *time_));
+    throw InputError(
+        fmt::format("{}: --time {:g}: nothing moves (allowed: no --time, or a scene with "
+                    "[[gripper.pose]] or [[obstacle.pose]])",
+                    scene.file, *time_));
   }
   return compare::scene_at(scene, *time_);
 }

@@ -16,26 +16,20 @@ void ShapeOptions::add_to(CLI::App& command, ChordLengths chord) {
     std::erase(rules, compare::to_string(compare::ArcLengths::chord));
   }
   const std::vector<std::string> units = compare::unit_names(compare::Dimension::length);
-  command.add_option("--unit", unit_, "what the numbers are in: " + compare::one_of(units))
-      ->check(CLI::IsMember(units))
-      ->capture_default_str();
+  add_checked(command, "--unit", unit_, CLI::IsMember(units),
+              "what the numbers are in: " + compare::one_of(units));
   command
-      .add_flag(
-          "--register{rigid}", pose_,
-          "the file's frame is unknown: find it. --register=upright if its vertical is known, "
-          "--register=translation if all directions are")
+      .add_flag("--register{rigid}", pose_,
+                "the file's frame is unknown: find it. --register=upright if its vertical is "
+                "known, --register=translation if all directions are")
       ->check(CLI::IsMember(compare::names<compare::PoseFreedom>()));
-  command
-      .add_option(
-          "--arc-lengths", arc_lengths_,
-          chord == ChordLengths::offered
-              ? "of the points: file (its column s), nearest (points of the reference), chord "
-                "(lengths along the polyline of a whole rod) or auto: file if there is a column s, "
-                "else nearest"
-              : "of the points: file (its column s), nearest (points of the rod) or auto: file if "
-                "there is a column s, else nearest")
-      ->check(CLI::IsMember(rules))
-      ->capture_default_str();
+  add_checked(
+      command, "--arc-lengths", arc_lengths_, CLI::IsMember(rules),
+      chord == ChordLengths::offered
+          ? "of the points: file (its column s), nearest (points of the reference), chord (lengths "
+            "along the polyline of a whole rod) or auto: file if there is a column s, else nearest"
+          : "of the points: file (its column s), nearest (points of the rod) or auto: file if "
+            "there is a column s, else nearest");
 }
 
 compare::MeasuredShape ShapeOptions::load(const std::string& path) const {

@@ -53,17 +53,17 @@ double tolerance_m(const std::string& name, const std::string& text, double leng
     try {
       value = text.ends_with('%') ? 0 : compare::parse_quantity(text, compare::Dimension::length);
     } catch (const compare::InputError&) {
-      throw compare::InputError(fmt::format(
-          "{} = {}: neither a share of the length nor a length (allowed: such as 1%, 0.01, "
-          "\"5% of deflection\" or \"2 mm\")",
-          name, text));
+      throw compare::InputError(
+          fmt::format("{} = {}: neither a share of the length nor a length (allowed: such as 1%, "
+                      "0.01, \"5% of deflection\" or \"2 mm\")",
+                      name, text));
     }
     if (value > 0) return value;
   }
-  throw compare::InputError(fmt::format(
-      "{} = {}: out of range (allowed: above 0, a share of the length below 1, a length "
-      "with its unit)",
-      name, text));
+  throw compare::InputError(
+      fmt::format("{} = {}: out of range (allowed: above 0, a share of the length below 1, a "
+                  "length with its unit)",
+                  name, text));
 }
 
 }  // namespace
@@ -87,10 +87,10 @@ std::optional<double> deflection_share(const std::string& name, const std::strin
   } catch (const compare::InputError&) {
     // The error is thrown below, as for a fraction that is out of range.
   }
-  throw compare::InputError(fmt::format(
-      "{} = {}: no share of the deflection (allowed: such as \"5% of deflection\", above 0, below "
-      "100%)",
-      name, text));
+  throw compare::InputError(
+      fmt::format("{} = {}: no share of the deflection (allowed: such as \"5% of deflection\", "
+                  "above 0, below 100%)",
+                  name, text));
 }
 
 void set_growth(const std::string& name, const std::string& text,

@@ -121,51 +121,38 @@ void add_suite(CLI::App& app) {
   command
       ->add_option(
           "--with", options->simulators,
-          "a simulator to make the card of: NAME=COMMAND with {scene}, {points} and "
-          "{shape}, or our own chain, force, chain_paper or force_paper (law paper); may be "
-          "given again")
+          "a simulator to make the card of: NAME=COMMAND with {scene}, {points} and {shape}, or "
+          "our own chain, force, chain_paper or force_paper (law paper); may be given again")
       ->type_name("NAME=COMMAND")
       ->allow_extra_args(false);
   command->add_option("--scenes", options->scenes, "classes, or names of scenes; none: all")
       ->type_name("CLASS,..")
       ->delimiter(',');
-  command
-      ->add_option("--points", options->card.points,
-                   "N of the first of three runs; the others have 2N and 4N")
-      ->check(CLI::Range(4, 10000))
-      ->capture_default_str();
-  command->add_option("--jobs", options->card.threads, "runs at a time; 0: as many as cores")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
-  command->add_option("--time-limit", options->card.time_limit, "of each run of a simulator [s]")
-      ->check(number_between(1e-3, 1e9))
-      ->capture_default_str();
+  add_checked(*command, "--points", options->card.points, CLI::Range(4, 10000),
+              "N of the first of three runs; the others have 2N and 4N");
+  add_checked(*command, "--jobs", options->card.threads, CLI::Range(0, 1024),
+              "runs at a time; 0: as many as cores");
+  add_checked(*command, "--time-limit", options->card.time_limit, number_between(1e-3, 1e9),
+              "of each run of a simulator [s]");
   command
       ->add_option("--state", options->card.state,
                    "keep finished runs here; they are not run again")
       ->type_name("DIR");
-  command
-      ->add_option("--baseline", options->baseline,
-                   "a baseline as that of regress (TOML); exit status 1 if an error is worse")
-      ->type_name("FILE");
+  add_file(*command, "--baseline", options->baseline,
+           "a baseline as that of regress (TOML); exit status 1 if an error is worse");
   command->add_flag("--update", options->update,
                     "write the errors of these scenes and simulators into the baseline");
   add_growth_options(*command, options->tolerance);
-  command->add_option("--markdown", options->markdown, "write the cards as Markdown too")
-      ->type_name("FILE");
-  command->add_option("--junit", options->junit, "and as JUnit XML")->type_name("FILE");
-  command
-      ->add_option("--report", options->report,
-                   "and as a page, FILE.html: verdict, causes, picture and numbers")
-      ->type_name("FILE");
+  add_file(*command, "--markdown", options->markdown, "write the cards as Markdown too");
+  add_file(*command, "--junit", options->junit, "and as JUnit XML");
+  add_file(*command, "--report", options->report,
+           "and as a page, FILE.html: verdict, causes, picture and numbers");
   command
       ->add_option("--write", options->pack,
                    "write the answers as a pack: JSON with a schema, and points as CSV and VTU")
       ->type_name("DIR");
-  command
-      ->add_option("--battery", options->battery,
-                   "a battery of your own (TOML), as data/suite/suite.toml is")
-      ->type_name("FILE");
+  add_file(*command, "--battery", options->battery,
+           "a battery of your own (TOML), as data/suite/suite.toml is");
   add_output_options(*command, options->output, {"text", "json"});
   command->footer(
       "Examples:\n"
