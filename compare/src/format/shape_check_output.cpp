@@ -12,40 +12,6 @@
 namespace dlo::cli {
 namespace {
 
-const char* rule_text(compare::ArcLengths rule) {
-  switch (rule) {
-    case compare::ArcLengths::file:
-      return "the file's own";
-    case compare::ArcLengths::chord:
-      return "chord lengths of the whole rod";
-    case compare::ArcLengths::nearest:
-    case compare::ArcLengths::automatic:
-      break;
-  }
-  return "nearest points, so differences along the rod do not show";
-}
-
-/// Adds what was derived from a simulator's model.
-void add_model(std::string& out, const compare::Scene& scene) {
-  const compare::ModelChain& model = *scene.model;
-  const Eigen::Vector3d& g = scene.gravity;
-  append(out,
-         "  model           {}: {} segments of {:.4g} m, l = {:.4g} m\n"
-         "                  mass {:.4g} kg, EI = {:.4g} N m^2, ",
-         compare::display(model.words), model.segments,
-         scene.length / static_cast<double>(model.segments), scene.length, scene.mass(),
-         scene.bending_stiffness());
-  if (scene.torsional_stiffness) append(out, "GJ = {:.4g} N m^2, ", *scene.torsional_stiffness);
-  append(out, "gravity [{:g}, {:g}, {:g}] m/s^2\n", g.x(), g.y(), g.z());
-  for (const compare::Gripper& gripper : scene.grippers) {
-    append(out, "                  {} at s = {:.4g} m\n", gripper.direction ? "clamp" : "pin",
-           gripper.at);
-  }
-  for (const std::string& note : model.notes) {
-    append(out, "                  ({})\n", compare::display(note));
-  }
-}
-
 /// Returns what was derived from a simulator's model, for other programs.
 Json model_json(const compare::Scene& scene) {
   return {{"made_from", scene.model->words},
@@ -68,60 +34,6 @@ std::string markdown(const std::string& text) {
   return out;
 }
 
-/// Adds the part of the rod that the file shows.
-void add_seen(std::string& out, const compare::CheckResult& report, const std::string& unit_hint) {
-  const compare::ShapeCheck& c = report.check;
-  const std::vector<double>& s = c.reference.arc_length;
-  append(out, "  shape           {}: {} points, {}\n", compare::display(c.file), s.size(),
-         range_text(c.alignment, report.scene.length));
-  for (const std::string& note : report.notes) {
-    append(out, "                  ({})\n", compare::display(note));
-  }
-  if (!c.direction_is_clear) append(out, "                  (the other direction fits as well)\n");
-  append(out, "  arc lengths     {}\n", rule_text(c.alignment.arc_lengths));
-  append(out,
-         "  seen            s = {:.4g} to {:.4g} m, {:.4g} % of l; polyline {:.4g} m; largest gap "
-         "{:.4g} m at s = {:.4g} m\n",
-         s.front(), s.back(), c.seen_share * 100, c.polyline_length_m, c.largest_gap_m,
-         c.largest_gap_at_m);
-  const std::string hint = c.hint.empty() ? unit_hint : c.hint;
-  if (!hint.empty()) append(out, "                  ({})\n", hint);
-}
-
-void add_frame(std::string& out, const compare::CheckResult& report) {
-  if (report.pose == compare::PoseFreedom::known) {
-    append(out, "  frame           the scene's\n");
-    return;
-  }
-  append(out, "  frame           found ({}): {}\n", compare::to_string(report.pose),
-         pose_text(report.check.alignment.pose, report.scene.length));
-  if (!report.check.turn_is_clear) {
-    append(out,
-           "                  (the rotation about the rod's own line is not identifiable from "
-           "these points)\n");
-  }
-}
-
-void add_deviation(std::string& out, const compare::ShapeCheck& c, double length) {
-  const compare::Deviation& d = c.deviation;
-  add_largest_and_rms(out, d);
-  const Eigen::Vector3d at = shown(c.worst_position, length);
-  append(out, " (point {} of the file, at [{:.4g}, {:.4g}, {:.4g}] m)\n", c.worst_point, at.x(),
-         at.y(), at.z());
-  if (std::isfinite(d.tip_m)) append(out, "                  tip {:.4g} mm\n", d.tip_m * 1e3);
-  if (c.whole_rms_m > d.rms_m * (1 + 1e-6)) {
-    append(out,
-           "                  as the whole rod RMS {:.4g} mm, largest {:.4g} mm: what is missing "
-           "counts with its distance from the outermost point\n",
-           c.whole_rms_m * 1e3, c.whole_max_m * 1e3);
-  }
-  if (std::isfinite(d.angle_rms_rad)) add_angle_and_curvature(out, d);
-  if (std::isfinite(c.movement_m)) {
-    append(out, "  movement        the rod is {:.4g} mm = {:.4g} % of l away from straight (RMS)\n",
-           c.movement_m * 1e3, c.movement_m / length * 100);
-  }
-}
-
 void add_explanations(std::string& out, const compare::CheckResult& report) {
   constexpr std::size_t most_explanations = 3;
   for (std::size_t i = 0; i < std::min(most_explanations, report.explanations.size()); ++i) {
@@ -134,37 +46,6 @@ void add_explanations(std::string& out, const compare::CheckResult& report) {
 }
 
 }  // namespace
-
-std::string shape_check_text(const CheckPage& page) {
-  const compare::CheckResult& report = page.result;
-  const compare::ShapeCheck& c = report.check;
-  const compare::Scene& scene = report.scene;
-  std::string out;
-  append(out, "{}   Gamma = {:.4g}\n", compare::display(c.scene), c.gamma);
-  if (scene.model) add_model(out, scene);
-  add_seen(out, report, page.unit_hint);
-  add_frame(out, report);
-  add_deviation(out, c, scene.length);
-  if (report.supersedes_modulus) {
-    append(out,
-           "  {:<15} no measure of the material: what explains the shape comes nearer than any "
-           "stiffness, which leaves {:.4g} mm (RMS)\n",
-           fmt::format("{0}*/{0}", c.stiffness.name), c.effective_modulus.rms_m * 1e3);
-  } else {
-    add_modulus(out, c.effective_modulus, NAN, c.stiffness, c.modulus);
-  }
-  add_state(out, c.state, scene.length, "the shape");
-  if (compare::friction_in_reach(scene)) {
-    append(out, "  neglected       friction that the scene has: all above is without it\n");
-  }
-  add_explanations(out, report);
-  append(out, "  verdict         {}: {}\n",
-         page.verdict.empty() ? compare::to_string(report.judgement.verdict) : page.verdict,
-         report.judgement.reason);
-  const std::string both = compare::other_stiffness_within(report);
-  if (!both.empty()) append(out, "                  ({})\n", both);
-  return out;
-}
 
 Json shape_check_json(const compare::CheckResult& report) {
   const compare::ShapeCheck& c = report.check;
@@ -224,6 +105,45 @@ Json shape_check_json(const compare::CheckResult& report) {
   result["points_m"] = points_json(c.alignment.shape.points);
   result["reference_points_m"] = points_json(c.reference.points);
   return result;
+}
+
+std::string shape_check_text(const CheckPage& page) {
+  const compare::CheckResult& report = page.result;
+  const compare::ShapeCheck& c = report.check;
+  std::string out = fmt::format(
+      "{}: {}\n",
+      page.verdict.empty() ? compare::to_string(report.judgement.verdict) : page.verdict,
+      report.judgement.reason);
+  const std::string both = compare::other_stiffness_within(report);
+  if (!both.empty()) append(out, "  ({})\n", both);
+  add_largest_and_rms(out, c.deviation);
+  const Eigen::Vector3d at = shown(c.worst_position, report.scene.length);
+  append(out, " (point {} of the file, at [{:.4g}, {:.4g}, {:.4g}] m)\n", c.worst_point, at.x(),
+         at.y(), at.z());
+  if (report.supersedes_modulus) {
+    append(out,
+           "  {:<15} not meaningful: the best stiffness leaves {:.4g} mm (RMS), the best cause "
+           "{:.4g} mm\n",
+           fmt::format("{0}*/{0}", c.stiffness.name), c.effective_modulus.rms_m * 1e3,
+           report.supersedes_modulus->rms_m * 1e3);
+  } else {
+    add_modulus(out, c.effective_modulus, NAN, c.stiffness, c.modulus);
+  }
+  add_explanations(out, report);
+  const std::string hint = c.hint.empty() ? page.unit_hint : c.hint;
+  if (!hint.empty()) append(out, "  hint            {}\n", hint);
+  if (report.pose != compare::PoseFreedom::known) {
+    append(out, "  frame           found ({}): {}\n", compare::to_string(report.pose),
+           pose_text(c.alignment.pose, report.scene.length));
+  }
+  const Json document = shape_check_json(report);
+  compare::Document details{.json = Json::object(), .large = compare::magnitudes(report.scene)};
+  for (const char* key :
+       {"scene", "shape", "points", "model", "notes", "arc_lengths", "direction_is_clear",
+        "turn_is_clear", "seen", "deviation", "movement_m", "state", "neglected"}) {
+    if (document.contains(key)) details.json[key] = document.at(key);
+  }
+  return out + "\n" + details.text();
 }
 
 std::string shape_check_markdown(const compare::CheckResult& report) {

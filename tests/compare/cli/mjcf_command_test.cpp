@@ -108,4 +108,72 @@ TEST_F(MjcfCommand, AModelWithAnotherSpringFailsWithTheCause) {
   EXPECT_TRUE(says(result.out, {"springs of 0.5"}));
 }
 
+TEST_F(MjcfCommand, TheModelIsToldWithItsNumbers) {
+  const Outcome result =
+      run(words({"check", model("composite.xml"), "--shape", starts("composite.xml")}));
+  EXPECT_TRUE(
+      says(result.out, {"MJCF, a composite cable\n", " 20\n", " 0.06397 kg\n", " 0.02413 N m^2\n",
+                        " 0.0185 N m^2\n", "its 20 points are where the segments begin"}));
+}
+
+TEST_F(MjcfCommand, OtherCommandsTakeModelsToo) {
+  const std::string solved = said("solve " + model("chain.xml") + " --format json");
+  EXPECT_EQ(json::parse(solved).at("scene"), "chain of 20 bodies");
+  succeeds("scene " + model("two_constraints.xml"));
+}
+
+/// A text with some piece of it gone, doubled, exchanged or of another character.
+std::string mutated(std::string text, std::mt19937& random) {
+  const auto below = [&random](std::size_t most) {
+    return std::uniform_int_distribution<std::size_t>(0, most - 1)(random);
+  };
+  const std::size_t at = below(text.size());
+  const std::size_t length = std::min(text.size() - at, 1 + below(40));
+  switch (below(5)) {
+    case 0:
+      text.erase(at, length);
+      break;
+    case 1:
+      text.insert(at, text.substr(at, length));
+      break;
+    case 2:
+      text[at] = static_cast<char>(below(256));
+      break;
+    case 3: {
+      constexpr const char* hostile[] = {"nan", "-1e999", "<body>", "\"", "&x;", "]]>", "<!--"};
+      text.insert(at, hostile[below(std::size(hostile))]);
+      break;
+    }
+    default:
+      text.resize(at);
+  }
+  return text;
+}
+
+TEST_F(MjcfCommand, FiftyMalformedModelsEndInOneLine) {
+  std::mt19937 random(20260101);  // NOLINT(cert-msc32-c, cert-msc51-cpp): the same every time
+  std::ofstream(path("two.csv")) << "0,0\n1,0\n";
+  int refused = 0;
+  for (int i = 0; refused < 50 && i < 1000; ++i) {
+    const std::string text =
+        mutated(model_text(models[static_cast<std::size_t>(i) % models.size()]), random);
+    try {
+      (void)dlo::compare::parse_scene(text, "a.xml");
+      continue;  // such as a mutated remark
+    } catch (const std::exception&) {
+      ++refused;
+    }
+    std::ofstream(path("mutated.xml"), std::ios::binary) << text;
+    for (const std::string& command :
+         {"check --shape " + path("two.csv") + " ", std::string("solve ")}) {
+      const Outcome result = run(command + path("mutated.xml"));
+      EXPECT_EQ(result.status, 2) << text;
+      EXPECT_EQ(result.out, "");
+      EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+      EXPECT_TRUE(says(result.err, {"mutated.xml"}));
+    }
+  }
+  EXPECT_EQ(refused, 50);
+}
+
 }  // namespace

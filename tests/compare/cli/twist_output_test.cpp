@@ -53,29 +53,6 @@ TEST(TwistOutput, TextHasALineForEachPart) {
                           "\ntwist      -0.5 rad, torque -0.25 Nm from s = 0.4 to 1 m\n"}));
 }
 
-TEST(TwistOutput, APlanTellsWhoTwistsWhat) {
-  const Scene scene = twisted_by_two_grippers();
-  const auto expect_line = [&](const Plan& plan, const std::string& line) {
-    const std::string text = dlo::cli::plan_text(plan, scene);
-    EXPECT_TRUE(says(text, {"\n  twist           " + line + "\n"})) << line;
-  };
-  Plan plan;
-  EXPECT_TRUE(says_none(dlo::cli::plan_text(plan, scene), {"twist"}));
-  plan.frame_held = true;
-  expect_line(plan, "no: one gripper alone holds the frame, and the rod turns with it");
-  plan.twist = {{.begin = 0, .end = 0.4, .turn = pi}, {.begin = 0.4, .end = 1, .turn = 1e-15}};
-  expect_line(plan, "yes: the grippers turn it by 180 degrees from 0 to 0.4 m");
-  expect_line(plan, "no: the grippers hold 0.4 to 1 m without a turn");
-  plan.twist[0].twist = pi / 2;
-  expect_line(plan,
-              "yes: the grippers turn it by 180 degrees from 0 to 0.4 m; 90 degrees stay as twist");
-  plan.twist[0].turn = NAN;
-  expect_line(plan,
-              "yes: the grippers' directors turn it from 0 to 0.4 m; 90 degrees stay as twist");
-  EXPECT_TRUE(
-      json::parse(json(dlo::cli::plan_json(plan)).dump()).at("twist")[0].at("turn_rad").is_null());
-}
-
 /// The command on the scene that comes with it.
 class TwistCommand : public dlo::test::Command {
  protected:
@@ -138,6 +115,14 @@ TEST_F(TwistCommand, AComparisonSaysThatTheForceModelHasNone) {
   const json hooke = json_of("compare --no-modulus " + wire());
   EXPECT_FALSE(hooke.at("cases")[0].contains("neglected"));
   EXPECT_FALSE(hooke.at("cases")[0].at("budget").contains("twist_m"));
+}
+
+TEST_F(TwistCommand, ExplainTellsTheAngle) {
+  const std::string text = said("solve --explain " + wire());
+  EXPECT_TRUE(
+      says(text,
+           {"\ntwist\n  from [m]  to [m]  turn [rad]  twist [rad]\n         0     0.5       3.142 ",
+            "distance from the lowest shape without it", "spatial"}));
 }
 
 TEST_F(TwistCommand, TheEnergyModelGivesTorqueAndEnergyOfTheTwist) {
