@@ -96,12 +96,13 @@ void run_chains(const CalibrateOptions& options, bool format_is_given) {
         "--segments: no scene's rod is like a plain chain of hinges (allowed: one section, "
         "intrinsically straight, not twisted, touching nothing)");
   }
-  write_calibration(options.output, format_is_given,
-                    {.text = [&] { return chains_text(chains); },
-                     .json =
-                         [&] {
-                           return json_text(Json{{"chains", chains_json(chains)}});
-                         }});
+  const compare::Document document{
+      .json = {{"chains", chains_json(chains)}},
+      .columns = {
+          {"chains/#/joints", "at_m,joint_stiffness_Nm_per_rad,binormal_stiffness_Nm_per_rad"}}};
+  write_calibration(
+      options.output, format_is_given,
+      {.text = [&] { return document.text(); }, .json = [&] { return json_text(document.json); }});
 }
 
 void run_motion(const CalibrateOptions& options, bool format_is_given) {
@@ -153,10 +154,9 @@ void run_force_model(const CalibrateOptions& options, bool points_are_given, boo
 }  // namespace
 
 void add_calibrate(CLI::App& app) {
-  CLI::App* command = app.add_subcommand(
-      "calibrate",
-      "parameters of the force model from physics, or Young's modulus from measured shapes or a "
-      "recorded motion");
+  CLI::App* command = app.add_subcommand("calibrate",
+                                         "parameters of the force model from physics, or Young's "
+                                         "modulus from measured shapes or a recorded motion");
   const auto options = std::make_shared<CalibrateOptions>();
   options->add_to(*command);
   command->footer(

@@ -40,7 +40,6 @@ struct ShownValue {
 [[nodiscard]] std::string option_words(const compare::FitAlternative& alternative);
 
 /// Returns the joints of the chains that come nearest to a rod.
-[[nodiscard]] std::string chains_text(const std::vector<compare::ChainSprings>& chains);
 [[nodiscard]] compare::Json chains_json(const std::vector<compare::ChainSprings>& chains);
 
 /// Returns the results for --calibrated. If the rod is given by E, it is also a materials file with

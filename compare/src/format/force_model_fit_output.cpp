@@ -29,57 +29,6 @@ const char* c_c_origin(const ForceModelFit& fit) {
 
 }  // namespace
 
-std::string force_model_text(const ForceModelFit& fit, bool target_was_given) {
-  const compare::ForceModelSettings& s = fit.settings;
-  std::string out;
-  append(out, "law {}, bookkeeping {}, N = {}", compare::to_string(s.law),
-         compare::to_string(s.bookkeeping), s.points);
-  if (fit.order > 0) {
-    append(out, " (for a target of {:.3g} % of l; order of convergence {:.2f})", fit.target * 100,
-           fit.order);
-  }
-  append(out, "\n");
-  if (s.c_b && fit.c_b_was_given) {
-    append(out, "  c_b   {:.6g} N   as given\n", *s.c_b);
-  } else if (s.c_b) {
-    append(out, "  c_b   {:.6g} N   fitted to {} scene{}\n", *s.c_b,
-           fit.scenes.size() - fit.holdouts, fit.scenes.size() - fit.holdouts == 1 ? "" : "s");
-  } else {
-    append(out, "  EI    {:.6g} N m^2   physical, in place of c_b\n", fit.bending_stiffness);
-  }
-  append(out, "  c_c   {:.6g} N   {}\n", *s.c_c, c_c_origin(fit));
-  if (s.c_F) {
-    append(out, "  c_F   {:.6g} m/N   with stepper {}\n  c_h   {:.8f}\n  l_s   {:.6g} m\n\n",
-           *s.c_F, compare::to_string(s.stepper), *s.c_h, *s.l_s);
-  } else {
-    append(out, "  stepper {}, which has no parameters\n\n", compare::to_string(s.stepper));
-  }
-  append(out, "RMS deviation from the energy model, share of l\n");
-  append(out, "  {:<28} {:>8}", "", "Gamma");
-  for (const RuleDeviations& rule : fit.rules) {
-    append(out, " {:>15}", compare::to_string(rule.rule));
-  }
-  append(out, " {:>15} {:>9}\n", "stepped", "steps");
-  for (std::size_t i = 0; i < fit.scenes.size(); ++i) {
-    const std::string name = compare::display(fit.scenes[i].substr(0, 26));
-    append(out, "  {:<28} {:8.4g}", is_holdout(fit, i) ? name + " *" : name, fit.gammas[i]);
-    for (const RuleDeviations& rule : fit.rules) {
-      append(out, " {:>15}", percent(rule.rms_over_length[i]));
-    }
-    append(out, " {:>15} {:9}\n", percent(fit.stepped_rms_over_length[i]), fit.steps[i]);
-  }
-  append(out, "  ({}: rigid segments, no stretch; stepped: the force model itself, with stretch)\n",
-         s.law == compare::BendingLaw::hooke ? "physical" : "rules for c_b");
-  if (fit.holdouts > 0) append(out, "  (* held out: judged, not fitted)\n");
-  append(out, "\nworst {}", percent(fit.worst()));
-  if (fit.holdouts > 0) append(out, ", of the hold-out scenes {}", percent(fit.worst_holdout()));
-  append(out, ": the {} of {} is {}\n", target_was_given ? "target" : "default target",
-         percent(fit.target), fit.reached() ? "reached" : "not reached");
-  for (const std::string& reason : fit.why_missed())
-    append(out, "  {}\n", compare::wrap(reason, 2, 100));
-  return out;
-}
-
 std::string force_model_csv(const ForceModelFit& fit) {
   compare::CsvTable table(
       "scene,gamma,holdout,law=parameters/law,bookkeeping=parameters/bookkeeping,"
@@ -135,6 +84,26 @@ Json force_model_json(const ForceModelFit& fit) {
             {"worst_holdout_rms_over_length",
              fit.holdouts > 0 ? Json(fit.worst_holdout()) : Json(nullptr)}}},
           {"scenes", std::move(scenes)}};
+}
+
+std::string force_model_text(const ForceModelFit& fit, bool target_was_given) {
+  std::string out = fmt::format("worst {}", percent(fit.worst()));
+  if (fit.holdouts > 0) append(out, ", of the hold-out scenes {}", percent(fit.worst_holdout()));
+  append(out, " of l (RMS): the {} of {} is {}\n", target_was_given ? "target" : "default target",
+         percent(fit.target), fit.reached() ? "reached" : "not reached");
+  for (const std::string& reason : fit.why_missed()) {
+    append(out, "  {}\n", compare::wrap(reason, 2, 100));
+  }
+  append(out, "  c_c: {}\n\n", c_c_origin(fit));
+  compare::Document details{.json = force_model_json(fit)};
+  for (const char* key : {"target", "reached", "why_missed", "deviation"}) details.json.erase(key);
+  std::string& columns = details.columns["scenes"];
+  columns = "scene,gamma,holdout";
+  for (const RuleDeviations& rule : fit.rules) {
+    append(columns, ",{0}_over_length=rules/{0}/rms_over_length", compare::to_string(rule.rule));
+  }
+  columns += ",stepped_over_length=rms_over_length,steps";
+  return out + details.text();
 }
 
 std::string force_model_toml(const ForceModelFit& fit) {

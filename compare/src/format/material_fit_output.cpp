@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string_view>
 
 #include "base/text.hpp"
@@ -20,74 +19,6 @@ std::string value_text(const FittedValue& value, const char* unit) {
   if (!value.low && !value.high) return "not identified";
   if (!value.value) return "not identified, " + interval;
   return fmt::format("{:.5g}{}{}, {}", *value.value, blank, unit, interval);
-}
-
-/// Explains why the interval is wider than that of independent errors.
-std::string correlation_text(const compare::Calibration& report) {
-  const compare::CorrelatedErrors& errors = *report.fit.correlation;
-  const FittedValue& E = report.fit.youngs_modulus;
-  const bool has_interval = E.low || E.high;
-  return fmt::format(
-      "            errors along the rod are correlated: {:.0f} % of their variance over about "
-      "{:.2g} "
-      "m\n            ({:.0f} % of the rod){} ({:.3g} degrees of freedom)\n",
-      errors.share * 100, errors.length_m, errors.length_m / report.scenes.front().length * 100,
-      has_interval ? fmt::format("; the interval is {:.3g} times as wide to account for that",
-                                 errors.widening)
-                   : "",
-      errors.degrees_of_freedom);
-}
-
-/// Returns a number that was fitted in addition to E, in units for people.
-std::string text_of(const compare::FittedNumber& number) {
-  struct Shown {
-    double factor;
-    const char* unit;
-  };
-  const Shown shown = number.unit == "rad" ? Shown{180 / std::numbers::pi, "deg"}
-                      : number.unit == "m" ? Shown{1e3, "mm"}
-                                           : Shown{1, number.unit.c_str()};
-  if (!number.is_seen()) {
-    return fmt::format("{}: not seen by these shapes, known to {:.3g} {}", number.name,
-                       number.known_before * shown.factor, shown.unit);
-  }
-  return fmt::format("{}: {:.4g} {}, standard deviation {:.2g} {}", number.name,
-                     number.value * shown.factor, shown.unit, number.deviation * shown.factor,
-                     shown.unit);
-}
-
-/// Returns the numbers of the wire, or those of one shape, indented.
-std::string numbers_text(const compare::MaterialFit& fit, const std::optional<std::size_t>& shape) {
-  std::string out;
-  for (const compare::FittedNumber& number : fit.others) {
-    if (number.shape == shape) append(out, "            {}\n", text_of(number));
-  }
-  return out;
-}
-
-/// Returns the chosen options, and the predictions with the others.
-std::string tried_text(const std::vector<compare::FitAlternative>& tried) {
-  std::string out;
-  for (std::size_t i = 0; i < tried.size(); ++i) {
-    const std::string words = option_words(tried[i]);
-    append(out, "{} {}: {}residual {:.4g} mm{}\n", i == 0 ? "chosen     " : "           ",
-           words.empty() ? "no option" : words,
-           tried[i].prediction_m ? fmt::format("predicts {:.4g} mm, ", *tried[i].prediction_m * 1e3)
-                                 : "",
-           tried[i].rms_m * 1e3, tried.size() == 1 ? ", nothing in it is systematic" : "");
-  }
-  return out;
-}
-
-std::string alternatives_text(const compare::Calibration& report) {
-  std::string out;
-  const compare::NamedValue stiffness = report.scenes.front().stiffness();
-  for (const compare::FitAlternative& alternative : report.fit.alternatives) {
-    append(out, "            {} would leave {:.4g} mm, {} {}\n", option_words(alternative),
-           alternative.rms_m * 1e3, stiffness.name,
-           value_text(alternative.youngs_modulus, stiffness.unit));
-  }
-  return out;
 }
 
 std::string prediction_text(const compare::Prediction& prediction) {
@@ -117,50 +48,6 @@ std::string assumed_text(std::vector<std::string> assumed) {
   return fmt::format("{} and {} are", fmt::join(assumed, ", "), last);
 }
 
-/// Returns the lines about noise, correlation along the rod and scatter between shapes.
-std::string errors_text(const compare::Calibration& report) {
-  const compare::MaterialFit& fit = report.fit;
-  std::string out;
-  if (fit.scatter) {
-    append(out,
-           "            the shapes do not agree: they scatter by {:.2g} % in {} (by chance in "
-           "{:.2g} % of cases);\n            the interval is {:.3g} times as wide to account for "
-           "that\n",
-           fit.scatter->relative_deviation * 100, report.scenes.front().stiffness().name,
-           fit.scatter->chance * 100, fit.scatter->widening);
-  }
-  append(out, "noise       {:.4g} mm in each coordinate, {} ({} degrees of freedom)\n",
-         fit.noise_m * 1e3, fit.noise_is_estimated ? "estimated from the residuals" : "given",
-         fit.degrees_of_freedom);
-  if (fit.correlation) {
-    out += correlation_text(report);
-    if (fit.others.empty() && fit.alternatives.empty()) {
-      out +=
-          "            (misaligned clamps, or a wire that is not intrinsically straight, leave "
-          "such "
-          "residuals:\n            --clamp-angles, --natural-curvature)\n";
-    }
-  }
-  return out;
-}
-
-std::string shapes_text(const compare::Calibration& report) {
-  const compare::MaterialFit& fit = report.fit;
-  std::string out;
-  for (std::size_t i = 0; i < fit.shapes.size(); ++i) {
-    const compare::Alignment& a = fit.shapes[i].alignment;
-    append(out, "shape       {} on {}: {} points, {}, RMS {:.4g} mm\n",
-           compare::display(report.files[i]), compare::display(fit.shapes[i].scene),
-           a.shape.points.cols(), range_text(a, report.scenes[i].length),
-           std::sqrt(a.mean_square) * 1e3);
-    append(out, "            arc lengths: {}\n", compare::to_string(a.arc_lengths));
-    if (report.frame_was_found)
-      append(out, "            frame {}\n", pose_text(a.pose, report.scenes[i].length));
-    out += numbers_text(fit, i);
-  }
-  return out;
-}
-
 /// Returns the larger distance of an end of the interval from the value; empty if there is no
 /// value.
 std::optional<double> half_width(const FittedValue& value) {
@@ -186,11 +73,17 @@ Json scatter_json(const compare::ScatterBetweenShapes& scatter) {
           {"interval_widened_by", scatter.widening}};
 }
 
+/// Returns the keys of a value, its uncertainty and its interval.
 /// @param prefix  prefix of the keys of the uncertainty and the interval
+std::vector<std::string> value_keys(const Key& key, const std::string& prefix) {
+  return {key.text(), prefix + "uncertainty" + key.unit, prefix + "interval_95" + key.unit};
+}
+
 void add_value(Json& result, const Key& key, const std::string& prefix, const FittedValue& value) {
-  result[key.text()] = json_or_null(value.value);
-  result[prefix + "uncertainty" + key.unit] = json_or_null(half_width(value));
-  result[prefix + "interval_95" + key.unit] = {json_or_null(value.low), json_or_null(value.high)};
+  const std::vector<std::string> keys = value_keys(key, prefix);
+  result[keys[0]] = json_or_null(value.value);
+  result[keys[1]] = json_or_null(half_width(value));
+  result[keys[2]] = {json_or_null(value.low), json_or_null(value.high)};
 }
 
 Json alternatives_json(const compare::Calibration& report,
@@ -228,35 +121,6 @@ Json shapes_json(const compare::Calibration& report) {
 }
 
 }  // namespace
-
-std::string material_text(const compare::Calibration& report) {
-  const compare::MaterialFit& fit = report.fit;
-  std::string out;
-  for (const ShownValue& one : fitted_values(report)) {
-    const compare::NamedValue& said = one.said;
-    append(out, "{:<11} {}   (scene: {:.5g}{}{})\n", said.name, value_text(one.value, said.unit),
-           said.value, *said.unit == '\0' ? "" : " ", said.unit);
-  }
-  if (!fit.assumed.empty()) {
-    append(out, "            (if {} as given: errors of these may leave no residual)\n",
-           assumed_text(fit.assumed));
-  }
-  if (!fit.not_identified.empty()) append(out, "            {}\n", fit.not_identified);
-  if (!fit.warning.empty()) append(out, "            {}\n", fit.warning);
-  out += numbers_text(fit, std::nullopt);
-  out += errors_text(report);
-  append(out, "residual    {:.4g} mm between points and rod (RMS)\n", fit.rms_m * 1e3);
-  if (fit.prediction) out += prediction_text(*fit.prediction);
-  for (const compare::HeldOutShape& shape : report.held_out) {
-    append(out, "held out    {} on {}: {:.4g} mm between its points and the fitted rod (RMS)\n",
-           compare::display(shape.file), compare::display(shape.scene), shape.rms_m * 1e3);
-  }
-  out += tried_text(fit.tried);
-  out += alternatives_text(report);
-  out += shapes_text(report);
-  out += chains_text(report.fit.chains);
-  return out;
-}
 
 std::string material_csv(const compare::Calibration& report) {
   const Key stiffness = stiffness_key(report.scenes.front());
@@ -320,6 +184,38 @@ Json material_json(const compare::Calibration& report) {
   result["rms_m"] = fit.rms_m;
   result["shapes"] = shapes_json(report);
   return result;
+}
+
+std::string material_text(const compare::Calibration& report) {
+  const compare::MaterialFit& fit = report.fit;
+  compare::Document details{.json = material_json(report)};
+  std::string out;
+  for (const ShownValue& one : fitted_values(report)) {
+    const compare::NamedValue& said = one.said;
+    append(out, "{:<11} {}   (scene: {:.5g}{}{})\n", said.name, value_text(one.value, said.unit),
+           said.value, *said.unit == '\0' ? "" : " ", said.unit);
+    for (const std::string& key : value_keys(one.key, one.prefix)) details.json.erase(key);
+  }
+  if (!fit.assumed.empty()) {
+    append(out, "            (if {} as given: errors of these may leave no residual)\n",
+           assumed_text(fit.assumed));
+  }
+  if (!fit.not_identified.empty()) append(out, "            {}\n", fit.not_identified);
+  if (!fit.warning.empty()) append(out, "            {}\n", fit.warning);
+  append(out, "residual    {:.4g} mm between points and rod (RMS)\n", fit.rms_m * 1e3);
+  if (fit.prediction) out += prediction_text(*fit.prediction);
+  for (const char* key : {"assumed", "not_identified", "warning", "rms_m", "prediction"}) {
+    details.json.erase(key);
+  }
+  const std::vector<std::string> stiffness = value_keys(stiffness_key(report.scenes.front()), "");
+  const std::string alternative =
+      fmt::format("options,prediction_rms_m,rms_m,{},{}", stiffness[0], stiffness[2]);
+  details.columns = {
+      {"alternatives", alternative},
+      {"tried", alternative},
+      {"shapes", "shape,scene,arc_lengths,reversed,rms_m"},
+      {"chains/#/joints", "at_m,joint_stiffness_Nm_per_rad,binormal_stiffness_Nm_per_rad"}};
+  return out + "\n" + details.text();
 }
 
 }  // namespace dlo::cli
