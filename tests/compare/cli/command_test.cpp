@@ -88,11 +88,6 @@ TEST_F(Command, PaperHasTheSameNumbersInJsonAndInCsv) {
   EXPECT_GT(scanned(0, "distance").at("force_factor").get<double>(), 1);
   EXPECT_EQ(scanned(1, "choices").at("length_unit_m"), 1);
   EXPECT_TRUE(scanned(1, "distance").at("force_factor").is_null());
-  EXPECT_EQ(run("paper --format csv").out.substr(0, 5), "path,");
-  const Outcome text = run("paper");
-  EXPECT_EQ(text.status, 0) << text.err;
-  EXPECT_EQ(text.err, "");
-  EXPECT_TRUE(says(text.out, {"3776.21457", "1/3", "spring steel, -215 deg", "116121"}));
 }
 
 TEST_F(Command, StabilityWritesTheContractsJsonAndFailsForNothingButAutoAndImplicit) {
@@ -142,8 +137,6 @@ TEST_F(Command, BenchWritesRowsAndAnswers) {
     }
   }
   EXPECT_EQ(document.at("answers")[0].at("static").size(), 4U);
-  EXPECT_EQ(run(arguments + " --format csv").out.substr(0, 11), "scene,kind,");
-  EXPECT_TRUE(says(run(arguments).out, {"\nanswers\n"}));
   expect_error("bench --seconds 0", 2, {"--seconds"});
   expect_error("bench " + path("missing.toml"), 2, {"missing.toml"});
 }

@@ -64,27 +64,10 @@ TEST_F(ContactCommand, FrictionIsLeftOutAloud) {
   }
   const json compared = json_of("compare --no-modulus " + rough);
   EXPECT_EQ(compared.at("cases").at(0).at("neglected"), json({"friction"}));
-  const std::string told = run("compare --no-modulus " + rough).out;
-  EXPECT_TRUE(says(told, {"\n  neglected       friction that the scene has, by both models"}));
-  EXPECT_TRUE(says_none(told, {"by the force model: in all below"}));
+  const std::string shape = " --shape " + solved_file(smooth + " --samples 40");
+  const std::string check = "check --no-modulus --tolerance 1% ";
+  EXPECT_EQ(json_of(check + rough + shape).at("neglected"), json({"friction"}));
   EXPECT_TRUE(says(run("solve --explain " + rough).out, {"\n  friction "}));
-  EXPECT_TRUE(says_none(run("solve --explain " + rough_below).out, {"friction"}));
-}
-
-// check compares a shape with the equilibrium without friction and reports friction as neglected.
-TEST_F(ContactCommand, CheckReportsFrictionAsNeglected) {
-  const std::string smooth = lying();
-  const std::string rough = write("rough.toml", read(smooth) + "friction = 0.3\n");
-  const std::string mine = path("mine.csv");
-  succeeds("solve --format csv --samples 40 -o " + mine + " " + smooth);
-  const std::string rest = " --no-modulus --tolerance 1% --shape " + mine;
-  const std::string with = said("check " + rough + rest);
-  EXPECT_TRUE(says(with, {"friction\n"}));
-  EXPECT_TRUE(says_none(run("check " + smooth + rest).out, {"friction"}));
-  const json document = json_of("check " + rough + rest);
-  EXPECT_EQ(document.at("neglected"), json({"friction"}));
-  const Outcome row = run("check --format csv " + rough + rest);
-  EXPECT_TRUE(says(row.err, {"has friction"}));
 }
 
 // A cable next to a peg, a ball or a box: all models have the same bodies.

@@ -193,17 +193,4 @@ TEST(SceneText, ExplainsEveryKeyThatAScenesTablesKnow) {
   EXPECT_EQ(tables, 8);
 }
 
-TEST_F(Command, MaterialsListsEveryMaterialWithValues) {
-  const std::string text = said("materials");
-  const nlohmann::json document = json_of("materials");
-  EXPECT_EQ(document.at("schema"), "dlo/materials/1");
-  const auto& known = dlo::compare::materials();
-  ASSERT_EQ(document.at("materials").size(), known.size());
-  for (std::size_t i = 0; i < known.size(); ++i) {
-    EXPECT_EQ(document["materials"][i]["youngs_modulus_Pa"], known[i].youngs_modulus);
-    EXPECT_EQ(document["materials"][i]["density_kg_per_m3"], known[i].density);
-    EXPECT_TRUE(says(("\n" + text), {"\n  " + known[i].name + " "}));
-  }
-}
-
 }  // namespace

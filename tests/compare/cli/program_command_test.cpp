@@ -60,14 +60,10 @@ TEST_F(ProgramCommand, BenchPutsAProgramBesideOurModels) {
 TEST_F(ProgramCommand, BenchSaysFailuresInTextAndTables) {
   const std::string arguments = "bench --seconds 2 --repeats 1 --time-limit 0.05 " + cable() +
                                 " --with slow='sh -c \"sleep 9\" {shape}' ";
-  const Outcome text = run(arguments);
-  EXPECT_EQ(text.status, 3);
-  EXPECT_THAT(text.out,
-              HasSubstr("  cable  slow          8  killed after the time limit of 0.05 s\n"));
-  const Outcome table = run(arguments + "--format csv");
-  EXPECT_EQ(table.status, 3);
-  EXPECT_THAT(table.out,
-              HasSubstr("\ncable,static,slow,8,,,,,,,,,killed after the time limit of 0.05 s\n"));
+  expect_output(arguments, 3,
+                {"  cable  slow          8  killed after the time limit of 0.05 s\n"});
+  expect_output(arguments + "--format csv", 3,
+                {"\ncable,static,slow,8,,,,,,,,,killed after the time limit of 0.05 s\n"});
   expect_error("bench " + cable() + " --with sim", 2, {"--with", "NAME"});
 }
 

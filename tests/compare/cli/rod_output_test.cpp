@@ -30,8 +30,6 @@ class RodCommand : public dlo::test::Command {
 
 TEST_F(RodCommand, SolveSaysThatTheTorsionalStiffnessIsAssumed) {
   for (const std::string model : {"energy", "chain"}) {
-    EXPECT_TRUE(says(said("solve --explain --model " + model + " " + hose()),
-                     {"\nassumed    torsional stiffness GJ = EI / 1.3 = 0.06154 N m^2"}));
     const json document = json_of("solve --model " + model + " " + hose());
     const json& assumed = document.at("assumed");
     EXPECT_NEAR(assumed.at("torsional_stiffness_Nm2"), 0.08 / 1.3, 1e-15);

@@ -63,128 +63,11 @@ TEST_F(Command, TooFewPointsForTheGrippersIsBadInput) {
   succeeds("solve " + scene(text) + " --model chain --points 14");
 }
 
-TEST_F(Command, SolveGivesOneShapeByBothReferenceModelsForClampsInSpace) {
-  const std::string rope = scene(R"(gravity = [0, -9.81, 0]
-[rod]
-length = "1 m"
-diameter = "4 mm"
-material = { youngs_modulus = "5 GPa", density = 1200 }
-[[gripper]]
-at = 0
-position = [0, 0, 0]
-direction = [1, 0, 0]
-[[gripper]]
-at = "1 m"
-position = [0.6, 0.1, 0.3]
-direction = [1, 0.2, -0.4]
-[[load]]
-at = "40 cm"
-force = [0, 0, "50 mN"]
-)");
-  const auto solve = [&](const std::string& model) {
-    return json_of("solve " + rope + " --samples 21 --model " + model);
-  };
-  const json energy = solve("energy");
-  const json exact = solve("exact");
-  EXPECT_LT(points_apart(exact, energy), 1e-8);
-  for (std::size_t g = 0; g < 2; ++g) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_NEAR(exact.at("grippers")[g].at("torque_Nm")[k],
-                  energy.at("grippers")[g].at("torque_Nm")[k], 1e-8);
-    }
-  }
-}
-
-TEST_F(Command, SolveExactTakesAFloorAndRefusesOtherObstacles) {
-  const std::string floor = scene(R"([rod]
-length = 1
-bending_stiffness = 0.01
-mass_per_length = 0.1
-[[gripper]]
-at = 0
-position = [0, 0.1, 0]
-direction = "0 deg"
-[[obstacle]]
-point = [0, 0, 0]
-normal = [0, 1, 0]
-)");
-  const auto solved = [&](const char* model) {
-    return json_of("solve " + floor + " --model " + model);
-  };
-  const json exact = solved("exact");
-  const json energy = solved("energy");
-  EXPECT_TRUE(says_none(run("solve " + floor + " --model exact").out, {"solver     0"}));
-  for (const char* key : {"from_m", "to_m"}) {
-    EXPECT_NEAR(exact.at("contacts")[0].at(key), energy.at("contacts")[0].at(key), 1e-7);
-  }
-  const json& last = exact.at("points_m").back();
-  for (std::size_t k = 0; k < 3; ++k) {
-    EXPECT_NEAR(last[k], energy.at("points_m").back()[k], 1e-8);
-  }
-  const std::string ball = back_bent_rod + R"([[obstacle]]
-shape = "sphere"
-point = [0, -0.2, 0]
-radius = 0.1
-)";
-  expect_error("solve " + scene(ball + "stiffness = 100\n") + " --model exact", 2,
-               {"obstacle", "energy"});
-}
-
-TEST_F(Command, ExactConfirmsWhatTheEnergyModelSaysTouches) {
-  const std::string peg = scene(R"(gravity = [0, -9.81, 0]
-[rod]
-length = "50 cm"
-diameter = "4 mm"
-material = { youngs_modulus = "100 MPa", density = 1200 }
-[[gripper]]
-at = 0
-position = [-0.2, 0, 0]
-direction = "30 deg"
-[[gripper]]
-at = "50 cm"
-position = [0.16, -0.12, 0]
-direction = "-70 deg"
-[[obstacle]]
-shape = "cylinder"
-point = [0, 0.06, 0]
-axis = [0, 0, 1]
-radius = "30 mm"
-)");
-  const json energy = json_of("solve " + peg);
-  const json exact = json_of("solve " + peg + " --model exact");
-  ASSERT_FALSE(energy.at("contacts").empty());
-  EXPECT_EQ(exact.at("contacts").size(), energy.at("contacts").size());
-  EXPECT_LT(points_apart(exact, energy), 5e-9);
-  EXPECT_TRUE(says(run("solve " + peg + " --model exact").out,
-                   {"contacts that the energy model detected"}));
-}
-
-TEST_F(Command, SolveMatchesTheReferenceValuesOfThePapersRod) {
-  std::ifstream stream(std::string(DLO_DATA) + "/reference/reference_values.json");
-  const json expected = json::parse(stream).at("paper_rod").at("E=210GPa,phi=-175");
-  const json document = json_of("solve " + steel() + " --samples 17");
-  for (std::size_t i = 0; i < 17; ++i) {
-    EXPECT_NEAR(document.at("points_m")[i][0], expected.at("x_m")[i], 5e-9);
-    EXPECT_NEAR(document.at("points_m")[i][1], expected.at("y_m")[i], 5e-9);
-  }
-}
-
-TEST_F(Command, SolveWritesCsvThatStartsWithItsHeader) {
-  const std::string result = said("solve " + steel() + " --samples 3 --format csv");
-  EXPECT_EQ(result.substr(0, 8), "x,y,z,s\n");
-  EXPECT_EQ(std::count(result.begin(), result.end(), '\n'), 4);
-}
-
 TEST_F(Command, ExplainSaysWhyThereIsNoN) {
-  const std::string moving = scene(back_bent_rod + R"([[obstacle]]
-normal = [0, 1, 0]
-[[obstacle.pose]]
-time = 0
-point = [0, -0.03, 0]
-[[obstacle.pose]]
-time = 2
-point = [0, -0.2, 0]
-)");
+  const std::string moving = scene(back_bent_rod +
+                                   "[[obstacle]]\nnormal = [0, 1, 0]\n"
+                                   "pose = [{ time = 0, point = [0, -0.03, 0] }, "
+                                   "{ time = 2, point = [0, -0.2, 0] }]\n");
   EXPECT_TRUE(says(said("solve " + moving + " --explain"), {"the rod touches an obstacle"}));
 }
 
@@ -192,9 +75,6 @@ TEST_F(Command, JsonHasThePlan) {
   const std::string far =
       scene(back_bent_rod + "[[obstacle]]\npoint = [0, -0.6, 0]\nnormal = [0, 1, 0]\n");
   for (const std::string command : {"solve ", "compare "}) {
-    EXPECT_TRUE(says_none(run(command + far).out, {"neglected"}));
-    EXPECT_TRUE(says(said(command + far + " --explain --target-error 1e-4"),
-                     {"planar", "clamp", "free", "stretch", "shear", "0.01 % of l"}));
     const json document = json_of(command + far);
     const json& plan =
         command == "solve " ? document.at("plan") : document.at("cases")[0].at("plan");
@@ -223,9 +103,7 @@ TEST_F(Command, ModelExactIsTheDefaultAndTheReferenceOfARodThatStretches) {
   const std::string file = solved_file(stretches + " --samples 41");
   const std::string check = "check " + stretches + " --shape " + file + " --tolerance 1e-6";
   EXPECT_EQ(json_of(check).at("state").at("searched"), false);
-  succeeds("compare " + stretches);
-  succeeds("regress " + stretches + " --baseline " + path("base.toml") + " --update");
-  succeeds("regress " + stretches + " --baseline " + path("base.toml"));
+  EXPECT_TRUE(says(run(check).out, {"other equilibria were not searched"}));
   const json fit = json_of("calibrate " + stretches + " --shape " + file);
   EXPECT_NEAR(fit.at("youngs_modulus_Pa").get<double>() / 2e6, 1, 1e-3) << fit;
 }

@@ -25,7 +25,6 @@ class TrackCommand : public Command {
 
 TEST_F(TrackCommand, TellsFramesAndEventsInEveryFormat) {
   const std::string track = words({"track", wire(), "--frame-rate 20 --to 0.6"});
-  EXPECT_TRUE(says(said(track), {"contact  obstacle 1, tip at s = 0.3 m"}));
   const json document = json_of(track);
   EXPECT_EQ(document.at("schema"), "dlo/track/1");
   ASSERT_EQ(document.at("frames").size(), 13U);
@@ -140,7 +139,6 @@ TEST_F(TrackCommand, HasTheMovingRodInEveryFormat) {
   const std::string track =
       words({"track", file, "--to 0.2 --frame-rate 50 --dynamic --drag 0.02"});
   const std::string with_force = track + " --step-rate 3000";
-  EXPECT_TRUE(says(said(with_force), {" 0.02 N s/m^2\n", "\ndynamic frames\n"}));
   const json document = json_of(with_force + " --every 5 --shapes");
   EXPECT_EQ(document.at("schema"), "dlo/track/1");
   const json& dynamic = document.at("dynamic");

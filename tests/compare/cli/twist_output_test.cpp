@@ -117,14 +117,6 @@ TEST_F(TwistCommand, AComparisonSaysThatTheForceModelHasNone) {
   EXPECT_FALSE(hooke.at("cases")[0].at("budget").contains("twist_m"));
 }
 
-TEST_F(TwistCommand, ExplainTellsTheAngle) {
-  const std::string text = said("solve --explain " + wire());
-  EXPECT_TRUE(
-      says(text,
-           {"\ntwist\n  from [m]  to [m]  turn [rad]  twist [rad]\n         0     0.5       3.142 ",
-            "distance from the lowest shape without it", "spatial"}));
-}
-
 TEST_F(TwistCommand, TheEnergyModelGivesTorqueAndEnergyOfTheTwist) {
   const json document = json_of("solve " + wire());
   EXPECT_FALSE(document.contains("neglected"));

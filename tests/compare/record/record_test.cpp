@@ -16,7 +16,6 @@
 
 namespace {
 
-using dlo::compare::Deviation;
 using dlo::compare::Document;
 using dlo::compare::Field;
 using dlo::compare::Json;
@@ -146,45 +145,6 @@ TEST(Document, TextIsALineForEachValueAndATableForEachList) {
             "  a\n"
             "  1\n");
   EXPECT_EQ(document.csv(), "case,seconds\n1,3\n");
-}
-
-TEST_F(Record, AFieldStandsWhereItSaysAndAtItsPath) {
-  const Scene scene = dlo::test::heavy_scene(1, 0);
-  const Field<Deviation> all[] = {{.name = "a",
-                                   .get = [](const Deviation& d) { return d.rms_m; },
-                                   .places = dlo::compare::in_json,
-                                   .path = "in/a"},
-                                  {.name = "b",
-                                   .unit = "m",
-                                   .get = [](const Deviation&) -> std::string { return "x, y"; },
-                                   .places = dlo::compare::in_csv},
-                                  {.name = "c",
-                                   .get = [](const Deviation&) { return true; },
-                                   .when = [](const Scene& s) { return s.holds_twist(); }}};
-  const std::span<const Field<Deviation>> fields = all;
-  Json document;
-  dlo::compare::add_json(document, fields, {.rms_m = 2}, scene);
-  EXPECT_EQ(document.dump(), R"({"in":{"a":2.0}})");
-  const auto columns = dlo::compare::fields_in(dlo::compare::in_csv, fields, scene);
-  ASSERT_EQ(columns.size(), 1U);
-  EXPECT_EQ(columns[0].key(), "b_m");
-  EXPECT_EQ(dlo::compare::csv_value(dlo::compare::value_of(columns[0], {})), "\"x, y\"");
-}
-
-TEST_F(Record, ADeviationIsSaidByItsKeys) {
-  const Deviation deviation{.rms_m = 1,
-                            .max_m = 2,
-                            .max_at_m = 3,
-                            .tip_m = 4,
-                            .rms_over_length = 5,
-                            .rms_over_movement = 6,
-                            .angle_rms_rad = 7,
-                            .curvature_rms_per_m = 8};
-  EXPECT_EQ(
-      dlo::compare::json_of(dlo::compare::numbers_of(dlo::compare::deviation_fields(), deviation))
-          .dump(),
-      R"({"rms_m":1.0,"max_m":2.0,"max_at_m":3.0,"tip_m":4.0,"rms_over_length":5.0,)"
-      R"("rms_over_movement":6.0,"angle_rms_rad":7.0,"curvature_rms_per_m":8.0})");
 }
 
 }  // namespace

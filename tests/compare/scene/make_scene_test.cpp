@@ -155,18 +155,5 @@ TEST(ArcLengths, ARoundingBeyondAnEndAreThatEnd) {
   }
 }
 
-TEST(Documents, AreOfEveryResult) {
-  const Scene wire = copper_wire();
-  const Solution solution = solve(wire, Model::energy);
-  EXPECT_TRUE(says(to_text(solution, wire), {"model      energy"}));
-  EXPECT_TRUE(says(to_json(solution, wire), {"\"plan\""}));
-  const CheckResult judged = check(
-      wire, shape_of(solution.shape.points, solution.shape.arc_length, "mine"),
-      {.tolerance = ShapeTolerance{.allowed_m = 1e-3}, .shape = {.modulus = ModulusSearch::no}});
-  EXPECT_TRUE(judged.passes());
-  EXPECT_TRUE(says(to_text(judged), {"pass: "}));
-  EXPECT_TRUE(says(to_json(judged), {"\"verdict\": \"pass\""}));
-}
-
 }  // namespace
 }  // namespace dlo::compare
