@@ -19,6 +19,7 @@
 #include "dlo/compare/error.hpp"
 #include "format/json.hpp"
 #include "option/help.hpp"
+#include "reading/scene_template.hpp"
 #include "trajectory/trajectory_files.hpp"
 
 namespace dlo::cli {

@@ -10,6 +10,7 @@
 #include "reading/read_parts.hpp"
 #include "toml/strict_table.hpp"
 #include "trajectory/read_trajectory.hpp"
+#include "trajectory/trajectory_files.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -38,7 +39,8 @@ MeasuredShape read_rest_points(StrictTable& rod, const std::string& scene_file) 
       "frames, d1_x,d1_y,d1_z, or rows [[x, y, z], ..])";
   if (!rod.is_array(key)) {
     const std::string name = rod.text(key);
-    return parse_shape(read_beside(rod, key, file_of_shape(name), scene_file, allowed), name);
+    const std::string file = file_of_shape(path_beside(name, scene_file));
+    return parse_shape(read_beside(rod, key, file, allowed), name);
   }
   constexpr std::size_t most = 10'000;
   const Eigen::MatrixXd rows = rod.points(key, most);

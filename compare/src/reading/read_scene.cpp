@@ -15,6 +15,7 @@
 #include "scene/read_force_model.hpp"
 #include "toml/strict_table.hpp"
 #include "trajectory/read_trajectory.hpp"
+#include "trajectory/trajectory_files.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -63,7 +64,8 @@ std::shared_ptr<const MarkerMotion> read_start(StrictTable& rates, const Scene& 
   constexpr const char* allowed =
       "(allowed: a file of points in m beside the scene, as CSV with the columns x,y,z and perhaps "
       "s, or a recording with the columns time,s,x,y,z)";
-  const std::string text = read_beside(rates, "start", file_of_shape(*name), scene.file, allowed);
+  const std::string text =
+      read_beside(rates, "start", file_of_shape(path_beside(*name, scene.file)), allowed);
   MarkerMotion start{.file = *name, .positions = {}};
   try {
     if (has_marker_columns(text, *name)) {

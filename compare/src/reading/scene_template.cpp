@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "base/input_file.hpp"
@@ -15,8 +16,10 @@
 #include "base/quote.hpp"
 #include "base/text.hpp"
 #include "dlo/compare/error.hpp"
+#include "dlo/compare/shape_file.hpp"
 #include "reading/read_scene.hpp"
 #include "toml/strict_table.hpp"
+#include "trajectory/trajectory_files.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -153,14 +156,37 @@ class Overrider {
   MissingElements missing_;
 };
 
-/// Returns EI of a scene whose GJ is given, the harmonic mean of two; empty if GJ is not given, or
-/// if the file is not a valid scene without other values.
-std::optional<double> bending_stiffness_with_torsion(const toml::table& root,
-                                                     const std::string& name,
-                                                     const std::vector<Material>& materials) {
-  if (!root["rod"]["torsional_stiffness"]) return std::nullopt;
+/// Tables and their keys that name a file, relative to the folder of the scene.
+constexpr std::pair<const char*, const char*> file_keys[] = {{"rod", "rest_shape"},
+                                                             {"track", "start"},
+                                                             {"gripper", "trajectory"},
+                                                             {"obstacle", "trajectory"}};
+
+/// Returns the names of files in a scene.
+std::vector<std::string*> file_names(toml::table& root) {
+  std::vector<std::string*> names;
+  for (const auto& [name, key] : file_keys) {
+    const auto add = [&names, key = key](toml::node& node) {
+      toml::table* const table = node.as_table();
+      toml::value<std::string>* const file = table ? (*table)[key].as_string() : nullptr;
+      if (file != nullptr) names.push_back(&file->get());
+    };
+    toml::node* const node = root.get(name);
+    if (toml::array* const tables = node ? node->as_array() : nullptr) {
+      for (toml::node& table : *tables) add(table);
+    } else if (node != nullptr) {
+      add(*node);
+    }
+  }
+  return names;
+}
+
+std::optional<toml::table> document_of(const std::string& file) {
+  std::error_code unknown;
+  // A pipe can be read only once.
+  if (!std::filesystem::is_regular_file(file, unknown)) return std::nullopt;
   try {
-    return read_scene(root, name, materials).mean_bending_stiffness();
+    return parse_toml(read_file(file), file);
   } catch (const InputError&) {
     return std::nullopt;
   }
@@ -188,24 +214,27 @@ struct SceneTemplate::Parsed {
   toml::table root;
   std::string name;
   std::vector<Material> materials;
-  std::optional<double> bending_stiffness;  // with the values of the file, if GJ is given
   MissingElements missing;
+  std::filesystem::path folder;  // of the files that fields name; empty if `name` has it
+  // EI, or the mean to which GJ is proportional, with the values of the file. Empty if GJ is not
+  // given, or if the file is not a valid scene without other values.
+  std::optional<double> bending_stiffness;
 };
 
 SceneTemplate::SceneTemplate(const std::string& text, std::string name,
                              std::vector<Material> known_materials, MissingElements missing,
                              const std::string& folder) {
   SceneSource source = parse_scene_source(text, name);
-  toml::table& root = source.root;
-  name = source.where;
-  const auto points = root["rod"]["rest_shape"].value_exact<std::string>();
-  if (points && !folder.empty()) {
-    root["rod"].as_table()->insert_or_assign("rest_shape",
-                                             (std::filesystem::path(folder) / *points).string());
+  const auto parsed =
+      std::make_shared<Parsed>(Parsed{std::move(source.root), std::move(source.where),
+                                      std::move(known_materials), missing, folder, std::nullopt});
+  parsed_ = parsed;
+  if (!parsed->root["rod"]["torsional_stiffness"]) return;
+  try {
+    parsed->bending_stiffness = with({}).mean_bending_stiffness();
+  } catch (const InputError&) {  // The scene is valid only with other values.
+    return;
   }
-  const std::optional<double> EI = bending_stiffness_with_torsion(root, name, known_materials);
-  parsed_ = std::make_shared<const Parsed>(
-      Parsed{std::move(root), std::move(name), std::move(known_materials), EI, missing});
 }
 
 Scene SceneTemplate::with(const std::vector<SceneField>& values) const {
@@ -219,6 +248,7 @@ Scene SceneTemplate::with(const std::vector<SceneField>& values) const {
       overrider.set(value);
     }
   }
+  for (std::string* const file : file_names(root)) *file = (parsed_->folder / *file).string();
   Scene scene = read_scene(root, parsed_->name, parsed_->materials);
   if (gamma != nullptr) {
     root.insert_or_assign("gravity", scaled_gravity(scene, gamma->value.text()));
@@ -254,6 +284,16 @@ SceneTemplate load_scene_template(const std::string& path,
   const std::filesystem::path file(path);
   return {read_file(path), file.filename(), known_materials, MissingElements::refused,
           file.parent_path()};
+}
+
+std::vector<std::string> trajectory_files(const std::string& scene_file) {
+  std::optional<toml::table> document = document_of(scene_file);
+  std::vector<std::string> files;
+  if (!document) return files;
+  for (const std::string* const name : file_names(*document)) {
+    files.push_back(file_of_shape(path_beside(*name, scene_file)));
+  }
+  return files;
 }
 
 }  // namespace dlo::compare

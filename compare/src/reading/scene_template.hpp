@@ -28,7 +28,7 @@ enum class MissingElements {
 class SceneTemplate {
  public:
   /// @param name  name of the file, for messages and Scene::file
-  /// @param folder  folder for relative paths of rod.rest_shape, if it is not that of `name`
+  /// @param folder  folder of the files that fields name, if it is not that of `name`
   /// @throws InputError if the text is not TOML
   SceneTemplate(const std::string& text, std::string name,
                 std::vector<Material> known_materials = materials(),
@@ -47,5 +47,10 @@ class SceneTemplate {
 /// results derived from them, do not depend on the folder. @throws InputError
 [[nodiscard]] SceneTemplate load_scene_template(
     const std::string& path, const std::vector<Material>& known_materials = materials());
+
+/// Returns the paths of the files that a scene's file names for reading, as the scene's reader
+/// opens them. Empty if the scene's file is not a regular file or not TOML; the scene's reader
+/// reports that.
+[[nodiscard]] std::vector<std::string> trajectory_files(const std::string& scene_file);
 
 }  // namespace dlo::compare

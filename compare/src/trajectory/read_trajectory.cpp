@@ -159,9 +159,8 @@ std::vector<Pose> file_poses(const std::string& text, const std::string& file, c
 
 }  // namespace
 
-std::string read_beside(const StrictTable& table, std::string_view key, const std::string& name,
-                        const std::string& scene_file, const char* allowed) {
-  const std::string path = path_beside(name, scene_file);
+std::string read_beside(const StrictTable& table, std::string_view key, const std::string& path,
+                        const char* allowed) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(path, unknown)) {
     const bool is_there = std::filesystem::exists(path, unknown);
@@ -212,7 +211,8 @@ Trajectory read_trajectory(StrictTable& table, const PoseKeys& keys,
   if (!name) return rows.empty() ? Trajectory() : read_rows(table, rows, keys);
   Trajectory trajectory;
   try {
-    const std::string text = read_beside(table, "trajectory", *name, scene_file, file_allowed);
+    const std::string text =
+        read_beside(table, "trajectory", path_beside(*name, scene_file), file_allowed);
     trajectory = Trajectory(file_poses(text, *name, keys, cutoff));
   } catch (const InputError& error) {
     // The table's own errors name the position already.

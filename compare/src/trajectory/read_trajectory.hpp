@@ -57,12 +57,11 @@ struct PoseKeys {
 [[nodiscard]] Trajectory read_trajectory(StrictTable& table, const PoseKeys& keys,
                                          const std::string& scene_file);
 
-/// Reads the text of the file that a table's key names, relative to the folder of the scene. Only a
-/// regular file is read, because a pipe or a device could block the reader.
+/// Reads the text of the file that a table's key names (path_beside()). Only a regular file is
+/// read, because a pipe or a device could block the reader.
 /// @param allowed  "(allowed: ..)";  @throws InputError that names the key if there is no such file
 [[nodiscard]] std::string read_beside(const StrictTable& table, std::string_view key,
-                                      const std::string& name, const std::string& scene_file,
-                                      const char* allowed);
+                                      const std::string& path, const char* allowed);
 
 /// Reads poses from a CSV file: a header with time, x, y, z, (all or none) dx, dy, dz and
 /// optionally roll, in any order, then a row per pose, in s, m and rad; empty lines and lines that

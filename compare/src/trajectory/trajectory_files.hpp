@@ -1,14 +1,8 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 namespace dlo::compare {
-
-/// Returns the paths of the files that a scene's file names for reading (`trajectory`,
-/// `rest_shape`, `[track] start`): the scene's folder and the name. Empty if the scene's file is
-/// not a regular file or not TOML; the scene's reader reports that.
-[[nodiscard]] std::vector<std::string> trajectory_files(const std::string& scene_file);
 
 /// Returns the path of a file that a scene names, which is relative to the scene's folder.
 [[nodiscard]] std::string path_beside(const std::string& name, const std::string& scene_file);

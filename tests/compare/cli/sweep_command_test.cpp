@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -10,6 +11,9 @@
 #include "command_fixture.hpp"
 
 namespace {
+
+using dlo::test::csv_rows;
+using dlo::test::says;
 
 class SweepCommand : public dlo::test::Command {
  protected:
@@ -41,6 +45,44 @@ TEST_F(SweepCommand, WritesATableToStandardOutputOrAFile) {
   succeeds(arguments + " -o " + path("a.csv"));
   EXPECT_EQ(read(path("a.csv")), printed.out);
   EXPECT_EQ(run(arguments + " --threads 5").out, printed.out);
+}
+
+TEST_F(SweepCommand, SaysHowManyScenesHaveNoResult) {
+  const dlo::test::Outcome result =
+      run("sweep " + steel() + " --vary rod.length=-1,1 -o " + path("a.csv"));
+  EXPECT_EQ(result.status, 0);
+  EXPECT_TRUE(says(result.err, {"1 of 2 scenes"}));
+}
+
+/// Returns points of an arc of a curvature [1/m] in the plane z = 0, 0.3 m long.
+std::string arc_text(double curvature) {
+  std::string text = "x,y,z\n";
+  for (int i = 0; i <= 30; ++i) {
+    const double angle = curvature * i / 100;
+    text += std::to_string(std::sin(angle) / curvature) + "," +
+            std::to_string((1 - std::cos(angle)) / curvature) + ",0\n";
+  }
+  return text;
+}
+
+/// A rod without weight is its rest shape; all of its files are beside the scene.
+const std::string scene_with_files =
+    "gravity = [0, 0, 0]\n[rod]\nlength = 0.3\nbending_stiffness = 1\nmass_per_length = 0.1\n"
+    "rest_shape = \"a.csv\"\n[[gripper]]\nat = 0\ndirection = [1, 0, 0]\ntrajectory = "
+    "\"move.csv\"\n[[obstacle]]\nshape = \"sphere\"\nradius = 0.01\ntrajectory = \"far.csv\"\n"
+    "[track]\nstart = \"a.csv\"\n";
+
+TEST_F(SweepCommand, ReadsTheFilesThatFieldsNameBesideTheScene) {
+  write("a.csv", arc_text(1));
+  write("b.csv", arc_text(4));
+  write("move.csv", "time,x,y,z\n0,0,0,0\n1,0.1,0,0\n");
+  write("far.csv", "time,x,y,z\n0,0,-1,0\n1,0,-1,0\n");
+  const std::string file = write("files.toml", scene_with_files);
+  const auto rows = csv_rows(said("sweep " + file + " --vary rod.rest_shape=a.csv,b.csv"));
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[0][3], "tip_x_m");
+  EXPECT_NEAR(std::stod(rows[1][3]), std::sin(0.3), 1e-5);
+  EXPECT_NEAR(std::stod(rows[2][3]), std::sin(1.2) / 4, 1e-5);
 }
 
 TEST_F(SweepCommand, BadGridsAreOneLineAndStatusTwo) {
