@@ -69,10 +69,11 @@ void record_input(const std::string& path) {
   const std::lock_guard lock(known.guard);
   std::error_code unknown;
   if (known.commands == 0 || !std::filesystem::is_regular_file(path, unknown)) return;
+  // A file whose reading is refused is an input too: the caller may continue without it.
+  if (std::ranges::find(known.inputs, path) == known.inputs.end()) known.inputs.push_back(path);
   for (const auto& [output, name] : known.outputs) {
     if (same_file(output, path)) refuse_input(output, name, path);
   }
-  if (std::ranges::find(known.inputs, path) == known.inputs.end()) known.inputs.push_back(path);
 }
 
 }  // namespace

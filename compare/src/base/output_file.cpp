@@ -139,12 +139,15 @@ void write_all(int descriptor, std::string_view text, const std::string& name) {
 
 struct OutputFile::State {
   std::string file;  ///< name as the user wrote it
+  Replaces replaces;
   OutputTarget target;
   int descriptor = -1;
   /// Next to the target, whose name it gets when it is complete.
   std::optional<TemporaryFile> temporary;
 
-  explicit State(const std::string& name) : file(name), target(output_target(name)) {
+  State(const std::string& name, Replaces what)
+      : file(name), replaces(what), target(output_target(name)) {
+    require_no_input();
     switch (target.kind) {
       case OutputTarget::Kind::descriptor:
         descriptor = target.descriptor;
@@ -160,6 +163,10 @@ struct OutputFile::State {
   }
   ~State() {
     if (target.kind != OutputTarget::Kind::descriptor && descriptor >= 0) ::close(descriptor);
+  }
+
+  void require_no_input() const {
+    if (replaces == Replaces::no_input) require_not_read(file, file);
   }
 
   /// Copies owner and permissions of the replaced file, as far as this user may set them.
@@ -182,6 +189,7 @@ struct OutputFile::State {
   void finish() {
     if (target.kind == OutputTarget::Kind::descriptor) return;
     if (target.kind == OutputTarget::Kind::device) return close_checked();
+    require_no_input();  // a file that was read after this output was opened
     take_over_permissions();
     // Network file systems report a full disk here or on close; some do not support fsync.
     if (::fsync(descriptor) != 0 && errno != EINVAL && errno != ENOSYS) {
@@ -195,10 +203,8 @@ struct OutputFile::State {
   }
 };
 
-OutputFile::OutputFile(const std::string& file, Replaces replaces) {
-  if (replaces == Replaces::no_input) require_not_read(file, file);
-  state_ = std::make_unique<State>(file);
-}
+OutputFile::OutputFile(const std::string& file, Replaces replaces)
+    : state_(std::make_unique<State>(file, replaces)) {}
 OutputFile::~OutputFile() = default;
 
 void OutputFile::append(std::string_view text) {

@@ -65,7 +65,8 @@ class OutputFile {
   /// Appends a text. @throws OutputError that names the output, BrokenPipe if it is a pipe without
   /// a reader
   void append(std::string_view text);
-  /// Completes the output. @throws OutputError that names the output
+  /// Completes the output. @throws OutputError that names the output, InputError if the command has
+  /// read the file in the meantime
   void finish();
 
  private:

@@ -190,6 +190,24 @@ TEST_F(Output, AnInputIsNeverWrittenOver) {
   succeeds("regress " + scene + " --update --baseline " + path("base.toml"));
 }
 
+TEST_F(Output, IsNoFileThatAFieldNames) {
+  const std::string points = "x,y,z\n0,0,0\n0.06,0,0\n0.12,0,0\n0.18,0,0\n0.24,0,0\n0.3,0,0\n";
+  for (const char* name : {"a.csv", "b.csv", "frames.npy"}) write(name, points);
+  const auto scene = [&](const std::string& file) {
+    return write(
+        "rest.toml",
+        "[rod]\nlength = 0.3\nbending_stiffness = 1\nmass_per_length = 0\nrest_shape = \"" + file +
+            "\"\n[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = 0\n");
+  };
+  expect_refused(words({"solve", scene("frames.npy:1"), "-o", path("frames.npy")}),
+                 {"dlo: --output " + path("frames.npy") + ": is read too"});
+  // The first row has a result, the second one names the output.
+  expect_error(
+      words({"sweep", scene("a.csv"), "--vary", "rod.rest_shape=a.csv,b.csv", "-o", path("b.csv")}),
+      2, {path("b.csv") + ": is read too"});
+  for (const char* name : {"b.csv", "frames.npy"}) EXPECT_EQ(read(path(name)), points) << name;
+}
+
 TEST_F(Output, ThatHasNoPlaceIsRefusedBeforeAnythingIsComputed) {
   const std::string solve = "solve " + steel() + " -o ";
   expect_refused(solve + path("none/a.csv"),
