@@ -28,6 +28,9 @@ constexpr double polygon_share = 0.9;
 constexpr double stretch_share = 0.1;
 /// Ratio by which the fastest mode may be faster during a simulation than at its start and at rest.
 constexpr double mode_margin = 1.2;
+/// Largest strain of segments that count as rigid [-]: a hundredth of the default target. The
+/// forces of much stiffer segments balance only to rounding.
+constexpr double rigid_strain = 1e-5;
 
 /// A scene with its reference, for comparison with many chains.
 struct FittedCase {
@@ -37,9 +40,14 @@ struct FittedCase {
   [[nodiscard]] double rms_over_length(const Shape& shape) const {
     return distance(shape, reference.sample) / scene.length;
   }
-  [[nodiscard]] double chain(const ForceModelSettings& settings,
-                             const SolveOptions& options) const {
-    return rms_over_length(solve_chain(scene, settings, options).shape);
+  /// Returns the chain with segments that stretch no more than the reference does: rigid ones, or
+  /// those of A E.
+  [[nodiscard]] Shape chain(ForceModelSettings settings, const SolveOptions& options) const {
+    settings.c_c = scene.axial_stiffness();
+    if (scene.stretch != Stretch::counted) {
+      settings.c_c = std::max(*settings.c_c, pull() / rigid_strain);
+    }
+    return solve_chain(scene, settings, options).shape;
   }
   /// Returns the RMS deviation of a chain with the given c_b, divided by the length; infinite if
   /// the chain does not converge.
@@ -47,7 +55,7 @@ struct FittedCase {
                                   const SolveOptions& options) const {
     settings.c_b = c_b;
     try {
-      return chain(settings, options);
+      return rms_over_length(chain(settings, options));
     } catch (const ConvergenceError&) {
       return std::numeric_limits<double>::infinity();
     }
@@ -101,7 +109,8 @@ class ForceModelFitter {
     } else {
       RuleDeviations physical{.rule = StiffnessRule::physical};
       for (const FittedCase& entry : cases_) {
-        physical.rms_over_length.push_back(entry.chain(settings_, options_.solve));
+        physical.rms_over_length.push_back(
+            entry.rms_over_length(entry.chain(settings_, options_.solve)));
         counter_.add_one();
       }
       result_.rules.push_back(std::move(physical));
@@ -122,7 +131,7 @@ class ForceModelFitter {
     settings.points = points;
     double worst = 0;
     for (std::size_t i = 0; i < fitted_; ++i) {
-      worst = std::max(worst, cases_[i].chain(settings, options_.solve));
+      worst = std::max(worst, cases_[i].rms_over_length(cases_[i].chain(settings, options_.solve)));
     }
     return worst;
   }
@@ -310,7 +319,7 @@ class ForceModelFitter {
       const Solution force = solve_force(entry.scene, settings_, options_.solve);
       result_.steps.push_back(force.steps);
       result_.stepped_rms_over_length.push_back(entry.rms_over_length(force.shape));
-      const Shape rigid = solve_chain(entry.scene, settings_, options_.solve).shape;
+      const Shape rigid = entry.chain(settings_, options_.solve);
       result_.stretch_rms_over_length.push_back(
           rms(rigid.arc_length, force.shape.points - rigid.points) / entry.scene.length);
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../../says.hpp"
 #include "dlo/compare/chain.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
@@ -102,6 +103,27 @@ TEST(ForceModelFit, SeveralGrippersAreFittedToo) {
   Scene scene = test::two_clamps(5, {0.8, 0, 0});
   const ForceModelFit fit = fit_force_model({scene}, {});
   EXPECT_LE(fit.worst(), 1e-3);
+}
+
+// Between two pins a distance d apart a rod of length l hangs in a parabola with the sag f,
+//     l - d = 8 f^2 / (3 d),   tension w d^2 / (8 f),
+// so that a strain e deepens the sag by f e l / (2 (l - d)). The RMS of a parabola is sqrt(8/15) of
+// its sag.
+TEST(ForceModelFit, StretchBetweenTwoPinsIsComparedWithRigidSegments) {
+  Scene scene = heavy_scene(1000, 0);
+  scene.grippers.front().direction.reset();
+  constexpr double d = 0.98;
+  scene.grippers.push_back({.at = 1, .position = {d, 0, 0}});
+  scene.force_model.law = BendingLaw::hooke;
+  const double sag = std::sqrt(3 * d * (1 - d) / 8);
+  constexpr double strain = 1e-3;
+  scene.force_model.c_c = scene.weight_per_length().norm() * d * d / (8 * sag) / strain;
+  const ForceModelFit fit = fit_force_model({scene}, {}, {.points = 32});
+  const double deeper = sag * strain / (2 * (1 - d));
+  EXPECT_NEAR(fit.stretch_rms_over_length.front() / (std::sqrt(8.0 / 15) * deeper), 1, 0.05);
+  EXPECT_LT(rule_of(fit, StiffnessRule::physical).rms_over_length.front(), 1e-4);
+  ASSERT_EQ(fit.why_missed().size(), 1U);
+  EXPECT_TRUE(test::says(fit.why_missed().front(), {"the given c_c stretches the rod"}));
 }
 
 TEST(ForceModelFit, RefusesWhatCannotBeFitted) {
