@@ -185,6 +185,10 @@ TEST(Couple, OutOfThePlaneIsForShootingAloneAndNotCalledStable) {
   EXPECT_NE(exact.message.find("not judged"), std::string::npos) << exact.message;
   EXPECT_NEAR(test::point_at(exact, 1).z(), -torque / 2, 1e-8);
   EXPECT_NEAR(test::point_at(exact, 1).y(), -1e-3 / 3, 1e-8);
+  const std::vector<Equilibrium> all = all_exact(problem);
+  ASSERT_EQ(all.size(), 1U);
+  EXPECT_EQ(all.front().status, SolveStatus::not_verified);
+  EXPECT_EQ(test::gap_between(all.front(), exact), 0);
 }
 
 TEST(Couple, IsRefusedWhereItIsNotKnown) {

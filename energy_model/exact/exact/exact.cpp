@@ -187,13 +187,14 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
 
 std::vector<Equilibrium> all_exact(const Problem& problem, const ExactOptions& options) {
   std::vector<Equilibrium> equilibria = solve(problem, options);
-  std::erase_if(equilibria, [](const Equilibrium& equilibrium) {
+  std::erase_if(equilibria, [&](const Equilibrium& equilibrium) {
+    if (succeeded(equilibrium.status) || equilibrium.status == SolveStatus::saddle) return false;
+    if (!equilibrium.sample) return true;
     // A shape that was found before the time limit is an equilibrium; only the list may be
-    // incomplete.
-    const bool cut_short =
-        equilibrium.status == SolveStatus::time_limit && static_cast<bool>(equilibrium.sample);
-    return !succeeded(equilibrium.status) && equilibrium.status != SolveStatus::saddle &&
-           !cut_short;
+    // incomplete. Without a potential balance alone is checked.
+    return equilibrium.status != SolveStatus::time_limit &&
+           (has_potential(problem) ||
+            !(imbalance_of(problem, equilibrium).share() <= allowed_imbalance));
   });
   return equilibria;
 }
