@@ -118,8 +118,9 @@ std::string all_columns(const Json& rows) {
     for (const auto& [key, value] : row.items()) {
       add(key, key, value);
       if (!value.is_object()) continue;
-      for (const auto& [inner, part] : value.items())
-        add(key + "_" + inner, key + "/" + inner, part);
+      for (const auto& [inner, part] : value.items()) {
+        add(fmt::format("{}_{}", key, inner), fmt::format("{}/{}", key, inner), part);
+      }
     }
   }
   return columns;
