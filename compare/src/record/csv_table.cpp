@@ -31,12 +31,10 @@ std::string unit_text(std::string_view key) {
       continue;
     }
     if (!unit.empty() && unit.back() != '/') unit += " ";
-    const bool power = word.size() > 1 && word.back() >= '2' && word.back() <= '4';
-    if (word == "Nm2") {
-      unit += "N m^2";
-      continue;
-    }
-    unit += power ? fmt::format("{}^{}", word.substr(0, word.size() - 1), word.back()) : word;
+    std::string text(word == "Nm2" ? "N m2" : word);
+    if (text.size() > 1 && text.back() >= '2' && text.back() <= '4')
+      text.insert(text.size() - 1, "^");
+    unit += text;
   }
   return unit == "rad s" ? "rad/s" : unit;
 }
