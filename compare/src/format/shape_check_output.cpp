@@ -138,10 +138,14 @@ std::string shape_check_text(const CheckPage& page) {
   }
   const Json document = shape_check_json(report);
   compare::Document details{.json = Json::object(), .large = compare::magnitudes(report.scene)};
-  for (const char* key :
-       {"scene", "shape", "points", "model", "notes", "arc_lengths", "direction_is_clear",
-        "turn_is_clear", "seen", "deviation", "movement_m", "state", "neglected"}) {
+  for (const char* key : {"scene", "shape", "points", "model", "notes", "arc_lengths", "seen",
+                          "movement_m", "state", "neglected"}) {
     if (document.contains(key)) details.json[key] = document.at(key);
+  }
+  for (const char* key : {"largest_gap_at_m", "excess_m"}) details.json["seen"].erase(key);
+  for (const char* key : {"rank_of_stable", "unstable_found"}) details.json["state"].erase(key);
+  for (const char* key : {"direction_is_clear", "turn_is_clear"}) {
+    if (!document.at(key)) details.json[key] = false;
   }
   return out + "\n" + details.text();
 }
