@@ -16,40 +16,6 @@ using compare::MapColumn;
 using compare::Outcome;
 using compare::StabilityResult;
 
-/// Returns a count with at most 3 significant digits: 812, 20k, 1.5M.
-std::string short_count(long count) {
-  constexpr const char* prefixes[] = {"", "k", "M", "G", "T", "P", "E"};
-  auto value = static_cast<double>(count);
-  std::size_t thousands = 0;
-  // 999.5 is rounded to 1000.
-  for (; value >= 999.5; value /= 1000) ++thousands;
-  return fmt::format("{:.3g}{}", value, prefixes[thousands]);
-}
-
-std::string error_text(const StabilityResult& result) {
-  if (result.outcome == Outcome::refused) return "";
-  if (!std::isfinite(result.error_over_length)) return "inf";
-  return fmt::format("{:.0e}", result.error_over_length);
-}
-
-bool creeping(const StabilityResult& result) {
-  return result.outcome == Outcome::wrong && !result.at_rest;
-}
-
-std::string outcome_text(const StabilityResult& result) {
-  return creeping(result) ? "creeping" : compare::to_string(result.outcome);
-}
-
-std::string table_head(const std::vector<StabilityResult>& results, std::size_t steppers,
-                       int width) {
-  std::string out = fmt::format("{:<28}", "");
-  for (std::size_t k = 0; k < steppers; ++k) {
-    append(out, "{:<{}}", compare::to_string(results[k].stepper), width);
-  }
-  while (out.back() == ' ') out.pop_back();
-  return out + "\n";
-}
-
 const char* state(Outcome outcome) {
   return outcome == Outcome::pass ? "stable" : compare::to_string(outcome);
 }
