@@ -117,16 +117,16 @@ void bind_batch(py::module_& module) {
            py::arg("scenes"), py::arg("threads"))
       .def("__len__", &Batch::size)
       .def("step", &Batch::step, py::arg("count") = 1,
-           "Makes so many steps of every rod. One that diverges stays where it was, see\n"
+           "Makes count steps of every rod. A rod that diverges stays where it was, see\n"
            "diverged.")
       .def("move_gripper", &Batch::move_gripper, py::arg("rod"), py::arg("gripper"),
            py::arg("position"), py::arg("direction") = py::none(),
-           "ForceModel.move_gripper of one rod (number from 0).")
+           "Moves a gripper of one rod (number from 0), as ForceModel.move_gripper does.")
       .def("points", &Batch::points, py::arg("out") = py::none(),
            "Positions [m], shape (R, N, 3): written into out if it is given (float64, without\n"
            "gaps), else a new array.")
       .def_property_readonly("diverged", &Batch::diverged,
-                             "Which rods have, a new array of bool, shape (R,).");
+                             "Whether each rod has diverged: a new array of bool, shape (R,).");
 }
 
 }  // namespace dlo::python

@@ -179,15 +179,16 @@ void bind_arrays(Class& bound) {
   bind_rows(
       bound, "gripper_forces", &Solution::grippers,
       [](const compare::GripperLoad& load) -> const auto& { return load.force; },
-      "What each gripper exerts on the rod [N], shape (G, 3), read only.");
+      "Force that each gripper exerts on the rod [N], shape (G, 3), read only.");
   bind_rows(
       bound, "gripper_torques", &Solution::grippers,
       [](const compare::GripperLoad& load) -> const auto& { return load.torque; },
-      "The same about each gripper's position [N m], shape (G, 3), read only.");
+      "Torque that each gripper exerts on the rod, about the gripper's position [N m],\n"
+      "shape (G, 3), read only.");
   bind_rows(
       bound, "obstacle_forces", &Solution::obstacles,
       [](const Eigen::Vector3d& force) -> const auto& { return force; },
-      "What each obstacle exerts on the rod [N], shape (O, 3), read only.");
+      "Force that each obstacle exerts on the rod [N], shape (O, 3), read only.");
 }
 
 void bind_equilibria(py::module_& module) {
@@ -212,7 +213,7 @@ void bind_equilibria(py::module_& module) {
            })
       .def_property_readonly(
           "not_looked", [](const SolvedStates& solved) { return solved.all.omitted; },
-          "What a limit has cut short, or the search does not cover.");
+          "Searches for equilibria that were incomplete or not made.");
 }
 
 }  // namespace
@@ -250,7 +251,8 @@ compare::SolveOptions verified_options(const py::dict& given) {
 void bind_solve(py::module_& module) {
   py::class_<SolvedScene, Result, std::shared_ptr<SolvedScene>> solution(
       module, "Solution",
-      "A shape of a scene's rod in balance, and what it cost; of solve() and solve_all().\n\n"
+      "Equilibrium of a scene's rod and the cost of its computation; returned by solve() and,\n"
+      "as an item of Equilibria, by solve_all().\n\n"
       "Arrays are views into it, read only; they keep it alive.");
   bind_arrays(solution);
   const auto of = [](const SolvedScene& solved) {

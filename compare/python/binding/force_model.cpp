@@ -174,16 +174,18 @@ void bind_force_model(py::module_& module) {
            py::arg("scene"), py::arg("points"), py::arg("grip_stiffness"))
       .def("__len__", &ForceModel::size)
       .def("step", &ForceModel::step, py::arg("count") = 1,
-           "Makes so many steps. Raises ConvergenceError if one diverges; the points stay where\n"
-           "they were before it.")
+           "Makes count steps. Raises ConvergenceError if a step diverges; the points then stay\n"
+           "where they were before that step.")
       .def("rest", &ForceModel::rest, py::arg("tolerance") = 1e-7,
            py::arg("max_steps") = 20'000'000, py::arg("time_limit") = 20.0,
-           "Steps until the rod rests: (steps, bound of the RMS distance to rest [m]). Raises\n"
-           "ConvergenceError if it does not. tolerance: that bound over the rod's length.")
+           "Makes steps until the rod is at rest; returns (number of steps, bound of the RMS\n"
+           "distance to rest [m]). Raises ConvergenceError if it does not come to rest.\n"
+           "tolerance: largest bound at rest, divided by the rod's length.")
       .def("move_gripper", &ForceModel::move_gripper, py::arg("gripper"), py::arg("position"),
            py::arg("direction") = py::none(),
            "Moves a gripper (number in the scene, from 0) to a position [m], shape (3,), and\n"
-           "turns a clamp to a direction, a vector of any length, shape (3,); None: as it is.")
+           "rotates a clamp to a direction, a vector of any length, shape (3,); None keeps its\n"
+           "direction.")
       .def("move_wall", &ForceModel::move_wall, py::arg("wall"), py::arg("point"),
            py::arg("normal"),
            "Moves a plane (number of the scene's obstacle, from 0): a point of it [m] and its\n"
@@ -192,17 +194,20 @@ void bind_force_model(py::module_& module) {
            "Positions [m], shape (N, 3): written into out if it is given (float64, without\n"
            "gaps), else a new array.")
       .def("reactions", &ForceModel::reactions, py::arg("out") = py::none(),
-           "What each gripper exerts on the rod, shape (G, 6): force [N] and torque about the\n"
-           "gripper's position [N m]; a hand that holds it feels the opposite. out: as points().")
-      .def("energy", &ForceModel::energy, "Of the shape now [J]; loads count from the origin.")
-      .def_property_readonly("steps", &ForceModel::steps, "Made since it was built.")
+           "Force [N] and torque about the gripper's position [N m] that each gripper exerts on\n"
+           "the rod, shape (G, 6); the gripper feels the opposite. out: as in points().")
+      .def("energy", &ForceModel::energy,
+           "Energy of the current shape [J]; the potential of gravity and loads is zero at the\n"
+           "origin.")
+      .def_property_readonly("steps", &ForceModel::steps,
+                             "Number of steps made since construction.")
       .def_property_readonly("constants", &ForceModel::constants,
                              "(c_F [m/N], c_h [-]) of the last step.")
       .def_property_readonly(
           "arc_length",
           [](const py::object& self) { return self.cast<const ForceModel&>().arc_length(self); },
-          "Of the points [m], shape (N,), read only; one inside an end gripper is below 0 or\n"
-          "beyond the rod's length.");
+          "Arc lengths of the points [m], shape (N,), read only; that of a point inside an end\n"
+          "gripper is below 0 or above the rod's length.");
 }
 
 }  // namespace dlo::python

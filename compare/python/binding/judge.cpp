@@ -185,19 +185,20 @@ FitDocuments calibrate_force_model(const std::vector<SharedScene>& scenes,
 void bind_check(py::module_& module) {
   using R = const compare::CheckResult&;
   py::class_<Check, Result, std::shared_ptr<Check>> bound(
-      module, "Check", "A shape against its scene's energy model; of check(). Arrays are views.");
+      module, "Check",
+      "Result of check(): a shape compared with its scene's energy model. Arrays are views.");
   bind_array(
       bound, "arc_length",
       [](const Check& c) -> const auto& { return c.result.check.reference.arc_length; },
-      "Where the points are along the rod [m], shape (M,), read only.");
+      "Arc lengths at which the points lie on the rod [m], shape (M,), read only.");
   bind_array(
       bound, "points",
       [](const Check& c) -> const auto& { return c.result.check.alignment.shape.points; },
-      "The points as laid on the rod, by arc length [m], shape (M, 3), read only.");
+      "Registered points in the order of arc_length [m], shape (M, 3), read only.");
   bind_array(
       bound, "reference",
       [](const Check& c) -> const auto& { return c.result.check.reference.points; },
-      "The energy model there [m], shape (M, 3), read only.");
+      "Points of the energy model at arc_length [m], shape (M, 3), read only.");
   const auto add = [&bound](const char* name, auto get, const char* words) {
     bound.def_property_readonly(
         name, [get](const Check& c) { return get(c.result); }, words);
@@ -211,14 +212,14 @@ void bind_check(py::module_& module) {
       "determine the rod.");
   add(
       "significant", [](R r) { return r.judgement.significant; },
-      "Of a pass: whether the rod without weight and loads would not pass too; None where neither "
-      "acts or its shape was not found.");
+      "For a shape that passes: whether the rod without weight and loads would fail. None if "
+      "neither weight nor loads act, or if the shape without them was not found.");
   add(
       "deflection", [](R r) { return r.deflection_m; },
       "Largest distance between the rod with and without weight and loads [m]; NaN where neither a "
       "pass nor the tolerance needs it.");
   add(
-      "reason", [](R r) { return r.judgement.reason; }, "Why, in words.");
+      "reason", [](R r) { return r.judgement.reason; }, "Reason for the verdict, as text.");
   add(
       "rms", [](R r) { return r.check.deviation.rms_m; },
       "RMS distance of the points from the rod [m].");
@@ -228,7 +229,8 @@ void bind_check(py::module_& module) {
       "energy_above_lowest", [](R r) { return r.check.state.energy_above_lowest_J(); },
       "Energy of the equilibrium compared minus that of the lowest stable one known [J].");
   add(
-      "worst_point", [](R r) { return r.check.worst_point; }, "Number of that point, from 1.");
+      "worst_point", [](R r) { return r.check.worst_point; },
+      "Number of the point with the largest distance, from 1 as in the file.");
   add(
       "deviation", [](R r) { return deviations(r.check); }, deviation_words);
   add(
@@ -240,22 +242,22 @@ void bind_check(py::module_& module) {
         for (const compare::Explanation& e : r.explanations) list.emplace_back(e.cause, e.rms_m);
         return list;
       },
-      "Of a shape that fails: (cause, RMS distance were it so [m]), the best first.");
+      "For a shape that fails: pairs (cause, RMS distance if the cause applies [m]), best first.");
 }
 
 void bind_comparison(py::module_& module) {
   using C = const Comparison&;
   py::class_<Comparison, Result, std::shared_ptr<Comparison>> bound(
-      module, "Comparison", "Force model and energy model of a scene; of compare().");
+      module, "Comparison", "Result of compare(): force model and energy model of a scene.");
   bind_array(
       bound, "arc_length", [](C c) -> const auto& { return c.result.reference.arc_length; },
       "Arc lengths of the force model's points [m], shape (N,), read only.");
   bind_array(
       bound, "force_points", [](C c) -> const auto& { return c.result.force.shape.points; },
-      "The force model at rest [m], shape (N, 3), read only.");
+      "Points of the force model at rest [m], shape (N, 3), read only.");
   bind_array(
       bound, "energy_points", [](C c) -> const auto& { return c.result.reference.points; },
-      "The energy model there [m], shape (N, 3), read only.");
+      "Points of the energy model at arc_length [m], shape (N, 3), read only.");
   bound
       .def_property_readonly(
           "deviation", [](C c) { return deviations(c.result); }, deviation_words)
