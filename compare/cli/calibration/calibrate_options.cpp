@@ -84,28 +84,32 @@ void CalibrateOptions::add_numbers_of_wire(CLI::App& command, CLI::Option* shape
       "standard deviation of one coordinate such as \"0.5 mm\"; default: estimated"));
   of_shapes(command
                 .add_option("--natural-curvature", natural_curvature_terms,
-                            "fit this many terms of the wire's natural curvature as well (1: the "
-                            "same all along; Legendre's polynomials)")
+                            "also fit the wire's natural curvature by this many Legendre "
+                            "polynomials (1: constant along the wire)")
                 ->check(CLI::Range(0, 24)));
-  of_shapes(command.add_option("--clamp-angles", clamp_angles,
-                               "how well the clamps' directions are known, as standard deviation "
-                               "such as \"5 deg\"; each shape's own are fitted as well"));
+  of_shapes(
+      command.add_option("--clamp-angles", clamp_angles,
+                         "standard deviation of the clamps' directions such as \"5 deg\"; the "
+                         "directions are fitted as well, per shape unless --same-clamps"));
   of_shapes(command.add_option("--clamp-positions", clamp_positions,
-                               "the same of the grippers' positions, such as \"2 mm\""));
+                               "standard deviation of the grippers' positions such as \"2 mm\"; "
+                               "the positions are fitted as well, per shape unless --same-clamps"));
   of_shapes(command.add_option(
       "--clamp-rolls", clamp_rolls,
-      "the same of how they hold the wire about its tangent, in space: \"180 deg\" if nothing is "
-      "known; each shape has its own, with --same-clamps too"));
+      "standard deviation of the clamps' rolls, their rotations about the wire's tangent, in "
+      "space: \"180 deg\" if they are unknown; fitted per shape, even with --same-clamps"));
   of_shapes(command.add_flag(
       "--same-clamps", same_clamps,
-      "the clamps are misaligned alike in all shapes, as in one fixture: what is found of them is "
-      "shared, and -o writes it; with --clamp-angles or --clamp-positions"));
-  of_shapes(command.add_option("--clamp-scatter", clamp_scatter,
-                               "with --same-clamps: how far each shape's own directions are from "
-                               "the shared ones, such as \"5 deg\"; they are fitted as well"));
-  of_shapes(command.add_option("--camera-tilt", camera_tilt,
-                               "how level the camera is, such as \"2 deg\" (standard deviation); "
-                               "one tilt of all shapes is fitted as well, and -o writes it"));
+      "the clamps have the same misalignment in all shapes, as in one fixture: one misalignment is "
+      "fitted to all shapes, and -o writes it; with --clamp-angles or --clamp-positions"));
+  of_shapes(command.add_option(
+      "--clamp-scatter", clamp_scatter,
+      "with --same-clamps: standard deviation of each shape's directions from the shared ones, "
+      "such as \"5 deg\"; these deviations are fitted as well"));
+  of_shapes(
+      command.add_option("--camera-tilt", camera_tilt,
+                         "standard deviation of the camera's tilt from level, such as \"2 deg\"; "
+                         "one tilt common to all shapes is fitted as well, and -o writes it"));
   of_shapes(command.add_flag("--predict", predict,
                              "leave out each shape in turn and predict it by the fit to the "
                              "others: says which options predict best (three shapes or more)"));
@@ -113,9 +117,10 @@ void CalibrateOptions::add_numbers_of_wire(CLI::App& command, CLI::Option* shape
       command
           .add_option(
               "--options", chosen,
-              "given, or auto: where residuals are systematic, the terms of natural curvature, and "
-              "clamps as said, misaligned alike or each on its own, that predict shapes best that "
-              "are left out; default: auto of three shapes or more, without the six above")
+              "given: fit with the options as given; auto: if residuals are systematic, choose the "
+              "number of natural curvature terms and nominal, shared or per-shape clamps by "
+              "leave-one-out prediction; default: auto if there are three shapes or more and "
+              "neither --natural-curvature, --same-clamps nor an option --clamp-* is given")
           ->check(CLI::IsMember({"given", "auto"})));
 }
 
@@ -137,8 +142,8 @@ void CalibrateOptions::add_to(CLI::App& command) {
   CLI::Option* holdout =
       command
           .add_option("--holdout", holdouts,
-                      "hold-out scenes, or with --shape shapes: judged, not fitted. Their scenes "
-                      "stand after those of the others, if each shape has its own")
+                      "hold-out scenes, or with --shape hold-out shapes: judged, not fitted. If "
+                      "each shape has its own scene, the scenes of hold-out shapes come last")
           ->type_name("FILE ...")
           ->group(parameters);
   CLI::Option* wanted =
@@ -166,10 +171,11 @@ void CalibrateOptions::add_to(CLI::App& command) {
       ->excludes(wanted)
       ->group("Stiffness and damping from a recorded motion");
   command
-      .add_option("--segments", segments,
-                  "of your simulator's chain, 4 to 200, or a file of its points where they are "
-                  "unequal: the stiffness of its joints with which it comes nearest to the rod, "
-                  "for three ways to hold it; with --shape: to the fitted one")
+      .add_option(
+          "--segments", segments,
+          "number of segments of your simulator's chain, 4 to 200, or a file of its points if the "
+          "segments are unequal: computes the joint stiffness for which the chain is closest to "
+          "the rod, for three ways to clamp it; with --shape: closest to the fitted rod")
       ->type_name("N|FILE")
       ->check(check_segments)
       ->excludes(wanted)
