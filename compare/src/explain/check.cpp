@@ -97,8 +97,8 @@ std::string other_stiffness_within(const CheckResult& result) {
   const double at_E =
       result.tolerance.part ? result.check.deviation.rms_m : result.check.whole_rms_m;
   return fmt::format(
-      "E*/E = {:.3g} is no contradiction: {:.3g} mm away at E* and {:.3g} mm at E, both are within "
-      "the tolerance",
+      "E*/E = {:.3g} does not contradict the verdict: the distance is {:.3g} mm at E* and {:.3g} "
+      "mm at E, both within the tolerance",
       modulus.ratio, modulus.rms_m * 1e3, at_E * 1e3);
 }
 

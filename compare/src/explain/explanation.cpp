@@ -247,8 +247,8 @@ class Search {
              ? fmt::format("the rod keeps to the scene's plane, as a planar model's does: it "
                            "is unstable there and leaves the plane by up to {:.3g} mm",
                            out * 1e3)
-             : std::string("the rod rests where it is unstable, as of a solver that looks for "
-                           "no minimum"),
+             : std::string("the rod rests at an unstable equilibrium, as found by a solver that "
+                           "does not minimise the energy"),
          least, 0, ExplanationKind::scene});
   }
 

@@ -66,9 +66,10 @@ MeasuredShape with_end(const Scene& scene, MeasuredShape shape, double segment) 
   shape.points.conservativeResize(Eigen::NoChange, n + 1);
   shape.points.col(n) = end;
   shape.d1.resize(3, 0);
-  shape.notes.push_back(fmt::format(
-      "its {} points are where the segments begin; the end of the last one is appended, {}", n,
-      held ? "where a gripper holds it" : "extrapolated"));
+  shape.notes.push_back(
+      fmt::format("its {} points are the start points of the segments; the end of the last segment "
+                  "is appended, {}",
+                  n, held ? "where a gripper holds it" : "extrapolated"));
   return shape;
 }
 
@@ -80,7 +81,7 @@ MeasuredShape cable_of_model(const ModelChain& model, const MeasuredShape& shape
   if (are_starts(shape.points, segment) || !are_starts(chain, segment)) return shape;
   MeasuredShape cable = shape;
   cable.points = chain;
-  cable.notes.push_back(fmt::format("of all {} bodies those of the cable are taken, {} to {}",
+  cable.notes.push_back(fmt::format("of all {} bodies only those of the cable are used, {} to {}",
                                     model.bodies, model.first_body,
                                     model.first_body + model.segments - 1));
   return cable;

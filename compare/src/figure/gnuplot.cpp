@@ -61,7 +61,7 @@ std::string run_script(const std::string& script, const std::string& output,
       output.ends_with(".svg") ? drawn.find("</svg>") != std::string::npos : !drawn.empty();
   if (problem.empty() && whole) return {};
   std::filesystem::remove(folder / output, ignored);
-  if (problem.empty()) problem = "it does not say why";
+  if (problem.empty()) problem = "no error message";
   return "gnuplot failed: " + (message.empty() ? problem : message);
 }
 

@@ -67,7 +67,7 @@ class OptionsSearch {
     }
     for (const Clamps clamps : {Clamps::as_said, Clamps::alike, Clamps::own}) try_terms(clamps);
     if (trials_.empty()) {
-      throw ConvergenceError("calibrate: no fit came to an end with any options that were tried");
+      throw ConvergenceError("calibrate: no fit was completed with any of the options tried");
     }
     const Trial& chosen = best();
     MaterialFit fit = with_all_outputs(chosen);
@@ -230,7 +230,8 @@ class OptionsSearch {
     if (std::log(*E.high / *E.low) <= std::log(options_.identified_within)) return;
     E.value.reset();
     if (fit.not_identified.empty()) {
-      fit.not_identified = "options that predict the shapes alike differ too much in it";
+      fit.not_identified =
+          "options that predict the shapes nearly as well give values that differ too much";
     }
   }
 

@@ -37,16 +37,16 @@ std::string segments_miss(const ForceModelFit& fit, double segments) {
   }
   return fmt::format("N = {} is too few for {}: its rigid segments are {:.3g} % off", N,
                      fit.holdouts > 0 ? "all scenes (hold-out scenes do not choose it)"
-                                      : "the target, and the most that is tried",
+                                      : "the target, although it is the largest N tried",
                      segments * 100);
 }
 
 std::string stretch_miss(const ForceModelFit& fit, double stretch) {
   if (fit.c_c_is_physical) {
     return fmt::format(
-        "c_c is A E: the rod stretches as its material does, which the energy model neglects. "
-        "That alone makes {:.3g} %, which no N takes away; the smallest target within reach is "
-        "about that (less at some N is errors that cancel)",
+        "c_c is A E: the rod stretches as its material does, which the energy model neglects. The "
+        "stretch alone causes {:.3g} %, which no N removes; the smallest reachable target is about "
+        "this value (smaller deviations at some N are errors that cancel)",
         stretch * 100);
   }
   return fmt::format(

@@ -101,7 +101,7 @@ std::string warning_of(const MaterialProfiles& material, double squares,
       squares > std::pow(*noise, 2) * gsl_distribution(gsl_cdf_chisq_Qinv, 1e-3, nu)) {
     return fmt::format(
         "the rod does not fit these shapes: its residuals are {:.3g} times what the given noise "
-        "explains, so the interval means nothing",
+        "explains, so the interval is meaningless",
         std::sqrt(squares / nu) / *noise);
   }
   const double rms = std::sqrt(squares / material.points());

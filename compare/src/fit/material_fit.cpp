@@ -33,19 +33,19 @@ void require_pairs(const std::vector<Scene>& scenes, const std::vector<MeasuredS
   if (options.shared_clamps && !options.choose_options.value_or(false) &&
       !(options.direction_tolerance > 0 || options.position_tolerance > 0)) {
     throw InputError(
-        "calibrate: the same clamps in all shapes, but nothing says how well they are known "
-        "(allowed: with clamp angles or positions, as --clamp-angles \"5 deg\")");
+        "calibrate: the same clamps in all shapes, but no standard deviation of their directions "
+        "or positions (allowed: with one, such as --clamp-angles \"5 deg\")");
   }
   if (options.direction_scatter > 0 && !options.shared_clamps) {
     throw InputError(
-        "calibrate: directions that scatter about shared ones, but none are shared (allowed: with "
-        "the same clamps in all shapes, --same-clamps)");
+        "calibrate: a scatter of clamp directions about shared directions, but the clamps are not "
+        "shared (allowed: with the same clamps in all shapes, --same-clamps)");
   }
   if ((options.predict || options.choose_options.value_or(false)) &&
       shapes.size() < fewest_predicted) {
-    throw InputError(
-        fmt::format("calibrate: prediction of {} shapes, each by the others (allowed: {} or more)",
-                    shapes.size(), fewest_predicted));
+    throw InputError(fmt::format(
+        "calibrate: {} shapes are too few to predict each by the others (allowed: {} or more)",
+        shapes.size(), fewest_predicted));
   }
   if (options.noise && !(*options.noise > 0)) {
     throw InputError(fmt::format("calibrate: noise = {:g} m (allowed: > 0)", *options.noise));
@@ -72,8 +72,7 @@ std::string remove_repeats(std::vector<Scene>& scenes, std::vector<MeasuredShape
     scenes = all_but(std::move(scenes), i);
   }
   if (removed.empty()) return "";
-  return fmt::format("equal shapes count once: {} left out, with the points of another shape",
-                     removed);
+  return fmt::format("shapes with the same points are fitted once: {} omitted", removed);
 }
 
 /// Returns MaterialFit::assumed.

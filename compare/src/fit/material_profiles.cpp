@@ -65,8 +65,7 @@ MaterialProfiles::Search MaterialProfiles::search() {
   for (int i = 0; i < most_other_states && misfit_.search_at(found.best); ++i) found = profile();
   if (!std::isfinite(found.over_modulus.minimum().value)) {
     throw ConvergenceError(
-        fmt::format("{}: the energy model has a shape at no modulus that was "
-                    "tried",
+        fmt::format("{}: the energy model found no equilibrium at any of the moduli tried",
                     scenes_.front().file));
   }
   return found;
@@ -99,8 +98,8 @@ void MaterialProfiles::refuse_unverified(double highest) const {
   const Scene& scene = scenes_[unverified->scene];
   const NamedValue stiffness = scene.stiffness();
   throw ConvergenceError(fmt::format(
-      "{}: at {} = {:.4g} {}, which may fit, the rod is not verified on its obstacles: it sinks "
-      "in by {:.3g} m ({}), so {} is not identifiable from the shapes",
+      "{}: at {} = {:.4g} {}, which may fit, the equilibrium is not verified: the rod penetrates "
+      "its obstacles by {:.3g} m ({}), so {} is not identifiable from the shapes",
       scene.file, stiffness.name, stiffness.value * std::exp(unverified->material.log_modulus),
       stiffness.unit, unverified->penetration, unverified->message, stiffness.name));
 }

@@ -128,14 +128,15 @@ std::string doubt(const MaterialFit& fit, bool common, bool widened, const char*
   }
   if (!fit.alternatives.empty() && fit.alternatives.front().rms_m <= too_much * fit.rms_m) {
     return fmt::format(
-        "the residuals are systematic: what is not fitted would leave {:.3g} mm of {:.3g} mm, so "
-        "the interval of {} holds only if the rod is intrinsically straight and held as said",
+        "the residuals are systematic: fitting natural curvature or clamps too would leave {:.3g} "
+        "mm of {:.3g} mm, so the interval of {} holds only if the rod is intrinsically straight "
+        "and clamped as given",
         fit.alternatives.front().rms_m * 1e3, fit.rms_m * 1e3, stiffness);
   }
   if (!common) return "";
   return fmt::format(
       "the residuals are systematic: {:.2g} % of their mean square is common to all shapes, and "
-      "the interval of {} knows nothing of what they have in common",
+      "the interval of {} does not account for this common part",
       *fit.common_share * 100, stiffness);
 }
 

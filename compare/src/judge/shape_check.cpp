@@ -131,16 +131,15 @@ std::string hint_of(const ShapeCheck& check, const Measured& measured) {
                        at_end ? "arc length l" : "arc length 0",
                        straight_on ? fmt::format("stretched by {:.2g} %, or another rod",
                                                  check.excess_m / check.length_m * 100)
-                                   : "the points there turn away from it");
+                                   : "the points there do not continue in the rod's direction");
   }
   const double missing = check.length_m - (s.back() - s.front());
   if (missing > least * check.length_m) {
     // The length of the polyline distinguishes a file that is cut off from a rod of another shape.
     if (check.polyline_length_m > (1 - least) * check.length_m) {
       return fmt::format(
-          "as long as the rod, but {:.4g} mm of the rod are nearest to none of the points: the "
-          "shape "
-          "is another one",
+          "the polyline is as long as the rod, but {:.4g} mm of the rod have no point nearby: the "
+          "shapes differ",
           missing * 1e3);
     }
     if (lacks_one_segment(points, check.length_m)) {
@@ -152,7 +151,7 @@ std::string hint_of(const ShapeCheck& check, const Measured& measured) {
           at_end != alignment.reversed ? "last" : "first");
     }
     return fmt::format(
-        "shorter than the rod by {:.4g} mm: compressed, cut off, or only a part seen",
+        "shorter than the rod by {:.4g} mm: compressed, cut off, or only partly observed",
         missing * 1e3);
   }
   return {};

@@ -64,7 +64,7 @@ ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance) {
                                   unverified * 1e3, check.unverified->message));
   }
   if (!enough) {
-    reasons.push_back(fmt::format("only {:.4g} % of the rod is seen, needed {:.4g} %",
+    reasons.push_back(fmt::format("only {:.4g} % of the rod is observed, {:.4g} % is required",
                                   std::max(0.0, seen) * 100, tolerance.least_seen_share * 100));
   }
   if (!untold.empty()) {

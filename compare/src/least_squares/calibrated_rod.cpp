@@ -119,8 +119,8 @@ Scene calibrated_scene(Scene scene, const CalibratedRod& rod) {
   if (rod.camera_tilt.isZero(0)) return scene;
   if (!is_bent_by_weight_alone(scene)) {
     throw InputError(fmt::format(
-        "{}: the calibrated rod was seen by a tilted camera, camera_tilt, which turns scenes that "
-        "weight alone bends (allowed: those, or no camera_tilt)",
+        "{}: the calibrated rod was observed by a tilted camera, camera_tilt, which applies only "
+        "to scenes whose rod is bent by weight alone (allowed: such scenes, or no camera_tilt)",
         scene.file));
   }
   turn_scene(scene, rod.camera_tilt);

@@ -67,7 +67,7 @@ class ChainFinder {
     const std::vector<MjcfJoint>& joints = world_.bodies[body].joints;
     for (const MjcfJoint& joint : joints) {
       if ((joint.place - joints.front().place).norm() <= 1e-9) continue;
-      xml_.fail(joint.node, "pos", "is another place than that of the body's joint before");
+      xml_.fail(joint.node, "pos", "is not the position of the body's first joint");
     }
     const bool jointed = !joints.empty() && joints.front().type != MjcfJoint::Type::free;
     return jointed ? joints.front().place : Vector3d::Zero();
@@ -104,10 +104,9 @@ class ChainFinder {
     if (holder > 0 && is_segment(holder, along)) {
       along.insert(along.begin(), holder);
     } else if (holder > 0) {
-      chain_.notes.push_back(
-          fmt::format("{} is taken for what the cable is fixed to, not for a "
-                      "segment of it",
-                      name_of(holder)));
+      chain_.notes.push_back(fmt::format(
+          "{} is treated as the base that the cable is fixed to, not as a segment of it",
+          name_of(holder)));
     }
     if (along.size() < 2) {
       xml_.fail(world_.bodies[along.front()].node,

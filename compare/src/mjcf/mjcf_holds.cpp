@@ -34,7 +34,7 @@ class HoldFinder {
         attributes_.refusals().attempt([&] { is_soft = add(constraint) || is_soft; });
       }
     }
-    if (is_soft) notes.emplace_back("constraints, which are soft, are taken for rigid grippers");
+    if (is_soft) notes.emplace_back("soft constraints are treated as rigid grippers");
     attributes_.refusals().throw_if_any();
     if (holds_.empty()) {
       xml_.fail(world_.bodies[chain_.segments.front().body].node,

@@ -65,8 +65,8 @@ void require_in_plane(const XmlFile& xml, const MjcfWorld& world, const MjcfChai
   constexpr double aligned = 1e-6;
   if (!(std::abs(chain.hinge.dot(gravity)) > aligned * gravity.norm())) return;
   xml.fail(world.bodies[chain.segments[1].body].joints.front().node, "axis",
-           "lets the cable bend across gravity only, whose weight the hinges carry (allowed: "
-           "gravity at a right angle to the hinges; or two hinges, or a ball)");
+           "lets the cable bend only in a plane that does not contain gravity, so the hinges carry "
+           "weight (allowed: gravity at a right angle to the hinges; or two hinges, or a ball)");
 }
 
 std::string grippers_text(const std::vector<MjcfHold>& holds) {

@@ -62,9 +62,10 @@ MjcfSpring of_hinges(const XmlFile& xml, const MjcfBody& body, const Vector3d& d
       xml.fail(joint.node, "axis", "is not at a right angle to the hinge's before");
     }
     if (!axes.empty() && !are_alike(EI, result.bending)) {
-      xml.fail(joint.node, "stiffness",
-               fmt::format("is another one than {:.6g}, the other hinge's (allowed: the same)",
-                           result.bending / h));
+      xml.fail(
+          joint.node, "stiffness",
+          fmt::format("differs from {:.6g}, the stiffness of the other hinge (allowed: the same)",
+                      result.bending / h));
     }
     axes.push_back(joint.axis);
     result.bending = EI;

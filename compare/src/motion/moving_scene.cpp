@@ -84,7 +84,8 @@ std::string SimulatedMotion::why_stopped() const {
     return fmt::format("{} ({} terms; others by --terms)", moved.message, moved.terms);
   }
   return moved.message +
-         "; a longer one lets it go on, more damping or another number of --terms makes it faster";
+         "; give a longer time limit, or make the simulation faster by more damping or another "
+         "number of --terms";
 }
 
 void require_dynamic(const Scene& scene) {
@@ -92,8 +93,8 @@ void require_dynamic(const Scene& scene) {
     for (const Gripper& gripper : scene.grippers) {
       if (!gripper.frame || !changes_direction(gripper.trajectory)) continue;
       refuse(scene.file,
-             "a clamp that holds the rod's frame changes its direction, which leaves open how the "
-             "frame goes with it (allowed: positions and rolls that move)");
+             "a clamp that holds the rod's frame changes its direction, which does not determine "
+             "how the frame rotates with it (allowed: positions and rolls that move)");
     }
   }
   scene.require_potential("the moving rod does");

@@ -125,7 +125,7 @@ class Tracker {
     if (frame.released < -frame.released_bound) {
       return stop(frame.time,
                   fmt::format("the solver left its branch for a shape that is {:.3g} J higher than "
-                              "the work done allows; a higher frame rate may keep it",
+                              "the work done allows; a higher frame rate may keep the branch",
                               -frame.released));
     }
     if (branch_.balances() && !(frame.released > frame.released_bound)) return true;

@@ -194,8 +194,8 @@ void check_rolls(const Scene& scene, const std::vector<StrictTable>& entries) {
       (void)energy_model::held_d1(problem, grip);
     } catch (const std::invalid_argument&) {
       entries[i].fail("roll",
-                      "leaves open where it counts from: the direction is opposite to the first "
-                      "clamp's and in line with it (allowed: frame or quaternion)");
+                      "has no defined zero: the direction is opposite to the first clamp's and on "
+                      "one line with it (allowed: frame or quaternion)");
     }
   }
 }

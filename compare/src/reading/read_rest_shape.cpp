@@ -77,8 +77,8 @@ void read_rest_shape(StrictTable& rod, const std::vector<StrictTable>& sections,
     for (const char* key : {"natural_curvature", "natural_twist"}) {
       if (!section.has(key)) continue;
       section.fail(key,
-                   "given besides rod.rest_shape, which says it all along (allowed: one of "
-                   "the two)");
+                   "given besides rod.rest_shape, which defines it along the whole rod (allowed: "
+                   "one of the two)");
     }
   }
   try {

@@ -111,8 +111,9 @@ void read_stiffness(StrictTable& rod, const std::vector<Material>& known_materia
   const bool has_section = std::any_of(std::begin(section_keys), std::end(section_keys),
                                        [&](const char* key) { return rod.has(key); });
   if (has_bending && has_mass && has_material && !has_section) {
-    rod.fail("diameter",
-             "missing, the material says nothing without it (allowed: a diameter, or no material)");
+    rod.fail(
+        "diameter",
+        "missing, the material has no effect without it (allowed: a diameter, or no material)");
   }
   if (!complete || has_section) read_cross_section(rod, scene);
   if (!complete) scene.material = read_material(rod, known_materials);

@@ -44,9 +44,11 @@ const char* verdict_of(bool passes) { return passes ? "pass" : "fail"; }
 PageResult page_result(const CheckResult& result) {
   const EffectiveModulus& modulus = result.check.effective_modulus;
   const bool identified = is_identified(modulus.optimum) && !result.supersedes_modulus;
-  const std::string why_not = result.supersedes_modulus  ? "no measure of the material"
-                              : modulus.why_none.empty() ? "not identified"
-                                                         : modulus.why_none;
+  const std::string why_not =
+      result.supersedes_modulus
+          ? "not meaningful: a cause explains the shape better than any stiffness"
+      : modulus.why_none.empty() ? "not identified"
+                                 : modulus.why_none;
   PageResult page{
       .title = result.check.scene,
       .passes = result.passes(),

@@ -318,7 +318,7 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
     bound_by_shape(inextensible, options, {bounds, twist, natural}, plan);
   } catch (const std::exception& error) {
     // A failing plan must not make a solve fail.
-    bounds.set_unbounded(fmt::format("not found out: {}", error.what()));
+    bounds.set_unbounded(fmt::format("not computed: {}", error.what()));
   }
   const bool counted = scene.stretch == Stretch::counted;
   plan.stretch = !counted && bounds.stretch.bound_m > options.target * inextensible.length / 10;

@@ -36,7 +36,7 @@ namespace {
 
 /// Describes the searches for equilibria, for a message.
 std::string looked_from(const std::vector<energy_model::Equilibrium>& searches) {
-  if (searches.empty()) return "no start to look from";
+  if (searches.empty()) return "no initial guess to search from";
   return fmt::format("{} search{}, the first: {} after {} evaluations", searches.size(),
                      searches.size() == 1 ? "" : "es", searches.front().message,
                      searches.front().evaluations);

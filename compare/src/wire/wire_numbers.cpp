@@ -52,10 +52,10 @@ void add_natural_curvature(std::vector<WireNumber>& numbers, const std::vector<S
   const bool turned = options.roll_tolerance > unknown_roll;
   for (const Scene& scene : scenes) {
     if (scene.rest_shape) {
-      throw InputError(fmt::format(
-          "{}: rod.rest_shape: says the natural curvature that is to be fitted (allowed: "
-          "natural_curvature or none)",
-          scene.file));
+      throw InputError(
+          fmt::format("{}: rod.rest_shape: defines the natural curvature that is to be fitted "
+                      "(allowed: natural_curvature or none)",
+                      scene.file));
     }
     Scene bent = scene;
     bend_by_nature(bent, 0, {0, 1 / scene.length});

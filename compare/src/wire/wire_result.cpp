@@ -129,8 +129,8 @@ class WireIntervals {
     }
     if (optimum_.is_unseen(0)) {
       return fmt::format(
-          "{0} is not identifiable from these shapes: with the rest as it fits they are the same "
-          "with any {0}",
+          "{0} is not identifiable from these shapes: with the other parameters as fitted, the "
+          "shapes are the same for any {0}",
           stiffness.name);
     }
     if (E.value) return "";
@@ -138,8 +138,8 @@ class WireIntervals {
       return value ? fmt::format("{:.4g}", *value) : "...";
     };
     return fmt::format(
-        "{0} is not identifiable beside what else is fitted: {1} to {2} {3} fit (identified: "
-        "within a factor of {4:g})",
+        "{0} is not identifiable together with the other fitted parameters: {1} to {2} {3} fit "
+        "(identified: within a factor of {4:g})",
         stiffness.name, end(E.low), end(E.high), stiffness.unit,
         problem_.options.identified_within);
   }
@@ -257,8 +257,8 @@ void note_ways_out_of_plane(const WireProblem& problem, const WireOptimum& optim
     farthest = std::max(farthest, way);
   }
   if (!(farthest > 0)) return;
-  warn(fit, fmt::format("the rod was fitted in the plane of its points and would leave it, by "
-                        "{:.3g} mm in {}: GJ is larger, or the natural curvature another one",
+  warn(fit, fmt::format("the rod was fitted in the plane of its points, but would leave this plane "
+                        "by {:.3g} mm in {}: its GJ is larger or its natural curvature differs",
                         farthest * 1000, problem.scenes[whose].file));
 }
 
@@ -273,8 +273,8 @@ void note_contradicted_tolerances(MaterialFit& fit) {
       fit.others.begin(), fit.others.end(),
       [&](const FittedNumber& a, const FittedNumber& b) { return excess(a) < excess(b); });
   if (farthest == fit.others.end() || !(excess(*farthest) > likely)) return;
-  warn(fit, fmt::format("the shapes contradict how well it is said to be known: {} is off by "
-                        "{:.2g} times that; say less",
+  warn(fit, fmt::format("the shapes contradict a given standard deviation: {} deviates by {:.2g} "
+                        "times this value; give a larger one",
                         farthest->name, excess(*farthest)));
 }
 

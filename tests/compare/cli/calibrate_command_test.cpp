@@ -70,7 +70,7 @@ TEST_F(CalibrateCommand, EqualShapesCountOnce) {
   const json repeated = json_of(four);
   EXPECT_EQ(repeated.at("interval_95_Pa"), once.at("interval_95_Pa"));
   EXPECT_EQ(repeated.at("shapes").size(), 1U);
-  EXPECT_TRUE(says(run(four).out, {"equal shapes count once", "copy.csv"}));
+  EXPECT_TRUE(says(run(four).out, {"shapes with the same points are fitted once", "copy.csv"}));
 }
 
 // Rods under their own weight, whose searches need more evaluations than one.

@@ -101,7 +101,7 @@ TEST_F(CheckCommand, AFileThatDoesNotDetermineTheRodIsUndetermined) {
 TEST_F(CheckCommand, APassBesideAnotherStiffnessSaysWhyBothHold) {
   const std::string file = solved_file(level_rod(1, 0.6, 0.1) + " --samples 21");
   const std::string soft = level_rod(1, 0.5, 0.1);
-  const std::string words = "E*/E = 1.2 is no contradiction: ";
+  const std::string words = "E*/E = 1.2 does not contradict the verdict: ";
   expect_output("check " + soft + " --tolerance 10% --shape " + file, 0, {"pass: ", words});
   // Where it fails, E* is the explanation.
   const std::string narrow = run("check " + soft + " --tolerance 0.1% --shape " + file).out;
@@ -142,7 +142,8 @@ TEST_F(CheckCommand, AHookPastTheTipFailsAndIsNamed) {
   const std::string data = std::string(DLO_DATA) + "/failures/";
   expect_output(
       words({"check", data + "check_hang.toml --tolerance 1% --shape", data + "check_hook.csv"}), 1,
-      {"longer than the rod by 509.9 mm past arc length l: the points there turn away from it",
+      {"longer than the rod by 509.9 mm past arc length l: the points there do not "
+       "continue in the rod's direction",
        "E*/E            not determined: the shape does not change with E"});
 }
 

@@ -274,7 +274,7 @@ TEST(ChainVerdict, AMissingLastEndIsAppended) {
   const CheckResult result = checked(clamped(), chain.leftCols(20));
   EXPECT_TRUE(result.passes()) << result.judgement.reason;
   ASSERT_EQ(result.notes.size(), 1U);
-  EXPECT_TRUE(says(result.notes[0], {"20 points", "end of the last one is appended"}));
+  EXPECT_TRUE(says(result.notes[0], {"20 points", "end of the last segment is appended"}));
   EXPECT_LT((result.check.alignment.shape.points.col(20) - chain.col(20)).norm(), 1e-4);
   // The first point is at the clamp, and many points are no shorter than the rod.
   EXPECT_TRUE(checked(clamped(), chain.rightCols(20)).notes.empty());

@@ -215,7 +215,7 @@ TEST(Prediction, RefusesWhatItCannotDo) {
   Hangings two = seen;
   two.resize(2);
   EXPECT_EQ(refused(two, {.predict = true}),
-            "calibrate: prediction of 2 shapes, each by the others (allowed: 3 or more)");
+            "calibrate: 2 shapes are too few to predict each by the others (allowed: 3 or more)");
   Hangings other = seen;
   other.scenes[2].grippers[0].at = 0.1;
   EXPECT_TRUE(says(refused(other, {.direction_tolerance = 0.1, .shared_clamps = true}),

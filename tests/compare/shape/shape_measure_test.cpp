@@ -210,8 +210,8 @@ TEST_P(AnyRightShape, PartsThatThePointsDoNotDetermineAreNamed) {
   EXPECT_LT(check.whole_max_m, 1e-7);
   const ShapeJudgement judgement = judge(check, {.allowed_m = 0.01});
   EXPECT_EQ(judgement.verdict, ShapeVerdict::undetermined);
-  EXPECT_TRUE(says(judgement.reason,
-                   {"do not determine the rod at s = 0.02 to 1 m", "only 2 % of the rod is seen"}));
+  EXPECT_TRUE(says(judgement.reason, {"do not determine the rod at s = 0.02 to 1 m",
+                                      "only 2 % of the rod is observed"}));
   EXPECT_FALSE(judge(check, {.allowed_m = 0.01, .least_seen_share = 0.1, .part = true}).passes());
   EXPECT_TRUE(judge(check, {.allowed_m = 0.01, .least_seen_share = 0.01, .part = true}).passes());
 }
@@ -234,7 +234,7 @@ TEST(ShapeMeasure, PointsPastTheTipCount) {
       EXPECT_EQ(check.worst_point, 22);
       // Spread evenly the excess is 0.1 s.
       EXPECT_GT(check.deviation.rms_m, 0.05);
-      EXPECT_TRUE(says(check.hint, {way == t ? "stretched by 10 %" : "turn away"}));
+      EXPECT_TRUE(says(check.hint, {way == t ? "stretched by 10 %" : "do not continue"}));
     }
   }
 }
@@ -268,7 +268,7 @@ TEST(ShapeJudgement, LessThanHalfOfTheRodIsNeverAPass) {
   EXPECT_TRUE(judge(seen(0.501), {.allowed_m = 0.01, .part = true}).passes());
   const ShapeJudgement less = judge(seen(0.499), {.allowed_m = 0.01, .part = true});
   EXPECT_EQ(less.verdict, ShapeVerdict::undetermined);
-  EXPECT_TRUE(says(less.reason, {"only 49.9 % of the rod is seen, needed 50 %"}));
+  EXPECT_TRUE(says(less.reason, {"only 49.9 % of the rod is observed, 50 % is required"}));
 }
 
 TEST(ShapeJudgement, HoldsWhatIsMissingAgainstTheWholeRodOnly) {

@@ -101,8 +101,9 @@ TEST(CameraTilt, IsRefusedWhereMoreThanWeightActs) {
   EXPECT_TRUE(says(refusal(), {"wire: a camera's tilt of a rod without weight, or with loads",
                                "(allowed: a rod that its weight alone bends)"}));
   const CalibratedRod rod = {.camera_tilt = {0, 0, 0.1}};
-  EXPECT_TRUE(says(error_of<InputError>([&] { return calibrated_scene(seen.scenes[1], rod); }),
-                   {"wire: the calibrated rod was seen by a tilted camera", "no camera_tilt)"}));
+  EXPECT_TRUE(
+      says(error_of<InputError>([&] { return calibrated_scene(seen.scenes[1], rod); }),
+           {"wire: the calibrated rod was observed by a tilted camera", "no camera_tilt)"}));
   seen.scenes[1].loads.clear();
   seen.scenes[1].gravity = {1, -9.81, 0};
   EXPECT_TRUE(says(refusal(), {"wire: not the plane or gravity of wire", "under one gravity)"}));
