@@ -117,6 +117,94 @@ TEST(TwistedSecondVariation, VanishesWhereMichellsRingBuckles) {
   }
 }
 
+/// Rod whose frames are a given function of s under a force, with natural strains such that it
+/// carries a given moment. It computes the energy of changes of the frames, by differences.
+struct FramedCurve {
+  std::function<Eigen::Matrix3d(double)> frame;
+  std::function<Eigen::Vector3d(double)> moment;
+  Eigen::Vector3d stiffness;
+  Eigen::Vector3d n;
+
+  static constexpr int parts = 2000;
+
+  static Eigen::Vector3d strain(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+    const Eigen::AngleAxisd rotation(Eigen::Matrix3d(a.transpose() * b));
+    return parts * rotation.angle() * rotation.axis();
+  }
+
+  /// Returns the energy of the frames exp(hat(spin)) R minus that of the frames R.
+  [[nodiscard]] double cost(const std::function<Eigen::Vector3d(double)>& spin) const {
+    double energy = 0;
+    for (int i = 0; i < parts; ++i) {
+      const double s = static_cast<double>(i) / parts;
+      const double next = (i + 1.0) / parts;
+      const double middle = (s + next) / 2;
+      const Eigen::Matrix3d a = from_rotation_vector(spin(s)) * frame(s);
+      const Eigen::Matrix3d b = from_rotation_vector(spin(next)) * frame(next);
+      const Eigen::Vector3d own = frame(middle).transpose() * moment(middle);
+      const Eigen::Vector3d change = strain(a, b) - strain(frame(s), frame(next));
+      energy += own.dot(change) / parts + change.dot(stiffness.cwiseProduct(change)) / (2 * parts);
+      energy -= n.dot(a.col(2) + b.col(2)) / (2 * parts);
+    }
+    return energy;
+  }
+};
+
+/// A function on the elements of the second variation, polynomials through their nodes.
+Eigen::Vector3d on_elements(const SecondVariation& mode, double s) {
+  constexpr Eigen::Index order = 4;
+  Eigen::Index first = 0;
+  while (first + 2 * order < mode.s.size() && mode.s[first + order] < s) first += order;
+  Eigen::Vector3d value = Eigen::Vector3d::Zero();
+  for (Eigen::Index k = first; k <= first + order; ++k) {
+    double part = 1;
+    for (Eigen::Index j = first; j <= first + order; ++j) {
+      if (j != k) part *= (s - mode.s[j]) / (mode.s[k] - mode.s[j]);
+    }
+    value += part * mode.spin.col(k);
+  }
+  return value;
+}
+
+TEST(TwistedSecondVariation, IsTheSecondDifferenceOfTheEnergy) {
+  // On frames of no special shape, with a force and a moment that do not fit them.
+  const auto frame = [](double s) {
+    const Eigen::Vector3d turn(1.5 * std::sin(2 * s), 2 * s * s - 1, 5 * s + std::cos(3 * s));
+    return from_rotation_vector(turn).toRotationMatrix();
+  };
+  const auto moment = [](double s) { return Eigen::Vector3d(2 - s, std::sin(4 * s), 3 * s * s); };
+  for (const double size : {-9.0, 0.0, 4.0, 13.0}) {
+    Problem problem = rolled_clamps({0.4, 0.3, 0.2}, frame(1).col(2), 0.8, 0);
+    problem.grips[0].direction = Eigen::Vector3d(frame(0).col(2));
+    const FramedCurve curve{frame,
+                            [&](double s) { return Eigen::Vector3d(size * moment(s)); },
+                            {1, 1, 0.8},
+                            {2, -3, 5}};
+    const SecondVariation found =
+        second_variation(span_of(problem), {}, any_frames(), 200, states_of([&](double s) {
+                           RodState state;
+                           state.R = frame(s);
+                           state.m = curve.moment(s);
+                           state.n = curve.n;
+                           return state;
+                         }));
+    const auto cost = [&](double amount) {
+      return curve.cost([&](double s) { return Eigen::Vector3d(amount * on_elements(found, s)); });
+    };
+    double norm = 0;
+    for (int i = 0; i < FramedCurve::parts; ++i) {
+      const Eigen::Vector3d here = on_elements(found, static_cast<double>(i) / FramedCurve::parts);
+      const Eigen::Vector3d next = on_elements(found, (i + 1.0) / FramedCurve::parts);
+      norm += (next - here).squaredNorm() * FramedCurve::parts +
+              (here.squaredNorm() + next.squaredNorm()) / (2 * FramedCurve::parts);
+    }
+    constexpr double h = 1e-3;
+    const double second = (cost(h) - 2 * cost(0) + cost(-h)) / (h * h);
+    // Differences of the polygon are accurate to 1e-6 of their terms.
+    EXPECT_NEAR(second / norm, found.smallest, 1e-5 * (1 + std::abs(found.smallest))) << size;
+  }
+}
+
 /// A cross-section of a round rod as the closed forms have it, in units of l and EI.
 struct RoundState {
   Eigen::Vector3d r, t;
