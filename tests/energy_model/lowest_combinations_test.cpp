@@ -1,11 +1,10 @@
-#include "base/lowest_combinations.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "base/found_equilibria.hpp"
 #include "random_problems.hpp"
 
 namespace dlo::energy_model {

@@ -224,6 +224,33 @@ TEST(Polygon, ObstaclePushesBackWithItsStiffness) {
   EXPECT_NEAR(total, 0, 1e-6);
 }
 
+// On a floor whose segments have stiffnesses in proportion to their lengths a heavy chain sinks
+// equally everywhere: w L / (k L).
+TEST(Polygon, SegmentsOfOwnStiffnessSinkEqually) {
+  constexpr double weight = 3;
+  constexpr double floor = 60;
+  PolygonProblem problem = two_clamps(JointLaw::hooke, 7, 1, 0);
+  const Eigen::Index n = problem.rest_lengths.size();
+  problem.rest_lengths.segment(1, n - 2) << 0.1, 0.25, 0.05, 0.2;
+  const double depth = weight / floor;
+  Eigen::Matrix3Xd start = Eigen::Matrix3Xd::Zero(3, n + 1);
+  start.row(1).setConstant(-depth);
+  problem.node_forces.setZero();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    start(0, i + 1) = start(0, i) + problem.rest_lengths[i];
+    problem.node_forces.block(1, i, 1, 2).array() -= weight * problem.rest_lengths[i] / 2;
+  }
+  problem.held = {
+      {0, start.col(0)}, {1, start.col(1)}, {n - 1, start.col(n - 1)}, {n, start.col(n)}};
+  problem.obstacles = {
+      {.body = obstacle::Body::half_space(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitY()),
+       .stiffnesses = floor * problem.rest_lengths}};
+  Eigen::Matrix3Xd bent = start;
+  bent.row(1).segment(2, n - 3).array() += 0.02;
+  const PolygonResult rest = test::usable(solve_polygon(problem, bent));
+  EXPECT_LT((rest.points - start).cwiseAbs().maxCoeff(), 1e-10);
+}
+
 TEST(Polygon, StoppedEarlyIsAFailure) {
   const PolygonProblem problem = two_clamps(JointLaw::hooke, 20, 0.8, 5);
   EXPECT_EQ(solve_polygon(problem, arch(problem, 0.8, 0), {.max_evaluations = 2}).status,

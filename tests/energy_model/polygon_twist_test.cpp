@@ -1,7 +1,5 @@
 // Polygons between segments that hold the rod's frame.
 
-#include "polygon/polygon_twist.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>

@@ -1,7 +1,5 @@
 // Polygons of a round rod's tangents, from which multiple shooting starts.
 
-#include "kirchhoff/relaxed_tangents.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -10,8 +8,7 @@
 
 #include "base/deadline.hpp"
 #include "dlo/energy_model/problem.hpp"
-#include "kirchhoff/grip_gaps.hpp"
-#include "kirchhoff/polygon_starts.hpp"
+#include "kirchhoff/relaxed_polygon.hpp"
 #include "kirchhoff/rod_mesh.hpp"
 #include "kirchhoff/rod_span.hpp"
 
@@ -32,18 +29,10 @@ RodSpan held_rod(double weight, const Grip& end, const std::vector<Grip>& betwee
 
 Grip clamp_at_end(double x, const Eigen::Vector3d& direction) { return {1, {x, 0, 0}, direction}; }
 
-Eigen::Matrix3Xd tangents_of_start(const std::vector<Eigen::Quaterniond>& frames) {
-  Eigen::Matrix3Xd tangents(3, static_cast<Eigen::Index>(frames.size()));
-  for (Eigen::Index i = 0; i < tangents.cols(); ++i) {
-    tangents.col(i) = frames[static_cast<std::size_t>(i)] * Eigen::Vector3d::UnitZ();
-  }
-  return tangents;
-}
-
 /// Returns the largest sine of the angle between a tangent and the sum of its neighbours, weighted
 /// by 1 / h, and the force.
-double largest_angle(const RodSpan& span, const RodMesh& mesh, const RelaxedTangents& polygon) {
-  const Eigen::Matrix3Xd& t = polygon.tangents;
+double largest_angle(const RodSpan& span, const RodMesh& mesh, const RelaxedPolygon& polygon) {
+  const Eigen::Matrix3Xd t = polygon.tangents();
   const auto pull_of = [&](const RodSpan::Clamp* clamp, Eigen::Index i) -> Eigen::Vector3d {
     if (clamp == nullptr) return Eigen::Vector3d::Zero();
     return 2 / mesh.width(i) * clamp->direction;
@@ -76,12 +65,12 @@ TEST(RelaxedTangents, CloseTheirGapsAndComeToRest) {
     for (const Motion motion : {Motion::in_plane, Motion::in_space}) {
       if (motion == Motion::in_plane && !span.plane) continue;
       for (const auto& start : polygon_starts(span, mesh, motion)) {
-        const RelaxedTangents polygon =
-            relax_tangents(span, mesh, tangents_of_start(start), motion, Deadline(10));
+        const RelaxedPolygon polygon = relax_polygon(span, mesh, start, motion, Deadline(10));
+        const Eigen::Matrix3Xd tangents = polygon.tangents();
         for (const GripGap& of : grip_gaps(span, mesh)) {
           Eigen::Vector3d gap = -of.chord;
           for (Eigen::Index i = of.first; i < of.end; ++i) {
-            gap += mesh.width(i) * polygon.tangents.col(i);
+            gap += mesh.width(i) * tangents.col(i);
           }
           EXPECT_TRUE(of.closed(gap)) << "span " << k << ": " << gap.norm();
         }
@@ -90,6 +79,26 @@ TEST(RelaxedTangents, CloseTheirGapsAndComeToRest) {
       }
     }
   }
+}
+
+TEST(RelaxedTangents, HaveTheEnergyOfTheirJointsAndLoads) {
+  const RodSpan span = held_rod(2, clamp_at_end(0.7, {1, 0, 0}));
+  const RodMesh mesh = make_mesh(span, 0.05);
+  const auto start = polygon_starts(span, mesh, Motion::in_plane)[2];
+  const RelaxedPolygon polygon = relax_polygon(span, mesh, start, Motion::in_plane, Deadline(10));
+  const Eigen::Matrix3Xd t = polygon.tangents();
+  const Eigen::Index count = t.cols();
+  const double h = mesh.width(0);
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
+  double energy = 2 / h * (1 - t.col(0).dot(x) + 1 - t.col(count - 1).dot(x));
+  double height = 0;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    if (i > 0) energy += (1 - t.col(i).dot(t.col(i - 1))) / h;
+    energy += 2 * h * (height + h / 2 * t(1, i));
+    height += h * t(1, i);
+  }
+  EXPECT_NEAR(polygon.energy, energy, 1e-9);
+  EXPECT_NEAR(t.row(2).norm(), 0, 1e-12);
 }
 
 }  // namespace

@@ -4,25 +4,24 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/deadline.hpp"
-#include "base/lowest_combinations.hpp"
+#include "base/found_equilibria.hpp"
 #include "base/require.hpp"
+#include "base/spin.hpp"
 #include "dlo/energy_model/balance.hpp"
+#include "dlo/energy_model/natural_frame.hpp"
 #include "dlo/energy_model/soft_line.hpp"
-#include "exact/planar_shooting.hpp"
-#include "exact/without_potential.hpp"
 #include "kirchhoff/rod_span.hpp"
-#include "problem/ordered_grips.hpp"
-#include "problem/reduction.hpp"
 #include "problem/rod_law.hpp"
-#include "shooting/refine_span.hpp"
-#include "shooting/solved_rod.hpp"
-#include "shooting/span_shooting.hpp"
-#include "touching/confirm_contacts.hpp"
+#include "shooting/continuation.hpp"
+#include "shooting/span_search.hpp"
+#include "touching/contacts.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -37,6 +36,21 @@ struct Found {
   std::string not_searched;  // description of an omitted part; empty: none
 };
 
+/// Finds equilibria of a span: near the start, by the scan of the tip if it is the whole rod, or by
+/// the search.
+SpanSearchResult search_one(const Problem& problem, const RodSpan& span,
+                            const ExactOptions& options, const Deadline& deadline) {
+  if (options.start != nullptr) {
+    SpanSearchResult result;
+    result.found = {refine_span(span, problem, *options.start, options.tolerance, deadline)};
+    result.complete = !deadline.passed();
+    return result;
+  }
+  const bool scans = span.length == 1 && tip_can_be_scanned(span);
+  return scans ? scan_tip(span, options.tolerance, deadline)
+               : search_span(span, options.tolerance, deadline);
+}
+
 /// Returns the lowest combinations of the equilibria that are found for the spans. A rod with
 /// material directors is one span.
 Found solve_spans(const Problem& problem, const ExactOptions& options, const Deadline& deadline) {
@@ -47,17 +61,16 @@ Found solve_spans(const Problem& problem, const ExactOptions& options, const Dea
   std::vector<std::vector<SpanEquilibrium>> found;
   std::vector<std::vector<SpanCandidate>> candidates;
   for (const RodSpan& span : rod.spans) {
-    if (options.start == nullptr) {
-      SpanSearchResult search = search_span(span, options.tolerance, deadline);
-      result.out_of_time = result.out_of_time || !search.complete;
-      found.push_back(std::move(search.found));
-    } else {
-      found.push_back({refine_span(span, problem, *options.start, options.tolerance, deadline)});
-      result.out_of_time = result.out_of_time || deadline.passed();
-    }
-    candidates.emplace_back();
+    SpanSearchResult search = search_one(problem, span, options, deadline);
+    result.out_of_time = result.out_of_time || !search.complete;
+    result.not_searched = search.not_searched;
+    found.push_back(std::move(search.found));
+    std::vector<SpanCandidate>& own = candidates.emplace_back();
     for (const SpanEquilibrium& equilibrium : found.back()) {
-      candidates.back().push_back({equilibrium.stable(), equilibrium.energy.total()});
+      own.push_back({equilibrium.stable(), equilibrium.energy.total()});
+      // They are sorted up to rounding, and energies that are equal up to rounding keep this order.
+      if (own.size() < 2 || own.rbegin()[1].stable != own.back().stable) continue;
+      own.back().energy = std::max(own.back().energy, own.rbegin()[1].energy);
     }
   }
   const Combinations combinations = lowest_combinations(candidates, most_results);
@@ -69,20 +82,6 @@ Found solve_spans(const Problem& problem, const ExactOptions& options, const Dea
   if (combinations.truncated) {
     result.not_searched =
         "only the lowest " + std::to_string(most_results) + " combinations of spans are listed";
-  }
-  return result;
-}
-
-Found scan_tip(const Problem& problem, const ReducedCantilever& cantilever,
-               const ExactOptions& options, const Deadline& deadline) {
-  TipShots shots = shoot_from_tip(problem, cantilever, options.tolerance, deadline);
-  Found result{std::move(shots.equilibria), shots.out_of_time, ""};
-  if (!shots.complete) result.not_searched = "shooting failed from some angles of the tip";
-  if (result.equilibria.empty()) {
-    result.equilibria.emplace_back();
-    result.equilibria.front().status = SolveStatus::failed;
-    result.equilibria.front().message = "no shot from the tip meets the direction of the clamp";
-    result.equilibria.front().evaluations = shots.shots;
   }
   return result;
 }
@@ -101,33 +100,107 @@ void refuse_passed_torque(const Problem& problem) {
   }
 }
 
-Found search(const Problem& problem, const ExactOptions& options, const Deadline& deadline) {
-  if (has_material_directors(problem)) return solve_spans(problem, options, deadline);
-  refuse_passed_torque(problem);
-  const bool same_everywhere =
-      std::all_of(problem.line_loads.begin(), problem.line_loads.end(),
-                  [&](const LineLoad& load) { return acts_everywhere(load, problem); });
-  // The scan supports a single section.
-  const std::optional<ReducedCantilever> cantilever =
-      problem.sections.empty() && same_everywhere && !problem.axial_stiffness
-          ? reduce_cantilever(problem)
-          : std::nullopt;
-  const bool from_tip =
-      options.start == nullptr && cantilever && planar_shots_are_well_posed(cantilever->rod);
-  return from_tip ? scan_tip(problem, *cantilever, options, deadline)
-                  : solve_spans(problem, options, deadline);
+void require_followable(const Problem& problem) {
+  check(problem);
+  require(problem.obstacles.empty(), "solve_exact", "number of obstacles",
+          static_cast<double>(problem.obstacles.size()),
+          "0 if a load has no potential (drag, a follower load, a couple in space)");
+  for (const Load& load : problem.loads) {
+    require(!load.follows || !clamp_under(problem, load), "solve_exact",
+            "arc length of a follower load", load.at, "different from those of the clamps");
+  }
+  const int held = clamps_with_frames(problem);
+  require(held <= 2 || has_material_directors(problem), "solve_exact",
+          "number of clamps with frames", held, "<= 2 if a load has no potential");
 }
 
-Found search_without_potential(const Problem& problem, const ExactOptions& options,
-                               const Deadline& deadline) {
-  Found found;
-  found.equilibria.push_back(solve_without_potential(problem, options, deadline));
-  found.out_of_time = deadline.passed();
-  return found;
+/// Returns the problem without drag, couples and loads that follow the rod. Material directors keep
+/// their direction, which a plane of the remaining forces might otherwise change.
+Problem without_nonpotential_loads(Problem problem, const RodSpan& span) {
+  const std::optional<std::size_t> first = first_clamp(problem);
+  if (has_material_directors(problem) && first) {
+    Grip& clamp = problem.grips[*first];
+    if (!clamp.frame) clamp.frame = FrameHold{};
+    clamp.frame->d1 = rolled(span.first_frame, -clamp.frame->roll).col(0);
+  }
+  problem.drag.reset();
+  for (Load& load : problem.loads) {
+    load.torque.setZero();
+    if (load.follows) load.force.setZero();
+    load.follows = false;
+  }
+  return problem;
 }
 
-Found search_touching(const Problem& problem, const ExactOptions& options,
-                      const Deadline& deadline) {
+/// Returns the problem with its loads replaced by dead ones that are equal to them on a given
+/// shape.
+Problem frozen_on(const Problem& problem, const RodSpan& span, const Equilibrium& shape) {
+  constexpr Eigen::Index pieces = 64;
+  Problem dead = problem;
+  if (problem.drag) {
+    const std::vector<double> s = equal_arc_lengths(problem.length, pieces + 1);
+    const Eigen::Matrix3Xd tangents = shape.sample(s).tangents;
+    for (std::size_t i = 1; i < s.size(); ++i) {
+      const auto column = static_cast<Eigen::Index>(i);
+      dead.line_loads.push_back({s[i - 1], s[i],
+                                 problem.drag->force(tangents.col(column - 1).normalized()),
+                                 problem.drag->force(tangents.col(column).normalized())});
+    }
+    dead.drag.reset();
+  }
+  for (Load& load : dead.loads) {
+    if (!load.follows) continue;
+    const std::vector<double> at = {load.at};
+    const Samples here = shape.sample(at);
+    const Eigen::Vector3d t = here.tangents.col(0).normalized();
+    const Eigen::Matrix3d R =
+        here.d1.cols() > 0 ? frame_along(t, here.d1.col(0)) : transported(span.first_frame, t);
+    load.force = R * load.force;
+    load.torque = R * load.torque;
+    load.follows = false;
+  }
+  return dead;
+}
+
+Equilibrium failed_start(const Equilibrium& dead) {
+  Equilibrium result;
+  result.status = SolveStatus::failed;
+  result.message = "start under only the loads that have a potential: " + dead.message;
+  result.evaluations = dead.evaluations;
+  return result;
+}
+
+/// Returns an equilibrium of a rod with loads that have no potential. It is the continuation of the
+/// lowest equilibrium under the other loads as these loads grow from zero, or the one to which
+/// Newton's method converges from the options' start. It is `not_verified`, because without an
+/// energy its stability is undetermined.
+/// @throws std::invalid_argument as solve_exact(), or if there are obstacles, a load follows the
+/// rod at a clamp, or more than two clamps hold frames of a round straight rod
+Equilibrium solve_without_potential(const Problem& problem, const ExactOptions& options,
+                                    const Deadline& deadline) {
+  require_followable(problem);
+  const RodSpan span = with_own_axes(problem);
+  if (options.start != nullptr) {
+    SpanEquilibrium found = refine_span(span, frozen_on(problem, span, *options.start),
+                                        *options.start, options.tolerance, deadline);
+    return assemble(problem, {{span}, {std::move(found)}}, options.tolerance);
+  }
+  const Problem base = without_nonpotential_loads(problem, span);
+  const Equilibrium dead = solve_exact(
+      base, {.tolerance = options.tolerance,
+             .time_limit = std::max(deadline.remaining(), std::numeric_limits<double>::min())});
+  if (!dead.sample) return failed_start(dead);
+  SpanEquilibrium found = refine_span(loaded_by(span, 0), base, dead, options.tolerance, deadline);
+  if (found.converged) {
+    found.shots += dead.evaluations;
+    found = follow_loads(span, found, options.tolerance, deadline);
+  }
+  return assemble(problem, {{span}, {std::move(found)}}, options.tolerance);
+}
+
+/// Returns the equilibrium whose contacts are those of the start.
+Equilibrium confirm_start(const Problem& problem, const ExactOptions& options,
+                          const Deadline& deadline) {
   require(!problem.axial_stiffness, "solve_exact", "axial_stiffness",
           problem.axial_stiffness.value_or(0), "omitted if there are obstacles");
   require(!has_couples(problem), "solve_exact", "torque of a load", 1, "0 if there are obstacles");
@@ -143,7 +216,7 @@ Found search_touching(const Problem& problem, const ExactOptions& options,
   require(found.has_value(), "solve_exact", "number of obstacles", obstacles,
           "0 unless they are rigid, the rod has no natural strains, and its contacts are between "
           "grips");
-  return {{*std::move(found)}, false, ""};
+  return *std::move(found);
 }
 
 /// Solves the problem. The result is never empty. After the time limit the equilibria found so far
@@ -162,9 +235,16 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
   if (judged && !problem.axial_stiffness) {
     if (std::optional<Equilibrium> line = line_without_search(problem)) return {*std::move(line)};
   }
-  Found found = !judged                     ? search_without_potential(problem, options, deadline)
-                : problem.obstacles.empty() ? search(problem, options, deadline)
-                                            : search_touching(problem, options, deadline);
+  Found found;
+  if (!judged) {
+    found.equilibria = {solve_without_potential(problem, options, deadline)};
+    found.out_of_time = deadline.passed();
+  } else if (problem.obstacles.empty()) {
+    if (!has_material_directors(problem)) refuse_passed_torque(problem);
+    found = solve_spans(problem, options, deadline);
+  } else {
+    found.equilibria = {confirm_start(problem, options, deadline)};
+  }
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   for (Equilibrium& equilibrium : found.equilibria) {

@@ -1,5 +1,3 @@
-#include "shooting/close_gaps.hpp"
-
 #include <Eigen/OrderingMethods>
 #include <Eigen/SparseCore>
 #include <Eigen/SparseQR>
@@ -9,6 +7,7 @@
 #include <string>
 
 #include "dlo/energy_model/status.hpp"
+#include "shooting/shooting_system.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -84,49 +83,33 @@ std::optional<Eigen::VectorXd> regular_step(Triplets derivatives, Eigen::Index u
   return Eigen::VectorXd(solver.solve(right));
 }
 
-/// Takes a Levenberg step whose weight is of the order of the gaps. It reduces the gaps and does
-/// not move along zero modes, for which Newton's step is undefined.
-std::optional<double> levenberg_step(const ShootingSystem& system, const Triplets& derivatives,
-                                     const Eigen::VectorXd& equations, ShootingPoint& point,
-                                     int& shots) {
-  Eigen::VectorXd trial_equations;
-  for (double weight = equations.norm(); weight < 1e6 && !system.out_of_time(); weight *= 8) {
-    const std::optional<Eigen::VectorXd> step =
-        regular_step(derivatives, system.unknowns(), equations, weight);
-    if (!step) return std::nullopt;
-    ++shots;
-    const ShootingPoint trial = system.moved(point, *step);
-    if (system.allowed_part(point, *step) < 1 ||
-        !system.evaluate(trial, trial_equations, nullptr) ||
-        trial_equations.norm() > equations.norm()) {
-      continue;
-    }
-    point = trial;
-    return step->lpNorm<Eigen::Infinity>();
-  }
-  return std::nullopt;
-}
+/// Weights of the Levenberg steps that are tried, and the share of the gaps that a step may leave.
+struct Levenberg {
+  double first, last, growth;
+  double left;
+};
 
-/// Takes a Levenberg step near the solution, where a twisted rod would drift: a buckle far from
-/// both clamps slides along the rod and rotates about its line, both with nearly zero modes, so
-/// that Newton's steps stay long. It converges as fast as Newton's method in all other directions
-/// (Yamashita and Fukushima 2001).
-std::optional<double> last_newton_steps(const ShootingSystem& system, const Triplets& derivatives,
-                                        const Eigen::VectorXd& equations, ShootingPoint& point,
-                                        int& shots) {
-  const double gaps = equations.norm();
+/// Takes the first Levenberg step that reduces the gaps. It does not move along zero modes, for
+/// which Newton's step is undefined.
+/// @return largest component of the step; std::nullopt if no weight suffices
+std::optional<double> levenberg_step(const ShootingSystem& system, const Triplets& derivatives,
+                                     const Eigen::VectorXd& equations, const Levenberg& tried,
+                                     ShootingPoint& point, int& shots) {
   Eigen::VectorXd trial_equations;
-  for (double weight = std::max(gaps * gaps, least_weight); weight <= std::max(gaps, least_weight);
-       weight *= 30) {
+  for (double weight = tried.first; weight <= tried.last && !system.out_of_time();
+       weight *= tried.growth) {
     const std::optional<Eigen::VectorXd> step =
         regular_step(derivatives, system.unknowns(), equations, weight);
     if (!step) return std::nullopt;
     const ShootingPoint trial = system.moved(point, *step);
     const double largest = step->lpNorm<Eigen::Infinity>();
+    const double allowed =
+        largest < last_newton_step ? system.closed() : tried.left * equations.norm();
     ++shots;
-    if (!system.evaluate(trial, trial_equations, nullptr)) return std::nullopt;
-    if (trial_equations.norm() > (largest < last_newton_step ? system.closed() : gaps / 2))
+    if (system.allowed_part(point, *step) < 1 ||
+        !system.evaluate(trial, trial_equations, nullptr) || trial_equations.norm() > allowed) {
       continue;
+    }
     point = trial;
     return largest;
   }
@@ -151,11 +134,19 @@ ClosedGaps close_gaps(const ShootingSystem& system, ShootingPoint& point, int ma
       break;
     }
     std::optional<double> step;
-    if (modes == Modes::nearly_zero && equations.norm() < nearly_closed) {
-      step = last_newton_steps(system, derivatives, equations, point, result.shots);
+    const double gaps = equations.norm();
+    if (modes == Modes::nearly_zero && gaps < nearly_closed) {
+      // Newton's steps would drift: a buckle far from both clamps slides along the rod and rotates
+      // about its line, both with nearly zero modes. Levenberg steps with such weights converge as
+      // fast as Newton's in all other directions (Yamashita and Fukushima 2001).
+      const double first = std::max(gaps * gaps, least_weight);
+      step = levenberg_step(system, derivatives, equations,
+                            {first, std::max(gaps, least_weight), 30, 0.5}, point, result.shots);
     }
     if (!step) step = newton_step(system, derivatives, equations, point, result.shots);
-    if (!step) step = levenberg_step(system, derivatives, equations, point, result.shots);
+    if (!step) {
+      step = levenberg_step(system, derivatives, equations, {gaps, 1e6, 8, 1}, point, result.shots);
+    }
     if (!step) {
       result.message = "Newton's method found no step that reduces the gaps";
       if (system.unknowns() > most_weighted) {

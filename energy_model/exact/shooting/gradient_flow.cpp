@@ -1,11 +1,10 @@
-#include "shooting/gradient_flow.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
 
 #include "base/spin.hpp"
+#include "shooting/continuation.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -39,22 +38,8 @@ double widest_turn(const RodSpan& span, const std::vector<Eigen::Matrix3d>& a,
   return widest;
 }
 
-/// Returns the spins of the mode of the smallest eigenvalue, scaled to a largest change of 1: of a
-/// tangent for a round rod, of the frame otherwise.
-Eigen::Matrix3Xd unit_spins(const RodSpan& span, const SpanEquilibrium& equilibrium) {
-  const Eigen::Matrix3Xd spins = equilibrium.stability.spin_at(equilibrium.s);
-  double widest = 1e-300;
-  for (Eigen::Index i = 0; i < spins.cols(); ++i) {
-    const Eigen::Vector3d t = equilibrium.nodes[static_cast<std::size_t>(i)].t();
-    const Eigen::Vector3d spin = spins.col(i);
-    widest = std::max(widest, span.round() ? spin.cross(t).norm() : spin.norm());
-  }
-  return spins / widest;
-}
-
-std::vector<Eigen::Matrix3d> frames_beside(const RodSpan& span, const SpanEquilibrium& saddle,
-                                           double departure) {
-  const Eigen::Matrix3Xd spins = departure * unit_spins(span, saddle);
+std::vector<Eigen::Matrix3d> frames_beside(const SpanEquilibrium& saddle, double departure) {
+  const Eigen::Matrix3Xd spins = departure * saddle.stability.spin_at(saddle.s);
   std::vector<Eigen::Matrix3d> frames = frames_of(saddle.nodes);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     frames[i] = from_rotation_vector(spins.col(static_cast<Eigen::Index>(i))) * frames[i];
@@ -113,7 +98,7 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
       if (near && equilibrium.stable()) return equilibrium;
       if (near && equilibrium.stability.s.size() > 0 && ++departures <= most_flow_departures) {
         start = equilibrium.nodes;
-        aim = frames_beside(span, equilibrium, flow_departure);
+        aim = frames_beside(equilibrium, flow_departure);
         duration = first_duration;
         continue;
       }
@@ -132,8 +117,8 @@ SpanEquilibrium leave_saddle(const RodSpan& span, const SpanEquilibrium& saddle,
   const RodMesh mesh = mesh_at(span, saddle.s);
   for (const double side : {1.0, -1.0}) {
     SpanEquilibrium left =
-        follow_gradient(span, mesh, saddle.nodes,
-                        frames_beside(span, saddle, side * flow_departure), saddle.frames, options);
+        follow_gradient(span, mesh, saddle.nodes, frames_beside(saddle, side * flow_departure),
+                        saddle.frames, options);
     if (left.converged || options.deadline.passed()) return left;
     failed = std::move(left);
   }

@@ -1,5 +1,3 @@
-#include "shooting/refine_span.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -7,8 +5,8 @@
 #include "base/require.hpp"
 #include "base/spin.hpp"
 #include "problem/rod_law.hpp"
-#include "shooting/span_shooting.hpp"
-#include "shooting/span_twist.hpp"
+#include "shooting/continuation.hpp"
+#include "shooting/span_search.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -97,12 +95,6 @@ std::vector<RodState> states_by_balance(const RodSpan& span, const Problem& prob
   return states;
 }
 
-bool stays_in_plane(const RodSpan& span, const std::vector<RodState>& states) {
-  if (!span.plane || !span.round()) return false;
-  const Eigen::Vector3d normal = span.plane->x.cross(span.plane->y);
-  return (normal.transpose() * tangents_of(states)).cwiseAbs().maxCoeff() < plane_of_start;
-}
-
 }  // namespace
 
 Eigen::Vector3d implied_force(const Problem& problem, const Equilibrium& shape, double s) {
@@ -149,7 +141,7 @@ SpanEquilibrium refine_span(const RodSpan& span, const Problem& problem, const E
     return shoot_span(span, mesh, std::move(start), held_frames(span), options);
   }
   const RodSpan released = without_frames(span);
-  if (stays_in_plane(span, start)) options.motion = Motion::in_plane;
+  if (span.round() && out_of_plane(span, start) < plane_of_start) options.motion = Motion::in_plane;
   SpanEquilibrium equilibrium = shoot_span(released, mesh_at(released, mesh.s), std::move(start),
                                            released_frames(released), options);
   return span.twisted() ? twist_span(span, equilibrium, tolerance, deadline) : equilibrium;

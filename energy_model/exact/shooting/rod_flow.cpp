@@ -4,7 +4,8 @@
 
 #include <cmath>
 
-#include "base/integrate.hpp"
+#include "base/gsl.hpp"
+#include "base/spin.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -34,41 +35,33 @@ struct FlowPiece {
   }
 };
 
-/// Adds the pressure of a surface to the rates, with its derivatives.
-void press(const FlowPiece& piece, const RodState& state, const double* y, double* rate) {
-  using Vector = Eigen::Map<const Eigen::Vector3d>;
-  using Rate = Eigen::Map<Eigen::Vector3d>;
-  const RodSection& section = piece.rod->section;
-  const obstacle::Gap gap = piece.rod->surface->gap(state.r);
-  const Eigen::Index impulse = piece.impulse();
-  if (piece.variation->n.cols() == 0) {
-    Rate(rate + impulse) = pressure(*piece.rod->surface, section, state) * gap.gradient;
-    return;
-  }
-  const Pressure p = pressure_with_derivatives(*piece.rod->surface, section, state);
-  Rate(rate + impulse) = p.value * gap.gradient;
-  for (Eigen::Index k = 0; k < piece.variation->n.cols(); ++k) {
-    const double* change = y + state_size + k * variation_size;
-    const Vector lost(y + impulse + 3 * (k + 1));
-    Eigen::Matrix<double, 12, 1> by;
-    by << Eigen::Map<const Eigen::Matrix<double, 9, 1>>(change), piece.variation->n.col(k) - lost;
-    Rate(rate + impulse + 3 * (k + 1)) =
-        p.by_state.dot(by) * gap.gradient + p.value * (gap.hessian * Vector(change));
-  }
-}
+/// Force per length of the surface or of drag, and its derivatives by r, the spin, m and n.
+struct SpreadForce {
+  Eigen::Vector3d value;
+  Eigen::Matrix<double, 3, 12> by_state;
+};
 
-/// Adds the drag of a stream to the rates, with its derivatives.
-void drag(const FlowPiece& piece, const Eigen::Vector3d& t, const double* y, double* rate) {
-  const Drag& own = *piece.rod->section.drag;
-  const Eigen::Index impulse = piece.impulse();
-  Eigen::Map<Eigen::Vector3d>(rate + impulse) = own.force(t);
-  const Eigen::Index parameters = piece.variation->n.cols();
-  if (parameters == 0) return;
-  const Eigen::Matrix3d by_tangent = own.by_tangent(t);
-  for (Eigen::Index k = 0; k < parameters; ++k) {
-    const Eigen::Map<const Eigen::Vector3d> spin(y + state_size + k * variation_size + 3);
-    Eigen::Map<Eigen::Vector3d>(rate + impulse + 3 * (k + 1)) = by_tangent * spin.cross(t);
+/// @param with_derivatives  false: `by_state` is not computed
+SpreadForce spread_force(const RodPiece& piece, const RodState& state, bool with_derivatives) {
+  SpreadForce spread;
+  if (piece.surface == nullptr) {
+    const Eigen::Vector3d t = state.t();
+    spread.value = piece.section.drag->force(t);
+    spread.by_state.setZero();
+    // dt = spin x t
+    spread.by_state.middleCols<3>(3) = -piece.section.drag->by_tangent(t) * cross_matrix(t);
+    return spread;
   }
+  const obstacle::Gap gap = piece.surface->gap(state.r);
+  if (!with_derivatives) {
+    spread.value = pressure(*piece.surface, piece.section, state) * gap.gradient;
+    return spread;
+  }
+  const Pressure p = pressure_with_derivatives(*piece.surface, piece.section, state);
+  spread.value = p.value * gap.gradient;
+  spread.by_state = gap.gradient * p.by_state;
+  spread.by_state.leftCols<3>() += p.value * gap.hessian;
+  return spread;
 }
 
 int rod_rates(double at, const double* y, double* rate, void* data) {
@@ -76,7 +69,6 @@ int rod_rates(double at, const double* y, double* rate, void* data) {
   using Rate = Eigen::Map<Eigen::Vector3d>;
   const auto& piece = *static_cast<const FlowPiece*>(data);
   const RodSection& section = piece.rod->section;
-  const bool lies = piece.rod->surface != nullptr;
   const bool has_impulse = piece.has_impulse();
   const Eigen::Index impulse = piece.impulse();
   const Vector r(y);
@@ -106,14 +98,20 @@ int rod_rates(double at, const double* y, double* rate, void* data) {
     Rate(rate + 12) *= along;
     rate[piece.size() - 1] = (along - 1) * n.dot(t) / 2;
   }
-  if (lies) {
-    press(piece, {r, R, m, n}, y, rate);
-  } else if (has_impulse) {
-    drag(piece, t, y, rate);
+  const Eigen::Index parameters = piece.variation->n.cols();
+  if (has_impulse) {
+    const SpreadForce spread = spread_force(*piece.rod, {r, R, m, n}, parameters > 0);
+    Rate(rate + impulse) = spread.value;
+    for (Eigen::Index k = 0; k < parameters; ++k) {
+      Eigen::Matrix<double, 12, 1> by;
+      by << Eigen::Map<const Eigen::Matrix<double, 9, 1>>(y + state_size + k * variation_size),
+          piece.variation->n.col(k) - Vector(y + impulse + 3 * (k + 1));
+      Rate(rate + impulse + 3 * (k + 1)) = spread.by_state * by;
+    }
   }
-  if (piece.variation->n.cols() == 0) return GSL_SUCCESS;
+  if (parameters == 0) return GSL_SUCCESS;
   const Eigen::Matrix3d yields = R * compliance.asDiagonal() * R.transpose();
-  for (Eigen::Index k = 0; k < piece.variation->n.cols(); ++k) {
+  for (Eigen::Index k = 0; k < parameters; ++k) {
     const double* change = y + state_size + k * variation_size;
     double* change_rate = rate + state_size + k * variation_size;
     const Vector spin(change + 3);
@@ -182,9 +180,8 @@ RodRate rate_of(const RodPiece& piece, const RodState& state) {
   const Eigen::Vector3d dr = (1 + piece.section.stretch * state.n.dot(state.t())) * state.t();
   RodRate rate{dr, state.R * strain_of(piece.section, piece.natural, piece.begin, state),
                state.n.cross(dr), -(piece.section.weight + piece.begin * piece.section.slope)};
-  if (piece.section.drag) rate.n -= piece.section.drag->force(state.t());
-  if (piece.surface != nullptr) {
-    rate.n -= pressure(*piece.surface, piece.section, state) * piece.surface->gap(state.r).gradient;
+  if (piece.section.drag || piece.surface != nullptr) {
+    rate.n -= spread_force(piece, state, false).value;
   }
   return rate;
 }

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/found_equilibria.hpp"
 #include "base/lobatto_element.hpp"
 #include "base/spin.hpp"
-#include "base/zero_modes_note.hpp"
 
 namespace dlo::energy_model {
 namespace {

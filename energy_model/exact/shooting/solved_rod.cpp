@@ -1,5 +1,3 @@
-#include "shooting/solved_rod.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,56 +8,39 @@
 #include <string>
 #include <utility>
 
+#include "base/found_equilibria.hpp"
 #include "base/sized_samples.hpp"
-#include "base/zero_modes_note.hpp"
 #include "dlo/energy_model/couple_zero.hpp"
-#include "problem/ordered_grips.hpp"
-#include "problem/reduction.hpp"
 #include "problem/rod_law.hpp"
 #include "shooting/second_variation.hpp"
+#include "shooting/span_equilibrium.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
-/// Returns the cross-sections just before the nodes of a span. Force and moment jump at a node by
-/// what acts there.
-std::vector<RodState> before_nodes(const RodSpan& span, const SpanEquilibrium& equilibrium,
-                                   double tolerance) {
-  const RodMesh mesh = closed_mesh(span, equilibrium);
-  std::vector<RodState> before(1);
-  for (Eigen::Index i = 0; i < mesh.intervals(); ++i) {
-    RodState end = equilibrium.nodes[static_cast<std::size_t>(i)];
-    RodIntegrals integrals;
-    if (!follow_rod(piece_of(span, mesh, i), tolerance, end, integrals)) {
-      end.m.setConstant(std::numeric_limits<double>::quiet_NaN());
-    }
-    before.push_back(end);
-  }
-  return before;
-}
-
 /// Adds the reactions of the grips of a span, which balance the jumps of n and m.
 void add_reactions(const Problem& problem, const RodSpan& span, const SpanEquilibrium& equilibrium,
-                   const std::vector<RodState>& before, std::vector<Reaction>& reactions) {
+                   std::vector<Reaction>& reactions) {
   const double torque_unit = bending_unit(problem) / problem.length;
   const double force_unit = torque_unit / problem.length;
   for (const RodSpan::Hold& hold : span.holds) {
     const auto i = static_cast<std::size_t>(node_at(equilibrium.s, hold.at));
-    Eigen::Vector3d force = before[i].n - equilibrium.nodes[i].n;
+    const RodState& before = equilibrium.before[i];
+    Eigen::Vector3d force = before.n - equilibrium.nodes[i].n;
     for (const RodSpan::Load& load : span.loads) {
       if (load.at != hold.at) continue;
-      force -= load.follows ? before[i].R * load.force : load.force;
+      force -= load.follows ? before.R * load.force : load.force;
     }
     Reaction& reaction = reactions[hold.grip];
     reaction.force += force_unit * force;
     if (span.clamp_at(hold.at) == nullptr) continue;
-    reaction.torque += torque_unit * (before[i].m - equilibrium.nodes[i].m);
+    reaction.torque += torque_unit * (before.m - equilibrium.nodes[i].m);
   }
 }
 
 /// Adds the twist between neighbouring clamps that hold frames; the first clamp counts as one.
 void add_twists(const Problem& problem, const RodSpan& span, const SpanEquilibrium& equilibrium,
-                const std::vector<RodState>& before, std::vector<TwistedPart>& twists) {
+                std::vector<TwistedPart>& twists) {
   if (span.clamps.empty()) return;
   auto begin = static_cast<std::size_t>(node_at(equilibrium.s, span.clamps.front().at));
   for (const RodSpan::Clamp& clamp : span.clamps) {
@@ -69,7 +50,8 @@ void add_twists(const Problem& problem, const RodSpan& span, const SpanEquilibri
     part.begin = (span.begin + equilibrium.s[static_cast<Eigen::Index>(begin)]) * problem.length;
     part.end = (span.begin + clamp.at) * problem.length;
     for (std::size_t i = begin; i < end; ++i) part.angle += equilibrium.turns[i];
-    part.torque = before[end].m.dot(clamp.direction) * bending_unit(problem) / problem.length;
+    part.torque =
+        equilibrium.before[end].m.dot(clamp.direction) * bending_unit(problem) / problem.length;
     twists.push_back(part);
     begin = end;
   }
@@ -109,16 +91,6 @@ std::string why_no_potential(const Problem& problem) {
   if (problem.drag) return "drag has no potential";
   return has_dead_loads(problem) ? "a couple in space has no potential"
                                  : "a follower load has no potential";
-}
-
-/// Whether couples act on a shape that is not in its span's plane, so that its stability is
-/// undetermined.
-bool couples_leave_plane(const RodSpan& span, const SpanEquilibrium& equilibrium) {
-  if (!span.has_couples()) return false;
-  if (!span.plane) return true;
-  const Eigen::Vector3d normal = span.plane->x.cross(span.plane->y);
-  constexpr double flat = 1e-6;
-  return (normal.transpose() * tangents_of(equilibrium.nodes)).cwiseAbs().maxCoeff() > flat;
 }
 
 Samples sample(const Problem& problem, const SolvedRod& rod, double tolerance,
@@ -164,7 +136,8 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
                             .s = {},
                             .spin = {}};
   Energies energy;
-  bool unjudged = false;
+  bool unjudged = false;  // whether couples act on a shape that leaves its plane
+  constexpr double flat = 1e-6;
   for (std::size_t i = 0; i < rod->spans.size(); ++i) {
     const RodSpan& span = rod->spans[i];
     const SpanEquilibrium& equilibrium = rod->equilibria[i];
@@ -185,10 +158,9 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
     energy.stretch += equilibrium.energy.stretch;
     energy.load +=
         equilibrium.energy.load + energy_of_couples(problem, span, equilibrium, tolerance);
-    unjudged = unjudged || couples_leave_plane(span, equilibrium);
-    const std::vector<RodState> before = before_nodes(span, equilibrium, tolerance);
-    add_reactions(problem, span, equilibrium, before, result.grips);
-    add_twists(problem, span, equilibrium, before, result.twists);
+    unjudged = unjudged || (span.has_couples() && out_of_plane(span, equilibrium.nodes) > flat);
+    add_reactions(problem, span, equilibrium, result.grips);
+    add_twists(problem, span, equilibrium, result.twists);
     stability.negative += equilibrium.stability.negative;
     stability.neutral += equilibrium.stability.neutral;
     stability.smallest = std::min(stability.smallest, equilibrium.stability.smallest);

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "base/spin.hpp"
-#include "shooting/close_gaps.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -16,6 +15,7 @@ constexpr double variation_tolerance = 1e-10;
 
 void add_energies(const RodSpan& span, double tolerance, SpanEquilibrium& equilibrium) {
   const RodMesh mesh = closed_mesh(span, equilibrium);
+  equilibrium.before.resize(1);
   for (Eigen::Index i = 0; i < mesh.s.size(); ++i) {
     RodState state = equilibrium.nodes[static_cast<std::size_t>(i)];
     equilibrium.energy.load -= mesh.load.col(i).dot(state.r);
@@ -32,6 +32,7 @@ void add_energies(const RodSpan& span, double tolerance, SpanEquilibrium& equili
     equilibrium.energy.gravity += integrals.gravity;
     equilibrium.energy.stretch += integrals.stretch;
     equilibrium.turns.push_back(integrals.turn);
+    equilibrium.before.push_back(state);
   }
 }
 
@@ -39,6 +40,12 @@ void add_energies(const RodSpan& span, double tolerance, SpanEquilibrium& equili
 
 double longest_of(const RodMesh& mesh) {
   return (mesh.s.tail(mesh.intervals()) - mesh.s.head(mesh.intervals())).maxCoeff();
+}
+
+double out_of_plane(const RodSpan& span, const std::vector<RodState>& states) {
+  if (!span.plane) return INFINITY;
+  const Eigen::Vector3d normal = span.plane->x.cross(span.plane->y);
+  return (normal.transpose() * tangents_of(states)).cwiseAbs().maxCoeff();
 }
 
 double bending_force(const RodSpan& span, const std::vector<RodState>& states) {

@@ -26,6 +26,8 @@ struct SpanEquilibrium {
   std::vector<RodState> nodes;
   Energies energy;  ///< gravity and loads are zero if their points are at the problem's first grip
   std::vector<double> turns;  ///< int u_3 ds of each interval [rad]
+  /// Cross-sections just before the nodes; that of the first node is without action.
+  std::vector<RodState> before;
   ClampFrames frames;         ///< frames that its clamps hold
   RodContacts contacts;       ///< contacts
   SecondVariation stability;  ///< second variation of a converged equilibrium
@@ -78,5 +80,24 @@ void judge_stability(const RodSpan& span, double tolerance, SpanEquilibrium& equ
 /// node to node by the rod's equations and the shortest rotation to the next tangent.
 void carry_frames(const RodSpan& span, const RodMesh& mesh, double tolerance,
                   std::vector<RodState>& states);
+
+/// Returns the largest component of a tangent across the span's plane; infinite without a plane.
+[[nodiscard]] double out_of_plane(const RodSpan& span, const std::vector<RodState>& states);
+
+/// The spans of a rod, and an equilibrium of each.
+struct SolvedRod {
+  std::vector<RodSpan> spans;  ///< by growing arc length
+  std::vector<SpanEquilibrium> equilibria;
+
+  /// Whether the rod is a single span whose directors are integrated from end to end.
+  [[nodiscard]] bool has_directors() const {
+    return spans.front().has_axes || !spans.front().round();
+  }
+};
+
+/// Combines the spans to an equilibrium of the rod with its status, in the problem's units;
+/// `failed` if a span has none.
+/// @param tolerance  local error of the integrator, also for later samples of the shape
+[[nodiscard]] Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance);
 
 }  // namespace dlo::energy_model

@@ -1,5 +1,3 @@
-#include "touching/confirm_contacts.hpp"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -9,9 +7,8 @@
 #include <vector>
 
 #include "problem/rod_law.hpp"
-#include "shooting/solved_rod.hpp"
 #include "shooting/span_equilibrium.hpp"
-#include "touching/contact_start.hpp"
+#include "touching/contacts.hpp"
 
 namespace dlo::energy_model {
 namespace {

@@ -1,5 +1,3 @@
-#include "touching/contact_start.hpp"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -7,10 +5,10 @@
 #include <vector>
 
 #include "base/spin.hpp"
-#include "problem/reduction.hpp"
 #include "problem/rod_law.hpp"
-#include "shooting/refine_span.hpp"
 #include "shooting/span_equilibrium.hpp"
+#include "shooting/span_search.hpp"
+#include "touching/contacts.hpp"
 
 namespace dlo::energy_model {
 namespace {

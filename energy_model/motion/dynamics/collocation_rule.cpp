@@ -1,10 +1,9 @@
-#include "dynamics/collocation_rule.hpp"
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "base/legendre.hpp"
+#include "dynamics/span_integrator.hpp"
 
 namespace dlo::energy_model {
 namespace {

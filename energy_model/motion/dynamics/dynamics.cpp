@@ -9,11 +9,10 @@
 #include "base/legendre.hpp"
 #include "base/require.hpp"
 #include "dynamics/moving_span.hpp"
-#include "problem/ordered_grips.hpp"
 #include "problem/rod_law.hpp"
 #include "search/twist_path.hpp"
 #include "span/span_traits.hpp"
-#include "vibration/inertia.hpp"
+#include "vibration/span_modes.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -52,7 +51,7 @@ void check_rod(const MovingRod& rod) {
   require(known(rod.quadratic_drag), simulate_name, "quadratic_drag", rod.quadratic_drag,
           ">= 0 and finite");
   for (const double time : rod.breaks) {
-    require(std::isfinite(time), simulate_name, "breaks", time, "finite");
+    require_finite(simulate_name, "breaks", time);
   }
   require(rod.obstacle_motions.size() <= rod.problem.obstacles.size(), simulate_name,
           "obstacle_motions.size()", static_cast<double>(rod.obstacle_motions.size()),
@@ -82,7 +81,7 @@ void check_options(std::span<const double> times, const DynamicsOptions& options
   require_positive(simulate_name, "contact_depth", options.contact_depth);
   require(options.time_limit > 0, simulate_name, "time_limit", options.time_limit, "> 0");
   for (std::size_t i = 0; i < times.size(); ++i) {
-    require(std::isfinite(times[i]), simulate_name, "times", times[i], "finite");
+    require_finite(simulate_name, "times", times[i]);
     require(i == 0 || times[i] > times[i - 1], simulate_name, "times", times[i],
             "strictly increasing");
   }
@@ -229,13 +228,13 @@ Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<co
   for (std::size_t i = 0; i < spans.size(); ++i) {
     PlacedSpan placed = spans[i];
     placed.span.planar = placed.span.planar && !options.spatial;
-    const auto run_span = [&] {
-      return MovingSpan(complete, placed, begin).run(start, masses[i], times, options, deadline);
+    const auto run_placed = [&] {
+      return run_span(complete, placed, {begin, start, masses[i], times}, options, deadline);
     };
-    SpanRun run = run_span();
+    SpanRun run = run_placed();
     if (run.left_plane) {
       placed.span.planar = false;
-      run = run_span();
+      run = run_placed();
     }
     result.steps += run.steps;
     result.smallest_step = std::min(result.smallest_step, run.smallest_step);

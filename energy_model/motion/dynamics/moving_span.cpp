@@ -9,7 +9,7 @@
 #include "frames/span_shape.hpp"
 #include "problem/rod_law.hpp"
 #include "search/known_shape.hpp"
-#include "vibration/inertia.hpp"
+#include "vibration/span_modes.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -68,325 +68,360 @@ StartShape start_at(const TangentField& field, const Eigen::VectorXd& nodes) {
   return result;
 }
 
+/// A span between moving clamps.
+class MovingSpan {
+ public:
+  /// @param rod    Problem::grips are at their positions at the begin, and each has a motion
+  /// @param begin  time of the begin [s]
+  MovingSpan(const MovingRod& rod, PlacedSpan placed, double begin)
+      : rod_(rod),
+        placed_(std::move(placed)),
+        grips_(placed_.hold_grips),
+        begin_(begin),
+        length_(rod.problem.length),
+        force_(bending_unit(rod.problem) / (length_ * length_)),
+        mass_(total_mass(rod.problem, rod.inertia)) {
+    time_ = std::sqrt(mass_ * length_ / force_);
+    grips_.insert(grips_.begin(), placed_.anchor_grip);
+    for (const GripMotion& motion : rod_.motions) {
+      first_turns_.push_back(motion(begin).turn.normalized());
+    }
+  }
+
+  /// Simulates the span. @param masses  point masses that no other span carries
+  [[nodiscard]] SpanRun run(const StartingShape& start, const std::vector<PointMass>& masses,
+                            std::span<const double> times, const DynamicsOptions& options,
+                            const Deadline& deadline) const {
+    ContactLaw contact;
+    contact.depth = options.contact_depth;
+    // Stiffness for an impact at the speed that the rod gains over its length or that its slowest
+    // vibration has, of the whole rod at once: int k d^2 (1 + v / u) dd absorbs v^2 / 2.
+    const double speed = 1 + std::sqrt(2 * placed_.span.total_load());
+    contact.stiffness =
+        1.5 * speed * speed / (std::pow(contact.depth, 3) * (1 + speed / contact.rebound));
+    SpanRun result;
+    long steps = 0;
+    for (int repeat = 0; repeat < most_repeats; ++repeat) {
+      result = run_with(contact, start, masses, times, options, deadline);
+      steps += result.steps;
+      result.steps = steps;
+      if (result.status == SolveStatus::converged || result.left_plane) break;
+      if (!(result.depth > contact.depth * length_) || deadline.passed()) break;
+      contact.stiffness *= stiffer;
+    }
+    return result;
+  }
+
+ private:
+  [[nodiscard]] GripPose pose(std::size_t grip, double time) const {
+    GripPose result = rod_.motions[grip](time);
+    result.turn = result.turn.normalized() * first_turns_[grip].conjugate();
+    return result;
+  }
+
+  [[nodiscard]]  /// Returns the rotation from space to the axes of the clamp at the start.
+  Eigen::Matrix3d
+  to_axes(double time) const {
+    if (!placed_.span.start_direction) return placed_.frame;
+    return placed_.frame * pose(placed_.anchor_grip, time).turn.conjugate().toRotationMatrix();
+  }
+
+  [[nodiscard]]  /// Returns an obstacle's place: its point x at the begin has moved to p + T (x -
+                 /// p0).
+  BodyPlace
+  place(std::size_t obstacle, double seconds, const Eigen::Matrix3d& axes) const {
+    BodyPlace result;
+    result.turn = axes * placed_.frame.transpose();
+    if (obstacle >= rod_.obstacle_motions.size() || !rod_.obstacle_motions[obstacle]) return result;
+    const GripPose first = rod_.obstacle_motions[obstacle](begin_);
+    const GripPose now = rod_.obstacle_motions[obstacle](seconds);
+    const Eigen::Matrix3d turn =
+        (now.turn.normalized() * first.turn.normalized().conjugate()).toRotationMatrix();
+    const Eigen::Vector3d lever = turn * (placed_.anchor_position - first.position);
+    result.turn = axes * turn * placed_.frame.transpose();
+    result.origin = axes * (now.position + lever - placed_.anchor_position) / length_;
+    result.velocity = axes * (now.velocity + now.angular_velocity.cross(lever)) * (time_ / length_);
+    result.spin = axes * now.angular_velocity * time_;
+    return result;
+  }
+
+  [[nodiscard]] SpanDrive drive(double time) const {
+    const double seconds = time * time_;
+    const Eigen::Matrix3d axes = to_axes(seconds);
+    SpanDrive result;
+    result.turn = axes * placed_.frame.transpose();
+    std::vector<GripPose> poses;
+    for (const std::size_t grip : grips_) {
+      poses.push_back(pose(grip, seconds));
+      const GripPose& now = poses.back();
+      result.grips.push_back({axes * (now.position - placed_.anchor_position) / length_,
+                              axes * now.velocity * (time_ / length_),
+                              axes * now.acceleration * (time_ * time_ / length_)});
+    }
+    if (placed_.span.start_direction) {
+      result.spin = axes * poses.front().angular_velocity * time_;
+      result.spin_rate = axes * poses.front().angular_acceleration * (time_ * time_);
+    }
+    if (placed_.span.end_direction) {
+      const GripPose& end = poses.back();
+      const Eigen::Matrix3d turn = axes * end.turn.toRotationMatrix() * placed_.frame.transpose();
+      result.end_spin = axes * end.angular_velocity * time_;
+      const Eigen::Vector3d spin_rate = axes * end.angular_acceleration * (time_ * time_);
+      const auto add_across = [&](const Eigen::Vector3d& held, bool of_d1) {
+        const Eigen::Vector3d across = turn * held;
+        const Eigen::Vector3d rate = result.end_spin.cross(across);
+        result.across_end.push_back(
+            {{across, rate, spin_rate.cross(across) + result.end_spin.cross(rate)}, of_d1});
+      };
+      const Eigen::Vector3d& along = *placed_.span.end_direction;
+      const Eigen::Matrix3d held = frame_along(along, Span::d1(along));
+      // d1 of a planar span is normal to its plane.
+      if (!placed_.span.planar) add_across(held.col(0), false);
+      add_across(held.col(1), false);
+      if (placed_.span.twist) add_across(along.cross(placed_.span.twist->end_d1), true);
+    }
+    for (std::size_t i = 0; i < rod_.problem.obstacles.size(); ++i) {
+      result.obstacles.push_back(place(i, seconds, axes));
+    }
+    return result;
+  }
+
+  [[nodiscard]] SpanInertia inertia(const std::vector<PointMass>& masses) const {
+    SpanInertia result;
+    result.per_length =
+        masses_per_length(rod_.problem, rod_.inertia, placed_, pieces_of(placed_.span));
+    for (double& mass : result.per_length) mass /= mass_;
+    for (const PointMass& point : masses) {
+      result.points.push_back({placed_.s_of(point.at, length_), point.mass / mass_});
+    }
+    result.material_damping = rod_.material_damping / time_;
+    result.drag = rod_.air_drag * time_ * length_ / mass_;
+    result.quadratic_drag = rod_.quadratic_drag * length_ * length_ / mass_;
+    return result;
+  }
+
+  [[nodiscard]]  /// Returns the breaks in the span's units, ascending. Breaks at the same instant
+                 /// cause one impulse.
+  std::vector<double>
+  own_breaks() const {
+    std::vector<double> breaks = rod_.breaks;
+    for (double& time : breaks) time /= time_;
+    std::sort(breaks.begin(), breaks.end());
+    breaks.erase(std::unique(breaks.begin(), breaks.end(), SpanIntegrator::same_instant),
+                 breaks.end());
+    return breaks;
+  }
+
+  [[nodiscard]]  /// Returns d1 at the begin of the span, for a span where no clamp prescribes it.
+  std::optional<Eigen::Vector3d>
+  first_d1(const StartingShape& start) const {
+    const Samples at = start(std::vector<double>{placed_.start});
+    if (at.d1.cols() == 0) return std::nullopt;
+    const Eigen::Vector3d tangent = placed_.frame * at.tangents.col(0);
+    return Eigen::AngleAxisd(placed_.reversed ? placed_.ahead : -placed_.ahead, tangent) *
+           (placed_.frame * at.d1.col(0));
+  }
+
+  [[nodiscard]]  /// Returns the rates at which the unknowns of a shape in equilibrium follow the
+                 /// motion of grips and
+                 /// obstacles: the minimum-norm solution of K x' - J^T mu' + R' = 0, J x' + c' = 0,
+                 /// as rods on pins can rotate freely.
+  Eigen::VectorXd
+  equilibrium_rates(SpanDynamics& model, const SpanInstant& at) const {
+    constexpr double step = 1e-5;  // time step, whose square is the error
+    const Eigen::Index n = model.size();
+    const Eigen::Index m = model.constraints();
+    const Eigen::VectorXd still = Eigen::VectorXd::Zero(n);
+    Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(m);
+    const auto residual = [&](double time) {
+      model.move(at_rest(drive(time)), at.x, still, still);
+      Eigen::VectorXd result(n + m);
+      result << model.residual(multipliers), model.constraint_residuals().col(0);
+      return result;
+    };
+    const Eigen::VectorXd unheld = residual(at.time).head(n);
+    Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n + m, n + m);
+    matrix.bottomLeftCorner(m, n) = model.jacobian();
+    matrix.topRightCorner(n, m) = -matrix.bottomLeftCorner(m, n).transpose();
+    if (m > 0) {
+      multipliers = -matrix.topRightCorner(n, m).completeOrthogonalDecomposition().solve(unheld);
+    }
+    matrix.topLeftCorner(n, n) = model.stiffness(multipliers);
+    const Eigen::VectorXd change =
+        (residual(at.time + step) - residual(at.time - step)) / (2 * step);
+    Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+    constexpr double free = 1e-9;
+    solver.setThreshold(free);
+    return -solver.compute(matrix).solve(change).head(n);
+  }
+
+  [[nodiscard]]  /// Returns velocities at the points of SpanDynamics in the span's units: begins
+                 /// and ends of
+                 /// elements and the nodes between.
+  Eigen::MatrixX3d
+  point_velocities(const StartingVelocities& velocities, const SpanDynamics& model) const {
+    const std::vector<Piece> pieces = pieces_of(placed_.span);
+    const Eigen::Index nodes = model.nodes().size() / std::ssize(pieces);
+    std::vector<double> arc_lengths;
+    const auto add = [&](double s) {
+      const double arc = placed_.start + (placed_.reversed ? -s : s) * length_;
+      arc_lengths.push_back(std::clamp(arc, 0.0, length_));
+    };
+    for (std::size_t e = 0; e < pieces.size(); ++e) {
+      add(pieces[e].begin);
+      const Eigen::Index first = static_cast<Eigen::Index>(e) * nodes;
+      for (Eigen::Index q = 0; q < nodes; ++q) add(model.nodes()[first + q]);
+      add(pieces[e].end());
+    }
+    return (time_ / length_) * (to_axes(begin_) * velocities(arc_lengths)).transpose();
+  }
+
+  [[nodiscard]] SpanFrame frame(SpanIntegrator& integrator, SpanDynamics& model,
+                                const SpanInstant& at) const {
+    SpanFrame result;
+    const Eigen::VectorXd multipliers = integrator.consistent_accelerations(at);
+    const std::vector<Reaction> reactions = model.reactions(multipliers);
+    const double seconds = at.time * time_;
+    const Eigen::Matrix3d to_space = to_axes(seconds).transpose();
+    const double unit = force_ * length_;
+    add(model.energies(), unit, result.energy);
+    add(at.done, unit, result.energy);
+    for (std::size_t k = 0; k < grips_.size(); ++k) {
+      result.grips.emplace_back(grips_[k], Reaction{to_space * reactions[k].force * force_,
+                                                    to_space * reactions[k].torque * unit});
+    }
+    for (const auto& [obstacle, force] : model.obstacle_forces()) {
+      result.obstacles.emplace_back(obstacle, to_space * force * force_);
+    }
+    const double end =
+        placed_.reversed ? placed_.start : placed_.start + placed_.span.length * length_;
+    result.shape = {model.shape(at.x),
+                    placed_.reversed,
+                    placed_.start,
+                    end,
+                    to_space,
+                    pose(placed_.anchor_grip, seconds).position,
+                    {}};
+    if (placed_.span.has_material_directors()) {
+      result.shape.ahead = [ahead = placed_.ahead](double) { return ahead; };
+    }
+    return result;
+  }
+
+  /// Copies the integrator's statistics.
+  void take(const SpanIntegrator& integrator, SpanRun& run) const {
+    run.steps = integrator.steps();
+    run.smallest_step = integrator.smallest_step() * time_;
+    run.error = integrator.error();
+    run.depth = integrator.depth() * length_;
+  }
+
+  /// settle() prepares the initial state. run_with() simulates with one contact law and ends when
+  /// the rod enters a rigid obstacle too deeply.
+  [[nodiscard]]  /// Satisfies the constraints, and sets initial velocities if the rod is in motion.
+                 /// @return the
+                 /// reason of a failure; empty on success
+  std::string
+  settle(SpanIntegrator& integrator, SpanDynamics& model, const DynamicsOptions& options,
+         SpanInstant& at) const {
+    at.v = Eigen::VectorXd::Zero(model.size());
+    std::string message = integrator.project(at);
+    if (message.empty() && model.has_twist()) message = integrator.settle_twist(at);
+    if (!message.empty()) return message;
+    if (options.velocities) {
+      integrator.set_velocities(point_velocities(options.velocities, model), at);
+      return message;
+    }
+    if (!options.in_motion) return message;
+    at.v = equilibrium_rates(model, at);
+    return integrator.project(at);
+  }
+
+  [[nodiscard]] SpanRun run_with(const ContactLaw& contact, const StartingShape& start,
+                                 const std::vector<PointMass>& masses,
+                                 std::span<const double> times, const DynamicsOptions& options,
+                                 const Deadline& deadline) const {
+    SpanRun result;
+    Equilibrium resting;
+    resting.sample = start;
+    const TangentField field = field_of(resting, placed_, length_);
+    const Eigen::Vector3d first = field(Eigen::VectorXd::Zero(1)).tangents.col(0);
+    Span span = placed_.span;
+    if (span.has_material_directors() && !span.planar && !span.start_direction) {
+      span.principal_d1 = first_d1(start);
+    }
+    SpanDynamics model(span, options.terms, first, inertia(masses), contact);
+    const StartShape begin = start_at(field, model.nodes());
+    const bool leaves_at_once =
+        begin.tangents.row(2).cwiseAbs().maxCoeff() > motion_plane_rounding ||
+        (options.velocities &&
+         point_velocities(options.velocities, model).col(2).cwiseAbs().maxCoeff() >
+             motion_plane_rounding);
+    if (placed_.span.planar && leaves_at_once) {
+      result.left_plane = true;
+      return result;
+    }
+    bool left_plane = false;
+    SpanIntegrator integrator(
+        model,
+        [&](double time) {
+          SpanDrive driven = drive(time);
+          left_plane = left_plane || (placed_.span.planar && leaves_plane(driven));
+          return driven;
+        },
+        {options.tolerance, options.step / time_,
+         rod_.material_damping > 0 || model.may_touch() || model.has_twist()});
+    SpanInstant at;
+    at.time = begin_ / time_;
+    at.x = model.fit(begin);
+    result.message = settle(integrator, model, options, at);
+    const auto stopped = [&] { return !result.message.empty() || left_plane; };
+    if (!stopped()) {
+      result.frames.push_back(frame(integrator, model, at));
+      if (model.depth() > contact.depth) result.message = "the rod begins within a rigid obstacle";
+    }
+    const auto too_deep = [&] { return integrator.depth() > contact.depth; };
+    const auto expired = [&] { return deadline.passed() || left_plane || too_deep(); };
+    const std::vector<double> breaks = own_breaks();
+    auto next_break = std::upper_bound(breaks.begin(), breaks.end(), at.time);
+    for (const double seconds : times) {
+      const double time = seconds / time_;
+      const auto is_due = [&](double at_break) {
+        return at_break <= time || SpanIntegrator::same_instant(at_break, time);
+      };
+      for (; next_break != breaks.end() && is_due(*next_break) && !stopped(); ++next_break) {
+        result.message = integrator.advance(at, *next_break, expired);
+        if (!stopped()) integrator.apply_impulse(at);
+      }
+      if (!stopped()) result.message = integrator.advance(at, time, expired);
+      if (stopped()) break;
+      result.frames.push_back(frame(integrator, model, at));
+    }
+    result.left_plane = left_plane;
+    take(integrator, result);
+    if (too_deep() && !deadline.passed()) {
+      result.message = "a rigid obstacle is struck too hard for the depth that contact may have";
+    }
+    result.status = result.message.empty() ? SolveStatus::converged
+                    : deadline.passed()    ? SolveStatus::time_limit
+                                           : SolveStatus::failed;
+    return result;
+  }
+
+  const MovingRod& rod_;
+  PlacedSpan placed_;
+  std::vector<std::size_t> grips_;  // grips of the span, the anchor first
+  double begin_;
+  double length_, force_, time_, mass_;  // units
+  std::vector<Eigen::Quaterniond> first_turns_;
+};
+
 }  // namespace
 
-MovingSpan::MovingSpan(const MovingRod& rod, PlacedSpan placed, double begin)
-    : rod_(rod),
-      placed_(std::move(placed)),
-      grips_(placed_.hold_grips),
-      begin_(begin),
-      length_(rod.problem.length),
-      force_(bending_unit(rod.problem) / (length_ * length_)),
-      mass_(total_mass(rod.problem, rod.inertia)) {
-  time_ = std::sqrt(mass_ * length_ / force_);
-  grips_.insert(grips_.begin(), placed_.anchor_grip);
-  for (const GripMotion& motion : rod_.motions) {
-    first_turns_.push_back(motion(begin).turn.normalized());
-  }
-}
-
-GripPose MovingSpan::pose(std::size_t grip, double time) const {
-  GripPose result = rod_.motions[grip](time);
-  result.turn = result.turn.normalized() * first_turns_[grip].conjugate();
-  return result;
-}
-
-/// Returns the rotation from space to the axes of the clamp at the start.
-Eigen::Matrix3d MovingSpan::to_axes(double time) const {
-  if (!placed_.span.start_direction) return placed_.frame;
-  return placed_.frame * pose(placed_.anchor_grip, time).turn.conjugate().toRotationMatrix();
-}
-
-/// Returns an obstacle's place: its point x at the begin has moved to p + T (x - p0).
-BodyPlace MovingSpan::place(std::size_t obstacle, double seconds,
-                            const Eigen::Matrix3d& axes) const {
-  BodyPlace result;
-  result.turn = axes * placed_.frame.transpose();
-  if (obstacle >= rod_.obstacle_motions.size() || !rod_.obstacle_motions[obstacle]) return result;
-  const GripPose first = rod_.obstacle_motions[obstacle](begin_);
-  const GripPose now = rod_.obstacle_motions[obstacle](seconds);
-  const Eigen::Matrix3d turn =
-      (now.turn.normalized() * first.turn.normalized().conjugate()).toRotationMatrix();
-  const Eigen::Vector3d lever = turn * (placed_.anchor_position - first.position);
-  result.turn = axes * turn * placed_.frame.transpose();
-  result.origin = axes * (now.position + lever - placed_.anchor_position) / length_;
-  result.velocity = axes * (now.velocity + now.angular_velocity.cross(lever)) * (time_ / length_);
-  result.spin = axes * now.angular_velocity * time_;
-  return result;
-}
-
-SpanDrive MovingSpan::drive(double time) const {
-  const double seconds = time * time_;
-  const Eigen::Matrix3d axes = to_axes(seconds);
-  SpanDrive result;
-  result.turn = axes * placed_.frame.transpose();
-  std::vector<GripPose> poses;
-  for (const std::size_t grip : grips_) {
-    poses.push_back(pose(grip, seconds));
-    const GripPose& now = poses.back();
-    result.grips.push_back({axes * (now.position - placed_.anchor_position) / length_,
-                            axes * now.velocity * (time_ / length_),
-                            axes * now.acceleration * (time_ * time_ / length_)});
-  }
-  if (placed_.span.start_direction) {
-    result.spin = axes * poses.front().angular_velocity * time_;
-    result.spin_rate = axes * poses.front().angular_acceleration * (time_ * time_);
-  }
-  if (placed_.span.end_direction) {
-    const GripPose& end = poses.back();
-    const Eigen::Matrix3d turn = axes * end.turn.toRotationMatrix() * placed_.frame.transpose();
-    result.end_spin = axes * end.angular_velocity * time_;
-    const Eigen::Vector3d spin_rate = axes * end.angular_acceleration * (time_ * time_);
-    const auto add_across = [&](const Eigen::Vector3d& held, bool of_d1) {
-      const Eigen::Vector3d across = turn * held;
-      const Eigen::Vector3d rate = result.end_spin.cross(across);
-      result.across_end.push_back(
-          {{across, rate, spin_rate.cross(across) + result.end_spin.cross(rate)}, of_d1});
-    };
-    const Eigen::Vector3d& along = *placed_.span.end_direction;
-    const Eigen::Matrix3d held = frame_along(along, Span::d1(along));
-    // d1 of a planar span is normal to its plane.
-    if (!placed_.span.planar) add_across(held.col(0), false);
-    add_across(held.col(1), false);
-    if (placed_.span.twist) add_across(along.cross(placed_.span.twist->end_d1), true);
-  }
-  for (std::size_t i = 0; i < rod_.problem.obstacles.size(); ++i) {
-    result.obstacles.push_back(place(i, seconds, axes));
-  }
-  return result;
-}
-
-SpanInertia MovingSpan::inertia(const std::vector<PointMass>& masses) const {
-  SpanInertia result;
-  result.per_length =
-      masses_per_length(rod_.problem, rod_.inertia, placed_, pieces_of(placed_.span));
-  for (double& mass : result.per_length) mass /= mass_;
-  for (const PointMass& point : masses) {
-    result.points.push_back({placed_.s_of(point.at, length_), point.mass / mass_});
-  }
-  result.material_damping = rod_.material_damping / time_;
-  result.drag = rod_.air_drag * time_ * length_ / mass_;
-  result.quadratic_drag = rod_.quadratic_drag * length_ * length_ / mass_;
-  return result;
-}
-
-/// Returns the breaks in the span's units, ascending. Breaks at the same instant cause one impulse.
-std::vector<double> MovingSpan::own_breaks() const {
-  std::vector<double> breaks = rod_.breaks;
-  for (double& time : breaks) time /= time_;
-  std::sort(breaks.begin(), breaks.end());
-  breaks.erase(std::unique(breaks.begin(), breaks.end(), SpanIntegrator::same_instant),
-               breaks.end());
-  return breaks;
-}
-
-/// Returns d1 at the begin of the span, for a span where no clamp prescribes it.
-std::optional<Eigen::Vector3d> MovingSpan::first_d1(const StartingShape& start) const {
-  const Samples at = start(std::vector<double>{placed_.start});
-  if (at.d1.cols() == 0) return std::nullopt;
-  const Eigen::Vector3d tangent = placed_.frame * at.tangents.col(0);
-  return Eigen::AngleAxisd(placed_.reversed ? placed_.ahead : -placed_.ahead, tangent) *
-         (placed_.frame * at.d1.col(0));
-}
-
-/// Returns the rates at which the unknowns of a shape in equilibrium follow the motion of grips and
-/// obstacles: the minimum-norm solution of K x' - J^T mu' + R' = 0, J x' + c' = 0, as rods on pins
-/// can rotate freely.
-Eigen::VectorXd MovingSpan::equilibrium_rates(SpanDynamics& model, const SpanInstant& at) const {
-  constexpr double step = 1e-5;  // time step, whose square is the error
-  const Eigen::Index n = model.size();
-  const Eigen::Index m = model.constraints();
-  const Eigen::VectorXd still = Eigen::VectorXd::Zero(n);
-  Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(m);
-  const auto residual = [&](double time) {
-    model.move(at_rest(drive(time)), at.x, still, still);
-    Eigen::VectorXd result(n + m);
-    result << model.residual(multipliers), model.constraint_residuals().col(0);
-    return result;
-  };
-  const Eigen::VectorXd unheld = residual(at.time).head(n);
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n + m, n + m);
-  matrix.bottomLeftCorner(m, n) = model.jacobian();
-  matrix.topRightCorner(n, m) = -matrix.bottomLeftCorner(m, n).transpose();
-  if (m > 0) {
-    multipliers = -matrix.topRightCorner(n, m).completeOrthogonalDecomposition().solve(unheld);
-  }
-  matrix.topLeftCorner(n, n) = model.stiffness(multipliers);
-  const Eigen::VectorXd change = (residual(at.time + step) - residual(at.time - step)) / (2 * step);
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  constexpr double free = 1e-9;
-  solver.setThreshold(free);
-  return -solver.compute(matrix).solve(change).head(n);
-}
-
-/// Returns velocities at the points of SpanDynamics in the span's units: begins and ends of
-/// elements and the nodes between.
-Eigen::MatrixX3d MovingSpan::point_velocities(const StartingVelocities& velocities,
-                                              const SpanDynamics& model) const {
-  const std::vector<Piece> pieces = pieces_of(placed_.span);
-  const Eigen::Index nodes = model.nodes().size() / std::ssize(pieces);
-  std::vector<double> arc_lengths;
-  const auto add = [&](double s) {
-    const double arc = placed_.start + (placed_.reversed ? -s : s) * length_;
-    arc_lengths.push_back(std::clamp(arc, 0.0, length_));
-  };
-  for (std::size_t e = 0; e < pieces.size(); ++e) {
-    add(pieces[e].begin);
-    const Eigen::Index first = static_cast<Eigen::Index>(e) * nodes;
-    for (Eigen::Index q = 0; q < nodes; ++q) add(model.nodes()[first + q]);
-    add(pieces[e].end());
-  }
-  return (time_ / length_) * (to_axes(begin_) * velocities(arc_lengths)).transpose();
-}
-
-SpanFrame MovingSpan::frame(SpanIntegrator& integrator, SpanDynamics& model,
-                            const SpanInstant& at) const {
-  SpanFrame result;
-  const Eigen::VectorXd multipliers = integrator.consistent_accelerations(at);
-  const std::vector<Reaction> reactions = model.reactions(multipliers);
-  const double seconds = at.time * time_;
-  const Eigen::Matrix3d to_space = to_axes(seconds).transpose();
-  const double unit = force_ * length_;
-  add(model.energies(), unit, result.energy);
-  add(at.done, unit, result.energy);
-  for (std::size_t k = 0; k < grips_.size(); ++k) {
-    result.grips.emplace_back(grips_[k], Reaction{to_space * reactions[k].force * force_,
-                                                  to_space * reactions[k].torque * unit});
-  }
-  for (const auto& [obstacle, force] : model.obstacle_forces()) {
-    result.obstacles.emplace_back(obstacle, to_space * force * force_);
-  }
-  const double end =
-      placed_.reversed ? placed_.start : placed_.start + placed_.span.length * length_;
-  result.shape = {model.shape(at.x),
-                  placed_.reversed,
-                  placed_.start,
-                  end,
-                  to_space,
-                  pose(placed_.anchor_grip, seconds).position,
-                  {}};
-  if (placed_.span.has_material_directors()) {
-    result.shape.ahead = [ahead = placed_.ahead](double) { return ahead; };
-  }
-  return result;
-}
-
-SpanRun MovingSpan::run(const StartingShape& start, const std::vector<PointMass>& masses,
-                        std::span<const double> times, const DynamicsOptions& options,
-                        const Deadline& deadline) const {
-  ContactLaw contact;
-  contact.depth = options.contact_depth;
-  // Stiffness for an impact at the speed that the rod gains over its length or that its slowest
-  // vibration has, of the whole rod at once: int k d^2 (1 + v / u) dd absorbs v^2 / 2.
-  const double speed = 1 + std::sqrt(2 * placed_.span.total_load());
-  contact.stiffness =
-      1.5 * speed * speed / (std::pow(contact.depth, 3) * (1 + speed / contact.rebound));
-  SpanRun result;
-  long steps = 0;
-  for (int repeat = 0; repeat < most_repeats; ++repeat) {
-    result = run_with(contact, start, masses, times, options, deadline);
-    steps += result.steps;
-    result.steps = steps;
-    if (result.status == SolveStatus::converged || result.left_plane) break;
-    if (!(result.depth > contact.depth * length_) || deadline.passed()) break;
-    contact.stiffness *= stiffer;
-  }
-  return result;
-}
-
-/// Copies the integrator's statistics.
-void MovingSpan::take(const SpanIntegrator& integrator, SpanRun& run) const {
-  run.steps = integrator.steps();
-  run.smallest_step = integrator.smallest_step() * time_;
-  run.error = integrator.error();
-  run.depth = integrator.depth() * length_;
-}
-
-/// Satisfies the constraints, and sets initial velocities if the rod is in motion. @return the
-/// reason of a failure; empty on success
-std::string MovingSpan::settle(SpanIntegrator& integrator, SpanDynamics& model,
-                               const DynamicsOptions& options, SpanInstant& at) const {
-  at.v = Eigen::VectorXd::Zero(model.size());
-  std::string message = integrator.project(at);
-  if (message.empty() && model.has_twist()) message = integrator.settle_twist(at);
-  if (!message.empty()) return message;
-  if (options.velocities) {
-    integrator.set_velocities(point_velocities(options.velocities, model), at);
-    return message;
-  }
-  if (!options.in_motion) return message;
-  at.v = equilibrium_rates(model, at);
-  return integrator.project(at);
-}
-
-SpanRun MovingSpan::run_with(const ContactLaw& contact, const StartingShape& start,
-                             const std::vector<PointMass>& masses, std::span<const double> times,
-                             const DynamicsOptions& options, const Deadline& deadline) const {
-  SpanRun result;
-  Equilibrium resting;
-  resting.sample = start;
-  const TangentField field = field_of(resting, placed_, length_);
-  const Eigen::Vector3d first = field(Eigen::VectorXd::Zero(1)).tangents.col(0);
-  Span span = placed_.span;
-  if (span.has_material_directors() && !span.planar && !span.start_direction) {
-    span.principal_d1 = first_d1(start);
-  }
-  SpanDynamics model(span, options.terms, first, inertia(masses), contact);
-  const StartShape begin = start_at(field, model.nodes());
-  const bool leaves_at_once =
-      begin.tangents.row(2).cwiseAbs().maxCoeff() > motion_plane_rounding ||
-      (options.velocities &&
-       point_velocities(options.velocities, model).col(2).cwiseAbs().maxCoeff() >
-           motion_plane_rounding);
-  if (placed_.span.planar && leaves_at_once) {
-    result.left_plane = true;
-    return result;
-  }
-  bool left_plane = false;
-  SpanIntegrator integrator(model,
-                            [&](double time) {
-                              SpanDrive driven = drive(time);
-                              left_plane =
-                                  left_plane || (placed_.span.planar && leaves_plane(driven));
-                              return driven;
-                            },
-                            {options.tolerance, options.step / time_,
-                             rod_.material_damping > 0 || model.may_touch() || model.has_twist()});
-  SpanInstant at;
-  at.time = begin_ / time_;
-  at.x = model.fit(begin);
-  result.message = settle(integrator, model, options, at);
-  const auto stopped = [&] { return !result.message.empty() || left_plane; };
-  if (!stopped()) {
-    result.frames.push_back(frame(integrator, model, at));
-    if (model.depth() > contact.depth) result.message = "the rod begins within a rigid obstacle";
-  }
-  const auto too_deep = [&] { return integrator.depth() > contact.depth; };
-  const auto expired = [&] { return deadline.passed() || left_plane || too_deep(); };
-  const std::vector<double> breaks = own_breaks();
-  auto next_break = std::upper_bound(breaks.begin(), breaks.end(), at.time);
-  for (const double seconds : times) {
-    const double time = seconds / time_;
-    const auto is_due = [&](double at_break) {
-      return at_break <= time || SpanIntegrator::same_instant(at_break, time);
-    };
-    for (; next_break != breaks.end() && is_due(*next_break) && !stopped(); ++next_break) {
-      result.message = integrator.advance(at, *next_break, expired);
-      if (!stopped()) integrator.apply_impulse(at);
-    }
-    if (!stopped()) result.message = integrator.advance(at, time, expired);
-    if (stopped()) break;
-    result.frames.push_back(frame(integrator, model, at));
-  }
-  result.left_plane = left_plane;
-  take(integrator, result);
-  if (too_deep() && !deadline.passed()) {
-    result.message = "an impact penetrates a rigid obstacle by more than contact_depth";
-  }
-  result.status = result.message.empty() ? SolveStatus::converged
-                  : deadline.passed()    ? SolveStatus::time_limit
-                                         : SolveStatus::failed;
-  return result;
+SpanRun run_span(const MovingRod& rod, const PlacedSpan& placed, const SpanMotion& motion,
+                 const DynamicsOptions& options, const Deadline& deadline) {
+  return MovingSpan(rod, placed, motion.begin)
+      .run(motion.start, motion.masses, motion.times, options, deadline);
 }
 
 }  // namespace dlo::energy_model

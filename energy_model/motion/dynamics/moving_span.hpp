@@ -34,48 +34,18 @@ struct SpanRun {
   double depth = 0;  ///< largest depth within rigid obstacles [m]
 };
 
-/// A span between moving clamps.
-class MovingSpan {
- public:
-  /// @param rod    Problem::grips are at their positions at the begin, and each has a motion
-  /// @param begin  time of the begin [s]
-  MovingSpan(const MovingRod& rod, PlacedSpan placed, double begin);
-
-  /// Simulates the span. @param masses  point masses that no other span carries
-  [[nodiscard]] SpanRun run(const StartingShape& start, const std::vector<PointMass>& masses,
-                            std::span<const double> times, const DynamicsOptions& options,
-                            const Deadline& deadline) const;
-
- private:
-  /// settle() prepares the initial state. run_with() simulates with one contact law and ends when
-  /// the rod enters a rigid obstacle too deeply.
-  [[nodiscard]] std::string settle(SpanIntegrator& integrator, SpanDynamics& model,
-                                   const DynamicsOptions& options, SpanInstant& at) const;
-  [[nodiscard]] SpanRun run_with(const ContactLaw& contact, const StartingShape& start,
-                                 const std::vector<PointMass>& masses,
-                                 std::span<const double> times, const DynamicsOptions& options,
-                                 const Deadline& deadline) const;
-  [[nodiscard]] BodyPlace place(std::size_t obstacle, double seconds,
-                                const Eigen::Matrix3d& axes) const;
-  [[nodiscard]] SpanInertia inertia(const std::vector<PointMass>& masses) const;
-  [[nodiscard]] Eigen::Matrix3d to_axes(double time) const;
-  [[nodiscard]] SpanDrive drive(double time) const;
-  [[nodiscard]] std::optional<Eigen::Vector3d> first_d1(const StartingShape& start) const;
-  [[nodiscard]] SpanFrame frame(SpanIntegrator& integrator, SpanDynamics& model,
-                                const SpanInstant& at) const;
-  [[nodiscard]] GripPose pose(std::size_t grip, double time) const;
-  [[nodiscard]] std::vector<double> own_breaks() const;
-  [[nodiscard]] Eigen::VectorXd equilibrium_rates(SpanDynamics& model, const SpanInstant& at) const;
-  [[nodiscard]] Eigen::MatrixX3d point_velocities(const StartingVelocities& velocities,
-                                                  const SpanDynamics& model) const;
-  void take(const SpanIntegrator& integrator, SpanRun& run) const;
-
-  const MovingRod& rod_;
-  PlacedSpan placed_;
-  std::vector<std::size_t> grips_;  // grips of the span, the anchor first
-  double begin_;
-  double length_, force_, time_, mass_;  // units
-  std::vector<Eigen::Quaterniond> first_turns_;
+/// Begin of a span's motion, and the times of its frames.
+struct SpanMotion {
+  double begin = 0;                      ///< [s]
+  const StartingShape& start;            ///< shape at the begin
+  const std::vector<PointMass>& masses;  ///< point masses that no other span carries
+  std::span<const double> times;         ///< [s]
 };
+
+/// Simulates a span between moving clamps.
+/// @param rod  Problem::grips are at their positions at the begin, and each has a motion
+[[nodiscard]] SpanRun run_span(const MovingRod& rod, const PlacedSpan& placed,
+                               const SpanMotion& motion, const DynamicsOptions& options,
+                               const Deadline& deadline);
 
 }  // namespace dlo::energy_model

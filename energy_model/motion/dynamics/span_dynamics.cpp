@@ -6,7 +6,7 @@
 
 #include "base/legendre.hpp"
 #include "base/spin.hpp"
-#include "vibration/inertia.hpp"
+#include "vibration/span_modes.hpp"
 
 namespace dlo::energy_model {
 namespace {

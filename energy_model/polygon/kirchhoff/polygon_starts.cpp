@@ -1,11 +1,10 @@
-#include "kirchhoff/polygon_starts.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
 
 #include "base/spin.hpp"
+#include "kirchhoff/relaxed_polygon.hpp"
 
 namespace dlo::energy_model {
 namespace {

@@ -4,9 +4,6 @@
 #include <utility>
 
 #include "kirchhoff/frame_joints.hpp"
-#include "kirchhoff/polygon_starts.hpp"
-#include "kirchhoff/relaxed_frames.hpp"
-#include "kirchhoff/relaxed_tangents.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -25,18 +22,6 @@ double distance(const RodSpan& span, const RelaxedPolygon& a, const RelaxedPolyg
   return distance;
 }
 
-/// Returns frames without twist from one to the next that have these tangents.
-std::vector<Quaterniond> frames_along(const Eigen::Matrix3Xd& tangents, const Quaterniond& first) {
-  std::vector<Quaterniond> frames = {first};
-  for (Eigen::Index i = 0; i < tangents.cols(); ++i) {
-    const Eigen::Vector3d t = frames.back() * Eigen::Vector3d::UnitZ();
-    const auto turn = Quaterniond::FromTwoVectors(t, tangents.col(i));
-    frames.push_back((turn * frames.back()).normalized());
-  }
-  frames.erase(frames.begin());
-  return frames;
-}
-
 Eigen::Matrix3Xd tangents_along(const std::vector<Quaterniond>& frames) {
   Eigen::Matrix3Xd result(3, static_cast<Eigen::Index>(frames.size()));
   for (Eigen::Index i = 0; i < result.cols(); ++i) {
@@ -45,32 +30,9 @@ Eigen::Matrix3Xd tangents_along(const std::vector<Quaterniond>& frames) {
   return result;
 }
 
-/// Relaxes a round rod. Its tangents determine its energy, and relaxing them costs a hundredth of
-/// relaxing frames.
-RelaxedPolygon relax_round(const RodSpan& span, const RodMesh& mesh,
-                           const std::vector<Quaterniond>& start, Motion motion,
-                           const Deadline& deadline) {
-  const RelaxedTangents relaxed =
-      relax_tangents(span, mesh, tangents_along(start), motion, deadline);
-  RelaxedPolygon polygon;
-  polygon.frames = frames_along(relaxed.tangents, start.front());
-  polygon.turns = adjacent_interval_turns(span, mesh, polygon.frames);
-  polygon.force = relaxed.force;
-  polygon.energy = relaxed.energy;
-  polygon.motion = motion;
-  return polygon;
-}
-
 }  // namespace
 
 Eigen::Matrix3Xd RelaxedPolygon::tangents() const { return tangents_along(frames); }
-
-RelaxedPolygon relax_polygon(const RodSpan& span, const RodMesh& mesh,
-                             const std::vector<Quaterniond>& start, Motion motion,
-                             const Deadline& deadline) {
-  return span.round() ? relax_round(span, mesh, start, motion, deadline)
-                      : relax_frames(span, mesh, start, motion, deadline);
-}
 
 RelaxedPolygon relax_on(const RodSpan& span, const RodMesh& finer, const RodMesh& mesh,
                         const RelaxedPolygon& polygon, const Deadline& deadline) {
@@ -146,6 +108,25 @@ std::vector<RodState> states_of(const RodSpan& span, const RodMesh& mesh,
   }
   for (RodState& state : states) state.r += shift;
   return states;
+}
+
+bool GripGap::closed(const Eigen::Vector3d& gap) const {
+  return gap.norm() < std::min(1e-4, slack / 100);
+}
+
+std::vector<GripGap> grip_gaps(const RodSpan& span, const RodMesh& mesh) {
+  std::vector<GripGap> gaps;
+  for (std::size_t k = 1; k < span.holds.size(); ++k) {
+    const RodSpan::Hold& from = span.holds[k - 1];
+    const RodSpan::Hold& to = span.holds[k];
+    const double length = to.at - from.at;
+    const Eigen::Vector3d chord = to.position - from.position;
+    const double penalty =
+        (100 * least_bending_stiffness(span) / (length * length) + 4 * total_load(span)) / length;
+    gaps.push_back(
+        {node_at(mesh.s, from.at), node_at(mesh.s, to.at), chord, length - chord.norm(), penalty});
+  }
+  return gaps;
 }
 
 }  // namespace dlo::energy_model

@@ -29,10 +29,13 @@ struct RelaxedPolygon {
   [[nodiscard]] Eigen::Matrix3Xd tangents() const;
 };
 
-/// Minimises the energy of a polygon from any shape, so that Newton's method starts near a minimum
-/// instead of near a saddle. It uses NLopt's L-BFGS on the components of the quaternions; for a
-/// round rod it uses Newton's method on the tangents (relaxed_tangents.hpp). An augmented
-/// Lagrangian closes the gaps at the grips.
+/// Minimises the energy of a polygon from any shape, so that Newton's method of multiple shooting
+/// starts near a minimum instead of near a saddle. It uses Newton's method on the spins of the
+/// frames; of a round rod, whose energy does not depend on the roll, on those across the tangents.
+/// The Hessian is banded and is shifted until it is positive definite. An augmented Lagrangian
+/// closes the gaps at the grips (GripGap::closed()) as the frames converge. It needs about 30
+/// steps, whose cost is proportional to the number of intervals. A zero mode, such as the rotation
+/// of an arch between clamps in line about that line, may still be moving at the end.
 /// @param start  initial frames of the intervals
 /// @param motion  in the plane: the start lies in the plane, and so does the result
 /// @param deadline  when it has passed, the current shape is returned
@@ -60,5 +63,36 @@ struct PolygonMinima {
 /// the tangents (see carry_frames()).
 [[nodiscard]] std::vector<RodState> states_of(const RodSpan& span, const RodMesh& mesh,
                                               const RelaxedPolygon& polygon);
+
+/// Constraint of an augmented Lagrangian that the sum of h_i t_i over the intervals between two
+/// neighbouring grips is the vector from one to the other. Its energy is
+///     multiplier . gap + 1/2 penalty |gap|^2,
+/// so that the rod between the grips carries the force - multiplier - penalty gap.
+struct GripGap {
+  Eigen::Index first, end;
+  Eigen::Vector3d chord;
+  double slack;  ///< length of the rod minus the distance of the grips
+  double penalty;
+  Eigen::Vector3d multiplier = Eigen::Vector3d::Zero();
+
+  /// Whether a gap is smaller than 1e-4 and than a hundredth of the slack.
+  [[nodiscard]] bool closed(const Eigen::Vector3d& gap) const;
+};
+
+[[nodiscard]] std::vector<GripGap> grip_gaps(const RodSpan& span, const RodMesh& mesh);
+
+/// Returns initial guesses for relaxing a polygon, as frames of the intervals of a mesh. They are:
+/// straight along a line; with tangents along the carried force; and at an angle a(x) to the line,
+/// x in [0, 1] along the span, towards each of several normals,
+///     a = A cos(pi x) (arch),  A sin(2 pi x) (arch with straight ends),  A cos(2 pi x) (S),
+///     2 pi x (loop),
+/// where A fits the distance of the outermost grips. The line connects these grips, or has the
+/// direction of a clamp. In a plane there are two normals, in space six or four around the line.
+/// For a rod that is not round there are two more: its natural shape from its first clamp on, and
+/// tangents against the force. A round rod may be in equilibrium in the latter and stay there. In
+/// space, guesses that would lie in a plane are tilted out of it.
+[[nodiscard]] std::vector<std::vector<Eigen::Quaterniond>> polygon_starts(const RodSpan& span,
+                                                                          const RodMesh& mesh,
+                                                                          Motion motion);
 
 }  // namespace dlo::energy_model

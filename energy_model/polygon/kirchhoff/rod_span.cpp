@@ -7,7 +7,6 @@
 #include "base/spin.hpp"
 #include "dlo/energy_model/natural_frame.hpp"
 #include "dlo/energy_model/turns.hpp"
-#include "problem/ordered_grips.hpp"
 #include "problem/rod_law.hpp"
 
 namespace dlo::energy_model {

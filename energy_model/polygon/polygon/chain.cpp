@@ -9,8 +9,7 @@
 #include "base/deadline.hpp"
 #include "base/minimise.hpp"
 #include "base/require.hpp"
-#include "polygon/fold_angle.hpp"
-#include "polygon/require_polygon.hpp"
+#include "polygon/polygon_energy.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -87,8 +86,7 @@ void check(const ChainProblem& problem, const ChainOptions& options) {
           static_cast<double>(problem.node_forces.cols()), "one more than segments");
   require(problem.node_forces.allFinite() && problem.start.allFinite(), "ChainProblem",
           "node_forces", problem.node_forces.norm(), "finite");
-  require(std::isfinite(problem.held_angle), "ChainProblem", "held_angle", problem.held_angle,
-          "finite");
+  require_finite("ChainProblem", "held_angle", problem.held_angle);
   require_positive("ChainProblem", "stiffness", problem.stiffness);
   require_unlike_joints("ChainProblem", problem.law, problem.stiffnesses, problem.natural_turns, n);
   require_positive("ChainOptions", "tolerance", options.tolerance);
@@ -98,8 +96,7 @@ void check(const ChainProblem& problem, const ChainOptions& options) {
   require(options.start_angles.size() == 0 || options.start_angles.size() == n, "ChainOptions",
           "size of start_angles", static_cast<double>(options.start_angles.size()),
           "0 or the number of segments");
-  require(options.start_angles.allFinite(), "ChainOptions", "start_angles",
-          options.start_angles.norm(), "finite");
+  require_finite("ChainOptions", "start_angles", options.start_angles);
 }
 
 /// Returns initial angles: each joint is bent as its law would bend it under the moments of the
@@ -138,74 +135,37 @@ Eigen::VectorXd start_from_moments(const ChainProblem& problem) {
   return angles;
 }
 
-/// Tridiagonal second derivative by the angles of the free segments 1 .. n-1.
-struct Tridiagonal {
-  Eigen::VectorXd diagonal;
-  Eigen::VectorXd below;
+/// Directions in which the angles of a chain move.
+enum class Bends { in_plane, out_of_plane };
 
-  /// Factorises L D L^T in place. @return whether every pivot is positive
-  bool factor() {
-    for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
-      if (i > 0) {
-        const double ratio = below[i - 1] / diagonal[i - 1];
-        diagonal[i] -= ratio * below[i - 1];
-        below[i - 1] = ratio;
-      }
-      if (!(diagonal[i] > 0)) return false;
-    }
-    return true;
-  }
-
-  void solve(Eigen::VectorXd& b) const {
-    for (Eigen::Index i = 1; i < b.size(); ++i) b[i] -= below[i - 1] * b[i - 1];
-    b.array() /= diagonal.array();
-    for (Eigen::Index i = b.size() - 2; i >= 0; --i) b[i] -= below[i] * b[i + 1];
-  }
-};
-
-Tridiagonal second_derivative(const ChainProblem& problem, const Eigen::Matrix2Xd& forces,
-                              const Eigen::VectorXd& angles) {
-  const Eigen::Index free = angles.size() - 1;
-  Tridiagonal matrix{Eigen::VectorXd::Zero(free), Eigen::VectorXd::Zero(free - 1)};
-  for (Eigen::Index i = 1; i <= free; ++i) {
-    const double stiffness = joint_at(problem, i, angles[i] - angles[i - 1]).stiffness;
-    matrix.diagonal[i - 1] +=
-        stiffness + problem.segment_lengths[i] *
-                        (forces(0, i) * std::cos(angles[i]) + forces(1, i) * std::sin(angles[i]));
-    if (i >= 2) {
-      matrix.diagonal[i - 2] += stiffness;
-      matrix.below[i - 2] -= stiffness;
-    }
-  }
-  return matrix;
-}
-
-/// Computes the second derivative by the angles of the free segments out of the plane, without
-/// natural turns. With the angles psi, and the angle alpha of the joint between segments j = i - 1
-/// and i of the planar chain,
+/// Returns the second derivative by the angles of the free segments 1 .. n-1, as a band (see
+/// PolygonFactor). Out of the plane it is that of a chain without natural turns. With the angles
+/// psi, and the angle alpha of the joint between segments j = i - 1 and i of the planar chain,
 ///     cos(alpha') = cos(psi_j) cos(psi_i) cos(alpha) + sin(psi_j) sin(psi_i)
 /// so that with the moment M = P'(alpha) and the force F in the segment of length L
 ///     2 E = sum M / sin(alpha) (cos(alpha) (psi_j^2 + psi_i^2) - 2 psi_j psi_i) + sum L F.t
 ///     psi_i^2
-Tridiagonal second_derivative_out_of_plane(const ChainProblem& problem,
-                                           const Eigen::Matrix2Xd& forces,
-                                           const Eigen::VectorXd& angles) {
+Eigen::MatrixXd second_derivative(const ChainProblem& problem, const Eigen::Matrix2Xd& forces,
+                                  const Eigen::VectorXd& angles, Bends bends) {
   const Eigen::Index free = angles.size() - 1;
-  Tridiagonal matrix{Eigen::VectorXd::Zero(free), Eigen::VectorXd::Zero(free - 1)};
+  Eigen::MatrixXd band = Eigen::MatrixXd::Zero(std::min<Eigen::Index>(2, free), free);
   for (Eigen::Index i = 1; i <= free; ++i) {
     const double alpha = angles[i] - angles[i - 1];
     const AngleJoint joint = joint_at(problem, i, alpha);
-    const double sine = std::sin(alpha);
-    const double stiffness = sine == 0 ? joint.stiffness : joint.moment / sine;
-    matrix.diagonal[i - 1] += stiffness * std::cos(alpha) +
-                              problem.segment_lengths[i] * (forces(0, i) * std::cos(angles[i]) +
-                                                            forces(1, i) * std::sin(angles[i]));
-    if (i >= 2) {
-      matrix.diagonal[i - 2] += stiffness * std::cos(alpha);
-      matrix.below[i - 2] -= stiffness;
+    double coupled = joint.stiffness;
+    double own = joint.stiffness;
+    if (bends == Bends::out_of_plane) {
+      const double sine = std::sin(alpha);
+      if (sine != 0) coupled = joint.moment / sine;
+      own = coupled * std::cos(alpha);
     }
+    const Eigen::Vector2d tangent(std::cos(angles[i]), std::sin(angles[i]));
+    band(0, i - 1) += own + problem.segment_lengths[i] * forces.col(i).dot(tangent);
+    if (i == 1) continue;
+    band(0, i - 2) += own;
+    band(1, i - 2) -= coupled;
   }
-  return matrix;
+  return band;
 }
 
 Eigen::Matrix2Xd chain_points(const ChainProblem& problem, const Eigen::VectorXd& angles) {
@@ -238,12 +198,16 @@ void newton_in_chain(const ChainProblem& problem, const ChainOptions& options,
   double energy = chain_energy(problem, result.angles, gradient);
   ++result.evaluations;
   // Angles near pi have a rounding error that stiff joints turn into moments.
-  const double rounding_moment =
-      4 * std::numeric_limits<double>::epsilon() * std::numbers::pi *
-      std::sqrt(static_cast<double>(free)) *
-      second_derivative(problem, forces, result.angles).diagonal.cwiseAbs().maxCoeff();
+  const double rounding_moment = 4 * std::numeric_limits<double>::epsilon() * std::numbers::pi *
+                                 std::sqrt(static_cast<double>(free)) *
+                                 second_derivative(problem, forces, result.angles, Bends::in_plane)
+                                     .row(0)
+                                     .cwiseAbs()
+                                     .maxCoeff();
   const double tolerance =
       std::max(options.tolerance * moment_scale, std::min(rounding_moment, 1e-6 * moment_scale));
+  PolygonFactor factor;
+  const Eigen::MatrixXd none(free, 0);
   double damping = 0;
   while (result.evaluations < options.max_evaluations) {
     if (deadline.passed()) {
@@ -251,15 +215,14 @@ void newton_in_chain(const ChainProblem& problem, const ChainOptions& options,
       return;
     }
     result.residual = gradient.norm();
-    Tridiagonal matrix = second_derivative(problem, forces, result.angles);
-    const double scale = matrix.diagonal.cwiseAbs().maxCoeff();
+    const Eigen::MatrixXd band = second_derivative(problem, forces, result.angles, Bends::in_plane);
     const bool small = result.residual <= tolerance;
-    matrix.diagonal.array() += damping * scale;
-    const bool positive = matrix.factor();
+    const bool positive = factor.compute(band, none, damping * band.row(0).cwiseAbs().maxCoeff());
     if (small && damping == 0) {
       const bool stays_in_plane =
           problem.natural_turns.size() > 0 ||
-          second_derivative_out_of_plane(problem, forces, result.angles).factor();
+          factor.compute(second_derivative(problem, forces, result.angles, Bends::out_of_plane),
+                         none, 0);
       result.status = positive && stays_in_plane ? SolveStatus::converged : SolveStatus::saddle;
       return;
     }
@@ -272,10 +235,8 @@ void newton_in_chain(const ChainProblem& problem, const ChainOptions& options,
       damping = std::max(4 * damping, 1e-8);
       continue;
     }
-    Eigen::VectorXd step = gradient.tail(free);
-    matrix.solve(step);
     Eigen::VectorXd trial = result.angles;
-    trial.tail(free) -= step;
+    trial.tail(free) -= factor.solve(gradient.tail(free));
     Eigen::VectorXd trial_gradient(gradient.size());
     const double trial_energy = chain_energy(problem, trial, trial_gradient);
     ++result.evaluations;
@@ -329,39 +290,12 @@ ChainResult solve_chain(const ChainProblem& problem, const ChainOptions& options
       options.start_angles.size() > 0 ? options.start_angles : start_from_moments(problem);
   result.angles[0] = problem.held_angle;
 
-  // With the joint angles as unknowns, the Hessian of a Hookean chain is a multiple of the identity
-  // plus a compact part, for any number of segments. With the segment angles it would be a discrete
-  // Laplacian.
-  Eigen::VectorXd turns = result.angles.tail(n - 1) - result.angles.head(n - 1);
   Eigen::VectorXd gradient(n);
-  const Objective objective = [&](const Eigen::Ref<const Eigen::VectorXd>& x,
-                                  Eigen::Ref<Eigen::VectorXd> by_turn) {
-    double angle = problem.held_angle;
-    for (Eigen::Index i = 1; i < n; ++i) {
-      angle += x[i - 1];
-      result.angles[i] = angle;
-    }
-    const double energy = chain_energy(problem, result.angles, gradient);
-    double sum = 0;
-    for (Eigen::Index i = n - 1; i >= 1; --i) {
-      sum += gradient[i];
-      by_turn[i - 1] = sum;
-    }
-    return energy;
-  };
   const double moment_scale =
       problem.node_forces.colwise().norm().sum() * problem.segment_lengths.sum() +
       // Not zero without forces: the straight chain then converges at once.
       largest_natural_moment(problem) + 1e-300;
-  const MinimiseResult first = minimise_lbfgs(objective, turns,
-                                              {.gradient_tolerance = 1e-6 * moment_scale,
-                                               .max_evaluations = options.max_evaluations,
-                                               .deadline = deadline});
-  result.evaluations = first.evaluations;
-  Eigen::VectorXd by_turn(n - 1);
-  (void)objective(turns, by_turn);
-  result.status = first.status;
-  if (first.is_a_start()) newton_in_chain(problem, options, deadline, moment_scale, result);
+  newton_in_chain(problem, options, deadline, moment_scale, result);
   result.message = to_string(result.status);
 
   const double total = chain_energy(problem, result.angles, gradient);

@@ -10,9 +10,6 @@
 
 #include "base/deadline.hpp"
 #include "polygon/polygon_energy.hpp"
-#include "polygon/polygon_factor.hpp"
-#include "polygon/polygon_twist.hpp"
-#include "polygon/require_polygon.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -361,8 +358,9 @@ PolygonResult solve_polygon(const PolygonProblem& problem, const Points& start,
     const bool last = c_c >= problem.stretch_stiffness;
     stage.stretch_stiffness = last ? problem.stretch_stiffness : c_c;
     for (std::size_t i = 0; i < problem.obstacles.size(); ++i) {
-      const double stiffness = problem.obstacles[i].stiffness;
-      stage.obstacles[i].stiffness = last ? stiffness : std::min(stiffness, c_c / shortest);
+      const double most = last ? std::numeric_limits<double>::infinity() : c_c / shortest;
+      stage.obstacles[i].stiffness = std::min(problem.obstacles[i].stiffness, most);
+      stage.obstacles[i].stiffnesses = problem.obstacles[i].stiffnesses.cwiseMin(most);
     }
     PolygonDescent descent(stage, options, deadline, result);
     result.status = descent.run(last ? options.tolerance : stage_tolerance);

@@ -3,10 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "polygon/fold_angle.hpp"
-#include "polygon/polygon_twist.hpp"
-#include "polygon/segment_pair.hpp"
-
 namespace dlo::energy_model {
 namespace {
 
@@ -127,6 +123,15 @@ std::vector<bool> held_points(const PolygonProblem& problem) {
   return held;
 }
 
+/// Returns the stiffness of a sample point: on segment i, or where segments i - 1 and i meet.
+double sample_stiffness(const PointObstacle& obstacle, Eigen::Index i, double share) {
+  const Eigen::VectorXd& own = obstacle.stiffnesses;
+  if (own.size() == 0) return obstacle.stiffness / obstacle.samples;
+  const Eigen::Index after = std::min(i, own.size() - 1);
+  const Eigen::Index before = share > 0 ? after : std::max<Eigen::Index>(i - 1, 0);
+  return (own[before] + own[after]) / (2 * obstacle.samples);
+}
+
 /// Calls action(i, share, point) for each sample point of the polygon on which an obstacle may act.
 /// `share` is its position between point i and the next, from 0 to 1.
 /// @param held  result of held_points()
@@ -193,9 +198,9 @@ double polygon_energy(const PolygonProblem& problem, const Points& points,
   if (problem.obstacles.empty()) return energy;
   const std::vector<bool> held = held_points(problem);
   for (const PointObstacle& obstacle : problem.obstacles) {
-    const double k = obstacle.stiffness / obstacle.samples;
     const auto push = [&](Eigen::Index i, double share, const Eigen::Vector3d& point) {
       if (obstacle.body.clearance(point) >= 0) return;
+      const double k = sample_stiffness(obstacle, i, share);
       const obstacle::Gap gap = obstacle.body.gap(point);
       energy += k * gap.value * gap.value / 2;
       const Eigen::Vector3d by_point = k * gap.value * gap.gradient;
@@ -213,9 +218,9 @@ void add_obstacle_hessian(const PolygonProblem& problem, const Points& points, H
                           const AddBlock& add) {
   const std::vector<bool> held = held_points(problem);
   for (const PointObstacle& obstacle : problem.obstacles) {
-    const double k = obstacle.stiffness / obstacle.samples;
     const auto stiffen = [&](Eigen::Index i, double share, const Eigen::Vector3d& point) {
       if (obstacle.body.clearance(point) >= 0) return;
+      const double k = sample_stiffness(obstacle, i, share);
       const obstacle::Gap gap = obstacle.body.gap(point);
       Eigen::Matrix3d H = k * gap.gradient * gap.gradient.transpose();
       if (which == HessianTerms::all) H += k * gap.value * gap.hessian;

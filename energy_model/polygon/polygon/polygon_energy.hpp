@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <functional>
 
+#include "dlo/energy_model/chain.hpp"
 #include "dlo/energy_model/polygon.hpp"
 
 namespace dlo::energy_model {
@@ -31,5 +33,79 @@ enum class HessianTerms {
 void polygon_hessian(const PolygonProblem& problem,
                      const Eigen::Ref<const Eigen::Matrix3Xd>& points, HessianTerms which,
                      const AddBlock& add);
+
+/// Angle beyond which the moment of a joint is constant [rad]: of a `hooke` joint as in the force
+/// model, and of a `binormal` joint.
+constexpr double fold_angle = 3.0;
+
+/// The two segments that meet at a point of a polygon.
+struct SegmentPair {
+  Eigen::Vector3d u, v;  ///< unit vectors of the segment before and the segment after the point
+  double a, b;           ///< lengths of the segments
+
+  SegmentPair(const Eigen::Ref<const Eigen::Matrix3Xd>& points, Eigen::Index i)
+      : u(points.col(i) - points.col(i - 1)),
+        v(points.col(i + 1) - points.col(i)),
+        a(u.norm()),
+        b(v.norm()) {
+    u /= a;
+    v /= b;
+  }
+};
+
+/// Checks the twists of a polygon.
+/// @throws std::invalid_argument naming the first number out of range
+void require_twists(const PolygonProblem& problem);
+
+/// Returns the energy of all twists [J] and adds their gradient [N] to `gradient`.
+[[nodiscard]] double add_twist_energy(const PolygonProblem& problem,
+                                      const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+                                      Eigen::Ref<Eigen::Matrix3Xd> gradient);
+
+/// Adds the part M d2 theta of the Hessian, which couples neighbours. The other part is B B^T, with
+/// a column d theta / sqrt(C) of B for each twist (twist_columns()).
+void add_twist_hessian(const PolygonProblem& problem,
+                       const Eigen::Ref<const Eigen::Matrix3Xd>& points, const AddBlock& add);
+
+/// Returns the matrix B of add_twist_hessian(): 3 (n+1) rows, the coordinates of each point
+/// consecutively, and a column for each twist [sqrt(N/m)].
+[[nodiscard]] Eigen::MatrixXd twist_columns(const PolygonProblem& problem,
+                                            const Eigen::Ref<const Eigen::Matrix3Xd>& points);
+
+/// Factors of H = A + B B^T + shift, with A symmetric and banded and B of few columns, computed in
+/// O(rows): L D L^T of A + shift by GSL, and S = 1 + B^T (A + shift)^-1 B. The bordered matrix
+///     [ A + shift  B ]
+///     [ B^T       -1 ]
+/// has the negative eigenvalues of H and one more for each column of B. It also has the negative
+/// eigenvalues of A + shift and those of -S (Haynsworth).
+class PolygonFactor {
+ public:
+  /// Factorises H.
+  /// @param band  lower half of A, A(j + d, j) in row d and column j; at most as many rows as
+  ///              columns
+  /// @param B     rows x 0 if there is none
+  /// @return whether H is positive definite
+  bool compute(const Eigen::MatrixXd& band, const Eigen::MatrixXd& B, double shift);
+  /// Returns H^-1 times a vector.
+  [[nodiscard]] Eigen::VectorXd solve(Eigen::VectorXd right);
+
+ private:
+  void solve_banded(Eigen::Ref<Eigen::VectorXd> vector);
+
+  Eigen::MatrixXd factor_;  // D in the first row, L below
+  Eigen::MatrixXd B_;
+  Eigen::MatrixXd carried_;  // (A + shift)^-1 B
+  Eigen::PartialPivLU<Eigen::MatrixXd> small_;
+};
+
+/// Checks the arguments of solve_polygon().
+/// @throws std::invalid_argument naming the first number out of range
+void require_polygon(const PolygonProblem& problem, const Eigen::Ref<const Eigen::Matrix3Xd>& start,
+                     const PolygonOptions& options);
+
+/// Checks stiffnesses and natural turns of the joints of chains and polygons with n segments.
+/// @throws std::invalid_argument naming `problem` and the first number out of range
+void require_unlike_joints(const char* problem, JointLaw law, const Eigen::VectorXd& stiffnesses,
+                           const Eigen::VectorXd& natural_turns, Eigen::Index n);
 
 }  // namespace dlo::energy_model

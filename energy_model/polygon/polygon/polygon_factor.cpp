@@ -1,11 +1,10 @@
-#include "polygon/polygon_factor.hpp"
-
 #include <gsl/gsl_linalg.h>
 
 #include <Eigen/Eigenvalues>
 #include <stdexcept>
 
-#include "base/silence_gsl.hpp"
+#include "base/gsl.hpp"
+#include "polygon/polygon_energy.hpp"
 
 namespace dlo::energy_model {
 namespace {

@@ -1,4 +1,3 @@
-#include "polygon/polygon_twist.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -6,7 +5,7 @@
 #include <numbers>
 
 #include "base/require.hpp"
-#include "polygon/segment_pair.hpp"
+#include "polygon/polygon_energy.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -88,7 +87,7 @@ void require_twists(const PolygonProblem& problem) {
     require(twist.first_segment < twist.last_segment, name, "first_segment of a twist",
             static_cast<double>(twist.first_segment), "less than its last_segment");
     require_positive(name, "compliance of a twist", twist.compliance);
-    require(std::isfinite(twist.angle), name, "angle of a twist", twist.angle, "finite");
+    require_finite(name, "angle of a twist", twist.angle);
     for (const Eigen::Vector3d& d1 : {twist.first_d1, twist.last_d1}) {
       require_positive(name, "|d1| of a twist", d1.norm());
     }

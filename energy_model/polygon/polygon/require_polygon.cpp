@@ -1,12 +1,10 @@
-#include "polygon/require_polygon.hpp"
 
 #include <cmath>
 #include <string>
 #include <vector>
 
 #include "base/require.hpp"
-#include "polygon/fold_angle.hpp"
-#include "polygon/polygon_twist.hpp"
+#include "polygon/polygon_energy.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -36,8 +34,7 @@ void require_polygon(const PolygonProblem& problem, const Points& start,
   require_twists(problem);
   require(problem.node_forces.cols() == n + 1, name, "columns of node_forces",
           static_cast<double>(problem.node_forces.cols()), "one more than segments");
-  require(problem.node_forces.allFinite(), name, "node_forces", problem.node_forces.norm(),
-          "finite");
+  require_finite(name, "node_forces", problem.node_forces);
   require(!problem.held.empty(), name, "number of held points", 0, ">= 1");
   std::vector<bool> taken(static_cast<std::size_t>(n + 1), false);
   for (const HeldPoint& held : problem.held) {
@@ -45,14 +42,19 @@ void require_polygon(const PolygonProblem& problem, const Points& start,
     require(exists && !taken[static_cast<std::size_t>(held.point)], name, "a held point",
             static_cast<double>(held.point), "a point of the polygon that is held only once");
     taken[static_cast<std::size_t>(held.point)] = true;
-    require(held.position.allFinite(), name, "position of a held point", held.position.norm(),
-            "finite");
+    require_finite(name, "position of a held point", held.position);
   }
   for (const PointObstacle& obstacle : problem.obstacles) {
     require(obstacle.stiffness >= 0 && std::isfinite(obstacle.stiffness), name,
             "stiffness of an obstacle", obstacle.stiffness, "finite and >= 0");
     require(obstacle.body.centre().allFinite() && obstacle.body.axes().allFinite(), name,
             "point of an obstacle", obstacle.body.centre().norm(), "finite, like its axes");
+    require(obstacle.stiffnesses.size() == 0 ||
+                (obstacle.stiffnesses.size() == n && obstacle.stiffnesses.minCoeff() >= 0 &&
+                 obstacle.stiffnesses.allFinite()),
+            name, "number of stiffnesses of an obstacle",
+            static_cast<double>(obstacle.stiffnesses.size()),
+            "0 or the number of segments, each finite and >= 0");
     require(obstacle.samples >= 1, name, "samples per segment", obstacle.samples, ">= 1");
   }
   require_positive("PolygonOptions", "tolerance", options.tolerance);

@@ -8,7 +8,7 @@
 
 #include "base/deadline.hpp"
 #include "dlo/energy_model/polygon.hpp"
-#include "polygon/require_polygon.hpp"
+#include "polygon/polygon_energy.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -98,33 +98,31 @@ PolygonResult twist_polygon(const PolygonProblem& problem,
     if (step_options.time_limit <= 0 || step_options.max_evaluations < 1) {
       const bool late = step_options.time_limit <= 0;
       now.status = late ? SolveStatus::time_limit : SolveStatus::evaluation_limit;
-    } else {
-      const Eigen::Matrix3Xd from =
-          slope.cols() > 0 ? Eigen::Matrix3Xd(now.points + (next - part) * slope) : now.points;
-      PolygonResult found = solve_polygon(there, from, step_options);
-      const double moved = (found.points - now.points).colwise().norm().maxCoeff() / length;
-      now.evaluations += found.evaluations;
-      const bool solved = succeeded(found.status);
-      const bool jumped = !(moved <= longest_movement);
-      if (solved && (!jumped || turning <= turning_at_jump)) {
-        slope.resize(3, 0);
-        if (!jumped) slope = (found.points - now.points) / (next - part);
-        found.evaluations = now.evaluations;
-        now = std::move(found);
-        part = next;
-        turning = std::min(longest_turning, 1.5 * turning);
-        continue;
-      }
-      if (turning > least_turning) {
-        turning /= 3;
-        slope.resize(3, 0);
-        continue;
-      }
-      now.status = found.status;
+      break;
     }
+    const Eigen::Matrix3Xd from =
+        slope.cols() > 0 ? Eigen::Matrix3Xd(now.points + (next - part) * slope) : now.points;
+    PolygonResult found = solve_polygon(there, from, step_options);
+    const double moved = (found.points - now.points).colwise().norm().maxCoeff() / length;
+    now.evaluations += found.evaluations;
+    const bool jumped = !(moved <= longest_movement);
+    slope.resize(3, 0);
+    if (succeeded(found.status) && (!jumped || turning <= turning_at_jump)) {
+      if (!jumped) slope = (found.points - now.points) / (next - part);
+      found.evaluations = now.evaluations;
+      now = std::move(found);
+      part = next;
+      turning = std::min(longest_turning, 1.5 * turning);
+    } else if (turning > least_turning) {
+      turning /= 3;
+    } else {
+      now.status = found.status;
+      break;
+    }
+  }
+  if (part < 1) {
     now.message = std::string(to_string(now.status)) + " after " + std::to_string(part) +
                   " of the twist was applied";
-    break;
   }
   now.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return now;

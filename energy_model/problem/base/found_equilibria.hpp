@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <string>
 #include <vector>
 
 namespace dlo::energy_model {
@@ -45,5 +47,36 @@ void sort_by_stability(std::vector<Shape>& found) {
     return a.energy.total() < b.energy.total() - rounding;
   });
 }
+
+/// Stability and energy of one equilibrium of a span, by which combinations are ordered.
+struct SpanCandidate {
+  bool stable = false;
+  double energy = 0;  ///< NaN counts as infinity
+};
+
+/// Combinations of one candidate of each span (lowest_combinations()).
+struct Combinations {
+  std::vector<std::vector<std::size_t>> choices;  ///< one candidate index per span in each choice
+  bool truncated = false;                         ///< whether there are more than were requested
+};
+
+/// Returns the first `most` combinations in this order: fewest unstable candidates first, then
+/// lowest sum of energies; equal candidates keep their order. The search is best-first, so that
+/// neither time nor memory grows with the product of the numbers of candidates.
+/// @param candidates  candidates of each span, in any order. There is no combination if one span
+///                    has none
+[[nodiscard]] Combinations lowest_combinations(
+    const std::vector<std::vector<SpanCandidate>>& candidates, std::size_t most);
+
+/// Returns the end of a message about a shape with this number of zero modes; empty if there is
+/// none.
+[[nodiscard]] inline std::string zero_modes_note(int ways) {
+  if (ways == 0) return {};
+  return ", " + std::to_string(ways) + (ways == 1 ? " zero mode" : " zero modes");
+}
+
+/// End of a message about a shape that couples bend.
+inline constexpr const char* in_the_plane =
+    "; checked in the plane alone, because a couple has no potential out of it";
 
 }  // namespace dlo::energy_model

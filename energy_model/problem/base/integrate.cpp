@@ -1,11 +1,10 @@
-#include "base/integrate.hpp"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
 
 #include <cmath>
 
-#include "base/silence_gsl.hpp"
+#include "base/gsl.hpp"
 
 namespace dlo::energy_model {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -18,6 +19,17 @@ inline void require(bool good, std::string_view function, std::string_view argum
 
 inline void require_positive(std::string_view function, std::string_view argument, double value) {
   require(value > 0 && std::isfinite(value), function, argument, value, "finite and > 0");
+}
+
+/// Checks that a number or all components of an array are finite.
+/// @throws std::invalid_argument naming the number, or the norm of the array
+inline void require_finite(std::string_view function, std::string_view argument, double value) {
+  require(std::isfinite(value), function, argument, value, "finite");
+}
+template <typename Derived>
+void require_finite(std::string_view function, std::string_view argument,
+                    const Eigen::MatrixBase<Derived>& values) {
+  require(values.allFinite(), function, argument, values.norm(), "finite");
 }
 
 }  // namespace dlo::energy_model

@@ -18,21 +18,6 @@ namespace {
 /// of this share is a thousand times the rounding error of a rod bent by forces of EI/l^2.
 constexpr double negligible_share = 1e-4;
 
-/// Returns the arc lengths at which the actions on the rod change abruptly, growing, each once.
-std::vector<double> abrupt_changes(const Problem& problem, const Equilibrium& shape) {
-  std::vector<double> at = {0, problem.length};
-  for (const Grip& grip : problem.grips) at.push_back(grip.at);
-  for (const Load& load : problem.loads) at.push_back(load.at);
-  for (const Section& part : problem.sections) at.insert(at.end(), {part.begin, part.end});
-  for (const LineLoad& load : problem.line_loads) at.insert(at.end(), {load.begin, load.end});
-  for (const ContactPart& part : shape.contacts) at.insert(at.end(), {part.begin, part.end});
-  // Rounding may have moved them off the rod.
-  for (double& s : at) s = std::clamp(s, 0.0, problem.length);
-  std::sort(at.begin(), at.end());
-  at.erase(std::unique(at.begin(), at.end()), at.end());
-  return at;
-}
-
 /// Integrates the forces and moments of distributed actions: weight, line loads and drag in the
 /// first column, yielding obstacles in one column each; moments about the first grip.
 class SpreadActions {
@@ -57,7 +42,7 @@ class SpreadActions {
     constexpr int most_halvings = 24;
     constexpr std::size_t most_panels = 512;  // a shape of noise would not be resolved by more
     std::vector<Panel> panels;
-    const std::vector<double> cuts = abrupt_changes(problem_, shape_);
+    const std::vector<double> cuts = kinks_of(problem_, shape_.contacts);
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
       panels.push_back({cuts[i], cuts[i + 1] - cuts[i], {}, false});
     }

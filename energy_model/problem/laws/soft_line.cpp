@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/lobatto_element.hpp"
+#include "base/gsl.hpp"
 #include "base/sized_samples.hpp"
 #include "dlo/energy_model/balance.hpp"
 #include "dlo/energy_model/taut_line.hpp"
@@ -97,35 +97,16 @@ struct Composite {
 
   /// Returns the gap between the integral of the unit tangents over the rod and its other end [m].
   [[nodiscard]] double gap() const {
-    std::vector<double> nodes = {0, length};
-    const auto add_layer = [&](double begin, double way, double size) {
-      // Steps per layer_reach, a quarter of a layer each: Gauss's rule is then exact to rounding.
-      constexpr int steps = 160;
-      for (int i = 0; i <= steps; ++i)
-        nodes.push_back(begin + way * size * layer_reach * i / steps);
+    const auto tangent = [](double s, const double*, double* rate, void* shape) {
+      const auto& own = *static_cast<const Composite*>(shape);
+      Eigen::Map<Vector>{rate} = own.at(own.length * s).tangent;
+      return 0;
     };
-    for (const Layer& layer : layers) {
-      add_layer(layer.at_end ? length : 0, layer.at_end ? -1 : 1, layer.length);
-    }
-    constexpr int parts = 400;
-    for (int i = 0; i < parts; ++i) nodes.push_back(length * i / parts);
-    // Nodes at equal angles resolve the part where the line rotates sharply.
-    for (int i = -parts; i <= parts; ++i) {
-      constexpr double angles = 12;
-      const double q = line.a * std::sinh(angles * i / parts);
-      nodes.push_back(q < 0 ? line.low + q : line.low + line.lying + q);
-    }
-    std::erase_if(nodes, [&](double s) { return !(s >= 0 && s <= length); });
-    std::sort(nodes.begin(), nodes.end());
-    Vector gap = at(0).point - at(length).point;
-    for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
-      const double h = nodes[i + 1] - nodes[i];
-      for (std::size_t q = 0; q < element_quadrature; ++q) {
-        const double s = nodes[i] + h * (1 + element_gauss[q]) / 2;
-        gap += h / 2 * element_weight[q] * at(s).tangent;
-      }
-    }
-    return gap.norm();
+    constexpr double tolerance = 1e-14;
+    Composite shape = *this;
+    std::vector<double> way(3, 0.0);
+    if (!integrate(tangent, &shape, 1, tolerance, way)) return INFINITY;
+    return (at(0).point + length * Eigen::Map<const Vector>(way.data()) - at(length).point).norm();
   }
 };
 

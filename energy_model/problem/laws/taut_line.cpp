@@ -9,8 +9,6 @@
 #include "base/require.hpp"
 #include "base/sized_samples.hpp"
 #include "dlo/energy_model/turns.hpp"
-#include "problem/ordered_grips.hpp"
-#include "problem/reduction.hpp"
 #include "problem/rod_law.hpp"
 
 namespace dlo::energy_model {
@@ -21,19 +19,10 @@ namespace {
 constexpr double length_rounding = 1e-12;
 constexpr double line_rounding = 1e-9;
 
-/// Returns the indices of the grips by growing arc length.
-std::vector<std::size_t> grips_along(const Problem& problem) {
-  std::vector<std::size_t> along(problem.grips.size());
-  for (std::size_t i = 0; i < along.size(); ++i) along[i] = i;
-  std::stable_sort(along.begin(), along.end(), [&](std::size_t a, std::size_t b) {
-    return problem.grips[a].at < problem.grips[b].at;
-  });
-  return along;
-}
-
 class TautLine {
  public:
-  explicit TautLine(const Problem& problem) : problem_(problem), along_(grips_along(problem)) {
+  explicit TautLine(const Problem& problem)
+      : problem_(problem), along_(grips_by_arc_length(problem)) {
     line_ = (grip(along_.size() - 1).position - grip(0).position).normalized();
     result_.grips.resize(problem.grips.size());
     for (const Grip& held : problem.grips) {
@@ -63,7 +52,7 @@ class TautLine {
   }
 
  private:
-  [[nodiscard]] const Grip& grip(std::size_t i) const { return problem_.grips[along_[i]]; }
+  [[nodiscard]] const Grip& grip(std::size_t i) const { return *along_[i].grip; }
   [[nodiscard]] Eigen::Vector3d point(double s) const {
     return grip(0).position + (s - grip(0).at) * line_;
   }
@@ -72,8 +61,8 @@ class TautLine {
   /// @param force  force on the line at s, between grips i and i + 1
   void carry(const Eigen::Vector3d& force, double s, std::size_t i) {
     const double share = (s - grip(i).at) / (grip(i + 1).at - grip(i).at);
-    result_.grips[along_[i]].force -= (1 - share) * force;
-    result_.grips[along_[i + 1]].force -= share * force;
+    result_.grips[along_[i].index].force -= (1 - share) * force;
+    result_.grips[along_[i + 1].index].force -= share * force;
   }
 
   void require_along(const Eigen::Vector3d& force, double s) const {
@@ -112,7 +101,7 @@ class TautLine {
     if (clamp) result_.grips[*clamp].torque -= load.torque;
     for (std::size_t i = 0; i < along_.size(); ++i) {
       if (std::abs(load.at - grip(i).at) > line_rounding * problem_.length) continue;
-      result_.grips[along_[i]].force -= load.force;
+      result_.grips[along_[i].index].force -= load.force;
       return;
     }
     require_along(load.force, load.at);
@@ -123,8 +112,8 @@ class TautLine {
 
   void add_twist() {
     std::optional<std::size_t> last;
-    for (const std::size_t g : along_) {
-      const Grip& held = problem_.grips[g];
+    for (const auto& [g, along] : along_) {
+      const Grip& held = *along;
       if (!held.frame) continue;
       if (last) {
         const Grip& before = problem_.grips[*last];
@@ -166,7 +155,7 @@ class TautLine {
   }
 
   const Problem& problem_;
-  std::vector<std::size_t> along_;
+  std::vector<OrderedGrip> along_;
   Eigen::Vector3d line_;
   Eigen::Vector3d first_d1_ = Eigen::Vector3d::Zero();  // where the first clamp holds its frame
   Equilibrium result_;
@@ -176,13 +165,13 @@ class TautLine {
 
 bool is_taut_line(const Problem& problem) {
   if (problem.grips.size() < 2 || !(problem.length > 0)) return false;
-  const std::vector<std::size_t> along = grips_along(problem);
-  const Grip& first = problem.grips[along.front()];
+  const std::vector<OrderedGrip> along = grips_by_arc_length(problem);
+  const Grip& first = *along.front().grip;
   const double rounding = length_rounding * problem.length;
-  if (first.at > rounding || problem.grips[along.back()].at < problem.length - rounding) {
+  if (first.at > rounding || along.back().grip->at < problem.length - rounding) {
     return false;
   }
-  const Eigen::Vector3d way = problem.grips[along.back()].position - first.position;
+  const Eigen::Vector3d way = along.back().grip->position - first.position;
   if (!(std::abs(way.norm() - problem.length) <= rounding)) return false;
   return std::all_of(problem.grips.begin(), problem.grips.end(), [&](const Grip& grip) {
     const Eigen::Vector3d there = first.position + (grip.at - first.at) / problem.length * way;

@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "problem/ordered_grips.hpp"
 #include "problem/rod_law.hpp"
 
 namespace dlo::energy_model {

@@ -1,5 +1,3 @@
-#include "problem/material_directors.hpp"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -8,6 +6,7 @@
 #include "base/spin.hpp"
 #include "dlo/energy_model/turns.hpp"
 #include "problem/rod_law.hpp"
+#include "problem/split.hpp"
 
 namespace dlo::energy_model {
 namespace {

@@ -25,8 +25,7 @@ void check_frame(const Grip& grip) {
   require(grip.direction.has_value(), "Problem",
           "arc length of a grip with a frame but no direction", grip.at,
           "that of a clamp, which has a direction");
-  require(std::isfinite(grip.frame->roll), "Problem", "roll of a clamp", grip.frame->roll,
-          "finite");
+  require_finite("Problem", "roll of a clamp", grip.frame->roll);
   if (!grip.frame->d1) return;
   const double across = grip.frame->d1->cross(*grip.direction).norm();
   require(across > least_across * grip.frame->d1->norm() * grip.direction->norm(), "Problem",
@@ -56,8 +55,7 @@ void check_sections(const Problem& problem) {
                 (section.torsional_stiffness > 0 || !(problem.torsional_stiffness > 0)),
             "Problem", "torsional_stiffness of a section", section.torsional_stiffness,
             "finite, and > 0 if the rod's torsional_stiffness is");
-    require(section.weight_per_length.allFinite(), "Problem", "weight_per_length of a section",
-            section.weight_per_length.norm(), "finite");
+    require_finite("Problem", "weight_per_length of a section", section.weight_per_length);
     const Eigen::Vector2d bend = section.natural_curvature.value_or(Eigen::Vector2d::Zero());
     const double twist = section.natural_twist.value_or(0);
     require(bend.allFinite() && std::isfinite(twist), "Problem", "natural strain of a section",
@@ -73,7 +71,7 @@ void check_material_directors(const Problem& problem) {
   require_positive("Problem", "bending_stiffness_2",
                    problem.bending_stiffness_2.value_or(problem.bending_stiffness));
   for (const Eigen::Vector3d& strain : problem.natural_strains) {
-    require(strain.allFinite(), "Problem", "natural strain", strain.norm(), "finite");
+    require_finite("Problem", "natural strain", strain);
   }
   if (!has_material_directors(problem)) return;
   require_positive("Problem",
@@ -132,13 +130,11 @@ void check(const Problem& problem) {
   if (problem.axial_stiffness) {
     require_positive("Problem", "axial_stiffness", *problem.axial_stiffness);
   }
-  require(problem.weight_per_length.allFinite(), "Problem", "weight_per_length",
-          problem.weight_per_length.norm(), "finite");
+  require_finite("Problem", "weight_per_length", problem.weight_per_length);
   require(!problem.grips.empty(), "Problem", "number of grips", 0, ">= 1");
   for (const Grip& grip : problem.grips) {
     require_on_rod("arc length of a grip", grip.at, problem.length);
-    require(grip.position.allFinite(), "Problem", "position of a grip", grip.position.norm(),
-            "finite");
+    require_finite("Problem", "position of a grip", grip.position);
     if (grip.direction) {
       require_positive("Problem", "|direction| of a clamp", grip.direction->norm());
     }
@@ -149,8 +145,7 @@ void check(const Problem& problem) {
   check_material_directors(problem);
   for (const Obstacle& obstacle : problem.obstacles) {
     const obstacle::Body& body = obstacle.body;
-    require(body.centre().allFinite(), "Problem", "point of an obstacle", body.centre().norm(),
-            "finite");
+    require_finite("Problem", "point of an obstacle", body.centre());
     require(body.axes().allFinite(), "Problem", "axes of an obstacle", body.axes().norm(),
             "finite, with lengths > 0");
     require(body.smallest_radius() > 0, "Problem", "radius of an obstacle's edges",
@@ -160,12 +155,11 @@ void check(const Problem& problem) {
   }
   for (const Load& load : problem.loads) {
     require_on_rod("arc length of a load", load.at, problem.length);
-    require(load.force.allFinite(), "Problem", "force of a load", load.force.norm(), "finite");
-    require(load.torque.allFinite(), "Problem", "torque of a load", load.torque.norm(), "finite");
+    require_finite("Problem", "force of a load", load.force);
+    require_finite("Problem", "torque of a load", load.torque);
   }
   if (problem.drag) {
-    require(problem.drag->velocity.allFinite(), "Problem", "velocity of drag",
-            problem.drag->velocity.norm(), "finite");
+    require_finite("Problem", "velocity of drag", problem.drag->velocity);
     for (const double coefficient : {problem.drag->normal, problem.drag->tangential}) {
       require(coefficient >= 0 && std::isfinite(coefficient), "Problem", "coefficient of drag",
               coefficient, "finite and >= 0");

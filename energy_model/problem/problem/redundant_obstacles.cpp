@@ -1,8 +1,8 @@
-#include "problem/redundant_obstacles.hpp"
-
 #include <algorithm>
 #include <utility>
 #include <vector>
+
+#include "problem/span.hpp"
 
 namespace dlo::energy_model {
 namespace {

@@ -4,8 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <sstream>
+#include <stdexcept>
 #include <utility>
+#include <vector>
 
+#include "base/legendre.hpp"
 #include "base/require.hpp"
 #include "base/spin.hpp"
 #include "dlo/energy_model/plane.hpp"
@@ -71,6 +75,9 @@ bool loads_leave_plane(const Problem& problem, const Eigen::Vector3d& normal) {
            return leaves(load.force) || (couple - couple.dot(normal) * normal).norm() > most;
          });
 }
+
+// Arc lengths nearer to each other are equal, in rod lengths.
+constexpr double same_arc_length_share = 1e-9;
 
 }  // namespace
 
@@ -224,6 +231,108 @@ Eigen::Matrix3d first_frame(const Problem& problem) {
           clamp.at,
           "that of a clamp with d1: the rod is not both round and straight, and lies in no plane");
   return held_frame(clamp, normal->cross(*clamp.direction));
+}
+
+std::vector<OrderedGrip> grips_by_arc_length(const Problem& problem) {
+  std::vector<OrderedGrip> grips;
+  grips.reserve(problem.grips.size());
+  for (std::size_t i = 0; i < problem.grips.size(); ++i) grips.push_back({i, &problem.grips[i]});
+  std::stable_sort(grips.begin(), grips.end(), [](const OrderedGrip& a, const OrderedGrip& b) {
+    return a.grip->at < b.grip->at;
+  });
+  return grips;
+}
+
+std::vector<OrderedGrip> ordered_grips(const Problem& problem) {
+  const std::vector<OrderedGrip> grips = grips_by_arc_length(problem);
+  for (std::size_t i = 0; i + 1 < grips.size(); ++i) {
+    const double rod = grips[i + 1].grip->at - grips[i].grip->at;
+    const double apart = (grips[i + 1].grip->position - grips[i].grip->position).norm();
+    const bool reaches = apart < rod || problem.axial_stiffness;
+    if (rod > same_arc_length_share * problem.length && reaches) continue;
+    std::ostringstream message;
+    message << "Problem: grips at arc lengths " << grips[i].grip->at << " m and "
+            << grips[i + 1].grip->at << " m are " << apart << " m apart, must be less than the "
+            << rod << " m of rod between them";
+    throw std::invalid_argument(message.str());
+  }
+  return grips;
+}
+
+std::optional<std::size_t> clamp_under(const Problem& problem, const Load& load) {
+  std::optional<std::size_t> nearest;
+  double least = same_arc_length_share * problem.length;
+  for (std::size_t g = 0; g < problem.grips.size(); ++g) {
+    const double distance = std::abs(problem.grips[g].at - load.at);
+    if (!problem.grips[g].direction || distance > least) continue;
+    least = distance;
+    nearest = g;
+  }
+  return nearest;
+}
+
+void add_loads_on_clamps(const Problem& problem, Equilibrium& result) {
+  for (const Load& load : problem.loads) {
+    const std::optional<std::size_t> clamp = clamp_under(problem, load);
+    if (!clamp) continue;
+    const Eigen::Vector3d& position = problem.grips[*clamp].position;
+    result.grips[*clamp].force -= load.force;
+    result.grips[*clamp].torque -= load.torque;
+    result.energy.load -= load.force.dot(position - problem.grips.front().position);
+  }
+}
+
+Energies restore(const Problem& problem, const Energies& own_units) {
+  const double unit = bending_unit(problem) / problem.length;
+  return {.bending = own_units.bending * unit,
+          .twisting = own_units.twisting * unit,
+          .gravity = own_units.gravity * unit,
+          .load = own_units.load * unit,
+          .stretch = own_units.stretch * unit};
+}
+
+std::vector<double> kinks_of(const Problem& problem, const std::vector<ContactPart>& contacts) {
+  std::vector<double> at = {0, problem.length};
+  for (const Grip& grip : problem.grips) at.push_back(grip.at);
+  for (const Load& load : problem.loads) at.push_back(load.at);
+  for (const Section& part : problem.sections) at.insert(at.end(), {part.begin, part.end});
+  for (const LineLoad& load : problem.line_loads) at.insert(at.end(), {load.begin, load.end});
+  for (const ContactPart& part : contacts) at.insert(at.end(), {part.begin, part.end});
+  // Rounding may have moved them off the rod.
+  for (double& s : at) s = std::clamp(s, 0.0, problem.length);
+  std::sort(at.begin(), at.end());
+  at.erase(std::unique(at.begin(), at.end()), at.end());
+  return at;
+}
+
+void separate_line_loads(const Problem& problem, Equilibrium& result) {
+  if (problem.line_loads.empty() || !result.sample) return;
+  constexpr int panels = 16;  // per interval between two kinks
+  const LegendreTable& rule = legendre_table(6);
+  const std::vector<double> kinks = kinks_of(problem, result.contacts);
+  std::vector<double> s;
+  std::vector<double> weights;
+  for (std::size_t i = 0; i + 1 < kinks.size(); ++i) {
+    const double width = (kinks[i + 1] - kinks[i]) / panels;
+    for (int k = 0; k < panels && width > 0; ++k) {
+      for (Eigen::Index q = 0; q < rule.nodes.size(); ++q) {
+        s.push_back(std::min(kinks[i] + (k + rule.nodes[q]) * width, problem.length));
+        weights.push_back(width * rule.weights[q]);
+      }
+    }
+  }
+  const Samples shape = result.sample(s);
+  double energy = 0;
+  for (const LineLoad& load : problem.line_loads) {
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      if (s[i] < load.begin || s[i] > load.end) continue;
+      const Eigen::Vector3d force = load.at_begin + (s[i] - load.begin) * load.slope();
+      energy -= weights[i] * force.dot(shape.points.col(static_cast<Eigen::Index>(i)) -
+                                       problem.grips.front().position);
+    }
+  }
+  result.energy.load += energy;
+  result.energy.gravity -= energy;
 }
 
 }  // namespace dlo::energy_model

@@ -3,10 +3,14 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
+#include "dlo/energy_model/equilibrium.hpp"
 #include "dlo/energy_model/natural_frame.hpp"
+#include "dlo/energy_model/plane.hpp"
 #include "dlo/energy_model/problem.hpp"
 
 namespace dlo::energy_model {
@@ -64,5 +68,40 @@ void require_inextensible(const Problem& problem, std::string_view function);
 
 /// Returns the frame (columns d1, d2, t) of a clamp that has this d1 before its roll is applied.
 [[nodiscard]] Eigen::Matrix3d held_frame(const Grip& clamp, const Eigen::Vector3d& d1);
+
+struct OrderedGrip {
+  std::size_t index;  ///< index in Problem::grips
+  const Grip* grip;   ///< grip of the problem, which has to outlive this
+};
+
+/// Returns the grips by growing arc length.
+[[nodiscard]] std::vector<OrderedGrip> grips_by_arc_length(const Problem& problem);
+
+/// Returns the grips by growing arc length.
+/// @throws std::invalid_argument if two are at one arc length, or as far apart as the rod between
+/// them is long or farther, unless the rod stretches
+[[nodiscard]] std::vector<OrderedGrip> ordered_grips(const Problem& problem);
+
+/// Returns the index in Problem::grips of the clamp that alone carries a load, because they are
+/// within 1e-9 l of each other. Every other load is carried by exactly one span, so that each
+/// counts once.
+[[nodiscard]] std::optional<std::size_t> clamp_under(const Problem& problem, const Load& load);
+
+/// Adds the loads on clamps to the clamps' reactions, and their potential relative to the first
+/// grip to the energy, because no span carries them.
+void add_loads_on_clamps(const Problem& problem, Equilibrium& result);
+
+/// Returns the arc lengths at which a shape may have kinks: ends, grips, loads, ends of sections,
+/// line loads and contacts, growing [m].
+[[nodiscard]] std::vector<double> kinks_of(const Problem& problem,
+                                           const std::vector<ContactPart>& contacts);
+
+/// Converts energies from EI/l to [J].
+[[nodiscard]] Energies restore(const Problem& problem, const Energies& own_units);
+
+/// Moves the energy of line loads from `gravity` to `load`, because solvers treat line loads as
+/// weight. It is integrated by Gauss's quadrature between the kinks of the shape. No effect on a
+/// shape that cannot be sampled.
+void separate_line_loads(const Problem& problem, Equilibrium& result);
 
 }  // namespace dlo::energy_model

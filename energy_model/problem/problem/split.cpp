@@ -9,8 +9,6 @@
 #include "dlo/energy_model/couple_zero.hpp"
 #include "dlo/energy_model/plane.hpp"
 #include "dlo/energy_model/turns.hpp"
-#include "problem/material_directors.hpp"
-#include "problem/ordered_grips.hpp"
 #include "problem/rod_law.hpp"
 
 namespace dlo::energy_model {

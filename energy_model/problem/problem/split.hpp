@@ -7,6 +7,7 @@
 
 #include "dlo/energy_model/problem.hpp"
 #include "dlo/energy_model/turns.hpp"
+#include "problem/rod_law.hpp"
 #include "problem/span.hpp"
 
 namespace dlo::energy_model {
@@ -40,5 +41,13 @@ struct PlacedSpan {
 /// @throws std::invalid_argument if the problem is out of range, a load has no potential, the rod
 /// stretches (axial_stiffness), or grips are farther apart than the rod between them
 [[nodiscard]] std::vector<PlacedSpan> split(const Problem& problem);
+
+/// Places stiffnesses and natural strains of a rod with material directors in a span, about the
+/// axes of the span's frame at its start, in the span's units. Sets `ahead`, and whether the span
+/// is still planar.
+/// @param anchor  grip from which the span is measured
+/// @param placed  span whose other members are already in its frame
+void place_material_directors(const Problem& problem, const OrderedGrip& anchor,
+                              PlacedSpan& placed);
 
 }  // namespace dlo::energy_model

@@ -8,9 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "base/zero_modes_note.hpp"
-#include "problem/ordered_grips.hpp"
-#include "problem/reduction.hpp"
+#include "base/found_equilibria.hpp"
 #include "problem/rod_law.hpp"
 #include "search/placed_shape.hpp"
 

@@ -5,14 +5,14 @@
 #include <string>
 #include <utility>
 
+#include "base/found_equilibria.hpp"
 #include "base/legendre.hpp"
-#include "base/lowest_combinations.hpp"
 #include "base/require.hpp"
 #include "contact/penetration.hpp"
 #include "dlo/energy_model/balance.hpp"
 #include "dlo/energy_model/soft_line.hpp"
-#include "problem/redundant_obstacles.hpp"
 #include "problem/rod_law.hpp"
+#include "problem/span.hpp"
 #include "problem/split.hpp"
 #include "search/assemble.hpp"
 #include "search/known_shape.hpp"

@@ -25,6 +25,9 @@ struct PointObstacle {
   /// Sample points per segment, >= 1, each with its share of the stiffness. 1: only the points
   /// where segments meet (obstacle::samples_per_segment).
   int samples = 1;
+  /// Stiffness of each segment [N/m], n numbers >= 0, instead of `stiffness`; empty: equal. A point
+  /// where two segments meet has their mean.
+  Eigen::VectorXd stiffnesses = {};
 };
 
 /// Twist of a round rod between two clamped segments that hold its material frame. The first d1 is

@@ -3,11 +3,40 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "base/deadline.hpp"
 #include "kirchhoff/rod_mesh.hpp"
 #include "kirchhoff/rod_span.hpp"
 #include "shooting/span_equilibrium.hpp"
 
 namespace dlo::energy_model {
+
+/// Rotates the frames of a span's clamps simultaneously to the held ones (Problem), starting from
+/// its equilibrium with released frames.
+///
+/// This is natural continuation in the roll. If a shape has become unstable, and where the branch
+/// ends at a fold, the rod follows the gradient flow of its energy to a shape that is stable at
+/// that roll.
+/// @param span     a twisted() span
+/// @param without  equilibrium without frames after the first clamp
+/// @return not converged if a step failed; the message then states the roll that was reached
+[[nodiscard]] SpanEquilibrium twist_span(const RodSpan& span, const SpanEquilibrium& without,
+                                         double tolerance, const Deadline& deadline);
+
+/// Follows an equilibrium while loads without a potential grow from zero (loaded_by()), by natural
+/// continuation in their share. It does not pass a fold: the result is then not converged, and the
+/// message states the share of the loads that was reached.
+/// @param unloaded  converged equilibrium of loaded_by(span, 0)
+[[nodiscard]] SpanEquilibrium follow_loads(const RodSpan& span, const SpanEquilibrium& unloaded,
+                                           double tolerance, const Deadline& deadline);
+
+/// Continues an equilibrium of the inextensible span to the span that stretches, by natural
+/// continuation in the stretch. It does not leave unstable equilibria.
+/// @param rigid  equilibrium of stretching_by(span, 0)
+[[nodiscard]] SpanEquilibrium stretch_span(const RodSpan& span, const SpanEquilibrium& rigid,
+                                           double tolerance, const Deadline& deadline);
+
+/// Returns the span with a share of its stretch.
+[[nodiscard]] RodSpan stretching_by(RodSpan span, double share);
 
 /// Follows the gradient flow t_ = -grad E of a clamped span to a stable equilibrium, by backward
 /// Euler. A step of duration D from the tangents p is the adjacent equilibrium of

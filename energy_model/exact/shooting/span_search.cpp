@@ -1,4 +1,4 @@
-#include "shooting/span_shooting.hpp"
+#include "shooting/span_search.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,7 @@
 #include "base/require.hpp"
 #include "base/spin.hpp"
 #include "kirchhoff/relaxed_polygon.hpp"
-#include "shooting/gradient_flow.hpp"
-#include "shooting/span_twist.hpp"
+#include "shooting/continuation.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -99,9 +98,6 @@ class SpanSearch {
 
   void descend(RelaxedPolygon polygon) {
     RodMesh mesh = mesh_;
-    const auto longest_of = [&] {
-      return (mesh.s.tail(mesh.intervals()) - mesh.s.head(mesh.intervals())).maxCoeff();
-    };
     const auto refine = [&](double longest) {
       RodMesh finer = make_mesh(span_, longest);
       polygon = relax_on(span_, finer, mesh, polygon, deadline_);
@@ -111,11 +107,11 @@ class SpanSearch {
     const double force = polygon.force.colwise().norm().maxCoeff() / least_bending_stiffness(span_);
     const double resolved = std::max(1 / std::sqrt(std::max(force, 1.0)),
                                      span_.length / static_cast<double>(most_intervals));
-    if (longest_of() > 1.5 * resolved) refine(resolved);
+    if (longest_of(mesh) > 1.5 * resolved) refine(resolved);
     SpanEquilibrium equilibrium = shoot_from(mesh, polygon);
     for (int level = 0; level < finer_polygons && !equilibrium.converged; ++level) {
       if (deadline_.passed() || mesh.intervals() > most_intervals / 3) break;
-      refine(longest_of() / 3);
+      refine(longest_of(mesh) / 3);
       equilibrium = shoot_from(mesh, polygon);
     }
     if (!equilibrium.converged) {
@@ -229,46 +225,12 @@ SpanEquilibrium shoot_from_lines(const RodSpan& span, double tolerance, const De
                     {.tolerance = tolerance, .deadline = deadline});
 }
 
-/// Returns the span with a share of its stretch.
-RodSpan with_stretch(RodSpan span, double share) {
-  for (RodSpan::Part& part : span.parts) part.section.stretch *= share;
-  return span;
-}
-
-/// Continues an equilibrium of the inextensible span to the span that stretches, by continuation in
-/// the stretch.
-SpanEquilibrium continue_in_stretch(const RodSpan& span, SpanEquilibrium rigid, double tolerance,
-                                    const Deadline& deadline) {
-  constexpr double least_step = 1.0 / 256;
-  int shots = rigid.shots;
-  double reached = 0;
-  double step = 1;
-  while (rigid.converged && reached < 1) {
-    const RodSpan next = with_stretch(span, std::min(1.0, reached + step));
-    SpanEquilibrium solved = shoot_span(next, mesh_at(next, rigid.s), rigid.nodes, rigid.frames,
-                                        {.tolerance = tolerance, .deadline = deadline});
-    shots += solved.shots;
-    if (solved.converged) {
-      reached = std::min(1.0, reached + step);
-      rigid = std::move(solved);
-      continue;
-    }
-    step /= 2;
-    if (step < least_step || deadline.passed()) {
-      solved.shots = shots;
-      return solved;
-    }
-  }
-  rigid.shots = shots;
-  return rigid;
-}
-
 SpanSearchResult search_released(const RodSpan& span, double tolerance, const Deadline& deadline) {
   if (span.parts.front().section.stretch == 0) return SpanSearch(span, tolerance, deadline).run();
   if (is_pulled_straight(span)) return {{shoot_from_lines(span, tolerance, deadline)}, true};
-  SpanSearchResult search = SpanSearch(with_stretch(span, 0), tolerance, deadline).run();
+  SpanSearchResult search = SpanSearch(stretching_by(span, 0), tolerance, deadline).run();
   for (SpanEquilibrium& found : search.found) {
-    found = continue_in_stretch(span, std::move(found), tolerance, deadline);
+    found = stretch_span(span, found, tolerance, deadline);
   }
   // A rod that would have to bend may be compressed instead.
   if (span.holds.size() > 1) {
