@@ -111,15 +111,15 @@ TEST(EffectiveModulus, IsFoundBetweenClampsInFewSolves) {
 
 TEST(EffectiveModulus, TheTimeLimitIsForTheWholeSearch) {
   const Scene scene = heavy_scene(2, 15);
-  const EffectiveModulus fit =
-      fit_effective_modulus(scene, distance_from(straight(scene)),
-                            solve_reference(scene, Model::energy), {.time_limit = 1e-9});
+  const energy_model::Equilibrium state = solve_reference(scene, Model::energy);
+  const auto distance = distance_from(straight(scene));
+  const EffectiveModulus fit = fit_effective_modulus(scene, distance, state, {.time_limit = 1e-9});
   EXPECT_EQ(fit.optimum, Optimum::none);
   EXPECT_TRUE(std::isnan(fit.ratio));
   EXPECT_EQ(fit.why_none, "time limit of 1e-09 s reached");
   EXPECT_EQ(fit.solves, 0);
   const energy_model::Interruption interruption([] { return true; });
-  EXPECT_EQ(fit_effective_modulus(scene, distance_from(shape), state, {}).why_none,
+  EXPECT_EQ(fit_effective_modulus(scene, distance, state, {}).why_none,
             "interrupted, or out of the time of the whole command");
 }
 
