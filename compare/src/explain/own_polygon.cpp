@@ -332,14 +332,23 @@ class Chain {
       problem_.node_forces.col(right - 1 + before_) += (1 - share) * load.force;
       problem_.node_forces.col(right + before_) += share * load.force;
     }
-    const double h = inner_.maxCoeff();  // the whole segment's, as in set_obstacles()
+    const Eigen::VectorXd h = whole_lengths();
     for (const std::size_t i : obstacles_in_reach(scene_)) {
       const Obstacle& obstacle = scene_.obstacles[i];
-      const bool yields = std::isfinite(obstacle.stiffness);
-      problem_.obstacles.push_back(
-          {obstacle.body, yields ? obstacle.stiffness * h : problem_.stretch_stiffness / h,
-           obstacle::samples_per_segment(obstacle.body, h)});
+      problem_.obstacles.push_back({obstacle.body, problem_.stretch_stiffness / h.maxCoeff(),
+                                    obstacle::samples_per_segment(obstacle.body, h.maxCoeff())});
+      if (!std::isfinite(obstacle.stiffness)) continue;
+      problem_.obstacles.back().stiffnesses = obstacle.stiffness * h;
     }
+  }
+
+  /// Returns the lengths of the segments. The file has half of the whole segment that a clamp at an
+  /// end of the rod holds in its middle.
+  [[nodiscard]] Eigen::VectorXd whole_lengths() const {
+    Eigen::VectorXd h = problem_.rest_lengths;
+    if (clamp_ == ChainClamp::middle && is_clamped_at_start_) h[0] *= 2;
+    if (clamp_ == ChainClamp::middle && is_clamped_at_end_) h[h.size() - 1] *= 2;
+    return h;
   }
 
   /// Adds the twist between clamps that hold frames, with the turns of the points.
@@ -347,12 +356,7 @@ class Chain {
     if (!scene_.holds_twist()) return;
     const energy_model::Problem rod = scene_problem(scene_);
     const std::vector<std::size_t> framed = framed_grippers(scene_);
-    Eigen::VectorXd h = problem_.rest_lengths;
-    if (clamp_ == ChainClamp::middle) {
-      // The file has half of the whole segment that a clamp at the end of the rod holds.
-      if (is_clamped_at_start_) h[0] *= 2;
-      if (is_clamped_at_end_) h[h.size() - 1] *= 2;
-    }
+    const Eigen::VectorXd h = whole_lengths();
     for (std::size_t k = 1; k < framed.size(); ++k) {
       const force_model::TwistedSpan span =
           held_span(rod, framed[k - 1], framed[k], held_segment(framed[k - 1]),

@@ -17,6 +17,7 @@ namespace {
 using Eigen::Quaterniond;
 /// Free spins of a frame, one per column.
 using SpinBasis = Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
+using SpinBlock = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 3, 3>;
 
 constexpr int most_steps = 200;  // maximum number of Newton steps; about 30 are usual
 constexpr int most_shifts = 60;  // maximum number of increases of the shift, by a factor of 4 each
@@ -137,8 +138,13 @@ class DiscreteRod {
     Eigen::MatrixXd band = Eigen::MatrixXd::Zero(std::min(2 * widest_, unknowns_), unknowns_);
     Eigen::MatrixXd columns =
         Eigen::MatrixXd::Zero(unknowns_, 3 * static_cast<Eigen::Index>(gaps.size()));
+    std::vector<SpinBasis> bases;
+    for (Eigen::Index k = 0; k < std::ssize(q_); ++k) bases.push_back(basis(k));
+    const auto basis_of = [&](Eigen::Index k) -> const SpinBasis& {
+      return bases[static_cast<std::size_t>(k)];
+    };
     const auto add = [&](Eigen::Index row, Eigen::Index column, const Eigen::Matrix3d& block) {
-      const Eigen::MatrixXd own = basis(row).transpose() * block * basis(column);
+      const SpinBlock own = basis_of(row).transpose() * block * basis_of(column);
       for (Eigen::Index i = 0; i < own.rows(); ++i) {
         for (Eigen::Index j = 0; j < own.cols(); ++j) {
           const Eigen::Index below = first_of(row) + i - first_of(column) - j;
@@ -160,7 +166,7 @@ class DiscreteRod {
     }
     for (std::size_t k = 0; k < gaps.size(); ++k) {
       for (Eigen::Index i = gaps[k].first; i < gaps[k].end; ++i) {
-        const SpinBasis own = basis(i);
+        const SpinBasis& own = basis_of(i);
         columns.block(first_of(i), 3 * static_cast<Eigen::Index>(k), own.cols(), 3) =
             std::sqrt(gaps[k].penalty) * mesh_.width(i) * own.transpose() *
             cross_matrix(tangent(i));
@@ -170,13 +176,13 @@ class DiscreteRod {
     if (!factor.compute(band, columns, 0)) return std::nullopt;
     Eigen::VectorXd right(unknowns_);
     for (Eigen::Index f = 0; f < std::ssize(q_); ++f) {
-      const SpinBasis own = basis(f);
+      const SpinBasis& own = basis_of(f);
       right.segment(first_of(f), own.cols()) = -own.transpose() * g.col(f);
     }
     const Eigen::VectorXd x = factor.solve(right);
     RodStep step{Eigen::Matrix3Xd::Zero(3, std::ssize(q_)), 0, -right.dot(x)};
     for (Eigen::Index f = 0; f < std::ssize(q_); ++f) {
-      const SpinBasis own = basis(f);
+      const SpinBasis& own = basis_of(f);
       step.spins.col(f) = own * x.segment(first_of(f), own.cols());
     }
     step.largest = step.spins.leftCols(mesh_.intervals()).colwise().norm().maxCoeff();

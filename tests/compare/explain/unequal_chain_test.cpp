@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -37,14 +38,21 @@ Eigen::VectorXd unequal_segments() {
   return segments / segments.sum();
 }
 
-/// @param factor  of springs that are EI over half of both neighbours
-template <typename Moment>
-Shape unequal_chain(const Moment& moment, double factor) {
-  const Eigen::VectorXd h = unequal_segments();
+Eigen::Matrix2Xd weights_of(const Eigen::VectorXd& h) {
   const Eigen::Index n = h.size();
   Eigen::Matrix2Xd forces = Eigen::Matrix2Xd::Zero(2, n + 1);
   forces.row(1).head(n) -= chain_weight * h.transpose() / 2;
   forces.row(1).tail(n) -= chain_weight * h.transpose() / 2;
+  return forces;
+}
+
+/// @param factor  of springs that are EI over half of both neighbours
+template <typename Moment>
+Shape unequal_chain(const Moment& moment, double factor,
+                    std::optional<Eigen::Matrix2Xd> acting = std::nullopt) {
+  const Eigen::VectorXd h = unequal_segments();
+  const Eigen::Index n = h.size();
+  const Eigen::Matrix2Xd forces = acting.value_or(weights_of(h));
   const Eigen::VectorXd springs = 2 * factor * (h.head(n - 1) + h.tail(n - 1)).cwiseInverse();
   Shape shape;
   shape.points = test::chain_at_rest(h, springs, forces, moment);
@@ -83,6 +91,32 @@ TEST(UnequalChain, WrongSpringsAreNamedWithTheirFactor) {
     EXPECT_NEAR(found.stiffness, factor, 1e-4 * factor);
     EXPECT_LT(found.rms_m, 1e-6);
   }
+}
+
+// A floor pushes each point in proportion to its depth and to the mean length of its segments.
+TEST(UnequalChain, AYieldingFloorPushesEachSegmentInProportionToItsLength) {
+  constexpr double floor = 30;  // force per depth and length [N/m^2]
+  Scene scene = unequal_scene();
+  scene.obstacles = {
+      {obstacle::Body::half_space(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitY()), floor}};
+  const Eigen::VectorXd h = unequal_segments();
+  const Eigen::Index n = h.size();
+  Eigen::RowVectorXd stiffness(n + 1);
+  stiffness << h[0], (h.head(n - 1) + h.tail(n - 1)).transpose() / 2, h[n - 1];
+  stiffness *= floor;
+  Eigen::Matrix2Xd forces = weights_of(h);
+  Shape shape;
+  double change = 1;
+  for (int i = 0; i < 400 && change > 1e-10; ++i) {
+    shape = unequal_chain(test::linear_moment, 1, forces);
+    Eigen::Matrix2Xd next = weights_of(h);
+    next.row(1) += stiffness.cwiseProduct((-shape.points.row(1)).cwiseMax(0));
+    change = (next - forces).norm();
+    forces += 0.2 * (next - forces);
+  }
+  ASSERT_LT(change, 1e-10);
+  ASSERT_LT(shape.points.row(1).minCoeff(), -0.1);
+  EXPECT_LT(welded(own_polygons(scene, shape, Springs::as_the_rod)).rms_m, 1e-6);
 }
 
 }  // namespace
