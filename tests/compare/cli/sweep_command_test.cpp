@@ -148,3 +148,5 @@ TEST_F(SweepCommand, CountsRowsWithoutResultAndSuggestsFields) {
   expect_error("sweep " + steel() + " --vary E=1,2", 2,
                {"did you mean rod.material.youngs_modulus?"});
 }
+
+}  // namespace
