@@ -49,11 +49,11 @@ void gauss_legendre(Eigen::VectorXd& nodes, Eigen::VectorXd& weights) {
 /// Largest number of polynomials that legendre() computes: the nodes of the largest table.
 constexpr std::size_t most_polynomials = 3 * max_terms / 2 + 8;
 
-/// Factors of the recurrence P_{k+1} = ahead x P_k - behind P_{k-1}, of p_k = scale P_k, and of int
-/// p_k = share (P_{k+1} - P_{k-1}) for each order k. Divisions and roots would take most of the
-/// time of the recurrence.
+/// Factors of the recurrence P_{k+1} = x P_k + part (x P_k - P_{k-1}), which is exact at x = -1 and
+/// 1, of p_k = scale P_k, and of int p_k = share (P_{k+1} - P_{k-1}) for each order k. Divisions
+/// and roots would take most of the time of the recurrence.
 struct RecurrenceFactors {
-  double ahead, behind, scale, share;
+  double part, scale, share;
 };
 
 std::array<RecurrenceFactors, most_polynomials> recurrence_factors() {
@@ -61,7 +61,7 @@ std::array<RecurrenceFactors, most_polynomials> recurrence_factors() {
   double k = 0;
   for (RecurrenceFactors& of : factors) {
     const double scale = std::sqrt(2 * k + 1);
-    of = {(2 * k + 1) / (k + 1), k / (k + 1), scale, 1 / (2 * scale)};
+    of = {k / (k + 1), scale, 1 / (2 * scale)};
     ++k;
   }
   return factors;
@@ -112,7 +112,7 @@ void legendre(double xi, Eigen::Ref<Eigen::VectorXd> values,
   double current = 1;
   for (Eigen::Index k = 0; k < values.size(); ++k) {
     const RecurrenceFactors& of = factors[static_cast<std::size_t>(k)];
-    const double next = of.ahead * x * current - of.behind * previous;
+    const double next = x * current + of.part * (x * current - previous);
     values[k] = of.scale * current;
     integrals[k] = k == 0 ? xi : of.share * (next - previous);
     previous = current;

@@ -153,8 +153,19 @@ class Resting {
   /// Whether stretch is soft in the first stages, for a start far from equilibrium.
   enum class Stages { yes, no };
 
-  [[nodiscard]] PenaltyPolygon from(const Eigen::Matrix3Xd& start, Stages stages,
+  /// Separates neighbouring points that coincide: a start may turn back within a segment.
+  void separate(Eigen::Matrix3Xd& points) const {
+    constexpr double least = 1e-9;  // divided by the length at rest
+    for (Eigen::Index i = 1; i < points.cols(); ++i) {
+      const double gap = least * problem_.rest_lengths[i - 1];
+      if ((points.col(i) - points.col(i - 1)).norm() >= gap) continue;
+      points.rightCols(points.cols() - i).row(0).array() += gap;
+    }
+  }
+
+  [[nodiscard]] PenaltyPolygon from(Eigen::Matrix3Xd start, Stages stages,
                                     const Deadline& deadline) {
+    separate(start);
     PolygonOptions options;
     options.tolerance = tolerance;
     const bool is_near = descent_ == Descent::near;
