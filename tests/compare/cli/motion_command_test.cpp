@@ -74,7 +74,7 @@ TEST_F(MotionCommand, CheckOfARodWithInertiaNeedsNoEquilibria) {
   write("swung.toml", swung(1e-4));
   const std::string few = path("markers.csv") + " --terms 3 --no-explanation";
   expect_error(check(few), 3, {"did not converge"});
-  expect_output(check(few + " --dynamic --damping 0.01"), 0, {"pass: RMS"});
+  EXPECT_EQ(json_of(check(few + " --dynamic --damping 0.01")).at("at_rest_rms_m"), nullptr);
 }
 
 TEST_F(MotionCommand, CheckTellsLagAndFrames) {

@@ -179,8 +179,10 @@ TEST(MaterialFit, SeveralShapesNarrowTheInterval) {
   b.grippers[0].direction = Eigen::Vector3d(1, 1, 0).normalized();
   std::mt19937 random(7);
   const auto measured = [&](const Scene& scene) {
-    MeasuredShape shape = noisy_shape(scene, uneven_arc_lengths(random, 9, 1), random);
-    shape.points = random_pose(random).applied(shape.points);
+    const std::vector<double> s = uneven_arc_lengths(random, 9, 1);
+    const auto pose = random_pose(random);
+    MeasuredShape shape = noisy_shape(scene, s, random);
+    shape.points = pose.applied(shape.points);
     return shape;
   };
   const MeasuredShape first = measured(a);
