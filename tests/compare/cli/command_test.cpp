@@ -1,6 +1,5 @@
 // The command as a user runs it: exit status, standard output, standard error, files.
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -38,49 +37,21 @@ TEST_F(Command, CompareWritesTheContractsJson) {
   EXPECT_EQ(document.at("cases")[1].at("law"), "hooke");
 }
 
-/// Returns the numbers of the output of `dlo paper --format csv` by "section,scene,item,quantity".
-std::map<std::string, double> paper_values(const std::string& csv) {
-  std::map<std::string, double> values;
-  std::vector<dlo::test::CsvRow> rows = dlo::test::csv_rows(csv);
-  for (dlo::test::CsvRow& row : std::span(rows).subspan(1)) {
-    const double value = std::stod(row.back());
-    row.pop_back();
-    EXPECT_TRUE(values.emplace(fmt::format("{}", fmt::join(row, ",")), value).second);
-  }
-  return values;
-}
-
 TEST_F(Command, PaperHasTheSameNumbersInJsonAndInCsv) {
   succeeds("paper --format json -o " + path("paper.json"));
   const json document = json::parse(read(path("paper.json")));
   EXPECT_EQ(document.at("schema"), "dlo/paper/1");
-  const std::map<std::string, double> csv = paper_values(said("paper --format csv"));
-  const auto expect_value = [&](const std::string& name, const json& value) {
-    EXPECT_NEAR(csv.at(name), value, 1e-10 * std::abs(value.get<double>())) << name;
-  };
-  ASSERT_EQ(document.at("cases").size(), 6U);
-  for (const json& one : document.at("cases")) {
-    const std::string weight = one.at("point_weight") == "printed" ? " printed weight," : ",";
-    const std::string of = weight + "\"" + one.at("scene").get<std::string>() + "\",";
-    expect_value("rest" + of + ",effective_modulus_ratio", one.at("effective_modulus_ratio"));
-    for (const json& at : one.at("modulus_against_time")) {
-      for (const std::string key : {"effective_modulus_ratio", "distance_to_rest_over_length"}) {
-        expect_value(fmt::format("creep{}t={},{}", of, at.at("time_s").get<double>(), key),
-                     at.at(key));
-      }
-    }
+  const std::vector<dlo::test::CsvRow> rows = dlo::test::csv_rows(said("paper --format csv"));
+  ASSERT_GT(rows.size(), 1000U);
+  for (const dlo::test::CsvRow& row : std::span(rows).subspan(1)) {
+    const json& value = document.at(json::json_pointer("/" + row.at(0)));
+    if (!value.is_number() || row[0].find("/cost/") != std::string::npos) continue;
+    EXPECT_NEAR(std::stod(row.at(1)), value, 1e-10 * std::abs(value.get<double>())) << row[0];
   }
+  ASSERT_EQ(document.at("cases").size(), 6U);
   const json& moving = document.at("moving");
   // The eleven of Tables 2 to 4, and their five movements with three more steppers.
   ASSERT_EQ(moving.at("rows").size(), 26U);
-  for (const json& row : moving.at("rows")) {
-    const std::string name = fmt::format(
-        "moving,,\"{}, {} rod, {}; varied: none\",", row.at("movement").get<std::string>(),
-        row.at("rod").get<std::string>(), row.at("variant").get<std::string>());
-    expect_value(name + "steps", row.at("steps"));
-    expect_value(name + "average_force_N", row.at("average_force_N"));
-    expect_value(name + "shape_rms_over_length", row.at("error").at("shape_rms_over_length"));
-  }
   // The average forces of Tables 2 and 4 are met within 10 % RMS with c_F and l_s in centimetres.
   const auto scanned = [&](int row, const char* key) { return moving.at("scan")[row].at(key); };
   EXPECT_EQ(scanned(0, "choices").at("length_unit_m"), 0.01);
