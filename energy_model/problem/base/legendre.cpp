@@ -46,27 +46,6 @@ void gauss_legendre(Eigen::VectorXd& nodes, Eigen::VectorXd& weights) {
   }
 }
 
-/// Largest number of polynomials that legendre() computes: the nodes of the largest table.
-constexpr std::size_t most_polynomials = 3 * max_terms / 2 + 8;
-
-/// Factors of the recurrence P_{k+1} = x P_k + part (x P_k - P_{k-1}), which is exact at x = -1 and
-/// 1, of p_k = scale P_k, and of int p_k = share (P_{k+1} - P_{k-1}) for each order k. Divisions
-/// and roots would take most of the time of the recurrence.
-struct RecurrenceFactors {
-  double part, scale, share;
-};
-
-std::array<RecurrenceFactors, most_polynomials> recurrence_factors() {
-  std::array<RecurrenceFactors, most_polynomials> factors{};
-  double k = 0;
-  for (RecurrenceFactors& of : factors) {
-    const double scale = std::sqrt(2 * k + 1);
-    of = {k / (k + 1), scale, 1 / (2 * scale)};
-    ++k;
-  }
-  return factors;
-}
-
 LegendreTable make_table(int terms, Eigen::Index Q) {
   LegendreTable table;
   table.nodes.resize(Q);
@@ -106,15 +85,16 @@ const LegendreTable& table_of(int terms, int nodes) {
 
 void legendre(double xi, Eigen::Ref<Eigen::VectorXd> values,
               Eigen::Ref<Eigen::VectorXd> integrals) {
-  static const std::array<RecurrenceFactors, most_polynomials> factors = recurrence_factors();
+  // P_{k+1} = ((2k+1) x P_k - k P_{k-1}) / (k+1); int P_k = (P_{k+1} - P_{k-1}) / (2k+1)
   const double x = 2 * xi - 1;
   double previous = 0;
   double current = 1;
   for (Eigen::Index k = 0; k < values.size(); ++k) {
-    const RecurrenceFactors& of = factors[static_cast<std::size_t>(k)];
-    const double next = x * current + of.part * (x * current - previous);
-    values[k] = of.scale * current;
-    integrals[k] = k == 0 ? xi : of.share * (next - previous);
+    const auto order = static_cast<double>(k);
+    const double next = ((2 * order + 1) * x * current - order * previous) / (order + 1);
+    const double scale = std::sqrt(2 * order + 1);
+    values[k] = scale * current;
+    integrals[k] = k == 0 ? xi : (next - previous) / (2 * scale);
     previous = current;
     current = next;
   }
