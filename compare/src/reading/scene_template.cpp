@@ -221,7 +221,7 @@ struct SceneTemplate::Parsed {
   std::optional<double> bending_stiffness;
 };
 
-SceneTemplate::SceneTemplate(const std::string& text, std::string name,
+SceneTemplate::SceneTemplate(const std::string& text, const std::string& name,
                              std::vector<Material> known_materials, MissingElements missing,
                              const std::string& folder) {
   SceneSource source = parse_scene_source(text, name);

@@ -65,13 +65,14 @@ Found solve_spans(const Problem& problem, const ExactOptions& options, const Dea
     result.out_of_time = result.out_of_time || !search.complete;
     result.not_searched = search.not_searched;
     found.push_back(std::move(search.found));
-    std::vector<SpanCandidate>& own = candidates.emplace_back();
+    std::vector<SpanCandidate> own;
     for (const SpanEquilibrium& equilibrium : found.back()) {
       own.push_back({equilibrium.stable(), equilibrium.energy.total()});
       // They are sorted up to rounding, and energies that are equal up to rounding keep this order.
       if (own.size() < 2 || own.rbegin()[1].stable != own.back().stable) continue;
       own.back().energy = std::max(own.back().energy, own.rbegin()[1].energy);
     }
+    candidates.push_back(std::move(own));
   }
   const Combinations combinations = lowest_combinations(candidates, most_results);
   for (const std::vector<std::size_t>& choice : combinations.choices) {

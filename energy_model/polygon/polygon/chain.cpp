@@ -153,7 +153,7 @@ Eigen::MatrixXd second_derivative(const ChainProblem& problem, const Eigen::Matr
     const double alpha = angles[i] - angles[i - 1];
     const AngleJoint joint = joint_at(problem, i, alpha);
     double coupled = joint.stiffness;
-    double own = joint.stiffness;
+    double own = coupled;
     if (bends == Bends::out_of_plane) {
       const double sine = std::sin(alpha);
       if (sine != 0) coupled = joint.moment / sine;

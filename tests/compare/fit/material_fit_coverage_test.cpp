@@ -64,8 +64,8 @@ class MaterialFitCoverage : public testing::TestWithParam<std::tuple<double, Pos
 // may be wider: how far the points slide is bounded by the rod's ends, and several optima count.
 // The scene's own modulus is not the truth.
 TEST_P(MaterialFitCoverage, IntervalHoldsTheTruthInNineOfTenDraws) {
-  const auto& [gamma, pose] = GetParam();
-  const bool known = pose == PoseFreedom::known;
+  const auto& [gamma, freedom] = GetParam();
+  const bool known = freedom == PoseFreedom::known;
   const Scene truth = heavy_scene(gamma, 15);
 
   Scene scene = truth;
@@ -81,7 +81,7 @@ TEST_P(MaterialFitCoverage, IntervalHoldsTheTruthInNineOfTenDraws) {
         return test::reversed(
             {"seen", with_noise(motion.applied(exact.sample(s).points), 1e-3, random), {}});
       },
-      {.pose = pose, .smallest_ratio = 1.0 / 30, .largest_ratio = 30});
+      {.pose = freedom, .smallest_ratio = 1.0 / 30, .largest_ratio = 30});
   EXPECT_LT(tally.farthest, std::log(known && gamma >= 1 ? 1.05 : 4));
   if (test::sanitized) return;
   EXPECT_GE(tally.held, 90);
