@@ -1,11 +1,10 @@
 #include "base/legendre.hpp"
 
 #include <Eigen/QR>
+#include <array>
 #include <cmath>
-#include <map>
 #include <mutex>
 #include <numbers>
-#include <utility>
 
 #include "base/require.hpp"
 
@@ -70,16 +69,20 @@ LegendreTable make_table(int terms, Eigen::Index Q) {
   return table;
 }
 
-/// Returns the table for `terms` terms and `nodes` nodes, which is computed once. Thread-safe.
-const LegendreTable& table_of(int terms, int nodes) {
-  require(terms >= 1 && terms <= max_terms, "LegendreTable", "terms", terms, "1 to 128");
-  static std::mutex mutex;
-  static std::map<std::pair<int, int>, LegendreTable> tables;
-  const std::lock_guard<std::mutex> lock(mutex);
-  const auto [table, is_new] = tables.try_emplace({terms, nodes});
-  if (is_new) table->second = make_table(terms, nodes);
-  return table->second;
-}
+/// Tables for each number of terms, computed at the first request.
+class Tables {
+ public:
+  const LegendreTable& of(int terms, int nodes) {
+    require(terms >= 1 && terms <= max_terms, "LegendreTable", "terms", terms, "1 to 128");
+    const auto index = static_cast<std::size_t>(terms);
+    std::call_once(made_[index], [&] { tables_[index] = make_table(terms, nodes); });
+    return tables_[index];
+  }
+
+ private:
+  std::array<LegendreTable, max_terms + 1> tables_;
+  std::array<std::once_flag, max_terms + 1> made_;
+};
 
 }  // namespace
 
@@ -119,9 +122,15 @@ void legendre_slopes(double xi, Eigen::Ref<Eigen::VectorXd> slopes) {
   }
 }
 
-const LegendreTable& legendre_table(int terms) { return table_of(terms, terms + 6); }
+const LegendreTable& legendre_table(int terms) {
+  static Tables tables;
+  return tables.of(terms, terms + 6);
+}
 
-const LegendreTable& director_table(int terms) { return table_of(terms, 3 * terms / 2 + 8); }
+const LegendreTable& director_table(int terms) {
+  static Tables tables;
+  return tables.of(terms, 3 * terms / 2 + 8);
+}
 
 FittedAngle fit_angle(const LegendreTable& table, const std::vector<double>& turns,
                       const Eigen::VectorXd& angles, std::optional<double> start) {
