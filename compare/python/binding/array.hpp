@@ -4,12 +4,35 @@
 #include <pybind11/pybind11.h>
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace dlo::python {
 
 namespace py = pybind11;
+
+/// Name of a type, as a template argument.
+template <std::size_t Size>
+struct TypeName {
+  // NOLINTNEXTLINE(google-explicit-constructor): a template argument is converted implicitly
+  consteval TypeName(const char (&name)[Size]) { std::copy_n(name, Size, text); }
+  char text[Size] = {};
+};
+
+/// Python object whose type the stub names more precisely than pybind11 does.
+template <typename Object, TypeName name>
+struct Typed : Object {
+  using Object::Object;
+  [[nodiscard]] static bool check_(py::handle handle) { return py::isinstance<Object>(handle); }
+};
+
+/// Anything that points_from(), values_from() or vector_from() converts.
+using ArrayLike = Typed<py::object, "ArrayLike">;
+using OptionalArrayLike = Typed<py::object, "Optional[ArrayLike]">;
+/// Array that output_array() accepts.
+using OutputArray = Typed<py::object, "Optional[numpy.ndarray]">;
 
 /// Returns a read-only view of M rows of 3 numbers, which keeps `owner` alive.
 /// @param stride  distance of rows, in numbers
@@ -43,3 +66,8 @@ namespace py = pybind11;
                                                const std::vector<py::ssize_t>& shape);
 
 }  // namespace dlo::python
+
+template <typename Object, dlo::python::TypeName type_name>
+struct pybind11::detail::handle_type_name<dlo::python::Typed<Object, type_name>> {
+  static constexpr auto name = const_name(type_name.text);
+};

@@ -47,8 +47,8 @@ class Batch : public MadeByItsClass {
     });
   }
 
-  void move_gripper(std::size_t rod, std::size_t gripper, const py::object& position,
-                    const py::object& direction) {
+  void move_gripper(std::size_t rod, std::size_t gripper, const ArrayLike& position,
+                    const OptionalArrayLike& direction) {
     require_rod(rod);
     const Eigen::Vector3d to = vector_from(position, "position");
     const std::optional<Eigen::Vector3d> along =
@@ -58,7 +58,7 @@ class Batch : public MadeByItsClass {
     batch_.move_grip(rod, gripper, moved_targets(batch_.rod(rod), gripper, to, along), to);
   }
 
-  py::array_t<double> points(const py::object& out) {
+  py::array_t<double> points(const OutputArray& out) {
     const auto rods = static_cast<py::ssize_t>(size());
     py::array_t<double> array = output_array(out, {rods, batch_.rod(0).points(), 3});
     double* to = array.mutable_data();

@@ -209,7 +209,8 @@ void bind_equilibria(py::module_& module) {
           py::arg("index"))
       .def("__iter__",
            [](const py::object& self) {
-             return py::reinterpret_steal<py::iterator>(PySeqIter_New(self.ptr()));
+             return py::reinterpret_steal<Typed<py::iterator, "Iterator[Solution]">>(
+                 PySeqIter_New(self.ptr()));
            })
       .def_property_readonly(
           "not_looked", [](const SolvedStates& solved) { return solved.all.omitted; },

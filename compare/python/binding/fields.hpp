@@ -17,9 +17,11 @@ namespace dlo::python {
 
 namespace py = pybind11;
 
+using NumberDict = Typed<py::dict, "dict[str, float]">;
+
 /// Returns numbers as a dict.
-[[nodiscard]] inline py::dict dict_of(const compare::Numbers& numbers) {
-  py::dict dict;
+[[nodiscard]] inline NumberDict dict_of(const compare::Numbers& numbers) {
+  NumberDict dict;
   for (const auto& [name, value] : numbers) dict[py::str(name)] = value;
   return dict;
 }

@@ -57,7 +57,7 @@ class ForceModel : public MadeByItsClass {
     }
   }
 
-  py::tuple rest(double tolerance, long max_steps, double time_limit) {
+  std::pair<long, double> rest(double tolerance, long max_steps, double time_limit) {
     const force_model::RelaxResult result = run_long([&](Signals& /*signals*/) {
       const std::lock_guard lock(mutex_);
       return simulation_.relax({.tolerance = tolerance,
@@ -70,10 +70,11 @@ class ForceModel : public MadeByItsClass {
                                     scene_->scene.file, result.message, result.steps),
                         py::none());
     }
-    return py::make_tuple(result.steps, result.remaining_error);
+    return {result.steps, result.remaining_error};
   }
 
-  void move_gripper(std::size_t gripper, const py::object& position, const py::object& direction) {
+  void move_gripper(std::size_t gripper, const ArrayLike& position,
+                    const OptionalArrayLike& direction) {
     const Eigen::Vector3d to = vector_from(position, "position");
     const std::optional<Eigen::Vector3d> along =
         direction.is_none() ? std::nullopt : std::optional(vector_from(direction, "direction"));
@@ -81,14 +82,14 @@ class ForceModel : public MadeByItsClass {
     simulation_.move_grip(gripper, moved_targets(simulation_.rod(), gripper, to, along), to);
   }
 
-  void move_wall(std::size_t wall, const py::object& point, const py::object& normal) {
+  void move_wall(std::size_t wall, const ArrayLike& point, const ArrayLike& normal) {
     const MovedWall moved =
         moved_wall(*scene_, rod_, wall, vector_from(point, "point"), vector_from(normal, "normal"));
     const Lock lock(mutex_);
     simulation_.move_wall(moved.index, moved.wall);
   }
 
-  py::array_t<double> points(const py::object& out) {
+  py::array_t<double> points(const OutputArray& out) {
     py::array_t<double> array = output_array(out, {size(), 3});
     const Lock lock(mutex_);
     simulation_.copy_points(positions_);
@@ -96,7 +97,7 @@ class ForceModel : public MadeByItsClass {
     return array;
   }
 
-  py::array_t<double> reactions(const py::object& out) {
+  py::array_t<double> reactions(const OutputArray& out) {
     py::array_t<double> array = output_array(out, {static_cast<py::ssize_t>(reactions_.size()), 6});
     const Lock lock(mutex_);
     simulation_.copy_points(positions_);
@@ -165,7 +166,7 @@ void bind_force_model(py::module_& module) {
   py::class_<ForceModel> bound(module, "ForceModel");
   refuse_pickle(bound, "pickled or copied", "a new one of its scene, with points=loop.points()");
   bound
-      .def(py::init([](SharedScene scene, const py::object& points,
+      .def(py::init([](SharedScene scene, const OptionalArrayLike& points,
                        std::optional<double> grip_stiffness) {
              // NOLINTNEXTLINE(modernize-make-unique): its own operator new is for Python's alone
              return std::unique_ptr<ForceModel>(

@@ -63,7 +63,7 @@ constexpr const char* modulus_words =
     "E*/E at which the energy model comes nearest; NaN without one.";
 
 template <typename Compared>
-py::dict deviations(const Compared& compared) {
+NumberDict deviations(const Compared& compared) {
   return dict_of(compare::numbers_of(compare::deviation_fields(), compared.deviation));
 }
 

@@ -44,8 +44,6 @@ void bind_errors(py::module_& /*module*/) {
 PYBIND11_MODULE(_dlo, module) {
   module.doc() = "What dlo computes, in C++; import dlo instead.";
   module.attr("__version__") = DLO_VERSION;
-  pybind11::options options;
-  options.disable_function_signatures();
   dlo::python::stop_calls_at_exit(module);
   dlo::python::bind_errors(module);
   dlo::python::bind_scene(module);

@@ -1,6 +1,7 @@
 #include <memory>
 #include <optional>
 
+#include "array.hpp"
 #include "module.hpp"
 #include "result.hpp"
 
@@ -57,8 +58,7 @@ void bind_result(py::module_& module) {
       .def("__deepcopy__", [](const py::object& self, const py::dict& /*memo*/) { return self; })
       .def("to_json", &Result::json, "The command's document, as text.")
       .def_property_readonly(
-          "json",
-          [](const py::object& self) {
+          "json", [](const py::object& self) -> Typed<py::dict, "dict[str, Any]"> {
             return py::module_::import("json").attr("loads")(self.attr("to_json")());
           },
           "The command's document, as a dict.")

@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <exception>
-#include <iterator>
 #include <span>
 #include <string>
 #include <variant>
@@ -15,18 +14,13 @@ using dlo::compare::Field;
 using dlo::compare::Json;
 using dlo::compare::SolvedShape;
 
-/// Names of types, in the order of Field::Get.
-constexpr const char* python_types[] = {
-    "float", "int", "bool", "str", "list[str]", "list[float]", "dict[str, float]", ""};
-static_assert(std::size(python_types) == std::variant_size_v<Field<SolvedShape>::Get>);
-
 void add(Json& list, std::span<const Field<SolvedShape>> fields, bool everywhere) {
   for (const Field<SolvedShape>& field : fields) {
     const auto in = [&](unsigned place, const std::string& name) {
       return (field.places & place) != 0 ? name : "";
     };
     list.push_back({{"key", field.key()},
-                    {"type", python_types[field.get.index()]},
+                    {"list", std::holds_alternative<Json (*)(const SolvedShape&)>(field.get)},
                     {"words", field.python_words()},
                     {"json", in(dlo::compare::in_json, field.json_path())},
                     {"csv", in(dlo::compare::in_csv, field.key())},
