@@ -10,7 +10,7 @@ import numpy
 from numpy.typing import ArrayLike, NDArray
 
 from . import _dlo
-from ._arguments import Strict
+from ._arguments import Attribute, Strict, Value
 from ._errors import InputError
 
 __all__ = [
@@ -53,9 +53,8 @@ def copied(key: str, value: Any) -> Any:
     except RecursionError:
         raise InputError(f"scene: {key}: nested too deep (allowed: 32 levels)", key) from None
     except (TypeError, copy.Error):
-        raise InputError(
-            f"scene: {key}: a {type(value).__name__} (allowed: a number, text, a list, a table)", key
-        ) from None
+        allowed = "a number, text, a list, a table"
+        raise InputError(f"scene: {key}: a {type(value).__name__} (allowed: {allowed})", key) from None
 
 
 def number_of(value: Any, dimension: str) -> Any:
@@ -69,7 +68,7 @@ def number_of(value: Any, dimension: str) -> Any:
     return None if value is None else float(value)
 
 
-def _direction(value: Any) -> Any:
+def _unit(value: Any) -> Any:
     if value is None:
         return None
     if isinstance(value, (list, tuple, numpy.ndarray)):
@@ -89,20 +88,32 @@ def as_it_is(value: Any) -> Any:
     return tuple(map(as_it_is, value)) if isinstance(value, (list, tuple)) else value
 
 
-def _field(key: str, read: Callable[[Any], Any], doc: str) -> property:
-    """Returns a property for a key of an element: read in SI units, set as Part._set does."""
+class Field(Attribute[Value]):
+    """An attribute for a key of a scene or a part: read(owner, key) returns its value, owner._put_one(key, value) sets
+    it unless it is derived. key: the key if it is not the attribute's name."""
 
-    def get(self: "Part") -> Any:
-        return read(self._table.get(key))
+    def __init__(self, read: Callable[[Any, str], Any], doc: str, key: str = "", derived: bool = False) -> None:
+        self.key: str = key
+        put = None if derived else lambda owner, value: owner._put_one(self.key, value)
+        super().__init__(lambda owner: read(owner, self.key), put, doc=doc)
 
-    def put(self: "Part", value: Any) -> None:
-        self._set(key, value)
+    def __set_name__(self, owner: type, name: str) -> None:
+        super().__set_name__(owner, name)  # type: ignore[misc]
+        self.key = self.key or name
 
-    return property(get, put, doc=doc)
+
+def quantity(dimension: str, doc: str, key: str = "") -> Any:
+    """Returns a field whose value is the given one in SI units; None: it is not given."""
+    return Field(lambda owner, key: number_of(owner._table.get(key), dimension), doc, key)
 
 
-def _of(dimension: str) -> Callable[[Any], Any]:
-    return lambda value: number_of(value, dimension)
+def given(doc: str, default: Any = None) -> Any:
+    """Returns a field whose value is a copy of the given one, or the default."""
+    return Field(lambda owner, key: as_it_is(owner._table.get(key, default)), doc)
+
+
+def _direction(doc: str) -> Any:
+    return Field(lambda owner, key: _unit(owner._table.get(key)), doc)
 
 
 class Part(Strict):
@@ -119,21 +130,19 @@ class Part(Strict):
         self._owner: Optional[Scene] = None
         self._table: dict[str, Any] = {}
         known = _dlo.scene_keys[self._name]
-        for key, value in table.items():
+        for name, value in table.items():
+            key = name if name in known else {"start": "from", "end": "to"}.get(name, name)
             if key not in known:
                 near = _dlo.did_you_mean(key, known)
                 name = f"{self._name}.{key}"
-                raise InputError(
-                    f"scene: {name}: unknown key{near} (allowed: {', '.join(known)})", name
-                )
+                raise InputError(f"scene: {name}: unknown key{near} (allowed: {', '.join(known)})", name)
             if value is not None:
                 self._table[key] = copied(key, value)
 
-    def _set(self, key: str, value: Any) -> None:
+    def _put_one(self, key: str, value: Any) -> None:
         before = dict(self._table)
-        if value is None:
-            self._table.pop(key, None)
-        else:
+        self._table.pop(key, None)
+        if value is not None:
             self._table[key] = copied(key, value)
         if self._owner is None:
             return
@@ -158,142 +167,125 @@ class Gripper(Part):
     """A clamp or a pin that holds a point of the rod; clamp() and pin() make one."""
 
     _name = "gripper"
-    at = _field("at", _of("length"), "Arc length that is held [m].")
-    position = _field("position", _of("length"), "Position of that point [m], shape (3,).")
-    hold = _field("hold", lambda value: value or "clamp", '"clamp" or "pin".')
-    direction = _field(
-        "direction", _direction, "Direction of a clamp: unit vector along growing arc length, shape (3,)."
-    )
-    roll = _field("roll", _of("angle"), "Rotation about the direction that the clamp holds [rad].")
-    frame = _field("frame", _of("number"), "Rows d1, d2, d3 that the clamp holds, shape (3, 3).")
-    quaternion = _field("quaternion", _of("number"), "Frame as a quaternion [w, x, y, z], shape (4,).")
-    turns = _field("turns", as_it_is, "Whole turns that are added to frame or quaternion.")
-    pose = _field("pose", as_it_is, "Poses of its motion: tables of time, position and, of clamps, direction and roll.")
-    trajectory = _field("trajectory", as_it_is, "Name of a CSV file of poses or two markers, in the scene's folder.")
-    cutoff = _field("cutoff", _of("frequency"), "Frequency above which motion is removed from the file's poses [Hz].")
+    at = quantity("length", "Arc length that is held [m].")
+    position = quantity("length", "Position of that point [m], shape (3,).")
+    hold = given('"clamp" or "pin".', "clamp")
+    direction = _direction("Direction of a clamp: unit vector along growing arc length, shape (3,).")
+    roll = quantity("angle", "Rotation about the direction that the clamp holds [rad].")
+    frame = quantity("number", "Rows d1, d2, d3 that the clamp holds, shape (3, 3).")
+    quaternion = quantity("number", "Frame as a quaternion [w, x, y, z], shape (4,).")
+    turns = given("Whole turns that are added to frame or quaternion.")
+    pose = given("Poses of its motion: tables of time, position and, of clamps, direction and roll.")
+    trajectory = given("Name of a CSV file of poses or two markers, in the scene's folder.")
+    cutoff = quantity("frequency", "Frequency above which motion is removed from the file's poses [Hz].")
 
 
 class Load(Part):
     """A force or the weight of a mass, and a couple, in space or rotating with the rod; load() makes one."""
 
     _name = "load"
-    at = _field("at", _of("length"), "Arc length [m].")
-    force = _field("force", _of("force"), "Force [N], shape (3,).")
-    mass = _field("mass", _of("mass"), "Mass of a body that hangs there [kg], instead of a force.")
-    torque = _field("torque", _of("torque"), "Couple [N m], shape (3,).")
-    follows = _field("follows", as_it_is, "Whether both have components along d1, d2, tangent, and rotate with them.")
+    at = quantity("length", "Arc length [m].")
+    force = quantity("force", "Force [N], shape (3,).")
+    mass = quantity("mass", "Mass of a body that hangs there [kg], instead of a force.")
+    torque = quantity("torque", "Couple [N m], shape (3,).")
+    follows = given("Whether both have components along d1, d2, tangent, and rotate with them.")
 
 
 class DistributedLoad(Part):
     """A force per length that keeps its direction; distributed_load() makes one."""
 
     _name = "distributed_load"
-    start = _field("from", _of("length"), "Where it begins [m] (`from` in a file); None: at 0.")
-    end = _field("to", _of("length"), "Where it ends [m] (`to` in a file); None: at the rod's end.")
-    force_per_length = _field(
-        "force_per_length", _of("force_per_length"), "Values [N/m], shape (3,); or (K, 3), from start to end."
-    )
+    start = quantity("length", "Where it begins [m] (`from` in a file); None: at 0.", "from")
+    end = quantity("length", "Where it ends [m] (`to` in a file); None: at the rod's end.", "to")
+    force_per_length = quantity("force_per_length", "Values [N/m], shape (3,); or (K, 3), from start to end.")
 
 
 class Obstacle(Part):
     """A body that the rod cannot pass; obstacle() makes one."""
 
     _name = "obstacle"
-    point = _field("point", _of("length"), "Point of a plane, or centre of a body [m], shape (3,).")
-    shape = _field(
-        "shape", lambda value: value or "plane", '"plane", "sphere", "cylinder", "capsule", "box".'
-    )
-    normal = _field("normal", _direction, "Normal of a plane, to the free side; for a box the direction of an edge.")
-    axis = _field("axis", _direction, "Axis of a cylinder or a capsule; for a box the direction of an edge.")
-    radius = _field("radius", _of("length"), "Radius [m]; for a box that of its edges.")
-    length = _field("length", _of("length"), "Length of a capsule between the centres of its caps [m].")
-    size = _field("size", _of("length"), "Edges of a box [m], shape (3,).")
-    stiffness = _field("stiffness", _of("foundation"), "Force per depth and length [N/m^2]; None: rigid.")
-    friction = _field("friction", _of("number"), "Coulomb's coefficient [-]; no model has it.")
-    touches = _field("touches", lambda value: value or "surface", '"surface" or "axis" of the rod.')
-    pose = _field("pose", as_it_is, "Poses of its motion: tables of time and point.")
-    trajectory = _field("trajectory", as_it_is, "Name of a CSV file of poses, in the scene's folder.")
-    cutoff = _field("cutoff", _of("frequency"), "Frequency above which motion is removed from the file's poses [Hz].")
+    point = quantity("length", "Point of a plane, or centre of a body [m], shape (3,).")
+    shape = given('"plane", "sphere", "cylinder", "capsule", "box".', "plane")
+    normal = _direction("Normal of a plane, to the free side; for a box the direction of an edge.")
+    axis = _direction("Axis of a cylinder or a capsule; for a box the direction of an edge.")
+    radius = quantity("length", "Radius [m]; for a box that of its edges.")
+    length = quantity("length", "Length of a capsule between the centres of its caps [m].")
+    size = quantity("length", "Edges of a box [m], shape (3,).")
+    stiffness = quantity("foundation", "Force per depth and length [N/m^2]; None: rigid.")
+    friction = quantity("number", "Coulomb's coefficient [-]; no model has it.")
+    touches = given('"surface" or "axis" of the rod.', "surface")
+    pose = given("Poses of its motion: tables of time and point.")
+    trajectory = given("Name of a CSV file of poses, in the scene's folder.")
+    cutoff = quantity("frequency", "Frequency above which motion is removed from the file's poses [Hz].")
 
 
 class Section(Part):
     """An interval of the rod with other properties; section() makes one."""
 
     _name = "section"
-    start = _field("from", _of("length"), "Where it begins [m] (`from` in a file).")
-    end = _field("to", _of("length"), "Where it ends [m] (`to` in a file).")
-    bending_stiffness = _field("bending_stiffness", _of("section_stiffness"), "EI [N m^2].")
-    mass_per_length = _field("mass_per_length", _of("mass_per_length"), "rho A [kg/m].")
-    torsional_stiffness = _field("torsional_stiffness", _of("section_stiffness"), "GJ [N m^2].")
-    natural_curvature = _field(
-        "natural_curvature", _of("curvature"), "Curvature of its stress-free shape [1/m]: k or [x, y]."
-    )
-    natural_twist = _field("natural_twist", _of("twist"), "Twist of its stress-free shape [rad/m].")
-
-
-def _setting(key: str, doc: str) -> property:
-    """Returns a property for a key of a table that every scene has: read as the scene's reader returns it."""
-
-    def get(self: "Settings") -> Any:
-        if self._owner is not None:
-            return getattr(self._owner._data, self._name)[key]
-        return self._table.get(key)
-
-    return property(get, lambda self, value: self._set(key, value), doc=doc)
+    start = quantity("length", "Where it begins [m] (`from` in a file).", "from")
+    end = quantity("length", "Where it ends [m] (`to` in a file).", "to")
+    bending_stiffness = quantity("section_stiffness", "EI [N m^2].")
+    mass_per_length = quantity("mass_per_length", "rho A [kg/m].")
+    torsional_stiffness = quantity("section_stiffness", "GJ [N m^2].")
+    natural_curvature = quantity("curvature", "Curvature of its stress-free shape [1/m]: k or [x, y].")
+    natural_twist = quantity("twist", "Twist of its stress-free shape [rad/m].")
 
 
 class Settings(Part):
     """A table of which a scene has one; it can be set to a dict. Fields that are not set have their default."""
+
+    def _read(self, key: str) -> Any:
+        return self._table.get(key) if self._owner is None else getattr(self._owner._data, self._name)[key]
+
+
+def _setting(doc: str) -> Any:
+    """Returns a field of a table that every scene has: read as the scene's reader returns it."""
+    return Field(Settings._read, doc)
 
 
 class ForceModelSettings(Settings):
     """Settings of the force model: scene.force_model."""
 
     _name = "force_model"
-    points = _setting("points", "Number of points N.")
-    law = _setting("law", '"hooke" (linear) or "paper" (cubic).')
-    joint_law = _setting("joint_law", 'Joint law of model chain: "linear", "binormal" or "hooke"; None: as law.')
-    bookkeeping = _setting("bookkeeping", '"consistent" or "paper".')
-    stepper = _setting("stepper", '"auto", "basic", "limited", "relative", "dynamic", "verlet" or "implicit".')
-    bending_rule = _setting("bending_rule", "Rule for c_b of the law paper.")
-    design_curvature = _setting("design_curvature", "k of Formula 21 [1/m]; None: derived.")
-    point_weight = _setting("point_weight", "Weight of every point [N]; None: derived.")
-    c_b = _setting("c_b", "[N]; None: derived.")
-    c_c = _setting("c_c", "[N]; None: derived.")
-    c_F = _setting("c_F", "[m/N]; None: derived.")
-    c_h = _setting("c_h", "[-]; None: derived.")
-    l_s = _setting("l_s", "[m]; None: derived.")
+    points = _setting("Number of points N.")
+    law = _setting('"hooke" (linear) or "paper" (cubic).')
+    joint_law = _setting('Joint law of model chain: "linear", "binormal" or "hooke"; None: as law.')
+    bookkeeping = _setting('"consistent" or "paper".')
+    stepper = _setting('"auto", "basic", "limited", "relative", "dynamic", "verlet" or "implicit".')
+    bending_rule = _setting("Rule for c_b of the law paper.")
+    design_curvature = _setting("k of Formula 21 [1/m]; None: derived.")
+    point_weight = _setting("Weight of every point [N]; None: derived.")
+    c_b = _setting("[N]; None: derived.")
+    c_c = _setting("[N]; None: derived.")
+    c_F = _setting("[m/N]; None: derived.")
+    c_h = _setting("[-]; None: derived.")
+    l_s = _setting("[m]; None: derived.")
 
 
 class Medium(Settings):
     """Medium in which the rod is immersed, with buoyancy, and with drag if it streams: scene.medium."""
 
     _name = "medium"
-    density = _field("density", _of("density"), "Density [kg/m^3]; None: no buoyancy.")
-    velocity = _field("velocity", _of("velocity"), "Velocity of a steady stream [m/s], shape (3,); None: at rest.")
-    normal_drag = _field("normal_drag", _of("number"), "Coefficient across the rod [-].")
-    tangential_drag = _field("tangential_drag", _of("number"), "Coefficient along the rod [-]; None: 0.")
+    density = quantity("density", "Density [kg/m^3]; None: no buoyancy.")
+    velocity = quantity("velocity", "Velocity of a steady stream [m/s], shape (3,); None: at rest.")
+    normal_drag = quantity("number", "Coefficient across the rod [-].")
+    tangential_drag = quantity("number", "Coefficient along the rod [-]; None: 0.")
 
 
 class TrackRates(Settings):
     """Sampling rates, and the start of a rod with inertia, of a scene that moves: scene.track."""
 
     _name = "track"
-    frame_rate = _setting("frame_rate", "Frames per second [Hz].")
-    obstacle_rate = _setting("obstacle_rate", "Rate at which obstacles are moved [Hz]; None: in every frame.")
-    start = _setting("start", "File of a shape or a recording from which a rod with inertia starts; None: its equilibrium.")
-    step_rate = _setting("step_rate", "Steps of the force model per second [Hz].")
+    frame_rate = _setting("Frames per second [Hz].")
+    obstacle_rate = _setting("Rate at which obstacles are moved [Hz]; None: in every frame.")
+    start = _setting("File of a shape or a recording from which a rod with inertia starts; None: its equilibrium.")
+    step_rate = _setting("Steps of the force model per second [Hz].")
 
 
 def clamp(
-    at: Quantity,
-    position: Vector,
-    direction: Optional[Direction] = None,
-    *,
-    roll: Optional[Quantity] = None,
-    frame: Optional[ArrayLike] = None,
-    quaternion: Optional[ArrayLike] = None,
-    turns: Optional[int] = None,
+    at: Quantity, position: Vector, direction: Optional[Direction] = None, *, roll: Optional[Quantity] = None,
+    frame: Optional[ArrayLike] = None, quaternion: Optional[ArrayLike] = None, turns: Optional[int] = None,
 ) -> Gripper:
     """A gripper that holds position [m] and direction of the rod at an arc length [m].
 
@@ -310,11 +302,7 @@ def pin(at: Quantity, position: Vector) -> Gripper:
 
 
 def load(
-    at: Quantity,
-    force: Optional[Vector] = None,
-    *,
-    mass: Optional[Quantity] = None,
-    torque: Optional[Vector] = None,
+    at: Quantity, force: Optional[Vector] = None, *, mass: Optional[Quantity] = None, torque: Optional[Vector] = None,
     follows: Optional[bool] = None,
 ) -> Load:
     """A force [N], or a mass [kg] that hangs, and a couple [N m], at an arc length [m].
@@ -324,35 +312,20 @@ def load(
     return Load(**locals())
 
 
-def _between(given: dict[str, Any]) -> dict[str, Any]:
-    """Renames start and end to the keys of a file; `from` is a keyword in Python."""
-    return {{"start": "from", "end": "to"}.get(key, key): value for key, value in given.items()}
-
-
 def distributed_load(
-    force_per_length: Union[Vector, Sequence[Vector]],
-    start: Optional[Quantity] = None,
-    end: Optional[Quantity] = None,
+    force_per_length: Union[Vector, Sequence[Vector]], start: Optional[Quantity] = None, end: Optional[Quantity] = None
 ) -> DistributedLoad:
     """A force per length [N/m] from an arc length to another [m], or on the whole rod.
 
     Rows of three are forces per length at equal distances from start to end, linear between them.
     """
-    return DistributedLoad(**_between(locals()))
+    return DistributedLoad(**locals())
 
 
 def obstacle(
-    point: Vector,
-    normal: Optional[Vector] = None,
-    *,
-    shape: Optional[str] = None,
-    axis: Optional[Vector] = None,
-    radius: Optional[Quantity] = None,
-    length: Optional[Quantity] = None,
-    size: Optional[Vector] = None,
-    stiffness: Optional[Quantity] = None,
-    friction: Optional[float] = None,
-    touches: Optional[str] = None,
+    point: Vector, normal: Optional[Vector] = None, *, shape: Optional[str] = None, axis: Optional[Vector] = None,
+    radius: Optional[Quantity] = None, length: Optional[Quantity] = None, size: Optional[Vector] = None,
+    stiffness: Optional[Quantity] = None, friction: Optional[float] = None, touches: Optional[str] = None,
 ) -> Obstacle:
     """A plane (point [m], normal to the free side), or a body whose centre is point.
 
@@ -363,14 +336,9 @@ def obstacle(
 
 
 def section(
-    start: Quantity,
-    end: Quantity,
-    *,
-    bending_stiffness: Optional[Union[Quantity, Sequence[Quantity]]] = None,
-    mass_per_length: Optional[Quantity] = None,
-    torsional_stiffness: Optional[Quantity] = None,
-    natural_curvature: Optional[Union[Quantity, Sequence[Quantity]]] = None,
-    natural_twist: Optional[Quantity] = None,
+    start: Quantity, end: Quantity, *, bending_stiffness: Optional[Union[Quantity, Sequence[Quantity]]] = None,
+    mass_per_length: Optional[Quantity] = None, torsional_stiffness: Optional[Quantity] = None,
+    natural_curvature: Optional[Union[Quantity, Sequence[Quantity]]] = None, natural_twist: Optional[Quantity] = None,
 ) -> Section:
     """An interval of the rod, from an arc length to another [m], with other properties or stress-free shape."""
-    return Section(**_between(locals()))
+    return Section(**locals())

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import json
-from typing import Any, Callable, Iterable, Optional, Sequence, Union
+from typing import Any, Iterable, Optional, Sequence, Union
 
 from . import _dlo
-from ._arguments import LIST, TABLE, TEXT, Attribute, Strict, Value, require
+from ._arguments import LIST, TABLE, TEXT, Attribute, Strict, require
 from ._documents import MaterialFit, MotionFit
 from ._errors import InputError
 from ._files import FileName, Materials, file_name, file_text, materials_file
-from ._parts import DistributedLoad, ForceModelSettings, Gripper, Load, Medium, Obstacle, Part, Quantity, Section
-from ._parts import Settings, TrackRates, Vector, as_it_is, copied, number_of
+from ._parts import DistributedLoad, Field, ForceModelSettings, Gripper, Load, Medium, Obstacle, Part, Quantity
+from ._parts import Section, Settings, TrackRates, Vector, copied, given, quantity
 
 __all__ = ["Scene", "materials"]
 
@@ -32,6 +32,16 @@ _PARTS: dict[str, type[Part]] = {
     "sections": Section,
 }
 _SETTINGS: dict[str, type[Settings]] = {"force_model": ForceModelSettings, "medium": Medium, "track": TrackRates}
+
+def _from_reader(doc: str, derived: bool = False) -> Any:
+    """Returns a field whose value the reader gives in SI units."""
+    return Field(lambda scene, key: getattr(scene._data, key), doc, derived=derived)
+
+
+def _own(doc: str) -> Any:
+    """Returns a field whose value are the scene's own parts or settings."""
+    return Field(lambda scene, key: scene._parts[key], doc)
+
 
 class Scene(Strict):
     """A rod, what holds it, and what pulls at it. All numbers are in SI units, or text with a unit.
@@ -56,119 +66,83 @@ class Scene(Strict):
     """
 
     def __init__(
-        self,
-        length: Quantity,
-        *,
-        diameter: Optional[Quantity] = None,
-        inner_diameter: Optional[Quantity] = None,
-        width: Optional[Quantity] = None,
-        thickness: Optional[Quantity] = None,
+        self, length: Quantity, *, diameter: Optional[Quantity] = None, inner_diameter: Optional[Quantity] = None,
+        width: Optional[Quantity] = None, thickness: Optional[Quantity] = None,
         material: Optional[Union[str, dict[str, Any]]] = None,
-        grippers: Iterable[Gripper] = (),
-        loads: Iterable[Load] = (),
-        distributed_loads: Iterable[DistributedLoad] = (),
-        obstacles: Iterable[Obstacle] = (),
-        sections: Iterable[Section] = (),
-        gravity: Optional[Vector] = None,
-        name: Optional[str] = None,
+        grippers: Iterable[Gripper] = (), loads: Iterable[Load] = (), distributed_loads: Iterable[DistributedLoad] = (),
+        obstacles: Iterable[Obstacle] = (), sections: Iterable[Section] = (),
+        gravity: Optional[Vector] = None, name: Optional[str] = None,
         bending_stiffness: Optional[Union[Quantity, Sequence[Quantity]]] = None,
-        mass_per_length: Optional[Quantity] = None,
-        axial_stiffness: Optional[Quantity] = None,
-        stretch: Optional[Union[bool, str]] = None,
-        torsional_stiffness: Optional[Quantity] = None,
-        natural_curvature: Optional[Any] = None,
-        natural_twist: Optional[Quantity] = None,
-        layers: Optional[Sequence[dict[str, Any]]] = None,
-        layer_bound: Optional[str] = None,
-        helix: Optional[dict[str, Quantity]] = None,
-        rest_shape: Optional[Union[str, Any]] = None,
-        joint_stiffness: Optional[Quantity] = None,
-        joint_spacing: Optional[Quantity] = None,
+        mass_per_length: Optional[Quantity] = None, axial_stiffness: Optional[Quantity] = None,
+        stretch: Optional[Union[bool, str]] = None, torsional_stiffness: Optional[Quantity] = None,
+        natural_curvature: Optional[Any] = None, natural_twist: Optional[Quantity] = None,
+        layers: Optional[Sequence[dict[str, Any]]] = None, layer_bound: Optional[str] = None,
+        helix: Optional[dict[str, Quantity]] = None, rest_shape: Optional[Union[str, Any]] = None,
+        joint_stiffness: Optional[Quantity] = None, joint_spacing: Optional[Quantity] = None,
         force_model: Optional[Union[dict[str, Any], ForceModelSettings]] = None,
         medium: Optional[Union[dict[str, Any], Medium]] = None,
-        track: Optional[Union[dict[str, Any], TrackRates]] = None,
-        materials: Optional[FileName] = None,
+        track: Optional[Union[dict[str, Any], TrackRates]] = None, materials: Optional[FileName] = None,
     ) -> None:
-        given = locals()
-        fields = {key: given[key] for key in (*_TOP_KEYS, *_ROD_KEYS, *_PARTS, *_SETTINGS)}
-        fields["name"] = "scene" if name is None else name
+        fields = dict(locals(), name="scene" if name is None else name)
+        del fields["self"], fields["materials"]
         self._start("scene", materials_file(materials), fields)
 
     def _start(
-        self,
-        file: str,
-        materials: Materials,
-        fields: dict[str, Any],
-        data: Optional[_dlo.SceneData] = None,
+        self, file: str, materials: Materials, fields: dict[str, Any], data: Optional[_dlo.SceneData] = None
     ) -> None:
         self._file, self._materials = file, materials
         self._top: dict[str, Any] = {}
-        self._rod: dict[str, Any] = {}
-        self._parts: dict[str, tuple[Part, ...]] = dict.fromkeys(_PARTS, ())
-        self._settings: dict[str, Settings] = {}
-        for key in _SETTINGS:
-            self._put(key, None)
-        for key, value in fields.items():
+        self._table: dict[str, Any] = {}
+        self._parts: dict[str, Any] = {}
+        for key, value in {**dict.fromkeys((*_PARTS, *_SETTINGS)), **fields}.items():
             self._put(key, value)
         if data is None:
             self._read_anew()
         else:
             self._data = data
 
-    def _adopted(self, part: Part, kind: type[Part]) -> Any:
+    def _adopted(self, key: str, kind: type[Part], part: Any) -> Part:
+        if not isinstance(part, kind):
+            raise InputError(f"{key}: a {type(part).__name__} (allowed: {kind.__name__})", key)
         mine = kind(**part._table)
         mine._owner = self
         return mine
 
-    def _all_adopted(self, key: str, parts: Iterable[Part]) -> tuple[Part, ...]:
-        kind = _PARTS[key]
-        require(key, parts, LIST)
-        adopted = []
-        for part in parts:
-            if not isinstance(part, kind):
-                raise InputError(f"{key}: a {type(part).__name__} (allowed: {kind.__name__})", key)
-            adopted.append(self._adopted(part, kind))
-        return tuple(adopted)
-
-    def _settings_of(self, key: str, value: Any) -> Settings:
+    def _settings_of(self, key: str, value: Any) -> Part:
         kind = _SETTINGS[key]
         if not isinstance(value, kind):
             require(key, {} if value is None else value, TABLE)
             for one in value or ():
                 require(f"{key}: a key", one, TEXT)
             value = kind(**(value or {}))
-        mine: Settings = self._adopted(value, kind)
-        return mine
+        return self._adopted(key, kind, value)
 
     def _document(self) -> dict[str, Any]:
-        document: dict[str, Any] = {**self._top, "rod": self._rod}
+        document: dict[str, Any] = {**self._top, "rod": self._table}
         for key, kind in _PARTS.items():
             if self._parts[key]:
                 document[kind._name] = [part._table for part in self._parts[key]]
-        for key, settings in self._settings.items():
-            if settings._table:
-                document[key] = settings._table
+        for key in _SETTINGS:
+            if self._parts[key]._table:
+                document[key] = self._parts[key]._table
         return document
 
     def _read_anew(self) -> None:
         self._data = _dlo.read_scene(self._document(), self._file, self._materials)
 
-    def _change(self, change: Callable[[], None]) -> None:
-        before = (dict(self._top), dict(self._rod), dict(self._parts), dict(self._settings))
+    def _change(self, fields: dict[str, Any]) -> None:
+        before = (dict(self._top), dict(self._table), dict(self._parts))
         try:
-            change()
+            for key, value in fields.items():
+                self._put(key, value)
             self._read_anew()
         except Exception:
-            self._top, self._rod, self._parts, self._settings = before
+            self._top, self._table, self._parts = before
             raise
 
     @classmethod
     def _from_document(
-        cls,
-        document: dict[str, Any],
-        file: str,
-        materials: Materials,
-        data: Optional[_dlo.SceneData] = None,
+        cls, document: dict[str, Any], file: str, materials: Materials, data: Optional[_dlo.SceneData] = None
     ) -> "Scene":
         fields: dict[str, Any] = {key: document[key] for key in (*_TOP_KEYS, *_SETTINGS) if key in document}
         fields.update(document.get("rod", {}))
@@ -190,9 +164,7 @@ class Scene(Strict):
         return cls._read(*file_text(name), materials_file(materials))
 
     @classmethod
-    def from_text(
-        cls, text: str, name: str = "scene", *, materials: Optional[FileName] = None
-    ) -> "Scene":
+    def from_text(cls, text: str, name: str = "scene", *, materials: Optional[FileName] = None) -> "Scene":
         """Reads the text of a scene file. name: name of the file in messages. materials: as in Scene."""
         require("text", text, TEXT)
         require("name", name, TEXT)
@@ -218,135 +190,79 @@ class Scene(Strict):
     def replace(self, **fields: Any) -> "Scene":
         """Returns a copy with other fields, all changed at once."""
         scene = self.copy()
-
-        def change() -> None:
-            for key, value in fields.items():
-                scene._put(key, value)
-
-        scene._change(change)
+        scene._change(fields)
         return scene
 
     def _put(self, key: str, value: Any) -> None:
-        if key in _ROD_KEYS or key in _TOP_KEYS:
-            table = self._rod if key in _ROD_KEYS else self._top
+        if key in _PARTS:
+            require(key, () if value is None else value, LIST)
+            self._parts[key] = tuple(self._adopted(key, _PARTS[key], part) for part in value or ())
+        elif key in _SETTINGS:
+            self._parts[key] = self._settings_of(key, value)
+        elif key in _ROD_KEYS or key in _TOP_KEYS:
+            table = self._table if key in _ROD_KEYS else self._top
             table.pop(key, None)
             if value is not None:
                 table[key] = copied(key, value)
-        elif key in _PARTS:
-            self._parts[key] = self._all_adopted(key, () if value is None else value)
-        elif key in _SETTINGS:
-            self._settings[key] = self._settings_of(key, value)
         else:
             raise TypeError(self._no_field(key))
 
     def _put_one(self, key: str, value: Any) -> None:
-        self._change(lambda: self._put(key, value))
+        self._change({key: value})
 
     def __repr__(self) -> str:
         return f"<dlo.Scene {self.name!r}: {self.length:g} m, Gamma = {self.gamma:.4g}>"
 
     def __eq__(self, other: object) -> bool:
-        return (
-            isinstance(other, Scene)
-            and self.to_toml() == other.to_toml()
-            and self._materials == other._materials
-        )
+        ours = (self.to_toml(), self._materials)
+        return isinstance(other, Scene) and ours == (other.to_toml(), other._materials)
 
     __hash__ = None  # type: ignore[assignment]
 
     def __reduce__(self) -> Any:
         return (Scene._read, (self.to_toml(), self._file, self._materials))
 
-    def _top_field(key: str, doc: str) -> property:  # type: ignore[misc]
-        """Returns a property whose value the reader gives in SI units."""
-        return property(
-            lambda self: getattr(self._data, key),
-            lambda self, value: self._put_one(key, value),
-            doc=doc,
-        )
-
-    def _rod_field(key: str, dimension: str, doc: str) -> property:  # type: ignore[misc]
-        """Returns a property whose value is the given one in SI units, or None."""
-        return property(
-            lambda self: number_of(self._rod.get(key), dimension),
-            lambda self, value: self._put_one(key, value),
-            doc=doc,
-        )
-
-    def _part_field(key: str, doc: str) -> property:  # type: ignore[misc]
-        return property(
-            lambda self: self._parts[key], lambda self, value: self._put_one(key, value), doc=doc
-        )
-
-    def _given(key: str, doc: str) -> Attribute[Any]:  # type: ignore[misc]
-        """Returns an attribute whose value is a copy of the given one, or None."""
-        return Attribute(
-            lambda self: as_it_is(self._rod.get(key)), lambda self, value: self._put_one(key, value), doc=doc
-        )
-
-    def _set_of(key: str, kind: type[Value], doc: str) -> Attribute[Value]:  # type: ignore[misc]
-        return Attribute(lambda self: self._settings[key], lambda self, value: self._put_one(key, value), doc=doc)
-
-    def _derived(key: str, doc: str) -> property:  # type: ignore[misc]
-        return property(lambda self: getattr(self._data, key), doc=doc)
-
-    name = _top_field("name", "Title for people.")
-    gravity = _top_field("gravity", "Gravity [m/s^2], shape (3,).")
-    length = _top_field("length", "Length of the rod [m].")
-    diameter = _top_field("diameter", "Diameter of the rod [m]; 0: not known.")
-    inner_diameter = _top_field("inner_diameter", "Inner diameter of a tube [m]; 0: solid.")
-    width = _top_field("width", "Edge of a rectangular section along d1 [m]; 0: not rectangular.")
-    thickness = _top_field("thickness", "Edge of a rectangular section along d2 [m]; 0: not rectangular.")
-    bending_stiffness = _top_field(
-        "bending_stiffness", "EI [N m^2], given or of the material; about d1 if there are two."
+    name = _from_reader("Title for people.")
+    gravity = _from_reader("Gravity [m/s^2], shape (3,).")
+    length = _from_reader("Length of the rod [m].")
+    diameter = _from_reader("Diameter of the rod [m]; 0: not known.")
+    inner_diameter = _from_reader("Inner diameter of a tube [m]; 0: solid.")
+    width = _from_reader("Edge of a rectangular section along d1 [m]; 0: not rectangular.")
+    thickness = _from_reader("Edge of a rectangular section along d2 [m]; 0: not rectangular.")
+    bending_stiffness = _from_reader("EI [N m^2], given or of the material; about d1 if there are two.")
+    mass_per_length = _from_reader("rho A [kg/m], given or of the material.")
+    axial_stiffness = _from_reader("EA [N], given, of the material, or assumed.")
+    torsional_stiffness = quantity("section_stiffness", "GJ as given [N m^2], or None.")
+    natural_curvature = quantity("curvature", "Natural curvature as given [1/m]: k, [x, y], or rows of such; or None.")
+    natural_twist = quantity("twist", "Natural twist as given [rad/m], or None.")
+    rest_shape_error = _from_reader("Largest distance of rest_shape's points from the arcs [m]; NaN without.", True)
+    rest_shape_angle = _from_reader("Largest angle of a given d1 from that of the arcs [rad]; NaN without.", True)
+    joint_stiffness = quantity("joint_stiffness", "Stiffness of a chain's joints as given [N m/rad], or None.")
+    joint_spacing = quantity("length", "Distance of a chain's joints as given [m], or None.")
+    grippers = _own("A tuple of Gripper; set any iterable of them.")
+    loads = _own("A tuple of Load.")
+    distributed_loads = _own("A tuple of DistributedLoad.")
+    obstacles = _own("A tuple of Obstacle.")
+    sections = _own("A tuple of Section.")
+    youngs_modulus = _from_reader("E of the material [Pa]; 0: not known.", True)
+    density = _from_reader("Density of the material [kg/m^3]; 0: not known.", True)
+    mass = _from_reader("Mass of the rod, with sections [kg].", True)
+    gamma = _from_reader("w l^3 / (EI) [-]: below 0.1 nearly straight, from 1000 on a rope.", True)
+    planar = _from_reader("Whether the rod stays in a plane that contains grips, forces and obstacles in reach.", True)
+    material: Attribute[Optional[Union[str, dict[str, Any]]]] = given(
+        "Name of the material, or a copy of its table, as given; or None."
     )
-    mass_per_length = _top_field("mass_per_length", "rho A [kg/m], given or of the material.")
-    axial_stiffness = _top_field("axial_stiffness", "EA [N], given, of the material, or assumed.")
-    torsional_stiffness = _rod_field(
-        "torsional_stiffness", "section_stiffness", "GJ as given [N m^2], or None."
+    layers = given("Layers of a cable as given: tables from the inside out; or None.")
+    layer_bound: Attribute[Optional[str]] = given(
+        'Bound of a cable as given: "bonded" or "free" to slip; or None, which is bonded.'
     )
-    natural_curvature = _rod_field(
-        "natural_curvature", "curvature", "Natural curvature as given [1/m]: k, [x, y], or rows of such; or None."
-    )
-    natural_twist = _rod_field("natural_twist", "twist", "Natural twist as given [rad/m], or None.")
-    rest_shape_error = _derived(
-        "rest_shape_error", "Largest distance of rest_shape's points from the rod's arcs [m]; NaN without."
-    )
-    rest_shape_angle = _derived(
-        "rest_shape_angle", "Largest angle of a given d1 from that of the rod's arcs [rad]; NaN without."
-    )
-    joint_stiffness = _rod_field(
-        "joint_stiffness", "joint_stiffness", "Stiffness of a chain's joints as given [N m/rad], or None."
-    )
-    joint_spacing = _rod_field("joint_spacing", "length", "Distance of a chain's joints as given [m], or None.")
-    grippers = _part_field("grippers", "A tuple of Gripper; set any iterable of them.")
-    loads = _part_field("loads", "A tuple of Load.")
-    distributed_loads = _part_field("distributed_loads", "A tuple of DistributedLoad.")
-    obstacles = _part_field("obstacles", "A tuple of Obstacle.")
-    sections = _part_field("sections", "A tuple of Section.")
-    youngs_modulus = _derived("youngs_modulus", "E of the material [Pa]; 0: not known.")
-    density = _derived("density", "Density of the material [kg/m^3]; 0: not known.")
-    mass = _derived("mass", "Mass of the rod, with sections [kg].")
-    gamma = _derived("gamma", "w l^3 / (EI) [-]: below 0.1 nearly straight, from 1000 on a rope.")
-    planar = _derived("planar", "Whether the rod stays in a plane that contains grips, forces and obstacles in reach.")
-    material: Attribute[Optional[Union[str, dict[str, Any]]]] = _given(
-        "material", "Name of the material, or a copy of its table, as given; or None."
-    )
-    layers = _given("layers", "Layers of a cable as given: tables from the inside out; or None.")
-    layer_bound: Attribute[Optional[str]] = _given(
-        "layer_bound", 'Bound of a cable as given: "bonded" or "free" to slip; or None, which is bonded.'
-    )
-    helix: Attribute[Optional[dict[str, Any]]] = _given("helix", "Helix as given: a copy of its table; or None.")
-    rest_shape = _given("rest_shape", "Stress-free shape as given: a file's name or points; or None.")
-    force_model = _set_of("force_model", ForceModelSettings, "Its settings; set a dict or ForceModelSettings.")
-    medium = _set_of("medium", Medium, "Medium in which the rod is immersed; set a dict or Medium.")
-    track = _set_of("track", TrackRates, "Sampling rates of its motion; set a dict or TrackRates.")
-    del _top_field, _rod_field, _part_field, _given, _set_of, _derived
-
-    stretch: Attribute[Union[bool, str]] = Attribute(
-        lambda self: self._rod.get("stretch", False),
-        lambda self, value: self._put_one("stretch", value),
-        doc='Whether model exact includes the axial strain, tension over EA; "auto": if it matters.',
+    helix: Attribute[Optional[dict[str, Any]]] = given("Helix as given: a copy of its table; or None.")
+    rest_shape = given("Stress-free shape as given: a file's name or points; or None.")
+    force_model: Attribute[ForceModelSettings] = _own("Its settings; set a dict or ForceModelSettings.")
+    medium: Attribute[Medium] = _own("Medium in which the rod is immersed; set a dict or Medium.")
+    track: Attribute[TrackRates] = _own("Sampling rates of its motion; set a dict or TrackRates.")
+    stretch: Attribute[Union[bool, str]] = given(
+        'Whether model exact includes the axial strain, tension over EA; "auto": if it matters.', False
     )
 
 
@@ -358,9 +274,7 @@ def as_scene(scene: SceneLike, materials: Optional[FileName] = None) -> Scene:
 
 
 def data_of(
-    scene: SceneLike,
-    materials: Optional[FileName] = None,
-    time: Optional[float] = None,
+    scene: SceneLike, materials: Optional[FileName] = None, time: Optional[float] = None,
     calibrated: Optional[Calibrated] = None,
 ) -> _dlo.SceneData:
     """Returns the extension's data of a scene. time: instant of a scene that moves [s]. calibrated: replaces its
