@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Callable, Optional
 
 import numpy
@@ -19,11 +21,11 @@ __all__ = [
 
 
 def _found(value: Any, path: list[str]) -> Any:
-    """Returns the value at a path of keys; for the key *, the list of the values in each element."""
+    """Returns the value at a path of keys; for the key *, the list of the values in each element; for 0, the first."""
     for i, key in enumerate(path):
         if key == "*":
             return [_found(one, path[i + 1 :]) for one in value]
-        value = value[key]
+        value = value[0 if key == "0" else key]
     return value
 
 
@@ -40,24 +42,26 @@ def _passes(verdict: Any) -> bool:
     return bool(verdict == "pass")
 
 
+def _causes(values: Any) -> list[tuple[str, float]]:
+    return [(cause["cause"], cause["rms_m"]) for cause in values]
+
+
 def _number(value: Any) -> Optional[float]:
     return None if value is None else float(value)
 
 
+@dataclass(repr=False, eq=False)
 class Document:
     """A result as the command writes it: str() is its text, json its JSON as a dict."""
 
-    def __init__(self, text: str, json_text: str) -> None:
-        self._text = text
-        self._json_text = json_text
-        self._json: Optional[dict[str, Any]] = None
+    _text: str
+    _json_text: str
 
-    @property
+    @cached_property
     def json(self) -> dict[str, Any]:
         """The command's document, as a dict."""
-        if self._json is None:
-            self._json = json.loads(self._json_text)
-        return self._json
+        document: dict[str, Any] = json.loads(self._json_text)
+        return document
 
     def to_json(self) -> str:
         """The command's document, as text."""
@@ -147,20 +151,15 @@ class MotionCheck(Document):
     time = _at("frames/*/time_s", _array, "Of the frames [s], shape (F,).")
     errors = _at("frames/*/rms_m", _array, "RMS distance of each frame's points [m], shape (F,).")
     lag = _at("lag_s", _number, "Lag of the recording [s], if it explains much of the distance; else None.")
-
-    @property
-    def causes(self) -> list[tuple[str, float]]:
-        """Candidate causes: (cause, RMS distance that it leaves [m]), the best first."""
-        return [(cause["cause"], cause["rms_m"]) for cause in self["causes"]]
+    causes = _at("causes", _causes, "Candidate causes: (cause, RMS distance that it leaves [m]), the best first.")
 
 
+@dataclass(repr=False, eq=False)
 class Regression(Document):
     """Shape errors compared with a baseline; result of regress()."""
 
-    def __init__(self, text: str, json_text: str, junit: str, update: str = "") -> None:
-        super().__init__(text, json_text)
-        self._junit = junit
-        self._update = update
+    _junit: str
+    _update: str = ""
 
     passed = _at("verdict", _passes, "Whether no case fails; for an update, whether every scene was solved.")
 
@@ -175,25 +174,19 @@ class Regression(Document):
         return self._junit
 
 
+@dataclass(repr=False, eq=False)
 class ScoreCard(Document):
     """Score card of a simulator; result of suite(). json is that of `dlo suite --format json`, with one card."""
 
-    def __init__(
-        self,
-        text: str,
-        json_text: str,
-        markdown: str,
-        junit: str,
-        html: str,
-        changes: Optional[str] = None,
-        passed: Optional[bool] = None,
-    ) -> None:
-        super().__init__(text, json_text)
-        self._markdown = markdown
-        self._junit = junit
-        self._html = html
-        self._changes = changes
-        self._passed = passed
+    _markdown: str
+    _junit: str
+    _html: str
+    _changes: Optional[str] = None
+    _passed: Optional[bool] = None
+
+    card = _at("cards/0", dict, "The card itself: its scenes, classes and total.")
+    right = _at("cards/0/total/right", int, "Number of scenes that are right.")
+    causes = _at("cards/0/total/causes", dict, "Number of scenes with each cause of an error, by the cause's name.")
 
     @property
     def passed(self) -> Optional[bool]:
@@ -204,22 +197,6 @@ class ScoreCard(Document):
     def reason(self) -> Optional[str]:
         """Cases that have changed, and the number of cases with each verdict; None without a baseline."""
         return None if self._changes is None else self._changes.rstrip("\n")
-
-    @property
-    def card(self) -> dict[str, Any]:
-        """The card itself: its scenes, classes and total."""
-        card: dict[str, Any] = self["cards"][0]
-        return card
-
-    @property
-    def right(self) -> int:
-        """Number of scenes that are right."""
-        return int(self.card["total"]["right"])
-
-    @property
-    def causes(self) -> dict[str, int]:
-        """Number of scenes with each cause of an error, by the cause's name."""
-        return dict(self.card["total"]["causes"])
 
     def to_markdown(self) -> str:
         """Returns the card in Markdown, as `dlo suite --markdown` writes it."""
@@ -234,12 +211,11 @@ class ScoreCard(Document):
         return self._html
 
 
+@dataclass(repr=False, eq=False)
 class Calibration(Document):
     """Fitted parameters; result of calibrate()."""
 
-    def __init__(self, text: str, json_text: str, toml: str) -> None:
-        super().__init__(text, json_text)
-        self._toml = toml
+    _toml: str
 
     def to_toml(self) -> str:
         """Returns the file that `dlo calibrate -o FILE.toml` writes: parameters of the force model; or from measured
@@ -259,7 +235,7 @@ class MaterialFit(Calibration):
         "youngs_modulus_Pa", "E [Pa]; None if it is not identifiable, or the rod is given by its bending_stiffness."
     )
     bending_stiffness = _fitted(
-        "bending_stiffness_Nm2", "EI [N m^2] of a rod that is given by it; None if it is not identifiable, or E is fitted."
+        "bending_stiffness_Nm2", "EI [N m^2] of a rod given by it; None if it is not identifiable, or E is fitted."
     )
 
     @property
@@ -277,7 +253,4 @@ class MotionFit(Calibration):
 class ForceModelFit(Calibration):
     """The force model's parameters; result of calibrate()."""
 
-    @property
-    def parameters(self) -> dict[str, Any]:
-        """Parameters for Scene.force_model and for other programs, in SI units."""
-        return dict(self["parameters"])
+    parameters = _at("parameters", dict, "Parameters for Scene.force_model and for other programs, in SI units.")
