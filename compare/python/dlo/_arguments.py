@@ -19,82 +19,54 @@ Kind = Callable[[Any], Optional[str]]
 """Function that returns None if a value is of the kind, else the reason: "what it is (allowed: ...)"."""
 
 
-def _a(value: Any) -> str:
-    return f"a {type(value).__name__}"
+def _kind(allowed: str, convert: Callable[[Any], Any], *refused: type) -> Kind:
+    """Returns the kind of all values that convert() accepts, except those of the refused types."""
 
-
-def _whole(least: int, most: int, allowed: str) -> Kind:
     def problem(value: Any) -> Optional[str]:
         try:
-            number = operator.index(value)
-        except TypeError:
-            return f"{_a(value)} (allowed: {allowed})"
-        return None if least <= number <= most else f"out of range (allowed: {allowed}, up to {most})"
+            if not isinstance(value, refused):
+                convert(value)
+                return None
+        except OverflowError:
+            return f"out of range (allowed: {allowed} up to 1e308)"
+        except UnicodeEncodeError:
+            return "text with half a character (allowed: Unicode)"
+        except Exception:  # an array, for example, has no truth value
+            pass
+        return f"a {type(value).__name__} (allowed: {allowed})"
 
     return problem
 
 
-def NUMBER(value: Any) -> Optional[str]:
-    if isinstance(value, (str, bytes)):
-        return f"{_a(value)} (allowed: a number)"
-    try:
-        float(value)
-    except OverflowError:
-        return "out of range (allowed: a number up to 1e308)"
-    except (TypeError, ValueError):
-        return f"{_a(value)} (allowed: a number)"
-    return None
+def _whole(least: int, most: int, allowed: str) -> Kind:
+    kind = _kind(allowed, operator.index)
+    out = f"out of range (allowed: {allowed}, up to {most})"
+    return lambda value: kind(value) or (None if least <= operator.index(value) <= most else out)
 
 
-def TEXT(value: Any) -> Optional[str]:
-    if not isinstance(value, str):
-        return f"{_a(value)} (allowed: text)"
-    try:
-        value.encode()
-    except UnicodeEncodeError:
-        return "text with half a character (allowed: Unicode)"
-    return None
+def _each(kind: Kind, allowed: str) -> Kind:
+    def problem(value: Any) -> Optional[str]:
+        found = LIST(value) or next(filter(None, map(kind, value)), None)
+        return found and f"{found.split(' (allowed', 1)[0]} (allowed: {allowed})"
+
+    return problem
 
 
 def QUANTITY(value: Any) -> Optional[str]:
-    if isinstance(value, str):
-        return TEXT(value)
-    problem = NUMBER(value)
-    return problem and problem.replace("a number", 'a number, or text such as "2 mm"')
-
-
-def TRUTH(value: Any) -> Optional[str]:
-    try:
-        bool(value)
-    except Exception:  # an array, for example, has no truth value
-        return f"{_a(value)} (allowed: True or False)"
-    return None
-
-
-def LIST(value: Any) -> Optional[str]:
-    if isinstance(value, (str, bytes)):
-        return f"{_a(value)} (allowed: a list)"
-    try:
-        iter(value)
-    except TypeError:
-        return f"{_a(value)} (allowed: a list)"
-    return None
-
-
-def TEXTS(value: Any) -> Optional[str]:
-    problem = LIST(value) or next(filter(None, map(TEXT, value)), None)
-    return problem and problem.replace("(allowed: ", "(allowed: a list of ").replace(" a list)", " text)")
-
-
-def NUMBERS(value: Any) -> Optional[str]:
-    problem = LIST(value) or next(filter(None, map(NUMBER, value)), None)
-    return problem and f"{problem.split(' (allowed', 1)[0]} (allowed: a list of numbers)"
+    return TEXT(value) if isinstance(value, str) else _NUMBER_OR_TEXT(value)
 
 
 def TABLE(value: Any) -> Optional[str]:
-    return None if isinstance(value, Mapping) else f"{_a(value)} (allowed: a dict)"
+    return None if isinstance(value, Mapping) else f"a {type(value).__name__} (allowed: a dict)"
 
 
+NUMBER = _kind("a number", float, str, bytes)
+_NUMBER_OR_TEXT = _kind('a number, or text such as "2 mm"', float, bytes)
+TEXT = _kind("text", str.encode)
+TRUTH = _kind("True or False", bool)
+LIST = _kind("a list", iter, str, bytes)
+TEXTS = _each(TEXT, "a list of text")
+NUMBERS = _each(NUMBER, "a list of numbers")
 INTEGER = _whole(-(2**31), 2**31 - 1, "an integer")
 COUNT = _whole(-(2**63), 2**63 - 1, "an integer")
 INDEX = _whole(0, 2**63 - 1, "an integer from 0")
