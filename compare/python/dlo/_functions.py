@@ -72,16 +72,9 @@ def _si(value: Quantity, dimension: str) -> float:
 
 @checked()
 def solve(
-    scene: SceneLike,
-    model: Optional[str] = None,
-    samples: Optional[int] = None,
-    *,
-    equilibrium: Optional[int] = None,
-    near: Optional[Shape] = None,
-    time: Optional[float] = None,
-    materials: Optional[FileName] = None,
-    calibrated: Optional[Calibrated] = None,
-    **limits: Any,
+    scene: SceneLike, model: Optional[str] = None, samples: Optional[int] = None, *, equilibrium: Optional[int] = None,
+    near: Optional[Shape] = None, time: Optional[float] = None, materials: Optional[FileName] = None,
+    calibrated: Optional[Calibrated] = None, **limits: Any,
 ) -> _dlo.Solution:
     """Returns the shape of a scene's rod: `dlo solve`.
 
@@ -104,13 +97,8 @@ def solve(
 
 @checked()
 def solve_all(
-    scene: SceneLike,
-    samples: Optional[int] = None,
-    *,
-    time: Optional[float] = None,
-    materials: Optional[FileName] = None,
-    calibrated: Optional[Calibrated] = None,
-    **limits: Any,
+    scene: SceneLike, samples: Optional[int] = None, *, time: Optional[float] = None,
+    materials: Optional[FileName] = None, calibrated: Optional[Calibrated] = None, **limits: Any,
 ) -> _dlo.Equilibria:
     """Returns every equilibrium that the energy model finds, with its stability: `dlo solve --all`.
 
@@ -131,26 +119,12 @@ def check(
 
 @checked()
 def check(
-    scene: SceneLike,
-    points: Optional[Union[ArrayLike, FileName]] = None,
-    *,
-    arc_length: Optional[ArrayLike] = None,
-    tolerance: Optional[Quantity] = None,
-    measure: str = "rms",
-    min_seen: Optional[float] = None,
-    register: str = "known",
-    arc_lengths: str = "auto",
-    modulus: bool = True,
-    explain: bool = True,
-    motion: Optional[Union[ArrayLike, FileName]] = None,
-    dynamic: bool = False,
-    damping: Optional[float] = None,
-    drag: Optional[float] = None,
-    quadratic_drag: Optional[float] = None,
-    begin: Optional[float] = None,
-    frame_rate: Optional[float] = None,
-    materials: Optional[FileName] = None,
-    calibrated: Optional[Calibrated] = None,
+    scene: SceneLike, points: Optional[Union[ArrayLike, FileName]] = None, *, arc_length: Optional[ArrayLike] = None,
+    tolerance: Optional[Quantity] = None, measure: str = "rms", min_seen: Optional[float] = None,
+    register: str = "known", arc_lengths: str = "auto", modulus: bool = True, explain: bool = True,
+    motion: Optional[Union[ArrayLike, FileName]] = None, dynamic: bool = False, damping: Optional[float] = None,
+    drag: Optional[float] = None, quadratic_drag: Optional[float] = None, begin: Optional[float] = None,
+    frame_rate: Optional[float] = None, materials: Optional[FileName] = None, calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> Union[_dlo.Check, MotionCheck]:
     """Compares points with the shape that the scene's rod would take: `dlo check`.
@@ -188,14 +162,8 @@ def check(
 
 @checked()
 def compare(
-    scene: SceneLike,
-    *,
-    modulus: bool = True,
-    plan: bool = False,
-    time: Optional[float] = None,
-    materials: Optional[FileName] = None,
-    calibrated: Optional[Calibrated] = None,
-    **limits: Any,
+    scene: SceneLike, *, modulus: bool = True, plan: bool = False, time: Optional[float] = None,
+    materials: Optional[FileName] = None, calibrated: Optional[Calibrated] = None, **limits: Any,
 ) -> _dlo.Comparison:
     """Compares the force model with the energy model and states the causes of their distance: `dlo compare`.
 
@@ -207,14 +175,8 @@ def compare(
 
 @checked()
 def plan(
-    scene: SceneLike,
-    *,
-    target: float = 1e-3,
-    gripper_speed: float = 0.0,
-    time_limit: float = 5.0,
-    time: Optional[float] = None,
-    materials: Optional[FileName] = None,
-    calibrated: Optional[Calibrated] = None,
+    scene: SceneLike, *, target: float = 1e-3, gripper_speed: float = 0.0, time_limit: float = 5.0,
+    time: Optional[float] = None, materials: Optional[FileName] = None, calibrated: Optional[Calibrated] = None,
 ) -> Plan:
     """Plans how to solve a scene, with bounds of the effects that are neglected: `dlo solve --explain`.
 
@@ -236,32 +198,14 @@ _CALIBRATED_QUANTITIES = {
 
 @checked(holdout=LIST)
 def calibrate(
-    scenes: Union[SceneLike, Iterable[SceneLike]],
-    shapes: Optional[Union[Shape, Sequence[Shape]]] = None,
-    *,
-    holdout: Iterable[Union[SceneLike, Shape]] = (),
-    target: Optional[float] = None,
-    points: Optional[int] = None,
-    register: str = "known",
-    arc_lengths: str = "auto",
-    density: bool = False,
-    torsional_stiffness: bool = False,
-    natural_curvature: int = 0,
-    clamp_angles: Quantity = 0.0,
-    clamp_positions: Quantity = 0.0,
-    clamp_rolls: Quantity = 0.0,
-    same_clamps: bool = False,
-    clamp_scatter: Quantity = 0.0,
-    camera_tilt: Quantity = 0.0,
-    predict: bool = False,
-    options: Optional[str] = None,
-    noise: Optional[Quantity] = None,
-    segments: int = 0,
-    segment_lengths: Optional[Sequence[float]] = None,
-    motion: Optional[Union[ArrayLike, FileName]] = None,
-    time: Optional[float] = None,
-    materials: Optional[FileName] = None,
-    calibrated: Optional[Calibrated] = None,
+    scenes: Union[SceneLike, Iterable[SceneLike]], shapes: Optional[Union[Shape, Sequence[Shape]]] = None, *,
+    holdout: Iterable[Union[SceneLike, Shape]] = (), target: Optional[float] = None, points: Optional[int] = None,
+    register: str = "known", arc_lengths: str = "auto", density: bool = False, torsional_stiffness: bool = False,
+    natural_curvature: int = 0, clamp_angles: Quantity = 0.0, clamp_positions: Quantity = 0.0,
+    clamp_rolls: Quantity = 0.0, same_clamps: bool = False, clamp_scatter: Quantity = 0.0, camera_tilt: Quantity = 0.0,
+    predict: bool = False, options: Optional[str] = None, noise: Optional[Quantity] = None, segments: int = 0,
+    segment_lengths: Optional[Sequence[float]] = None, motion: Optional[Union[ArrayLike, FileName]] = None,
+    time: Optional[float] = None, materials: Optional[FileName] = None, calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> Union[MaterialFit, ForceModelFit, MotionFit]:
     """Fits Young's modulus to measured shapes, or the force model's parameters to the rod: `dlo calibrate`.

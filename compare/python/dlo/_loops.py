@@ -32,11 +32,7 @@ class ForceModel(_dlo.ForceModel):
     """
 
     def __init__(
-        self,
-        scene: SceneLike,
-        points: Optional[ArrayLike] = None,
-        *,
-        grip_stiffness: Optional[float] = None,
+        self, scene: SceneLike, points: Optional[ArrayLike] = None, *, grip_stiffness: Optional[float] = None
     ) -> None:
         if grip_stiffness is not None:
             require("grip_stiffness", grip_stiffness, NUMBER)

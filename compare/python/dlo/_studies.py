@@ -49,13 +49,8 @@ def _axis(field: str, values: Union[str, Iterable[Any]]) -> tuple[str, Union[str
 
 @checked(vary=TABLE)
 def sweep(
-    scene: SceneLike,
-    vary: Mapping[str, Union[str, Iterable[Any]]],
-    *,
-    model: str = "energy",
-    threads: int = 0,
-    materials: Optional[FileName] = None,
-    **limits: Any,
+    scene: SceneLike, vary: Mapping[str, Union[str, Iterable[Any]]], *, model: str = "energy", threads: int = 0,
+    materials: Optional[FileName] = None, **limits: Any,
 ) -> dict[str, NDArray[Any]]:
     """Solves a scene with all combinations of the values of some fields: `dlo sweep`.
 
@@ -76,16 +71,8 @@ def sweep(
 
 @checked(max_steps=COUNT)
 def stability(
-    scene: Optional[SceneLike] = None,
-    *,
-    map: Optional[str] = None,
-    case: str = "",
-    steppers: Sequence[str] = (),
-    max_steps: Optional[int] = None,
-    columns: int = 16,
-    rows: int = 32,
-    map_steps: int = 20000,
-    threads: int = 0,
+    scene: Optional[SceneLike] = None, *, map: Optional[str] = None, case: str = "", steppers: Sequence[str] = (),
+    max_steps: Optional[int] = None, columns: int = 16, rows: int = 32, map_steps: int = 20000, threads: int = 0,
 ) -> Stability:
     """Tests the stability of the force model's steppers: `dlo stability`.
 
@@ -115,18 +102,9 @@ def bench(
 
 @checked()
 def regress(
-    scenes: Union[SceneLike, Iterable[SceneLike]],
-    baseline: FileName,
-    *,
-    update: bool = False,
-    model: str = "force",
-    relative: float = 0.01,
-    absolute: float = 1e-6,
-    tolerance: Optional[Quantity] = None,
-    programs: Sequence[str] = (),
-    time: Optional[float] = None,
-    materials: Optional[FileName] = None,
-    calibrated: Optional[Calibrated] = None,
+    scenes: Union[SceneLike, Iterable[SceneLike]], baseline: FileName, *, update: bool = False, model: str = "force",
+    relative: float = 0.01, absolute: float = 1e-6, tolerance: Optional[Quantity] = None, programs: Sequence[str] = (),
+    time: Optional[float] = None, materials: Optional[FileName] = None, calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> Regression:
     """Compares shape errors with a baseline under version control: `dlo regress`.
@@ -153,18 +131,9 @@ def regress(
 
 @checked()
 def suite(
-    run: Callable[[Scene, int], Any],
-    *,
-    name: Optional[str] = None,
-    scenes: Sequence[str] = (),
-    points: int = 16,
-    threads: int = 0,
-    time_limit: float = 60.0,
-    state: Optional[FileName] = None,
-    baseline: Optional[FileName] = None,
-    update: bool = False,
-    relative: float = 0.01,
-    absolute: float = 1e-6,
+    run: Callable[[Scene, int], Any], *, name: Optional[str] = None, scenes: Sequence[str] = (), points: int = 16,
+    threads: int = 0, time_limit: float = 60.0, state: Optional[FileName] = None, baseline: Optional[FileName] = None,
+    update: bool = False, relative: float = 0.01, absolute: float = 1e-6,
 ) -> ScoreCard:
     """Makes the score card of a simulator that is a function: `dlo suite --with`.
 
@@ -201,15 +170,8 @@ def suite(
 
 @checked()
 def modes(
-    scene: SceneLike,
-    *,
-    count: int = 6,
-    rate: float = 4000.0,
-    damping: float = 0.01,
-    samples: int = 41,
-    time: Optional[float] = None,
-    materials: Optional[FileName] = None,
-    calibrated: Optional[Calibrated] = None,
+    scene: SceneLike, *, count: int = 6, rate: float = 4000.0, damping: float = 0.01, samples: int = 41,
+    time: Optional[float] = None, materials: Optional[FileName] = None, calibrated: Optional[Calibrated] = None,
     **limits: Any,
 ) -> Modes:
     """Computes natural frequencies about a scene's shape: `dlo modes`.
@@ -225,22 +187,10 @@ def modes(
 
 @checked()
 def track(
-    scene: SceneLike,
-    *,
-    begin: Optional[float] = None,
-    end: Optional[float] = None,
-    frame_rate: Optional[float] = None,
-    obstacle_rate: Optional[float] = None,
-    step_rate: Optional[float] = None,
-    force: bool = True,
-    dynamic: bool = False,
-    damping: Optional[float] = None,
-    drag: Optional[float] = None,
-    quadratic_drag: Optional[float] = None,
-    samples: int = 41,
-    materials: Optional[FileName] = None,
-    calibrated: Optional[Calibrated] = None,
-    **limits: Any,
+    scene: SceneLike, *, begin: Optional[float] = None, end: Optional[float] = None, frame_rate: Optional[float] = None,
+    obstacle_rate: Optional[float] = None, step_rate: Optional[float] = None, force: bool = True, dynamic: bool = False,
+    damping: Optional[float] = None, drag: Optional[float] = None, quadratic_drag: Optional[float] = None,
+    samples: int = 41, materials: Optional[FileName] = None, calibrated: Optional[Calibrated] = None, **limits: Any,
 ) -> Track:
     """Follows the rod of a scene that moves, at rest at every time: `dlo track`.
 
