@@ -87,6 +87,7 @@ def test_every_field_can_be_set_and_read(steel):
         (steel, "gravity", (0, 0, "-9.81 m/s^2"), [0, 0, -9.81]),
         (steel.grippers[0], "position", numpy.array([0, 0.1, 0]), [0, 0.1, 0]),
         (steel.loads[0], "force", (0, 0, 1), [0, 0, 1]),
+        (dlo.Gripper(at=0), "cutoff", "5 Hz", 5),
         (steel.force_model, "points", 32, 32),
         (steel.force_model, "law", "hooke", "hooke"),
     ]:

@@ -4,6 +4,7 @@
 #include <pybind11/stl.h>
 
 #include <limits>
+#include <map>
 #include <sstream>
 
 #include "array.hpp"
@@ -22,6 +23,8 @@
 
 namespace dlo::python {
 namespace {
+
+using namespace py::literals;  // NOLINT(google-build-using-namespace): of names alone
 
 SharedScene scene_from(const compare::SceneSource& source, const MaterialsFile& materials) {
   SceneData data{compare::read_scene(source, materials_of(materials)), {}};
@@ -48,29 +51,18 @@ std::string toml_text(const py::dict& document) {
   return text.str();
 }
 
-double quantity(const std::string& text, const std::string& dimension) {
+/// Returns a quantity in SI units. @param unit  SI unit of its dimension; empty: a number
+double quantity(const std::string& text, const std::string& unit) {
   using compare::Dimension;
-  constexpr std::pair<const char*, Dimension> dimensions[] = {
-      {"number", Dimension::number},
-      {"length", Dimension::length},
-      {"angle", Dimension::angle},
-      {"force", Dimension::force},
-      {"density", Dimension::density},
-      {"torque", Dimension::torque},
-      {"force_per_length", Dimension::force_per_length},
-      {"acceleration", Dimension::acceleration},
-      {"velocity", Dimension::velocity},
-      {"curvature", Dimension::curvature},
-      {"foundation", Dimension::foundation},
-      {"section_stiffness", Dimension::section_stiffness},
-      {"joint_stiffness", Dimension::joint_stiffness},
-      {"mass", Dimension::mass},
-      {"mass_per_length", Dimension::mass_per_length},
-      {"twist", Dimension::twist}};
-  for (const auto& [name, value] : dimensions) {
-    if (dimension == name) return compare::parse_quantity(text, value);
-  }
-  throw std::out_of_range("no dimension " + dimension);
+  static const auto dimensions = [] {
+    std::map<std::string, Dimension> of_units = {{"", Dimension::number}};
+    for (int i = 1; i <= static_cast<int>(Dimension::frequency); ++i) {
+      const auto dimension = static_cast<Dimension>(i);
+      of_units[compare::unit_names(dimension).front()] = dimension;
+    }
+    return of_units;
+  }();
+  return compare::parse_quantity(text, dimensions.at(unit));
 }
 
 py::dict settings_of(const SceneData& data) {
@@ -80,7 +72,7 @@ py::dict settings_of(const SceneData& data) {
   result["law"] = compare::to_string(settings.law);
   result["joint_law"] = settings.joint_law
                             ? py::object(py::str(compare::to_string(*settings.joint_law)))
-                            : py::object(py::none());
+                            : py::none();
   result["bookkeeping"] = compare::to_string(settings.bookkeeping);
   result["stepper"] = compare::to_string(settings.stepper);
   result["bending_rule"] = compare::to_string(settings.bending_rule);
@@ -96,12 +88,10 @@ py::dict settings_of(const SceneData& data) {
 
 py::dict rates_of(const SceneData& data) {
   const compare::TrackRates& rates = data.scene.track;
-  py::dict result;
-  result["frame_rate"] = rates.frames;
-  result["obstacle_rate"] = rates.obstacles;
-  result["step_rate"] = rates.steps;
-  result["start"] = data.scene.start ? py::object(py::str(data.scene.start->file)) : py::none();
-  return result;
+  std::optional<std::string> start;
+  if (data.scene.start) start = data.scene.start->file;
+  return py::dict("frame_rate"_a = rates.frames, "obstacle_rate"_a = rates.obstacles,
+                  "step_rate"_a = rates.steps, "start"_a = start);
 }
 
 SharedScene scene_at(const SharedScene& data, double time) {
@@ -134,7 +124,6 @@ py::dict table_keys() {
 py::list material_list(const MaterialsFile& file) {
   py::list list;
   for (const compare::Material& material : materials_of(file)) {
-    using namespace py::literals;  // NOLINT(google-build-using-namespace): of names alone
     list.append(py::dict("name"_a = material.name, "youngs_modulus"_a = material.youngs_modulus,
                          "density"_a = material.density, "source"_a = material.source));
   }

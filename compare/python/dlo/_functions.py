@@ -12,7 +12,8 @@ from ._arguments import LIST, checked, require
 from ._documents import ForceModelFit, MaterialFit, MotionCheck, MotionFit, Plan
 from ._errors import InputError
 from ._files import FileName, file_name
-from ._scene import Calibrated, Quantity, Scene, SceneLike, data_of
+from ._parts import Quantity, number_of
+from ._scene import Calibrated, Scene, SceneLike, data_of
 
 __all__ = ["calibrate", "check", "compare", "plan", "solve", "solve_all"]
 
@@ -64,10 +65,6 @@ def _shapes(shapes: Any) -> list[Any]:
     require("shapes", shapes, LIST)
     pair = isinstance(shapes, tuple) and [_dimensions(part) for part in shapes] == [2, 1]
     return [shapes] if pair else list(shapes)
-
-
-def _si(value: Quantity, dimension: str) -> float:
-    return _dlo.quantity(value, dimension) if isinstance(value, str) else float(value)
 
 
 @checked()
@@ -187,12 +184,8 @@ def plan(
 
 
 _CALIBRATED_QUANTITIES = {
-    "clamp_angles": "angle",
-    "clamp_positions": "length",
-    "clamp_rolls": "angle",
-    "clamp_scatter": "angle",
-    "camera_tilt": "angle",
-    "noise": "length",
+    "clamp_angles": "rad", "clamp_positions": "m", "clamp_rolls": "rad", "clamp_scatter": "rad", "camera_tilt": "rad",
+    "noise": "m",
 }
 
 
@@ -241,8 +234,6 @@ def calibrate(
     if shapes is None:
         held_out = [data_of(cast(SceneLike, scene), materials, time, calibrated) for scene in holdout]
         return ForceModelFit(*_dlo.calibrate_force_model(data, held_out, points, target, limits))
-    for key, dimension in _CALIBRATED_QUANTITIES.items():
-        if what[key] is not None:
-            what[key] = _si(what[key], dimension)
+    what.update((key, number_of(what[key], unit)) for key, unit in _CALIBRATED_QUANTITIES.items())
     what["holdout"] = list(map(_pair, holdout))
     return MaterialFit(*_dlo.calibrate_material(data, list(map(_pair, _shapes(shapes))), what, limits))

@@ -57,12 +57,12 @@ def copied(key: str, value: Any) -> Any:
         raise InputError(f"scene: {key}: a {type(value).__name__} (allowed: {allowed})", key) from None
 
 
-def number_of(value: Any, dimension: str) -> Any:
-    """Returns a value of a document in SI units; for a list an array of its numbers."""
+def number_of(value: Any, unit: str) -> Any:
+    """Returns a value of a document in this SI unit; for a list an array of its numbers."""
     if isinstance(value, str):
-        return _dlo.quantity(value, dimension)
+        return _dlo.quantity(value, unit)
     if isinstance(value, (list, tuple, numpy.ndarray)):
-        array = numpy.array([number_of(one, dimension) for one in value], dtype=float)
+        array = numpy.array([number_of(one, unit) for one in value], dtype=float)
         array.flags.writeable = False
         return array
     return None if value is None else float(value)
@@ -72,10 +72,10 @@ def _unit(value: Any) -> Any:
     if value is None:
         return None
     if isinstance(value, (list, tuple, numpy.ndarray)):
-        vector = number_of(value, "number")
+        vector = number_of(value, "")
         unit = vector / numpy.linalg.norm(vector)
     else:
-        angle = number_of(value, "angle")
+        angle = number_of(value, "rad")
         unit = numpy.array([math.cos(angle), math.sin(angle), 0.0])
     unit.flags.writeable = False
     return unit
@@ -102,9 +102,9 @@ class Field(Attribute[Value]):
         self.key = self.key or name
 
 
-def quantity(dimension: str, doc: str, key: str = "") -> Any:
-    """Returns a field whose value is the given one in SI units; None: it is not given."""
-    return Field(lambda owner, key: number_of(owner._table.get(key), dimension), doc, key)
+def quantity(unit: str, doc: str, key: str = "") -> Any:
+    """Returns a field whose value is the given one in this SI unit; None: it is not given."""
+    return Field(lambda owner, key: number_of(owner._table.get(key), unit), doc, key)
 
 
 def given(doc: str, default: Any = None) -> Any:
@@ -167,27 +167,27 @@ class Gripper(Part):
     """A clamp or a pin that holds a point of the rod; clamp() and pin() make one."""
 
     _name = "gripper"
-    at = quantity("length", "Arc length that is held [m].")
-    position = quantity("length", "Position of that point [m], shape (3,).")
+    at = quantity("m", "Arc length that is held [m].")
+    position = quantity("m", "Position of that point [m], shape (3,).")
     hold = given('"clamp" or "pin".', "clamp")
     direction = _direction("Direction of a clamp: unit vector along growing arc length, shape (3,).")
-    roll = quantity("angle", "Rotation about the direction that the clamp holds [rad].")
-    frame = quantity("number", "Rows d1, d2, d3 that the clamp holds, shape (3, 3).")
-    quaternion = quantity("number", "Frame as a quaternion [w, x, y, z], shape (4,).")
+    roll = quantity("rad", "Rotation about the direction that the clamp holds [rad].")
+    frame = quantity("", "Rows d1, d2, d3 that the clamp holds, shape (3, 3).")
+    quaternion = quantity("", "Frame as a quaternion [w, x, y, z], shape (4,).")
     turns = given("Whole turns that are added to frame or quaternion.")
     pose = given("Poses of its motion: tables of time, position and, of clamps, direction and roll.")
     trajectory = given("Name of a CSV file of poses or two markers, in the scene's folder.")
-    cutoff = quantity("frequency", "Frequency above which motion is removed from the file's poses [Hz].")
+    cutoff = quantity("Hz", "Frequency above which motion is removed from the file's poses [Hz].")
 
 
 class Load(Part):
     """A force or the weight of a mass, and a couple, in space or rotating with the rod; load() makes one."""
 
     _name = "load"
-    at = quantity("length", "Arc length [m].")
-    force = quantity("force", "Force [N], shape (3,).")
-    mass = quantity("mass", "Mass of a body that hangs there [kg], instead of a force.")
-    torque = quantity("torque", "Couple [N m], shape (3,).")
+    at = quantity("m", "Arc length [m].")
+    force = quantity("N", "Force [N], shape (3,).")
+    mass = quantity("kg", "Mass of a body that hangs there [kg], instead of a force.")
+    torque = quantity("N m", "Couple [N m], shape (3,).")
     follows = given("Whether both have components along d1, d2, tangent, and rotate with them.")
 
 
@@ -195,41 +195,41 @@ class DistributedLoad(Part):
     """A force per length that keeps its direction; distributed_load() makes one."""
 
     _name = "distributed_load"
-    start = quantity("length", "Where it begins [m] (`from` in a file); None: at 0.", "from")
-    end = quantity("length", "Where it ends [m] (`to` in a file); None: at the rod's end.", "to")
-    force_per_length = quantity("force_per_length", "Values [N/m], shape (3,); or (K, 3), from start to end.")
+    start = quantity("m", "Where it begins [m] (`from` in a file); None: at 0.", "from")
+    end = quantity("m", "Where it ends [m] (`to` in a file); None: at the rod's end.", "to")
+    force_per_length = quantity("N/m", "Values [N/m], shape (3,); or (K, 3), from start to end.")
 
 
 class Obstacle(Part):
     """A body that the rod cannot pass; obstacle() makes one."""
 
     _name = "obstacle"
-    point = quantity("length", "Point of a plane, or centre of a body [m], shape (3,).")
+    point = quantity("m", "Point of a plane, or centre of a body [m], shape (3,).")
     shape = given('"plane", "sphere", "cylinder", "capsule", "box".', "plane")
     normal = _direction("Normal of a plane, to the free side; for a box the direction of an edge.")
     axis = _direction("Axis of a cylinder or a capsule; for a box the direction of an edge.")
-    radius = quantity("length", "Radius [m]; for a box that of its edges.")
-    length = quantity("length", "Length of a capsule between the centres of its caps [m].")
-    size = quantity("length", "Edges of a box [m], shape (3,).")
-    stiffness = quantity("foundation", "Force per depth and length [N/m^2]; None: rigid.")
-    friction = quantity("number", "Coulomb's coefficient [-]; no model has it.")
+    radius = quantity("m", "Radius [m]; for a box that of its edges.")
+    length = quantity("m", "Length of a capsule between the centres of its caps [m].")
+    size = quantity("m", "Edges of a box [m], shape (3,).")
+    stiffness = quantity("N/m^2", "Force per depth and length [N/m^2]; None: rigid.")
+    friction = quantity("", "Coulomb's coefficient [-]; no model has it.")
     touches = given('"surface" or "axis" of the rod.', "surface")
     pose = given("Poses of its motion: tables of time and point.")
     trajectory = given("Name of a CSV file of poses, in the scene's folder.")
-    cutoff = quantity("frequency", "Frequency above which motion is removed from the file's poses [Hz].")
+    cutoff = quantity("Hz", "Frequency above which motion is removed from the file's poses [Hz].")
 
 
 class Section(Part):
     """An interval of the rod with other properties; section() makes one."""
 
     _name = "section"
-    start = quantity("length", "Where it begins [m] (`from` in a file).", "from")
-    end = quantity("length", "Where it ends [m] (`to` in a file).", "to")
-    bending_stiffness = quantity("section_stiffness", "EI [N m^2].")
-    mass_per_length = quantity("mass_per_length", "rho A [kg/m].")
-    torsional_stiffness = quantity("section_stiffness", "GJ [N m^2].")
-    natural_curvature = quantity("curvature", "Curvature of its stress-free shape [1/m]: k or [x, y].")
-    natural_twist = quantity("twist", "Twist of its stress-free shape [rad/m].")
+    start = quantity("m", "Where it begins [m] (`from` in a file).", "from")
+    end = quantity("m", "Where it ends [m] (`to` in a file).", "to")
+    bending_stiffness = quantity("N m^2", "EI [N m^2].")
+    mass_per_length = quantity("kg/m", "rho A [kg/m].")
+    torsional_stiffness = quantity("N m^2", "GJ [N m^2].")
+    natural_curvature = quantity("1/m", "Curvature of its stress-free shape [1/m]: k or [x, y].")
+    natural_twist = quantity("rad/m", "Twist of its stress-free shape [rad/m].")
 
 
 class Settings(Part):
@@ -267,10 +267,10 @@ class Medium(Settings):
     """Medium in which the rod is immersed, with buoyancy, and with drag if it streams: scene.medium."""
 
     _name = "medium"
-    density = quantity("density", "Density [kg/m^3]; None: no buoyancy.")
-    velocity = quantity("velocity", "Velocity of a steady stream [m/s], shape (3,); None: at rest.")
-    normal_drag = quantity("number", "Coefficient across the rod [-].")
-    tangential_drag = quantity("number", "Coefficient along the rod [-]; None: 0.")
+    density = quantity("kg/m^3", "Density [kg/m^3]; None: no buoyancy.")
+    velocity = quantity("m/s", "Velocity of a steady stream [m/s], shape (3,); None: at rest.")
+    normal_drag = quantity("", "Coefficient across the rod [-].")
+    tangential_drag = quantity("", "Coefficient along the rod [-]; None: 0.")
 
 
 class TrackRates(Settings):

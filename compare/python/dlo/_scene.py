@@ -25,13 +25,10 @@ Calibrated = Union[MaterialFit, MotionFit, FileName]
 _ROD_KEYS = tuple(_dlo.scene_keys["rod"])
 _TOP_KEYS = ("name", "gravity")
 _PARTS: dict[str, type[Part]] = {
-    "grippers": Gripper,
-    "loads": Load,
-    "distributed_loads": DistributedLoad,
-    "obstacles": Obstacle,
-    "sections": Section,
+    "grippers": Gripper, "loads": Load, "distributed_loads": DistributedLoad, "obstacles": Obstacle, "sections": Section
 }
 _SETTINGS: dict[str, type[Settings]] = {"force_model": ForceModelSettings, "medium": Medium, "track": TrackRates}
+
 
 def _from_reader(doc: str, derived: bool = False) -> Any:
     """Returns a field whose value the reader gives in SI units."""
@@ -39,7 +36,7 @@ def _from_reader(doc: str, derived: bool = False) -> Any:
 
 
 def _own(doc: str) -> Any:
-    """Returns a field whose value are the scene's own parts or settings."""
+    """Returns a field that holds the parts or settings that belong to the scene."""
     return Field(lambda scene, key: scene._parts[key], doc)
 
 
@@ -177,8 +174,7 @@ class Scene(Strict):
     def document(self, points: Optional[int] = None) -> dict[str, Any]:
         """Returns the scene in SI units with the quantities that follow from it: `dlo scene --format json`.
         points: N of the polygon in "force_model"; None: the scene's."""
-        document: dict[str, Any] = json.loads(_dlo.scene_document(self._data, points))
-        return document
+        return json.loads(_dlo.scene_document(self._data, points))
 
     def copy(self) -> "Scene":
         """Returns an equal scene that can be changed independently."""
@@ -195,8 +191,9 @@ class Scene(Strict):
 
     def _put(self, key: str, value: Any) -> None:
         if key in _PARTS:
-            require(key, () if value is None else value, LIST)
-            self._parts[key] = tuple(self._adopted(key, _PARTS[key], part) for part in value or ())
+            parts = () if value is None else value
+            require(key, parts, LIST)
+            self._parts[key] = tuple(self._adopted(key, _PARTS[key], part) for part in parts)
         elif key in _SETTINGS:
             self._parts[key] = self._settings_of(key, value)
         elif key in _ROD_KEYS or key in _TOP_KEYS:
@@ -232,13 +229,13 @@ class Scene(Strict):
     bending_stiffness = _from_reader("EI [N m^2], given or of the material; about d1 if there are two.")
     mass_per_length = _from_reader("rho A [kg/m], given or of the material.")
     axial_stiffness = _from_reader("EA [N], given, of the material, or assumed.")
-    torsional_stiffness = quantity("section_stiffness", "GJ as given [N m^2], or None.")
-    natural_curvature = quantity("curvature", "Natural curvature as given [1/m]: k, [x, y], or rows of such; or None.")
-    natural_twist = quantity("twist", "Natural twist as given [rad/m], or None.")
+    torsional_stiffness = quantity("N m^2", "GJ as given [N m^2], or None.")
+    natural_curvature = quantity("1/m", "Natural curvature as given [1/m]: k, [x, y], or rows of such; or None.")
+    natural_twist = quantity("rad/m", "Natural twist as given [rad/m], or None.")
     rest_shape_error = _from_reader("Largest distance of rest_shape's points from the arcs [m]; NaN without.", True)
     rest_shape_angle = _from_reader("Largest angle of a given d1 from that of the arcs [rad]; NaN without.", True)
-    joint_stiffness = quantity("joint_stiffness", "Stiffness of a chain's joints as given [N m/rad], or None.")
-    joint_spacing = quantity("length", "Distance of a chain's joints as given [m], or None.")
+    joint_stiffness = quantity("N m/rad", "Stiffness of a chain's joints as given [N m/rad], or None.")
+    joint_spacing = quantity("m", "Distance of a chain's joints as given [m], or None.")
     grippers = _own("A tuple of Gripper; set any iterable of them.")
     loads = _own("A tuple of Load.")
     distributed_loads = _own("A tuple of DistributedLoad.")
