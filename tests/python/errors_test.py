@@ -222,6 +222,8 @@ def test_arguments_of_a_wrong_kind_are_named(cable):
         (lambda: dlo.solve(cable, model=3), r"model = 3: a int \(allowed: text\)"),
         (lambda: dlo.solve(cable, model="\ud800"), r"model = .*half a character \(allowed: Unicode"),
         (lambda: dlo.solve(cable, max_steps=1.5), r"max_steps = 1.5: a float \(allowed: an integer"),
+        (lambda: dlo.solve(cable, terms=2**70), r"terms = 1180591620717411303424: out of range \(allowed"),
+        (lambda: dlo.solve(cable, time_limit="1 s"), r"time_limit = '1 s': a str \(allowed: a number"),
         (lambda: dlo.solve(3), r"scene: a int \(allowed: a dlo.Scene, or the name of a scene file"),
         (lambda: dlo.check(cable, points, modulus=points), r"modulus = .*\(allowed: True or False"),
         (lambda: dlo.calibrate(3), r"scenes = 3: a int \(allowed: a list"),

@@ -2,6 +2,7 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 #include "array.hpp"
@@ -26,12 +27,18 @@ using compare::Solution;
 
 template <typename Number>
 Number positive(const std::string& name, py::handle value) {
-  const auto number = value.cast<double>();
-  if (!(number > 0) || !(number <= 1e12)) {
-    throw compare::InputError(
-        fmt::format("{} = {:g}: out of range (allowed: > 0, up to 1e12)", name, number));
+  std::string problem = "out of range (allowed: > 0, up to 1e12)";
+  try {
+    const auto number = value.cast<Number>();
+    if (number > 0 && static_cast<double>(number) <= 1e12) return number;
+  } catch (const py::cast_error&) {
+    if (PyLong_Check(value.ptr()) == 0) {
+      problem = fmt::format("a {} (allowed: {})", Py_TYPE(value.ptr())->tp_name,
+                            std::is_integral_v<Number> ? "an integer" : "a number");
+    }
   }
-  return value.cast<Number>();
+  throw compare::InputError(
+      fmt::format("{} = {}: {}", name, py::repr(value).cast<std::string>(), problem));
 }
 
 compare::Plan plan_of(const compare::Scene& scene, double time_limit) {
@@ -40,50 +47,36 @@ compare::Plan plan_of(const compare::Scene& scene, double time_limit) {
   return compare::make_plan(scene, options);
 }
 
-/// Solution with the data that its document needs.
-struct SolvedScene : Result {
-  SolvedScene(SharedScene from, Solution found, double limit)
-      : scene(std::move(from)), solution(std::move(found)), time_limit(limit) {}
+/// Solution or AllSolutions with the data that their documents need.
+template <typename Found>
+struct Solved : Result {
+  Solved(SharedScene from, Found result, double limit)
+      : scene(std::move(from)), found(std::move(result)), time_limit(limit) {}
 
+  static constexpr bool is_one = std::is_same_v<Found, Solution>;
   [[nodiscard]] std::string text() const override {
-    return cli::solution_text(solution, scene->scene);
+    if constexpr (is_one) return cli::solution_text(found, scene->scene);
+    if constexpr (!is_one) return cli::equilibria_text(found, scene->scene);
   }
   [[nodiscard]] std::string json() const override {
     return run_long([&](Signals& /*signals*/) {
-      return cli::json_text(
-          cli::solution_json(solution, scene->scene, plan_of(scene->scene, time_limit)));
+      const compare::Plan plan = plan_of(scene->scene, time_limit);
+      if constexpr (is_one) return cli::json_text(cli::solution_json(found, scene->scene, plan));
+      if constexpr (!is_one) return cli::json_text(cli::equilibria_json(found, scene->scene, plan));
     });
   }
   [[nodiscard]] compare::Drawing drawing() const override {
-    return compare::solution_drawing(scene->scene, {solution});
+    if constexpr (is_one) return compare::solution_drawing(scene->scene, {found});
+    if constexpr (!is_one) return compare::solution_drawing(scene->scene, found.solutions);
   }
 
   SharedScene scene;
-  Solution solution;
-  double time_limit;  ///< limit of the solve [s]
-};
-
-struct SolvedStates : Result {
-  SolvedStates(SharedScene from, compare::AllSolutions found, double limit)
-      : scene(std::move(from)), all(std::move(found)), time_limit(limit) {}
-
-  [[nodiscard]] std::string text() const override {
-    return cli::equilibria_text(all, scene->scene);
-  }
-  [[nodiscard]] std::string json() const override {
-    return run_long([&](Signals& /*signals*/) {
-      return cli::json_text(
-          cli::equilibria_json(all, scene->scene, plan_of(scene->scene, time_limit)));
-    });
-  }
-  [[nodiscard]] compare::Drawing drawing() const override {
-    return compare::solution_drawing(scene->scene, all.solutions);
-  }
-
-  SharedScene scene;
-  compare::AllSolutions all;
+  Found found;
   double time_limit;  ///< limit of each solve [s]
 };
+
+using SolvedScene = Solved<Solution>;
+using SolvedStates = Solved<compare::AllSolutions>;
 
 /// Returns equal arc lengths; for 0 an empty list, so that the model chooses them.
 std::vector<double> samples_of(const SharedScene& scene, int count) {
@@ -121,10 +114,10 @@ std::shared_ptr<SolvedScene> solve(const SharedScene& scene, const std::string& 
     return compare::solve(scene->scene, model, options, s);
   });
   const auto solved = std::make_shared<SolvedScene>(scene, std::move(found), options.time_limit);
-  if (!energy_model::succeeded(solved->solution.status) &&
-      !compare::is_balance_alone(scene->scene, solved->solution)) {
+  if (!energy_model::succeeded(solved->found.status) &&
+      !compare::is_balance_alone(scene->scene, solved->found)) {
     raise_convergence(fmt::format("{}: the {} model: {}", scene->scene.file,
-                                  compare::to_string(model), solved->solution.message),
+                                  compare::to_string(model), solved->found.message),
                       py::cast(solved));
   }
   return solved;
@@ -141,16 +134,16 @@ std::shared_ptr<SolvedStates> solve_all(const SharedScene& scene, int samples,
 }
 
 /// Binds a view of vectors, one for each of the solution's grippers or obstacles.
-/// @param vector  returns the vector of one of them
+/// @param vector  returns a pointer to the vector of one of them
 template <typename Class, typename Loads, typename Vector>
-void bind_rows(Class& bound, const char* name, Loads Solution::*loads, const Vector& vector,
-               const char* words) {
+void bind_rows(Class& bound, const char* name, Loads Solution::*loads, const char* words,
+               const Vector& vector) {
   bound.def_property_readonly(
       name,
       [loads, vector](const py::object& self) {
-        const Loads& all = self.cast<const SolvedScene&>().solution.*loads;
+        const Loads& all = self.cast<const SolvedScene&>().found.*loads;
         constexpr py::ssize_t stride = sizeof(typename Loads::value_type) / sizeof(double);
-        const double* first = all.empty() ? nullptr : vector(all.front()).data();
+        const double* first = all.empty() ? nullptr : vector(all.front())->data();
         return rows_view(first, static_cast<py::ssize_t>(all.size()), self, stride);
       },
       words);
@@ -158,52 +151,46 @@ void bind_rows(Class& bound, const char* name, Loads Solution::*loads, const Vec
 
 template <typename Class>
 void bind_arrays(Class& bound) {
-  using S = const SolvedScene&;
-  bind_array(
-      bound, "arc_length", [](S s) -> const auto& { return s.solution.shape.arc_length; },
-      "Arc lengths of the points [m], shape (M,), read only.");
-  bind_array(
-      bound, "points", [](S s) -> const auto& { return s.solution.shape.points; },
-      "Positions [m], shape (M, 3), read only.");
-  bind_array(
-      bound, "curvature", [](S s) -> const auto& { return s.solution.curvature; },
-      "Curvature at the points [1/m], shape (M,), read only.");
-  bind_array(
-      bound, "tension", [](S s) -> const auto& { return s.solution.tension; },
-      "Tension at the points, > 0 where the rod is pulled [N], shape (M,), or (0,) where\n"
-      "the model has none; read only.");
-  bind_array(
-      bound, "d1", [](S s) -> const auto& { return s.solution.d1; },
-      "First directors of the rod's frame [-], shape (M, 3), or (0, 3) where the model has\n"
-      "none; read only.");
-  bind_rows(
-      bound, "gripper_forces", &Solution::grippers,
-      [](const compare::GripperLoad& load) -> const auto& { return load.force; },
-      "Force that each gripper exerts on the rod [N], shape (G, 3), read only.");
-  bind_rows(
-      bound, "gripper_torques", &Solution::grippers,
-      [](const compare::GripperLoad& load) -> const auto& { return load.torque; },
-      "Torque that each gripper exerts on the rod, about the gripper's position [N m],\n"
-      "shape (G, 3), read only.");
-  bind_rows(
-      bound, "obstacle_forces", &Solution::obstacles,
-      [](const Eigen::Vector3d& force) -> const auto& { return force; },
-      "Force that each obstacle exerts on the rod [N], shape (O, 3), read only.");
+  bind_array(bound, "arc_length", "Arc lengths of the points [m], shape (M,), read only.",
+             [](const SolvedScene& s) { return &s.found.shape.arc_length; });
+  bind_array(bound, "points", "Positions [m], shape (M, 3), read only.",
+             [](const SolvedScene& s) { return &s.found.shape.points; });
+  bind_array(bound, "curvature", "Curvature at the points [1/m], shape (M,), read only.",
+             [](const SolvedScene& s) { return &s.found.curvature; });
+  bind_array(bound, "tension",
+             "Tension at the points, > 0 where the rod is pulled [N], shape (M,), or (0,) where\n"
+             "the model has none; read only.",
+             [](const SolvedScene& s) { return &s.found.tension; });
+  bind_array(bound, "d1",
+             "First directors of the rod's frame [-], shape (M, 3), or (0, 3) where the model has\n"
+             "none; read only.",
+             [](const SolvedScene& s) { return &s.found.d1; });
+  bind_rows(bound, "gripper_forces", &Solution::grippers,
+            "Force that each gripper exerts on the rod [N], shape (G, 3), read only.",
+            [](const compare::GripperLoad& load) { return &load.force; });
+  bind_rows(bound, "gripper_torques", &Solution::grippers,
+            "Torque that each gripper exerts on the rod, about the gripper's position [N m],\n"
+            "shape (G, 3), read only.",
+            [](const compare::GripperLoad& load) { return &load.torque; });
+  bind_rows(bound, "obstacle_forces", &Solution::obstacles,
+            "Force that each obstacle exerts on the rod [N], shape (O, 3), read only.",
+            [](const Eigen::Vector3d& force) { return &force; });
 }
 
 void bind_equilibria(py::module_& module) {
   py::class_<SolvedStates, Result, std::shared_ptr<SolvedStates>> equilibria(
       module, "Equilibria",
       "Every equilibrium that was found: a sequence of Solution, stable ones first, by energy.");
-  equilibria.def("__len__", [](const SolvedStates& solved) { return solved.all.solutions.size(); })
+  equilibria
+      .def("__len__", [](const SolvedStates& solved) { return solved.found.solutions.size(); })
       .def(
           "__getitem__",
           [](const SolvedStates& solved, py::ssize_t index) {
-            const auto size = static_cast<py::ssize_t>(solved.all.solutions.size());
+            const auto size = static_cast<py::ssize_t>(solved.found.solutions.size());
             if (index < 0) index += size;
             if (index < 0 || index >= size) throw py::index_error("no such equilibrium");
             return std::make_shared<SolvedScene>(
-                solved.scene, solved.all.solutions[static_cast<std::size_t>(index)],
+                solved.scene, solved.found.solutions[static_cast<std::size_t>(index)],
                 solved.time_limit);
           },
           py::arg("index"))
@@ -213,7 +200,7 @@ void bind_equilibria(py::module_& module) {
                  PySeqIter_New(self.ptr()));
            })
       .def_property_readonly(
-          "not_looked", [](const SolvedStates& solved) { return solved.all.omitted; },
+          "not_looked", [](const SolvedStates& solved) { return solved.found.omitted; },
           "Searches for equilibria that were incomplete or not made.");
 }
 
@@ -224,17 +211,13 @@ compare::SolveOptions solve_options(const py::dict& given) {
   for (const auto& [key, value] : given) {
     if (value.is_none()) continue;
     const auto name = key.cast<std::string>();
-    if (name == "time_limit") {
-      options.time_limit = positive<double>(name, value);
-    } else if (name == "rest_tolerance") {
-      options.rest_tolerance = positive<double>(name, value);
-    } else if (name == "max_steps") {
-      options.max_steps = positive<long>(name, value);
-    } else if (name == "max_evaluations") {
-      options.max_evaluations = positive<int>(name, value);
-    } else if (name == "terms") {
-      options.terms = positive<int>(name, value);
-    } else {
+    const auto set = [&, &value = value](const char* own, auto& number) {
+      if (name == own) number = positive<std::remove_cvref_t<decltype(number)>>(name, value);
+      return name == own;
+    };
+    if (!set("time_limit", options.time_limit) && !set("terms", options.terms) &&
+        !set("max_evaluations", options.max_evaluations) && !set("max_steps", options.max_steps) &&
+        !set("rest_tolerance", options.rest_tolerance)) {
       throw compare::InputError(name +
                                 ": no such limit (allowed: time_limit, terms, "
                                 "max_evaluations, max_steps, rest_tolerance)");
@@ -257,7 +240,7 @@ void bind_solve(py::module_& module) {
       "Arrays are views into it, read only; they keep it alive.");
   bind_arrays(solution);
   const auto of = [](const SolvedScene& solved) {
-    return compare::SolvedShape{solved.scene->scene, solved.solution};
+    return compare::SolvedShape{solved.scene->scene, solved.found};
   };
   bind_fields(solution, compare::solution_fields(), of);
   bind_fields(solution, compare::shape_numbers(), of);

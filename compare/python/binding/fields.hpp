@@ -27,14 +27,14 @@ using NumberDict = Typed<py::dict, "dict[str, float]">;
 }
 
 /// Binds an array as an attribute: a view into the object, which it keeps alive.
-/// @param of  returns the numbers or points of an object of the class
+/// @param of  returns a pointer to the numbers or points of an object of the class
 template <typename Object, typename... Options, typename Of>
-void bind_array(py::class_<Object, Options...>& bound, const char* name, const Of& of,
-                const char* words) {
+void bind_array(py::class_<Object, Options...>& bound, const char* name, const char* words,
+                const Of& of) {
   bound.def_property_readonly(
       name,
       [of](const py::object& self) {
-        const auto& values = of(self.cast<const Object&>());
+        const auto& values = *of(self.cast<const Object&>());
         if constexpr (std::is_same_v<std::remove_cvref_t<decltype(values)>, std::vector<double>>) {
           return values_view(values, self);
         } else {

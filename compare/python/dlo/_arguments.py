@@ -71,14 +71,6 @@ INTEGER = _whole(-(2**31), 2**31 - 1, "an integer")
 COUNT = _whole(-(2**63), 2**63 - 1, "an integer")
 INDEX = _whole(0, 2**63 - 1, "an integer from 0")
 
-_LIMITS = {
-    "time_limit": NUMBER,
-    "rest_tolerance": NUMBER,
-    "terms": INTEGER,
-    "max_evaluations": INTEGER,
-    "max_steps": COUNT,
-}
-
 
 def require(key: str, value: Any, kind: Kind) -> None:
     """Raises InputError with key, value and what is allowed, unless the value is of the kind."""
@@ -129,10 +121,6 @@ def checked(**kinds: Kind) -> Callable[[Function], Function]:
                     continue
                 require(key, given[key], kind)
                 given[key] = _CONVERTED.get(kind, lambda value: value)(given[key])
-            limits = given.get("limits", {})
-            for key, kind in _LIMITS.items():
-                if limits.get(key) is not None:
-                    require(key, limits[key], kind)
             return function(*bound.args, **bound.kwargs)
 
         return call  # type: ignore[return-value]
