@@ -9,32 +9,22 @@
 namespace dlo::python {
 namespace {
 
-constexpr auto number = static_cast<py::ssize_t>(sizeof(double));
-
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 std::string shape_text(const py::array& array) {
-  std::string text;
-  for (py::ssize_t i = 0; i < array.ndim(); ++i) {
-    text += fmt::format("{}{}", i == 0 ? "" : ", ", array.shape(i));
-  }
-  return fmt::format("({}{})", text, array.ndim() == 1 ? "," : "");
+  return py::str(array.attr("shape")).cast<std::string>();
 }
 
 /// Largest number of elements that any function accepts, checked before an array is copied.
 constexpr py::ssize_t most_numbers = 3'000'000;
 
-/// Refuses the name of a file in place of an array. Functions that read files have accepted it
-/// before.
-void refuse_file_name(py::handle values, const std::string& name) {
-  if (!py::isinstance<py::str>(values) && !py::hasattr(values, "__fspath__")) return;
-  throw compare::InputError(fmt::format(
-      "{0}: the name of a file (allowed: an array, such as numpy.loadtxt({1}, delimiter=\",\"))",
-      name, py::repr(values).cast<std::string>()));
-}
-
 Numbers numbers_from(py::handle values, const std::string& name) {
-  refuse_file_name(values, name);
+  // Functions that read files have accepted the name of a file before.
+  if (py::isinstance<py::str>(values) || py::hasattr(values, "__fspath__")) {
+    throw compare::InputError(fmt::format(
+        "{0}: the name of a file (allowed: an array, such as numpy.loadtxt({1}, delimiter=\",\"))",
+        name, py::repr(values).cast<std::string>()));
+  }
   if (py::isinstance<py::array>(values)) {
     const py::ssize_t size = py::reinterpret_borrow<py::array>(values).size();
     if (size > most_numbers) {
@@ -50,7 +40,13 @@ Numbers numbers_from(py::handle values, const std::string& name) {
   return array;
 }
 
-py::array read_only(py::array view) {
+/// Returns a read-only array of numbers at these strides [numbers]; without an owner a copy.
+py::array numbers_view(const double* first, const std::vector<py::ssize_t>& shape,
+                       std::vector<py::ssize_t> strides, py::handle owner) {
+  for (py::ssize_t& stride : strides) stride *= static_cast<py::ssize_t>(sizeof(double));
+  const bool empty = shape.front() == 0;
+  py::array view(py::dtype::of<double>(), shape, strides, empty ? nullptr : first,
+                 empty ? py::handle() : owner);
   view.attr("setflags")(py::arg("write") = false);
   return view;
 }
@@ -58,9 +54,7 @@ py::array read_only(py::array view) {
 }  // namespace
 
 py::array rows_view(const double* first, py::ssize_t rows, py::handle owner, py::ssize_t stride) {
-  return read_only(py::array(py::dtype::of<double>(), {rows, py::ssize_t{3}},
-                             {stride * number, number}, rows == 0 ? nullptr : first,
-                             rows == 0 ? py::handle() : owner));
+  return numbers_view(first, {rows, 3}, {stride, 1}, owner);
 }
 
 py::array points_view(const Eigen::Matrix3Xd& points, py::handle owner) {
@@ -68,14 +62,11 @@ py::array points_view(const Eigen::Matrix3Xd& points, py::handle owner) {
 }
 
 py::array values_view(const std::vector<double>& values, py::handle owner) {
-  const auto size = static_cast<py::ssize_t>(values.size());
-  return read_only(py::array(py::dtype::of<double>(), {size}, {number},
-                             values.empty() ? nullptr : values.data(),
-                             values.empty() ? py::handle() : owner));
+  return numbers_view(values.data(), {static_cast<py::ssize_t>(values.size())}, {1}, owner);
 }
 
 py::array vector_copy(const Eigen::Vector3d& vector) {
-  return read_only(py::array(py::dtype::of<double>(), {py::ssize_t{3}}, {number}, vector.data()));
+  return numbers_view(vector.data(), {3}, {1}, {});
 }
 
 Eigen::Matrix3Xd points_from(py::handle values, const std::string& name) {

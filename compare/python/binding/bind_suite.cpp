@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "array.hpp"
 #include "base/quote.hpp"
 #include "base/timer.hpp"
 #include "batch/baseline.hpp"
+#include "bind_scene.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
 #include "foreign/foreign_program.hpp"
@@ -27,22 +27,14 @@ namespace {
 using compare::RunStatus;
 using compare::SimulatorRun;
 
-/// Returns the shape that a Python function has returned. @param made  points, and arc lengths or
-/// None
-compare::MeasuredShape shape_from(const py::object& made) {
-  const auto pair = made.cast<py::tuple>();
-  return compare::shape_of(
-      points_from(pair[0], "points"),
-      pair[1].is_none() ? std::vector<double>{} : values_from(pair[1], "arc_length"), "its shape");
-}
-
 std::string one_line(const std::string& text) { return text.substr(0, text.find('\n')); }
 
 /// Python function as a simulator. Only one call is made at a time, from any thread, because the
 /// function need not be thread-safe.
 class PythonSimulator {
  public:
-  /// @param function  receives a scene's text, its file and the number of points
+  /// @param function  receives a scene's text, its file and the number of points; returns points,
+  /// and arc lengths or None
   explicit PythonSimulator(py::object function) : function_(std::move(function)) {}
 
   [[nodiscard]] SimulatorRun run(const compare::Scene& scene, int points) {
@@ -59,7 +51,8 @@ class PythonSimulator {
   SimulatorRun called(const std::string& text, const std::string& file, int points) {
     SimulatorRun result;
     try {
-      result.shape = shape_from(function_(text, file, points));
+      const auto made = function_(text, file, points).cast<std::pair<py::object, py::object>>();
+      result.shape = measured_shape(made.first, made.second, "points");
       result.status = RunStatus::solved;
     } catch (py::error_already_set& error) {
       // An exception that is no Exception, such as KeyboardInterrupt, ends the call.

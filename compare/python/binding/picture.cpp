@@ -8,6 +8,8 @@
 namespace dlo::python {
 namespace {
 
+using namespace py::literals;  // NOLINT(google-build-using-namespace): of names alone
+
 /// Returns an axis as a dict, with the figure's tics; None: tics that the axes choose.
 py::dict axis_dict(const compare::PlotAxis& laid_out, const compare::PlotAxis& described) {
   py::object tics = py::none();
@@ -16,27 +18,19 @@ py::dict axis_dict(const compare::PlotAxis& laid_out, const compare::PlotAxis& d
     for (const compare::Tic& tic : *described.tics) list.append(py::make_tuple(tic.at, tic.label));
     tics = list;
   }
-  py::dict result;
-  result["label"] = laid_out.label;
-  result["limits"] = py::make_tuple(*laid_out.from, *laid_out.to);
-  result["log"] = laid_out.logarithmic;
-  result["tics"] = tics;
-  return result;
+  return py::dict("label"_a = laid_out.label, "tics"_a = tics,
+                  "log"_a = py::bool_(laid_out.logarithmic),
+                  "limits"_a = py::make_tuple(*laid_out.from, *laid_out.to));
 }
 
 py::dict curve_dict(const compare::PlottedCurve& curve) {
   const compare::Look& look = curve.look;
-  py::dict result;
-  result["title"] = curve.title;
-  result["points"] = curve.z.empty() ? py::make_tuple(curve.x, curve.y)
-                                     : py::make_tuple(curve.x, curve.y, curve.z);
-  result["colour"] = look.colour;
-  result["width"] = look.width;
-  result["dashes"] = static_cast<int>(look.dashes);
-  result["mark"] = static_cast<int>(look.mark);
-  result["mark_size"] = look.mark_size;
-  result["fill"] = look.fill;
-  return result;
+  return py::dict("title"_a = curve.title,
+                  "points"_a = curve.z.empty() ? py::make_tuple(curve.x, curve.y)
+                                               : py::make_tuple(curve.x, curve.y, curve.z),
+                  "colour"_a = look.colour, "width"_a = look.width, "fill"_a = look.fill,
+                  "dashes"_a = py::int_(static_cast<int>(look.dashes)),
+                  "mark"_a = py::int_(static_cast<int>(look.mark)), "mark_size"_a = look.mark_size);
 }
 
 /// Returns a function that calls a Python function with the result and further arguments.
@@ -95,14 +89,9 @@ py::dict panel_dict(const compare::Panel& described) {
   for (const compare::Text& text : panel.texts) {
     texts.append(py::make_tuple(text.words, text.x, text.y, text.dx, text.dy));
   }
-  py::dict result;
-  result["size"] = py::make_tuple(compare::figure_width, panel.full_height());
-  result["upright"] = panel.upright;
-  result["equal"] = panel.equal_aspect;
-  result["axes"] = axes;
-  result["curves"] = curves;
-  result["texts"] = texts;
-  return result;
+  return py::dict("size"_a = py::make_tuple(compare::figure_width, panel.full_height()),
+                  "upright"_a = py::int_(panel.upright), "equal"_a = py::bool_(panel.equal_aspect),
+                  "axes"_a = axes, "curves"_a = curves, "texts"_a = texts);
 }
 
 }  // namespace dlo::python

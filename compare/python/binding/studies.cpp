@@ -34,79 +34,32 @@ namespace {
 
 using compare::CellKind;
 
-/// Table of a sweep, column by column.
-class Table {
- public:
-  explicit Table(const std::vector<compare::SweepColumn>& columns);
+/// Column of a sweep's table: its numbers (NaN if empty), or its texts ("" if empty).
+struct Column {
+  compare::SweepColumn is;
+  std::vector<double> numbers = {};
+  std::vector<std::string> words = {};
 
-  /// Adds a row. @param cells  one for each column
-  void add(const std::vector<compare::SweepCell>& cells);
-
-  /// Returns a dict of arrays: int64 for integers, float64 for numbers (NaN if empty), str for text
-  /// ("" if empty). Requires the GIL.
-  [[nodiscard]] py::dict arrays() const;
-
- private:
-  struct Column {
-    compare::SweepColumn is;
-    std::vector<std::int64_t> whole;  // only the vector of the type `is` is used
-    std::vector<double> numbers;
-    std::vector<std::string> words;
-  };
-  static void add_cell(Column& column, const compare::SweepCell& cell);
-
-  std::vector<Column> columns_;
-};
-
-double number_of(const compare::SweepCell& cell) {
-  if (const auto* number = std::get_if<double>(&cell)) return *number;
-  if (const auto* count = std::get_if<std::int64_t>(&cell)) return static_cast<double>(*count);
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
-template <typename Number>
-py::array array_of(const std::vector<Number>& numbers) {
-  return py::array_t<Number>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
-}
-
-Table::Table(const std::vector<compare::SweepColumn>& columns) {
-  for (const compare::SweepColumn& column : columns) columns_.push_back({column, {}, {}, {}});
-}
-
-void Table::add(const std::vector<compare::SweepCell>& cells) {
-  for (std::size_t i = 0; i < columns_.size(); ++i) add_cell(columns_[i], cells.at(i));
-}
-
-void Table::add_cell(Column& column, const compare::SweepCell& cell) {
-  switch (column.is.kind) {
-    case CellKind::whole:
-      column.whole.push_back(std::get<std::int64_t>(cell));
-      break;
-    case CellKind::number:
-      column.numbers.push_back(number_of(cell));
-      break;
-    case CellKind::text: {
-      const auto* text = std::get_if<std::string>(&cell);
-      column.words.push_back(text != nullptr ? *text : std::string());
-      break;
-    }
-  }
-}
-
-py::dict Table::arrays() const {
-  py::dict result;
-  for (const Column& column : columns_) {
-    const py::str name(column.is.name);
-    if (column.is.kind == CellKind::whole) {
-      result[name] = array_of(column.whole);
-    } else if (column.is.kind == CellKind::number) {
-      result[name] = array_of(column.numbers);
+  void add(const compare::SweepCell& cell) {
+    const auto* count = std::get_if<std::int64_t>(&cell);
+    const auto* number = std::get_if<double>(&cell);
+    const auto* text = std::get_if<std::string>(&cell);
+    if (is.kind == CellKind::text) {
+      words.push_back(text != nullptr ? *text : std::string());
+    } else if (count != nullptr) {
+      numbers.push_back(static_cast<double>(*count));
     } else {
-      result[name] = py::array(py::cast(column.words));
+      numbers.push_back(number != nullptr ? *number : std::numeric_limits<double>::quiet_NaN());
     }
   }
-  return result;
-}
+
+  /// Returns an array: int64 for integers, float64 for numbers, str for text. Requires the GIL.
+  [[nodiscard]] py::object array() const {
+    if (is.kind == CellKind::text) return py::array(py::cast(words));
+    const py::array_t<double> all(static_cast<py::ssize_t>(numbers.size()), numbers.data());
+    return is.kind == CellKind::whole ? all.attr("astype")("int64") : py::object(all);
+  }
+};
 
 using StudyDocuments = std::pair<std::string, std::string>;  // text and JSON
 
@@ -140,7 +93,7 @@ py::dict sweep(const std::string& text, const std::string& file, const Materials
   const auto model = compare::from_name<compare::SweepModel>(what["model"].cast<std::string>());
   const auto threads = what["threads"].cast<int>();
   const compare::SolveOptions options = verified_options(limits);
-  const Table table = run_long([&](Signals& signals) {
+  const std::vector<Column> table = run_long([&](Signals& signals) {
     const compare::Sweep sweep(compare::SceneTemplate(text, file, materials_of(materials)),
                                grid_of(fields), model, options);
     if (sweep.grid().size() > largest_table) {
@@ -149,14 +102,17 @@ py::dict sweep(const std::string& text, const std::string& file, const Materials
                       "command dlo sweep)",
                       sweep.grid().size(), largest_table));
     }
-    Table rows(sweep.columns());
+    std::vector<Column> columns;
+    for (const compare::SweepColumn& column : sweep.columns()) columns.push_back({column});
     sweep.run_cells({0, sweep.grid().size()}, threads, [&](const auto& cells) {
       signals.throw_if_stopped();
-      rows.add(cells);
+      for (std::size_t i = 0; i < columns.size(); ++i) columns[i].add(cells.at(i));
     });
-    return rows;
+    return columns;
   });
-  return table.arrays();
+  py::dict arrays;
+  for (const Column& column : table) arrays[py::str(column.is.name)] = column.array();
+  return arrays;
 }
 
 StudyDocuments hard_cases(const std::string& name_contains,
