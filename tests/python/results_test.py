@@ -216,7 +216,7 @@ def test_a_shape_may_be_the_name_of_a_file_and_one_needs_no_list(root, cable, co
         assert found == command_json("check", scene, "--shape", shape, "--tolerance", "1%")
     points = numpy.loadtxt(shape, delimiter=",", skiprows=3)
     pair = (points, numpy.linspace(0.1, 1, len(points)))
-    for one, listed in ((shape, [points]), (points.tolist(), [shape]), (pair, [pair])):
+    for one, listed in ((shape, [points]), (points, [points]), (points.tolist(), [shape]), (pair, [pair])):
         assert dlo.calibrate(scene, one).youngs_modulus == dlo.calibrate(scene, listed).youngs_modulus
     assert len(dlo.calibrate(scene, (points, points + 1e-4))["shapes"]) == 2
     for call, words in [

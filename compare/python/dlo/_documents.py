@@ -60,8 +60,7 @@ class Document:
     @cached_property
     def json(self) -> dict[str, Any]:
         """The command's document, as a dict."""
-        document: dict[str, Any] = json.loads(self._json_text)
-        return document
+        return json.loads(self._json_text)
 
     def to_json(self) -> str:
         """The command's document, as text."""
@@ -73,11 +72,8 @@ class Document:
     def __str__(self) -> str:
         return self._text
 
-    def __repr__(self) -> str:
-        return _show.line(self)
-
-    def _repr_html_(self) -> str:
-        return _show.html(self)
+    __repr__ = _show.line
+    _repr_html_ = _show.html
 
 
 class Plan(Document):
@@ -124,8 +120,7 @@ class Track(Document):
         returns the axes. ax: the axes to draw into; None: new ones."""
         return _plot.plot(self, ax)
 
-    def _repr_svg_(self) -> Optional[str]:
-        return _show.svg(self)
+    _repr_svg_ = _show.svg
 
     arc_length = _at("arc_length_m", _array, "Arc lengths of the frames' points [m], shape (M,).")
     time = _at("frames/*/time_s", _array, "Of the frames [s], shape (F,).")
@@ -196,7 +191,7 @@ class ScoreCard(Document):
     @property
     def reason(self) -> Optional[str]:
         """Cases that have changed, and the number of cases with each verdict; None without a baseline."""
-        return None if self._changes is None else self._changes.rstrip("\n")
+        return self._changes and self._changes.rstrip("\n")
 
     def to_markdown(self) -> str:
         """Returns the card in Markdown, as `dlo suite --markdown` writes it."""

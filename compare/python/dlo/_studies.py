@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import os
+from functools import partial
 from typing import Any, Callable, Iterable, Mapping, Optional, Sequence, Union
 
 import numpy
@@ -122,11 +123,7 @@ def regress(
     file = file_name(baseline, "baseline")
     name = os.fsdecode(file) if update else ""
 
-    def told(text: str, json_text: str, junit: str) -> Regression:
-        return Regression(text, json_text, junit, name)
-
-    found: Regression = _dlo.regress(data, file, update, what, told, limits)
-    return found
+    return _dlo.regress(data, file, update, what, partial(Regression, _update=name), limits)
 
 
 @checked()
@@ -164,8 +161,7 @@ def suite(
     what["state"] = b"" if state is None else file_name(state, "state", "the name of a folder")
     what["baseline"] = b"" if baseline is None else file_name(baseline, "baseline")
     title = str(getattr(run, "__name__", "run")) if name is None else name
-    card: ScoreCard = _dlo.suite(called, title, what, ScoreCard)
-    return card
+    return _dlo.suite(called, title, what, ScoreCard)
 
 
 @checked()
@@ -181,8 +177,7 @@ def modes(
     calibrated: as in solve().
     """
     what = locals()
-    found: Modes = _dlo.modes(data_of(scene, materials, time, calibrated), what, Modes, limits)
-    return found
+    return _dlo.modes(data_of(scene, materials, time, calibrated), what, Modes, limits)
 
 
 @checked()
@@ -207,5 +202,4 @@ def track(
     what = locals()
     if not dynamic and (damping or drag or quadratic_drag):
         raise InputError("track: damping and drag are those of a rod with inertia (allowed: dynamic=True)")
-    found: Track = _dlo.track(data_of(scene, materials, None, calibrated), what, Track, limits)
-    return found
+    return _dlo.track(data_of(scene, materials, None, calibrated), what, Track, limits)
