@@ -17,6 +17,11 @@
 namespace dlo::compare {
 namespace {
 
+/// Stride of the differences by each number, relative or in rad. A rod next to the limit of its
+/// stability responds far from linearly; with 1e-3, steps of the fit pointed uphill 1e-4 before the
+/// optimum. The solver's error (1e-10 l) changes the differences by 1e-6.
+constexpr double stride = 1e-4;
+
 /// Prior standard deviation of each term of natural curvature, times the length [rad]. It is large,
 /// because the stress-free shape may have several whole turns.
 constexpr double natural_turns_before = 10;
@@ -71,7 +76,7 @@ void add_natural_curvature(std::vector<WireNumber>& numbers, const std::vector<S
                           .unit = "1/m",
                           .known_before = natural_turns_before / length,
                           .shape = std::nullopt},
-                         1e-3 / length,
+                         stride / length,
                          [about, term](Scene& scene, double value) {
                            bend_by_nature(scene, static_cast<std::size_t>(term), value * about);
                          },
@@ -90,7 +95,7 @@ void add_torsion(std::vector<WireNumber>& numbers, const std::vector<Scene>& sce
   }
   numbers.push_back(
       {{.name = "", .unit = "", .known_before = torsion_before, .shape = std::nullopt},
-       1e-3,
+       stride,
        [](Scene& scene, double value) { scene.scale_torsion(std::exp(value)); }});
 }
 
@@ -108,7 +113,7 @@ void add_directions(std::vector<WireNumber>& numbers, const Scene& scene,
                           .unit = "rad",
                           .known_before = tolerance,
                           .shape = shape},
-                         1e-3,
+                         stride,
                          [i, axis](Scene& changed, double value) {
                            turn_clamp(changed.grippers[i], value * axis);
                          }});
@@ -165,7 +170,7 @@ void add_rolls(std::vector<WireNumber>& numbers, Scene scene, std::size_t shape,
                        .unit = "rad",
                        .known_before = options.roll_tolerance,
                        .shape = shape},
-         .stride = 1e-3,
+         .stride = stride,
          .change = [i](Scene& changed, double value) { changed.grippers[i].frame->roll += value; },
          .longest_step = longest_roll_step,
          .turns_the_rod = turns_the_rod && options.roll_tolerance > unknown_roll});
@@ -197,7 +202,7 @@ void add_camera_tilt(std::vector<WireNumber>& numbers, const std::vector<Scene>&
                        .unit = "rad",
                        .known_before = tolerance,
                        .shape = std::nullopt},
-         .stride = 1e-3,
+         .stride = stride,
          .change = [axis](Scene& scene, double value) { turn_scene(scene, value * axis); },
          .camera_axis = axis});
   }
@@ -274,11 +279,11 @@ std::vector<WireNumber> wire_numbers(const std::vector<Scene>& scenes,
   const bool forced = std::any_of(scenes.begin(), scenes.end(), is_forced);
   const FittedNumber of_wire{
       .name = "", .unit = "", .known_before = unknown, .shape = std::nullopt};
-  numbers.push_back({of_wire, forced ? 1e-3 : 0,
+  numbers.push_back({of_wire, forced ? stride : 0,
                      [](Scene& scene, double value) { scene.scale_modulus(std::exp(value)); }});
   if (density) {
-    numbers.push_back(
-        {of_wire, 1e-3, [](Scene& scene, double value) { scene.scale_density(std::exp(value)); }});
+    numbers.push_back({of_wire, stride,
+                       [](Scene& scene, double value) { scene.scale_density(std::exp(value)); }});
   }
   if (options.torsional_stiffness) add_torsion(numbers, scenes);
   if (options.natural_curvature_terms > 0) {
