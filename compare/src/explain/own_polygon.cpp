@@ -133,7 +133,7 @@ class Chain {
 
   /// Whether the grippers of this scene can hold the chain; prepares its problem.
   [[nodiscard]] bool exists() {
-    if (!hold()) return false;
+    if (!hold() || !parts_points()) return false;
     lay_out();
     add_twists();
     return true;
@@ -290,6 +290,13 @@ class Chain {
     for (const energy_model::HeldPoint& held : problem_.held) points.push_back(held.point);
     std::ranges::sort(points);
     return std::ranges::adjacent_find(points) != points.end();
+  }
+
+  /// Whether no held point is moved to where its neighbour in the file is.
+  [[nodiscard]] bool parts_points() const {
+    const Eigen::Matrix3Xd points = start();
+    const Eigen::Index n = points.cols() - 1;
+    return (points.rightCols(n) - points.leftCols(n)).colwise().norm().minCoeff() > 0;
   }
 
   void lay_out() {

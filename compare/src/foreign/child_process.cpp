@@ -67,10 +67,10 @@ class SpawnSettings {
 };
 
 /// Waits until a child has ended, and leaves it as a zombie; returns false at the time limit. The
+/// timer begins before the start, during which a short program may end. The
 /// interval between two checks is short at first and then a hundredth of the elapsed time, so that
 /// the wall time is accurate to 1 %.
-bool ended_within(pid_t process, double time_limit, double& seconds) {
-  const Timer timer;
+bool ended_within(pid_t process, double time_limit, const Timer& timer, double& seconds) {
   while (true) {
     siginfo_t info{};
     const int status =
@@ -96,6 +96,7 @@ std::string problem_of(int status) {
 ChildOutcome run_child(const std::vector<std::string>& words, const ChildFiles& files,
                        double time_limit) {
   ChildOutcome result;
+  const Timer timer;
   pid_t process = 0;
   std::optional<TemporaryGroup> group;
   {
@@ -107,7 +108,7 @@ ChildOutcome run_child(const std::vector<std::string>& words, const ChildFiles& 
     }
     group.emplace(process);
   }
-  result.too_long = !ended_within(process, time_limit, result.seconds);
+  result.too_long = !ended_within(process, time_limit, timer, result.seconds);
   // The group is killed before waitpid() releases the process id, which could be reused afterwards.
   ::kill(-process, SIGKILL);
   int status = 0;

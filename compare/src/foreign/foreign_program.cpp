@@ -22,6 +22,7 @@
 #include "dlo/compare/choice.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/solution.hpp"
+#include "explain/segment_starts.hpp"
 #include "foreign/child_process.hpp"
 #include "format/scene_document.hpp"
 #include "shape/curve.hpp"
@@ -227,9 +228,9 @@ void read_motion(const std::string& file, ForeignRun& result) {
 ForeignRun run_foreign(const ForeignProgram& program, Scene scene, int points, double time_limit) {
   scene.force_model.points = points;
   return run_on_document(program, scene_document_text(scene), points, time_limit,
-                         [](const std::string& file, ForeignRun& result) {
-                           result.shape =
-                               parse_shape(read_regular_file(file, shape_name), shape_name);
+                         [&scene](const std::string& file, ForeignRun& result) {
+                           result.shape = whole_of_segment_starts(
+                               scene, parse_shape(read_regular_file(file, shape_name), shape_name));
                          });
 }
 

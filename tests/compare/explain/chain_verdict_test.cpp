@@ -298,6 +298,14 @@ TEST(ChainVerdict, AMissingLastPointIsTheChains) {
   }
 }
 
+// A chain that is held at its second point would have a segment of length 0.
+TEST(ChainVerdict, APointBehindTheClampIsNoChainsPoint) {
+  const Matrix3Xd chain = hinged_chain(equal(20), 0.05, 0.5, true);
+  Matrix3Xd points(3, 22);
+  points << Vector3d(-0.03, -0.01, 0), chain;
+  EXPECT_EQ(checked(clamped(), points).judgement.verdict, ShapeVerdict::fail);
+}
+
 // Three coordinates of a point say as much of three numbers as of one.
 TEST(ChainVerdict, OneMeasuredPointIsJudgedByItsDistance) {
   const Vector3d tip = right_file(clamped(), 2).points.col(1);

@@ -85,6 +85,20 @@ TEST_F(ForeignFolder, IsGivenTheSceneAndTheNumberOfPoints) {
   EXPECT_GT(run.seconds, 0);
 }
 
+TEST_F(ForeignFolder, EndOfTheLastSegmentIsAppendedToTheStartsOfTheSegments) {
+  const ForeignRun run = run_shell("for i in 0 1 2 3 4 5 6 7; do echo 0.${i}00,0,0; done > $2.csv");
+  ASSERT_TRUE(run.shape) << run.problem;
+  EXPECT_EQ(run.shape->points.cols(), 8);
+  Scene rod = soft_cable();
+  rod.length = 0.8;
+  const ForeignRun starts = run_foreign(
+      {"sh", {"sh", "-c", "for i in 0 1 2 3 4 5 6 7; do echo 0.$i,0,0; done > $0.csv", "{shape}"}},
+      rod, 8, 20);
+  ASSERT_TRUE(starts.shape) << starts.problem;
+  ASSERT_EQ(starts.shape->points.cols(), 9);
+  EXPECT_NEAR(starts.shape->points(0, 8), 0.8, 1e-12);
+}
+
 TEST_F(ForeignFolder, SaysWhatFailedWithTheLastLineOfItsStandardError) {
   EXPECT_EQ(run_shell("echo one >&2; echo two >&2; echo three; exit 4").problem,
             "exit status 4: two");
