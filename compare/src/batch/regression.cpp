@@ -18,7 +18,9 @@
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solve.hpp"
+#include "format/scene_document.hpp"
 #include "reading/read_scene.hpp"
+#include "record/field.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -59,145 +61,39 @@ void compare_errors(RegressionResult& result, const RegressionTolerance& toleran
   }
 }
 
-/// Collects the content of a scene as text. Numbers have twelve digits, so that "2 mm" equals
-/// 0.002.
-class ContentText {
- public:
-  void add_words(std::string_view words) { text_ += words; }
-  void add(double value) { text_ += fmt::format("{:.12g} ", value + 0.0); }
-  void add(const Eigen::Vector3d& vector) {
-    for (const double component : vector) add(component);
-  }
-  void add(const std::optional<double>& value) { value ? add(*value) : add_words("- "); }
-  // Fields that few scenes have are added with their name, so that the fingerprints of other scenes
-  // stay the same.
-  void add_named(const char* name, const std::optional<double>& value) {
-    if (!value) return;
-    add_words(name);
-    add(*value);
-  }
-  void add_positive(const char* name, double value) {
-    if (value > 0) add_named(name, value);
-  }
-  std::string take() { return std::move(text_); }
-
- private:
-  std::string text_;
-};
-
-void add_rod(ContentText& text, const Scene& scene) {
-  text.add(scene.gravity);
-  text.add(scene.length);
-  text.add(scene.diameter);
-  text.add(scene.material.youngs_modulus);
-  text.add(scene.material.density);
-  text.add_named("torsion ", scene.torsional_stiffness);
-  text.add_named("EI ", scene.given_bending_stiffness);
-  text.add_named("EI_2 ", scene.given_bending_stiffness_2);
-  text.add_named("mass ", scene.given_mass_per_length);
-  text.add_named("EA ", scene.given_axial_stiffness);
-  if (scene.stretch == Stretch::counted) text.add_named("stretch ", scene.axial_stiffness());
-  if (scene.stretch == Stretch::automatic) text.add_named("stretch auto ", scene.axial_stiffness());
-  text.add_positive("inner ", scene.inner_diameter);
-  text.add_positive("width ", scene.width);
-  text.add_positive("thickness ", scene.thickness);
-  if (!scene.naturally_bent()) return;
-  text.add_words("natural ");
-  text.add(scene.natural_strain);
-  for (const Eigen::Vector2d& strain : scene.natural_variation) {
-    text.add_words("varies ");
-    text.add({strain.x(), strain.y(), 0});
-  }
-}
-
-void add_section(ContentText& text, const Section& section) {
-  text.add_words("\nsection ");
-  for (const double value :
-       {section.from, section.to, section.bending_stiffness, section.mass_per_length}) {
-    text.add(value);
-  }
-  text.add_named("torsion ", section.torsional_stiffness);
-  text.add_named("EI_2 ", section.bending_stiffness_2);
-  if (section.natural_curvature) {
-    text.add_words("natural ");
-    text.add({section.natural_curvature->x(), section.natural_curvature->y(), 0});
-  }
-  text.add_named("twist ", section.natural_twist);
-}
-
-void add_gripper(ContentText& text, const Gripper& gripper) {
-  text.add_words("\ngripper ");
-  text.add(gripper.at);
-  text.add(gripper.position);
-  if (gripper.direction) text.add(*gripper.direction);
-  if (!gripper.frame) return;
-  text.add_words("frame ");
-  if (gripper.frame->d1) text.add(*gripper.frame->d1);
-  text.add(gripper.frame->roll);
-}
-
-void add_loads(ContentText& text, const Scene& scene) {
-  for (const PointLoad& load : scene.loads) {
-    text.add_words("\nload ");
-    text.add(load.at);
-    text.add(load.force);
-    if (!load.torque.isZero(0)) text.add(load.torque);
-    if (load.follows) text.add_words("follows ");
-  }
-  for (const DistributedLoad& load : scene.distributed_loads) {
-    text.add_words("\ndistributed load ");
-    text.add(load.from);
-    text.add(load.to);
-    for (const Eigen::Vector3d& q : load.force_per_length) text.add(q);
-  }
-  if (scene.drag) {
-    text.add_words("\ndrag ");
-    text.add(scene.drag->velocity);
-    text.add(scene.drag->normal);
-    text.add(scene.drag->tangential);
-  }
-}
-
-void add_obstacle(ContentText& text, const Obstacle& obstacle) {
-  const obstacle::Body& body = obstacle.body;
-  if (body.is_half_space()) {
-    text.add_words("\nobstacle ");
-    text.add(Eigen::Vector3d(body.centre() + body.radius() * body.normal()));
-    text.add(body.normal());
+/// Appends a value of a scene's document to a text. Numbers have twelve digits, so that "2 mm"
+/// equals 0.002.
+void add_content(const Json& value, std::string& text) {
+  if (value.is_number()) {
+    text += fmt::format("{:.12g} ", value.get<double>() + 0.0);
+  } else if (value.is_structured()) {
+    for (const auto& [key, item] : value.items()) add_content(item, text += key + ' ');
   } else {
-    text.add_words("\nbody ");
-    text.add(body.centre());
-    for (Eigen::Index axis = 0; axis < 3; ++axis) text.add(Eigen::Vector3d(body.axes().col(axis)));
-    text.add(body.upper());
-    text.add(body.radius());
-  }
-  text.add(obstacle.stiffness);
-  text.add_positive("friction ", obstacle.friction);
-}
-
-void add_force_model(ContentText& text, const ForceModelSettings& settings) {
-  text.add_words(
-      fmt::format("\n{} {} ", to_string(settings.stepper), to_string(settings.bending_rule)));
-  if (settings.joint_law) {
-    text.add_words(fmt::format("joints {} ", to_string(*settings.joint_law)));
-  }
-  for (const auto& value : {settings.design_curvature, settings.point_weight, settings.c_b,
-                            settings.c_c, settings.c_F, settings.c_h, settings.l_s}) {
-    text.add(value);
+    text += value.dump() + ' ';
   }
 }
 
 /// Returns all content of a scene on which its shape depends and that the case's name does not
-/// contain.
+/// contain. Names and vectors that follow from the other content only up to rounding are omitted.
 std::string content_of(const Scene& scene) {
-  ContentText text;
-  add_rod(text, scene);
-  for (const Section& section : scene.sections) add_section(text, section);
-  for (const Gripper& gripper : scene.grippers) add_gripper(text, gripper);
-  add_loads(text, scene);
-  for (const Obstacle& obstacle : scene.obstacles) add_obstacle(text, obstacle);
-  add_force_model(text, scene.force_model);
-  return text.take();
+  const ForceModelSettings& settings = scene.force_model;
+  Json content = scene_document(scene);
+  for (const char* key : {"scene", "file", "gamma", "plane_normal", "force_model"}) {
+    content.erase(key);
+  }
+  for (const char* key : {"material", "mean_weight_N_per_m", "rest_shape", "first_frame"}) {
+    content["rod"].erase(key);
+  }
+  content["stretch"] = static_cast<int>(scene.stretch);
+  content["names"] = {to_string(settings.stepper), to_string(settings.bending_rule),
+                      settings.joint_law ? to_string(*settings.joint_law) : ""};
+  for (const auto& value : {settings.design_curvature, settings.point_weight, settings.c_b,
+                            settings.c_c, settings.c_F, settings.c_h, settings.l_s}) {
+    content["numbers"].push_back(value ? Json(*value) : Json());
+  }
+  std::string text;
+  add_content(content, text);
+  return text;
 }
 
 /// Returns, by name of a measured case, the case of the baseline that it replaces. A case replaces
