@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <algorithm>
@@ -11,7 +12,6 @@
 #include <utility>
 
 #include "dlo/compare/error.hpp"
-#include "points/arc_fit.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -30,9 +30,199 @@ constexpr double plane_share = 1e-6;
 constexpr double good_enough_share = 1e-7;
 /// Largest relative difference between the length of the points' curve and that of the rod.
 constexpr double length_tolerance = 0.05;
+/// Weight of an angle [rad] in the residual, compared with a distance divided by the length: the
+/// length of the shortest of equal arcs, as a share of the rod.
+constexpr double frame_lever = 1.0 / most_rest_arcs;
 
+/// Position and frame of a rod with the strains of an arc, at some arc length.
+struct ArcPlace {
+  Vector3d point;
+  Matrix3d frame;  // d1, d2, t
+};
+
+/// A sequence of arcs, with the position and frame where the first one begins.
+struct Arcs {
+  ArcPlace begin;
+  std::vector<RestShape::Arc> arcs;
+};
+
+/// Points to fit by arcs, and what is known of their arc lengths.
+struct ArcTarget {
+  Eigen::Matrix3Xd points;
+  Eigen::Matrix3Xd d1;  // first directors of the frames at the points; empty: arcs have no twist
+  std::vector<double> s;
+  bool knows_s = false;  // false: inner points have the arc length of the nearest point
+  double length = 0;
+  bool planar = false;
+  Vector3d normal;  // unit normal of the plane of the points, or nearest to them
+
+  /// Whether arcs may have a twist, which only frames determine.
+  [[nodiscard]] bool twists() const { return d1.cols() > 0 && !planar; }
+  /// Returns the number of rows of the residual for each point.
+  [[nodiscard]] Index rows() const { return twists() ? 4 : 3; }
+  /// Returns the number of independent residuals per point, since the residual along the rod is not
+  /// independent. It is also the number of strains of an arc.
+  [[nodiscard]] Index numbers() const { return planar ? 1 : rows() - 1; }
+
+  /// Whether a point's arc length is unknown and follows from the nearest point of the arcs.
+  [[nodiscard]] bool slides(Index i) const { return !knows_s && i > 0 && i + 1 < points.cols(); }
+};
+
+/// Stopping criteria of improve_arcs().
+struct ArcEffort {
+  int most_steps;
+  double least_gain;  // smallest relative decrease of the sum of squares in a step
+};
 constexpr ArcEffort of_candidate{10, 3e-2};
 constexpr ArcEffort of_result{30, 1e-6};
+
+/// Returns position and frame at arc length `s` from the begin of an arc of constant strain.
+/// @param s  negative before the begin
+ArcPlace along_arc(const ArcPlace& begin, const Vector3d& strain, double s) {
+  const double rate = strain.norm();
+  const double angle = rate * s;
+  if (!(std::abs(angle) > 1e-12)) {
+    return {begin.point + s * begin.frame.col(2), begin.frame};
+  }
+  // The tangent rotates about the axis: its component along the axis stays, and t' = u2 d1 - u1 d2.
+  const Vector3d axis = strain / rate;
+  const Vector3d along = axis.z() * axis;
+  const Vector3d inward(axis.y(), -axis.x(), 0);
+  const Vector3d step(inward * (2 * std::pow(std::sin(angle / 2), 2) / rate) +
+                      (Vector3d::UnitZ() - along) * (std::sin(angle) / rate) + s * along);
+  return {begin.point + begin.frame * step,
+          begin.frame * Eigen::AngleAxisd(angle, axis).toRotationMatrix()};
+}
+
+/// Returns positions and frames of arcs at arc lengths.
+std::vector<ArcPlace> places_on(const Arcs& on, const std::vector<double>& s) {
+  const std::vector<RestShape::Arc>& arcs = on.arcs;
+  const auto begin_of = [&](std::size_t k) { return k > 0 ? arcs[k - 1].end : 0.0; };
+  std::vector<ArcPlace> begins = {on.begin};
+  for (std::size_t k = 0; k + 1 < arcs.size(); ++k) {
+    begins.push_back(along_arc(begins[k], arcs[k].strain, arcs[k].end - begin_of(k)));
+  }
+  std::vector<ArcPlace> result;
+  result.reserve(s.size());
+  for (const double at : s) {
+    std::size_t k = 0;
+    while (k + 1 < arcs.size() && at >= arcs[k].end) ++k;
+    result.push_back(along_arc(begins[k], arcs[k].strain, at - begin_of(k)));
+  }
+  return result;
+}
+
+/// Returns the residual: the vectors from the points to the arcs, divided by the length, three rows
+/// per point; with frames a fourth row, the angle of d1 times frame_lever. A vector of a point that
+/// slides() has no component along the arc.
+Eigen::VectorXd arc_residual(const ArcTarget& target, const Arcs& arcs) {
+  const std::vector<ArcPlace> places = places_on(arcs, target.s);
+  const Index rows = target.rows();
+  Eigen::VectorXd r(rows * target.points.cols());
+  for (Index i = 0; i < target.points.cols(); ++i) {
+    const ArcPlace& at = places[static_cast<std::size_t>(i)];
+    const Vector3d t = at.frame.col(2);
+    Vector3d d = at.point - target.points.col(i);
+    if (target.slides(i)) d -= d.dot(t) * t;
+    r.segment<3>(rows * i) = d / target.length;
+    if (!target.twists()) continue;
+    const Vector3d given = target.d1.col(i);
+    r[rows * i + 3] =
+        frame_lever * std::atan2(-given.dot(at.frame.col(1)), given.dot(at.frame.col(0)));
+  }
+  return r;
+}
+
+/// Replaces unknown arc lengths by those of the nearest points of the arcs.
+void slide_along(ArcTarget& target, const Arcs& arcs) {
+  const std::vector<ArcPlace> places = places_on(arcs, target.s);
+  for (Index i = 0; i < target.points.cols(); ++i) {
+    if (!target.slides(i)) continue;
+    const auto [point, frame] = places[static_cast<std::size_t>(i)];
+    double& s = target.s[static_cast<std::size_t>(i)];
+    s = std::clamp(s + frame.col(2).dot(target.points.col(i) - point), 0.0, target.length);
+  }
+}
+
+/// Returns the number of parameters of so many arcs and their pose.
+Index arc_parameters(const ArcTarget& target, std::size_t arcs) {
+  const auto n = static_cast<Index>(arcs);
+  return (target.planar ? 3 : 6) + target.numbers() * n + n - 1;
+}
+
+/// Returns the arcs after a step of all their parameters. Rotations and strains times length are in
+/// radians; the position and the arc ends are divided by the length.
+Arcs stepped_arcs(const ArcTarget& target, Arcs arcs, const Eigen::VectorXd& step) {
+  Index k = 0;
+  const double l = target.length;
+  ArcPlace& begin = arcs.begin;
+  if (target.planar) {
+    begin.frame = Eigen::AngleAxisd(step[k], target.normal) * begin.frame;
+    const Vector3d across = begin.frame.col(0);
+    begin.point += l * (step[k + 1] * across + step[k + 2] * begin.frame.col(2));
+    k += 3;
+  } else {
+    const Vector3d turn = step.segment<3>(k);
+    begin.frame = Eigen::AngleAxisd(turn.norm(), turn.stableNormalized()) * begin.frame;
+    begin.point += l * step.segment<3>(k + 3);
+    k += 6;
+  }
+  for (RestShape::Arc& arc : arcs.arcs) {
+    if (!target.planar) arc.strain.x() += step[k++] / l;
+    arc.strain.y() += step[k++] / l;
+    if (target.twists()) arc.strain.z() += step[k++] / l;
+  }
+  for (std::size_t i = 0; i + 1 < arcs.arcs.size(); ++i) arcs.arcs[i].end += l * step[k++];
+  return arcs;
+}
+
+bool in_order(const ArcTarget& target, const Arcs& arcs) {
+  double before = 0;
+  return std::ranges::all_of(arcs.arcs, [&](const RestShape::Arc& arc) {
+    return arc.end - std::exchange(before, arc.end) >= 1e-4 * target.length;
+  });
+}
+
+/// Fits arcs by the Levenberg-Marquardt method; unknown arc lengths are updated with them.
+/// @return the sum of squared residuals, which are distances divided by the length
+double improve_arcs(ArcTarget& target, Arcs& arcs, const ArcEffort& effort) {
+  constexpr double h = 1e-7;  // difference of a parameter, divided by its unit
+  const Index count = arc_parameters(target, arcs.arcs.size());
+  double damping = 1e-3;
+  double sum = arc_residual(target, arcs).squaredNorm();
+  for (int step = 0; step < effort.most_steps; ++step) {
+    // Returns the residual of other arcs; points slide along them.
+    const auto residual = [&target](const Arcs& there) {
+      ArcTarget own = target;
+      slide_along(own, there);
+      return std::pair{arc_residual(own, there), std::move(own.s)};
+    };
+    const Eigen::VectorXd r = residual(arcs).first;
+    Eigen::MatrixXd J(r.size(), count);
+    for (Index k = 0; k < count; ++k) {
+      const Arcs beside = stepped_arcs(target, arcs, h * Eigen::VectorXd::Unit(count, k));
+      J.col(k) = (residual(beside).first - r) / h;
+    }
+    const Eigen::MatrixXd H = J.transpose() * J;
+    const double before = sum;
+    for (int tries = 0; tries < 8 && !(sum < before); ++tries) {
+      Eigen::MatrixXd damped = H;
+      damped.diagonal() *= 1 + damping;
+      damped.diagonal().array() += 1e-14 * H.diagonal().maxCoeff();
+      Arcs next = stepped_arcs(target, arcs, damped.ldlt().solve(-J.transpose() * r));
+      damping *= 8;
+      if (!in_order(target, next)) continue;
+      auto [after, s] = residual(next);
+      if (!(after.squaredNorm() < before)) continue;
+      sum = after.squaredNorm();
+      arcs = std::move(next);
+      target.s = std::move(s);
+      damping = std::max(damping / 80, 1e-12);
+    }
+    if (!(sum < before) || sum > (1 - effort.least_gain) * before) break;
+  }
+  return sum;
+}
 
 /// Strains at the inner points of a polyline, in frames from given directors or else in frames
 /// transported along the polyline.
@@ -134,43 +324,6 @@ Arcs first_guess(const ArcTarget& target, const Profile& profile, std::vector<In
   return guess;
 }
 
-/// Returns the arcs with more of them: the arc with the largest sum of squared residuals is cut in
-/// the middle, repeatedly, until there are `count`.
-Arcs cut_where_far(const ArcTarget& target, const Arcs& arcs, std::size_t count) {
-  struct Piece {
-    RestShape::Arc arc;
-    double begin, left;
-  };
-  std::vector<Piece> pieces;
-  double before = 0;
-  for (const RestShape::Arc& arc : arcs.arcs) {
-    pieces.push_back({arc, before, 0});
-    before = arc.end;
-  }
-  const Eigen::VectorXd r = arc_residual(target, arcs);
-  for (Index i = 0; i < target.points.cols(); ++i) {
-    const double s = target.s[static_cast<std::size_t>(i)];
-    const auto on = std::find_if(pieces.begin(), std::prev(pieces.end()),
-                                 [s](const Piece& piece) { return s < piece.arc.end; });
-    on->left += r.segment(target.rows() * i, target.rows()).squaredNorm();
-  }
-  while (pieces.size() < count) {
-    const auto most =
-        std::max_element(pieces.begin(), pieces.end(),
-                         [](const Piece& a, const Piece& b) { return a.left < b.left; });
-    // An arc's distance from a curve grows with the third power of its length.
-    constexpr double of_half = 1.0 / 64 / 2;
-    most->left *= of_half;
-    Piece first = *most;
-    first.arc.end = (first.begin + first.arc.end) / 2;
-    most->begin = first.arc.end;
-    pieces.insert(most, first);
-  }
-  Arcs cut{arcs.begin, {}};
-  for (const Piece& piece : pieces) cut.arcs.push_back(piece.arc);
-  return cut;
-}
-
 /// Sets `normal` and `planar` of a target from its points and d1.
 void find_points_plane(ArcTarget& target) {
   const Vector3d centre = target.points.rowwise().mean();
@@ -228,19 +381,13 @@ MeasuredShape forwards(const MeasuredShape& points) {
 }
 
 /// Returns the arc lengths of all points from those of the points `chosen`, `s`; between two chosen
-/// points they are in proportion to the polyline.
-std::vector<double> all_arc_lengths(const Eigen::Matrix3Xd& points,
-                                    const std::vector<Index>& chosen,
+/// points they are equally spaced.
+std::vector<double> all_arc_lengths(const std::vector<Index>& chosen,
                                     const std::vector<double>& s) {
   std::vector<double> all = {0};
   for (std::size_t k = 0; k + 1 < chosen.size(); ++k) {
-    std::vector<double> along = {0};
-    for (Index i = chosen[k]; i < chosen[k + 1]; ++i) {
-      along.push_back(along.back() + (points.col(i + 1) - points.col(i)).norm());
-    }
-    for (std::size_t i = 1; i < along.size(); ++i) {
-      all.push_back(s[k] + (s[k + 1] - s[k]) * along[i] / along.back());
-    }
+    const auto count = static_cast<double>(chosen[k + 1] - chosen[k]);
+    for (double i = 1; i <= count; ++i) all.push_back(std::lerp(s[k], s[k + 1], i / count));
   }
   return all;
 }
@@ -249,10 +396,10 @@ std::vector<double> all_arc_lengths(const Eigen::Matrix3Xd& points,
 void state_error(ArcTarget all, const Arcs& arcs, RestShape& shape) {
   constexpr int projections = 5;
   for (int i = 0; i < projections; ++i) slide_along(all, arcs);
-  const ArcTrace trace(arcs);
+  const std::vector<ArcPlace> places = places_on(arcs, all.s);
   double sum = 0;
   for (Index i = 0; i < all.points.cols(); ++i) {
-    const ArcPlace at = trace.at(all.s[static_cast<std::size_t>(i)]);
+    const ArcPlace& at = places[static_cast<std::size_t>(i)];
     const double d = (at.point - all.points.col(i)).norm();
     shape.largest_error = std::max(shape.largest_error, d);
     sum += d * d;
@@ -320,25 +467,22 @@ struct FittedArcs {
   double sum = std::numeric_limits<double>::infinity();  ///< sum of the squared residuals
 };
 
-/// Returns the best fit from several initial guesses: arcs cut at jumps of the points' curvature
-/// (which noise may hide), arcs of equal length, and the arcs of the fit with `fewer` arcs, cut
-/// where they are far from the points.
-FittedArcs fit_arcs(const ArcTarget& target, const Profile& profile, std::vector<Index> cuts,
-                    const FittedArcs& fewer) {
-  const std::size_t arcs = cuts.size() + 1;
-  FittedArcs nearest;
-  const auto attempt = [&](ArcTarget there, Arcs from) {
-    const double left = improve_arcs(there, from, of_candidate);
-    if (left < nearest.sum) nearest = {std::move(there), std::move(from), left};
+/// Returns the better fit of two initial guesses: arcs cut at jumps of the points' curvature, which
+/// noise may hide, and arcs of equal length.
+FittedArcs fit_arcs(const ArcTarget& target, const Profile& profile, std::vector<Index> cuts) {
+  const auto attempt = [&] {
+    FittedArcs fit{target, first_guess(target, profile, cuts)};
+    fit.sum = improve_arcs(fit.target, fit.arcs, of_candidate);
+    return fit;
   };
-  attempt(target, first_guess(target, profile, cuts));
-  if (arcs == 1) return nearest;
-  for (std::size_t k = 1; k < arcs; ++k) {
-    cuts[k - 1] = static_cast<Index>(k) * profile.strain.cols() / static_cast<Index>(arcs);
+  FittedArcs at_jumps = attempt();
+  const auto arcs = static_cast<Index>(cuts.size()) + 1;
+  for (Index k = 1; k < arcs; ++k) {
+    cuts[static_cast<std::size_t>(k) - 1] = k * profile.strain.cols() / arcs;
   }
-  attempt(target, first_guess(target, profile, cuts));
-  attempt(fewer.target, cut_where_far(fewer.target, fewer.arcs, arcs));
-  return nearest;
+  if (arcs == 1) return at_jumps;
+  FittedArcs equal = attempt();
+  return equal.sum < at_jumps.sum ? equal : at_jumps;
 }
 
 /// Returns the fit with the number of arcs that Schwarz's criterion selects.
@@ -351,7 +495,7 @@ FittedArcs best_arcs(const ArcTarget& target, const Profile& profile) {
   for (const std::size_t arcs : {1, 2, 3, 4, 6, 8, 12, 16, 24, most_rest_arcs}) {
     if (arcs > 1 && (arcs - 1 > cuts.size() || 2 * arc_parameters(target, arcs) > residuals)) break;
     const auto end = cuts.begin() + static_cast<std::ptrdiff_t>(arcs - 1);
-    last = fit_arcs(target, profile, {cuts.begin(), end}, last);
+    last = fit_arcs(target, profile, {cuts.begin(), end});
     const double value = arc_information(target, arcs, last.sum);
     worse = value < least ? 0 : worse + 1;
     if (value < least) {
@@ -395,7 +539,7 @@ RestShape fit_rest_shape(const MeasuredShape& measured, double length) {
   ArcTarget all = best.target;
   all.points = given.points;
   all.d1 = given.d1;
-  all.s = all_arc_lengths(given.points, chosen, best.target.s);
+  all.s = all_arc_lengths(chosen, best.target.s);
   if (target.knows_s) {
     for (std::size_t i = 0; i < all.s.size(); ++i) {
       all.s[i] = (given.arc_length[i] - given.arc_length[0]) * length / curve;
