@@ -1,7 +1,7 @@
 #include <memory>
 
 #include "batch/baseline.hpp"
-#include "batch/regression_run.hpp"
+#include "batch/regression.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/solution.hpp"
 #include "format/json.hpp"

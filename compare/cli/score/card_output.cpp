@@ -8,7 +8,7 @@
 
 #include "base/quote.hpp"
 #include "base/text.hpp"
-#include "batch/junit.hpp"
+#include "batch/regression.hpp"
 #include "option/output.hpp"
 
 namespace dlo::cli {

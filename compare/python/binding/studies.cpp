@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "batch/baseline.hpp"
-#include "batch/regression_run.hpp"
+#include "batch/regression.hpp"
 #include "batch/sweep.hpp"
 #include "bind_scene.hpp"
 #include "dlo/compare/error.hpp"

@@ -5,18 +5,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <set>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
 
-#include "batch/junit.hpp"
+#include "base/quote.hpp"
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/reference.hpp"
+#include "dlo/compare/shape_check.hpp"
 #include "dlo/compare/solve.hpp"
 #include "format/scene_document.hpp"
 #include "reading/read_scene.hpp"
@@ -24,6 +26,50 @@
 
 namespace dlo::compare {
 namespace {
+
+/// Measures one case; a solver that does not converge is reported as its problem.
+/// @param program  foreign program; null: the request's model
+MeasuredCase measured_case(const Scene& scene, const RegressRequest& request,
+                           const ForeignProgram* program) {
+  try {
+    MeasuredCase result = program != nullptr
+                              ? measure_program(scene, *program, request.solve)
+                              : MeasuredCase{measure_case(scene, request.model, request.solve), ""};
+    if (request.tolerance.of_deflection) {
+      const energy_model::Equilibrium loaded = solve_reference(scene, request.solve);
+      result.deflection_share =
+          required_deflection(scene, trivial_shape(scene, loaded, request.solve)) / scene.length;
+    }
+    return result;
+  } catch (const ConvergenceError& error) {
+    BaselineCase entry = case_of(scene, program != nullptr ? Model::force : request.model);
+    if (program != nullptr) entry.program = program->name;
+    return {std::move(entry), error.what()};
+  }
+}
+
+std::string case_xml(const JunitCase& one) {
+  std::string text = fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\">",
+                                 escape_markup(one.group), escape_markup(one.name), one.seconds);
+  const std::string message = escape_markup(one.message);
+  if (one.outcome.empty()) {
+    if (!message.empty()) text += fmt::format("<system-out>{}</system-out>", message);
+  } else {
+    text += fmt::format("<{} ", one.outcome);
+    if (!one.type.empty()) text += fmt::format("type=\"{}\" ", escape_markup(one.type));
+    text += fmt::format("message=\"{}\"/>", message);
+  }
+  return text + "</testcase>\n";
+}
+
+std::string counts_of(const std::vector<JunitCase>& cases) {
+  const auto count = [&](const char* outcome) {
+    return std::count_if(cases.begin(), cases.end(),
+                         [outcome](const JunitCase& one) { return one.outcome == outcome; });
+  };
+  return fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\"", cases.size(),
+                     count("failure"), count("error"), count("skipped"));
+}
 
 RegressionVerdict verdict_of(double expected, double measured,
                              const RegressionTolerance& tolerance) {
@@ -206,6 +252,50 @@ ShapeErrors errors_of(const Scene& scene, const Deviation& deviation) {
 }
 
 }  // namespace
+
+bool Regression::solved() const {
+  return std::none_of(results.begin(), results.end(), [](const RegressionResult& result) {
+    return result.verdict == RegressionVerdict::not_solved;
+  });
+}
+
+bool Regression::passes() const {
+  return std::none_of(results.begin(), results.end(),
+                      [](const RegressionResult& result) { return failed(result.verdict); });
+}
+
+Regression regress(const std::vector<Scene>& scenes, const std::vector<BaselineCase>& baseline,
+                   const RegressRequest& request, const Progress& progress) {
+  std::vector<MeasuredCase> measured;
+  const std::size_t all = scenes.size() * (1 + request.programs.size());
+  const auto measure = [&](const Scene& scene, const ForeignProgram* program) {
+    measured.push_back(measured_case(scene, request, program));
+    if (!progress) return;
+    progress(static_cast<std::int64_t>(measured.size()), static_cast<std::int64_t>(all));
+  };
+  for (const Scene& scene : scenes) {
+    measure(scene, nullptr);
+    for (const ForeignProgram& program : request.programs) measure(scene, &program);
+  }
+  Regression result{judge_regression(baseline, measured, request.tolerance), {}};
+  for (MeasuredCase& one : measured) result.cases.push_back(std::move(one.entry));
+  return result;
+}
+
+std::string junit_xml(const std::vector<JunitSuite>& suites) {
+  std::string text;
+  std::vector<JunitCase> all;
+  for (const JunitSuite& suite : suites) {
+    text += fmt::format("  <testsuite name=\"{}\" {}>\n", escape_markup(suite.name),
+                        counts_of(suite.cases));
+    for (const JunitCase& one : suite.cases) text += case_xml(one);
+    text += "  </testsuite>\n";
+    all.insert(all.end(), suite.cases.begin(), suite.cases.end());
+  }
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {}>\n{}</testsuites>\n",
+      counts_of(all), text);
+}
 
 BaselineCase case_of(const Scene& scene, Model model) {
   BaselineCase result;

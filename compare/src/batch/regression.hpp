@@ -6,10 +6,30 @@
 
 #include "batch/baseline.hpp"
 #include "dlo/compare/choice.hpp"
+#include "dlo/compare/progress.hpp"
 #include "dlo/compare/solution.hpp"
 #include "foreign/foreign_program.hpp"
 
 namespace dlo::compare {
+
+/// One test case of a JUnit file.
+struct JunitCase {
+  std::string group;    ///< classname attribute
+  std::string name;     ///< unique in its group
+  std::string outcome;  ///< "failure", "error" or "skipped"; empty if the test case passes
+  std::string type;     ///< type of the failure or error, one or a few words
+  std::string message;  ///< one line; may be empty
+  double seconds = 0;   ///< wall time [s]
+};
+
+/// Named group of test cases.
+struct JunitSuite {
+  std::string name;
+  std::vector<JunitCase> cases;
+};
+
+/// Returns JUnit XML with the counts of each suite and the total counts.
+[[nodiscard]] std::string junit_xml(const std::vector<JunitSuite>& suites);
 
 /// Returns the case of a scene and model, before it is solved: without errors.
 [[nodiscard]] BaselineCase case_of(const Scene& scene, Model model);
@@ -94,5 +114,33 @@ struct MeasuredCase {
 /// Returns JUnit XML: an `error` for each case that was not solved, a `failure` for each other case
 /// that failed().
 [[nodiscard]] std::string junit_xml(const std::vector<RegressionResult>& results);
+
+/// Models and programs to measure, and the tolerance of their errors.
+struct RegressRequest {
+  Model model = Model::force;            ///< force or chain
+  std::vector<ForeignProgram> programs;  ///< foreign programs whose shapes are measured too
+  RegressionTolerance tolerance;
+  SolveOptions solve;
+};
+
+/// Comparison of scenes with a baseline, as `dlo regress` prints it.
+struct Regression {
+  std::vector<RegressionResult> results;  ///< sorted by name
+  /// Measured cases, to be written as a new baseline of these scenes.
+  std::vector<BaselineCase> cases;
+
+  /// Whether every case was solved.
+  [[nodiscard]] bool solved() const;
+  /// Whether no case has failed().
+  [[nodiscard]] bool passes() const;
+};
+
+/// Measures scenes and compares them with the baseline. A solver that does not converge gives the
+/// verdict not_solved, no exception.
+/// @param progress  counts the cases
+/// @throws InputError if a model does not accept a scene, and as judge_regression()
+[[nodiscard]] Regression regress(const std::vector<Scene>& scenes,
+                                 const std::vector<BaselineCase>& baseline,
+                                 const RegressRequest& request, const Progress& progress = {});
 
 }  // namespace dlo::compare

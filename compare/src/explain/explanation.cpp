@@ -12,7 +12,6 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/energy_model/interrupt.hpp"
-#include "explain/cause_fit.hpp"
 #include "explain/chain_convergence.hpp"
 #include "explain/file_causes.hpp"
 #include "explain/joint_causes.hpp"

@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "explain/file_axes.hpp"
+#include "explain/file_causes.hpp"
 #include "shape/curve.hpp"
 
 namespace dlo::compare {

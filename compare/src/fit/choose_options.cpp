@@ -9,7 +9,6 @@
 
 #include "dlo/compare/error.hpp"
 #include "fit/fit_from.hpp"
-#include "fit/fitted_scene.hpp"
 #include "least_squares/material_point.hpp"
 #include "wire/wire_fit.hpp"
 #include "wire/wire_numbers.hpp"

@@ -10,6 +10,14 @@
 
 namespace dlo::compare {
 
+/// Returns a scene with the best estimates of the wire, and of the clamp errors and the camera's
+/// tilt that all scenes share, whether identified or not.
+/// @param first  the first of the fitted scenes, as it was before the fit
+[[nodiscard]] Scene fitted_scene(Scene scene, const MaterialFit& fit, const Scene& first);
+
+/// Returns the material of a fit, whether identified or not, as factors on that of the first scene.
+[[nodiscard]] MaterialPoint material_of(const MaterialFit& fit, const Scene& first);
+
 /// Fits the material with the given options, which fit_material() has checked.
 /// @param start  material from which the fit of all numbers starts, also for each prediction;
 /// empty: all E are searched

@@ -12,7 +12,6 @@
 #include "dlo/compare/error.hpp"
 #include "fit/choose_options.hpp"
 #include "fit/fit_from.hpp"
-#include "fit/fitted_scene.hpp"
 #include "wire/identifiable.hpp"
 #include "wire/leave_one_out.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "paper/moving_reference.hpp"
+#include "paper/moving.hpp"
 
 namespace dlo::compare {
 

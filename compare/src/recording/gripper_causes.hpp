@@ -4,8 +4,8 @@
 
 #include "dlo/compare/scene.hpp"
 #include "motion/track.hpp"
-#include "recording/model_motion.hpp"
 #include "recording/motion_check.hpp"
+#include "recording/motion_residuals.hpp"
 
 namespace dlo::compare {
 

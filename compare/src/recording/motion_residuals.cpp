@@ -1,12 +1,59 @@
 #include "recording/motion_residuals.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <utility>
+#include <vector>
+
+#include "polygon/scalar_search.hpp"
 
 namespace dlo::compare {
 namespace {
+
+/// Lagrange's weights of four neighbours among values at 0, 1, .. count - 1.
+struct Neighbours {
+  Eigen::Index first = 0;
+  std::array<double, 4> weights{};
+};
+
+Neighbours neighbours(double at, Eigen::Index count) {
+  const auto last = static_cast<double>(count - 1);
+  const double x = std::clamp(at, 0.0, last);
+  Neighbours result;
+  result.first =
+      std::clamp<Eigen::Index>(static_cast<Eigen::Index>(std::floor(x)) - 1, 0, count - 4);
+  const double t = x - static_cast<double>(result.first);
+  result.weights = {-(t - 1) * (t - 2) * (t - 3) / 6, t * (t - 2) * (t - 3) / 2,
+                    -t * (t - 1) * (t - 3) / 2, t * (t - 1) * (t - 2) / 6};
+  return result;
+}
+
+/// Number of lags that are scanned before Brent's method, and largest number of points used for the
+/// scan. With all 1e6 points of a recording it would take a minute.
+constexpr int lag_steps = 200;
+constexpr std::size_t most_tried_points = 20'000;
+
+/// Returns the positions at every n-th time of a recording, with all markers of that time.
+std::vector<MarkerPosition> thinned(const std::vector<MarkerPosition>& positions) {
+  const std::size_t stride = 1 + positions.size() / most_tried_points;
+  std::vector<MarkerPosition> result;
+  std::size_t time = 0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    if (i > 0 && positions[i].time > positions[i - 1].time) ++time;
+    if (time % stride == 0) result.push_back(positions[i]);
+  }
+  return result;
+}
+
+MotionShift shift_of(const Eigen::Matrix3Xd& residuals, double lag, Displacement displacement) {
+  MotionShift result{.lag = lag};
+  if (displacement == Displacement::constant) result.offset = residuals.rowwise().mean();
+  result.rms_m = rms_of(residuals.colwise() - result.offset);
+  return result;
+}
 
 /// Sums over the points of one group.
 struct Sum {
@@ -26,6 +73,52 @@ struct Sum {
 };
 
 }  // namespace
+
+ModelMotion::ModelMotion(double begin, double end, double length,
+                         std::vector<Eigen::Matrix3Xd> frames)
+    : begin_(begin), end_(end), length_(length), frames_(std::move(frames)) {}
+
+Eigen::Vector3d ModelMotion::at(double time, double arc_length) const {
+  const auto count = static_cast<Eigen::Index>(frames_.size());
+  const Eigen::Index points = frames_.front().cols();
+  const Neighbours in_time =
+      neighbours((time - begin_) / (end_ - begin_) * static_cast<double>(count - 1), count);
+  const Neighbours along =
+      neighbours(arc_length / length_ * static_cast<double>(points - 1), points);
+  Eigen::Vector3d result = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < 4; ++i) {
+    const Eigen::Matrix3Xd& frame = frames_[static_cast<std::size_t>(in_time.first + i)];
+    for (Eigen::Index k = 0; k < 4; ++k) {
+      result += in_time.weights[static_cast<std::size_t>(i)] *
+                along.weights[static_cast<std::size_t>(k)] * frame.col(along.first + k);
+    }
+  }
+  return result;
+}
+
+MotionShift best_offset(const MarkerMotion& recorded, const ModelMotion& model) {
+  return shift_of(motion_residuals(recorded, model), 0, Displacement::constant);
+}
+
+std::optional<MotionShift> best_lag(const MarkerMotion& recorded, const ModelMotion& model,
+                                    double earliest, Displacement displacement) {
+  const double last = recorded.positions.back().time;
+  const double range = lag_range_share * (last - recorded.positions.front().time);
+  MarkerMotion usable{.file = recorded.file, .positions = {}};
+  for (const MarkerPosition& at : thinned(recorded.positions)) {
+    if (at.time - range >= earliest) usable.positions.push_back(at);
+  }
+  constexpr std::size_t fewest = 8;
+  const double low = std::max(-range, last - model.end());
+  if (usable.positions.size() < fewest || !(range > 0) || !(low < 0)) return std::nullopt;
+  const Function left = [&](double lag) {
+    return shift_of(motion_residuals(usable, model, lag), lag, displacement).rms_m;
+  };
+  const Scan seen = scan(left, low, range, lag_steps);
+  if (!seen.is_bracketed()) return std::nullopt;
+  const double lag = minimum_near(left, seen, 1e-6 * range).x;
+  return shift_of(motion_residuals(usable, model, lag), lag, displacement);
+}
 
 Eigen::Matrix3Xd motion_residuals(const MarkerMotion& recorded, const ModelMotion& model,
                                   double lag) {

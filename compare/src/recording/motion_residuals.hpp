@@ -1,12 +1,33 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
+#include <string>
 #include <vector>
 
-#include "recording/model_motion.hpp"
 #include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
+
+/// Shapes of a rod at equal steps of time and of arc length, interpolated by cubics (Lagrange's,
+/// through the four nearest values) in both. Before the first and after the last frame the shape is
+/// constant.
+class ModelMotion {
+ public:
+  /// @param begin, end  times of the first and the last frame [s]
+  /// @param length      of the rod, on which the points have equal distances [m]
+  /// @param frames      points [m], 3 x M each; M and the number of frames are at least four
+  ModelMotion(double begin, double end, double length, std::vector<Eigen::Matrix3Xd> frames);
+
+  [[nodiscard]] double begin() const { return begin_; }  ///< [s]
+  [[nodiscard]] double end() const { return end_; }      ///< [s]
+  /// Returns the rod's point at a time and an arc length [m].
+  [[nodiscard]] Eigen::Vector3d at(double time, double arc_length) const;
+
+ private:
+  double begin_, end_, length_;
+  std::vector<Eigen::Matrix3Xd> frames_;
+};
 
 /// Distances of one frame of a recording from the rod.
 struct FrameError {
@@ -50,5 +71,30 @@ inline constexpr std::size_t most_markers = 30;
 [[nodiscard]] MotionErrors motion_errors(const MarkerMotion& recorded,
                                          const Eigen::Matrix3Xd& residuals, double length,
                                          std::size_t listed = most_markers);
+
+/// Displacement of a whole recording that is fitted besides its lag.
+enum class Displacement { none, constant };
+
+/// A constant shift of a recording in time and in space.
+struct MotionShift {
+  double lag = 0;                                    ///< delay of the recording [s]
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< displacement of the recording [m]
+  double rms_m = 0;                                  ///< remaining RMS distance [m]
+};
+
+/// Largest lag that is tried, in both directions, divided by the recording's duration.
+inline constexpr double lag_range_share = 0.25;
+
+/// Returns the mean displacement without a lag.
+[[nodiscard]] MotionShift best_offset(const MarkerMotion& recorded, const ModelMotion& model);
+
+/// Returns the shift with the least mean square distance of all points.
+/// @param earliest  time before which the rod is not known [s]; points whose shifted time may be
+/// earlier are omitted
+/// @return std::nullopt if the least distance is at an end of the range, or fewer than eight points
+/// are left
+[[nodiscard]] std::optional<MotionShift> best_lag(const MarkerMotion& recorded,
+                                                  const ModelMotion& model, double earliest,
+                                                  Displacement displacement);
 
 }  // namespace dlo::compare

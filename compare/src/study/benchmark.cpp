@@ -2,14 +2,197 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
+#include "base/timer.hpp"
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/force_model_settings.hpp"
+#include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"
+#include "dlo/energy_model/energy.hpp"
+#include "dlo/force_model/simulation.hpp"
+#include "polygon/energy_problems.hpp"
+#include "polygon/point_layout.hpp"
 #include "study/benchmark_runs.hpp"
 
 namespace dlo::compare {
+namespace {
+
+constexpr double frame_s = 1e-3;
+
+/// Times and errors of the frames of one run.
+struct Frames {
+  std::vector<double> seconds;
+  long evaluations = 0;
+  double squares = 0;  // sum of the squared errors, each divided by the length
+  int errors = 0;
+
+  void add_error(double square) {
+    squares += square;
+    ++errors;
+  }
+
+  void add(BenchmarkRun& run) const {
+    const auto count = static_cast<double>(seconds.size());
+    run.time = timing_of(seconds);
+    run.evaluations = std::lround(static_cast<double>(evaluations) / count);
+    run.rms_over_length = std::sqrt(squares / errors);
+  }
+};
+
+/// Returns the scene with its grippers at the end of a frame: moved along +x and rotated about z as
+/// one body. The rotation changes the shape, the translation does not.
+Scene moved(const Scene& scene, const BenchmarkOptions& options, int frame) {
+  const double way = (frame + 1) * frame_s * options.gripper_speed;
+  const Eigen::AngleAxisd turn(way / scene.length, Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d origin = scene.grippers.front().position;
+  Scene result = scene;
+  for (Gripper& gripper : result.grippers) {
+    gripper.position = origin + way * Eigen::Vector3d::UnitX() + turn * (gripper.position - origin);
+    if (gripper.direction) gripper.direction = (turn * *gripper.direction).normalized();
+    if (gripper.frame && gripper.frame->d1) gripper.frame->d1 = turn * *gripper.frame->d1;
+  }
+  return result;
+}
+
+/// Quasi-static shapes at the frames at which errors are measured.
+struct ReferenceTrack {
+  static constexpr int stride = 10;
+  std::vector<energy_model::Equilibrium> rods;
+
+  [[nodiscard]] static bool looks_at(int frame) { return frame % stride == 0; }
+  [[nodiscard]] double square_error(const Scene& scene, const Shape& shape, int frame) const {
+    const energy_model::Equilibrium& rod = rods[static_cast<std::size_t>(frame / stride)];
+    return std::pow(distance(shape, rod.sample) / scene.length, 2);
+  }
+};
+
+ReferenceTrack track_of(const Scene& scene, Model model, const BenchmarkOptions& options) {
+  ReferenceTrack track;
+  for (int frame = 0; frame < options.frames; frame += ReferenceTrack::stride) {
+    track.rods.push_back(solve_reference(moved(scene, options, frame), model));
+  }
+  return track;
+}
+
+BenchmarkRun track_energy(const Scene& scene, int terms, const ReferenceTrack& track,
+                          const BenchmarkOptions& options) {
+  energy_model::EnergySolver solver({.terms = terms});
+  energy_model::Problem problem = energy_problem(scene);
+  (void)solver.solve(problem);
+  const std::vector<double> s = equal_arc_lengths(scene.length, 21);
+  Frames frames;
+  for (int frame = 0; frame < options.frames; ++frame) {
+    problem = energy_problem(moved(scene, options, frame));
+    const Timer timer;
+    const energy_model::Equilibrium rod = solver.follow(problem);
+    const Eigen::Matrix3Xd points = rod.sample(s).points;
+    frames.seconds.push_back(timer.seconds());
+    frames.evaluations += rod.evaluations;
+    if (ReferenceTrack::looks_at(frame)) {
+      frames.add_error(track.square_error(scene, {s, points}, frame));
+    }
+  }
+  BenchmarkRun run{.scene = scene.name, .model = Model::energy, .size = terms};
+  frames.add(run);
+  return run;
+}
+
+/// Returns the number of steps that fit into a frame, measured on a copy of the simulation. The
+/// median of several trials is used, since other load on the machine may delay any one of them.
+long frame_steps(force_model::Simulation simulation) {
+  constexpr int trials = 15;
+  constexpr int steps = 200;
+  std::vector<double> seconds;
+  for (int trial = 0; trial < trials; ++trial) {
+    const Timer timer;
+    for (int i = 0; i < steps; ++i) (void)simulation.step();
+    seconds.push_back(timer.seconds());
+  }
+  const double step_s = timing_of(seconds).median_s / steps;
+  return std::max(1L, std::lround(std::floor(frame_s / step_s)));
+}
+
+BenchmarkRun track_force(const Scene& scene, const ForceVariant& variant, int points,
+                         const ReferenceTrack& track, const BenchmarkOptions& options) {
+  const ForceModelSettings settings = variant.settings(scene, points);
+  Discretisation discretisation = discretise(scene, settings);
+  std::vector<std::size_t> all(scene.obstacles.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  // All obstacles are included, because the gripper will move.
+  set_obstacles(scene, all, discretisation);
+  force_model::Simulation simulation(discretisation.rod, discretisation.starts.front(),
+                                     step_options(settings, discretisation));
+  (void)simulation.relax({.tolerance = 1e-5});
+  const long steps = variant.stepper == Stepper::implicit ? 1 : frame_steps(simulation);
+  Frames frames;
+  for (int frame = 0; frame < options.frames; ++frame) {
+    const Discretisation now = discretise(moved(scene, options, frame), settings);
+    const Timer timer;
+    for (std::size_t i = 0; i < now.rod.grips.size(); ++i) {
+      simulation.move_grip(i, now.rod.grips[i].targets, now.rod.grips[i].reference);
+    }
+    for (long i = 0; i < steps; ++i) (void)simulation.step();
+    frames.seconds.push_back(timer.seconds());
+    frames.evaluations += steps;
+    if (ReferenceTrack::looks_at(frame)) {
+      frames.add_error(track.square_error(scene, now.shape(simulation.points()), frame));
+    }
+  }
+  BenchmarkRun run{.scene = scene.name, .model = Model::force, .size = points, .variant = variant};
+  frames.add(run);
+  return run;
+}
+
+std::vector<BenchmarkRun> tracking_runs(const Scene& scene, const ReferenceShape& reference,
+                                        const BenchmarkOptions& options, Stopwatch& watch) {
+  std::vector<BenchmarkRun> runs;
+  ReferenceTrack track;
+  const double predicted_track =
+      reference.rod.seconds * options.frames / static_cast<double>(ReferenceTrack::stride);
+  const auto find = [&] { track = track_of(scene, reference.model, options); };
+  if (!watch.run_once(scene.name + ": tracking, reference", predicted_track, find)) return runs;
+  const auto add = [&](const std::string& name, double predicted, std::vector<BenchmarkRun>& to,
+                       const std::function<BenchmarkRun()>& work) {
+    BenchmarkRun run;
+    if (watch.run_once(fmt::format("{}: tracking, {}", scene.name, name), predicted,
+                       [&] { run = work(); })) {
+      to.push_back(std::move(run));
+    }
+  };
+  const auto add_energy = [&](int terms) {
+    // Each run is about as fast as the previous one; the first is short.
+    const double predicted = runs.empty() ? 0 : runs.back().time.median_s * options.frames;
+    add(name_of({.model = Model::energy, .size = terms}), predicted, runs,
+        [&] { return track_energy(scene, terms, track, options); });
+  };
+  const std::array<ForceVariant, 3> variants = {ForceVariant{.stretch_share = 1e-3}, ForceVariant{},
+                                                ForceVariant{.stepper = Stepper::implicit}};
+  std::array<std::vector<BenchmarkRun>, variants.size()> force_runs;
+  const auto add_force = [&](int points) {
+    for (std::size_t i = 0; i < variants.size(); ++i) {
+      add(name_of({.model = Model::force, .size = points, .variant = variants[i]}),
+          options.frames * frame_s, force_runs[i],
+          [&] { return track_force(scene, variants[i], points, track, options); });
+    }
+  };
+  // The cheapest run of both models comes first.
+  add_energy(3);
+  add_force(8);
+  for (const int terms : {6, 12, 0}) add_energy(terms);
+  for (const int points : {16, 32}) add_force(points);
+  for (const std::vector<BenchmarkRun>& of_variant : force_runs) {
+    runs.insert(runs.end(), of_variant.begin(), of_variant.end());
+  }
+  return runs;
+}
+
+}  // namespace
 
 std::vector<Scene> benchmark_scenes() {
   Scene steel;

@@ -94,9 +94,4 @@ class StaticRuns {
   std::vector<BenchmarkFailure> failures_;
 };
 
-[[nodiscard]] std::vector<BenchmarkRun> tracking_runs(const Scene& scene,
-                                                      const ReferenceShape& reference,
-                                                      const BenchmarkOptions& options,
-                                                      Stopwatch& watch);
-
 }  // namespace dlo::compare

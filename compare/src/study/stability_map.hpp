@@ -5,7 +5,7 @@
 
 #include "dlo/compare/progress.hpp"
 #include "dlo/compare/scene.hpp"
-#include "study/outcome.hpp"
+#include "study/stability.hpp"
 
 namespace dlo::compare {
 

@@ -15,13 +15,26 @@
 #include "parallel/threads.hpp"
 #include "record/solution_fields.hpp"
 #include "released/hinge_motion.hpp"
-#include "released/released_rod.hpp"
 
 namespace dlo::compare {
 namespace {
 
 /// Number of points of the chain with which a rod that stretches is compared.
 constexpr int fine_chain = 1024;
+
+/// Returns the answers of `certified` to all scenes, in their order, computed on several threads.
+template <typename Of>
+std::vector<Of> of_each(const std::vector<BatteryScene>& scenes, int threads,
+                        const SolveOptions& options,
+                        Of (*certified)(const BatteryScene&, const SolveOptions&)) {
+  std::vector<Of> answers(scenes.size());
+  tbb::task_arena arena(arena_threads(threads));
+  execute(arena, [&] {
+    tbb::parallel_for(std::size_t{0}, scenes.size(),
+                      [&](std::size_t i) { answers[i] = certified(scenes[i], options); });
+  });
+  return answers;
+}
 
 double or_zero(double estimate) { return std::isfinite(estimate) ? estimate : 0; }
 
@@ -100,16 +113,7 @@ Answer certified_answer(const BatteryScene& scene, const SolveOptions& options) 
 
 std::vector<Answer> certified_answers(const std::vector<BatteryScene>& scenes, int threads,
                                       const SolveOptions& options) {
-  std::vector<std::optional<Answer>> found(scenes.size());
-  tbb::task_arena arena(arena_threads(threads));
-  execute(arena, [&] {
-    tbb::parallel_for(std::size_t{0}, scenes.size(),
-                      [&](std::size_t i) { found[i] = certified_answer(scenes[i], options); });
-  });
-  std::vector<Answer> answers;
-  answers.reserve(scenes.size());
-  for (std::optional<Answer>& one : found) answers.push_back(std::move(*one));
-  return answers;
+  return of_each(scenes, threads, options, certified_answer);
 }
 
 namespace {
@@ -148,13 +152,7 @@ MotionAnswer certified_motion(const BatteryScene& scene, const SolveOptions& opt
 
 std::vector<MotionAnswer> certified_motions(const std::vector<BatteryScene>& scenes, int threads,
                                             const SolveOptions& options) {
-  std::vector<MotionAnswer> answers(scenes.size());
-  tbb::task_arena arena(arena_threads(threads));
-  execute(arena, [&] {
-    tbb::parallel_for(std::size_t{0}, scenes.size(),
-                      [&](std::size_t i) { answers[i] = certified_motion(scenes[i], options); });
-  });
-  return answers;
+  return of_each(scenes, threads, options, certified_motion);
 }
 
 }  // namespace dlo::compare

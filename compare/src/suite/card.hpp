@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "batch/regression_run.hpp"
+#include "batch/regression.hpp"
 #include "dlo/compare/progress.hpp"
 #include "suite/battery.hpp"
 #include "suite/cause.hpp"

@@ -8,7 +8,7 @@
 #include "dlo/compare/solution.hpp"
 #include "dlo/compare/solve.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
-#include "recording/model_motion.hpp"
+#include "recording/motion_residuals.hpp"
 #include "suite/battery.hpp"
 #include "trajectory/read_trajectory.hpp"
 

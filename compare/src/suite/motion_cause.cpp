@@ -10,9 +10,8 @@
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/shape.hpp"
 #include "polygon/scalar_search.hpp"
-#include "recording/lag_search.hpp"
 #include "recording/motion_residuals.hpp"
-#include "released/released_rod.hpp"
+#include "released/hinge_motion.hpp"
 #include "suite/cause.hpp"
 
 namespace dlo::compare {

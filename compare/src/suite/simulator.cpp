@@ -17,7 +17,6 @@
 #include "reading/read_scene.hpp"
 #include "record/field.hpp"
 #include "released/hinge_motion.hpp"
-#include "released/released_rod.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -1,18 +1,204 @@
 #include "wire/wire_fit.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <numbers>
+#include <numeric>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "base/timer.hpp"
 #include "wire/leave_one_out.hpp"
 #include "wire/wire_optimum.hpp"
 #include "wire/wire_problem.hpp"
 #include "wire/wire_result.hpp"
-#include "wire/wire_start.hpp"
 
 namespace dlo::compare {
 namespace {
+
+/// Distance of the material's log E from the scene's above which both are tried as starts: the E
+/// that fits best without the other numbers may differ from the one with them.
+constexpr double far_away = 0.7;
+
+/// Rods and own numbers of each shape that are nearest to its points among several trials.
+struct NearestStart {
+  std::vector<double> squares;
+  FittedRods::Rods rods;
+  Eigen::VectorXd values;
+
+  [[nodiscard]] double sum() const { return std::accumulate(squares.begin(), squares.end(), 0.0); }
+
+  void take_nearer(const WireProblem& problem, const FittedRods::State& state,
+                   const Eigen::VectorXd& others) {
+    if (squares.empty()) {
+      *this = {state.squares, state.rods, others};
+      return;
+    }
+    for (std::size_t i = 0; i < squares.size(); ++i) {
+      if (!(state.squares[i] < squares[i])) continue;
+      squares[i] = state.squares[i];
+      rods[i] = state.rods[i];
+      for (std::size_t k = 0; k < problem.numbers.size(); ++k) {
+        const auto number = static_cast<Eigen::Index>(k);
+        if (problem.is_own(k, i)) values[number] = others[number];
+      }
+    }
+  }
+};
+
+/// Whether the mean natural curvature is fitted about both axes of the section; the number about d2
+/// is the first.
+bool is_about_both_axes(const WireProblem& problem) {
+  const auto second = static_cast<std::size_t>(problem.first_of_others()) + 1;
+  return second < problem.numbers.size() && problem.numbers[second].term == 0 &&
+         problem.numbers[second].described.unit == "1/m";
+}
+
+/// Returns the nearest start for each of several mean curvatures in the likely range: up to 8 rad
+/// along the rod, to either side. The curvatures are visited from both ends, and each shape follows
+/// its own equilibrium. If the roll of the clamp is unknown, several angles are tried. A curvature
+/// about both axes has several directions.
+std::vector<NearestStart> nearest_by_curvature(const WireProblem& problem,
+                                               const Eigen::VectorXd& from, FittedRods& rods) {
+  constexpr std::array turns = {8.0, 5.0, 3.0, 1.5, 0.0, -1.5, -3.0, -5.0, -8.0};
+  constexpr int angles = 6;
+  const bool turns_the_rod =
+      std::ranges::any_of(problem.numbers, [](const WireNumber& one) { return one.turns_the_rod; });
+  const bool both_axes = is_about_both_axes(problem);
+  // Negative turns represent the opposite axes.
+  const int directions = both_axes ? angles / 2 : 1;
+  std::vector<NearestStart> found(directions * turns.size());
+  for (int i = 0; i < directions * (turns_the_rod ? angles : 1); ++i) {
+    const int direction = i % directions;
+    const int angle = i / directions;
+    const auto look_at = [&](std::size_t k) {
+      Eigen::VectorXd values = from;
+      const double curvature = turns[k] / problem.scenes.front().length;
+      const double about = 2 * std::numbers::pi * direction / angles;
+      values[problem.first_of_others()] = curvature * std::cos(about);
+      if (both_axes) values[problem.first_of_others() + 1] = curvature * std::sin(about);
+      for (std::size_t n = 0; n < problem.numbers.size(); ++n) {
+        if (!problem.numbers[n].turns_the_rod) continue;
+        values[static_cast<Eigen::Index>(n)] = 2 * std::numbers::pi * angle / angles;
+      }
+      found[direction * turns.size() + k].take_nearer(problem, rods.state(values), values);
+    };
+    rods.search_next();
+    for (std::size_t k = 0; k < turns.size(); ++k) look_at(k);
+    rods.search_next();
+    for (std::size_t k = turns.size(); k-- > 0;) look_at(k);
+  }
+  return found;
+}
+
+/// Values of all numbers, and the rods from which the iteration starts.
+struct Start {
+  Eigen::VectorXd values;
+  FittedRods::Rods rods;
+};
+
+/// Returns the starts in the order of their sums of squares. An intrinsically curved rod may hang
+/// on the other side of its clamp, and the E that fits best without natural curvature may be far
+/// away. So mean curvatures are tried with that E and with the scene's, and each shape starts with
+/// the trial that is nearest to its points.
+std::vector<Start> starts_by_curvature(const WireProblem& problem, FittedRods& rods,
+                                       Eigen::VectorXd from) {
+  std::vector<NearestStart> found;
+  std::vector<double> moduli = {from[0]};
+  if (from[0] != 0) moduli.push_back(0);
+  for (const double log_modulus : moduli) {
+    from[0] = log_modulus;
+    std::vector<NearestStart> some = nearest_by_curvature(problem, from, rods);
+    // In reverse order, so that of two equal starts the later one is used.
+    std::move(some.rbegin(), some.rend(), std::back_inserter(found));
+  }
+  std::ranges::stable_sort(found, {}, &NearestStart::sum);
+  std::vector<Start> result;
+  for (NearestStart& one : found) {
+    if (std::isfinite(one.sum())) result.push_back({std::move(one.values), std::move(one.rods)});
+  }
+  return result;
+}
+
+/// Sets rods and values to the fit of least variance among those that coarse fits reach from the
+/// starts.
+void go_to_best(const WireProblem& problem, const std::vector<Start>& starts, FittedRods& rods,
+                Eigen::VectorXd& values) {
+  double least = INFINITY;
+  FittedRods::Rods nearest(problem.scenes.size());
+  for (const Start& start : starts) {
+    rods.go_on_from(start.rods);
+    GaussNewton fit(rods, start.values, problem.coarse_steps());
+    if (!fit.descend() || !(fit.variance() < least)) continue;
+    least = fit.variance();
+    nearest = fit.rods();
+    values = fit.values();
+  }
+  rods.go_on_from(std::move(nearest));
+}
+
+/// Chooses the start for E. If the rod is not held as the scene states, the E that fits best with
+/// the scene's grips may be far away, so the fit also starts at the scene's E.
+void look_for_modulus(const WireProblem& problem, FittedRods& rods, Eigen::VectorXd& values) {
+  const FittedRods::Rods none(problem.scenes.size());
+  Eigen::VectorXd said = values;
+  said[0] = 0;
+  go_to_best(problem, {{values, none}, {said, none}}, rods, values);
+}
+
+/// Adds terms of natural curvature one by one, each fit starting at the result without the new
+/// term, so that more terms never fit worse than fewer.
+void fit_fewer_terms(const WireProblem& problem, FittedRods& rods, Eigen::VectorXd& values) {
+  for (int terms = 1; terms < problem.options.natural_curvature_terms; ++terms) {
+    FittedRods fewer = problem.rods(terms);
+    fewer.go_on_from(rods.rods());
+    GaussNewton fit(fewer, values, problem.coarse_steps());
+    if (!fit.descend()) return;
+    values = fit.values();
+    rods.go_on_from(fit.rods());
+  }
+}
+
+/// Number of mean curvatures from which fits with all terms start in addition. A rod that leaves
+/// its plane may lose its stability between one fit and the next: a fit with fewer terms of natural
+/// curvature can end at that limit, which no step with more terms leaves. (On 100 wires of
+/// WireFit's coverage test, one of four starts reached the best fit in all cases that had ended at
+/// the limit.)
+constexpr std::size_t most_starts = 4;
+
+void look_for_curvature(const WireProblem& problem, FittedRods& rods, Eigen::VectorXd& values) {
+  std::vector<Start> starts = starts_by_curvature(problem, rods, values);
+  if (starts.empty()) return;
+  starts.resize(std::min(starts.size(), most_starts));
+  values = starts.front().values;
+  rods.go_on_from(starts.front().rods);
+  fit_fewer_terms(problem, rods, values);
+  for (std::size_t i = 0; i < problem.shapes.size(); ++i) {
+    if (problem.measured.is_flat(i)) continue;
+    starts.insert(starts.begin(), {values, rods.rods()});
+    return go_to_best(problem, starts, rods, values);
+  }
+}
+
+/// Returns values of a wire's numbers from which the iteration converges to the fit.
+/// @param material     material that fits best without the other numbers
+/// @param[in,out] rods  rods with all numbers; set to the equilibria nearest to the shapes there
+Eigen::VectorXd wire_start(const WireProblem& problem, const MaterialPoint& material,
+                           FittedRods& rods) {
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(problem.numbers.size()));
+  if (material.log_modulus > problem.lowest()) values[0] = material.log_modulus;
+  if (problem.density) values[1] = material.log_density;
+  if (problem.options.natural_curvature_terms > 0) {
+    look_for_curvature(problem, rods, values);
+  } else if (std::abs(values[0]) > far_away) {
+    look_for_modulus(problem, rods, values);
+  }
+  return values;
+}
 
 /// Predicts the scene of a shape by the fit to the others, which starts at the fit to all and uses
 /// its weights. Numbers that belong to the shape alone are set to zero.

@@ -11,7 +11,7 @@
 #include "../../says.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene_file.hpp"
-#include "motion/trajectory_motion.hpp"
+#include "motion/moving_scene.hpp"
 
 namespace dlo::compare {
 namespace {

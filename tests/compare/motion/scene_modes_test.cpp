@@ -11,7 +11,6 @@
 #include "../../says.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/force_model/simulation.hpp"
-#include "motion/polygon_modes.hpp"
 #include "polygon/point_layout.hpp"
 #include "scenes.hpp"
 

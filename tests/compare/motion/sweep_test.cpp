@@ -1,8 +1,8 @@
-#include "motion/sweep.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "motion/branch.hpp"
 
 namespace dlo::compare {
 namespace {

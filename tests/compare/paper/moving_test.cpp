@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "paper/moving_reference.hpp"
 #include "paper/moving_tables.hpp"
 
 namespace dlo::compare {

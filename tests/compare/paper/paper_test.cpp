@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "dlo/compare/force_model_settings.hpp"
-#include "paper/modulus_history.hpp"
 #include "paper/printed_tables.hpp"
 
 namespace dlo::compare {

@@ -16,7 +16,7 @@
 
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solve.hpp"
-#include "recording/lag_search.hpp"
+#include "recording/motion_residuals.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -12,7 +12,6 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/shape.hpp"
-#include "released/released_rod.hpp"
 
 namespace dlo::compare {
 namespace {
