@@ -14,7 +14,6 @@
 #include "dlo/energy_model/interrupt.hpp"
 #include "explain/chain_convergence.hpp"
 #include "explain/file_causes.hpp"
-#include "explain/joint_causes.hpp"
 #include "explain/own_polygon.hpp"
 #include "explain/scene_causes.hpp"
 #include "shape/aligner.hpp"

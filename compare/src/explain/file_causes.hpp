@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -78,5 +79,14 @@ struct FileUnit {
 /// std::nullopt for fewer than eight points.
 [[nodiscard]] std::optional<Explanation> noise_of_points(const Shape& shape,
                                                          const energy_model::Equilibrium& rod);
+
+/// Group name (FileCause::same_as) of combinations of several errors.
+inline constexpr const char* joint_cause = "several";
+
+/// Calls `look` for all combinations of several errors of a file: its unit, axes, origin and
+/// missing ends. Each error after the first counts as one number, and another origin as one more.
+/// @param length  length of the rod's axis, with stretch [m]
+void look_at_joint_causes(const Scene& scene, const MeasuredShape& shape, double length,
+                          const std::function<void(const FileCause&)>& look);
 
 }  // namespace dlo::compare

@@ -13,6 +13,7 @@
 #include "dlo/energy_model/polygon.hpp"
 #include "dlo/obstacle/body.hpp"
 #include "scene/scene_problem.hpp"
+#include "shape/curve.hpp"
 #include "solve/held_frames.hpp"
 
 namespace dlo::compare {
@@ -78,7 +79,7 @@ std::optional<HeldAt> held_at(const Gripper& gripper, const std::vector<double>&
 /// grippers and ends their sum is the rod's length there.
 Eigen::VectorXd rest_lengths(const Scene& scene, const Eigen::Matrix3Xd& points) {
   const Eigen::Index n = points.cols() - 1;
-  const Eigen::VectorXd chords = (points.rightCols(n) - points.leftCols(n)).colwise().norm();
+  const Eigen::VectorXd chords = chord_lengths(points);
   double along = 0;
   std::vector<double> s = {along};
   for (const double h : chords) s.push_back(along += h * scene.length / chords.sum());
@@ -204,9 +205,8 @@ class Chain {
  private:
   [[nodiscard]] bool is_strained(const Eigen::Matrix3Xd& points) const {
     const Eigen::VectorXd& h = problem_.rest_lengths;
-    const Eigen::VectorXd lengths =
-        (points.rightCols(h.size()) - points.leftCols(h.size())).colwise().norm();
-    return !((lengths - h).cwiseAbs().cwiseQuotient(h).maxCoeff() <= largest_chain_strain);
+    return !((chord_lengths(points) - h).cwiseAbs().cwiseQuotient(h).maxCoeff() <=
+             largest_chain_strain);
   }
 
   void hold_point(Eigen::Index point, const Eigen::Vector3d& position) {
@@ -463,30 +463,17 @@ std::optional<OwnPolygon> with_best_law(const Chain& chain, Springs springs, dou
 }  // namespace
 
 std::string words_of(ChainClamp clamp, Eigen::Index segments) {
-  switch (clamp) {
-    case ChainClamp::hinge:
-      return fmt::format("a chain of {} segments with a hinge at the clamp", segments);
-    case ChainClamp::welded:
-      return fmt::format("a chain of {} segments, welded to its clamps", segments);
-    case ChainClamp::middle:
-      break;
-  }
-  return fmt::format("a chain of {} segments, clamped in the middle of a segment", segments);
+  return fmt::format("a chain of {} segments{}", segments,
+                     clamp == ChainClamp::hinge    ? " with a hinge at the clamp"
+                     : clamp == ChainClamp::welded ? ", welded to its clamps"
+                                                   : ", clamped in the middle of a segment");
 }
 
 std::string law_words(const OwnPolygon& chain) {
   if (!chain.law_shows) return "";
-  switch (chain.law) {
-    case JointLaw::linear:
-      return "linear in the angle";
-    case JointLaw::hooke:
-      return "linear in 2 tan(angle/2)";
-    case JointLaw::binormal:
-      return "those of discrete elastic rods";
-    case JointLaw::paper:
-      break;
-  }
-  return "";
+  return chain.law == JointLaw::linear  ? "linear in the angle"
+         : chain.law == JointLaw::hooke ? "linear in 2 tan(angle/2)"
+                                        : "those of discrete elastic rods";
 }
 
 std::string and_springs(const OwnPolygon& chain) {

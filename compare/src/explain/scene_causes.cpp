@@ -56,66 +56,67 @@ constexpr double degree = std::numbers::pi / 180;
 
 Eigen::VectorXd zeros(Eigen::Index count) { return Eigen::VectorXd::Zero(count); }
 
+using Numbers = Eigen::VectorXd;
+
+/// Returns a cause whose numbers change the scene. @param stride, longest_step  of every number
+template <typename Change, typename Words>
+SceneCause cause_of(const Scene& scene, const Numbers& start, double stride, double longest_step,
+                    const Change& change, const Words& words) {
+  const auto changed = [scene, change](const Numbers& p) {
+    Scene result = scene;
+    change(result, p);
+    return result;
+  };
+  return {start, Numbers::Constant(start.size(), stride), longest_step, changed, words};
+}
+
 SceneCause stiffness(const Scene& scene) {
-  return {zeros(1), Eigen::VectorXd::Constant(1, 0.02), 1.5,
-          [scene](const Eigen::VectorXd& p) {
-            Scene changed = scene;
-            changed.scale_modulus(std::exp(p[0]));
-            return changed;
-          },
-          [scene](const Eigen::VectorXd& p) {
-            std::string text =
-                fmt::format("the bending stiffness is {:.3g} times the scene's", std::exp(p[0]));
-            if (is_pulled_by_weight_alone(scene)) {
-              text += fmt::format(", or the weight {:.3g} times", std::exp(-p[0]));
-            }
-            return text;
-          }};
+  return cause_of(
+      scene, zeros(1), 0.02, 1.5,
+      [](Scene& changed, const Numbers& p) { changed.scale_modulus(std::exp(p[0])); },
+      [scene](const Numbers& p) {
+        std::string text =
+            fmt::format("the bending stiffness is {:.3g} times the scene's", std::exp(p[0]));
+        if (is_pulled_by_weight_alone(scene)) {
+          text += fmt::format(", or the weight {:.3g} times", std::exp(-p[0]));
+        }
+        return text;
+      });
 }
 
 SceneCause torsional_stiffness(const Scene& scene) {
-  return {zeros(1), Eigen::VectorXd::Constant(1, 0.05), 1.5,
-          [scene](const Eigen::VectorXd& p) {
-            Scene changed = scene;
-            changed.scale_torsion(std::exp(p[0]));
-            return changed;
-          },
-          [](const Eigen::VectorXd& p) {
-            return fmt::format("the torsional stiffness is {:.3g} times the scene's",
-                               std::exp(p[0]));
-          }};
+  return cause_of(
+      scene, zeros(1), 0.05, 1.5,
+      [](Scene& changed, const Numbers& p) { changed.scale_torsion(std::exp(p[0])); },
+      [](const Numbers& p) {
+        return fmt::format("the torsional stiffness is {:.3g} times the scene's", std::exp(p[0]));
+      });
 }
 
 /// Returns the cause that gravity has another size or direction.
 /// @param down  direction at the start of the fit
 SceneCause gravity(const Scene& scene, const Eigen::Vector3d& down) {
   const double size = scene.gravity.norm();
-  return {down * size - scene.gravity, Eigen::VectorXd::Constant(3, 0.02 * size), size,
-          [scene](const Eigen::VectorXd& p) {
-            Scene changed = scene;
-            changed.gravity += p;
-            return changed;
-          },
-          [scene](const Eigen::VectorXd& p) {
-            const Eigen::Vector3d g = scene.gravity + p;
-            const double turned = std::atan2(g.cross(scene.gravity).norm(), g.dot(scene.gravity));
-            return fmt::format("gravity is [{:.3g}, {:.3g}, {:.3g}] m/s^2, rotated by {:.3g} deg",
-                               g.x(), g.y(), g.z(), turned / degree);
-          }};
+  return cause_of(
+      scene, down * size - scene.gravity, 0.02 * size, size,
+      [](Scene& changed, const Numbers& p) { changed.gravity += p; },
+      [scene](const Numbers& p) {
+        const Eigen::Vector3d g = scene.gravity + p;
+        const double turned = std::atan2(g.cross(scene.gravity).norm(), g.dot(scene.gravity));
+        return fmt::format("gravity is [{:.3g}, {:.3g}, {:.3g}] m/s^2, rotated by {:.3g} deg",
+                           g.x(), g.y(), g.z(), turned / degree);
+      });
 }
 
 /// Returns the cause that the rod has the length of the shape, for which nothing is fitted.
 SceneCause length(const Scene& scene, double of_shape) {
-  return {Eigen::VectorXd::Constant(1, std::log(of_shape / scene.length)), zeros(1), 0,
-          [scene](const Eigen::VectorXd& p) {
-            Scene changed = scene;
-            scale_length(changed, std::exp(p[0]));
-            return changed;
-          },
-          [scene](const Eigen::VectorXd& p) {
-            return fmt::format("the rod is {:.4g} m long, not {:.4g} m",
-                               scene.length * std::exp(p[0]), scene.length);
-          }};
+  return cause_of(
+      scene, Numbers::Constant(1, std::log(of_shape / scene.length)), 0, 0,
+      [](Scene& changed, const Numbers& p) { scale_length(changed, std::exp(p[0])); },
+      [scene](const Numbers& p) {
+        return fmt::format("the rod is {:.4g} m long, not {:.4g} m", scene.length * std::exp(p[0]),
+                           scene.length);
+      });
 }
 
 /// Returns the cause that a clamp has another direction: in the plane with this normal, or any.
@@ -123,37 +124,34 @@ SceneCause direction(const Scene& scene, std::size_t index,
                      const std::optional<Eigen::Vector3d>& normal) {
   const Gripper& clamp = scene.grippers[index];
   const Eigen::Matrix3Xd ways = ways_across(*clamp.direction, normal);
-  return {zeros(ways.cols()), Eigen::VectorXd::Constant(ways.cols(), 1 * degree), 40 * degree,
-          [scene, index, ways](const Eigen::VectorXd& p) {
-            Scene changed = scene;
-            turn_clamp(changed.grippers[index], ways * p);
-            return changed;
-          },
-          [clamp, index, ways](const Eigen::VectorXd& p) {
-            Gripper turned = clamp;
-            turn_clamp(turned, ways * p);
-            const Eigen::Vector3d to = *turned.direction;
-            return fmt::format("gripper {} is rotated by {:.3g} deg, to [{:.4g}, {:.4g}, {:.4g}]",
-                               index + 1, p.norm() / degree, to.x(), to.y(), to.z());
-          }};
+  return cause_of(
+      scene, zeros(ways.cols()), 1 * degree, 40 * degree,
+      [index, ways](Scene& changed, const Numbers& p) {
+        turn_clamp(changed.grippers[index], ways * p);
+      },
+      [clamp, index, ways](const Numbers& p) {
+        Gripper turned = clamp;
+        turn_clamp(turned, ways * p);
+        const Eigen::Vector3d to = *turned.direction;
+        return fmt::format("gripper {} is rotated by {:.3g} deg, to [{:.4g}, {:.4g}, {:.4g}]",
+                           index + 1, p.norm() / degree, to.x(), to.y(), to.z());
+      });
 }
 
 /// Returns the cause that a gripper has another position: in the plane with this normal, or any.
 SceneCause position(const Scene& scene, std::size_t index,
                     const std::optional<Eigen::Vector3d>& normal) {
   const Eigen::Matrix3Xd ways = ways_of_place(normal);
-  return {zeros(ways.cols()), Eigen::VectorXd::Constant(ways.cols(), 1e-3 * scene.length),
-          0.2 * scene.length,
-          [scene, index, ways](const Eigen::VectorXd& p) {
-            Scene changed = scene;
-            changed.grippers[index].position += ways * p;
-            return changed;
-          },
-          [index, ways](const Eigen::VectorXd& p) {
-            const Eigen::Vector3d way = ways * p * 1e3;
-            return fmt::format("gripper {} is {:.3g} mm away, by [{:.3g}, {:.3g}, {:.3g}] mm",
-                               index + 1, way.norm(), way.x(), way.y(), way.z());
-          }};
+  return cause_of(
+      scene, zeros(ways.cols()), 1e-3 * scene.length, 0.2 * scene.length,
+      [index, ways](Scene& changed, const Numbers& p) {
+        changed.grippers[index].position += ways * p;
+      },
+      [index, ways](const Numbers& p) {
+        const Eigen::Vector3d way = ways * p * 1e3;
+        return fmt::format("gripper {} is {:.3g} mm away, by [{:.3g}, {:.3g}, {:.3g}] mm",
+                           index + 1, way.norm(), way.x(), way.y(), way.z());
+      });
 }
 
 std::string text_of(const Eigen::Vector3d& direction) {
@@ -187,32 +185,28 @@ SceneCause clamps_for_pins(const Scene& scene, const std::vector<std::size_t>& p
     ways.push_back(ways_across(along, normal));
     count += ways.back().cols();
   }
-  const auto changed = [held, pins, ways](const Eigen::VectorXd& p) {
-    Scene result = held;
+  const auto turn = [pins, ways](Scene& changed, const Numbers& p) {
     Eigen::Index first = 0;
     for (std::size_t k = 0; k < pins.size(); ++k) {
-      turn_clamp(result.grippers[pins[k]], ways[k] * p.segment(first, ways[k].cols()));
+      turn_clamp(changed.grippers[pins[k]], ways[k] * p.segment(first, ways[k].cols()));
       first += ways[k].cols();
     }
-    return result;
   };
-  SceneCause cause{zeros(count), Eigen::VectorXd::Constant(count, 1 * degree), 40 * degree, changed,
-                   [changed, pins](const Eigen::VectorXd& p) {
-                     const Scene result = changed(p);
-                     if (pins.size() == 1) {
-                       return fmt::format("gripper {} holds its direction, {}: a clamp, not a pin",
-                                          pins[0] + 1,
-                                          text_of(*result.grippers[pins[0]].direction));
-                     }
-                     std::vector<std::string> directions;
-                     directions.reserve(pins.size());
-                     for (const std::size_t i : pins) {
-                       directions.push_back(fmt::format("gripper {} {}", i + 1,
-                                                        text_of(*result.grippers[i].direction)));
-                     }
-                     return fmt::format("the pins hold their directions, {}: clamps",
-                                        fmt::join(directions, ", "));
-                   }};
+  const auto words = [held, turn, pins](const Numbers& p) {
+    Scene changed = held;
+    turn(changed, p);
+    std::vector<std::string> directions;
+    for (const std::size_t i : pins) directions.push_back(text_of(*changed.grippers[i].direction));
+    if (pins.size() == 1) {
+      return fmt::format("gripper {} holds its direction, {}: a clamp, not a pin", pins[0] + 1,
+                         directions[0]);
+    }
+    for (std::size_t k = 0; k < pins.size(); ++k) {
+      directions[k] = fmt::format("gripper {} {}", pins[k] + 1, directions[k]);
+    }
+    return fmt::format("the pins hold their directions, {}: clamps", fmt::join(directions, ", "));
+  };
+  SceneCause cause = cause_of(held, zeros(count), 1 * degree, 40 * degree, turn, words);
   cause.other_state = true;
   return cause;
 }
@@ -224,13 +218,13 @@ SceneCause pins_for_clamps(const Scene& scene, const std::vector<std::size_t>& c
     free.grippers[i].direction.reset();
     free.grippers[i].frame.reset();
   }
-  SceneCause cause{zeros(0), zeros(0), 0, [free](const Eigen::VectorXd& /*none*/) { return free; },
-                   [clamps](const Eigen::VectorXd& /*none*/) {
-                     return clamps.size() == 1
-                                ? fmt::format("gripper {} lets the rod rotate: a pin, not a clamp",
-                                              clamps[0] + 1)
-                                : std::string("the clamps let the rod rotate: pins");
-                   }};
+  const std::string words =
+      clamps.size() == 1
+          ? fmt::format("gripper {} lets the rod rotate: a pin, not a clamp", clamps[0] + 1)
+          : "the clamps let the rod rotate: pins";
+  SceneCause cause = cause_of(
+      free, zeros(0), 0, 0, [](Scene&, const Numbers&) {},
+      [words](const Numbers&) { return words; });
   cause.other_state = true;
   return cause;
 }
@@ -251,37 +245,33 @@ void add_other_holds(std::vector<SceneCause>& causes, const Scene& scene, const 
 
 SceneCause natural_curvature(const Scene& scene) {
   const double unit = 1 / scene.length;
-  return {zeros(1), Eigen::VectorXd::Constant(1, 0.02 * unit), 3 * unit,
-          [scene](const Eigen::VectorXd& p) {
-            Scene changed = scene;
-            bend_by_nature(changed, 0, {0, p[0]});
-            return changed;
-          },
-          [scene](const Eigen::VectorXd& p) {
-            return fmt::format("the rod is intrinsically curved, {:.3g} 1/m{}",
-                               scene.natural_strain.y() + p[0],
-                               scene.naturally_curved() ? " in the mean" : "");
-          }};
+  return cause_of(
+      scene, zeros(1), 0.02 * unit, 3 * unit,
+      [](Scene& changed, const Numbers& p) {
+        bend_by_nature(changed, 0, {0, p[0]});
+      },
+      [scene](const Numbers& p) {
+        return fmt::format("the rod is intrinsically curved, {:.3g} 1/m{}",
+                           scene.natural_strain.y() + p[0],
+                           scene.naturally_curved() ? " in the mean" : "");
+      });
 }
 
 SceneCause twist(const Scene& scene, std::size_t last) {
-  return {Eigen::VectorXd::Constant(1, 60 * degree), Eigen::VectorXd::Constant(1, 2 * degree),
-          60 * degree,
-          [scene, last](const Eigen::VectorXd& p) {
-            Scene changed = scene;
-            for (Gripper& gripper : changed.grippers) {
-              if (gripper.direction && !gripper.frame) gripper.frame.emplace();
-            }
-            changed.grippers[last].frame->roll += p[0];
-            if (!changed.torsional_stiffness) {
-              changed.torsional_stiffness = scene.bending_stiffness() / (1 + assumed_poisson_ratio);
-            }
-            return changed;
-          },
-          [last](const Eigen::VectorXd& p) {
-            return fmt::format("gripper {} turns the rod about its direction by {:.3g} deg (twist)",
-                               last + 1, p[0] / degree);
-          }};
+  return cause_of(
+      scene, Numbers::Constant(1, 60 * degree), 2 * degree, 60 * degree,
+      [last](Scene& changed, const Numbers& p) {
+        for (Gripper& gripper : changed.grippers) {
+          if (gripper.direction && !gripper.frame) gripper.frame.emplace();
+        }
+        changed.grippers[last].frame->roll += p[0];
+        if (changed.torsional_stiffness) return;
+        changed.torsional_stiffness = changed.bending_stiffness() / (1 + assumed_poisson_ratio);
+      },
+      [last](const Numbers& p) {
+        return fmt::format("gripper {} turns the rod about its direction by {:.3g} deg (twist)",
+                           last + 1, p[0] / degree);
+      });
 }
 
 /// Adds another gravity, fitted from the scene's and from four directions perpendicular to it.

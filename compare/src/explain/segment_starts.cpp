@@ -20,9 +20,7 @@ using Eigen::Vector3d;
 constexpr double like_the_model = 0.02;
 
 bool are_starts(const Eigen::Matrix3Xd& points, double segment) {
-  const Index n = points.cols() - 1;
-  const Eigen::VectorXd h = (points.rightCols(n) - points.leftCols(n)).colwise().norm();
-  return (h.array() - segment).abs().maxCoeff() <= like_the_model * segment;
+  return (chord_lengths(points).array() - segment).abs().maxCoeff() <= like_the_model * segment;
 }
 
 /// Returns the end of the last segment if a gripper holds it.

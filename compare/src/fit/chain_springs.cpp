@@ -10,6 +10,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
 #include "explain/own_polygon.hpp"
+#include "shape/curve.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -27,11 +28,8 @@ Shape points_apart(const energy_model::Equilibrium& rod, double length,
     }
     shape.arc_length.back() = length;
     shape.points = rod.sample(shape.arc_length).points;
-    const Eigen::Index n = shares.size();
-    const Eigen::VectorXd chords =
-        (shape.points.rightCols(n) - shape.points.leftCols(n)).colwise().norm();
     // Chords are shorter than their arcs, by amounts that hardly change between rounds.
-    parts = parts.cwiseProduct(shares).cwiseQuotient(chords);
+    parts = parts.cwiseProduct(shares).cwiseQuotient(chord_lengths(shape.points));
     parts *= length / parts.sum();
   }
   return shape;
@@ -137,11 +135,8 @@ std::vector<ChainSprings> chain_springs(const Scene& scene, const std::vector<do
 }
 
 std::vector<double> segment_lengths(const Eigen::Matrix3Xd& points) {
-  std::vector<double> lengths;
-  for (Eigen::Index i = 1; i < points.cols(); ++i) {
-    lengths.push_back((points.col(i) - points.col(i - 1)).norm());
-  }
-  return lengths;
+  const Eigen::VectorXd lengths = chord_lengths(points);
+  return {lengths.begin(), lengths.end()};
 }
 
 }  // namespace dlo::compare

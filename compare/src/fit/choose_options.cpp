@@ -10,6 +10,7 @@
 #include "dlo/compare/error.hpp"
 #include "fit/fit_from.hpp"
 #include "least_squares/material_point.hpp"
+#include "wire/identifiable.hpp"
 #include "wire/wire_fit.hpp"
 #include "wire/wire_numbers.hpp"
 
@@ -224,10 +225,7 @@ class OptionsSearch {
       if (trial.terms() > most->terms()) most = &trial;
     }
     if (most == &chosen) return;
-    E.low = std::min(*E.low, *most->fit.youngs_modulus.low);
-    E.high = std::max(*E.high, *most->fit.youngs_modulus.high);
-    if (std::log(*E.high / *E.low) <= std::log(options_.identified_within)) return;
-    E.value.reset();
+    if (include_interval(E, most->fit.youngs_modulus, options_.identified_within)) return;
     if (fit.not_identified.empty()) {
       fit.not_identified =
           "options that predict the shapes nearly as well give values that differ too much";

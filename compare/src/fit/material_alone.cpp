@@ -102,11 +102,7 @@ bool widen_to_any_wire(MaterialProfiles& material, const MaterialPoint& best, Ma
     const FittedValue other = fit_wire(material.scenes(), material.shapes(), material.measured(),
                                        options, best, material.has_density())
                                   .youngs_modulus;
-    FittedValue& E = fit.youngs_modulus;
-    E.low = E.low && other.low ? std::optional(std::min(*E.low, *other.low)) : std::nullopt;
-    E.high = E.high && other.high ? std::optional(std::max(*E.high, *other.high)) : std::nullopt;
-    if (E.low && E.high && *E.high <= options.identified_within * *E.low) return true;
-    E.value.reset();
+    if (include_interval(fit.youngs_modulus, other, options.identified_within)) return true;
   } catch (const ResultError&) {
     // There is no clamp or plane, the points are too few, a shape was not found, or time is up.
     return false;

@@ -176,9 +176,7 @@ void add_seen_part(const MeasuredShape& shape, const std::vector<double>& s, dou
     check.largest_gap_m = s[i + 1] - s[i];
     check.largest_gap_at_m = s[i];
   }
-  const Eigen::Index segments = shape.points.cols() - 1;
-  check.polyline_length_m =
-      (shape.points.rightCols(segments) - shape.points.leftCols(segments)).colwise().norm().sum();
+  check.polyline_length_m = polyline_length(shape.points);
   check.seen_share = (s.back() - s.front()) / length;
 }
 

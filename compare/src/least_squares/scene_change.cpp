@@ -16,10 +16,7 @@ Eigen::Matrix3Xd ways_across(const Eigen::Vector3d& direction,
 
 Eigen::Matrix3Xd ways_of_place(const std::optional<Eigen::Vector3d>& normal) {
   if (!normal) return Eigen::Matrix3d::Identity();
-  Eigen::Matrix3Xd ways(3, 2);
-  const Eigen::Vector3d first = normal->unitOrthogonal();
-  ways << first, normal->cross(first);
-  return ways;
+  return ways_across(*normal, std::nullopt);
 }
 
 void turn_clamp(Gripper& clamp, const Eigen::Vector3d& turn) {

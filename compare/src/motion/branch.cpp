@@ -40,19 +40,17 @@ bool goes_through(const obstacle::Body& body, const Patch& patch, double depth, 
   const double length = patch.length();
   const double way = patch.way();
   if (halvings == 0 || clearance - (length + way) / 2 > -depth) return false;
+  Patch first = patch;
+  Patch second = patch;
   if (length > way) {
-    const Eigen::Vector3d before = (patch.begin_before + patch.end_before) / 2;
-    const Eigen::Vector3d after = (patch.begin_after + patch.end_after) / 2;
-    return goes_through(body, {patch.begin_before, before, patch.begin_after, after}, depth,
-                        halvings - 1) ||
-           goes_through(body, {before, patch.end_before, after, patch.end_after}, depth,
-                        halvings - 1);
+    first.end_before = second.begin_before = (patch.begin_before + patch.end_before) / 2;
+    first.end_after = second.begin_after = (patch.begin_after + patch.end_after) / 2;
+  } else {
+    first.begin_after = second.begin_before = (patch.begin_before + patch.begin_after) / 2;
+    first.end_after = second.end_before = (patch.end_before + patch.end_after) / 2;
   }
-  const Eigen::Vector3d begin = (patch.begin_before + patch.begin_after) / 2;
-  const Eigen::Vector3d end = (patch.end_before + patch.end_after) / 2;
-  return goes_through(body, {patch.begin_before, patch.end_before, begin, end}, depth,
-                      halvings - 1) ||
-         goes_through(body, {begin, end, patch.begin_after, patch.end_after}, depth, halvings - 1);
+  return goes_through(body, first, depth, halvings - 1) ||
+         goes_through(body, second, depth, halvings - 1);
 }
 
 using energy_model::Equilibrium;

@@ -95,7 +95,6 @@ RawShape read_json_shape(std::string_view text, const std::string& file, double 
   raw.points = json_points(document[points], fmt::format("{}: {}", file, points));
   if (document.contains("d1")) {
     raw.d1 = json_points(document["d1"], file + ": d1");
-    require_as_many_d1(raw, file);
   }
   if (document.contains(arc_length)) {
     read_json_arc_lengths(document[arc_length], fmt::format("{}: {}", file, arc_length), raw);

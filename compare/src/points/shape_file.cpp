@@ -4,18 +4,91 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
 #include <numbers>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "base/input_file.hpp"
+#include "base/number.hpp"
+#include "base/quote.hpp"
 #include "decode/xml.hpp"
 #include "dlo/compare/error.hpp"
 #include "points/readers.hpp"
 
 namespace dlo::compare {
 namespace {
+
+/// Name of a shape: FILE, or FILE.npy:INDEX for one frame of an array of frames.
+struct ShapeName {
+  std::string file;   ///< file to read
+  std::string index;  ///< index of the frame; empty: the whole array
+};
+
+/// Splits a name into its parts; the name of the file itself may contain colons.
+ShapeName shape_name(const std::string& name) {
+  constexpr std::string_view array = ".npy:";
+  const std::size_t found = name.rfind(array);
+  if (found == std::string::npos) return {name, ""};
+  const std::size_t colon = found + array.size() - 1;
+  return {name.substr(0, colon), name.substr(colon + 1)};
+}
+
+constexpr const char* arrays_allowed = "(allowed: N x 3 or N x 2)";
+
+/// Returns the name that selects a frame of an array of frames.
+std::string chosen(const ShapeName& name, const std::string& index) {
+  return fmt::format("{}:{}", name.file, index);
+}
+
+/// Returns the index of the selected frame of an array of frames.
+std::size_t frame_of(const NpyArray& array, const ShapeName& name) {
+  const std::vector<std::size_t>& n = array.shape();
+  const auto frames = static_cast<std::int64_t>(n[0]);
+  const std::optional<std::int64_t> index = as_number<std::int64_t>(name.index);
+  if (!index || *index >= frames || *index < -frames) {
+    array.fail(
+        fmt::format("{} frames of {} points{} (allowed: one of them, as {} for the first and {} "
+                    "for the last)",
+                    n[0], n[1], name.index.empty() ? "" : ", no frame " + quoted_piece(name.index),
+                    chosen(name, "0"), chosen(name, "-1")));
+  }
+  return static_cast<std::size_t>(*index < 0 ? *index + frames : *index);
+}
+
+void require_one_frame(const NpyArray& array, const ShapeName& name) {
+  const std::vector<std::size_t>& n = array.shape();
+  if (n.size() != 2 || (n[1] != 2 && n[1] != 3)) {
+    const bool lying = n.size() == 2 && (n[0] == 2 || n[0] == 3);
+    array.fail(fmt::format("an array of {} {}{}", array.shape_text(), arrays_allowed,
+                           lying ? "; numpy.save its transpose" : ""));
+  }
+  if (name.index.empty()) return;
+  array.fail(fmt::format("has no frames to choose {} from (allowed: {} alone)",
+                         quoted_piece(name.index), name.file));
+}
+
+RawShape points_of(const NpyArray& array, const ShapeName& name) {
+  array.require_numbers();
+  const std::vector<std::size_t>& n = array.shape();
+  const bool has_frames = n.size() == 3 && (n[2] == 2 || n[2] == 3);
+  if (!has_frames) require_one_frame(array, name);
+  const std::size_t frame = has_frames ? frame_of(array, name) : 0;
+  const std::size_t count = has_frames ? n[1] : n[0];
+  require_point_count(count, array.where());
+  RawShape raw;
+  raw.points.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    std::array<double, 3> point{};
+    for (std::size_t k = 0; k < n.back(); ++k) {
+      point[k] = has_frames ? array.at({frame, i, k}) : array.at({i, k});
+    }
+    raw.points.push_back(point);
+  }
+  return raw;
+}
 
 constexpr double largest_coordinate = 1e6;
 /// Smallest distance between distinct neighbours [m]. Neighbours closer than this are the same
@@ -74,7 +147,10 @@ Eigen::Vector3d vector_of(const std::array<double, 3>& v) { return {v[0], v[1], 
 /// Checks that each d1 is a unit vector across the rod. The tangent is only known from the two
 /// chords at a point, so the allowed angle includes the angle between them.
 void require_directors(const RawShape& raw, const std::string& file) {
-  require_as_many_d1(raw, file);
+  if (!raw.d1.empty() && raw.d1.size() != raw.points.size()) {
+    throw InputError(fmt::format("{}: d1: {} vectors of {} points (allowed: one a point, or none)",
+                                 file, raw.d1.size(), raw.points.size()));
+  }
   const std::size_t count = raw.points.size();
   const auto chord = [&](std::size_t i) -> Eigen::Vector3d {
     return (vector_of(raw.points[i + 1]) - vector_of(raw.points[i])).normalized();
@@ -137,6 +213,14 @@ double arc_length_unit(const RawShape& raw, const std::string& file, double unit
                   "in the unit of "
                   "the points, see --unit, or in metres)",
                   file, span * unit, polyline));
+}
+
+/// Reads a NumPy array: M x 2 or M x 3 of any integer type or of 32 or 64 bit floating-point
+/// numbers, in any byte order and memory order. Of an array of frames, frames x M x 2 or frames x
+/// M x 3, it reads the frame that the name selects (shape_name).
+/// @throws InputError naming the file
+RawShape read_npy_shape(std::string_view bytes, const std::string& file) {
+  return points_of(NpyArray(bytes, file), shape_name(file));
 }
 
 RawShape read_any_shape(std::string_view text, const std::string& file, double unit) {
@@ -213,46 +297,6 @@ void require_point_count(std::size_t count, const std::string& where) {
   if (count <= static_cast<std::size_t>(most_shape_points)) return;
   throw InputError(
       fmt::format("{}: {} points (allowed: 2 to {})", where, count, most_shape_points));
-}
-
-void require_as_many_d1(const RawShape& raw, const std::string& file) {
-  if (raw.d1.empty() || raw.d1.size() == raw.points.size()) return;
-  throw InputError(fmt::format("{}: d1: {} vectors of {} points (allowed: one a point, or none)",
-                               file, raw.d1.size(), raw.points.size()));
-}
-
-ShapeName shape_name(const std::string& name) {
-  constexpr std::string_view array = ".npy:";
-  const std::size_t found = name.rfind(array);
-  if (found == std::string::npos) return {name, ""};
-  const std::size_t colon = found + array.size() - 1;
-  return {name.substr(0, colon), name.substr(colon + 1)};
-}
-
-void join_cell(const std::vector<std::size_t>& cell, std::vector<std::size_t>& order,
-               const std::string& where) {
-  if (cell.size() < 2) {
-    throw InputError(fmt::format("{}: a line of fewer than two points", where));
-  }
-  if (!order.empty() && cell.front() != order.back()) {
-    throw InputError(fmt::format(
-        "{}: several separate lines (allowed: one polyline, or lines that follow on)", where));
-  }
-  order.insert(order.end(), cell.begin() + (order.empty() ? 0 : 1), cell.end());
-  require_point_count(order.size(), where);
-}
-
-RawShape in_order(const RawShape& points, const std::vector<std::size_t>& order) {
-  RawShape result;
-  result.in_metres = points.in_metres;
-  result.notes = points.notes;
-  for (const std::size_t i : order) {
-    result.points.push_back(points.points[i]);
-    if (!points.lines.empty()) result.lines.push_back(points.lines[i]);
-    if (!points.arc_length.empty()) result.arc_length.push_back(points.arc_length[i]);
-    if (!points.d1.empty()) result.d1.push_back(points.d1[i]);
-  }
-  return result;
 }
 
 }  // namespace dlo::compare

@@ -122,6 +122,81 @@ bool is_solved_taut(const Scene& scene) {
   }
 }
 
+force_model::Grip grip_of(const Gripper& gripper, const Layout& layout, Eigen::Index first) {
+  force_model::Grip hold;
+  hold.first_point = first;
+  hold.reference = gripper.position;
+  if (gripper.direction) {
+    hold.targets =
+        force_model::grip_targets(gripper.position, *gripper.direction, layout.segment_length,
+                                  gripper.at - layout.arc_length[static_cast<std::size_t>(first)]);
+  } else {
+    hold.targets = gripper.position;
+  }
+  return hold;
+}
+
+/// The rod between two neighbouring grips, without the segments that they hold.
+struct Between {
+  double apart = 0;  // distance between the two points [m]
+  double rod = 0;    // sum of the segments' rest lengths [m]
+  Eigen::Index segments = 0;
+
+  /// Whether segments of these rest lengths reach from grip to grip: a single segment must have the
+  /// length of the gap, within `strain`; several may bend.
+  [[nodiscard]] bool fits(double strain) const {
+    if (apart > rod * (1 + 1e-9)) return false;
+    return segments > 1 || apart >= rod * (1 - strain);
+  }
+};
+
+std::vector<Between> between_grips(const Layout& layout,
+                                   const std::vector<force_model::Grip>& grips) {
+  std::vector<Between> result;
+  for (std::size_t k = 0; k + 1 < layout.along.size(); ++k) {
+    const force_model::Grip& a = grips[layout.along[k]];
+    const force_model::Grip& b = grips[layout.along[k + 1]];
+    const Eigen::Index last = a.first_point + a.targets.cols() - 1;
+    const Eigen::Index segments = b.first_point - last;
+    result.push_back({(b.targets.col(0) - a.targets.rightCols<1>()).norm(),
+                      layout.rest_lengths.segment(last, segments).sum(), segments});
+  }
+  return result;
+}
+
+bool grips_fit(const Layout& layout, const std::vector<force_model::Grip>& grips, double strain) {
+  const std::vector<Between> all = between_grips(layout, grips);
+  return std::all_of(all.begin(), all.end(),
+                     [strain](const Between& between) { return between.fits(strain); });
+}
+
+/// Returns the smallest number of points, above that of the settings, with which the held segments
+/// leave enough rod between grips; 0 if none of the next 3000 numbers does.
+int points_that_fit(const Scene& scene, ForceModelSettings settings, double strain) {
+  constexpr int most_more = 3000;
+  const int last = settings.points + most_more;
+  for (++settings.points; settings.points <= last; ++settings.points) {
+    const Layout layout = lay_out(scene, settings);
+    if (grips_fit(layout, grips_of(scene, layout), strain)) return settings.points;
+  }
+  return 0;
+}
+
+/// Sets dt and c of the stepper `verlet`; see step_options.
+void choose_time_step(const Discretisation& discretisation, force_model::StepOptions& options) {
+  const force_model::Rod& rod = discretisation.rod;
+  const force_model::ModeBounds modes =
+      force_model::mode_bounds(rod, discretisation.starts.front());
+  // Only points that move count: one inside a gripper may have no mass.
+  double lightest = std::numeric_limits<double>::infinity();
+  for (const double mass : rod.masses) {
+    if (mass > 0) lightest = std::min(lightest, mass);
+  }
+  if (!std::isfinite(lightest)) return;  // Simulation reports what is missing
+  options.time_step = verlet_step_share * 2 / std::sqrt(modes.fastest / lightest);
+  options.damping_rate = 2 * std::sqrt(modes.slowest / rod.masses.maxCoeff());
+}
+
 }  // namespace
 
 std::vector<std::size_t> order_along(const Scene& scene) {
@@ -222,52 +297,6 @@ Layout lay_out(const Scene& scene, const ForceModelSettings& settings) {
   return layout;
 }
 
-namespace {
-
-force_model::Grip grip_of(const Gripper& gripper, const Layout& layout, Eigen::Index first) {
-  force_model::Grip hold;
-  hold.first_point = first;
-  hold.reference = gripper.position;
-  if (gripper.direction) {
-    hold.targets =
-        force_model::grip_targets(gripper.position, *gripper.direction, layout.segment_length,
-                                  gripper.at - layout.arc_length[static_cast<std::size_t>(first)]);
-  } else {
-    hold.targets = gripper.position;
-  }
-  return hold;
-}
-
-/// The rod between two neighbouring grips, without the segments that they hold.
-struct Between {
-  double apart = 0;  // distance between the two points [m]
-  double rod = 0;    // sum of the segments' rest lengths [m]
-  Eigen::Index segments = 0;
-
-  /// Whether segments of these rest lengths reach from grip to grip: a single segment must have the
-  /// length of the gap, within `strain`; several may bend.
-  [[nodiscard]] bool fits(double strain) const {
-    if (apart > rod * (1 + 1e-9)) return false;
-    return segments > 1 || apart >= rod * (1 - strain);
-  }
-};
-
-std::vector<Between> between_grips(const Layout& layout,
-                                   const std::vector<force_model::Grip>& grips) {
-  std::vector<Between> result;
-  for (std::size_t k = 0; k + 1 < layout.along.size(); ++k) {
-    const force_model::Grip& a = grips[layout.along[k]];
-    const force_model::Grip& b = grips[layout.along[k + 1]];
-    const Eigen::Index last = a.first_point + a.targets.cols() - 1;
-    const Eigen::Index segments = b.first_point - last;
-    result.push_back({(b.targets.col(0) - a.targets.rightCols<1>()).norm(),
-                      layout.rest_lengths.segment(last, segments).sum(), segments});
-  }
-  return result;
-}
-
-}  // namespace
-
 std::vector<force_model::Grip> grips_of(const Scene& scene, const Layout& layout) {
   std::vector<force_model::Grip> grips;
   for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
@@ -275,28 +304,6 @@ std::vector<force_model::Grip> grips_of(const Scene& scene, const Layout& layout
   }
   return grips;
 }
-
-namespace {
-
-bool grips_fit(const Layout& layout, const std::vector<force_model::Grip>& grips, double strain) {
-  const std::vector<Between> all = between_grips(layout, grips);
-  return std::all_of(all.begin(), all.end(),
-                     [strain](const Between& between) { return between.fits(strain); });
-}
-
-/// Returns the smallest number of points, above that of the settings, with which the held segments
-/// leave enough rod between grips; 0 if none of the next 3000 numbers does.
-int points_that_fit(const Scene& scene, ForceModelSettings settings, double strain) {
-  constexpr int most_more = 3000;
-  const int last = settings.points + most_more;
-  for (++settings.points; settings.points <= last; ++settings.points) {
-    const Layout layout = lay_out(scene, settings);
-    if (grips_fit(layout, grips_of(scene, layout), strain)) return settings.points;
-  }
-  return 0;
-}
-
-}  // namespace
 
 void require_fit(const Scene& scene, const ForceModelSettings& settings, const Layout& layout,
                  const std::vector<force_model::Grip>& grips) {
@@ -329,25 +336,6 @@ PointMasses point_masses(const Scene& scene, const ForceModelSettings& settings)
   }
   return masses;
 }
-
-namespace {
-
-/// Sets dt and c of the stepper `verlet`; see step_options.
-void choose_time_step(const Discretisation& discretisation, force_model::StepOptions& options) {
-  const force_model::Rod& rod = discretisation.rod;
-  const force_model::ModeBounds modes =
-      force_model::mode_bounds(rod, discretisation.starts.front());
-  // Only points that move count: one inside a gripper may have no mass.
-  double lightest = std::numeric_limits<double>::infinity();
-  for (const double mass : rod.masses) {
-    if (mass > 0) lightest = std::min(lightest, mass);
-  }
-  if (!std::isfinite(lightest)) return;  // Simulation reports what is missing
-  options.time_step = verlet_step_share * 2 / std::sqrt(modes.fastest / lightest);
-  options.damping_rate = 2 * std::sqrt(modes.slowest / rod.masses.maxCoeff());
-}
-
-}  // namespace
 
 force_model::StepOptions step_options(const ForceModelSettings& settings,
                                       const Discretisation& discretisation) {

@@ -146,6 +146,24 @@ class Arch {
   double height_ = 0;
 };
 
+/// Returns the direction of a segment of length L that begins at `from`. A segment that would enter
+/// a body is rotated into the body's surface.
+/// @param last  direction along the surface if the segment points straight into the body
+Eigen::Vector3d turned_along(const obstacle::Body& body, const Eigen::Vector3d& from,
+                             const Eigen::Vector3d& direction, double L,
+                             const Eigen::Vector3d& last) {
+  const obstacle::Gap gap = body.gap(from + L * direction);
+  if (gap.value >= 0) return direction;
+  const Eigen::Vector3d normal = gap.gradient;
+  const double height = std::max(0.0, gap.value - L * direction.dot(normal));
+  if (height + L * direction.dot(normal) >= 0) return direction;
+  Eigen::Vector3d face = across(direction, normal);
+  if (face.norm() < 1e-3) face = across(last, normal);
+  face = face.norm() < 1e-3 ? any_across(normal) : Eigen::Vector3d(face.normalized());
+  const double down = std::min(1.0, height / L);
+  return std::sqrt(1 - down * down) * face - down * normal;
+}
+
 }  // namespace
 
 Eigen::Matrix3Xd start_shape(const Scene& scene, const std::vector<std::size_t>& along,
@@ -171,28 +189,6 @@ Eigen::Matrix3Xd start_shape(const Scene& scene, const std::vector<std::size_t>&
   for (; i < arc_length.size(); ++i) straight(knots.back(), i);
   return points;
 }
-
-namespace {
-
-/// Returns the direction of a segment of length L that begins at `from`. A segment that would enter
-/// a body is rotated into the body's surface.
-/// @param last  direction along the surface if the segment points straight into the body
-Eigen::Vector3d turned_along(const obstacle::Body& body, const Eigen::Vector3d& from,
-                             const Eigen::Vector3d& direction, double L,
-                             const Eigen::Vector3d& last) {
-  const obstacle::Gap gap = body.gap(from + L * direction);
-  if (gap.value >= 0) return direction;
-  const Eigen::Vector3d normal = gap.gradient;
-  const double height = std::max(0.0, gap.value - L * direction.dot(normal));
-  if (height + L * direction.dot(normal) >= 0) return direction;
-  Eigen::Vector3d face = across(direction, normal);
-  if (face.norm() < 1e-3) face = across(last, normal);
-  face = face.norm() < 1e-3 ? any_across(normal) : Eigen::Vector3d(face.normalized());
-  const double down = std::min(1.0, height / L);
-  return std::sqrt(1 - down * down) * face - down * normal;
-}
-
-}  // namespace
 
 void keep_free_ends_clear(const force_model::Rod& rod, Eigen::Ref<Eigen::Matrix3Xd> points) {
   if (!rod.touches_anything()) return;

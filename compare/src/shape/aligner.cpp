@@ -175,14 +175,6 @@ std::vector<Aligner::Placed> Aligner::coarse_places(const Way& way, const Curve&
   return result;
 }
 
-Aligner::Placed Aligner::refine(const Way& way, const Curve& curve,
-                                const RigidMotion& start) const {
-  if (free_coordinates() == 0 || !is_dense()) {
-    return refine_all(way, curve, start);
-  }
-  return refine_all(way, curve, refine_all(thinned(way), curve, start).pose);
-}
-
 Aligner::Placed Aligner::refine_all(const Way& way, const Curve& curve,
                                     const RigidMotion& start) const {
   Placed placed;
@@ -265,7 +257,7 @@ void Aligner::gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve,
 
 Aligner::Placed Aligner::best_place(const Way& way, const Curve& curve) const {
   if (!has_free_arc_lengths()) return place_given(way, curve);
-  if (options_.pose == PoseFreedom::known) return refine(way, curve, RigidMotion());
+  if (options_.pose == PoseFreedom::known) return refine_all(way, curve, RigidMotion());
   const Placed few = best_of_few(way, curve);
   return is_dense() ? refine_all(way, curve, few.pose) : few;
 }

@@ -47,8 +47,6 @@ class Aligner {
   [[nodiscard]] std::vector<Placed> coarse_places(const Way& way, const Curve& curve) const;
   [[nodiscard]] Placed refine_all(const Way& way, const Curve& curve,
                                   const RigidMotion& start) const;
-  /// Refines a pose with the thinned points first, so that the fit with all points needs few steps.
-  [[nodiscard]] Placed refine(const Way& way, const Curve& curve, const RigidMotion& start) const;
   void gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve, Placed& placed) const;
   [[nodiscard]] Way stretched_to_rod(Way way) const;
   /// Returns the RMS distance that ShapeCheck reports for an aligned shape [m]. A file that is as
@@ -58,7 +56,7 @@ class Aligner {
                                      Measured& measured) const;
   /// Iterates from a pose as long as told_distance() decreases. This is needed because measure()
   /// redistributes points past an end, which is no part of the distances across the curve that
-  /// refine() minimises.
+  /// refine_all() minimises.
   [[nodiscard]] Alignment spread(const Way& way, RigidMotion pose, const Curve& curve) const;
   /// Returns the alignment with nearest points. A file that is as long as the rod is aligned by
   /// lengths along it instead, where that gives the smaller distance.

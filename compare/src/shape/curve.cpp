@@ -1,16 +1,165 @@
 #include "shape/curve.hpp"
 
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
+
+#include "dlo/compare/error.hpp"
 
 namespace dlo::compare {
 namespace {
 
+double turning_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// Returns the distance of a shape's points from the grippers, as the root of the sum of squares
+/// [m]. For a gripper beyond the points, the rod between them is subtracted from the distance.
+double distance_from_grippers(const Shape& shape, const Scene& scene) {
+  double sum = 0;
+  const std::vector<double>& s = shape.arc_length;
+  for (const Gripper& gripper : scene.grippers) {
+    const double at = std::clamp(gripper.at, s.front(), s.back());
+    const Eigen::Vector3d there = resample(shape, {at}).points.col(0);
+    const double beyond = std::abs(gripper.at - at);
+    const double away = std::max(0.0, (there - gripper.position).norm() - beyond);
+    sum += away * away;
+  }
+  return std::sqrt(sum);
+}
+
+/// Returns the shape with arc lengths l - s in growing order, for a file that runs from l to 0.
+Shape reversed(const Shape& shape, double length) {
+  Shape result;
+  result.points = shape.points.rowwise().reverse();
+  result.arc_length.assign(shape.arc_length.rbegin(), shape.arc_length.rend());
+  for (double& s : result.arc_length) s = std::max(0.0, length - s);
+  return result;
+}
+
+/// Removes points until the arc lengths increase strictly; the first point of each arc length
+/// stays.
+Shape without_repeated_lengths(const Shape& shape) {
+  Shape result;
+  std::vector<Eigen::Index> kept;
+  for (std::size_t i = 0; i < shape.arc_length.size(); ++i) {
+    if (!kept.empty() && !(shape.arc_length[i] > result.arc_length.back())) continue;
+    kept.push_back(static_cast<Eigen::Index>(i));
+    result.arc_length.push_back(shape.arc_length[i]);
+  }
+  result.points = shape.points(Eigen::all, kept);
+  return result;
+}
+
 constexpr Eigen::Index curve_pieces = 200;
 
 }  // namespace
+
+Shape laid_by_grippers(const MeasuredShape& shape, const Scene& scene, ArcLengths rule) {
+  constexpr double whole_slack = 0.03;
+  constexpr int places_along = 21;
+  const double length = scene.length;
+  Shape along;
+  along.points = shape.points;
+  if (rule == ArcLengths::file) {
+    along.arc_length = file_arc_lengths(shape, length);
+    const bool falls = along.arc_length.front() > along.arc_length.back();
+    if (falls) {
+      along.points = shape.points.rowwise().reverse();
+      std::reverse(along.arc_length.begin(), along.arc_length.end());
+    }
+  } else {
+    along.arc_length = lengths_along(shape.points);
+    const double total = along.arc_length.back();
+    const bool whole = rule == ArcLengths::chord || total > (1 - whole_slack) * length;
+    for (double& s : along.arc_length) s = std::min(whole ? s / total * length : s, length);
+  }
+  const bool moves = rule != ArcLengths::file && along.arc_length.back() < length;
+  const double slack = moves ? length - along.arc_length.back() : 0;
+  const int places = slack > 0 ? places_along : 1;
+  Shape best;
+  double least = std::numeric_limits<double>::infinity();
+  for (int place = 0; place < places; ++place) {
+    Shape moved = along;
+    const double offset = places > 1 ? slack * place / (places - 1) : 0;
+    for (double& s : moved.arc_length) s = std::min(s + offset, length);
+    for (const Shape& laid : {moved, reversed(moved, length)}) {
+      const double away = distance_from_grippers(laid, scene);
+      if (!(away < least)) continue;
+      least = away;
+      best = laid;
+    }
+  }
+  return without_repeated_lengths(best);
+}
+
+ArcLengths arc_length_rule(const MeasuredShape& shape, ArcLengths asked) {
+  if (asked != ArcLengths::automatic) return asked;
+  return shape.arc_length.empty() ? ArcLengths::nearest : ArcLengths::file;
+}
+
+std::vector<double> file_arc_lengths(const MeasuredShape& shape, double length) {
+  if (shape.arc_length.empty()) {
+    throw InputError(fmt::format(
+        "{}: no arc lengths in it (allowed: a column s, or arc lengths by chord or nearest)",
+        shape.file));
+  }
+  std::vector<double> s = shape.arc_length;
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    const std::optional<double> at = on_rod(s[i], length);
+    if (!at) {
+      throw InputError(
+          fmt::format("{}: point {}: s = {:g} m (allowed: 0 to {:g} m, the rod; "
+                      "--unit if the file is not in metres)",
+                      shape.file, i + 1, s[i], length));
+    }
+    s[i] = *at;
+  }
+  return s;
+}
+
+double polyline_length(const Eigen::Matrix3Xd& points) { return chord_lengths(points).sum(); }
+
+Eigen::VectorXd chord_lengths(const Eigen::Matrix3Xd& points) {
+  const Eigen::Index n = points.cols() - 1;
+  return (points.rightCols(n) - points.leftCols(n)).colwise().norm();
+}
+
+std::vector<double> lengths_along(const Eigen::Matrix3Xd& points) {
+  const Eigen::Index count = points.cols();
+  const Eigen::Matrix3Xd chords = points.rightCols(count - 1) - points.leftCols(count - 1);
+  const Eigen::VectorXd d = chords.colwise().norm().transpose();
+  Eigen::VectorXd curvature = Eigen::VectorXd::Zero(count);
+  for (Eigen::Index i = 1; i + 1 < count; ++i) {
+    curvature[i] = 2 * turning_angle(chords.col(i - 1), chords.col(i)) / (d[i - 1] + d[i]);
+  }
+  if (count > 2) {
+    curvature[0] = curvature[1];
+    curvature[count - 1] = curvature[count - 2];
+  }
+  std::vector<double> result(static_cast<std::size_t>(count), 0.0);
+  for (Eigen::Index i = 0; i + 1 < count; ++i) {
+    const double turn = d[i] * (curvature[i] + curvature[i + 1]) / 2;
+    result[static_cast<std::size_t>(i) + 1] =
+        result[static_cast<std::size_t>(i)] + d[i] * (1 + turn * turn / 24);
+  }
+  return result;
+}
+
+bool lacks_one_segment(const Eigen::Matrix3Xd& points, double length) {
+  constexpr double alike = 0.1;
+  const Eigen::Index segments = points.cols() - 1;
+  const Eigen::VectorXd lengths = chord_lengths(points);
+  const double whole = lengths_along(points).back();
+  const double segment = whole / static_cast<double>(segments);
+  return segments > 2 && lengths.maxCoeff() < (1 + alike) * lengths.minCoeff() &&
+         std::abs(length - whole - segment) < alike * segment;
+}
 
 Curve::Curve(const Reference& reference, double length)
     : length_(length), step_(length / static_cast<double>(curve_pieces)) {

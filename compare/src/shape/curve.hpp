@@ -56,6 +56,9 @@ class Curve {
 /// Returns the sum of the chords [m]. @param points  [m], 3 x M, M >= 1
 [[nodiscard]] double polyline_length(const Eigen::Matrix3Xd& points);
 
+/// Returns the distances between neighbouring points [m], one fewer than there are points.
+[[nodiscard]] Eigen::VectorXd chord_lengths(const Eigen::Matrix3Xd& points);
+
 /// Returns lengths along a curve through the points [m]. A chord d with the mean curvature k of its
 /// ends is replaced by an arc of length d (1 + (k d)^2 / 24).
 [[nodiscard]] std::vector<double> lengths_along(const Eigen::Matrix3Xd& points);

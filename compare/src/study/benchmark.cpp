@@ -192,6 +192,10 @@ std::vector<BenchmarkRun> tracking_runs(const Scene& scene, const ReferenceShape
   return runs;
 }
 
+bool is_run_of(const BenchmarkRun& run, std::optional<Model> model) {
+  return !model || (run.program.empty() && run.model == *model);
+}
+
 }  // namespace
 
 std::vector<Scene> benchmark_scenes() {
@@ -246,14 +250,6 @@ std::string name_of(const BenchmarkRun& run) {
   const std::string setting = setting_of(run);
   return setting.empty() ? name : name + ", " + setting;
 }
-
-namespace {
-
-bool is_run_of(const BenchmarkRun& run, std::optional<Model> model) {
-  return !model || (run.program.empty() && run.model == *model);
-}
-
-}  // namespace
 
 void mark_front(std::vector<BenchmarkRun>& runs) {
   for (BenchmarkRun& run : runs) {

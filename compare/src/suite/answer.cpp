@@ -4,6 +4,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -15,9 +16,112 @@
 #include "parallel/threads.hpp"
 #include "record/solution_fields.hpp"
 #include "released/hinge_motion.hpp"
+#include "scene/scene_problem.hpp"
 
 namespace dlo::compare {
 namespace {
+
+/// Points with the load on each, in an order that begins at a held end.
+struct LoadedPoints {
+  Shape shape;
+  Eigen::Matrix3Xd weights;
+  Eigen::Matrix3Xd forces;  // all loads except weight
+
+  /// Returns the points in the opposite order.
+  [[nodiscard]] LoadedPoints reversed(double length) const {
+    LoadedPoints result = *this;
+    for (Eigen::Matrix3Xd* each : {&result.shape.points, &result.weights, &result.forces}) {
+      *each = each->rowwise().reverse().eval();
+    }
+    std::reverse(result.shape.arc_length.begin(), result.shape.arc_length.end());
+    for (double& s : result.shape.arc_length) s = length - s;
+    return result;
+  }
+};
+
+LoadedPoints loaded_points(const Scene& scene, const Shape& shape) {
+  const Eigen::Index n = shape.points.cols() - 1;
+  LoadedPoints result{shape, Eigen::Matrix3Xd::Zero(3, n + 1), Eigen::Matrix3Xd::Zero(3, n + 1)};
+  const std::vector<double>& s = shape.arc_length;
+  const auto at = [&](Eigen::Index i) { return s[static_cast<std::size_t>(i)]; };
+  for (Eigen::Index i = 0; i <= n; ++i) {
+    const double begin = i == 0 ? 0 : (at(i - 1) + at(i)) / 2;
+    const double end = i == n ? scene.length : (at(i) + at(i + 1)) / 2;
+    result.weights.col(i) = scene.weight_between(begin, end);
+    result.forces.col(i) = scene.distributed_between(begin, end);
+  }
+  for (const PointLoad& load : scene.loads) {
+    // A load between two points is distributed by the lever rule.
+    const auto after = std::upper_bound(s.begin() + 1, s.end() - 1, load.at);
+    const Eigen::Index i = after - s.begin();
+    const double share = std::clamp((load.at - at(i - 1)) / (at(i) - at(i - 1)), 0.0, 1.0);
+    result.forces.col(i - 1) += (1 - share) * load.force;
+    result.forces.col(i) += share * load.force;
+  }
+  return result;
+}
+
+/// Returns the moments about the inner points of all forces beyond them, as one column.
+Eigen::VectorXd moments_beyond(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& forces) {
+  const Eigen::Index n = points.cols() - 1;
+  Eigen::VectorXd moments = Eigen::VectorXd::Zero(3 * (n - 1));
+  for (Eigen::Index i = 1; i < n; ++i) {
+    for (Eigen::Index j = i + 1; j <= n; ++j) {
+      const Eigen::Vector3d arm = points.col(j) - points.col(i);
+      moments.segment<3>(3 * (i - 1)) += arm.cross(Eigen::Vector3d(forces.col(j)));
+    }
+  }
+  return moments;
+}
+
+/// Returns the moments about the inner points of unit reactions at the far end, one column per
+/// component: none, of a force, or of a force and a torque.
+Eigen::MatrixXd moments_of_end(const Eigen::Matrix3Xd& points, Eigen::Index unknown) {
+  const Eigen::Index n = points.cols() - 1;
+  Eigen::MatrixXd columns(3 * (n - 1), unknown);
+  for (Eigen::Index i = 1; i < n; ++i) {
+    const Eigen::Index row = 3 * (i - 1);
+    const Eigen::Vector3d arm = points.col(n) - points.col(i);
+    for (Eigen::Index k = 0; k < std::min<Eigen::Index>(unknown, 3); ++k) {
+      columns.block<3, 1>(row, k) = arm.cross(Eigen::Vector3d::Unit(k));
+    }
+    if (unknown == 6) columns.block<3, 3>(row, 3) = Eigen::Matrix3d::Identity();
+  }
+  return columns;
+}
+
+/// Returns EI kappa of the inner joints, without the joints adjacent to the ends: there discrete
+/// springs depend on the assumed position of the clamp. With another power the moments are
+/// proportional to that power of 2 sin(angle / 2), and equal EI kappa at the joint with the largest
+/// angle.
+Eigen::VectorXd bending_moments(const Scene& scene, const Shape& shape, double power) {
+  const Eigen::Index n = shape.points.cols() - 1;
+  Eigen::VectorXd moments = Eigen::VectorXd::Zero(3 * (n - 1));
+  Eigen::VectorXd chords = Eigen::VectorXd::Zero(n - 1);
+  for (Eigen::Index i = 2; i <= n - 2; ++i) {
+    const auto joint = static_cast<std::size_t>(i);
+    const Eigen::Vector3d curvature = joint_curvature(shape, joint);
+    chords[i - 1] = 2 * std::sin(curvature.norm() * joint_length(shape, joint) / 2);
+    moments.segment<3>(3 * (i - 1)) = scene.bending_stiffness() * curvature;
+  }
+  if (power == 1) return moments;
+  const double largest = chords.maxCoeff();
+  for (Eigen::Index i = 2; i <= n - 2; ++i) {
+    const double length = joint_length(shape, static_cast<std::size_t>(i));
+    const Eigen::Vector3d moment = moments.segment<3>(3 * (i - 1));
+    moments.segment<3>(3 * (i - 1)) = moment.normalized() * scene.bending_stiffness() / length *
+                                      largest * std::pow(chords[i - 1] / largest, power);
+  }
+  return moments;
+}
+
+/// Returns MomentBalance::resolution for the scene's stiffness.
+double resolution(const Scene& scene, const LoadedPoints& rod) {
+  constexpr double of_second_order = 0.25;
+  const double h = scene.length / static_cast<double>(rod.shape.points.cols() - 1);
+  const double force = rod.weights.colwise().norm().sum() + rod.forces.colwise().norm().sum();
+  return of_second_order * h * h * force / scene.bending_stiffness();
+}
 
 /// Number of points of the chain with which a rod that stretches is compared.
 constexpr int fine_chain = 1024;
@@ -80,7 +184,71 @@ void look_for_others(Answer& answer, const SolveOptions& options) {
                    [](const auto& a, const auto& b) { return a.energy_J < b.energy_J; });
 }
 
+/// Terms of the energy model, and of a second run that measures the truncation error.
+constexpr int fine_terms = 16;
+constexpr int fewer_terms = 12;
+/// Number of segments of the coarsest chain: its points are the motion_points.
+constexpr int segments = motion_points - 1;
+
 }  // namespace
+
+std::optional<MomentBalance> moment_balance(const Scene& scene, const Shape& shape, double power) {
+  const bool plain = scene.sections.empty() && !scene.has_material_directors() &&
+                     !scene.holds_twist() && !scene.has_couples() &&
+                     scene.stretch == Stretch::none && obstacles_in_reach(scene).empty();
+  constexpr Eigen::Index fewest = 6;
+  const Eigen::Index n = shape.points.cols() - 1;
+  if (!plain || n < fewest || scene.grippers.size() > 2) return std::nullopt;
+  const Gripper* first = nullptr;
+  const Gripper* last = nullptr;
+  for (const Gripper& gripper : scene.grippers) {
+    if (gripper.at != 0 && gripper.at != scene.length) return std::nullopt;
+    (gripper.at == 0 ? first : last) = &gripper;
+  }
+  LoadedPoints rod = loaded_points(scene, shape);
+  if (first == nullptr) {
+    rod = rod.reversed(scene.length);
+    std::swap(first, last);
+  }
+  const Eigen::Index unknown = last == nullptr ? 0 : last->direction ? 6 : 3;
+  const Eigen::Index from = 2;
+  const Eigen::Index to = n - 2;
+  const auto inside = [&](const auto& rows) {
+    return rows.middleRows(3 * (from - 1), 3 * (to - from + 1)).eval();
+  };
+  const Eigen::VectorXd bending = inside(bending_moments(scene, rod.shape, power));
+  if (!(bending.norm() > 0)) return std::nullopt;
+  constexpr double no_load = 1e-9;
+  const Eigen::VectorXd of_weight = inside(moments_beyond(rod.shape.points, rod.weights));
+  const Eigen::VectorXd of_loads = inside(moments_beyond(rod.shape.points, rod.forces));
+  const bool has_weight = of_weight.norm() > no_load * bending.norm();
+  const bool has_loads = of_loads.norm() > no_load * bending.norm();
+  if (!has_weight && !has_loads && unknown == 0) return MomentBalance{.imbalance = 1};
+  // The unknowns are the columns, and the right-hand side contains the rest. Without loads the
+  // moments do not depend on the stiffness. With only weight or only other loads, the factors of
+  // stiffness and load are inverse to each other, so that only the stiffness is fitted.
+  Eigen::MatrixXd columns = inside(moments_of_end(rod.shape.points, unknown));
+  const auto append_column = [&](const Eigen::VectorXd& column) {
+    columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
+    columns.rightCols<1>() = column;
+  };
+  const bool both = has_weight && has_loads;
+  if (both) append_column(of_weight);
+  const bool any = has_weight || has_loads;
+  if (any) append_column(-bending);
+  const Eigen::VectorXd right = !any   ? bending
+                                : both ? Eigen::VectorXd(-of_loads)
+                                       : Eigen::VectorXd(-of_weight - of_loads);
+  const Eigen::VectorXd found = columns.colPivHouseholderQr().solve(right);
+  MomentBalance result;
+  if (any) result.stiffness = found[found.size() - 1];
+  if (both) result.weight = found[found.size() - 2];
+  constexpr double least = 1e-3;
+  result.resolution = resolution(scene, rod) / std::clamp(result.stiffness, least, 1.0);
+  const double size = std::max(std::abs(result.stiffness) * bending.norm(), least * right.norm());
+  result.imbalance = (columns * found - right).norm() / size;
+  return result;
+}
 
 Model answer_model(const Scene& scene) {
   return scene.stretch != Stretch::none ? Model::exact : Model::energy;
@@ -115,16 +283,6 @@ std::vector<Answer> certified_answers(const std::vector<BatteryScene>& scenes, i
                                       const SolveOptions& options) {
   return of_each(scenes, threads, options, certified_answer);
 }
-
-namespace {
-
-/// Terms of the energy model, and of a second run that measures the truncation error.
-constexpr int fine_terms = 16;
-constexpr int fewer_terms = 12;
-/// Number of segments of the coarsest chain: its points are the motion_points.
-constexpr int segments = motion_points - 1;
-
-}  // namespace
 
 MotionAnswer certified_motion(const BatteryScene& scene, const SolveOptions& options) {
   const double length = scene.scene.length;

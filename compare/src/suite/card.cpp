@@ -163,52 +163,6 @@ void add_scene(CardGroup& group, const CardScene& scene) {
   group.order = std::fmin(group.order, scene.order);
 }
 
-}  // namespace
-
-RunStatus CardScene::status() const {
-  for (const CardRun& run : runs) {
-    if (run.status != RunStatus::solved) return run.status;
-  }
-  return RunStatus::solved;
-}
-
-std::string CardScene::problem() const {
-  for (const CardRun& run : runs) {
-    if (run.status != RunStatus::solved) return run.problem;
-  }
-  return {};
-}
-
-bool CardScene::right() const {
-  return status() == RunStatus::solved && runs.back().error <= default_tolerance(1).allowed_m &&
-         std::none_of(causes.begin(), causes.end(),
-                      [](const Cause& cause) { return cause.defect; });
-}
-
-std::vector<CardGroup> Card::groups() const {
-  std::vector<CardGroup> groups;
-  for (const CardScene& scene : scenes) {
-    auto group = std::find_if(groups.begin(), groups.end(),
-                              [&](const CardGroup& one) { return one.name == scene.group; });
-    if (group == groups.end()) {
-      groups.push_back({.name = scene.group,
-                        .largest = std::vector<double>(points.size(), none),
-                        .order = none});
-      group = groups.end() - 1;
-    }
-    add_scene(*group, scene);
-  }
-  return groups;
-}
-
-CardGroup Card::total() const {
-  CardGroup total{.largest = std::vector<double>(points.size(), none), .order = none};
-  for (const CardScene& scene : scenes) add_scene(total, scene);
-  return total;
-}
-
-namespace {
-
 /// Renames causes. A single shape that has not come to rest may resemble that of a stiffer rod, but
 /// several such shapes give different stiffnesses. If a simulator is not at rest in some scenes and
 /// has different apparent stiffnesses in others, it is not at rest in these either.
@@ -262,6 +216,48 @@ std::function<CardScene(const Simulator&)> scene_judge(const BatteryScene& scene
 }
 
 }  // namespace
+
+RunStatus CardScene::status() const {
+  for (const CardRun& run : runs) {
+    if (run.status != RunStatus::solved) return run.status;
+  }
+  return RunStatus::solved;
+}
+
+std::string CardScene::problem() const {
+  for (const CardRun& run : runs) {
+    if (run.status != RunStatus::solved) return run.problem;
+  }
+  return {};
+}
+
+bool CardScene::right() const {
+  return status() == RunStatus::solved && runs.back().error <= default_tolerance(1).allowed_m &&
+         std::none_of(causes.begin(), causes.end(),
+                      [](const Cause& cause) { return cause.defect; });
+}
+
+std::vector<CardGroup> Card::groups() const {
+  std::vector<CardGroup> groups;
+  for (const CardScene& scene : scenes) {
+    auto group = std::find_if(groups.begin(), groups.end(),
+                              [&](const CardGroup& one) { return one.name == scene.group; });
+    if (group == groups.end()) {
+      groups.push_back({.name = scene.group,
+                        .largest = std::vector<double>(points.size(), none),
+                        .order = none});
+      group = groups.end() - 1;
+    }
+    add_scene(*group, scene);
+  }
+  return groups;
+}
+
+CardGroup Card::total() const {
+  CardGroup total{.largest = std::vector<double>(points.size(), none), .order = none};
+  for (const CardScene& scene : scenes) add_scene(total, scene);
+  return total;
+}
 
 std::vector<Card> make_cards(const std::string& battery_version,
                              const std::vector<BatteryScene>& scenes,

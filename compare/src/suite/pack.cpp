@@ -47,13 +47,6 @@ double bound_of_digits(double value, double size, double large) {
 constexpr double place_rounding = 1e-12;
 constexpr double motion_place_rounding = 1e-9;
 
-/// Returns a length with twelve decimals, without -0.
-std::string decimals(double metres) {
-  std::string text = fmt::format("{:.12f}", metres);
-  if (text.find_first_not_of("-0.") == std::string::npos) text = "0.000000000000";
-  return text;
-}
-
 /// Rounds a length to twelve decimals; adding zero avoids -0.
 double place(double metres) {
   return as_number<double>(fmt::format("{:.12f}", metres)).value() + 0.0;
@@ -195,8 +188,10 @@ std::string answer_csv(const Answer& answer) {
   std::string text = "x,y,z,s\n";
   const Shape& shape = answer.first.shape;
   for (std::size_t i = 0; i < shape.arc_length.size(); ++i) {
-    for (const double x : shape.points.col(static_cast<Eigen::Index>(i))) text += decimals(x) + ",";
-    text += decimals(shape.arc_length[i]) + "\n";
+    for (const double x : shape.points.col(static_cast<Eigen::Index>(i))) {
+      text += fmt::format("{:.12f},", place(x));
+    }
+    text += fmt::format("{:.12f}\n", place(shape.arc_length[i]));
   }
   return text;
 }

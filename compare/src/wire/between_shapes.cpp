@@ -99,31 +99,24 @@ constexpr int places = 21;
 
 /// Returns arc lengths equally spaced over the range common to all shapes; std::nullopt for fewer
 /// than two shapes, or if the range is less than half of the longest shape.
-std::optional<std::vector<double>> common_places(
-    const std::vector<const std::vector<double>*>& arc_lengths) {
-  if (arc_lengths.size() < 2) return std::nullopt;
+template <typename Of>
+std::optional<std::vector<double>> common_places(const std::vector<Of>& shapes) {
+  if (shapes.size() < 2) return std::nullopt;
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   double longest = 0;
-  for (const std::vector<double>* const s : arc_lengths) {
-    if (s->size() < 2) return std::nullopt;
-    low = std::max(low, s->front());
-    high = std::min(high, s->back());
-    longest = std::max(longest, s->back() - s->front());
+  for (const Of& shape : shapes) {
+    const std::vector<double>& s = shape.arc_length;
+    if (s.size() < 2) return std::nullopt;
+    low = std::max(low, s.front());
+    high = std::min(high, s.back());
+    longest = std::max(longest, s.back() - s.front());
   }
   if (!(high - low > longest / 2)) return std::nullopt;
   std::vector<double> result;
   result.reserve(places);
   for (int k = 0; k < places; ++k) result.push_back(low + (high - low) * k / (places - 1));
   return result;
-}
-
-template <typename Of>
-std::optional<std::vector<double>> common_places(const std::vector<Of>& shapes) {
-  std::vector<const std::vector<double>*> arc_lengths;
-  arc_lengths.reserve(shapes.size());
-  for (const Of& one : shapes) arc_lengths.push_back(&one.arc_length);
-  return common_places(arc_lengths);
 }
 
 }  // namespace

@@ -45,4 +45,14 @@ FittedValue fitted_value(double logarithm, const LogProfile::Interval& interval,
   return result;
 }
 
+bool include_interval(FittedValue& value, const FittedValue& other, double identified_within) {
+  const bool low = value.low && other.low;
+  const bool high = value.high && other.high;
+  value.low = low ? std::optional(std::min(*value.low, *other.low)) : std::nullopt;
+  value.high = high ? std::optional(std::max(*value.high, *other.high)) : std::nullopt;
+  const bool is_identified = low && high && *value.high <= identified_within * *value.low;
+  if (!is_identified) value.value.reset();
+  return is_identified;
+}
+
 }  // namespace dlo::compare

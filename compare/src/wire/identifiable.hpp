@@ -34,4 +34,9 @@ namespace dlo::compare {
 [[nodiscard]] FittedValue fitted_value(double logarithm, const LogProfile::Interval& interval,
                                        double unit, double identified_within);
 
+/// Extends the interval of a value to include that of another fit. A value whose interval is then
+/// too wide is not identified.
+/// @return whether the value is identified
+bool include_interval(FittedValue& value, const FittedValue& other, double identified_within);
+
 }  // namespace dlo::compare

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/timer.hpp"
+#include "wire/identifiable.hpp"
 #include "wire/leave_one_out.hpp"
 #include "wire/wire_optimum.hpp"
 #include "wire/wire_problem.hpp"
@@ -242,18 +243,6 @@ std::optional<std::size_t> undetermined_term(const WireProblem& problem, const M
   return result;
 }
 
-/// Extends the interval to that of the fit with the term: the shapes do not determine the term,
-/// which does not mean that it is zero.
-void widen(MaterialFit& fit, const MaterialFit& with_term, double identified_within) {
-  FittedValue& E = fit.youngs_modulus;
-  const FittedValue& other = with_term.youngs_modulus;
-  E.low = E.low && other.low ? std::optional(std::min(*E.low, *other.low)) : std::nullopt;
-  E.high = E.high && other.high ? std::optional(std::max(*E.high, *other.high)) : std::nullopt;
-  if (E.low && E.high && *E.high <= identified_within * *E.low) return;
-  E.value.reset();
-  if (fit.not_identified.empty()) fit.not_identified = with_term.not_identified;
-}
-
 /// Returns the fit in which terms of natural curvature that the shapes do not determine are set to
 /// zero, their most likely prior value. Otherwise the other numbers would compensate for them,
 /// which makes predictions of other shapes worse.
@@ -269,7 +258,12 @@ MaterialFit determined_fit(const WireProblem& problem, WireOptimum& optimum) {
     values[static_cast<Eigen::Index>(*term)] = 0;
     WireOptimum other(fewer, rods, values);
     MaterialFit result = determined_fit(fewer, other);
-    widen(result, fit, options.identified_within);
+    // The shapes do not determine the term, which does not mean that it is zero.
+    const bool is_identified =
+        include_interval(result.youngs_modulus, fit.youngs_modulus, options.identified_within);
+    if (!is_identified && result.not_identified.empty()) {
+      result.not_identified = fit.not_identified;
+    }
     return result;
   }
   if (options.predict) {
