@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "shape/curve.hpp"
+
 namespace dlo::compare {
 namespace {
 
@@ -38,124 +40,64 @@ Nearest nearest_of(const Eigen::Vector3d& a, const Eigen::Vector3d& along_a,
   return result;
 }
 
-/// A tree of bounding boxes of runs of segments, halved down to runs of few segments. Two boxes
-/// that are farther apart than the nearest pair so far are skipped. So about n pairs of n points
-/// are compared, not n^2 / 2.
-class Crossings {
- public:
-  Crossings(const Shape& shape, double diameter)
-      : s_(shape.arc_length),
-        points_(shape.points),
-        apart_(neighbouring * diameter),
-        slack_(coordinate_rounding * points_.cwiseAbs().maxCoeff()),
-        near_(std::max(diameter, slack_)) {
-    (void)add(0, points_.cols() - 1);
-  }
+/// Returns the arc length at a fraction of a segment.
+double arc_length_on(const Shape& shape, Eigen::Index segment, double share) {
+  const auto k = static_cast<std::size_t>(segment);
+  return shape.arc_length[k] + share * (shape.arc_length[k + 1] - shape.arc_length[k]);
+}
 
-  [[nodiscard]] std::optional<SelfCrossing> nearest() {
-    within(nodes_.size() - 1);
-    return found_;
-  }
-
- private:
-  static constexpr Eigen::Index most_in_leaf = 4;
-
-  struct Node {
-    Eigen::Index begin = 0, end = 0;    // segments, `end` excluded
-    std::size_t first = 0, second = 0;  // indices of the halves, unless the node is a leaf
-    Eigen::Vector3d low, high;
-
-    [[nodiscard]] bool is_leaf() const { return end - begin <= most_in_leaf; }
-  };
-
-  std::size_t add(Eigen::Index begin, Eigen::Index end) {
-    Node node{.begin = begin, .end = end, .low = {}, .high = {}};
-    if (!node.is_leaf()) {
-      const Eigen::Index middle = (begin + end) / 2;
-      node.first = add(begin, middle);
-      node.second = add(middle, end);
-    }
-    const auto own = points_.middleCols(begin, end - begin + 1);
-    node.low = own.rowwise().minCoeff();
-    node.high = own.rowwise().maxCoeff();
-    nodes_.push_back(node);
-    return nodes_.size() - 1;
-  }
-
-  void within(std::size_t at) {
-    const Node& node = nodes_[at];
-    if (node.is_leaf()) {
-      look_at(node, node);
-      return;
-    }
-    within(node.first);
-    within(node.second);
-    between(node.first, node.second);
-  }
-
-  /// Compares the segments of two nodes.
-  /// @param at_a, at_b  indices of the nodes, the first one before the other along the rod
-  void between(std::size_t at_a, std::size_t at_b) {
-    const Node& a = nodes_[at_a];
-    const Node& b = nodes_[at_b];
-    // All pairs are too close along the rod.
-    const double farthest =
-        s_[static_cast<std::size_t>(b.end)] - s_[static_cast<std::size_t>(a.begin)];
-    if (farthest < apart_ - coordinate_rounding * s_.back()) return;
-    const Eigen::Vector3d gap = (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0);
-    if (gap.norm() > near_ + slack_) return;
-    if (a.is_leaf() && b.is_leaf()) {
-      look_at(a, b);
-    } else if (b.is_leaf() || (!a.is_leaf() && a.end - a.begin >= b.end - b.begin)) {
-      between(a.first, at_b);
-      between(a.second, at_b);
-    } else {
-      between(at_a, b.first);
-      between(at_a, b.second);
-    }
-  }
-
-  void look_at(const Node& a, const Node& b) {
-    for (Eigen::Index i = a.begin; i < a.end; ++i) {
-      for (Eigen::Index j = std::max(b.begin, i + 2); j < b.end; ++j) look_at(i, j);
-    }
-  }
-
-  void look_at(Eigen::Index i, Eigen::Index j) {
-    const Eigen::Vector3d along_a = points_.col(i + 1) - points_.col(i);
-    const Eigen::Vector3d along_b = points_.col(j + 1) - points_.col(j);
-    const Nearest at = nearest_of(points_.col(i), along_a, points_.col(j), along_b);
-    const auto arc_length = [&](Eigen::Index k, double share) {
-      const auto index = static_cast<std::size_t>(k);
-      return s_[index] + share * (s_[index + 1] - s_[index]);
-    };
-    const SelfCrossing here = {
-        arc_length(i, at.along_a), arc_length(j, at.along_b),
-        (points_.col(i) + at.along_a * along_a - points_.col(j) - at.along_b * along_b).norm()};
-    if (!(here.second - here.first >= apart_) || !(here.distance <= near_)) return;
-    const std::pair segments{i, j};
-    // If several pairs have the same distance, the first along the rod counts.
-    if (found_ && here.distance == near_ && !(segments < segments_)) return;
-    found_ = here;
-    segments_ = segments;
-    near_ = here.distance;
-  }
-
-  const std::vector<double>& s_;
-  const Eigen::Matrix3Xd& points_;
-  double apart_;  // least distance along the rod [m]
-  double slack_;  // rounding of a distance [m]
-  double near_;   // largest distance of a pair; after a find, the smallest distance so far [m]
-  std::vector<Node> nodes_;
-  std::optional<SelfCrossing> found_;
-  std::pair<Eigen::Index, Eigen::Index> segments_;
-};
+/// Returns the nearest points of two segments.
+SelfCrossing crossing_of(const Shape& shape, Eigen::Index i, Eigen::Index j) {
+  const Eigen::Vector3d a = shape.points.col(i);
+  const Eigen::Vector3d b = shape.points.col(j);
+  const Eigen::Vector3d along_a = shape.points.col(i + 1) - a;
+  const Eigen::Vector3d along_b = shape.points.col(j + 1) - b;
+  const Nearest at = nearest_of(a, along_a, b, along_b);
+  return {arc_length_on(shape, i, at.along_a), arc_length_on(shape, j, at.along_b),
+          (a + at.along_a * along_a - b - at.along_b * along_b).norm()};
+}
 
 }  // namespace
 
 std::optional<SelfCrossing> self_crossing(const Shape& shape, double diameter) {
-  if (shape.points.cols() < 4) return std::nullopt;
-  return Crossings(shape, diameter).nearest();
+  const Eigen::Index segments = shape.points.cols() - 1;
+  if (segments < 3) return std::nullopt;
+  const Eigen::VectorXd h = chord_lengths(shape.points);
+  const double longest = h.maxCoeff();
+  const double apart = neighbouring * diameter;  // least distance along the rod [m]
+  const std::vector<double>& s = shape.arc_length;
+  const double slack = coordinate_rounding * shape.points.cwiseAbs().maxCoeff();
+  double near = std::max(diameter, slack);
+  std::vector<double> along = {h[0] / 2};  // length of the polygon up to the middle of each segment
+  for (Eigen::Index i = 1; i < segments; ++i) along.push_back(along.back() + (h[i - 1] + h[i]) / 2);
+  const auto middle = [&](Eigen::Index i) -> Eigen::Vector3d {
+    return (shape.points.col(i) + shape.points.col(i + 1)) / 2;
+  };
+  std::optional<SelfCrossing> found;
+  for (Eigen::Index i = 0; i < segments; ++i) {
+    // All segments before this one are too close along the rod.
+    const Eigen::Index far =
+        std::lower_bound(s.begin() + i, s.end(), s[static_cast<std::size_t>(i)] + apart) -
+        s.begin() - 2;
+    for (Eigen::Index j = std::max(i + 2, far); j < segments;) {
+      // The distance of the middles changes by no more than the polygon's length between them, so
+      // the next segments cannot be nearer to this one than the nearest pair so far.
+      const double least = (middle(i) - middle(j)).norm() - (h[i] + longest) / 2 - near - slack;
+      const auto next = std::upper_bound(along.begin() + j + 1, along.end(),
+                                         along[static_cast<std::size_t>(j)] + least);
+      if (!(least > 0)) {
+        const SelfCrossing here = crossing_of(shape, i, j);
+        // If several pairs have the same distance, the first along the rod counts.
+        const bool is_nearer = found ? here.distance < near : here.distance <= near;
+        if (is_nearer && here.second - here.first >= apart) {
+          found = here;
+          near = here.distance;
+        }
+      }
+      j = next - along.begin();
+    }
+  }
+  return found;
 }
 
 }  // namespace dlo::compare
