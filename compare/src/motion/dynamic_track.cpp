@@ -21,18 +21,12 @@ FrameClock clock_of(const Scene& scene, const TrackOptions& options) {
 }
 
 void add_errors(const std::vector<DynamicFrame>& frames, DynamicTrack& result) {
-  const auto take = [](TrackErrors& errors, double error, double time) {
-    errors.mean += error;
-    if (!(error > errors.largest)) return;
-    errors.largest = error;
-    errors.largest_time = time;
-  };
   TrackErrors force;
   double followed = 0;
   for (const DynamicFrame& frame : frames) {
-    take(result.quasi_static, frame.quasi_static_error, frame.time);
+    result.quasi_static.add(frame.quasi_static_error, frame.time);
     if (!frame.force_error) continue;
-    take(force, *frame.force_error, frame.time);
+    force.add(*frame.force_error, frame.time);
     ++followed;
   }
   result.quasi_static.mean /= static_cast<double>(frames.size());

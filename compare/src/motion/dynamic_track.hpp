@@ -26,13 +26,6 @@ struct DynamicFrame {
                                       ///< points, over the length [-]
 };
 
-/// Mean and largest error over all frames.
-struct TrackErrors {
-  double mean = 0;          ///< divided by the length [-]
-  double largest = 0;       ///< divided by the length [-]
-  double largest_time = 0;  ///< time of the largest error [s]
-};
-
 /// Motion of a Track's rod with inertia.
 struct DynamicTrack {
   RodDamping damping;

@@ -37,17 +37,9 @@ double sum_of_squares(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
 
 }  // namespace
 
-struct ForceTrack::State {
-  Discretisation discretisation;
-  std::vector<std::size_t> obstacles;
-  ForceModelSettings settings;
-  std::optional<force_model::Simulation> simulation;
-  double seconds = 0;
-};
-
 ForceTrack::ForceTrack(const Scene& now, const energy_model::Equilibrium& rod,
                        const std::vector<std::size_t>& obstacles, const SolveOptions& options)
-    : state_(std::make_unique<State>()) {
+    : obstacles_(obstacles), settings_(now.force_model) {
   if (turn_into_plane(now, now.force_model)) {
     throw InputError(
         fmt::format("{}: a rod that is intrinsically curved, in a plane that is not z = 0, which a "
@@ -55,33 +47,26 @@ ForceTrack::ForceTrack(const Scene& now, const energy_model::Equilibrium& rod,
                     "is not turned into",
                     now.file));
   }
-  state_->obstacles = obstacles;
-  state_->settings = now.force_model;
-  state_->discretisation = discretise(now, now.force_model);
-  set_obstacles(now, obstacles, state_->discretisation);
-  const Discretisation& discretisation = state_->discretisation;
+  discretisation_ = discretise(now, now.force_model);
+  set_obstacles(now, obstacles, discretisation_);
   try {
-    state_->simulation.emplace(discretisation.rod, start_on(discretisation, rod),
-                               step_options(now.force_model, discretisation));
+    simulation_.emplace(discretisation_.rod, start_on(discretisation_, rod),
+                        step_options(now.force_model, discretisation_));
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: the force model: {}", now.file, error.what()));
   }
-  const force_model::RelaxResult result =
-      state_->simulation->relax({.tolerance = options.rest_tolerance,
-                                 .max_steps = options.max_steps,
-                                 .time_limit = options.time_limit});
+  const force_model::RelaxResult result = simulation_->relax({.tolerance = options.rest_tolerance,
+                                                              .max_steps = options.max_steps,
+                                                              .time_limit = options.time_limit});
   if (result.status == force_model::RelaxStatus::at_rest) return;
   throw ConvergenceError(fmt::format("{}: the force model did not come to rest at first: {}",
                                      now.file, result.message));
 }
 
-ForceTrack::~ForceTrack() = default;
-
 bool ForceTrack::step(const Scene& now, long steps) {
-  State& state = *state_;
-  Discretisation moved = discretise(now, state.settings);
-  set_obstacles(now, state.obstacles, moved);
-  force_model::Simulation& simulation = *state.simulation;
+  Discretisation moved = discretise(now, settings_);
+  set_obstacles(now, obstacles_, moved);
+  force_model::Simulation& simulation = *simulation_;
   const Timer timer;
   for (std::size_t i = 0; i < moved.rod.grips.size(); ++i) {
     simulation.move_grip(i, moved.rod.grips[i].targets, moved.rod.grips[i].reference);
@@ -95,24 +80,22 @@ bool ForceTrack::step(const Scene& now, long steps) {
   for (long i = 0; i < steps && finite; ++i) {
     finite = simulation.step().status != force_model::StepStatus::diverged;
   }
-  state.seconds = timer.seconds();
-  state.discretisation = std::move(moved);
+  seconds_ = timer.seconds();
+  discretisation_ = std::move(moved);
   return finite;
 }
 
 ForceFrame ForceTrack::frame(const energy_model::Equilibrium& rod,
                              const std::vector<double>& arc_length) const {
-  const force_model::Simulation& simulation = *state_->simulation;
+  const force_model::Simulation& simulation = *simulation_;
   const Eigen::Matrix3Xd points = simulation.points();
   ForceFrame frame;
-  frame.shape = state_->discretisation.shape(points);
-  frame.error_over_length = distance(frame.shape, rod.sample) / state_->discretisation.length;
+  frame.shape = discretisation_.shape(points);
+  frame.error_over_length = distance(frame.shape, rod.sample) / discretisation_.length;
   frame.points = resample(frame.shape, arc_length).points;
   frame.grippers = gripper_loads(simulation.rod(), points);
   return frame;
 }
-
-double ForceTrack::seconds() const { return state_->seconds; }
 
 Lag lag_of(const std::vector<Eigen::Matrix3Xd>& leader,
            const std::vector<Eigen::Matrix3Xd>& follower, double step) {

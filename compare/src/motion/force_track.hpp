@@ -1,15 +1,16 @@
 #pragma once
 
 #include <limits>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "dlo/compare/discretise.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape.hpp"
 #include "dlo/compare/solution.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
+#include "dlo/force_model/simulation.hpp"
 
 namespace dlo::compare {
 
@@ -24,14 +25,26 @@ struct ForceFrame {
   Shape shape;                        ///< its own points [m]
 };
 
-/// Summary of the force model's frames.
-struct ForceTrackSummary {
+/// Mean and largest error over all frames.
+struct TrackErrors {
+  double mean = 0;          ///< divided by the length [-]
+  double largest = 0;       ///< divided by the length [-]
+  double largest_time = 0;  ///< time of the largest error [s]
+
+  /// Adds an error; `mean` is the sum until it is divided by the number of errors.
+  void add(double error, double time) {
+    mean += error;
+    if (!(error > largest)) return;
+    largest = error;
+    largest_time = time;
+  }
+};
+
+/// Summary of the force model's frames, with their errors.
+struct ForceTrackSummary : TrackErrors {
   std::string none;          ///< why there are no frames; empty if there are
   long steps_per_frame = 0;  ///< number of steps of the stepper
   double rest_error = 0;     ///< error of the first frame, at rest without lag, over the length [-]
-  double largest = 0;        ///< error over the length [-]
-  double largest_time = 0;   ///< [s]
-  double mean = 0;           ///< mean error over the length [-]
   double median_seconds = 0;  ///< median duration of a frame's steps [s]
   /// Lag of the shapes: the shift of time that brings them nearest to the energy model's, and the
   /// remaining RMS distance over all frames, over the length. NaN if the motion is too small.
@@ -50,9 +63,6 @@ class ForceTrack {
   /// @throws ConvergenceError if the force model does not come to rest
   ForceTrack(const Scene& now, const energy_model::Equilibrium& rod,
              const std::vector<std::size_t>& obstacles, const SolveOptions& options);
-  ~ForceTrack();
-  ForceTrack(const ForceTrack&) = delete;
-  ForceTrack& operator=(const ForceTrack&) = delete;
 
   /// Makes the steps of a frame.
   /// @param now  the scene at the end of the frame, without motion
@@ -62,11 +72,14 @@ class ForceTrack {
   [[nodiscard]] ForceFrame frame(const energy_model::Equilibrium& rod,
                                  const std::vector<double>& arc_length) const;
   /// Returns the duration of the last step() [s].
-  [[nodiscard]] double seconds() const;
+  [[nodiscard]] double seconds() const { return seconds_; }
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  Discretisation discretisation_;
+  std::vector<std::size_t> obstacles_;
+  ForceModelSettings settings_;
+  std::optional<force_model::Simulation> simulation_;
+  double seconds_ = 0;
 };
 
 /// Shift of time by which a series of shapes lags behind another one.

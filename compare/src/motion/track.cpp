@@ -213,8 +213,7 @@ class Tracker {
               "obstacle {} moves and is no plane, which the force model cannot move", i + 1);
           return;
         }
-        force_ =
-            std::make_unique<ForceTrack>(now.scene, now.rod, branch_.obstacles(), options_.solve);
+        force_.emplace(now.scene, now.rod, branch_.obstacles(), options_.solve);
       } else if (!force_->step(now.scene, summary.steps_per_frame)) {
         summary.none = fmt::format("it diverged at {:g} s", frame.time);
         return;
@@ -239,23 +238,18 @@ class Tracker {
     std::vector<Eigen::Matrix3Xd> leader;
     std::vector<Eigen::Matrix3Xd> follower;
     ForceTrackSummary& summary = result_.force;
-    double sum = 0;
     for (const TrackFrame& frame : result_.frames) {
       if (!frame.force) continue;
       leader.push_back(frame.shape.points);
       follower.push_back(frame.force->points);
-      const double error = frame.force->error_over_length;
-      sum += error;
-      if (!(error > summary.largest)) continue;
-      summary.largest = error;
-      summary.largest_time = frame.time;
+      summary.add(frame.force->error_over_length, frame.time);
     }
     // The first frame is found by a search, so its duration is used only if there is no other.
     if (seconds_.empty()) seconds_.push_back(result_.frames.front().seconds);
     result_.median_seconds = median(std::move(seconds_));
     if (leader.empty()) return;
     summary.rest_error = result_.frames.front().force->error_over_length;
-    summary.mean = sum / static_cast<double>(leader.size());
+    summary.mean /= static_cast<double>(leader.size());
     summary.median_seconds = median(std::move(force_seconds_));
     const Lag lag = lag_of(leader, follower, 1 / options_.rates.frames);
     summary.lag = lag.time;
@@ -266,7 +260,7 @@ class Tracker {
   const TrackOptions& options_;
   FrameClock clock_;
   Branch branch_;
-  std::unique_ptr<ForceTrack> force_;
+  std::optional<ForceTrack> force_;
   std::vector<double> seconds_;  // of frames that follow a branch
   std::vector<double> force_seconds_;
   Track result_;
