@@ -18,9 +18,33 @@
 namespace dlo::compare {
 namespace {
 
+struct NamedUnit {
+  const char* name;
+  double metres;
+};
+constexpr NamedUnit named_units[] = {{"metres", 1}, {"mm", 1e-3},       {"cm", 1e-2},
+                                     {"um", 1e-6},  {"inches", 0.0254}, {"feet", 0.3048},
+                                     {"km", 1e3}};
+
 /// Range of the length of a file's polyline, divided by the rod's, for which a unit is considered.
 constexpr double shortest = 0.5;
 constexpr double longest = 1.25;
+
+/// Returns the units that the shape may be in, other than the one in which it was read.
+std::vector<FileUnit> other_units(const MeasuredShape& shape) {
+  constexpr double same = 1e-9;
+  std::string as_read = fmt::format("units of {:g} m", shape.unit);
+  for (const NamedUnit& unit : named_units) {
+    if (std::abs(unit.metres / shape.unit - 1) < same) as_read = unit.name;
+  }
+  std::vector<FileUnit> units;
+  for (const NamedUnit& unit : named_units) {
+    if (as_read == unit.name) continue;
+    units.push_back({fmt::format("the file is in {}, not in {}", unit.name, as_read),
+                     unit.metres / shape.unit});
+  }
+  return units;
+}
 
 /// Returns the units in which the shape is about as long as the rod or a part of it, with their
 /// factors; the unit in which the file was read has an empty name.
@@ -125,13 +149,18 @@ MeasuredShape without(const MeasuredShape& shape, Eigen::Index first, Eigen::Ind
   return rest;
 }
 
-struct NamedUnit {
-  const char* name;
-  double metres;
-};
-constexpr NamedUnit named_units[] = {{"metres", 1}, {"mm", 1e-3},       {"cm", 1e-2},
-                                     {"um", 1e-6},  {"inches", 0.0254}, {"feet", 0.3048},
-                                     {"km", 1e3}};
+/// Returns the transformation from the axes of a picture to the scene's.
+/// @param up  1 if the picture's y points up, -1 if it points down
+Eigen::Matrix3d picture_axes(const Eigen::Vector3d& gravity, double up) {
+  Eigen::Index vertical = 1;
+  if (gravity.norm() > 0) gravity.cwiseAbs().maxCoeff(&vertical);
+  const double against = gravity[vertical] > 0 ? -up : up;
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
+  axes(vertical, 1) = against;
+  axes(vertical == 0 ? 1 : 0, 0) = 1;
+  axes(vertical == 2 ? 1 : 2, 2) = 1;
+  return axes;
+}
 
 /// Adds pixel coordinates: of any scale, counted from a corner, often downwards.
 void add_pixels(const Scene& scene, const MeasuredShape& shape, std::vector<FileCause>& causes) {
@@ -201,6 +230,9 @@ void add_order(const MeasuredShape& shape, const ShapeCheck& check,
       {fmt::format("the file's points are out of order: along the rod they are {}", numbers),
        std::move(sorted)});
 }
+
+/// Whether a polyline is shorter than 99 % of the rod.
+bool is_short(double polyline_length, double length) { return polyline_length < 0.99 * length; }
 
 /// Adds points at an end that lead away from the rod, and a file that covers only a part of the
 /// rod.
@@ -322,44 +354,16 @@ std::vector<FileAxes> other_axes(const Eigen::Vector3d& gravity, const Eigen::Ma
   return result;
 }
 
-Eigen::Matrix3d picture_axes(const Eigen::Vector3d& gravity, double up) {
-  Eigen::Index vertical = 1;
-  if (gravity.norm() > 0) gravity.cwiseAbs().maxCoeff(&vertical);
-  const double against = gravity[vertical] > 0 ? -up : up;
-  Eigen::Matrix3d axes = Eigen::Matrix3d::Zero();
-  axes(vertical, 1) = against;
-  axes(vertical == 0 ? 1 : 0, 0) = 1;
-  axes(vertical == 2 ? 1 : 2, 2) = 1;
-  return axes;
-}
-
 MeasuredShape scaled(MeasuredShape shape, double factor) {
   shape.points *= factor;
   for (double& s : shape.arc_length) s *= factor;
   return shape;
 }
 
-std::vector<FileUnit> other_units(const MeasuredShape& shape) {
-  constexpr double same = 1e-9;
-  std::string as_read = fmt::format("units of {:g} m", shape.unit);
-  for (const NamedUnit& unit : named_units) {
-    if (std::abs(unit.metres / shape.unit - 1) < same) as_read = unit.name;
-  }
-  std::vector<FileUnit> units;
-  for (const NamedUnit& unit : named_units) {
-    if (as_read == unit.name) continue;
-    units.push_back({fmt::format("the file is in {}, not in {}", unit.name, as_read),
-                     unit.metres / shape.unit});
-  }
-  return units;
-}
-
 MeasuredShape turned(MeasuredShape shape, const Eigen::Matrix3d& axes) {
   shape.points = (axes * shape.points).eval();
   return shape;
 }
-
-bool is_short(double polyline_length, double length) { return polyline_length < 0.99 * length; }
 
 std::string missing_words(const std::vector<double>& s, const Eigen::Matrix3Xd& points,
                           double length) {

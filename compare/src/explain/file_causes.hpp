@@ -27,10 +27,6 @@ struct FileAxes {
 [[nodiscard]] std::vector<FileAxes> other_axes(const Eigen::Vector3d& gravity,
                                                const Eigen::Matrix3Xd& points);
 
-/// Returns the transformation from the axes of a picture to the scene's.
-/// @param up  1 if the picture's y points up, -1 if it points down
-[[nodiscard]] Eigen::Matrix3d picture_axes(const Eigen::Vector3d& gravity, double up);
-
 /// A possible error of a file that contains a correct shape.
 struct FileCause {
   std::string words;    ///< a clause; empty if alignment of the shape determines the whole error
@@ -50,16 +46,10 @@ struct FileUnit {
   double factor = 1;  ///< factor that converts the shape to metres
 };
 
-/// Returns the units that the shape may be in, other than the one in which it was read.
-[[nodiscard]] std::vector<FileUnit> other_units(const MeasuredShape& shape);
-
 /// Returns the shape with its points and arc lengths multiplied by a factor.
 [[nodiscard]] MeasuredShape scaled(MeasuredShape shape, double factor);
 /// Returns the shape in other axes.
 [[nodiscard]] MeasuredShape turned(MeasuredShape shape, const Eigen::Matrix3d& axes);
-
-/// Whether a polyline is shorter than 99 % of the rod.
-[[nodiscard]] bool is_short(double polyline_length, double length);
 
 /// Returns a clause that states which ends of the rod a shape lacks.
 /// @param s  arc lengths of the points on the rod [m];  @param points  [m], 3 x M

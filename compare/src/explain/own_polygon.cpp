@@ -209,10 +209,6 @@ class Chain {
              largest_chain_strain);
   }
 
-  void hold_point(Eigen::Index point, const Eigen::Vector3d& position) {
-    problem_.held.push_back({point, position});
-  }
-
   /// Holds the segment that a clamp inside the rod holds: the one whose middle is at the clamp, or,
   /// if welded to a point, the one that begins there.
   /// @return whether the chain's kind of clamp is possible there; a hinge is not
@@ -221,7 +217,7 @@ class Chain {
     has_inner_clamp_ = true;
     for (const Eigen::Index i : {at.point, at.point + 1}) {
       const double way = s_[static_cast<std::size_t>(i)] - clamp.at;
-      hold_point(i + before_, clamp.position + way * *clamp.direction);
+      problem_.held.push_back({i + before_, clamp.position + way * *clamp.direction});
     }
     return true;
   }
@@ -244,7 +240,7 @@ class Chain {
     const double way = at_start != hinged ? h : -h;
     const Eigen::Index beyond = at_start ? 0 : n + before_ + 1;
     const Eigen::Index inside = at_start ? 1 : n - 1;
-    hold_point(hinged ? beyond : inside, clamp.position + way * *clamp.direction);
+    problem_.held.push_back({hinged ? beyond : inside, clamp.position + way * *clamp.direction});
   }
 
   /// Whether the segment at each clamp of an end is half as long as the next one.
@@ -273,7 +269,7 @@ class Chain {
       if (gripper.direction && &gripper != first && &gripper != last) {
         if (!hold_inside(gripper, *at)) return false;
       } else {
-        hold_point(at->point + before_, gripper.position);
+        problem_.held.push_back({at->point + before_, gripper.position});
       }
     }
     if (first != nullptr) hold_direction(*first, true);
@@ -440,24 +436,17 @@ std::optional<OwnPolygon> with_law(const Chain& chain, Springs springs, JointLaw
 
 /// Returns the chain with the law that fits best, or with the first law if none is identified.
 std::optional<OwnPolygon> with_best_law(const Chain& chain, Springs springs, double length) {
-  std::optional<OwnPolygon> first;
-  std::optional<OwnPolygon> best;
-  double next = std::numeric_limits<double>::infinity();  // distance with the second-best law
+  std::vector<OwnPolygon> found;
   for (const JointLaw law : hookean_laws) {
-    const std::optional<OwnPolygon> one = with_law(chain, springs, law);
-    if (!one) continue;
-    if (!first) first = one;
-    if (!best || one->rms_m < best->rms_m) {
-      if (best) next = best->rms_m;
-      best = one;
-    } else {
-      next = std::min(next, one->rms_m);
-    }
+    if (std::optional<OwnPolygon> one = with_law(chain, springs, law)) found.push_back(*one);
   }
-  if (!best) return std::nullopt;
-  best->law_shows =
-      std::isfinite(next) && next > showing * best->rms_m && next > least_showing * length;
-  return best->law_shows ? best : first;
+  if (found.empty()) return std::nullopt;
+  const OwnPolygon first = found.front();
+  std::ranges::stable_sort(found, {}, &OwnPolygon::rms_m);
+  OwnPolygon& best = found.front();
+  const double next = found.size() > 1 ? found[1].rms_m : 0;  // distance with the second-best law
+  best.law_shows = next > showing * best.rms_m && next > least_showing * length;
+  return best.law_shows ? best : first;
 }
 
 }  // namespace

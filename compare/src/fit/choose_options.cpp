@@ -9,7 +9,7 @@
 
 #include "dlo/compare/error.hpp"
 #include "fit/fit_from.hpp"
-#include "least_squares/material_point.hpp"
+#include "least_squares/fitted_rods.hpp"
 #include "wire/identifiable.hpp"
 #include "wire/wire_fit.hpp"
 #include "wire/wire_numbers.hpp"

@@ -58,6 +58,22 @@ MaterialFit whole_wire(MaterialProfiles& material, const MaterialPoint& start, d
   return fit;
 }
 
+/// Predicts each shape by a new fit to all others, which searches all E, and returns the distances.
+/// @param fit  fit to all shapes, which determines the arc lengths of their points
+/// @throws in the cases of fit_material()
+Prediction predict_each(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
+                        const MaterialFitOptions& options, const MaterialFit& fit) {
+  MaterialFitOptions same = options;
+  same.alternatives = same.predict = false;
+  same.chain_segments = same.profile_points = 0;
+  same.chain_segment_lengths.clear();
+  return leave_one_out(scenes, shapes, options, fit, [&](std::size_t left) -> PredictedScene {
+    const std::vector<Scene> other_scenes = all_but(scenes, left);
+    const MaterialFit others = fit_from(other_scenes, all_but(shapes, left), same, std::nullopt);
+    return {fitted_scene(scenes[left], others, other_scenes.front()), std::nullopt};
+  });
+}
+
 }  // namespace
 
 Scene fitted_scene(Scene scene, const MaterialFit& fit, const Scene& first) {
@@ -108,19 +124,6 @@ MaterialFit fit_from(const std::vector<Scene>& scenes, const std::vector<Measure
   const bool of_chains = options.chain_segments > 0 || !options.chain_segment_lengths.empty();
   if (of_chains && fit.youngs_modulus.value) add_chains(scenes, options, fit);
   return fit;
-}
-
-Prediction predict_each(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-                        const MaterialFitOptions& options, const MaterialFit& fit) {
-  MaterialFitOptions same = options;
-  same.alternatives = same.predict = false;
-  same.chain_segments = same.profile_points = 0;
-  same.chain_segment_lengths.clear();
-  return leave_one_out(scenes, shapes, options, fit, [&](std::size_t left) -> PredictedScene {
-    const std::vector<Scene> other_scenes = all_but(scenes, left);
-    const MaterialFit others = fit_from(other_scenes, all_but(shapes, left), same, std::nullopt);
-    return {fitted_scene(scenes[left], others, other_scenes.front()), std::nullopt};
-  });
 }
 
 }  // namespace dlo::compare

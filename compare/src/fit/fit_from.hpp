@@ -6,7 +6,7 @@
 #include "dlo/compare/fitted_material.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape_file.hpp"
-#include "least_squares/material_point.hpp"
+#include "least_squares/fitted_rods.hpp"
 
 namespace dlo::compare {
 
@@ -25,12 +25,5 @@ namespace dlo::compare {
                                    const std::vector<MeasuredShape>& shapes,
                                    const MaterialFitOptions& options,
                                    const std::optional<MaterialPoint>& start);
-
-/// Predicts each shape by a new fit to all others, which searches all E, and returns the distances.
-/// @param fit  fit to all shapes, which determines the arc lengths of their points
-/// @throws in the cases of fit_material()
-[[nodiscard]] Prediction predict_each(const std::vector<Scene>& scenes,
-                                      const std::vector<MeasuredShape>& shapes,
-                                      const MaterialFitOptions& options, const MaterialFit& fit);
 
 }  // namespace dlo::compare

@@ -18,7 +18,7 @@
 #include "wire/leave_one_out.hpp"
 #include "wire/wire_fit.hpp"
 #include "wire/wire_numbers.hpp"
-#include "wire/wire_result.hpp"
+#include "wire/wire_optimum.hpp"
 
 namespace dlo::compare {
 namespace {

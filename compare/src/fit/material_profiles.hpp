@@ -16,7 +16,6 @@
 #include "least_squares/error_correlation.hpp"
 #include "least_squares/fitted_rods.hpp"
 #include "least_squares/log_profile.hpp"
-#include "least_squares/material_point.hpp"
 #include "least_squares/measured_shapes.hpp"
 
 namespace dlo::compare {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+#include <compare>
 #include <cstddef>
 #include <functional>
 #include <limits>
@@ -10,6 +12,21 @@
 #include "least_squares/measured_shapes.hpp"
 
 namespace dlo::compare {
+
+/// Logarithms of the factors on the scenes' modulus and density.
+struct MaterialPoint {
+  double log_modulus = 0;
+  double log_density = 0;
+  /// Compares both numbers.
+  auto operator<=>(const MaterialPoint&) const = default;
+};
+
+/// Returns the scene with its modulus and density scaled.
+[[nodiscard]] inline Scene of_material(Scene scene, const MaterialPoint& material) {
+  scene.scale_modulus(std::exp(material.log_modulus));
+  scene.scale_density(std::exp(material.log_density));
+  return scene;
+}
 
 /// A number that is fitted to measured shapes.
 struct Unknown {

@@ -37,8 +37,23 @@ constexpr int most_halvings = 8;
 /// 1e-6.
 constexpr double deviance_tolerance = 1e-5;
 
-}  // namespace
+/// Returns the step of all numbers except the first to the least deviance, if the first one moves
+/// by `held`.
+/// @param slope  result of slope(), of all numbers
+Eigen::VectorXd step_of_others(const LinearFit& fit, double variance, const Eigen::VectorXd& before,
+                               const Eigen::VectorXd& slope, double held) {
+  const Eigen::Index others = before.size() - 1;
+  const auto of_others = fit.design.rightCols(others);
+  Eigen::MatrixXd information = of_others.transpose() * of_others / variance;
+  information.diagonal() += before.tail(others).cwiseAbs2();
+  const Eigen::VectorXd left =
+      slope.tail(others) - of_others.transpose() * fit.design.col(0) / variance * held;
+  return information.completeOrthogonalDecomposition().solve(left);
+}
 
+/// Linearises a fit.
+/// @param frames  number of columns of the series' design, before those of the numbers, that belong
+/// to frames
 LinearFit linear_fit(const std::vector<ResidualSeries>& series, const ErrorCovariance& covariance,
                      Eigen::Index frames) {
   Innovations seen = innovations(series, covariance);
@@ -54,6 +69,8 @@ LinearFit linear_fit(const std::vector<ResidualSeries>& series, const ErrorCovar
   result.freedom -= qr.rank();
   return result;
 }
+
+}  // namespace
 
 Eigen::MatrixXd posterior(const LinearFit& fit, double variance, const Eigen::VectorXd& before) {
   return information_of(fit, variance, before).completeOrthogonalDecomposition().pseudoInverse();
@@ -106,17 +123,6 @@ double log_determinant(const LinearFit& fit, double variance, const Eigen::Vecto
   const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> information(
       information_of(fit, variance, before).bottomRightCorner(others, others));
   return information.matrixQR().diagonal().head(information.rank()).array().abs().log().sum();
-}
-
-Eigen::VectorXd step_of_others(const LinearFit& fit, double variance, const Eigen::VectorXd& before,
-                               const Eigen::VectorXd& slope, double held) {
-  const Eigen::Index others = before.size() - 1;
-  const auto of_others = fit.design.rightCols(others);
-  Eigen::MatrixXd information = of_others.transpose() * of_others / variance;
-  information.diagonal() += before.tail(others).cwiseAbs2();
-  const Eigen::VectorXd left =
-      slope.tail(others) - of_others.transpose() * fit.design.col(0) / variance * held;
-  return information.completeOrthogonalDecomposition().solve(left);
 }
 
 GaussNewton::GaussNewton(FittedRods& rods, Eigen::VectorXd values,

@@ -17,12 +17,6 @@ struct LinearFit {
   Eigen::Index freedom = 0;  ///< number of rows minus rank of the frames' columns
 };
 
-/// Linearises a fit.
-/// @param frames  number of columns of the series' design, before those of the numbers, that belong
-/// to frames
-[[nodiscard]] LinearFit linear_fit(const std::vector<ResidualSeries>& series,
-                                   const ErrorCovariance& covariance, Eigen::Index frames);
-
 /// Returns the covariance of the numbers after the fit. For numbers that are unseen() it is that of
 /// the pseudoinverse, which is no variance.
 /// @param variance  of the errors
@@ -62,13 +56,6 @@ struct VarianceEstimate {
 /// numbers except the first, without those that neither points nor priors determine.
 [[nodiscard]] double log_determinant(const LinearFit& fit, double variance,
                                      const Eigen::VectorXd& before);
-
-/// Returns the step of all numbers except the first to the least deviance, if the first one moves
-/// by `held`.
-/// @param slope  result of slope(), of all numbers
-[[nodiscard]] Eigen::VectorXd step_of_others(const LinearFit& fit, double variance,
-                                             const Eigen::VectorXd& before,
-                                             const Eigen::VectorXd& slope, double held);
 
 /// Options of the Gauss-Newton iteration.
 struct GaussNewtonOptions {

@@ -22,6 +22,34 @@ constexpr int first_seen_frame = static_cast<int>(movement_begins * 1000) + fram
 /// Distance of the clamp from the third point, half a segment along the rod [m].
 double clamp_lead() { return table_1().segment() / 2; }
 
+/// Returns the gripper's pose. At the beginning and the end of the movement its rates are those
+/// just after.
+/// @param time  [s]
+MovingPose moving_pose(const MovingExperiment& experiment, const MovingChoices& choices,
+                       double time) {
+  constexpr double takes = movement_ends - movement_begins;
+  const double share = std::clamp((time - movement_begins) / takes, 0.0, 1.0);
+  const double rate = time >= movement_begins && time < movement_ends ? 1 / takes : 0;
+  MovingPose result;
+  result.angle = experiment.horizontal ? 0 : -std::numbers::pi / 2;
+  switch (experiment.movement) {
+    case Movement::rotation:
+      result.angle += share * choices.angle;
+      result.angle_rate = rate * choices.angle;
+      break;
+    case Movement::uniform:
+      result.position.x() = share * choices.distance;
+      result.velocity.x() = rate * choices.distance;
+      break;
+    case Movement::accelerated:
+      result.position.x() = share * share * choices.distance;
+      result.velocity.x() = 2 * share * rate * choices.distance;
+      result.acceleration.x() = 2 * rate * rate * choices.distance;
+      break;
+  }
+  return result;
+}
+
 energy_model::GripPose clamp_pose(const MovingExperiment& experiment, const MovingChoices& choices,
                                   double time) {
   const MovingPose first = moving_pose(experiment, choices, 0);
@@ -184,31 +212,6 @@ MovingError moving_error(const MovingExperiment& experiment, const MovingChoices
 Eigen::Vector3d MovingPose::direction() const { return {std::cos(angle), std::sin(angle), 0}; }
 
 double moving_weight() { return static_cast<double>(table_1().points) * table_1().point_weight; }
-
-MovingPose moving_pose(const MovingExperiment& experiment, const MovingChoices& choices,
-                       double time) {
-  constexpr double takes = movement_ends - movement_begins;
-  const double share = std::clamp((time - movement_begins) / takes, 0.0, 1.0);
-  const double rate = time >= movement_begins && time < movement_ends ? 1 / takes : 0;
-  MovingPose result;
-  result.angle = experiment.horizontal ? 0 : -std::numbers::pi / 2;
-  switch (experiment.movement) {
-    case Movement::rotation:
-      result.angle += share * choices.angle;
-      result.angle_rate = rate * choices.angle;
-      break;
-    case Movement::uniform:
-      result.position.x() = share * choices.distance;
-      result.velocity.x() = rate * choices.distance;
-      break;
-    case Movement::accelerated:
-      result.position.x() = share * share * choices.distance;
-      result.velocity.x() = 2 * share * rate * choices.distance;
-      result.acceleration.x() = 2 * rate * rate * choices.distance;
-      break;
-  }
-  return result;
-}
 
 force_model::StepOptions moving_step_options(MovingVariant variant, const MovingChoices& choices) {
   using force_model::Stepper;

@@ -119,12 +119,6 @@ struct MovingPose {
   [[nodiscard]] Eigen::Vector3d direction() const;
 };
 
-/// Returns the gripper's pose. At the beginning and the end of the movement its rates are those
-/// just after.
-/// @param time  [s]
-[[nodiscard]] MovingPose moving_pose(const MovingExperiment& experiment,
-                                     const MovingChoices& choices, double time);
-
 inline constexpr double movement_begins = 5;  ///< [s]
 inline constexpr double movement_ends = 13;   ///< [s]
 inline constexpr int moving_frames = 28000;   ///< at 1 kHz, Section II.B

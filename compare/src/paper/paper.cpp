@@ -67,8 +67,11 @@ std::vector<ModulusVariant> variants(const Scene& scene) {
   return result;
 }
 
-}  // namespace
-
+/// Steps a scene from its initial shape (straight, for a single gripper) with the stepper `basic`
+/// and fits E*/E after 1, 2, 5, ... 200 s of simulated time. c_F is the scene's or Table 1's 0.86
+/// L/(2 c_c), so simulated times are comparable only for equal c_c.
+/// @param rest  rest shape of the force model with the same c_c
+/// @throws InputError, ConvergenceError, also if the steps diverge
 ModulusHistory modulus_history(const Scene& scene, const Shape& rest) {
   ForceModelSettings settings = scene.force_model;
   settings.stepper = Stepper::basic;
@@ -98,6 +101,8 @@ ModulusHistory modulus_history(const Scene& scene, const Shape& rest) {
   }
   return history;
 }
+
+}  // namespace
 
 double time_at_ratio(const std::vector<ModulusAtTime>& times, double ratio) {
   for (std::size_t i = 0; i + 1 < times.size(); ++i) {

@@ -35,13 +35,6 @@ struct ModulusHistory {
   std::vector<ModulusAtTime> times;  ///< samples in the order of time
 };
 
-/// Steps a scene from its initial shape (straight, for a single gripper) with the stepper `basic`
-/// and fits E*/E after 1, 2, 5, ... 200 s of simulated time. c_F is the scene's or Table 1's 0.86
-/// L/(2 c_c), so simulated times are comparable only for equal c_c.
-/// @param rest  rest shape of the force model with the same c_c
-/// @throws InputError, ConvergenceError, also if the steps diverge
-[[nodiscard]] ModulusHistory modulus_history(const Scene& scene, const Shape& rest);
-
 /// Returns the simulated time at which E*/E decreases below a ratio, interpolated between the
 /// samples by a power law; NaN if it does not [s].
 [[nodiscard]] double time_at_ratio(const std::vector<ModulusAtTime>& times, double ratio);

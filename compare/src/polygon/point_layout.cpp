@@ -197,8 +197,9 @@ void choose_time_step(const Discretisation& discretisation, force_model::StepOpt
   options.damping_rate = 2 * std::sqrt(modes.slowest / rod.masses.maxCoeff());
 }
 
-}  // namespace
-
+/// Returns the indices of the scene's grippers in the order of their arc lengths.
+/// @throws InputError naming file, line and key if two hold one arc length, or are further apart
+/// than the rod between them
 std::vector<std::size_t> order_along(const Scene& scene) {
   std::vector<std::size_t> along(scene.grippers.size());
   for (std::size_t i = 0; i < along.size(); ++i) along[i] = i;
@@ -225,6 +226,8 @@ std::vector<std::size_t> order_along(const Scene& scene) {
   }
   return along;
 }
+
+}  // namespace
 
 void require_slack(const Scene& scene) {
   if (scene.stretch == Stretch::counted || is_solved_taut(scene)) return;

@@ -22,11 +22,6 @@ struct Layout {
   std::vector<std::size_t> along;  ///< indices of the grippers in the order of their arc lengths
 };
 
-/// Returns the indices of the scene's grippers in the order of their arc lengths.
-/// @throws InputError naming file, line and key if two hold one arc length, or are further apart
-/// than the rod between them
-[[nodiscard]] std::vector<std::size_t> order_along(const Scene& scene);
-
 /// Checks that a rod without stretch has slack between its grippers. A rod that counts stretch is
 /// left to its solver, and a rod that is taut on a line to taut_line().
 /// @throws InputError as order_along, and if the rod between two grippers would be taut

@@ -301,8 +301,9 @@ std::vector<FrameError> errors_without_lag(const MarkerMotion& recorded, const M
   return frames;
 }
 
-}  // namespace
-
+/// Returns a frame of a recording with the rod. @param time    of a frame of the recording [s]
+/// @param length  of the rod [m]
+/// @param lag     delay of the recording [s]; NaN: none
 FrameShapes frame_shapes(const MarkerMotion& recorded, const ModelMotion& model, double time,
                          double length, double lag) {
   FrameShapes result{.time = time};
@@ -324,6 +325,8 @@ FrameShapes frame_shapes(const MarkerMotion& recorded, const ModelMotion& model,
   }
   return result;
 }
+
+}  // namespace
 
 MotionCheck check_motion(const Scene& scene, const MarkerMotion& recorded,
                          const MotionCheckRequest& request, const Progress& progress) {

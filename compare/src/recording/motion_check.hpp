@@ -27,12 +27,6 @@ struct FrameShapes {
   std::optional<Shape> rod_at_other_time;  ///< the whole rod at time - lag, if there is a lag
 };
 
-/// Returns a frame of a recording with the rod. @param time    of a frame of the recording [s]
-/// @param length  of the rod [m]
-/// @param lag     delay of the recording [s]; NaN: none
-[[nodiscard]] FrameShapes frame_shapes(const MarkerMotion& recorded, const ModelMotion& model,
-                                       double time, double length, double lag);
-
 /// Model with which a recording is compared.
 enum class MotionModel {
   at_rest,       ///< equilibrium at every time, see track()

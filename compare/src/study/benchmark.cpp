@@ -196,8 +196,8 @@ bool is_run_of(const BenchmarkRun& run, std::optional<Model> model) {
   return !model || (run.program.empty() && run.model == *model);
 }
 
-}  // namespace
-
+/// Returns two scenes: the paper's steel rod (Gamma = 0.18, horizontal), and one with a hundredth
+/// of its Young's modulus.
 std::vector<Scene> benchmark_scenes() {
   Scene steel;
   steel.name = "spring steel, horizontal";
@@ -214,6 +214,8 @@ std::vector<Scene> benchmark_scenes() {
   soft.material.youngs_modulus /= 100;
   return {steel, soft};
 }
+
+}  // namespace
 
 ForceModelSettings ForceVariant::settings(const Scene& scene, int points) const {
   ForceModelSettings result;

@@ -114,10 +114,6 @@ struct BenchmarkReport {
   double seconds = 0;                      ///< wall time of the benchmark [s]
 };
 
-/// Returns two scenes: the paper's steel rod (Gamma = 0.18, horizontal), and one with a hundredth
-/// of its Young's modulus.
-[[nodiscard]] std::vector<Scene> benchmark_scenes();
-
 /// Sets BenchmarkRun::front of the runs that no other run beats. A run beats another if neither its
 /// time (median) nor its error is larger, and one of both is smaller. Errors must not be NaN.
 void mark_front(std::vector<BenchmarkRun>& runs);

@@ -151,13 +151,9 @@ StabilityResult run_against(const energy_model::PolygonResult& reference, const 
   return result;
 }
 
-}  // namespace
-
-double largest_distance(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& reference) {
-  if (!points.allFinite()) return std::numeric_limits<double>::infinity();
-  return (points - reference).colwise().norm().maxCoeff();
-}
-
+/// Whether a sequence of shapes oscillates. Two conditions hold: the sum of their movements exceeds
+/// three times the distance from the first shape to the last, and it exceeds `threshold` [m] (RMS
+/// over the points).
 bool goes_to_and_fro(const std::vector<Eigen::Matrix3Xd>& shapes, double threshold) {
   if (shapes.size() < 3) return false;
   double path = 0;
@@ -165,6 +161,13 @@ bool goes_to_and_fro(const std::vector<Eigen::Matrix3Xd>& shapes, double thresho
   const double net = (shapes.back() - shapes.front()).norm();
   const double root_points = std::sqrt(static_cast<double>(shapes.front().cols()));
   return path > 3 * net && path > threshold * root_points;
+}
+
+}  // namespace
+
+double largest_distance(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& reference) {
+  if (!points.allFinite()) return std::numeric_limits<double>::infinity();
+  return (points - reference).colwise().norm().maxCoeff();
 }
 
 Outcome classify(const SimulationEnd& trajectory, const Eigen::Matrix3Xd& reference, double length,

@@ -46,11 +46,6 @@ struct SimulationEnd {
 [[nodiscard]] double largest_distance(const Eigen::Matrix3Xd& points,
                                       const Eigen::Matrix3Xd& reference);
 
-/// Whether a sequence of shapes oscillates. Two conditions hold: the sum of their movements exceeds
-/// three times the distance from the first shape to the last, and it exceeds `threshold` [m] (RMS
-/// over the points).
-[[nodiscard]] bool goes_to_and_fro(const std::vector<Eigen::Matrix3Xd>& shapes, double threshold);
-
 /// Classifies the end of a simulation by the first case that applies: `diverges` if it is farther
 /// than ten lengths from the reference; `pass` if the final shape, and each late shape unless the
 /// rod is at rest, is within the tolerance; `oscillates` if the rod is not at rest and its late or

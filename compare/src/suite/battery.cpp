@@ -111,28 +111,26 @@ Battery load_battery(const std::string& path) {
 std::vector<BatteryScene> chosen_scenes(const Battery& battery,
                                         const std::vector<std::string>& wanted) {
   if (wanted.empty()) return battery.scenes;
-  std::vector<std::string> known;
+  const auto contains = [](const std::vector<std::string>& list, const std::string& word) {
+    return std::ranges::find(list, word) != list.end();
+  };
+  std::vector<std::string> groups;
   for (const BatteryScene& scene : battery.scenes) {
-    if (std::find(known.begin(), known.end(), scene.group) == known.end()) {
-      known.push_back(scene.group);
-    }
+    if (!contains(groups, scene.group)) groups.push_back(scene.group);
   }
-  const std::vector<std::string> groups = known;
+  std::vector<std::string> known = groups;
   for (const BatteryScene& scene : battery.scenes) known.push_back(scene.id);
   for (const std::string& word : wanted) {
-    if (std::find(known.begin(), known.end(), word) != known.end()) continue;
+    if (contains(known, word)) continue;
     throw InputError(
         fmt::format("--scenes = {}: no such class or scene{} (allowed: classes {}; or "
                     "the name of a scene)",
                     word, did_you_mean(word, known), fmt::join(groups, ", ")));
   }
-  std::vector<BatteryScene> result;
-  const auto is_wanted = [&](const std::string& word) {
-    return std::find(wanted.begin(), wanted.end(), word) != wanted.end();
-  };
-  for (const BatteryScene& scene : battery.scenes) {
-    if (is_wanted(scene.group) || is_wanted(scene.id)) result.push_back(scene);
-  }
+  std::vector<BatteryScene> result = battery.scenes;
+  std::erase_if(result, [&](const BatteryScene& scene) {
+    return !contains(wanted, scene.group) && !contains(wanted, scene.id);
+  });
   return result;
 }
 

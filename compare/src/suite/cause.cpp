@@ -113,11 +113,9 @@ class Diagnosis {
   bool look_at_chains(bool converges) {
     // The chains are inextensible.
     if (scene_.stretch != Stretch::none || !(coarsest().error > error_floor)) return false;
-    std::optional<OwnPolygon> best;
-    for (const OwnPolygon& chain : own_polygons(scene_, coarsest().shape, Springs::as_the_rod)) {
-      if (!best || chain.rms_m < best->rms_m) best = chain;
-    }
-    if (!best || !(best->rms_m <= chain_may_leave * error_m(coarsest()))) return false;
+    const std::optional<OwnPolygon> best =
+        nearest_chain(coarsest(), Springs::as_the_rod, chain_may_leave);
+    if (!best) return false;
     // The finest shape excludes an accidental fit of the coarsest one.
     const std::vector<OwnPolygon> fine = own_polygons(scene_, finest().shape, Springs::as_the_rod);
     const auto same = std::find_if(fine.begin(), fine.end(), [&](const OwnPolygon& chain) {
@@ -143,15 +141,20 @@ class Diagnosis {
     return true;
   }
 
+  /// Returns the chain nearest to a shape, if it leaves at most this fraction of the error.
+  [[nodiscard]] std::optional<OwnPolygon> nearest_chain(const CardShape& shape, Springs springs,
+                                                        double may_leave) const {
+    const std::vector<OwnPolygon> chains = own_polygons(scene_, shape.shape, springs);
+    const auto best = std::ranges::min_element(chains, {}, &OwnPolygon::rms_m);
+    const bool is_near = best != chains.end() && best->rms_m <= may_leave * error_m(shape);
+    return is_near ? std::optional(*best) : std::nullopt;
+  }
+
   /// Returns the stiffness of the springs of the chain that fits the shape best, divided by EI/h.
   [[nodiscard]] std::optional<double> spring_factor(const CardShape& shape,
                                                     double may_leave) const {
-    std::optional<OwnPolygon> best;
-    for (const OwnPolygon& chain : own_polygons(scene_, shape.shape, Springs::fitted)) {
-      if (!best || chain.rms_m < best->rms_m) best = chain;
-    }
-    if (!best || !(best->rms_m <= may_leave * error_m(shape))) return std::nullopt;
-    return best->stiffness;
+    const std::optional<OwnPolygon> best = nearest_chain(shape, Springs::fitted, may_leave);
+    return best ? std::optional(best->stiffness) : std::nullopt;
   }
 
   [[nodiscard]] std::optional<double> modulus_factor(const CardShape& shape,

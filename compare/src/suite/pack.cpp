@@ -142,6 +142,41 @@ bool has_schema(const std::filesystem::path& file, std::string_view schema) {
   }
 }
 
+/// Returns the points of an answer as x,y,z,s, which `dlo check` reads as a shape.
+std::string answer_csv(const Answer& answer) {
+  std::string text = "x,y,z,s\n";
+  const Shape& shape = answer.first.shape;
+  for (std::size_t i = 0; i < shape.arc_length.size(); ++i) {
+    for (const double x : shape.points.col(static_cast<Eigen::Index>(i))) {
+      text += fmt::format("{:.12f},", place(x));
+    }
+    text += fmt::format("{:.12f}\n", place(shape.arc_length[i]));
+  }
+  return text;
+}
+
+/// Returns the points of an answer in VTK's XML format, for ParaView.
+std::string answer_vtu(const Answer& answer) {
+  Shape shape = answer.first.shape;
+  shape.points = shape.points.unaryExpr(&place);
+  for (double& s : shape.arc_length) s = place(s);
+  return vtu_polyline(shape);
+}
+
+/// Returns the frames of a motion as time,s,x,y,z, which `dlo check --motion` reads as a recording.
+std::string motion_csv(const MotionAnswer& answer) {
+  std::string text = "time,s,x,y,z\n";
+  for (std::size_t k = 0; k < answer.times.size(); ++k) {
+    for (std::size_t i = 0; i < answer.arc_length.size(); ++i) {
+      const Eigen::Vector3d point = answer.frames[k].col(static_cast<Eigen::Index>(i));
+      text += fmt::format("{},{},{},{},{}\n", motion_place(answer.times[k]),
+                          motion_place(answer.arc_length[i]), motion_place(point.x()),
+                          motion_place(point.y()), motion_place(point.z()));
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 nlohmann::ordered_json answer_json(const Answer& answer) {
@@ -184,25 +219,6 @@ nlohmann::ordered_json answer_json(const Answer& answer) {
   return result;
 }
 
-std::string answer_csv(const Answer& answer) {
-  std::string text = "x,y,z,s\n";
-  const Shape& shape = answer.first.shape;
-  for (std::size_t i = 0; i < shape.arc_length.size(); ++i) {
-    for (const double x : shape.points.col(static_cast<Eigen::Index>(i))) {
-      text += fmt::format("{:.12f},", place(x));
-    }
-    text += fmt::format("{:.12f}\n", place(shape.arc_length[i]));
-  }
-  return text;
-}
-
-std::string answer_vtu(const Answer& answer) {
-  Shape shape = answer.first.shape;
-  shape.points = shape.points.unaryExpr(&place);
-  for (double& s : shape.arc_length) s = place(s);
-  return vtu_polyline(shape);
-}
-
 nlohmann::ordered_json motion_json(const MotionAnswer& answer) {
   const auto places = [](const std::vector<double>& values) {
     return json_list(values, [](double value) -> Json { return motion_place(value); });
@@ -226,19 +242,6 @@ nlohmann::ordered_json motion_json(const MotionAnswer& answer) {
     return points;
   });
   return result;
-}
-
-std::string motion_csv(const MotionAnswer& answer) {
-  std::string text = "time,s,x,y,z\n";
-  for (std::size_t k = 0; k < answer.times.size(); ++k) {
-    for (std::size_t i = 0; i < answer.arc_length.size(); ++i) {
-      const Eigen::Vector3d point = answer.frames[k].col(static_cast<Eigen::Index>(i));
-      text += fmt::format("{},{},{},{},{}\n", motion_place(answer.times[k]),
-                          motion_place(answer.arc_length[i]), motion_place(point.x()),
-                          motion_place(point.y()), motion_place(point.z()));
-    }
-  }
-  return text;
 }
 
 Pack certified_pack(const std::string& version, const std::vector<BatteryScene>& scenes,

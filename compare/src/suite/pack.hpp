@@ -13,18 +13,9 @@ namespace dlo::compare {
 /// digits, and other results ten or fewer.
 [[nodiscard]] nlohmann::ordered_json answer_json(const Answer& answer);
 
-/// Returns the points of an answer as x,y,z,s, which `dlo check` reads as a shape.
-[[nodiscard]] std::string answer_csv(const Answer& answer);
-
-/// Returns the points of an answer in VTK's XML format, for ParaView.
-[[nodiscard]] std::string answer_vtu(const Answer& answer);
-
 /// Returns a motion as a document with schema dlo/motion/1. Its lengths and times have nine
 /// decimals.
 [[nodiscard]] nlohmann::ordered_json motion_json(const MotionAnswer& answer);
-
-/// Returns the frames of a motion as time,s,x,y,z, which `dlo check --motion` reads as a recording.
-[[nodiscard]] std::string motion_csv(const MotionAnswer& answer);
 
 /// Certified answers of a benchmark set.
 struct Pack {

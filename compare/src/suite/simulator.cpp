@@ -103,6 +103,29 @@ SimulatorRun run_own(Model model, BatteryScene scene, int points, double time_li
   return run;
 }
 
+/// Returns the document of a scene that a program reads: scene_document(), and for a scene that
+/// moves also `motion`, with the times of the requested frames, the initial shape at equal arc
+/// lengths, and the point masses on the rod.
+std::string battery_document(const BatteryScene& scene, int points) {
+  Scene numbered = scene.scene;
+  numbered.force_model.points = points;
+  numbered.file.clear();
+  if (!scene.motion) return scene_document_text(numbered);
+  Json document = scene_document(numbered);
+  const std::vector<double> s = equal_arc_lengths(scene.scene.length, points);
+  Json masses = Json::array();
+  for (const PointLoad& load : scene.scene.loads) {
+    if (load.mass > 0) masses.push_back({{"at_m", load.at}, {"mass_kg", load.mass}});
+  }
+  const energy_model::Samples begin = released_shape(released_rod(scene))(s);
+  document["motion"] = {{"times_s", scene.motion->times()},
+                        {"begin_arc_length_m", s},
+                        {"begin_points_m", points_json(begin.points)},
+                        {"begin_tangents", points_json(begin.tangents)},
+                        {"point_masses", std::move(masses)}};
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 SimulatorRun run_program(const ForeignProgram& program, const BatteryScene& scene, int points,
                          double time_limit) {
   ForeignRun run = scene.motion ? run_foreign_motion(program, battery_document(scene, points),
@@ -190,48 +213,8 @@ void write_run(const std::filesystem::path& file, const std::string& known,
              Replaces::own_format);
 }
 
-}  // namespace
-
-std::string Simulator::identity() const {
-  if (function) return fmt::format("function {}", name);
-  return own ? fmt::format("model {}", name)
-             : fmt::format("command {}", Json(program.words).dump());
-}
-
-std::vector<Simulator> parse_simulators(const std::vector<std::string>& texts) {
-  std::vector<Simulator> simulators;
-  std::set<std::string> taken;
-  for (const std::string& text : texts) {
-    Simulator simulator = parsed_simulator(text);
-    if (!taken.insert(simulator.name).second) {
-      throw InputError(fmt::format("--with {}: given twice (allowed: a name of its own for each)",
-                                   simulator.name));
-    }
-    simulators.push_back(std::move(simulator));
-  }
-  return simulators;
-}
-
-std::string battery_document(const BatteryScene& scene, int points) {
-  Scene numbered = scene.scene;
-  numbered.force_model.points = points;
-  numbered.file.clear();
-  if (!scene.motion) return scene_document_text(numbered);
-  Json document = scene_document(numbered);
-  const std::vector<double> s = equal_arc_lengths(scene.scene.length, points);
-  Json masses = Json::array();
-  for (const PointLoad& load : scene.scene.loads) {
-    if (load.mass > 0) masses.push_back({{"at_m", load.at}, {"mass_kg", load.mass}});
-  }
-  const energy_model::Samples begin = released_shape(released_rod(scene))(s);
-  document["motion"] = {{"times_s", scene.motion->times()},
-                        {"begin_arc_length_m", s},
-                        {"begin_points_m", points_json(begin.points)},
-                        {"begin_tangents", points_json(begin.tangents)},
-                        {"point_masses", std::move(masses)}};
-  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
+/// Runs a simulator. @param time_limit  [s], > 0
+/// @throws OutputError as run_foreign()
 SimulatorRun run_simulator(const Simulator& simulator, const BatteryScene& scene, int points,
                            double time_limit) {
   SimulatorRun run;
@@ -252,6 +235,28 @@ SimulatorRun run_simulator(const Simulator& simulator, const BatteryScene& scene
   }
   run.points = points;
   return run;
+}
+
+}  // namespace
+
+std::string Simulator::identity() const {
+  if (function) return fmt::format("function {}", name);
+  return own ? fmt::format("model {}", name)
+             : fmt::format("command {}", Json(program.words).dump());
+}
+
+std::vector<Simulator> parse_simulators(const std::vector<std::string>& texts) {
+  std::vector<Simulator> simulators;
+  std::set<std::string> taken;
+  for (const std::string& text : texts) {
+    Simulator simulator = parsed_simulator(text);
+    if (!taken.insert(simulator.name).second) {
+      throw InputError(fmt::format("--with {}: given twice (allowed: a name of its own for each)",
+                                   simulator.name));
+    }
+    simulators.push_back(std::move(simulator));
+  }
+  return simulators;
 }
 
 SimulatorRun kept_run(const std::string& folder, const std::string& version,

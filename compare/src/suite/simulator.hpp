@@ -63,11 +63,6 @@ struct Simulator {
 /// @throws InputError as parse_foreign_program(), or if two have the same name
 [[nodiscard]] std::vector<Simulator> parse_simulators(const std::vector<std::string>& texts);
 
-/// Runs a simulator. @param time_limit  [s], > 0
-/// @throws OutputError as run_foreign()
-[[nodiscard]] SimulatorRun run_simulator(const Simulator& simulator, const BatteryScene& scene,
-                                         int points, double time_limit);
-
 /// Returns the result that a folder stores of an earlier run with the same version of dlo, program,
 /// time limit and scene; otherwise runs the simulator. Results that are solved or not supported are
 /// stored, each in a file of its own. A failed run is not stored, because its cause may be
@@ -77,10 +72,5 @@ struct Simulator {
 [[nodiscard]] SimulatorRun kept_run(const std::string& folder, const std::string& version,
                                     const Simulator& simulator, const BatteryScene& scene,
                                     int points, double time_limit);
-
-/// Returns the document of a scene that a program reads: scene_document(), and for a scene that
-/// moves also `motion`, with the times of the requested frames, the initial shape at equal arc
-/// lengths, and the point masses on the rod.
-[[nodiscard]] std::string battery_document(const BatteryScene& scene, int points);
 
 }  // namespace dlo::compare

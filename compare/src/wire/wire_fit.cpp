@@ -16,7 +16,6 @@
 #include "wire/leave_one_out.hpp"
 #include "wire/wire_optimum.hpp"
 #include "wire/wire_problem.hpp"
-#include "wire/wire_result.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "dlo/compare/fitted_material.hpp"
-#include "least_squares/material_point.hpp"
+#include "least_squares/fitted_rods.hpp"
 #include "least_squares/measured_shapes.hpp"
 
 namespace dlo::compare {

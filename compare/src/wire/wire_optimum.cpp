@@ -20,8 +20,10 @@ constexpr double weight_tolerance = 0.1;
 constexpr double end_tolerance = 1e-5;
 constexpr int most_ends = 12;
 
-}  // namespace
-
+/// Estimates the errors about a fit.
+/// @param frames  number of columns of the design before those of the numbers
+/// @param noise        standard deviation of a coordinate, if known [m]
+/// @param least_noise  residuals below it are errors of the solver [m]
 WireErrors errors_about(const GaussNewton& fit, Eigen::Index frames,
                         const std::optional<double>& noise, double least_noise) {
   WireErrors errors{.variance = fit.variance(),
@@ -43,6 +45,9 @@ WireErrors errors_about(const GaussNewton& fit, Eigen::Index frames,
   return errors;
 }
 
+/// Returns the variance by which squares are divided so that they have the information about the
+/// first number that these errors leave [m^2]: correlated errors carry less information than as
+/// many independent ones.
 double weight_of(const WireErrors& errors, const GaussNewton& fit) {
   if (!errors.are_correlated()) return errors.variance;
   const Eigen::VectorXd nothing = Eigen::VectorXd::Zero(fit.before().size());
@@ -51,6 +56,8 @@ double weight_of(const WireErrors& errors, const GaussNewton& fit) {
       posterior_under(fit.series(), fit.linear(), 1, nothing, errors.correlation, 1)(0, 0);
   return errors.variance * std::max(1.0, correlated / independent);
 }
+
+}  // namespace
 
 Eigen::MatrixXd covariance_of_numbers(const WireErrors& errors, const GaussNewton& fit,
                                       Eigen::Index frames, const std::optional<double>& noise) {

@@ -4,6 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "dlo/compare/fitted_material.hpp"
+#include "dlo/compare/scene.hpp"
 #include "least_squares/error_correlation.hpp"
 #include "least_squares/fitted_rods.hpp"
 #include "least_squares/gauss_newton.hpp"
@@ -25,18 +27,6 @@ struct WireErrors {
 
   [[nodiscard]] bool are_correlated() const { return correlation.share > 0; }
 };
-
-/// Estimates the errors about a fit.
-/// @param frames  number of columns of the design before those of the numbers
-/// @param noise        standard deviation of a coordinate, if known [m]
-/// @param least_noise  residuals below it are errors of the solver [m]
-[[nodiscard]] WireErrors errors_about(const GaussNewton& fit, Eigen::Index frames,
-                                      const std::optional<double>& noise, double least_noise);
-
-/// Returns the variance by which squares are divided so that they have the information about the
-/// first number that these errors leave [m^2]: correlated errors carry less information than as
-/// many independent ones.
-[[nodiscard]] double weight_of(const WireErrors& errors, const GaussNewton& fit);
 
 /// Returns the covariance of the fitted numbers. The covariance of correlated errors is only known
 /// from the residuals, so the result is the mean over all likely ones.
@@ -97,5 +87,11 @@ class WireOptimum {
   FittedRods::Rods here_;
   Eigen::MatrixXd covariance_;
 };
+
+/// Returns the result of fit_wire(), without the prediction.
+[[nodiscard]] MaterialFit wire_result(const WireProblem& problem, WireOptimum& optimum);
+
+/// Sets FittedShape::rod of the fit's shapes.
+void draw_rods(const FittedRods::Rods& rods, const std::vector<Scene>& scenes, MaterialFit& fit);
 
 }  // namespace dlo::compare

@@ -1,5 +1,3 @@
-#include "wire/wire_result.hpp"
-
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -12,6 +10,7 @@
 #include "base/gsl.hpp"
 #include "wire/between_shapes.hpp"
 #include "wire/identifiable.hpp"
+#include "wire/wire_optimum.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -135,8 +135,7 @@ TEST(Regression, AFingerprintStandsForAllThatTheShapeDependsOn) {
   scene.obstacles.push_back({});
   const auto digits = [](const Scene& of) { return case_of(of, Model::chain).fingerprint; };
   Scene renamed = scene;
-  renamed.name = "other";
-  renamed.file = "other.toml";
+  renamed.name = renamed.file = "other.toml";
   renamed.material.name = "other";
   renamed.grippers.front().where = "other.toml:3";
   EXPECT_EQ(digits(renamed), digits(scene));
