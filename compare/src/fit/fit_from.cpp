@@ -4,18 +4,320 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <optional>
 #include <utility>
+#include <vector>
 
+#include "base/gsl.hpp"
 #include "dlo/compare/calibrated_rod.hpp"
 #include "dlo/compare/error.hpp"
 #include "fit/chain_springs.hpp"
-#include "fit/material_alone.hpp"
+#include "fit/choose_options.hpp"
 #include "fit/material_profiles.hpp"
+#include "wire/between_shapes.hpp"
+#include "wire/identifiable.hpp"
 #include "wire/leave_one_out.hpp"
 #include "wire/wire_fit.hpp"
+#include "wire/wire_numbers.hpp"
+#include "wire/wire_optimum.hpp"
 
 namespace dlo::compare {
 namespace {
+
+/// Part of the mean square that shapes have in common beyond chance, above which residuals may be,
+/// and certainly are, systematic. Smooth residuals have some three independent numbers each. Two
+/// shapes with random residuals then exceed the first limit in one case of five and the second in
+/// one of eleven, five shapes in one of a hundred and one of two thousand.
+constexpr double maybe_common = 0.5;
+constexpr double surely_common = 0.7;
+/// Part of the residual that an alternative may leave to be reported, and to cast doubt on the fit;
+/// part by which an alternative that includes another one must leave less.
+constexpr double worth_naming = 0.7;
+constexpr double too_much = 0.5;
+constexpr double next_to_nothing = 0.02;
+
+/// Returns the part of the residuals that all shapes have in common; std::nullopt without a plane.
+std::optional<double> common_to_shapes(MaterialProfiles& material, const MaterialPoint& best,
+                                       const std::vector<FittedShape>& shapes) {
+  constexpr int samples = 1001;
+  const std::vector<Shape> rods = sampled(material.rods(best), material.scenes(), samples);
+  if (rods.size() != shapes.size()) return std::nullopt;
+  std::vector<AcrossRod> across;
+  std::optional<Eigen::Vector3d> first;
+  for (std::size_t i = 0; i < rods.size(); ++i) {
+    std::optional<Eigen::Vector3d> normal = material.scenes()[i].plane_normal();
+    if (!normal) return std::nullopt;
+    if (!first) first = normal;
+    if (normal->dot(*first) < 0) *normal *= -1;
+    across.push_back(across_rod(shapes[i].alignment.shape, rods[i], *normal));
+  }
+  return common_share(across);
+}
+
+/// Adds an alternative. Alternatives are added in the order of their number of fitted numbers; one
+/// that includes an earlier one must leave less.
+void add_alternative(const FitAlternative& found, MaterialFit& fit) {
+  for (const FitAlternative& one : fit.alternatives) {
+    const bool has_more = found.natural_curvature_terms >= one.natural_curvature_terms &&
+                          found.direction_tolerance >= one.direction_tolerance;
+    if (has_more && found.rms_m > one.rms_m - next_to_nothing * fit.rms_m) return;
+  }
+  fit.alternatives.push_back(found);
+}
+
+void try_alternatives(MaterialProfiles& material, const MaterialPoint& best, MaterialFit& fit) {
+  constexpr double tolerance = 5 * std::numbers::pi / 180;
+  MaterialFitOptions options = material.options();
+  options.profile_points = 0;
+  for (const auto& [terms, directions] :
+       {std::pair{1, 0.0}, {2, 0.0}, {0, tolerance}, {2, tolerance}}) {
+    options.natural_curvature_terms = terms;
+    options.direction_tolerance = directions;
+    try {
+      const MaterialFit other = fit_wire(material.scenes(), material.shapes(), material.measured(),
+                                         options, best, material.has_density());
+      if (!(other.rms_m <= worth_naming * fit.rms_m)) continue;
+      add_alternative({terms, directions, other.rms_m, other.youngs_modulus}, fit);
+    } catch (const ResultError&) {
+      // There is no clamp or plane, the points are too few, a shape was not found, or time is up.
+    }
+  }
+  std::stable_sort(
+      fit.alternatives.begin(), fit.alternatives.end(),
+      [](const FitAlternative& a, const FitAlternative& b) { return a.rms_m < b.rms_m; });
+}
+
+/// Widens the interval of E to that of an intrinsically curved wire in misaligned clamps, observed
+/// by a camera that is not level. One or two shapes do not show whether this is the cause of their
+/// residuals, and E differs if it is. The choice by predictions needs more shapes.
+/// @return whether such a wire has a fit
+bool widen_to_any_wire(MaterialProfiles& material, const MaterialPoint& best, MaterialFit& fit) {
+  MaterialFitOptions options = material.options();
+  options.profile_points = 0;
+  options.natural_curvature_terms = usual_curvature_terms;
+  options.direction_tolerance = fixture_tolerance;
+  if (why_no_camera_tilt(material.scenes(), material.shapes()).empty()) {
+    options.camera_tilt = usual_tilt;
+  }
+  try {
+    const FittedValue other = fit_wire(material.scenes(), material.shapes(), material.measured(),
+                                       options, best, material.has_density())
+                                  .youngs_modulus;
+    if (include_interval(fit.youngs_modulus, other, options.identified_within)) return true;
+  } catch (const ResultError&) {
+    // There is no clamp or plane, the points are too few, a shape was not found, or time is up.
+    return false;
+  }
+  if (fit.not_identified.empty()) {
+    fit.not_identified = fmt::format(
+        "{} is not identifiable from so few shapes: with natural curvature and misaligned clamps "
+        "others fit as well (three shapes or more may identify it)",
+        material.scenes().front().stiffness().name);
+  }
+  return true;
+}
+
+/// Returns the warning that residuals are systematic.
+/// @param common  shapes certainly have much of the residuals in common
+/// @param widened  whether the interval is that of any wire
+std::string doubt(const MaterialFit& fit, bool common, bool widened, const char* stiffness) {
+  if (widened) {
+    return fmt::format(
+        "the residuals are systematic: the interval of {} includes that of an intrinsically curved "
+        "wire in misaligned clamps",
+        stiffness);
+  }
+  if (!fit.alternatives.empty() && fit.alternatives.front().rms_m <= too_much * fit.rms_m) {
+    return fmt::format(
+        "the residuals are systematic: fitting natural curvature or clamps too would leave {:.3g} "
+        "mm of {:.3g} mm, so the interval of {} holds only if the rod is intrinsically straight "
+        "and clamped as given",
+        fit.alternatives.front().rms_m * 1e3, fit.rms_m * 1e3, stiffness);
+  }
+  if (!common) return "";
+  return fmt::format(
+      "the residuals are systematic: {:.2g} % of their mean square is common to all shapes, and "
+      "the interval of {} does not account for this common part",
+      *fit.common_share * 100, stiffness);
+}
+
+/// Adds to `not_identified` that the weight is not identifiable: a wrong weight leaves no residual.
+void note_weight(const Scene& scene, MaterialFit& fit) {
+  const char* const heaviness = scene.heaviness().name;
+  const bool first = fit.not_identified.empty();
+  fit.not_identified += fmt::format(
+      "{}the {}{}: nothing but gravity bends the rod, so a wrong {} leaves no residual and makes "
+      "{} wrong by the same factor",
+      first ? "" : "; nor is ", heaviness, first ? " is not identifiable from these shapes" : "",
+      heaviness, scene.stiffness().name);
+}
+
+/// Analyses residuals that noise does not explain: adds alternatives that would remove them, and a
+/// warning if they cast doubt on the fit.
+/// @param best         material of the fit
+/// @param[in,out] fit  fit of the material alone, complete except for its alternatives
+/// @return whether the interval of E includes that of any intrinsically curved wire in misaligned
+/// clamps
+bool look_for_alternatives(MaterialProfiles& material, const MaterialPoint& best,
+                           MaterialFit& fit) {
+  const std::vector<Scene>& scenes = material.scenes();
+  if (!(fit.rms_m > MaterialErrors::least_noise(scenes.front()))) return false;
+  fit.common_share = common_to_shapes(material, best, fit.shapes);
+  const double common = fit.common_share ? beyond_chance(*fit.common_share, scenes.size()) : 0;
+  const bool explained = material.options().noise && fit.warning.empty();
+  if (explained || !(common > maybe_common || fit.correlation)) return false;
+  try_alternatives(material, best, fit);
+  // Without forces E has no interval that could be wrong.
+  if (!material.is_forced()) return false;
+  const bool widened = scenes.size() < fewest_predicted && widen_to_any_wire(material, best, fit);
+  if (fit.warning.empty()) {
+    fit.warning = doubt(fit, common > surely_common, widened, scenes.front().stiffness().name);
+  }
+  const bool weight_alone = std::none_of(scenes.begin(), scenes.end(), has_forces_beside_weight);
+  // If the density was requested, this was reported already.
+  if (weight_alone && !material.options().density) note_weight(scenes.front(), fit);
+  return widened;
+}
+
+/// Result of a profile for one number.
+struct Finding {
+  LogProfile::Interval interval;  // includes all of `optima`
+  std::vector<Minimum> optima;    // between which the shapes do not decide
+  FittedValue value;
+};
+
+/// Evaluates a profile.
+/// @param number  see MaterialErrors
+/// @param unit  the scene's value of the number
+Finding finding(LogProfile& profile, const MaterialErrors& errors, std::size_t number, double unit,
+                double identified_within) {
+  Finding result{
+      profile.below(errors.level(number)), profile.minima_below(errors.rival_level(number)), {}};
+  LogProfile::Interval& interval = result.interval;
+  if (!result.optima.empty()) {
+    if (interval.low) interval.low = std::min(*interval.low, result.optima.front().x);
+    if (interval.high) interval.high = std::max(*interval.high, result.optima.back().x);
+  }
+  result.value = fitted_value(profile.minimum().x, interval, unit, identified_within);
+  return result;
+}
+
+std::string what_is_not_identified(const Finding& found, const NamedValue& of,
+                                   const std::string& name, double identified_within) {
+  const FittedValue& value = found.value;
+  if (value.value) return {};
+  const std::string so = name + " is not identifiable from these shapes: ";
+  if (value.low && value.high) {
+    std::string where;
+    for (std::size_t i = 0; i < found.optima.size() && found.optima.size() > 1; ++i) {
+      where += fmt::format("{} near {:.3g}", i == 0 ? ", best" : " and",
+                           of.value * std::exp(found.optima[i].x));
+    }
+    return so + fmt::format("{:.4g} to {:.4g} {} fit{} (identified: within a factor of {:g})",
+                            *value.low, *value.high, of.unit, where, identified_within);
+  }
+  if (value.low) {
+    return so + fmt::format("{} > {:.4g} {}, any larger one fits", name, *value.low, of.unit);
+  }
+  if (value.high) {
+    return so + fmt::format("{} < {:.4g} {}, any smaller one fits", name, *value.high, of.unit);
+  }
+  return so + fmt::format("any {} that was tried fits them within their noise", name);
+}
+
+void find_density(MaterialProfiles& material, const MaterialErrors& errors, MaterialFit& fit) {
+  const double within = material.options().identified_within;
+  const NamedValue heaviness = material.scenes().front().heaviness();
+  LogProfile profile = material.over_density();
+  const Finding found = finding(profile, errors, 1, heaviness.value, within);
+  fit.density = found.value;
+  if (!fit.not_identified.empty()) return;
+  fit.not_identified =
+      what_is_not_identified(found, heaviness, fmt::format("the {}", heaviness.name), within);
+}
+
+std::string why_weight_alone(const Scene& scene) {
+  return fmt::format(
+      "the {0} is not identifiable from these shapes: nothing but gravity bends the rod, so only "
+      "{0} / {1} shows; {1} is for the {0} of the scene (a known load would identify both)",
+      scene.heaviness().name, scene.stiffness().name);
+}
+
+void draw_profile(MaterialProfiles& material, const LogProfile::Interval& interval,
+                  const MaterialPoint& best, const MaterialErrors& errors, MaterialFit& fit) {
+  const double least = material.least_squares(best.log_modulus);
+  const double limit = errors.level(0) - least;
+  const double unit = material.scenes().front().stiffness().value;
+  for (const double x : drawn_logarithms(interval.low, best.log_modulus, interval.high,
+                                         material.options().profile_points)) {
+    fit.profile.push_back({unit * std::exp(x), (material.least_squares(x) - least) / limit});
+  }
+  draw_rods(material.rods(best), material.scenes(), fit);
+}
+
+/// Returns MaterialFit::warning if the residuals are too large; empty if they are not.
+/// @param squares  sum of their squares [m^2]
+/// @param noise  given noise, unless the interval already accounts for larger residuals
+std::string warning_of(const MaterialProfiles& material, double squares,
+                       const std::optional<double>& noise) {
+  const double nu = material.freedom();
+  if (noise && nu > 0 &&
+      squares > std::pow(*noise, 2) * gsl_distribution(gsl_cdf_chisq_Qinv, 1e-3, nu)) {
+    return fmt::format(
+        "the rod does not fit these shapes: its residuals are {:.3g} times what the given noise "
+        "explains, so the interval is meaningless",
+        std::sqrt(squares / nu) / *noise);
+  }
+  const double rms = std::sqrt(squares / material.points());
+  const double length = material.scenes().front().length;
+  if (rms > 0.05 * length) {
+    return fmt::format(
+        "the rod does not fit these shapes: residuals of {:.3g} % of its length (another unit, "
+        "frame or rod?)",
+        rms / length * 100);
+  }
+  return {};
+}
+
+/// Fits E and, if identifiable, the density, without other numbers.
+/// @throws ConvergenceError if a rod within the interval is not verified on its obstacles
+MaterialFit fit_material_alone(MaterialProfiles& material, const MaterialProfiles::Search& found) {
+  const std::vector<Scene>& scenes = material.scenes();
+  const MaterialFitOptions& options = material.options();
+  const double least = found.over_modulus.minimum().value;
+  const MaterialErrors errors(material, found.best, least);
+  MaterialFit fit;
+  errors.tell(fit);
+  const NamedValue stiffness = scenes.front().stiffness();
+  LogProfile over_modulus = found.over_modulus;
+  const Finding modulus =
+      finding(over_modulus, errors, 0, stiffness.value, options.identified_within);
+  fit.youngs_modulus = modulus.value;
+  fit.not_identified =
+      what_is_not_identified(modulus, stiffness, stiffness.name, options.identified_within);
+  if (material.has_density()) find_density(material, errors, fit);
+  if (!material.is_forced()) fit.not_identified = why_unforced(scenes.front());
+  if (options.density && !material.has_density() && fit.not_identified.empty()) {
+    fit.not_identified = why_weight_alone(scenes.front());
+  }
+  material.refuse_unverified(
+      std::max(errors.level(0), material.has_density() ? errors.level(1) : 0));
+  fit.rms_m = std::sqrt(least / material.points());
+  fit.warning = warning_of(material, least, options.noise);
+  const FittedRods::Rods rods = material.rods(found.best);
+  for (std::size_t i = 0; i < rods.size() && rods[i]; ++i) {
+    fit.shapes.push_back({scenes[i].name, material.measured().alignment(i, *rods[i]), {}});
+  }
+  const bool holds_any_wire =
+      options.alternatives && look_for_alternatives(material, found.best, fit);
+  // See MaterialFit::assumed.
+  if (!holds_any_wire) fit.assumed = unfitted_assumptions(scenes, options);
+  if (options.profile_points > 0) {
+    draw_profile(material, modulus.interval, found.best, errors, fit);
+  }
+  return fit;
+}
 
 /// Adds the chains of each scene; equal scenes are used once.
 void add_chains(const std::vector<Scene>& scenes, const MaterialFitOptions& options,

@@ -15,7 +15,6 @@
 #include "wire/identifiable.hpp"
 #include "wire/leave_one_out.hpp"
 #include "wire/wire_optimum.hpp"
-#include "wire/wire_problem.hpp"
 
 namespace dlo::compare {
 namespace {
