@@ -7,88 +7,43 @@
 #include "foreign/child_process.hpp"
 
 namespace dlo::compare {
-namespace {
-
-class Splitter {
- public:
-  Splitter(const std::string& command, const std::string& what) : command_(command), what_(what) {}
-
-  std::vector<std::string> words() {
-    constexpr std::string_view blanks = " \t\n";
-    while (at_ < command_.size()) {
-      const char c = command_[at_++];
-      if (blanks.find(c) != std::string_view::npos) {
-        end_word();
-        continue;
-      }
-      open_ = true;
-      if (c == '\'') {
-        take_single_quoted();
-      } else if (c == '"') {
-        take_double_quoted();
-      } else {
-        word_ += c == '\\' ? next("ends with a backslash") : c;
-      }
-    }
-    end_word();
-    if (words_.empty()) fail("is empty");
-    return words_;
-  }
-
- private:
-  char next(const char* problem) {
-    if (at_ == command_.size()) fail(problem);
-    return command_[at_++];
-  }
-
-  void take_single_quoted() {
-    while (true) {
-      const char c = next("has a ' that is not closed");
-      if (c == '\'') return;
-      word_ += c;
-    }
-  }
-
-  void take_double_quoted() {
-    constexpr const char* unclosed = "has a \" that is not closed";
-    constexpr std::string_view escaped = "\"\\$`";
-    while (true) {
-      const char c = next(unclosed);
-      if (c == '"') return;
-      if (c == '\\') {
-        const char after = next(unclosed);
-        if (escaped.find(after) == std::string_view::npos) word_ += c;
-        word_ += after;
-      } else {
-        word_ += c;
-      }
-    }
-  }
-
-  void end_word() {
-    if (open_) words_.push_back(word_);
-    open_ = false;
-    word_.clear();
-  }
-
-  [[noreturn]] void fail(const char* problem) const {
-    throw InputError(fmt::format(
-        "{}: the command {} {} (allowed: words as a shell takes them, blanks in quotes)", what_,
-        quoted_piece(command_), problem));
-  }
-
-  const std::string& command_;
-  const std::string& what_;
-  std::size_t at_ = 0;
-  bool open_ = false;  // inside a word, which may be empty: ''
-  std::string word_;
-  std::vector<std::string> words_;
-};
-
-}  // namespace
 
 std::vector<std::string> command_words(const std::string& command, const std::string& what) {
-  return Splitter(command, what).words();
+  constexpr std::string_view blanks = " \t\n";
+  constexpr std::string_view escaped = "\"\\$`";  // by a backslash within double quotes
+  const auto fail = [&](const std::string& problem) {
+    throw InputError(fmt::format(
+        "{}: the command {} {} (allowed: words as a shell takes them, blanks in quotes)", what,
+        quoted_piece(command), problem));
+  };
+  std::vector<std::string> words;
+  bool open = false;  // inside a word, which may be empty: ''
+  char quote = '\0';  // that is open, or none
+  for (std::size_t i = 0; i < command.size(); ++i) {
+    const char c = command[i];
+    if (quote == '\0' && blanks.find(c) != std::string_view::npos) {
+      open = false;
+      continue;
+    }
+    if (!open) words.emplace_back();
+    open = true;
+    if (c == quote) {
+      quote = '\0';
+    } else if (quote == '\0' && (c == '\'' || c == '"')) {
+      quote = c;
+    } else if (c == '\\' && quote != '\'' && i + 1 < command.size()) {
+      const char next = command[++i];
+      if (quote == '"' && escaped.find(next) == std::string_view::npos) words.back() += c;
+      words.back() += next;
+    } else if (c == '\\' && quote == '\0') {
+      fail("ends with a backslash");
+    } else {
+      words.back() += c;
+    }
+  }
+  if (quote != '\0') fail(fmt::format("has a {} that is not closed", quote));
+  if (words.empty()) fail("is empty");
+  return words;
 }
 
 }  // namespace dlo::compare
