@@ -37,7 +37,7 @@ MjcfAttributes::MjcfAttributes(const XmlFile& xml, XmlRefusals& refusals)
   if (std::string_view(root.name()) != "mujoco") {
     xml_.fail(root, "is no scene (allowed: a scene as TOML, or MJCF, whose element is <mujoco>)");
   }
-  refusals_.attempt([&] { require_known(root); });
+  refusals_.attempt([&] { MjcfNode{*this, root}.require_known(); });
   for (const pugi::xml_node& part : root.children()) {
     const std::string_view name = part.name();
     if (part.type() != pugi::node_element || mjcf_without_effect(name)) continue;
@@ -46,28 +46,29 @@ MjcfAttributes::MjcfAttributes(const XmlFile& xml, XmlRefusals& refusals)
       if (name == "include") {
         xml_.fail(part, "is not followed (allowed: one file, as mj_saveLastXML writes it)");
       }
-      require_known(part);
-      if (name == "compiler") read_compiler(part);
+      const MjcfNode node{*this, part};
+      node.require_known();
+      if (name == "compiler") read_compiler(node);
       if (name == "default") add_defaults(part, "");
     });
   }
 }
 
-void MjcfAttributes::read_compiler(const pugi::xml_node& compiler) {
-  if (compiler.attribute("angle")) {
-    angle_ = choice(compiler, "angle", {"degree", "radian"}, "") == 1 ? 1 : one_degree;
+void MjcfAttributes::read_compiler(const MjcfNode& compiler) {
+  if (compiler.element.attribute("angle")) {
+    angle_ = compiler.choice("angle", {"degree", "radian"}) == 1 ? 1 : one_degree;
   }
-  (void)choice(compiler, "coordinate", {"local"}, "");
-  if (const auto order = text(compiler, "eulerseq", "")) {
+  (void)compiler.choice("coordinate", {"local"});
+  if (const auto order = compiler.text("eulerseq")) {
     const bool known =
         order->size() == 3 && order->find_first_not_of("xyzXYZ") == std::string::npos;
-    if (!known) xml_.fail(compiler, "eulerseq", "(allowed: three of x, y, z, X, Y, Z)");
+    if (!known) compiler.fail("eulerseq", "(allowed: three of x, y, z, X, Y, Z)");
     euler_order_ = *order;
   }
 }
 
 void MjcfAttributes::add_defaults(const pugi::xml_node& node, const std::string& parent) {
-  require_known(node);
+  MjcfNode{*this, node}.require_known();
   const std::string name = node.attribute("class").as_string(parent.empty() ? "main" : "");
   if (name.empty()) xml_.fail(node, "class", "missing (allowed: a name)");
   if (parent.empty()) main_ = name;
@@ -79,7 +80,7 @@ void MjcfAttributes::add_defaults(const pugi::xml_node& node, const std::string&
     if (tag == "default") {
       add_defaults(child, name);
     } else if (tag == "joint" || tag == "geom" || tag == "site") {
-      require_known(child);
+      MjcfNode{*this, child}.require_known();
     } else if (tag == "equality" && child.attribute("active")) {
       xml_.fail(child, "active", "is not read in a default");
     }
@@ -95,33 +96,31 @@ const std::string& MjcfAttributes::known_class(const pugi::xml_node& node, const
   return found->first;
 }
 
-std::optional<std::string> MjcfAttributes::text(const pugi::xml_node& node, const char* attribute,
-                                                const std::string& childclass) const {
-  if (const pugi::xml_attribute own = node.attribute(attribute)) return own.value();
-  std::string name = known_class(node, "class", childclass.empty() ? main_ : childclass);
-  for (auto found = classes_.find(name); found != classes_.end(); found = classes_.find(name)) {
-    for (const pugi::xml_node& element : found->second.node.children(node.name())) {
-      if (const pugi::xml_attribute given = element.attribute(attribute)) return given.value();
+std::optional<std::string> MjcfNode::text(const char* attribute) const {
+  if (const pugi::xml_attribute own = element.attribute(attribute)) return own.value();
+  const auto& classes = file.classes_;
+  std::string name =
+      file.known_class(element, "class", childclass.empty() ? file.main_ : childclass);
+  for (auto found = classes.find(name); found != classes.end(); found = classes.find(name)) {
+    for (const pugi::xml_node& other : found->second.node.children(element.name())) {
+      if (const pugi::xml_attribute given = other.attribute(attribute)) return given.value();
     }
     name = found->second.parent;
   }
   return std::nullopt;
 }
 
-std::optional<std::vector<double>> MjcfAttributes::numbers(const pugi::xml_node& node,
-                                                           const char* attribute, std::size_t least,
-                                                           std::size_t most,
-                                                           const std::string& childclass) const {
-  const std::optional<std::string> given = text(node, attribute, childclass);
+std::optional<std::vector<double>> MjcfNode::numbers(const char* attribute, std::size_t least,
+                                                     std::size_t most) const {
+  const std::optional<std::string> given = text(attribute);
   if (!given) return std::nullopt;
   constexpr const char* blanks = " \t\r\n";
   std::vector<double> values;
-  const auto fail = [&](const std::string& problem) {
+  const auto refuse = [&](const std::string& problem) {
     const std::string count =
         least == most ? fmt::format("{}", least) : fmt::format("{} to {}", least, most);
-    xml_.fail(node, attribute,
-              fmt::format("{} (allowed: {} number{} within {:g})", problem, count,
-                          most == 1 ? "" : "s", largest_number));
+    fail(attribute, fmt::format("{} (allowed: {} number{} within {:g})", problem, count,
+                                most == 1 ? "" : "s", largest_number));
   };
   std::string_view rest = *given;
   while (true) {
@@ -131,43 +130,38 @@ std::optional<std::vector<double>> MjcfAttributes::numbers(const pugi::xml_node&
     const std::optional<double> value = shape_number(word);
     // The negated condition also rejects NaN.
     if (!value || !(std::abs(*value) <= largest_number)) {
-      fail(fmt::format("{} is not a number, or out of range", quoted_piece(word)));
+      refuse(fmt::format("{} is not a number, or out of range", quoted_piece(word)));
     }
     values.push_back(*value);
-    if (values.size() > most) fail("too many numbers");
+    if (values.size() > most) refuse("too many numbers");
     rest.remove_prefix(word.size());
   }
-  if (values.size() < least) fail("too few numbers");
+  if (values.size() < least) refuse("too few numbers");
   return values;
 }
 
-std::optional<double> MjcfAttributes::number(const pugi::xml_node& node, const char* attribute,
-                                             const std::string& childclass) const {
-  const auto values = numbers(node, attribute, 1, 1, childclass);
+std::optional<double> MjcfNode::number(const char* attribute) const {
+  const auto values = numbers(attribute, 1, 1);
   return values ? std::optional(values->front()) : std::nullopt;
 }
 
-std::optional<Eigen::Vector3d> MjcfAttributes::vector(const pugi::xml_node& node,
-                                                      const char* attribute,
-                                                      const std::string& childclass) const {
-  const auto values = numbers(node, attribute, 3, 3, childclass);
+std::optional<Eigen::Vector3d> MjcfNode::vector(const char* attribute) const {
+  const auto values = numbers(attribute, 3, 3);
   if (!values) return std::nullopt;
   return Eigen::Vector3d((*values)[0], (*values)[1], (*values)[2]);
 }
 
-std::size_t MjcfAttributes::choice(const pugi::xml_node& node, const char* attribute,
-                                   const std::vector<std::string_view>& allowed,
-                                   const std::string& childclass) const {
-  const std::optional<std::string> given = text(node, attribute, childclass);
+std::size_t MjcfNode::choice(const char* attribute,
+                             const std::vector<std::string_view>& allowed) const {
+  const std::optional<std::string> given = text(attribute);
   if (!given) return 0;
   const auto found = std::ranges::find(allowed, std::string_view(*given));
   if (found == allowed.end()) {
-    xml_.fail(node, attribute,
-              fmt::format("{}(allowed: {})",
-                          node.attribute(attribute)
-                              ? ""
-                              : fmt::format("{} by its default class ", quoted_piece(*given)),
-                          fmt::join(allowed, ", ")));
+    fail(attribute, fmt::format("{}(allowed: {})",
+                                element.attribute(attribute)
+                                    ? ""
+                                    : fmt::format("{} by its default class ", quoted_piece(*given)),
+                                fmt::join(allowed, ", ")));
   }
   return static_cast<std::size_t>(found - allowed.begin());
 }
@@ -184,29 +178,27 @@ Eigen::Quaterniond MjcfAttributes::euler(const std::vector<double>& angles) cons
   return rotation;
 }
 
-Eigen::Quaterniond MjcfAttributes::rotation(const pugi::xml_node& node,
-                                            const std::string& childclass) const {
+Eigen::Quaterniond MjcfNode::rotation() const {
   const char* given = nullptr;
   for (const char* name : {"quat", "axisangle", "euler", "xyaxes", "zaxis"}) {
-    if (!node.attribute(name)) continue;
-    if (given != nullptr) xml_.fail(node, name, fmt::format("given besides {}", given));
+    if (!element.attribute(name)) continue;
+    if (given != nullptr) fail(name, fmt::format("given besides {}", given));
     given = name;
   }
   if (given == nullptr) {
     for (const char* name : {"quat", "axisangle", "euler", "xyaxes", "zaxis"}) {
-      if (given == nullptr && text(node, name, childclass)) given = name;
+      if (given == nullptr && text(name)) given = name;
     }
   }
   if (given == nullptr) return Eigen::Quaterniond::Identity();
   const std::string_view form = given;
   const std::size_t count = form == "quat" || form == "axisangle" ? 4 : form == "xyaxes" ? 6 : 3;
-  const std::vector<double> v = *numbers(node, given, count, count, childclass);
+  const std::vector<double> v = *numbers(given, count, count);
   constexpr double least = 1e-10;
   const auto require_direction = [&](double size) {
-    if (!(size > least))
-      xml_.fail(node, given, "has no direction (allowed: vectors that are not 0)");
+    if (!(size > least)) fail(given, "has no direction (allowed: vectors that are not 0)");
   };
-  if (form == "euler") return euler(v);
+  if (form == "euler") return file.euler(v);
   const Eigen::Vector3d first(v[0], v[1], v[2]);
   if (form == "quat") {
     const Eigen::Quaterniond q(v[0], v[1], v[2], v[3]);
@@ -215,7 +207,7 @@ Eigen::Quaterniond MjcfAttributes::rotation(const pugi::xml_node& node,
   }
   require_direction(first.norm());
   if (form == "axisangle") {
-    return Eigen::Quaterniond(Eigen::AngleAxisd(v[3] * angle_, first.normalized()));
+    return Eigen::Quaterniond(Eigen::AngleAxisd(v[3] * file.angle_, first.normalized()));
   }
   if (form == "zaxis") {
     return Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), first);
@@ -229,38 +221,37 @@ Eigen::Quaterniond MjcfAttributes::rotation(const pugi::xml_node& node,
   return Eigen::Quaterniond(axes);
 }
 
-MjcfPose MjcfAttributes::pose(const pugi::xml_node& node, const std::string& childclass) const {
+MjcfPose MjcfNode::pose() const {
   MjcfPose result = MjcfPose::Identity();
-  result.linear() = rotation(node, childclass).toRotationMatrix();
-  result.translation() = vector(node, "pos", childclass).value_or(Eigen::Vector3d::Zero());
+  result.linear() = rotation().toRotationMatrix();
+  result.translation() = vector("pos").value_or(Eigen::Vector3d::Zero());
   return result;
 }
 
-void MjcfAttributes::require_known(const pugi::xml_node& node) const {
-  const MjcfElement* element = mjcf_element(node.name());
-  if (element == nullptr) {
-    xml_.fail(node,
-              "has no counterpart in a rod's scene, or is unknown (allowed: a model without it)");
+void MjcfNode::require_known() const {
+  const MjcfElement* known = mjcf_element(element.name());
+  if (known == nullptr) {
+    fail("has no counterpart in a rod's scene, or is unknown (allowed: a model without it)");
   }
-  const std::vector<std::string> read = words_of(element->read);
-  const std::vector<std::string> without_effect = words_of(element->without_effect);
-  for (const pugi::xml_attribute& attribute : node.attributes()) {
+  const std::vector<std::string> read = words_of(known->read);
+  const std::vector<std::string> without_effect = words_of(known->without_effect);
+  for (const pugi::xml_attribute& attribute : element.attributes()) {
     const std::string_view name = attribute.name();
     if (std::ranges::count(read, name) + std::ranges::count(without_effect, name) > 0) continue;
-    xml_.fail(node, fmt::format("{} = {}: has no counterpart in a rod's scene, or is unknown{} "
-                                "(allowed: {}, and attributes without effect at rest)",
-                                printable_piece(name), quoted_piece(attribute.value()),
-                                did_you_mean(name, read), fmt::join(read, ", ")));
+    fail(
+        fmt::format("{} = {}: has no counterpart in a rod's scene, or is unknown{} "
+                    "(allowed: {}, and attributes without effect at rest)",
+                    printable_piece(name), quoted_piece(attribute.value()),
+                    did_you_mean(name, read), fmt::join(read, ", ")));
   }
 }
 
-void MjcfAttributes::require_zero(const pugi::xml_node& node, const char* attribute,
-                                  const std::string& why, const std::string& childclass) const {
+void MjcfNode::require_zero(const char* attribute, const std::string& why) const {
   constexpr std::size_t most = 100;
-  const auto values = numbers(node, attribute, 1, most, childclass);
+  const auto values = numbers(attribute, 1, most);
   if (!values) return;
   if (std::ranges::any_of(*values, [](double value) { return value != 0; })) {
-    xml_.fail(node, attribute, why + " (allowed: 0)");
+    fail(attribute, why + " (allowed: 0)");
   }
 }
 

@@ -18,6 +18,8 @@ using MjcfPose = Eigen::Isometry3d;
 /// Returns a vector as in TOML, with all digits.
 [[nodiscard]] std::string toml_vector(const Eigen::Vector3d& v);
 
+struct MjcfNode;
+
 /// Elements of an MJCF file with the attributes of their default classes, and the file's units of
 /// angles. All readers throw InputErrors of the form "file:line: <element> attribute = "value":
 /// ...".
@@ -36,40 +38,10 @@ class MjcfAttributes {
   [[nodiscard]] const std::string& known_class(const pugi::xml_node& node, const char* attribute,
                                                const std::string& outside) const;
 
-  /// Returns the text of an attribute, from the element or its class. @param childclass  class that
-  /// surrounding elements set
-  [[nodiscard]] std::optional<std::string> text(const pugi::xml_node& node, const char* attribute,
-                                                const std::string& childclass) const;
-  /// Reads `least` to `most` numbers, finite and within 1e12.
-  [[nodiscard]] std::optional<std::vector<double>> numbers(const pugi::xml_node& node,
-                                                           const char* attribute, std::size_t least,
-                                                           std::size_t most,
-                                                           const std::string& childclass) const;
-  [[nodiscard]] std::optional<double> number(const pugi::xml_node& node, const char* attribute,
-                                             const std::string& childclass) const;
-  [[nodiscard]] std::optional<Eigen::Vector3d> vector(const pugi::xml_node& node,
-                                                      const char* attribute,
-                                                      const std::string& childclass) const;
-  /// Reads one of several words. @return its index, 0 if not given
-  [[nodiscard]] std::size_t choice(const pugi::xml_node& node, const char* attribute,
-                                   const std::vector<std::string_view>& allowed,
-                                   const std::string& childclass) const;
-  /// Reads pos and one of quat, axisangle, euler, xyaxes, zaxis.
-  [[nodiscard]] MjcfPose pose(const pugi::xml_node& node, const std::string& childclass) const;
-
-  /// Checks that the element and all its attributes are known (MjcfElement).
-  /// @throws InputError for an unknown element or attribute
-  void require_known(const pugi::xml_node& node) const;
-  /// Checks that an attribute that a rod's scene cannot represent has no effect.
-  /// @throws InputError with `why` if it has one
-  void require_zero(const pugi::xml_node& node, const char* attribute, const std::string& why,
-                    const std::string& childclass) const;
-
  private:
-  void read_compiler(const pugi::xml_node& compiler);
+  friend struct MjcfNode;
+  void read_compiler(const MjcfNode& compiler);
   void add_defaults(const pugi::xml_node& node, const std::string& parent);
-  [[nodiscard]] Eigen::Quaterniond rotation(const pugi::xml_node& node,
-                                            const std::string& childclass) const;
   [[nodiscard]] Eigen::Quaterniond euler(const std::vector<double>& angles) const;
 
   struct Class {
@@ -82,6 +54,41 @@ class MjcfAttributes {
   std::string main_ = "main";
   double angle_ = 0;  ///< unit of angles [rad]
   std::string euler_order_ = "xyz";
+};
+
+/// An element whose attributes are completed by its default classes.
+struct MjcfNode {
+  const MjcfAttributes& file;
+  pugi::xml_node element;
+  std::string childclass = {};  ///< class that surrounding elements set
+
+  /// Returns the text of an attribute, from the element or its class.
+  [[nodiscard]] std::optional<std::string> text(const char* attribute) const;
+  /// Reads `least` to `most` numbers, finite and within 1e12.
+  [[nodiscard]] std::optional<std::vector<double>> numbers(const char* attribute, std::size_t least,
+                                                           std::size_t most) const;
+  [[nodiscard]] std::optional<double> number(const char* attribute) const;
+  [[nodiscard]] std::optional<Eigen::Vector3d> vector(const char* attribute) const;
+  /// Reads one of several words. @return its index, 0 if not given
+  [[nodiscard]] std::size_t choice(const char* attribute,
+                                   const std::vector<std::string_view>& allowed) const;
+  /// Reads pos and one of quat, axisangle, euler, xyaxes, zaxis.
+  [[nodiscard]] MjcfPose pose() const;
+
+  /// Checks that the element and all its attributes are known (MjcfElement).
+  /// @throws InputError for an unknown element or attribute
+  void require_known() const;
+  /// Checks that an attribute that a rod's scene cannot represent has no effect.
+  /// @throws InputError with `why` if it has one
+  void require_zero(const char* attribute, const std::string& why) const;
+  /// Throws an InputError about the element, or about one of its attributes (XmlFile::fail).
+  [[noreturn]] void fail(const std::string& problem) const { file.xml().fail(element, problem); }
+  [[noreturn]] void fail(const char* attribute, const std::string& problem) const {
+    file.xml().fail(element, attribute, problem);
+  }
+
+ private:
+  [[nodiscard]] Eigen::Quaterniond rotation() const;
 };
 
 /// Known attributes of an element: those that are read, and those without effect on the equilibrium

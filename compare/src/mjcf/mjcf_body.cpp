@@ -14,97 +14,90 @@ namespace {
 constexpr std::string_view cable_plugin = "mujoco.elasticity.cable";
 
 /// Reads the values of a <plugin> or <instance>.
-void read_config(const MjcfAttributes& attributes, const pugi::xml_node& node, MjcfPlugin& plugin) {
-  const XmlFile& xml = attributes.xml();
-  for (const pugi::xml_node& config : node.children()) {
-    if (config.type() != pugi::node_element) continue;
-    attributes.require_known(config);
-    const std::string key = config.attribute("key").value();
-    const std::string_view value = config.attribute("value").value();
+void read_config(const MjcfNode& node, MjcfPlugin& plugin) {
+  for (const pugi::xml_node& child : node.element.children()) {
+    if (child.type() != pugi::node_element) continue;
+    const MjcfNode config{node.file, child};
+    config.require_known();
+    const std::string key = child.attribute("key").value();
+    const std::string_view value = child.attribute("value").value();
     if (key == "flat") {
       plugin.flat = value == "true";
-      if (!plugin.flat && value != "false") xml.fail(config, "value", "(allowed: true, false)");
+      if (!plugin.flat && value != "false") config.fail("value", "(allowed: true, false)");
     } else if (key == "twist" || key == "bend") {
       const std::optional<double> modulus = shape_number(value);
       // The negated condition also rejects NaN.
       if (!modulus || !(*modulus >= 0 && *modulus <= 1e15)) {
-        xml.fail(config, "value", fmt::format("of {} (allowed: a modulus in Pa, 0 to 1e15)", key));
+        config.fail("value", fmt::format("of {} (allowed: a modulus in Pa, 0 to 1e15)", key));
       }
       (key == "twist" ? plugin.twist : plugin.bend) = *modulus;
     } else if (key != "vmax") {
-      xml.fail(config, "key",
-               "unknown" + did_you_mean(key, {"twist", "bend", "flat", "vmax"}) +
-                   " (allowed: twist, bend, flat, vmax)");
+      config.fail("key", "unknown" + did_you_mean(key, {"twist", "bend", "flat", "vmax"}) +
+                             " (allowed: twist, bend, flat, vmax)");
     }
   }
 }
 
 /// Returns the <instance> with that name. @throws InputError if there is none
-pugi::xml_node instance_of(const XmlFile& xml, const pugi::xml_node& node) {
-  const char* name = node.attribute("instance").value();
-  for (const pugi::xml_node& extension : xml.root().children("extension")) {
+MjcfNode instance_of(const MjcfNode& node) {
+  const char* name = node.element.attribute("instance").value();
+  for (const pugi::xml_node& extension : node.file.xml().root().children("extension")) {
     for (const pugi::xml_node& plugin : extension.children("plugin")) {
       const pugi::xml_node found = plugin.find_child_by_attribute("instance", "name", name);
-      if (found && plugin.attribute("plugin").value() == cable_plugin) return found;
+      if (found && plugin.attribute("plugin").value() == cable_plugin) return {node.file, found};
     }
   }
-  xml.fail(node, "instance", fmt::format("no such instance of {} in <extension>", cable_plugin));
+  node.fail("instance", fmt::format("no such instance of {} in <extension>", cable_plugin));
 }
 
 }  // namespace
 
-MjcfPlugin read_mjcf_plugin(const MjcfAttributes& attributes, const pugi::xml_node& node) {
-  const XmlFile& xml = attributes.xml();
-  attributes.require_known(node);
+MjcfPlugin read_mjcf_plugin(const MjcfNode& node) {
+  node.require_known();
   MjcfPlugin plugin;
-  const bool by_name = !node.attribute("instance").empty();
-  const std::string_view name = node.attribute("plugin").value();
+  const bool by_name = !node.element.attribute("instance").empty();
+  const std::string_view name = node.element.attribute("plugin").value();
   if (name != cable_plugin && !(by_name && name.empty())) {
-    xml.fail(node, "plugin", fmt::format("is not read (allowed: {})", cable_plugin));
+    node.fail("plugin", fmt::format("is not read (allowed: {})", cable_plugin));
   }
   if (by_name) {
-    const pugi::xml_node instance = instance_of(xml, node);
-    attributes.require_known(instance);
-    read_config(attributes, instance, plugin);
+    const MjcfNode instance = instance_of(node);
+    instance.require_known();
+    read_config(instance, plugin);
   }
-  read_config(attributes, node, plugin);
+  read_config(node, plugin);
   return plugin;
 }
 
-MjcfJoint read_mjcf_joint(const MjcfAttributes& attributes, const pugi::xml_node& node,
-                          const MjcfPose& at, const std::string& childclass) {
-  const XmlFile& xml = attributes.xml();
-  attributes.require_known(node);
+MjcfJoint read_mjcf_joint(const MjcfNode& node, const MjcfPose& at) {
+  node.require_known();
   MjcfJoint joint;
-  joint.node = node;
-  if (std::string_view(node.name()) == "freejoint") {
+  joint.node = node.element;
+  if (std::string_view(node.element.name()) == "freejoint") {
     joint.type = MjcfJoint::Type::free;
     return joint;
   }
   constexpr MjcfJoint::Type types[] = {MjcfJoint::Type::hinge, MjcfJoint::Type::ball,
                                        MjcfJoint::Type::free, MjcfJoint::Type::slide};
-  joint.type =
-      types[attributes.choice(node, "type", {"hinge", "ball", "free", "slide"}, childclass)];
-  joint.place = at * attributes.vector(node, "pos", childclass).value_or(Eigen::Vector3d::Zero());
-  const Eigen::Vector3d axis =
-      attributes.vector(node, "axis", childclass).value_or(Eigen::Vector3d::UnitZ());
+  joint.type = types[node.choice("type", {"hinge", "ball", "free", "slide"})];
+  joint.place = at * node.vector("pos").value_or(Eigen::Vector3d::Zero());
+  const Eigen::Vector3d axis = node.vector("axis").value_or(Eigen::Vector3d::UnitZ());
   constexpr double least = 1e-10;
-  if (!(axis.norm() > least)) xml.fail(node, "axis", "has no direction");
+  if (!(axis.norm() > least)) node.fail("axis", "has no direction");
   joint.axis = at.linear() * axis.normalized();
-  joint.stiffness = attributes.number(node, "stiffness", childclass).value_or(0);
-  if (!(joint.stiffness >= 0)) xml.fail(node, "stiffness", "(allowed: 0 or more, in N m/rad)");
-  joint.is_limited = attributes.text(node, "range", childclass) &&
-                     attributes.text(node, "limited", childclass).value_or("auto") != "false";
-  attributes.require_zero(node, "springdamper", "makes a stiffness of inertias", childclass);
-  attributes.require_zero(node, "frictionloss", "holds many shapes at rest", childclass);
+  joint.stiffness = node.number("stiffness").value_or(0);
+  if (!(joint.stiffness >= 0)) node.fail("stiffness", "(allowed: 0 or more, in N m/rad)");
+  joint.is_limited = node.text("range") && node.text("limited").value_or("auto") != "false";
+  node.require_zero("springdamper", "makes a stiffness of inertias");
+  node.require_zero("frictionloss", "holds many shapes at rest");
   if (joint.type == MjcfJoint::Type::hinge) {
-    const double rest = attributes.number(node, "springref", childclass).value_or(0);
-    const double reference = attributes.number(node, "ref", childclass).value_or(0);
+    const double rest = node.number("springref").value_or(0);
+    const double reference = node.number("ref").value_or(0);
     if (rest != reference) {
-      xml.fail(node, "springref",
-               fmt::format("is another angle than ref = {:g}: bent where it is free of stress "
-                           "(allowed: the same; or the bodies posed as that shape)",
-                           reference));
+      node.fail("springref",
+                fmt::format("is another angle than ref = {:g}: bent where it is free of stress "
+                            "(allowed: the same; or the bodies posed as that shape)",
+                            reference));
     }
   }
   return joint;
@@ -118,13 +111,14 @@ void set_mjcf_mass(const MjcfAttributes& attributes, const pugi::xml_node& inert
     attributes.xml().fail(body.node, "has no <inertial>, and inertiafromgeom is false");
   }
   if (inertial && from_geoms != "true") {
-    attributes.require_known(inertial);
-    const std::optional<double> mass = attributes.number(inertial, "mass", "");
+    const MjcfNode given{attributes, inertial};
+    given.require_known();
+    const std::optional<double> mass = given.number("mass");
     if (!mass || !(*mass >= 0)) {
-      attributes.xml().fail(inertial, "mass", "missing or negative (allowed: 0 or more, in kg)");
+      given.fail("mass", "missing or negative (allowed: 0 or more, in kg)");
     }
     body.mass = *mass;
-    body.centre = attributes.vector(inertial, "pos", "").value_or(Eigen::Vector3d::Zero());
+    body.centre = given.vector("pos").value_or(Eigen::Vector3d::Zero());
     return;
   }
   for (const MjcfGeom& geom : body.geoms) {

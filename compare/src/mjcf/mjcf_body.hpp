@@ -49,13 +49,10 @@ struct MjcfBody {
 };
 
 /// Reads a joint. @param at  pose of the surrounding frames, in the body
-[[nodiscard]] MjcfJoint read_mjcf_joint(const MjcfAttributes& attributes,
-                                        const pugi::xml_node& node, const MjcfPose& at,
-                                        const std::string& childclass);
+[[nodiscard]] MjcfJoint read_mjcf_joint(const MjcfNode& node, const MjcfPose& at);
 
 /// Reads the <plugin> of a body or of a composite.
-[[nodiscard]] MjcfPlugin read_mjcf_plugin(const MjcfAttributes& attributes,
-                                          const pugi::xml_node& node);
+[[nodiscard]] MjcfPlugin read_mjcf_plugin(const MjcfNode& node);
 
 /// Sets mass and centre of a body from its <inertial>, or from its geoms if it has none or the
 /// compiler's inertiafromgeom is true. @param inertial  the element, if there is one

@@ -17,12 +17,12 @@ using Eigen::Vector3d;
 constexpr std::size_t most_vertices = 1000;
 
 /// Reads vertices that are given by their coordinates.
-std::vector<Vector3d> given_vertices(const MjcfAttributes& attributes, const pugi::xml_node& node) {
-  const XmlFile& xml = attributes.xml();
-  const std::vector<double> v = *attributes.numbers(node, "vertex", 6, 3 * most_vertices, "");
-  if (v.size() % 3 != 0) xml.fail(node, "vertex", "(allowed: three numbers each)");
+std::vector<Vector3d> given_vertices(const MjcfNode& node) {
+  const std::vector<double> v = *node.numbers("vertex", 6, 3 * most_vertices);
+  if (v.size() % 3 != 0) node.fail("vertex", "(allowed: three numbers each)");
   for (const char* other : {"count", "curve", "quat"}) {
-    if (node.attribute(other)) xml.fail(node, other, "given besides vertex (allowed: one of them)");
+    if (node.element.attribute(other))
+      node.fail(other, "given besides vertex (allowed: one of them)");
   }
   std::vector<Vector3d> points;
   for (std::size_t i = 0; i < v.size(); i += 3) points.emplace_back(v[i], v[i + 1], v[i + 2]);
@@ -30,17 +30,17 @@ std::vector<Vector3d> given_vertices(const MjcfAttributes& attributes, const pug
 }
 
 /// Returns the function of s for each coordinate: s, cos(s), sin(s) or 0.
-std::vector<std::string> curve_of(const XmlFile& xml, const pugi::xml_node& node) {
-  std::istringstream words(node.attribute("curve").as_string("s 0 0"));
+std::vector<std::string> curve_of(const MjcfNode& node) {
+  std::istringstream words(node.element.attribute("curve").as_string("s 0 0"));
   std::vector<std::string> curve;
   for (std::string word; words >> word;) {
     if (word != "s" && word != "cos(s)" && word != "sin(s)" && word != "0") {
-      xml.fail(node, "curve", "(allowed: up to three of s, cos(s), sin(s), 0)");
+      node.fail("curve", "(allowed: up to three of s, cos(s), sin(s), 0)");
     }
     curve.push_back(word);
   }
   if (curve.empty() || curve.size() > 3) {
-    xml.fail(node, "curve", "(allowed: one to three of s, cos(s), sin(s), 0)");
+    node.fail("curve", "(allowed: one to three of s, cos(s), sin(s), 0)");
   }
   curve.resize(3, "0");
   return curve;
@@ -48,20 +48,19 @@ std::vector<std::string> curve_of(const XmlFile& xml, const pugi::xml_node& node
 
 /// Returns vertices on a curve: s increases to size[0], the arguments of sin and cos to pi size[2],
 /// and the radius is size[1].
-std::vector<Vector3d> curve_vertices(const MjcfAttributes& attributes, const pugi::xml_node& node) {
-  const XmlFile& xml = attributes.xml();
-  const auto counts = attributes.numbers(node, "count", 1, 3, "");
+std::vector<Vector3d> curve_vertices(const MjcfNode& node) {
+  const auto counts = node.numbers("count", 1, 3);
   const double count = counts ? counts->front() : 0;
   if (!(count >= 3 && count <= most_vertices) || count != std::floor(count)) {
-    xml.fail(node, "count", fmt::format("(allowed: 3 to {} vertices, then 1 1)", most_vertices));
+    node.fail("count", fmt::format("(allowed: 3 to {} vertices, then 1 1)", most_vertices));
   }
   for (std::size_t i = 1; i < counts->size(); ++i) {
-    if ((*counts)[i] != 1) xml.fail(node, "count", "of more than one dimension (allowed: N 1 1)");
+    if ((*counts)[i] != 1) node.fail("count", "of more than one dimension (allowed: N 1 1)");
   }
-  std::vector<double> size = attributes.numbers(node, "size", 1, 3, "").value_or(std::vector{0.0});
+  std::vector<double> size = node.numbers("size", 1, 3).value_or(std::vector{0.0});
   size.resize(3, 0);
-  const Quaterniond turn(attributes.pose(node, "").linear());
-  const std::vector<std::string> curve = curve_of(xml, node);
+  const Quaterniond turn(node.pose().linear());
+  const std::vector<std::string> curve = curve_of(node);
   std::vector<Vector3d> points;
   for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
     const double share = static_cast<double>(i) / (count - 1);
@@ -90,22 +89,23 @@ struct Parts {
   pugi::xml_node geom, joint, plugin;
 };
 
-Parts parts_of(const MjcfAttributes& attributes, const pugi::xml_node& node) {
+Parts parts_of(const MjcfNode& node) {
   Parts parts;
-  for (const pugi::xml_node& child : node.children()) {
+  for (const pugi::xml_node& child : node.element.children()) {
     const std::string_view name = child.name();
     if (child.type() != pugi::node_element || name == "skin" || name == "site") continue;
-    attributes.require_known(child);
+    const MjcfNode known{node.file, child};
+    known.require_known();
     pugi::xml_node* const part = name == "geom"     ? &parts.geom
                                  : name == "joint"  ? &parts.joint
                                  : name == "plugin" ? &parts.plugin
                                                     : nullptr;
     if (part == nullptr || *part) {
-      attributes.xml().fail(child, "in a composite (allowed: one geom, joint, plugin, skin, site)");
+      known.fail("in a composite (allowed: one geom, joint, plugin, skin, site)");
     }
     *part = child;
   }
-  if (!parts.geom) attributes.xml().fail(node, "has no <geom> (allowed: a capsule or a cylinder)");
+  if (!parts.geom) node.fail("has no <geom> (allowed: a capsule or a cylinder)");
   return parts;
 }
 
@@ -115,51 +115,49 @@ std::string body_name(std::size_t i, std::size_t bodies) {
 
 }  // namespace
 
-void add_mjcf_composite(const MjcfAttributes& attributes, const pugi::xml_node& node,
-                        const MjcfPose& at, std::size_t parent, MjcfWorld& world) {
-  const XmlFile& xml = attributes.xml();
-  attributes.require_known(node);
-  if (world.composite) xml.fail(node, "is a second one (allowed: one cable)");
-  world.composite = node;
-  if (node.attribute("type").value() != std::string_view("cable")) {
-    xml.fail(node, "type", "is no cable (allowed: cable)");
+void add_mjcf_composite(const MjcfNode& node, const MjcfPose& at, std::size_t parent,
+                        MjcfWorld& world) {
+  node.require_known();
+  if (world.composite) node.fail("is a second one (allowed: one cable)");
+  world.composite = node.element;
+  if (node.element.attribute("type").value() != std::string_view("cable")) {
+    node.fail("type", "is no cable (allowed: cable)");
   }
   constexpr std::size_t none = 1;
   constexpr std::size_t free = 2;
-  const std::size_t initial = attributes.choice(node, "initial", {"ball", "none", "free"}, "");
-  const std::vector<Vector3d> points = node.attribute("vertex") ? given_vertices(attributes, node)
-                                                                : curve_vertices(attributes, node);
-  const Vector3d offset = attributes.vector(node, "offset", "").value_or(Vector3d::Zero());
-  const Parts parts = parts_of(attributes, node);
-  const std::string prefix = node.attribute("prefix").value();
+  const std::size_t initial = node.choice("initial", {"ball", "none", "free"});
+  const std::vector<Vector3d> points =
+      node.element.attribute("vertex") ? given_vertices(node) : curve_vertices(node);
+  const Vector3d offset = node.vector("offset").value_or(Vector3d::Zero());
+  const Parts parts = parts_of(node);
+  const std::string prefix = node.element.attribute("prefix").value();
   const std::size_t bodies = points.size() - 1;
   Quaterniond frame = Quaterniond::Identity();
   for (std::size_t i = 0; i < bodies; ++i) {
     const Vector3d edge = points[i + 1] - points[i];
     constexpr double shortest = 1e-9;
     if (!(edge.norm() > shortest)) {
-      xml.fail(node,
-               fmt::format("has vertices {} and {} at one place (allowed: apart)", i + 1, i + 2));
+      node.fail(fmt::format("has vertices {} and {} at one place (allowed: apart)", i + 1, i + 2));
     }
     frame = next_frame(frame, edge);
     MjcfBody body;
     body.name = prefix + body_name(i, bodies);
     body.parent = i == 0 ? parent : world.bodies.size() - 1;
     body.pose = at * MjcfPose(Eigen::Translation3d(offset + points[i]) * frame);
-    body.node = node;
-    body.geoms.push_back(read_composite_geom(attributes, parts.geom, edge.norm()));
+    body.node = node.element;
+    body.geoms.push_back(read_composite_geom({node.file, parts.geom}, edge.norm()));
     if (i > 0 || initial != none) {
       MjcfJoint joint;
       if (parts.joint) {
-        joint = read_mjcf_joint(attributes, parts.joint, MjcfPose::Identity(), "");
+        joint = read_mjcf_joint({node.file, parts.joint}, MjcfPose::Identity());
       }
       joint.type = i == 0 && initial == free ? MjcfJoint::Type::free : MjcfJoint::Type::ball;
-      joint.node = parts.joint ? parts.joint : node;
+      joint.node = parts.joint ? parts.joint : node.element;
       body.joints.push_back(joint);
     }
-    if (parts.plugin) body.plugin = read_mjcf_plugin(attributes, parts.plugin);
+    if (parts.plugin) body.plugin = read_mjcf_plugin({node.file, parts.plugin});
     body.moves = world.bodies[body.parent].moves || !body.joints.empty();
-    set_mjcf_mass(attributes, {}, body);
+    set_mjcf_mass(node.file, {}, body);
     world.bodies.push_back(std::move(body));
   }
   MjcfPose end = MjcfPose::Identity();

@@ -17,14 +17,11 @@ constexpr double pi = std::numbers::pi;
 /// Density of water, MuJoCo's default [kg/m^3].
 constexpr double default_density = 1000;
 
-Type type_of(const MjcfAttributes& attributes, const pugi::xml_node& node,
-             const std::string& childclass) {
+Type type_of(const MjcfNode& node) {
   constexpr Type types[] = {Type::sphere,    Type::plane, Type::capsule, Type::cylinder, Type::box,
                             Type::ellipsoid, Type::other, Type::other,   Type::other};
-  return types[attributes.choice(
-      node, "type",
-      {"sphere", "plane", "capsule", "cylinder", "box", "ellipsoid", "hfield", "mesh", "sdf"},
-      childclass)];
+  return types[node.choice("type", {"sphere", "plane", "capsule", "cylinder", "box", "ellipsoid",
+                                    "hfield", "mesh", "sdf"})];
 }
 
 std::size_t sizes_of(Type type) {
@@ -45,33 +42,30 @@ std::size_t sizes_of(Type type) {
 }
 
 /// Reads half-sizes; the last `given` of them are optional, because fromto determines them.
-Vector3d read_size(const MjcfAttributes& attributes, const pugi::xml_node& node, Type type,
-                   std::size_t given, const std::string& childclass) {
+Vector3d read_size(const MjcfNode& node, Type type, std::size_t given) {
   Vector3d size = Vector3d::Zero();
   const std::size_t count = sizes_of(type);
   if (count == 0) return size;
-  const auto values = attributes.numbers(node, "size", 0, 3, childclass);
+  const auto values = node.numbers("size", 0, 3);
   const std::size_t needed = count - given;
   if (!values || values->size() < needed) {
-    attributes.xml().fail(node, "size",
-                          fmt::format("missing, or too few numbers (allowed: {}, > 0)", needed));
+    node.fail("size", fmt::format("missing, or too few numbers (allowed: {}, > 0)", needed));
   }
   for (std::size_t i = 0; i < std::min(count, values->size()); ++i) {
     size[static_cast<Eigen::Index>(i)] = (*values)[i];
     if (i < needed && !((*values)[i] > 0)) {
-      attributes.xml().fail(node, "size", "(allowed: numbers > 0)");
+      node.fail("size", "(allowed: numbers > 0)");
     }
   }
   return size;
 }
 
 /// Sets pose and half-length from two ends.
-void span(const MjcfAttributes& attributes, const pugi::xml_node& node, const Vector3d& from,
-          const Vector3d& to, MjcfGeom& geom) {
+void span(const MjcfNode& node, const Vector3d& from, const Vector3d& to, MjcfGeom& geom) {
   const Vector3d way = to - from;
   constexpr double shortest = 1e-12;
   if (!(way.norm() > shortest)) {
-    attributes.xml().fail(node, "fromto", "has no length (allowed: two points that are apart)");
+    node.fail("fromto", "has no length (allowed: two points that are apart)");
   }
   geom.pose.linear() =
       Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), way).toRotationMatrix();
@@ -80,33 +74,31 @@ void span(const MjcfAttributes& attributes, const pugi::xml_node& node, const Ve
   geom.size[geom.is_round() ? 1 : 2] = way.norm() / 2;
 }
 
-void read_mass(const MjcfAttributes& attributes, const std::string& childclass, MjcfGeom& geom) {
-  const pugi::xml_node& node = geom.node;
-  const std::optional<double> mass = attributes.number(node, "mass", childclass);
-  const double density = attributes.number(node, "density", childclass).value_or(default_density);
-  if (!(mass.value_or(0) >= 0)) attributes.xml().fail(node, "mass", "(allowed: 0 or more)");
-  if (!(density >= 0)) attributes.xml().fail(node, "density", "(allowed: 0 or more)");
-  if (attributes.choice(node, "shellinertia", {"false", "true"}, childclass) == 1 && !mass) {
-    attributes.xml().fail(node, "shellinertia", "of a mass that is not given (allowed: mass)");
+void read_mass(const MjcfNode& node, MjcfGeom& geom) {
+  const std::optional<double> mass = node.number("mass");
+  const double density = node.number("density").value_or(default_density);
+  if (!(mass.value_or(0) >= 0)) node.fail("mass", "(allowed: 0 or more)");
+  if (!(density >= 0)) node.fail("density", "(allowed: 0 or more)");
+  if (node.choice("shellinertia", {"false", "true"}) == 1 && !mass) {
+    node.fail("shellinertia", "of a mass that is not given (allowed: mass)");
   }
   geom.mass = mass.value_or(density * mjcf_volume(geom));
 }
 
-int bits_of(const MjcfAttributes& attributes, const pugi::xml_node& node, const char* attribute,
-            const std::string& childclass) {
-  const std::optional<std::string> given = attributes.text(node, attribute, childclass);
+int bits_of(const MjcfNode& node, const char* attribute) {
+  const std::optional<std::string> given = node.text(attribute);
   if (!given) return 1;
   const std::optional<int> bits = as_number<int>(*given);
-  if (!bits) attributes.xml().fail(node, attribute, "is no integer of 32 bits");
+  if (!bits) node.fail(attribute, "is no integer of 32 bits");
   return *bits;
 }
 
-void read_contact(const MjcfAttributes& attributes, const std::string& childclass, MjcfGeom& geom) {
-  geom.contype = bits_of(attributes, geom.node, "contype", childclass);
-  geom.conaffinity = bits_of(attributes, geom.node, "conaffinity", childclass);
-  const auto friction = attributes.numbers(geom.node, "friction", 1, 3, childclass);
+void read_contact(const MjcfNode& node, MjcfGeom& geom) {
+  geom.contype = bits_of(node, "contype");
+  geom.conaffinity = bits_of(node, "conaffinity");
+  const auto friction = node.numbers("friction", 1, 3);
   if (friction) geom.friction = friction->front();
-  if (!(geom.friction >= 0)) attributes.xml().fail(geom.node, "friction", "(allowed: 0 or more)");
+  if (!(geom.friction >= 0)) node.fail("friction", "(allowed: 0 or more)");
 }
 
 }  // namespace
@@ -138,53 +130,50 @@ double mjcf_volume(const MjcfGeom& geom) {
   return 0;
 }
 
-MjcfGeom read_mjcf_geom(const MjcfAttributes& attributes, const pugi::xml_node& node,
-                        const MjcfPose& at, const std::string& childclass) {
-  attributes.require_known(node);
+MjcfGeom read_mjcf_geom(const MjcfNode& node, const MjcfPose& at) {
+  node.require_known();
   MjcfGeom geom;
-  geom.node = node;
-  geom.type = type_of(attributes, node, childclass);
-  const auto ends = attributes.numbers(node, "fromto", 6, 6, childclass);
+  geom.node = node.element;
+  geom.type = type_of(node);
+  const auto ends = node.numbers("fromto", 6, 6);
   const bool has_ends = ends && sizes_of(geom.type) > 1;
   if (ends && !has_ends) {
-    attributes.xml().fail(node, "fromto", "(allowed: of a capsule, cylinder, box or ellipsoid)");
+    node.fail("fromto", "(allowed: of a capsule, cylinder, box or ellipsoid)");
   }
-  geom.size = read_size(attributes, node, geom.type, has_ends ? 1 : 0, childclass);
+  geom.size = read_size(node, geom.type, has_ends ? 1 : 0);
   if (has_ends) {
     const std::vector<double>& v = *ends;
     if (!geom.is_round()) geom.size[1] = geom.size[1] > 0 ? geom.size[1] : geom.size[0];
-    span(attributes, node, Vector3d(v[0], v[1], v[2]), Vector3d(v[3], v[4], v[5]), geom);
+    span(node, Vector3d(v[0], v[1], v[2]), Vector3d(v[3], v[4], v[5]), geom);
   } else {
-    geom.pose = attributes.pose(node, childclass);
+    geom.pose = node.pose();
   }
   geom.pose = at * geom.pose;
-  read_mass(attributes, childclass, geom);
-  read_contact(attributes, childclass, geom);
+  read_mass(node, geom);
+  read_contact(node, geom);
   return geom;
 }
 
-MjcfGeom read_composite_geom(const MjcfAttributes& attributes, const pugi::xml_node& node,
-                             double length) {
-  attributes.require_known(node);
-  constexpr const char* no_class = "";
+MjcfGeom read_composite_geom(const MjcfNode& node, double length) {
+  node.require_known();
   for (const char* attribute :
        {"pos", "quat", "axisangle", "euler", "xyaxes", "zaxis", "fromto", "class"}) {
-    if (node.attribute(attribute)) {
-      attributes.xml().fail(node, attribute, "of a composite's geom (allowed: none)");
+    if (node.element.attribute(attribute)) {
+      node.fail(attribute, "of a composite's geom (allowed: none)");
     }
   }
   MjcfGeom geom;
-  geom.node = node;
-  geom.type = type_of(attributes, node, no_class);
+  geom.node = node.element;
+  geom.type = type_of(node);
   if (!geom.is_round()) {
-    attributes.xml().fail(node, "type",
-                          "of a composite cable whose bending is that of a round rod (allowed: "
-                          "capsule, cylinder)");
+    node.fail("type",
+              "of a composite cable whose bending is that of a round rod (allowed: "
+              "capsule, cylinder)");
   }
-  geom.size = read_size(attributes, node, geom.type, 1, no_class);
-  span(attributes, node, Vector3d::Zero(), length * Vector3d::UnitX(), geom);
-  read_mass(attributes, no_class, geom);
-  read_contact(attributes, no_class, geom);
+  geom.size = read_size(node, geom.type, 1);
+  span(node, Vector3d::Zero(), length * Vector3d::UnitX(), geom);
+  read_mass(node, geom);
+  read_contact(node, geom);
   return geom;
 }
 

@@ -34,12 +34,10 @@ struct MjcfGeom {
 [[nodiscard]] double mjcf_volume(const MjcfGeom& geom);
 
 /// Reads a geom. @param at  pose of the surrounding frames, in the body
-[[nodiscard]] MjcfGeom read_mjcf_geom(const MjcfAttributes& attributes, const pugi::xml_node& node,
-                                      const MjcfPose& at, const std::string& childclass);
+[[nodiscard]] MjcfGeom read_mjcf_geom(const MjcfNode& node, const MjcfPose& at);
 
 /// Reads a composite's geom, which extends over the segment, along x from 0 to `length`. Default
 /// classes do not apply to it.
-[[nodiscard]] MjcfGeom read_composite_geom(const MjcfAttributes& attributes,
-                                           const pugi::xml_node& node, double length);
+[[nodiscard]] MjcfGeom read_composite_geom(const MjcfNode& node, double length);
 
 }  // namespace dlo::compare

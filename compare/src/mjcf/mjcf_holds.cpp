@@ -31,7 +31,9 @@ class HoldFinder {
       for (const pugi::xml_node& constraint : equality.children()) {
         if (!constrained) break;
         if (constraint.type() != pugi::node_element) continue;
-        attributes_.refusals().attempt([&] { is_soft = add(constraint) || is_soft; });
+        attributes_.refusals().attempt([&] {
+          is_soft = add({attributes_, constraint}) || is_soft;
+        });
       }
     }
     if (is_soft) notes.emplace_back("soft constraints are treated as rigid grippers");
@@ -85,15 +87,14 @@ class HoldFinder {
   }
 
   /// Adds the gripper of a constraint. @return whether it holds the chain
-  bool add(const pugi::xml_node& constraint) {
-    const std::string_view kind = constraint.name();
+  bool add(const MjcfNode& constraint) {
+    const std::string_view kind = constraint.element.name();
     if (kind != "weld" && kind != "connect") {
-      xml_.fail(constraint,
-                "in <equality> cannot be said by a rod's scene (allowed: weld, connect)");
+      constraint.fail("in <equality> cannot be said by a rod's scene (allowed: weld, connect)");
     }
-    attributes_.require_known(constraint);
-    if (attributes_.choice(constraint, "active", {"true", "false"}, "") == 1) return false;
-    const bool by_sites = !constraint.attribute("site1").empty();
+    constraint.require_known();
+    if (constraint.choice("active", {"true", "false"}) == 1) return false;
+    const bool by_sites = !constraint.element.attribute("site1").empty();
     Attached first = by_sites ? site(constraint, "site1") : body(constraint, "body1");
     Attached second = by_sites ? site(constraint, "site2") : body(constraint, "body2");
     if (kind == "weld") {
@@ -104,46 +105,44 @@ class HoldFinder {
     return true;
   }
 
-  [[nodiscard]] Attached body(const pugi::xml_node& constraint, const char* attribute) const {
-    const std::string_view name = constraint.attribute(attribute).value();
+  [[nodiscard]] Attached body(const MjcfNode& constraint, const char* attribute) const {
+    const std::string_view name = constraint.element.attribute(attribute).value();
     if (name.empty() && attribute == std::string_view("body2")) return {};
     if (name == "world") return {};
     for (std::size_t i = 1; i < world_.bodies.size() && !name.empty(); ++i) {
       if (world_.bodies[i].name == name) return {i, MjcfPose::Identity()};
     }
-    xml_.fail(constraint, attribute,
-              name.empty() ? "missing (allowed: a body's name)" : "no such body");
+    constraint.fail(attribute, name.empty() ? "missing (allowed: a body's name)" : "no such body");
   }
 
-  [[nodiscard]] Attached site(const pugi::xml_node& constraint, const char* attribute) const {
-    const std::string_view name = constraint.attribute(attribute).value();
+  [[nodiscard]] Attached site(const MjcfNode& constraint, const char* attribute) const {
+    const std::string_view name = constraint.element.attribute(attribute).value();
     for (const MjcfSite& site : world_.sites) {
       if (!name.empty() && site.name == name) return {site.body, site.pose};
     }
-    xml_.fail(constraint, attribute,
-              name.empty() ? "missing (allowed: a site's name)" : "no such site");
+    constraint.fail(attribute, name.empty() ? "missing (allowed: a site's name)" : "no such site");
   }
 
   /// Returns the segment that a constraint holds; the other body must not move.
-  [[nodiscard]] std::size_t held_segment(const pugi::xml_node& constraint, Attached& first,
+  [[nodiscard]] std::size_t held_segment(const MjcfNode& constraint, Attached& first,
                                          Attached& second) const {
     const auto a = chain_.segment_of(first.body);
     const auto b = chain_.segment_of(second.body);
     if (a.has_value() == b.has_value()) {
-      xml_.fail(constraint, a ? "joins the cable with itself (allowed: with what does not move)"
-                              : "does not hold the cable (allowed: a body of it, and one that "
-                                "does not move)");
+      constraint.fail(a ? "joins the cable with itself (allowed: with what does not move)"
+                        : "does not hold the cable (allowed: a body of it, and one that "
+                          "does not move)");
     }
     if (!a) std::swap(first, second);
     return a ? *a : *b;
   }
 
-  void weld(const pugi::xml_node& constraint, Attached first, Attached second, bool by_sites) {
+  void weld(const MjcfNode& constraint, Attached first, Attached second, bool by_sites) {
     const bool swapped = !chain_.segment_of(first.body);
     const std::size_t k = held_segment(constraint, first, second);
     const MjcfSegment& segment = chain_.segments[k];
     MjcfPose pose = body_of(k).pose;
-    const auto relative = attributes_.numbers(constraint, "relpose", 7, 7, "");
+    const auto relative = constraint.numbers("relpose", 7, 7);
     const bool moved = by_sites || (relative && has_rotation(*relative));
     if (by_sites) {
       pose = world_.bodies[second.body].pose * second.frame * first.frame.inverse();
@@ -166,13 +165,12 @@ class HoldFinder {
     add_once(constraint, std::move(hold));
   }
 
-  void connect(const pugi::xml_node& constraint, Attached first, Attached second, bool by_sites) {
+  void connect(const MjcfNode& constraint, Attached first, Attached second, bool by_sites) {
     const bool swapped = !chain_.segment_of(first.body);
     const Vector3d anchor =
-        by_sites ? Vector3d::Zero()
-                 : attributes_.vector(constraint, "anchor", "").value_or(Vector3d::Zero());
-    if (!by_sites && !constraint.attribute("anchor")) {
-      xml_.fail(constraint, "anchor", "missing (allowed: a place in body1)");
+        by_sites ? Vector3d::Zero() : constraint.vector("anchor").value_or(Vector3d::Zero());
+    if (!by_sites && !constraint.element.attribute("anchor")) {
+      constraint.fail("anchor", "missing (allowed: a place in body1)");
     }
     const std::size_t k = held_segment(constraint, first, second);
     const MjcfSegment& segment = chain_.segments[k];
@@ -192,10 +190,10 @@ class HoldFinder {
     constexpr double on_axis = 1e-3;
     const double slack = on_axis * segment.length();
     if (across > slack || along < -slack || along > segment.length() + slack) {
-      xml_.fail(constraint,
-                fmt::format("holds {} at a place that is not on its segment: {:.4g} m along it, "
-                            "{:.4g} m off (allowed: 0 to {:.4g} m, 0 off)",
-                            quoted_piece(body_of(k).name), along, across, segment.length()));
+      constraint.fail(
+          fmt::format("holds {} at a place that is not on its segment: {:.4g} m along it, "
+                      "{:.4g} m off (allowed: 0 to {:.4g} m, 0 off)",
+                      quoted_piece(body_of(k).name), along, across, segment.length()));
     }
     hold.at = std::clamp(segment.at + along, 0.0, chain_.length);
     if (hold.at > chain_.length - slack) hold.at = chain_.length;
@@ -224,12 +222,13 @@ class HoldFinder {
     return d1;
   }
 
-  void add_once(const pugi::xml_node& constraint, MjcfHold hold) {
+  void add_once(const MjcfNode& constraint, MjcfHold hold) {
     for (const MjcfHold& other : holds_) {
       if (std::abs(other.at - hold.at) < 1e-9 * chain_.length) {
-        xml_.fail(constraint, fmt::format("holds the cable where it is held already: {} (allowed: "
-                                          "one of the two)",
-                                          other.words));
+        constraint.fail(
+            fmt::format("holds the cable where it is held already: {} (allowed: "
+                        "one of the two)",
+                        other.words));
       }
     }
     holds_.push_back(std::move(hold));

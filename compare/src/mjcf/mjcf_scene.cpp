@@ -24,21 +24,22 @@ struct Options {
 };
 
 Options read_options(const MjcfAttributes& attributes) {
-  const XmlFile& xml = attributes.xml();
   Options options;
-  for (const pugi::xml_node& node : xml.root().children("option")) {
-    options.gravity = attributes.vector(node, "gravity", "").value_or(options.gravity);
-    const bool fluid = attributes.number(node, "density", "").value_or(0) != 0 ||
-                       attributes.number(node, "viscosity", "").value_or(0) != 0;
-    if (fluid) attributes.require_zero(node, "wind", "of a fluid drags the cable", "");
-    for (const pugi::xml_node& flag : node.children()) {
-      if (flag.type() != pugi::node_element) continue;
-      attributes.require_known(flag);
+  for (const pugi::xml_node& element : attributes.xml().root().children("option")) {
+    const MjcfNode node{attributes, element};
+    options.gravity = node.vector("gravity").value_or(options.gravity);
+    const bool fluid =
+        node.number("density").value_or(0) != 0 || node.number("viscosity").value_or(0) != 0;
+    if (fluid) node.require_zero("wind", "of a fluid drags the cable");
+    for (const pugi::xml_node& child : element.children()) {
+      if (child.type() != pugi::node_element) continue;
+      const MjcfNode flag{attributes, child};
+      flag.require_known();
       const auto is_off = [&](const char* name) {
-        return attributes.choice(flag, name, {"enable", "disable"}, "") == 1;
+        return flag.choice(name, {"enable", "disable"}) == 1;
       };
       for (const char* name : {"passive", "spring"}) {
-        if (is_off(name)) xml.fail(flag, name, "takes the springs away (allowed: enable)");
+        if (is_off(name)) flag.fail(name, "takes the springs away (allowed: enable)");
       }
       if (is_off("gravity")) options.gravity.setZero();
       if (is_off("equality") || is_off("constraint")) options.equality = false;

@@ -45,74 +45,70 @@ class WorldReader {
 
   void read_children(const pugi::xml_node& parent, const Around& around) {
     // Nested bodies are read after all other elements of a body.
-    const auto attempt = [&](const pugi::xml_node& node, const auto& read) {
-      attributes_.refusals().attempt([&] { read(node); });
-    };
-    for (const pugi::xml_node& each : parent.children()) {
-      if (each.type() != pugi::node_element) continue;
-      attempt(each, [&](const pugi::xml_node& node) { read_part(node, around); });
-    }
-    for (const pugi::xml_node& each : parent.children()) {
-      attempt(each, [&](const pugi::xml_node& node) { read_inner(node, around); });
+    for (const auto read : {&WorldReader::read_part, &WorldReader::read_inner}) {
+      for (const pugi::xml_node& element : parent.children()) {
+        if (element.type() != pugi::node_element) continue;
+        const MjcfNode node{attributes_, element, around.childclass};
+        attributes_.refusals().attempt([&] { (this->*read)(node, around); });
+      }
     }
   }
 
-  void read_inner(const pugi::xml_node& node, const Around& around) {
-    const std::string_view name = node.name();
+  void read_inner(const MjcfNode& node, const Around& around) {
+    const std::string_view name = node.element.name();
     if (name == "body") read_body(node, around);
-    if (name == "frame") read_children(node, within(node, around));
+    if (name == "frame") read_children(node.element, within(node, around));
     if (name == "composite") {
-      add_mjcf_composite(attributes_, node, world_.bodies[around.body].pose * around.at,
-                         around.body, world_);
+      add_mjcf_composite(node, world_.bodies[around.body].pose * around.at, around.body, world_);
     }
   }
 
-  [[nodiscard]] Around within(const pugi::xml_node& frame, const Around& around) const {
-    attributes_.require_known(frame);
-    return {around.body, around.at * attributes_.pose(frame, around.childclass),
-            attributes_.known_class(frame, "childclass", around.childclass)};
+  [[nodiscard]] Around within(const MjcfNode& frame, const Around& around) const {
+    frame.require_known();
+    return {around.body, around.at * frame.pose(),
+            attributes_.known_class(frame.element, "childclass", around.childclass)};
   }
 
-  void read_part(const pugi::xml_node& node, const Around& around) {
-    const std::string_view name = node.name();
+  void read_part(const MjcfNode& node, const Around& around) {
+    const std::string_view name = node.element.name();
     MjcfBody& body = world_.bodies[around.body];
     if (name == "body" || name == "frame" || name == "composite" || mjcf_without_effect(name)) {
       return;
     }
     if (name == "geom") {
-      body.geoms.push_back(read_mjcf_geom(attributes_, node, around.at, around.childclass));
+      body.geoms.push_back(read_mjcf_geom(node, around.at));
     } else if (name == "site") {
-      attributes_.require_known(node);
-      world_.sites.push_back({node.attribute("name").value(), around.body,
-                              around.at * attributes_.pose(node, around.childclass)});
+      node.require_known();
+      world_.sites.push_back(
+          {node.element.attribute("name").value(), around.body, around.at * node.pose()});
     } else if (around.body > 0 && (name == "joint" || name == "freejoint")) {
-      body.joints.push_back(read_mjcf_joint(attributes_, node, around.at, around.childclass));
+      body.joints.push_back(read_mjcf_joint(node, around.at));
     } else if (around.body > 0 && name == "plugin") {
-      body.plugin = read_mjcf_plugin(attributes_, node);
+      body.plugin = read_mjcf_plugin(node);
     } else if (around.body == 0 || name != "inertial") {
-      xml_.fail(node,
-                "has no counterpart in a rod's scene here, or is unknown (allowed: body, geom, "
-                "site, frame, composite, and of a body joint, inertial, plugin)");
+      node.fail(
+          "has no counterpart in a rod's scene here, or is unknown (allowed: body, geom, "
+          "site, frame, composite, and of a body joint, inertial, plugin)");
     }
   }
 
-  void read_body(const pugi::xml_node& node, const Around& around) {
-    attributes_.require_known(node);
+  void read_body(const MjcfNode& node, const Around& around) {
+    node.require_known();
     MjcfBody body;
-    body.name = node.attribute("name").value();
+    body.name = node.element.attribute("name").value();
     body.parent = around.body;
-    body.node = node;
-    body.pose =
-        world_.bodies[around.body].pose * around.at * attributes_.pose(node, around.childclass);
-    attributes_.require_zero(node, "gravcomp", "takes a part of the weight away", "");
+    body.node = node.element;
+    body.pose = world_.bodies[around.body].pose * around.at * node.pose();
+    MjcfNode{attributes_, node.element}.require_zero("gravcomp", "takes a part of the weight away");
     const std::size_t index = world_.bodies.size();
     world_.bodies.push_back(std::move(body));
-    const std::string childclass = attributes_.known_class(node, "childclass", around.childclass);
+    const std::string childclass =
+        attributes_.known_class(node.element, "childclass", around.childclass);
     // The body's other elements are read first, then its mass is known, then nested bodies are
     // read.
     const Around inside{index, MjcfPose::Identity(), childclass};
-    read_children(node, inside);
-    set_mjcf_mass(attributes_, node.child("inertial"), world_.bodies[index]);
+    read_children(node.element, inside);
+    set_mjcf_mass(attributes_, node.element.child("inertial"), world_.bodies[index]);
   }
 
   /// Removes joints that only move the cable as a whole, and finds the bodies that move.

@@ -30,7 +30,7 @@ struct MjcfWorld {
 
 /// Adds the bodies, joints and sites of a <composite type="cable"> to a world.
 /// @param at  pose of the surrounding frames, in the world;  @param parent  body that contains it
-void add_mjcf_composite(const MjcfAttributes& attributes, const pugi::xml_node& node,
-                        const MjcfPose& at, std::size_t parent, MjcfWorld& world);
+void add_mjcf_composite(const MjcfNode& node, const MjcfPose& at, std::size_t parent,
+                        MjcfWorld& world);
 
 }  // namespace dlo::compare
