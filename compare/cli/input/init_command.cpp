@@ -114,31 +114,25 @@ void add_init(CLI::App& app) {
   command->add_option("NAME", options->target,
                       "name of the scene, or FILE.toml; default scene.toml");
   compare::SceneChoices& choices = options->choices;
-  command->add_option("--length", choices.length, "of the rod, such as \"2 m\"")
-      ->type_name("LENGTH")
-      ->capture_default_str();
-  command->add_option("--diameter", choices.diameter, "of the rod, such as \"6 mm\"")
-      ->type_name("LENGTH")
+  const auto add = [command](const char* name, std::string& value, const char* type,
+                             const char* words) {
+    return command->add_option(name, value, words)->type_name(type);
+  };
+  add("--length", choices.length, "LENGTH", "of the rod, such as \"2 m\"")->capture_default_str();
+  add("--diameter", choices.diameter, "LENGTH", "of the rod, such as \"6 mm\"")
       ->capture_default_str();
   CLI::Option* material =
-      command->add_option("--material", choices.material, "a name that dlo materials lists")
-          ->type_name("MATERIAL")
+      add("--material", choices.material, "MATERIAL", "a name that dlo materials lists")
           ->capture_default_str();
-  CLI::Option* modulus = command
-                             ->add_option("--youngs-modulus", choices.youngs_modulus,
-                                          "of a material of your own, such as \"5 MPa\"")
-                             ->type_name("MODULUS")
+  CLI::Option* modulus = add("--youngs-modulus", choices.youngs_modulus, "MODULUS",
+                             "of a material of your own, such as \"5 MPa\"")
                              ->excludes(material);
-  CLI::Option* density =
-      command->add_option("--density", choices.density, "and its density, such as \"1100 kg/m^3\"")
-          ->type_name("DENSITY")
-          ->needs(modulus);
-  modulus->needs(density);
-  command
-      ->add_option("--direction", choices.direction,
-                   "of the rod in its gripper: \"-90 deg\" hangs down, \"90 deg\" stands up; or a "
-                   "vector such as \"[1, 0, 0]\"")
-      ->type_name("ANGLE")
+  modulus->needs(
+      add("--density", choices.density, "DENSITY", "and its density, such as \"1100 kg/m^3\"")
+          ->needs(modulus));
+  add("--direction", choices.direction, "ANGLE",
+      "of the rod in its gripper: \"-90 deg\" hangs down, \"90 deg\" stands up; or a vector such "
+      "as \"[1, 0, 0]\"")
       ->capture_default_str();
   add_checked(*command, "--up", choices.up, CLI::IsMember({"y", "z"}),
               "the axis against gravity, y or z");

@@ -136,20 +136,14 @@ void add_numbers(const Scene& scene, const MotionMisfit& misfit, const LeastSqua
       return MotionNumber{factor * number.value, factor * number.low, factor * number.high,
                           number.identified};
     };
-    switch (misfit.fitted()[i]) {
-      case MotionParameter::stiffness:
-        result.stiffness = times(scene.bending_stiffness() / scene.mass_per_length());
-        result.scene_stiffness = times(scene.stiffness().value);
-        break;
-      case MotionParameter::material:
-        result.material = times(1);
-        break;
-      case MotionParameter::air:
-        result.air = times(1);
-        break;
-      case MotionParameter::quadratic:
-        result.quadratic = times(1);
-        break;
+    const MotionParameter parameter = misfit.fitted()[i];
+    if (parameter == MotionParameter::stiffness) {
+      result.stiffness = times(scene.bending_stiffness() / scene.mass_per_length());
+      result.scene_stiffness = times(scene.stiffness().value);
+    } else {
+      (parameter == MotionParameter::material ? result.material
+       : parameter == MotionParameter::air    ? result.air
+                                              : result.quadratic) = number;
     }
   }
 }

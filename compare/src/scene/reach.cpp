@@ -15,18 +15,14 @@ double total_load(const Scene& scene) {
 std::vector<const Gripper*> grippers_along(const Scene& scene) {
   std::vector<const Gripper*> along;
   for (const Gripper& gripper : scene.grippers) along.push_back(&gripper);
-  std::stable_sort(along.begin(), along.end(),
-                   [](const Gripper* a, const Gripper* b) { return a->at < b->at; });
+  std::ranges::stable_sort(along, {}, &Gripper::at);
   return along;
 }
 
 std::vector<double> obstacle_clearances(const Scene& scene) {
   const std::vector<const Gripper*> along = grippers_along(scene);
   std::vector<double> clearances;
-  if (along.empty()) {
-    clearances.resize(scene.obstacles.size());
-    return clearances;
-  }
+  if (along.empty()) return std::vector<double>(scene.obstacles.size());
   for (const Obstacle& obstacle : scene.obstacles) {
     const obstacle::Body& body = obstacle.body;
     const auto height = [&body](const Eigen::Vector3d& point) { return body.clearance(point); };
@@ -91,12 +87,10 @@ bool touches_with_friction(const Scene& scene, const std::vector<Eigen::Vector3d
 }
 
 bool friction_in_reach(const Scene& scene) {
-  const bool any = std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
-                               [](const Obstacle& obstacle) { return obstacle.friction > 0; });
-  if (!any) return false;
-  const std::vector<std::size_t> in_reach = obstacles_in_reach(scene, scene.force_model);
-  return std::any_of(in_reach.begin(), in_reach.end(),
-                     [&](std::size_t i) { return scene.obstacles[i].friction > 0; });
+  const auto rough = [](const Obstacle& obstacle) { return obstacle.friction > 0; };
+  return std::ranges::any_of(scene.obstacles, rough) &&
+         std::ranges::any_of(obstacles_in_reach(scene, scene.force_model),
+                             [&](std::size_t i) { return rough(scene.obstacles[i]); });
 }
 
 }  // namespace dlo::compare

@@ -10,17 +10,26 @@
 namespace dlo::compare {
 namespace {
 
-/// Returns the integral, between two arc lengths, of the difference between the sections' values of
-/// a quantity per length and the rod's value elsewhere.
+/// Returns the integral of a quantity per length between two arc lengths.
+/// @param density  returns its value of a section;  @param elsewhere  its value of the rod
 template <typename Density>
-double excess_between(const Scene& scene, double begin, double end, const Density& density,
-                      double elsewhere) {
+double integral_between(const Scene& scene, double begin, double end, const Density& density,
+                        double elsewhere) {
   double sum = 0;
   for (const Section& section : scene.sections) {
     const double part = std::min(end, section.to) - std::max(begin, section.from);
     if (part > 0) sum += part * (density(section) - elsewhere);
   }
-  return sum;
+  return elsewhere * (end - begin) + sum;
+}
+
+double mass_between(const Scene& scene, double begin, double end) {
+  const auto of_section = [](const Section& s) { return s.mass_per_length; };
+  return integral_between(scene, begin, end, of_section, scene.mass_per_length());
+}
+
+void scale(std::optional<double>& value, double factor) {
+  if (value) *value *= factor;
 }
 
 /// Returns the harmonic mean of two numbers; if they are equal, exactly that number.
@@ -64,9 +73,8 @@ double Section::mean_bending_stiffness() const {
 }
 
 bool Scene::has_two_stiffnesses() const {
-  return bending_stiffness_2() ||
-         std::any_of(sections.begin(), sections.end(),
-                     [](const Section& section) { return section.bending_stiffness_2; });
+  const auto has_two = [](const Section& s) { return s.bending_stiffness_2.has_value(); };
+  return bending_stiffness_2() || std::ranges::any_of(sections, has_two);
 }
 
 double Scene::mass_per_length() const {
@@ -112,31 +120,19 @@ NamedValue Scene::heaviness() const {
   return {"density", "kg/m^3", material.density};
 }
 
-double Scene::mass() const {
-  const double own = mass_per_length();
-  return own * length +
-         excess_between(
-             *this, 0, length, [](const Section& s) { return s.mass_per_length; }, own);
-}
+double Scene::mass() const { return mass_between(*this, 0, length); }
 
 Eigen::Vector3d Scene::weight_per_length() const {
   return (sections.empty() ? mass_per_length() : mass() / length) * gravity;
 }
 
 Eigen::Vector3d Scene::weight_between(double begin, double end) const {
-  const double own = mass_per_length();
-  const double mass =
-      own * (end - begin) +
-      excess_between(
-          *this, begin, end, [](const Section& s) { return s.mass_per_length; }, own);
-  return mass * gravity;
+  return mass_between(*this, begin, end) * gravity;
 }
 
 double Scene::bending_compliance(double begin, double end) const {
-  const double own = 1 / bending_stiffness();
-  return own * (end - begin) +
-         excess_between(
-             *this, begin, end, [](const Section& s) { return 1 / s.bending_stiffness; }, own);
+  const auto of_section = [](const Section& s) { return 1 / s.bending_stiffness; };
+  return integral_between(*this, begin, end, of_section, 1 / bending_stiffness());
 }
 
 double Scene::twisting_compliance(double begin, double end) const {
@@ -145,7 +141,7 @@ double Scene::twisting_compliance(double begin, double end) const {
     return 1 / s.torsional_stiffness.value_or(s.mean_bending_stiffness() /
                                               mean_bending_stiffness() * GJ);
   };
-  return (end - begin) / GJ + excess_between(*this, begin, end, of_section, 1 / GJ);
+  return integral_between(*this, begin, end, of_section, 1 / GJ);
 }
 
 double Scene::gamma() const {
@@ -161,28 +157,26 @@ void Scene::scale_modulus(double factor) {
       *stiffness *= factor;
     }
   }
-  if (given_bending_stiffness) *given_bending_stiffness *= factor;
-  if (given_bending_stiffness_2) *given_bending_stiffness_2 *= factor;
-  if (given_axial_stiffness) *given_axial_stiffness *= factor;
-  if (torsional_stiffness) *torsional_stiffness *= factor;
+  for (std::optional<double>* stiffness : {&given_bending_stiffness, &given_bending_stiffness_2,
+                                           &given_axial_stiffness, &torsional_stiffness}) {
+    scale(*stiffness, factor);
+  }
   for (Section& section : sections) {
     section.bending_stiffness *= factor;
-    if (section.bending_stiffness_2) *section.bending_stiffness_2 *= factor;
-    if (section.torsional_stiffness) *section.torsional_stiffness *= factor;
+    scale(section.bending_stiffness_2, factor);
+    scale(section.torsional_stiffness, factor);
   }
 }
 
 void Scene::scale_torsion(double factor) {
   if (twisting_stiffness() > 0) torsional_stiffness = twisting_stiffness() * factor;
-  for (Section& section : sections) {
-    if (section.torsional_stiffness) *section.torsional_stiffness *= factor;
-  }
+  for (Section& section : sections) scale(section.torsional_stiffness, factor);
 }
 
 void Scene::scale_density(double factor) {
   material.density *= factor;
   if (layers) layers->mass_per_length *= factor;
-  if (given_mass_per_length) *given_mass_per_length *= factor;
+  scale(given_mass_per_length, factor);
   for (Section& section : sections) section.mass_per_length *= factor;
 }
 

@@ -175,17 +175,15 @@ std::optional<Eigen::Vector3d> Scene::assumed_normal() const {
 }
 
 bool Scene::naturally_twisted() const {
-  return natural_strain.z() != 0 ||
-         std::any_of(sections.begin(), sections.end(),
-                     [](const Section& section) { return section.natural_twist.value_or(0) != 0; });
+  const auto twisted = [](const Section& s) { return s.natural_twist.value_or(0) != 0; };
+  return natural_strain.z() != 0 || std::ranges::any_of(sections, twisted);
 }
 
 bool Scene::naturally_curved() const {
-  return !natural_strain.head<2>().isZero(0) ||
-         std::any_of(natural_variation.begin(), natural_variation.end(),
-                     [](const Eigen::Vector2d& strain) { return !strain.isZero(0); }) ||
-         std::any_of(sections.begin(), sections.end(), [](const Section& section) {
-           return section.natural_curvature && !section.natural_curvature->isZero(0);
+  const auto curved = [](const Eigen::Vector2d& strain) { return !strain.isZero(0); };
+  return curved(natural_strain.head<2>()) || std::ranges::any_of(natural_variation, curved) ||
+         std::ranges::any_of(sections, [&](const Section& s) {
+           return s.natural_curvature && curved(*s.natural_curvature);
          });
 }
 
@@ -226,10 +224,10 @@ Scene Scene::without_twist() const {
 
 std::optional<Eigen::Vector3d> Scene::plane_normal() const {
   if (holds_twist()) return std::nullopt;
-  const bool leaves_plane = std::any_of(loads.begin(), loads.end(), [](const PointLoad& load) {
-    return load.follows && (load.force.y() != 0 || load.torque.x() != 0 || load.torque.z() != 0);
-  });
-  if (leaves_plane) return std::nullopt;
+  for (const PointLoad& load : loads) {
+    const bool across = load.force.y() != 0 || load.torque.x() != 0 || load.torque.z() != 0;
+    if (load.follows && across) return std::nullopt;
+  }
   std::optional<Eigen::Vector3d> normal = scene_normal(*this);
   const bool curved = naturally_curved();
   if (!normal || !(curved || has_two_stiffnesses())) return normal;
@@ -248,9 +246,9 @@ std::optional<Eigen::Vector3d> Scene::plane_normal() const {
     return normal->cross(frame.leftCols<2>() * strain).norm() <= noise * strain.norm();
   };
   const bool flat = about_normal(natural_strain.head<2>()) && !naturally_twisted() &&
-                    std::all_of(natural_variation.begin(), natural_variation.end(), about_normal) &&
-                    std::all_of(sections.begin(), sections.end(), [&](const Section& section) {
-                      return !section.natural_curvature || about_normal(*section.natural_curvature);
+                    std::ranges::all_of(natural_variation, about_normal) &&
+                    std::ranges::all_of(sections, [&](const Section& s) {
+                      return !s.natural_curvature || about_normal(*s.natural_curvature);
                     });
   return flat ? normal : std::nullopt;
 }

@@ -9,6 +9,11 @@
 
 // Loads on a scene's rod other than its weight.
 namespace dlo::compare {
+namespace {
+
+bool has_couple(const PointLoad& load) { return !load.torque.isZero(0); }
+
+}  // namespace
 
 Eigen::Vector3d DistributedLoad::between(double begin, double end) const {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -37,10 +42,7 @@ double Scene::total_of_loads() const {
   return sum;
 }
 
-bool Scene::has_couples() const {
-  return std::any_of(loads.begin(), loads.end(),
-                     [](const PointLoad& load) { return !load.torque.isZero(0); });
-}
+bool Scene::has_couples() const { return std::ranges::any_of(loads, has_couple); }
 
 void Scene::require_potential(const char* who) const {
   if (drag && drag->largest() > 0) {
@@ -65,8 +67,7 @@ void Scene::require_potential(const char* who) const {
 
 void Scene::require_no_couples(const char* who) const {
   require_potential(who);
-  const auto couple =
-      std::ranges::find_if(loads, [](const PointLoad& load) { return !load.torque.isZero(0); });
+  const auto couple = std::ranges::find_if(loads, has_couple);
   if (couple == loads.end()) return;
   throw InputError(
       fmt::format("{}: load.torque: the couple at {:g} m, which {} not take (allowed: dlo solve "
