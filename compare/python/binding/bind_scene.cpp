@@ -116,7 +116,7 @@ SharedScene calibrated_scene(const SharedScene& data, const std::string& text,
 py::dict table_keys() {
   py::dict keys;
   for (const compare::SceneTable& table : compare::scene_tables()) {
-    keys[py::str(table.name)] = py::cast(table.keys);
+    keys[py::str(table.name)] = py::cast(table.names);
   }
   return keys;
 }

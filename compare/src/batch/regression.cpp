@@ -10,6 +10,7 @@
 #include <set>
 #include <stdexcept>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 #include "base/quote.hpp"
@@ -22,7 +23,7 @@
 #include "dlo/compare/solve.hpp"
 #include "format/scene_document.hpp"
 #include "reading/read_scene.hpp"
-#include "record/field.hpp"
+#include "scene/read_force_model.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -115,8 +116,26 @@ void add_content(const Json& value, std::string& text) {
   } else if (value.is_structured()) {
     for (const auto& [key, item] : value.items()) add_content(item, text += key + ' ');
   } else {
-    text += value.dump() + ' ';
+    text.add_words("\nbody ");
+    text.add(body.centre());
+    for (Eigen::Index axis = 0; axis < 3; ++axis) text.add(Eigen::Vector3d(body.axes().col(axis)));
+    text.add(body.upper());
+    text.add(body.radius());
   }
+  text.add(obstacle.stiffness);
+  text.add_positive("friction ", obstacle.friction);
+}
+
+void add_force_model(ContentText& text, const ForceModelSettings& settings) {
+  text.add_words(
+      fmt::format("\n{} {} ", to_string(settings.stepper), to_string(settings.bending_rule)));
+  if (settings.joint_law) {
+    text.add_words(fmt::format("joints {} ", to_string(*settings.joint_law)));
+  }
+  each_member(settings, [&text](const char* /*key*/, const auto& value) {
+    using Value = std::remove_cvref_t<decltype(value)>;
+    if constexpr (std::is_same_v<Value, std::optional<double>>) text.add(value);
+  });
 }
 
 /// Returns all content of a scene on which its shape depends and that the case's name does not

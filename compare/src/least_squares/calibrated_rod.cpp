@@ -29,11 +29,12 @@ void read_calibrated_material(StrictTable& table, CalibratedRod& rod) {
 
 /// Reads the lines of [rod] that calibrate writes for a rod given by EI.
 void read_calibrated_stiffness(StrictTable& table, CalibratedRod& rod) {
-  const auto EI = table.optional_pair("bending_stiffness", Dimension::section_stiffness);
-  if (!EI) return;
+  const auto pairs = table.pairs("bending_stiffness", Dimension::section_stiffness, 1);
+  if (pairs.empty()) return;
+  const Eigen::Vector2d& EI = pairs.front();
   rod.by_stiffness = true;
   // Two stiffnesses are scaled by one factor, so the first one determines it.
-  rod.stiffness = EI->x() > 0 ? EI->x() : EI->y();
+  rod.stiffness = EI.x() > 0 ? EI.x() : EI.y();
   if (!(*rod.stiffness > 0)) table.fail("bending_stiffness", "not positive (allowed: > 0)");
   rod.heaviness = table.number("mass_per_length", Dimension::mass_per_length, Range::positive());
 }

@@ -8,12 +8,12 @@
 #include <string_view>
 #include <utility>
 
+#include "base/builtin_data.hpp"
 #include "dlo/compare/bending_rule.hpp"
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/force_model/heuristics.hpp"
 #include "polygon/point_layout.hpp"
-#include "scene/builtin_data.hpp"
 #include "toml/strict_table.hpp"
 
 namespace dlo::compare {

@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
 
 #include "base/quote.hpp"
+#include "base/text.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/scene_file.hpp"
-#include "scene/builtin_data.hpp"
-#include "toml/quantity.hpp"
+#include "toml/scene_keys.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -48,100 +51,119 @@ std::string direction_value(const SceneChoices& choices) {
   }
 }
 
-std::string direction_words(const SceneChoices& choices) {
-  return is_z_up(choices)
-             ? "# Of the rod there, along growing arc length: a vector; [0, 0, -1] hangs down, [1, "
-               "0, 0] is\n# level. A pin has none."
-             : "# Of the rod there, along growing arc length: an angle in the x-y plane from +x "
-               "(\"-90 deg\" hangs\n# down; without unit: rad), or a vector such as [1, 0, 0]. A "
-               "pin has none.";
+/// Values of the keys of a new scene as in a file, by table and key: "rod.length".
+using Values = std::map<std::string, std::string>;
+
+Values required_values(const SceneChoices& choices) {
+  return {{".name", toml_string(choices.name)},
+          {".gravity", upwards(choices, -9.81)},
+          {"rod.length", toml_value(choices.length)},
+          {"rod.diameter", toml_value(choices.diameter)},
+          {"rod.material",
+           choices.youngs_modulus.empty()
+               ? toml_string(choices.material)
+               : fmt::format("{{ youngs_modulus = {}, density = {} }}",
+                             toml_value(choices.youngs_modulus), toml_value(choices.density))},
+          {"gripper.at", "0"},
+          {"gripper.position", "[0, 0, 0]"},
+          {"gripper.hold", "\"clamp\""},
+          {"gripper.direction", direction_value(choices)}};
 }
 
-std::string material_lines(const SceneChoices& choices, const std::vector<Material>& known) {
-  std::string names;
-  for (const Material& material : known) {
-    names += (names.empty() ? "" : (names.size() - names.rfind('\n')) > 75 ? ",\n#   " : ", ");
-    names += material.name;
-  }
-  const std::string head = fmt::format(
-      "# A name, or your own as {{ youngs_modulus = \"5 MPa\", density = \"1100 kg/m^3\" }}.\n"
-      "# Moduli in Pa, kPa, MPa, GPa; densities in kg/m^3, g/cm^3. dlo materials lists the "
-      "values:\n"
-      "#   {}\n",
-      names);
-  if (choices.youngs_modulus.empty()) {
-    return head + fmt::format("material = {}\n", toml_string(choices.material));
-  }
-  return head + fmt::format("material = {{ youngs_modulus = {}, density = {} }}\n",
-                            toml_value(choices.youngs_modulus), toml_value(choices.density));
-}
-
-std::string required_part(const SceneChoices& choices, const std::vector<Material>& known) {
-  return fmt::format(fmt::runtime(builtin::new_scene_toml),
-                     fmt::arg("name", toml_string(choices.name)),
-                     fmt::arg("units", known_units(Dimension::length)),
-                     fmt::arg("length", toml_value(choices.length)),
-                     fmt::arg("diameter", toml_value(choices.diameter)),
-                     fmt::arg("material", material_lines(choices, known)),
-                     fmt::arg("gravity", upwards(choices, -9.81)), fmt::arg("up", choices.up),
-                     fmt::arg("direction_words", direction_words(choices)),
-                     fmt::arg("direction", direction_value(choices)));
-}
-
-enum class Meaning { said, omitted };
-
-/// Returns the names as in TOML, with their meanings if `meaning` requests it.
-template <Chosen Value>
-std::string toml_choices(Meaning meaning) {
-  std::vector<std::string> choices;
-  for (const auto& choice : Choices<Value>::all) {
-    choices.push_back(toml_string(choice.name));
-    if (meaning == Meaning::said) choices.back() += fmt::format(" ({})", choice.meaning);
-  }
-  return one_of(choices);
-}
-
-/// Returns examples that fit the rod: a pin at its end, a small force, a floor in its reach.
-std::string optional_part(const SceneChoices& choices, const Scene& scene) {
+/// Returns examples that fit the rod: a section, a small force, a floor in its reach. Settings have
+/// their defaults.
+Values optional_values(const SceneChoices& choices, const Scene& scene) {
   const double l = scene.length;
-  const Eigen::Vector3d pin = 0.7 * l * scene.grippers.front().direction.value();
+  const double lowest =
+      l * std::min(0.0, (*scene.grippers.front().direction)[is_z_up(choices) ? 2 : 1]);
   const double weight = scene.mass() * scene.gravity.norm();
-  const ForceModelSettings defaults;
   const double force = weight > 0 ? weight : scene.bending_stiffness() / (l * l);
-  return fmt::format(
-      fmt::runtime(builtin::new_scene_optional_toml),
-      fmt::arg("torsion", scene.bending_stiffness() / 1.3), fmt::arg("length", l),
-      fmt::arg("section_from", 0.4 * l), fmt::arg("section_to", 0.45 * l),
-      fmt::arg("section_EI", 10 * scene.bending_stiffness()),
-      fmt::arg("section_mass", 2 * scene.mass_per_length()), fmt::arg("x", pin.x()),
-      fmt::arg("y", pin.y()), fmt::arg("z", pin.z()), fmt::arg("middle", l / 2),
-      fmt::arg("force", upwards(choices, -0.1 * force)),
-      fmt::arg("floor",
-               upwards(choices, std::min(is_z_up(choices) ? pin.z() : pin.y(), 0.0) - 0.1 * l)),
-      fmt::arg("normal", upwards(choices, 1)), fmt::arg("stiffness", 1e3 * force / (l * l)),
-      fmt::arg("c_c", scene.axial_stiffness()), fmt::arg("direction", direction_value(choices)),
-      fmt::arg("frames", scene.track.frames), fmt::arg("steps", scene.track.steps),
-      fmt::arg("points", defaults.points), fmt::arg("law", to_string(defaults.law)),
-      fmt::arg("laws", toml_choices<BendingLaw>(Meaning::said)),
-      fmt::arg("joint_laws", toml_choices<energy_model::JointLaw>(Meaning::omitted)),
-      fmt::arg("bookkeeping", to_string(defaults.bookkeeping)),
-      fmt::arg("bookkeepings", toml_choices<Bookkeeping>(Meaning::said)),
-      fmt::arg("stepper", to_string(defaults.stepper)),
-      fmt::arg("steppers", toml_choices<Stepper>(Meaning::omitted)),
-      fmt::arg("bending_rules", toml_choices<BendingRule>(Meaning::omitted)));
+  const auto number = [](double value) { return fmt::format("{:.4g}", value); };
+  Values values{{"section.from", number(0.4 * l)},
+                {"section.to", number(0.45 * l)},
+                {"section.bending_stiffness", number(10 * scene.bending_stiffness())},
+                {"section.mass_per_length", number(2 * scene.mass_per_length())},
+                {"load.at", number(l / 2)},
+                {"load.force", upwards(choices, -0.1 * force)},
+                {"obstacle.point", upwards(choices, 0.7 * lowest - 0.1 * l)},
+                {"obstacle.normal", upwards(choices, 1)},
+                {"obstacle.stiffness", number(1e3 * force / (l * l))},
+                {"obstacle.friction", "0.3"},
+                {"track.obstacle_rate", "\"25 Hz\""},
+                {"force_model.c_c", number(scene.axial_stiffness())}};
+  for (const char* path : {"obstacle.shape", "obstacle.touches", "track.frame_rate",
+                           "track.step_rate", "force_model.points", "force_model.law",
+                           "force_model.bookkeeping", "force_model.stepper"}) {
+    const std::string_view name = path;
+    const std::size_t dot = name.find('.');
+    values[path] = toml_value(scene_table(name.substr(0, dot)).key(name.substr(dot + 1)).missing);
+  }
+  return values;
+}
+
+std::string comment(const std::string& text, std::size_t blanks = 1) {
+  constexpr std::size_t width = 98;
+  const std::string lines = wrap(text, blanks + 2, width);
+  return "#" + std::string(blanks, ' ') + with_places(lines, {{"\n", "\n#"}}) + "\n";
+}
+
+/// Returns the words of a key, with its units, what is allowed, and its default.
+std::string words_of(const SceneKey& key) {
+  std::vector<std::string> notes;
+  for (const std::string& note : {known_units(key.dimension), key.range.text}) {
+    if (!note.empty()) notes.push_back(note);
+  }
+  notes.push_back((key.missing.starts_with("required") ? "" : "if missing: ") + key.missing);
+  return fmt::format("{} ({})", key.words, fmt::join(notes, "; "));
+}
+
+/// Returns the lines of a table: a key with a value as a line of TOML after its words, another key
+/// as a comment with its example. @param mark  before each line of TOML
+std::string table_text(const SceneTable& table, const Values& values, const std::string& mark) {
+  std::string keys;
+  bool has_values = false;
+  for (const SceneKey& key : table.keys) {
+    if (key.words.empty()) continue;
+    const auto value = values.find(table.name + "." + key.name);
+    const bool given = value != values.end();
+    keys += given ? comment(words_of(key))
+                  : comment(fmt::format("{} = {}: {}", key.name, key.example, words_of(key)), 3);
+    if (given) keys += fmt::format("{}{} = {}\n", mark, key.name, value->second);
+    has_values = has_values || given;
+  }
+  if (table.name.empty()) return "\n" + keys;
+  return "\n" + comment(table.words) + (has_values ? mark : "# ") + table.header + "\n" + keys;
 }
 
 }  // namespace
 
 std::string scene_text(const SceneChoices& choices, const std::vector<Material>& known_materials) {
-  const std::string text = required_part(choices, known_materials);
-  const Scene scene = parse_scene(text, "the new scene", known_materials);
+  constexpr std::string_view required[] = {"", "rod", "gripper"};
+  Values values = required_values(choices);
+  std::string file;
+  for (const std::string_view name : required) file += table_text(scene_table(name), values, "");
+  const Scene scene = parse_scene(file, "the new scene", known_materials);
   if (scene.diameter > scene.length) {
     throw InputError("the new scene", "rod.diameter",
                      fmt::format(" = {}: thicker than long (allowed: at most the length, {:g} m)",
                                  choices.diameter, scene.length));
   }
-  return text + optional_part(choices, scene);
+  values.merge(optional_values(choices, scene));
+  std::string text =
+      "# A scene of dlo: a rod, what holds it and what pulls at it. It solves as it is:\n"
+      "#   dlo solve FILE\n"
+      "# Numbers are in SI units; a string may have another unit: 0.006 or \"6 mm\".\n"
+      "# Lines that begin with # and no blank are optional parts: remove the # to use them.\n";
+  for (const SceneTable& table : scene_tables()) {
+    const bool needed = std::ranges::find(required, table.name) != std::end(required);
+    text += table_text(table, values, needed ? "" : "#");
+  }
+  const Eigen::Vector3d pin = 0.7 * scene.length * *scene.grippers.front().direction;
+  return text +
+         fmt::format(
+             "\n# A second gripper, here a pin at the other end.\n#[[gripper]]\n#at = {:.4g}\n"
+             "#position = [{:.4g}, {:.4g}, {:.4g}]\n#hold = \"pin\"\n",
+             scene.length, pin.x(), pin.y(), pin.z());
 }
 
 }  // namespace dlo::compare

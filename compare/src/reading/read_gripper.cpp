@@ -17,7 +17,7 @@ namespace dlo::compare {
 namespace {
 
 Eigen::Vector3d read_direction(StrictTable& table) {
-  if (table.is_array("direction")) return unit_vector(table, "direction");
+  if (table.is("direction", toml::node_type::array)) return unit_vector(table, "direction");
   // A bare number is in radians. The range refuses -175, which is meant in degrees.
   const Range turn{-2 * std::numbers::pi, 2 * std::numbers::pi, false,
                    "-2 pi to 2 pi rad, or a string such as \"-175 deg\", or a vector"};
@@ -27,8 +27,6 @@ Eigen::Vector3d read_direction(StrictTable& table) {
 
 /// Rounding error of a rotation matrix or a quaternion that is given with six decimals.
 constexpr double rotation_tolerance = 2e-6;
-constexpr int most_turns = 1000;
-constexpr const char* frame_keys[] = {"roll", "frame", "quaternion", "turns"};
 
 /// Reads the columns d1, d2, d3 of a clamp, if the file gives them.
 std::optional<Eigen::Matrix3d> read_directors(StrictTable& table) {
@@ -57,24 +55,15 @@ std::optional<Eigen::Matrix3d> read_directors(StrictTable& table) {
 void read_clamp(StrictTable& table, Gripper& gripper) {
   const Pose first = gripper.trajectory.empty() ? Pose() : gripper.trajectory.poses().front();
   const std::optional<Eigen::Vector3d>& moving_direction = first.direction;
-  for (const char* key : {"direction", "frame", "quaternion"}) {
-    if (!moving_direction || !table.has(key)) continue;
-    table.fail(key, fmt::format("given besides poses with directions (allowed: poses without "
-                                "directions, or no {})",
-                                key));
+  if (moving_direction) {
+    table.refuse({"direction", "frame", "quaternion"},
+                 "given besides poses with directions (allowed: one of the two)");
   }
-  const char* given = nullptr;
-  for (const char* key : {"roll", "frame", "quaternion"}) {
-    if (!table.has(key)) continue;
-    if (given != nullptr) {
-      table.fail(
-          key, fmt::format("given besides {} (allowed: one of roll, frame and quaternion)", given));
-    }
-    given = key;
-  }
-  const std::optional<double> roll = table.optional_number("roll", Dimension::angle, Range::any());
+  std::optional<double> roll;
+  std::optional<int> turns;
+  table.read("roll", roll);
+  table.read("turns", turns);
   const std::optional<Eigen::Matrix3d> directors = read_directors(table);
-  const std::optional<int> turns = table.optional_integer("turns", -most_turns, most_turns);
   if (turns && !directors) {
     table.fail("turns", "needs frame or quaternion (allowed: a roll of any size, \"720 deg\")");
   }
@@ -91,9 +80,9 @@ void read_clamp(StrictTable& table, Gripper& gripper) {
   gripper.direction = direction;
   if (!directors) return;
   if (!((direction - d3).norm() <= rotation_tolerance)) {
-    table.fail("direction", fmt::format("is not d3 = [{:.6g}, {:.6g}, {:.6g}] of {} (allowed: the "
-                                        "same, or none)",
-                                        d3.x(), d3.y(), d3.z(), given));
+    table.fail("direction", fmt::format("is not d3 = [{:.6g}, {:.6g}, {:.6g}] of the frame "
+                                        "(allowed: the same, or none)",
+                                        d3.x(), d3.y(), d3.z()));
   }
   const Eigen::Vector3d d1 = directors->col(0);
   gripper.frame =
@@ -125,9 +114,8 @@ void require_clear(const Gripper& gripper, const Scene& scene, const StrictTable
 
 Gripper read_gripper(StrictTable& table, const Scene& scene) {
   Gripper gripper;
-  table.only(scene_keys("gripper"));
   gripper.at = read_arc_length(table, "at", scene.length);
-  const std::string hold = table.has("hold") ? table.choice("hold", {"clamp", "pin"}) : "clamp";
+  const std::string hold = table.has("hold") ? table.choice("hold") : "clamp";
   PoseKeys keys{.direction = nullptr, .at = gripper.at};
   if (hold == "clamp") keys.direction = read_direction;
   gripper.trajectory = read_trajectory(table, keys, scene.file);
@@ -135,15 +123,8 @@ Gripper read_gripper(StrictTable& table, const Scene& scene) {
   if (hold == "clamp") {
     read_clamp(table, gripper);
   } else {
-    if (table.has("direction")) {
-      table.fail("direction",
-                 "a pin has no direction (allowed: hold = \"clamp\", or no direction)");
-    }
-    for (const char* key : frame_keys) {
-      if (!table.has(key)) continue;
-      table.fail(key,
-                 fmt::format("a pin holds no frame (allowed: hold = \"clamp\", or no {})", key));
-    }
+    table.refuse({"direction", "roll", "frame", "quaternion", "turns"},
+                 "a pin holds neither direction nor frame (allowed: hold = \"clamp\", or none)");
   }
   gripper.where = table.where();
   table.finish();
@@ -166,14 +147,13 @@ void check_twist(const Scene& scene, const StrictTable& rod) {
 void check_material_directors(const Scene& scene, const StrictTable& rod,
                               const std::vector<StrictTable>& sections) {
   const bool clamped =
-      std::any_of(scene.grippers.begin(), scene.grippers.end(),
-                  [](const Gripper& gripper) { return gripper.direction.has_value(); });
+      std::ranges::any_of(scene.grippers, [](const Gripper& g) { return g.direction.has_value(); });
   constexpr const char* unheld =
       "no gripper holds the rod's frame (allowed: a gripper with hold = \"clamp\")";
-  for (const char* key : {"natural_curvature", "natural_twist", "helix", "rest_shape"}) {
-    if (!clamped && rod.has(key)) rod.fail(key, unheld);
+  if (!clamped) {
+    rod.refuse({"natural_curvature", "natural_twist", "helix", "rest_shape"}, unheld);
     for (const StrictTable& section : sections) {
-      if (!clamped && section.has(key)) section.fail(key, unheld);
+      section.refuse({"natural_curvature", "natural_twist"}, unheld);
     }
   }
   if (!clamped && scene.has_two_stiffnesses()) {
@@ -214,11 +194,7 @@ Eigen::Vector3d unit_vector(StrictTable& table, std::string_view key) {
 }
 
 Eigen::Vector3d read_place(StrictTable& table, const char* key, const Trajectory& trajectory) {
-  if (trajectory.empty()) return table.vector(key, Dimension::length);
-  if (table.has(key)) {
-    table.fail(key,
-               fmt::format("given besides poses, which say where it is (allowed: no {})", key));
-  }
+  if (trajectory.empty()) return table.vector(key);
   return trajectory.poses().front().position;
 }
 

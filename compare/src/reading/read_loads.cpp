@@ -11,8 +11,6 @@
 namespace dlo::compare {
 namespace {
 
-constexpr std::size_t most_forces_per_length = 100;
-
 /// Returns the cross-section that displaces the medium [m^2]; a tube is closed at its ends, so that
 /// its bore is included; 0 if the section is not given.
 double displaced_area(const Scene& scene) {
@@ -22,26 +20,18 @@ double displaced_area(const Scene& scene) {
 
 /// Reads the drag on the rod, by Morison's law with the rod's diameter.
 std::optional<energy_model::Drag> read_drag(StrictTable& table, double density, double diameter) {
-  if (!table.has("velocity")) {
-    for (const char* key : {"normal_drag", "tangential_drag"}) {
-      if (!table.has(key)) continue;
-      table.fail(key, fmt::format("of a medium at rest (allowed: velocity too, or no {})", key));
-    }
-    return std::nullopt;
-  }
+  if (!table.has("velocity")) return std::nullopt;
   if (!(diameter > 0)) {
     table.fail("velocity",
                "of a flat rod, whose drag no model has (allowed: [rod] with diameter, or no "
                "velocity)");
   }
   energy_model::Drag drag;
-  drag.velocity = table.vector("velocity", Dimension::velocity);
+  drag.velocity = table.vector("velocity");
   const double unit = density * diameter / 2;
-  drag.normal = unit * table.number("normal_drag", Dimension::number, Range::not_negative());
-  drag.tangential =
-      std::numbers::pi * unit *
-      table.optional_number("tangential_drag", Dimension::number, Range::not_negative())
-          .value_or(0);
+  drag.normal = unit * table.number("normal_drag");
+  table.read("tangential_drag", drag.tangential);
+  drag.tangential *= std::numbers::pi * unit;
   return drag;
 }
 
@@ -49,36 +39,26 @@ std::optional<energy_model::Drag> read_drag(StrictTable& table, double density, 
 
 PointLoad read_load(StrictTable& table, const Scene& scene) {
   PointLoad load;
-  table.only(scene_keys("load"));
   load.at = read_arc_length(table, "at", scene.length);
-  const std::optional<double> mass =
-      table.optional_number("mass", Dimension::mass, Range::positive());
-  if (mass && table.has("force")) {
-    table.fail("mass", "given besides force (allowed: one of force and mass)");
-  }
-  load.torque = table.optional_vector("torque", Dimension::torque).value_or(load.torque);
-  load.follows = table.flag("follows");
-  if (mass && load.follows) {
-    table.fail("follows", "of a mass, which hangs along gravity (allowed: force and torque)");
-  }
-  if (mass) {
-    load.force = *mass * scene.gravity;
-  } else if (!table.has("torque") || table.has("force")) {
-    if (!table.has("force")) {
-      table.fail("force",
-                 "missing, and so are mass and torque (allowed: force or mass, torque, or one of "
-                 "the two with torque)");
+  const bool has_mass = table.read("mass", load.mass);
+  const bool has_torque = table.read("torque", load.torque);
+  table.read("follows", load.follows);
+  if (has_mass) {
+    if (load.follows) {
+      table.fail("follows", "of a mass, which hangs along gravity (allowed: force and torque)");
     }
-    load.force = table.vector("force", Dimension::force);
+    load.force = load.mass * scene.gravity;
+  } else if (!table.read("force", load.force) && !has_torque) {
+    table.fail("force",
+               "missing, and so are mass and torque (allowed: force or mass, torque, or one of the "
+               "two with torque)");
   }
-  load.mass = mass.value_or(0);
   table.finish();
   return load;
 }
 
 DistributedLoad read_distributed_load(StrictTable& table, const Scene& scene) {
   DistributedLoad load{0, scene.length, {}};
-  table.only(scene_keys("distributed_load"));
   if (table.has("from")) load.from = read_arc_length(table, "from", scene.length);
   if (table.has("to")) load.to = read_arc_length(table, "to", scene.length);
   if (!(load.to > load.from)) {
@@ -88,16 +68,14 @@ DistributedLoad read_distributed_load(StrictTable& table, const Scene& scene) {
                     "which are 0 and the rod's length if not given)",
                     load.to));
   }
-  load.force_per_length =
-      table.vectors("force_per_length", Dimension::force_per_length, most_forces_per_length);
+  load.force_per_length = table.vectors("force_per_length");
   table.finish();
   return load;
 }
 
 /// Reads the drag, and adds the buoyancy of the rod: a load against gravity without inertia.
 void read_medium(StrictTable& table, Scene& scene) {
-  table.only(scene_keys("medium"));
-  const double density = table.number("density", Dimension::density, Range::positive());
+  const double density = table.number("density");
   const double section = displaced_area(scene);
   if (!(section > 0)) {
     table.fail(

@@ -13,7 +13,7 @@ namespace {
 
 /// Reads a box with the edges `size` along `axis`, along `normal` and perpendicular to both.
 obstacle::Body read_box(StrictTable& table, const Eigen::Vector3d& centre) {
-  const Eigen::Vector3d size = table.vector("size", Dimension::length);
+  const Eigen::Vector3d size = table.vector("size");
   if (!(size.minCoeff() > 0)) table.fail("size", "has to be three lengths > 0");
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   if (table.has("axis")) axes.col(0) = unit_vector(table, "axis");
@@ -34,24 +34,19 @@ obstacle::Body read_box(StrictTable& table, const Eigen::Vector3d& centre) {
 }
 
 obstacle::Body read_body(StrictTable& table, const Eigen::Vector3d& point) {
-  const std::string shape =
-      table.has("shape") ? table.choice("shape", {"plane", "sphere", "cylinder", "capsule", "box"})
-                         : "plane";
-  const auto length_of = [&table](const char* key) {
-    return table.number(key, Dimension::length, Range::positive());
-  };
+  const std::string shape = table.has("shape") ? table.choice("shape") : "plane";
   if (shape == "plane") {
     return obstacle::Body::half_space(point, unit_vector(table, "normal"));
   }
   if (shape == "sphere") {
-    return obstacle::Body::sphere(point, length_of("radius"));
+    return obstacle::Body::sphere(point, table.number("radius"));
   }
   if (shape == "cylinder") {
-    return obstacle::Body::cylinder(point, unit_vector(table, "axis"), length_of("radius"));
+    return obstacle::Body::cylinder(point, unit_vector(table, "axis"), table.number("radius"));
   }
   if (shape == "capsule") {
-    return obstacle::Body::capsule(point, unit_vector(table, "axis"), length_of("length"),
-                                   length_of("radius"));
+    return obstacle::Body::capsule(point, unit_vector(table, "axis"), table.number("length"),
+                                   table.number("radius"));
   }
   return read_box(table, point);
 }
@@ -60,16 +55,13 @@ obstacle::Body read_body(StrictTable& table, const Eigen::Vector3d& point) {
 
 Obstacle read_obstacle(StrictTable& table, const Scene& scene) {
   Obstacle obstacle;
-  table.only(scene_keys("obstacle"));
   obstacle.trajectory =
       read_trajectory(table, {.position = "point", .direction = nullptr}, scene.file);
   const Eigen::Vector3d point = read_place(table, "point", obstacle.trajectory);
   obstacle.body = read_body(table, point);
-  obstacle.stiffness = table.optional_number("stiffness", Dimension::foundation, Range::positive())
-                           .value_or(obstacle.stiffness);
-  obstacle.friction = table.optional_number("friction", Dimension::number, Range::not_negative())
-                          .value_or(obstacle.friction);
-  const bool axis = table.has("touches") && table.choice("touches", {"surface", "axis"}) == "axis";
+  table.read("stiffness", obstacle.stiffness);
+  table.read("friction", obstacle.friction);
+  const bool axis = table.has("touches") && table.choice("touches") == "axis";
   if (!axis && scene.width > 0) {
     table.fail("touches",
                "missing or \"surface\", which is not at one distance from the axis of a rod with "

@@ -41,22 +41,6 @@ std::vector<MarkerPosition> rows_of_shape(const MeasuredShape& shape, double len
   return rows;
 }
 
-/// Limits of a scene. Solvers of several spans need memory that grows with the square of the number
-/// of grippers, about 250 MB for the largest number; scenes need no larger numbers of loads.
-constexpr std::size_t most_grippers = 500;
-constexpr std::size_t most_loads = 10'000;
-constexpr std::size_t most_distributed_loads = 100;
-constexpr std::size_t most_sections = 1'000;
-constexpr std::size_t most_obstacles = 1'000;
-
-std::vector<StrictTable> bounded_tables(StrictTable& table, const char* key, std::size_t most) {
-  std::vector<StrictTable> tables = table.tables(key);
-  if (tables.size() > most) {
-    table.fail(key, fmt::format("{} given (allowed: up to {})", tables.size(), most));
-  }
-  return tables;
-}
-
 /// Reads the rows of a recording, or of a shape, whose points then have time 0.
 std::shared_ptr<const MarkerMotion> read_start(StrictTable& rates, const Scene& scene) {
   const std::optional<std::string> name = rates.optional_text("start");
@@ -85,13 +69,9 @@ std::shared_ptr<const MarkerMotion> read_start(StrictTable& rates, const Scene& 
 }
 
 void read_track(StrictTable& rates, Scene& scene) {
-  rates.only(scene_keys("track"));
-  const auto rate = [&rates](const char* key) {
-    return rates.optional_number(key, Dimension::frequency, Range::positive());
-  };
-  scene.track.frames = rate("frame_rate").value_or(scene.track.frames);
-  scene.track.obstacles = rate("obstacle_rate");
-  scene.track.steps = rate("step_rate").value_or(scene.track.steps);
+  rates.read("frame_rate", scene.track.frames);
+  rates.read("obstacle_rate", scene.track.obstacles);
+  rates.read("step_rate", scene.track.steps);
   scene.start = read_start(rates, scene);
   rates.finish();
 }
@@ -101,23 +81,23 @@ void read_track(StrictTable& rates, Scene& scene) {
 Scene read_scene(const toml::table& root, const std::string& file,
                  const std::vector<Material>& known_materials) {
   StrictTable table(root, "", file);
-  table.only(scene_keys(""));
+  table.follow("");
   Scene scene;
   scene.file = file;
-  scene.name = table.optional_text("name").value_or(valid_utf8(file));
-  scene.gravity = table.optional_vector("gravity", Dimension::acceleration).value_or(scene.gravity);
+  if (!table.read("name", scene.name)) scene.name = valid_utf8(file);
+  table.read("gravity", scene.gravity);
 
   if (!table.has("rod")) {
     table.fail("rod", "missing, it is required (dlo init writes a scene to start from)");
   }
   StrictTable rod = table.table("rod");
-  std::vector<StrictTable> sections = bounded_tables(table, "section", most_sections);
+  std::vector<StrictTable> sections = table.tables("section");
   read_rod(rod, sections, known_materials, scene);
 
-  for (StrictTable& entry : bounded_tables(table, "obstacle", most_obstacles)) {
+  for (StrictTable& entry : table.tables("obstacle")) {
     scene.obstacles.push_back(read_obstacle(entry, scene));
   }
-  std::vector<StrictTable> grippers = bounded_tables(table, "gripper", most_grippers);
+  std::vector<StrictTable> grippers = table.tables("gripper");
   for (StrictTable& entry : grippers) {
     scene.grippers.push_back(read_gripper(entry, scene));
   }
@@ -127,9 +107,9 @@ Scene read_scene(const toml::table& root, const std::string& file,
         file));
   }
   check_twist(scene, rod);
-  std::vector<StrictTable> loads = bounded_tables(table, "load", most_loads);
+  std::vector<StrictTable> loads = table.tables("load");
   for (StrictTable& entry : loads) scene.loads.push_back(read_load(entry, scene));
-  for (StrictTable& entry : bounded_tables(table, "distributed_load", most_distributed_loads)) {
+  for (StrictTable& entry : table.tables("distributed_load")) {
     scene.distributed_loads.push_back(read_distributed_load(entry, scene));
   }
   if (auto medium = table.optional_table("medium")) {

@@ -2,11 +2,11 @@
 
 #include <utility>
 
+#include "base/builtin_data.hpp"
 #include "base/input_file.hpp"
 #include "decode/xml.hpp"
 #include "mjcf/mjcf_scene.hpp"
 #include "reading/read_scene.hpp"
-#include "scene/builtin_data.hpp"
 #include "toml/strict_table.hpp"
 
 namespace dlo::compare {

@@ -156,26 +156,23 @@ class Overrider {
   MissingElements missing_;
 };
 
-/// Tables and their keys that name a file, relative to the folder of the scene.
-constexpr std::pair<const char*, const char*> file_keys[] = {{"rod", "rest_shape"},
-                                                             {"track", "start"},
-                                                             {"gripper", "trajectory"},
-                                                             {"obstacle", "trajectory"}};
-
 /// Returns the names of files in a scene.
 std::vector<std::string*> file_names(toml::table& root) {
   std::vector<std::string*> names;
-  for (const auto& [name, key] : file_keys) {
-    const auto add = [&names, key = key](toml::node& node) {
-      toml::table* const table = node.as_table();
-      toml::value<std::string>* const file = table ? (*table)[key].as_string() : nullptr;
-      if (file != nullptr) names.push_back(&file->get());
-    };
-    toml::node* const node = root.get(name);
-    if (toml::array* const tables = node ? node->as_array() : nullptr) {
-      for (toml::node& table : *tables) add(table);
-    } else if (node != nullptr) {
-      add(*node);
+  const auto add = [&names](toml::node& node, const std::string& key) {
+    toml::table* const table = node.as_table();
+    toml::value<std::string>* const file = table ? (*table)[key].as_string() : nullptr;
+    if (file != nullptr) names.push_back(&file->get());
+  };
+  for (const SceneTable& rows : scene_tables()) {
+    toml::node* const node = root.get(rows.name);
+    for (const SceneKey& key : rows.keys) {
+      if (node == nullptr || !key.value.starts_with("file")) continue;
+      if (toml::array* const tables = node->as_array()) {
+        for (toml::node& table : *tables) add(table, key.name);
+      } else {
+        add(*node, key.name);
+      }
     }
   }
   return names;

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/builtin_data.hpp"
 #include "base/quote.hpp"
-#include "scene/builtin_data.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -15,26 +15,27 @@
 namespace dlo::compare {
 
 void check(const ForceModelSettings& settings, const std::string& where) {
-  const auto refuse = [&](const char* key, const char* allowed) {
-    throw InputError(
-        fmt::format("{}: {} would have no effect (allowed: with {})", where, key, allowed));
-  };
-  const bool automatic = settings.stepper == Stepper::automatic;
-  const bool dynamic = settings.stepper == Stepper::dynamic;
-  const bool masses_or_newton =
-      settings.stepper == Stepper::verlet || settings.stepper == Stepper::implicit;
-  if (settings.c_F && automatic) refuse("c_F", "a stepper other than auto, which chooses its own");
-  if (settings.c_F && masses_or_newton)
-    refuse("c_F", "stepper basic, limited, relative or dynamic");
-  if (settings.c_h && !dynamic) refuse("c_h", "stepper dynamic");
-  if (settings.l_s && settings.stepper == Stepper::basic) {
-    refuse("l_s", "a stepper other than basic");
-  }
-  if (settings.l_s && masses_or_newton) refuse("l_s", "stepper limited, relative, dynamic or auto");
-  if (settings.c_b && settings.law == BendingLaw::hooke) refuse("c_b", "law paper");
-  if (settings.joint_law && settings.law == BendingLaw::paper) refuse("joint_law", "law hooke");
-  if (settings.point_weight && settings.bookkeeping != Bookkeeping::paper) {
-    refuse("point_weight", "bookkeeping paper");
+  const Stepper stepper = settings.stepper;
+  const bool masses_or_newton = stepper == Stepper::verlet || stepper == Stepper::implicit;
+  const bool automatic = stepper == Stepper::automatic;
+  const struct {
+    bool without_effect;
+    const char* key;
+    const char* allowed;
+  } rules[] = {
+      {settings.c_F && automatic, "c_F", "a stepper other than auto, which chooses its own"},
+      {settings.c_F && masses_or_newton, "c_F", "stepper basic, limited, relative or dynamic"},
+      {settings.c_h && stepper != Stepper::dynamic, "c_h", "stepper dynamic"},
+      {settings.l_s && stepper == Stepper::basic, "l_s", "a stepper other than basic"},
+      {settings.l_s && masses_or_newton, "l_s", "stepper limited, relative, dynamic or auto"},
+      {settings.c_b && settings.law == BendingLaw::hooke, "c_b", "law paper"},
+      {settings.joint_law && settings.law == BendingLaw::paper, "joint_law", "law hooke"},
+      {settings.point_weight && settings.bookkeeping != Bookkeeping::paper, "point_weight",
+       "bookkeeping paper"}};
+  for (const auto& rule : rules) {
+    if (!rule.without_effect) continue;
+    throw InputError(fmt::format("{}: {} would have no effect (allowed: with {})", where, rule.key,
+                                 rule.allowed));
   }
 }
 
@@ -75,26 +76,9 @@ double paper_bending_stiffness(BendingRule rule, double bending_stiffness, doubl
 }
 
 ForceModelSettings read_force_model(StrictTable& table) {
-  table.only(scene_keys("force_model"));
+  table.follow("force_model");
   ForceModelSettings settings;
-  settings.points = table.optional_integer("points", 4, 1'000'000).value_or(settings.points);
-  settings.law = table.optional_choice<BendingLaw>("law").value_or(settings.law);
-  settings.joint_law = table.optional_choice<energy_model::JointLaw>("joint_law");
-  settings.bookkeeping =
-      table.optional_choice<Bookkeeping>("bookkeeping").value_or(settings.bookkeeping);
-  settings.stepper = table.optional_choice<Stepper>("stepper").value_or(settings.stepper);
-  settings.bending_rule =
-      table.optional_choice<BendingRule>("bending_rule").value_or(settings.bending_rule);
-  settings.design_curvature =
-      table.optional_number("design_curvature", Dimension::curvature, Range::positive());
-  settings.point_weight =
-      table.optional_number("point_weight", Dimension::force, Range::not_negative());
-  settings.c_b = table.optional_number("c_b", Dimension::force, Range::positive());
-  settings.c_c = table.optional_number("c_c", Dimension::force, Range::positive());
-  settings.c_F = table.optional_number("c_F", Dimension::number, Range::positive());
-  settings.c_h =
-      table.optional_number("c_h", Dimension::number, {0, 0.999999999, false, "0 <= c_h < 1"});
-  settings.l_s = table.optional_number("l_s", Dimension::length, Range::positive());
+  each_member(settings, [&table](const char* key, auto& value) { table.read(key, value); });
   table.finish();
   return settings;
 }

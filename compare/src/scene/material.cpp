@@ -5,10 +5,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/builtin_data.hpp"
 #include "base/input_file.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene.hpp"
-#include "scene/builtin_data.hpp"
 #include "toml/strict_table.hpp"
 
 namespace dlo::compare {

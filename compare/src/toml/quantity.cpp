@@ -21,70 +21,54 @@ struct Unit {
   double factor;
 };
 
-constexpr Unit lengths[] = {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}};
-constexpr Unit angles[] = {{"rad", 1}, {"deg", std::numbers::pi / 180}};
-constexpr Unit pressures[] = {{"Pa", 1}, {"kPa", 1e3}, {"MPa", 1e6}, {"GPa", 1e9}, {"N/mm^2", 1e6}};
-constexpr Unit densities[] = {{"kg/m^3", 1}, {"kg/dm^3", 1e3}, {"g/cm^3", 1e3}};
-constexpr Unit forces[] = {{"N", 1}, {"mN", 1e-3}, {"kN", 1e3}};
-constexpr Unit torques[] = {{"N m", 1}, {"mN m", 1e-3}, {"N mm", 1e-3}, {"kN m", 1e3}};
-constexpr Unit forces_per_length[] = {{"N/m", 1}, {"mN/m", 1e-3}, {"kN/m", 1e3}, {"N/mm", 1e3}};
-constexpr Unit accelerations[] = {{"m/s^2", 1}};
-constexpr Unit velocities[] = {{"m/s", 1}, {"mm/s", 1e-3}, {"km/h", 1 / 3.6}};
-constexpr Unit curvatures[] = {{"1/m", 1}, {"1/cm", 1e2}, {"1/mm", 1e3}};
-constexpr Unit foundations[] = {{"N/m^2", 1}, {"N/mm^2", 1e6}};
-constexpr Unit section_stiffnesses[] = {
-    {"N m^2", 1}, {"mN m^2", 1e-3}, {"kN m^2", 1e3}, {"N cm^2", 1e-4}, {"N mm^2", 1e-6}};
-constexpr Unit joint_stiffnesses[] = {{"N m/rad", 1},     {"N m", 1},
-                                      {"mN m/rad", 1e-3}, {"N mm/rad", 1e-3},
-                                      {"N mm", 1e-3},     {"N m/deg", 180 / std::numbers::pi}};
-constexpr Unit masses[] = {{"kg", 1}, {"g", 1e-3}};
-constexpr Unit masses_per_length[] = {{"kg/m", 1}, {"g/m", 1e-3}, {"g/cm", 1e-1}};
-constexpr Unit twists[] = {{"rad/m", 1}, {"deg/m", std::numbers::pi / 180}, {"1/m", 1}};
-constexpr Unit times[] = {{"s", 1}, {"ms", 1e-3}, {"min", 60}};
-constexpr Unit frequencies[] = {{"Hz", 1}, {"kHz", 1e3}};
+/// Name of a dimension, its units, SI first, and the largest magnitude of a number in SI units.
+struct DimensionUnits {
+  std::string_view name;
+  Unit units[6];  // those without a name do not exist
+  double largest = 1e30;
+};
+
+constexpr double degree_in_radians = std::numbers::pi / 180;
+constexpr double unlimited = std::numeric_limits<double>::max();
+/// In the order of Dimension. Clocks count 1.8e9 s since 1970; curvatures and twists are at most
+/// the reciprocal of the smallest radius of a helix.
+constexpr DimensionUnits dimensions[] = {
+    {"number", {}},
+    {"length", {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}}, 1e6},
+    {"angle", {{"rad", 1}, {"deg", degree_in_radians}}},
+    {"pressure", {{"Pa", 1}, {"kPa", 1e3}, {"MPa", 1e6}, {"GPa", 1e9}, {"N/mm^2", 1e6}}, unlimited},
+    {"density", {{"kg/m^3", 1}, {"kg/dm^3", 1e3}, {"g/cm^3", 1e3}}},
+    {"force", {{"N", 1}, {"mN", 1e-3}, {"kN", 1e3}}},
+    {"torque", {{"N m", 1}, {"mN m", 1e-3}, {"N mm", 1e-3}, {"kN m", 1e3}}},
+    {"force_per_length", {{"N/m", 1}, {"mN/m", 1e-3}, {"kN/m", 1e3}, {"N/mm", 1e3}}},
+    {"acceleration", {{"m/s^2", 1}}},
+    {"velocity", {{"m/s", 1}, {"mm/s", 1e-3}, {"km/h", 1 / 3.6}}},
+    {"curvature", {{"1/m", 1}, {"1/cm", 1e2}, {"1/mm", 1e3}}, 1e9},
+    {"foundation", {{"N/m^2", 1}, {"N/mm^2", 1e6}}},
+    {"section_stiffness",
+     {{"N m^2", 1}, {"mN m^2", 1e-3}, {"kN m^2", 1e3}, {"N cm^2", 1e-4}, {"N mm^2", 1e-6}},
+     unlimited},
+    {"joint_stiffness",
+     {{"N m/rad", 1},
+      {"N m", 1},
+      {"mN m/rad", 1e-3},
+      {"N mm/rad", 1e-3},
+      {"N mm", 1e-3},
+      {"N m/deg", 1 / degree_in_radians}}},
+    {"mass", {{"kg", 1}, {"g", 1e-3}}},
+    {"mass_per_length", {{"kg/m", 1}, {"g/m", 1e-3}, {"g/cm", 1e-1}}},
+    {"twist", {{"rad/m", 1}, {"deg/m", degree_in_radians}, {"1/m", 1}}, 1e9},
+    {"time", {{"s", 1}, {"ms", 1e-3}, {"min", 60}}, 1e12},
+    {"frequency", {{"Hz", 1}, {"kHz", 1e3}}}};
+
+const DimensionUnits& row_of(Dimension dimension) {
+  return dimensions[static_cast<std::size_t>(dimension)];
+}
 
 std::span<const Unit> units(Dimension dimension) {
-  switch (dimension) {
-    case Dimension::length:
-      return lengths;
-    case Dimension::angle:
-      return angles;
-    case Dimension::pressure:
-      return pressures;
-    case Dimension::density:
-      return densities;
-    case Dimension::force:
-      return forces;
-    case Dimension::torque:
-      return torques;
-    case Dimension::force_per_length:
-      return forces_per_length;
-    case Dimension::acceleration:
-      return accelerations;
-    case Dimension::velocity:
-      return velocities;
-    case Dimension::curvature:
-      return curvatures;
-    case Dimension::foundation:
-      return foundations;
-    case Dimension::section_stiffness:
-      return section_stiffnesses;
-    case Dimension::joint_stiffness:
-      return joint_stiffnesses;
-    case Dimension::mass:
-      return masses;
-    case Dimension::mass_per_length:
-      return masses_per_length;
-    case Dimension::twist:
-      return twists;
-    case Dimension::time:
-      return times;
-    case Dimension::frequency:
-      return frequencies;
-    case Dimension::number:
-      break;
-  }
-  return {};
+  const auto& all = row_of(dimension).units;
+  const auto* const end = std::ranges::find(all, std::string_view(), &Unit::name);
+  return {std::begin(all), end};
 }
 
 /// Returns a unit in the spelling of the tables above: "*" and middle dots become blanks, raised
@@ -120,6 +104,12 @@ bool names(std::string_view plain, std::string_view unit) {
 
 }  // namespace
 
+std::optional<Dimension> dimension_named(std::string_view name) {
+  const auto* const found = std::ranges::find(dimensions, name, &DimensionUnits::name);
+  if (found == std::end(dimensions)) return std::nullopt;
+  return static_cast<Dimension>(found - std::begin(dimensions));
+}
+
 std::vector<std::string> unit_names(Dimension dimension) {
   std::vector<std::string> names;
   for (const Unit& unit : units(dimension)) names.emplace_back(unit.name);
@@ -130,29 +120,8 @@ std::string known_units(Dimension dimension) {
   return fmt::format("{}", fmt::join(unit_names(dimension), ", "));
 }
 
-namespace {
-
-double largest_magnitude(Dimension dimension) {
-  switch (dimension) {
-    case Dimension::length:
-      return 1e6;  // m, as for coordinates of shape files
-    case Dimension::curvature:
-    case Dimension::twist:
-      return 1e9;  // 1/m, the reciprocal of the smallest radius of a helix
-    case Dimension::time:
-      return 1e12;  // s; clocks count 1.8e9 s since 1970
-    case Dimension::pressure:
-    case Dimension::section_stiffness:
-      return std::numeric_limits<double>::max();
-    default:
-      return 1e30;
-  }
-}
-
-}  // namespace
-
 std::string magnitude_problem(double value, Dimension dimension) {
-  const double largest = largest_magnitude(dimension);
+  const double largest = row_of(dimension).largest;
   if (std::abs(value) <= largest) return {};
   return fmt::format("out of range (allowed: magnitudes up to {:g} in SI units)", largest);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,6 +29,9 @@ enum class Dimension {
   time,
   frequency,
 };
+
+/// Returns the dimension with an enumerator's name; std::nullopt if there is none.
+[[nodiscard]] std::optional<Dimension> dimension_named(std::string_view name);
 
 /// Returns the names of the units of a dimension, SI first.
 [[nodiscard]] std::vector<std::string> unit_names(Dimension dimension);

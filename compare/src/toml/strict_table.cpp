@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 #include "base/text.hpp"
@@ -12,8 +11,6 @@
 
 namespace dlo::compare {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::string joined(const std::vector<std::string>& words) {
   return fmt::format("{}", fmt::join(words, ", "));
@@ -35,16 +32,6 @@ std::string shown(const toml::node& node) {
 }
 
 }  // namespace
-
-Range Range::any() { return {-infinity, infinity, false, "any number"}; }
-Range Range::positive() { return {0, infinity, true, "> 0"}; }
-Range Range::not_negative() { return {0, infinity, false, ">= 0"}; }
-Range Range::between(double low, double high, const std::string& unit) {
-  return {low, high, false, fmt::format("{} to {}{}", low, high, unit)};
-}
-bool Range::holds(double value) const {
-  return (low_open ? value > low : value >= low) && value <= high;
-}
 
 StrictTable::StrictTable(const toml::table& table, std::string path, std::string file)
     : table_(table), path_(std::move(path)), file_(std::move(file)) {}
@@ -116,15 +103,10 @@ std::optional<double> StrictTable::optional_number(std::string_view key, Dimensi
   return number(key, dimension, range);
 }
 
-std::optional<int> StrictTable::optional_integer(std::string_view key, int low, int high) {
-  if (find(key) == nullptr) return std::nullopt;
-  return integer(key, low, high);
-}
-
-int StrictTable::integer(std::string_view key, int low, int high) {
+int StrictTable::integer(std::string_view key, const Range& range) {
   const auto value = need(key).value_exact<std::int64_t>();
-  if (!value || *value < low || *value > high) {
-    fail(key, fmt::format("must be a whole number (allowed: {} to {})", low, high));
+  if (!value || !range.holds(static_cast<double>(*value))) {
+    fail(key, fmt::format("must be a whole number (allowed: {})", range.text));
   }
   return static_cast<int>(*value);
 }
@@ -157,20 +139,35 @@ std::string StrictTable::choice(std::string_view key, const std::vector<std::str
   return value;
 }
 
-template <int Size>
-Eigen::Vector<double, Size> StrictTable::read_numbers(std::string_view key, const toml::node& node,
-                                                      Dimension dimension, const char* form) const {
-  const toml::array* array = node.as_array();
-  if (array == nullptr || array->size() != Size) fail(key, form);
-  Eigen::Vector<double, Size> value;
-  for (Eigen::Index i = 0; i < Size; ++i) {
-    value[i] = read_number(key, *array->get(static_cast<std::size_t>(i)), dimension);
+Eigen::MatrixXd StrictTable::columns(std::string_view key, Dimension dimension,
+                                     const NumberForm& form) {
+  const toml::node& node = need(key);
+  const toml::array* list = node.as_array();
+  const bool nested = list != nullptr && !list->empty() && list->front().is_array();
+  if (form.nested.value_or(nested) != nested) fail(key, form.words);
+  if (nested && rows_ != nullptr) require_count(key, list->size());
+  Eigen::MatrixXd result;
+  for (std::size_t i = 0; i < (nested ? list->size() : 1); ++i) {
+    const toml::array* row = nested ? list->get(i)->as_array() : list;
+    const std::size_t size = row == nullptr ? 1 : row->size();
+    if (i == 0)
+      result.resize(static_cast<Eigen::Index>(size),
+                    nested ? static_cast<Eigen::Index>(list->size()) : 1);
+    const bool allowed = std::ranges::find(form.sizes, size) != form.sizes.end();
+    if (!allowed || (row == nullptr) != (size == 1) || (nested && row == nullptr) ||
+        result.rows() != static_cast<Eigen::Index>(size)) {
+      fail(key, form.words);
+    }
+    for (std::size_t k = 0; k < size; ++k) {
+      result(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = read_number(
+          key, row == nullptr ? node : *row->get(k), k < 3 ? dimension : Dimension::number);
+    }
   }
-  return value;
+  return result;
 }
 
 Eigen::Vector3d StrictTable::vector(std::string_view key, Dimension dimension) {
-  return read_numbers<3>(key, need(key), dimension, "must be a vector of three numbers [x, y, z]");
+  return columns(key, dimension, {{3}, false, "must be a vector of three numbers [x, y, z]"});
 }
 
 std::optional<Eigen::Vector3d> StrictTable::optional_vector(std::string_view key,
@@ -179,116 +176,81 @@ std::optional<Eigen::Vector3d> StrictTable::optional_vector(std::string_view key
   return vector(key, dimension);
 }
 
-std::optional<Eigen::Vector2d> StrictTable::optional_pair(std::string_view key,
-                                                          Dimension dimension) {
-  const toml::node* node = find(key);
-  if (node == nullptr) return std::nullopt;
-  if (!node->is_array()) return Eigen::Vector2d(0, read_number(key, *node, dimension));
-  return read_numbers<2>(key, *node, dimension, "must be one number, or two in brackets [x, y]");
-}
-
 std::vector<Eigen::Vector2d> StrictTable::pairs(std::string_view key, Dimension dimension,
                                                 std::size_t most) {
-  const toml::node* node = find(key);
-  if (node == nullptr) return {};
-  const toml::array* rows = node->as_array();
-  if (rows == nullptr || rows->empty() || !rows->front().is_array()) {
-    return {optional_pair(key, dimension).value()};
-  }
-  if (rows->size() > most) {
-    fail(key, fmt::format("{} rows (allowed: 1 to {})", rows->size(), most));
-  }
-  std::vector<Eigen::Vector2d> pairs;
-  for (const toml::node& row : *rows) {
-    pairs.emplace_back(read_numbers<2>(
-        key, row, dimension, "must be one number, [x, y], or rows of two numbers [[x, y], ..]"));
-  }
-  return pairs;
+  if (find(key) == nullptr) return {};
+  const bool single = most == 1;
+  const Eigen::MatrixXd rows =
+      columns(key, dimension,
+              {{1, 2},
+               single ? std::optional(false) : std::nullopt,
+               single ? "must be one number, or two in brackets [x, y]"
+                      : "must be one number, [x, y], or rows of two numbers [[x, y], ..]"});
+  const auto count = static_cast<std::size_t>(rows.cols());
+  if (count > most) fail(key, fmt::format("{} rows (allowed: 1 to {})", count, most));
+  if (rows.rows() == 1) return {{0, rows(0)}};
+  return {rows.colwise().begin(), rows.colwise().end()};
 }
 
-std::vector<Eigen::Vector3d> StrictTable::vectors(std::string_view key, Dimension dimension,
-                                                  std::size_t most) {
-  const toml::array* rows = need(key).as_array();
-  if (rows == nullptr || rows->empty() || !rows->front().is_array())
-    return {vector(key, dimension)};
-  if (rows->size() < 2 || rows->size() > most) {
-    fail(key, fmt::format("{} rows (allowed: 2 to {}, or three numbers)", rows->size(), most));
-  }
-  std::vector<Eigen::Vector3d> vectors;
-  for (const toml::node& row : *rows) {
-    vectors.emplace_back(read_numbers<3>(
-        key, row, dimension, "must be three numbers [x, y, z], or rows of these [[x, y, z], ..]"));
-  }
-  return vectors;
+Eigen::Vector2d StrictTable::pair(std::string_view key) {
+  const Eigen::Vector2d pair = pairs(key, row(key).dimension, 1).front();
+  const Range& range = row(key).range;
+  if (range.holds(pair.x()) && range.holds(pair.y())) return pair;
+  fail(key, fmt::format("out of range (allowed: {}, about d1 and about d2)", range.text));
 }
 
-Eigen::MatrixXd StrictTable::points(std::string_view key, std::size_t most) {
-  const toml::array& rows = *need(key).as_array();
-  if (rows.size() < 2 || rows.size() > most) {
-    fail(key, fmt::format("{} rows (allowed: 2 to {})", rows.size(), most));
+void StrictTable::require_count(std::string_view key, std::size_t count) const {
+  const Range& range = row(key).range;
+  if (!range.holds(static_cast<double>(count))) {
+    fail(key, fmt::format("{} given (allowed: {})", count, range.text));
   }
-  const toml::array* first = rows.front().as_array();
-  const bool with_vectors = first != nullptr && first->size() == 6;
-  Eigen::MatrixXd points(with_vectors ? 6 : 3, static_cast<Eigen::Index>(rows.size()));
-  constexpr const char* form =
-      "must be rows [[x, y, z], ..] of three numbers, or of six with a vector in every row";
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const toml::array* row = rows[static_cast<std::size_t>(i)].as_array();
-    if (row == nullptr || row->size() != static_cast<std::size_t>(points.rows())) fail(key, form);
-    for (Eigen::Index k = 0; k < points.rows(); ++k) {
-      points(k, i) = read_number(key, (*row)[static_cast<std::size_t>(k)],
-                                 k < 3 ? Dimension::length : Dimension::number);
-    }
-  }
-  return points;
+}
+
+std::vector<Eigen::Vector3d> StrictTable::vectors(std::string_view key) {
+  const Eigen::MatrixXd rows = columns(
+      key, row(key).dimension,
+      {{3}, std::nullopt, "must be three numbers [x, y, z], or rows of these [[x, y, z], ..]"});
+  return {rows.colwise().begin(), rows.colwise().end()};
+}
+
+Eigen::MatrixXd StrictTable::points(std::string_view key) {
+  return columns(
+      key, Dimension::length,
+      {{3, 6},
+       true,
+       "must be rows [[x, y, z], ..] of three numbers, or of six with a vector in every row"});
 }
 
 std::optional<Eigen::Matrix3d> StrictTable::optional_rows(std::string_view key) {
-  const toml::node* node = find(key);
-  if (node == nullptr) return std::nullopt;
-  constexpr const char* form = "must be three rows of three numbers [[x, y, z], [..], [..]]";
-  const toml::array* array = node->as_array();
-  if (array == nullptr || array->size() != 3) fail(key, form);
-  Eigen::Matrix3d rows;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    const toml::node& row = *array->get(static_cast<std::size_t>(i));
-    rows.row(i) = read_numbers<3>(key, row, Dimension::number, form);
-  }
-  return rows;
+  if (find(key) == nullptr) return std::nullopt;
+  constexpr const char* words = "must be three rows of three numbers [[x, y, z], [..], [..]]";
+  const Eigen::MatrixXd rows = columns(key, Dimension::number, {{3}, true, words});
+  if (rows.cols() != 3) fail(key, words);
+  return rows.transpose();
 }
 
 std::optional<Eigen::Quaterniond> StrictTable::optional_quaternion(std::string_view key) {
-  const toml::node* node = find(key);
-  if (node == nullptr) return std::nullopt;
-  const Eigen::Vector4d numbers =
-      read_numbers<4>(key, *node, Dimension::number, "must be four numbers [w, x, y, z]");
-  return Eigen::Quaterniond(numbers[0], numbers[1], numbers[2], numbers[3]);
+  if (find(key) == nullptr) return std::nullopt;
+  const Eigen::Vector4d q =
+      columns(key, Dimension::number, {{4}, false, "must be four numbers [w, x, y, z]"});
+  return Eigen::Quaterniond(q[0], q[1], q[2], q[3]);
 }
 
-bool StrictTable::is_table(std::string_view key) const {
+bool StrictTable::is(std::string_view key, toml::node_type type) const {
   const toml::node* node = table_.get(key);
-  return node != nullptr && node->is_table();
+  return node != nullptr && node->type() == type;
 }
 
-bool StrictTable::is_text(std::string_view key) const {
-  const toml::node* node = table_.get(key);
-  return node != nullptr && node->is_string();
-}
-
-bool StrictTable::is_flag(std::string_view key) const {
-  const toml::node* node = table_.get(key);
-  return node != nullptr && node->is_boolean();
-}
-
-bool StrictTable::is_array(std::string_view key) const {
-  const toml::node* node = table_.get(key);
-  return node != nullptr && node->is_array();
+StrictTable StrictTable::inner(std::string_view key, const toml::table& table) const {
+  StrictTable result(table, name(key), file_);
+  if (rows_ != nullptr) result.follow(result.path_);
+  return result;
 }
 
 StrictTable StrictTable::table(std::string_view key) {
-  const toml::table* inner = need(key).as_table();
-  if (inner == nullptr) fail(key, "must be a table");
-  return {*inner, name(key), file_};
+  const toml::table* found = need(key).as_table();
+  if (found == nullptr) fail(key, "must be a table");
+  return inner(key, *found);
 }
 
 std::optional<StrictTable> StrictTable::optional_table(std::string_view key) {
@@ -301,13 +263,35 @@ std::vector<StrictTable> StrictTable::tables(std::string_view key) {
   const toml::node* node = find(key);
   if (node == nullptr) return result;
   const toml::array* array = node->as_array();
-  if (array == nullptr) fail(key, fmt::format("must be written as [[{}]]", key));
-  for (const toml::node& element : *array) {
-    const toml::table* inner = element.as_table();
-    if (inner == nullptr) fail(key, fmt::format("must be written as [[{}]]", key));
-    result.emplace_back(*inner, name(key), file_);
+  const auto is_table = [](const toml::node& element) { return element.is_table(); };
+  if (array == nullptr || !std::ranges::all_of(*array, is_table)) {
+    fail(key, fmt::format("must be written as [[{}]]", key));
   }
+  if (rows_ != nullptr) require_count(key, array->size());
+  for (const toml::node& element : *array) result.push_back(inner(key, *element.as_table()));
   return result;
+}
+
+void StrictTable::follow(std::string_view name) {
+  rows_ = &scene_table(name);
+  only(rows_->names);
+  for (const SceneKey& key : rows_->keys) {
+    if (!has(key.name)) continue;
+    for (const std::string& other : key.excludes) {
+      if (!has(other)) continue;
+      fail(key.name, fmt::format("given besides {} (allowed: one of the two)", other));
+    }
+    for (const std::string& other : key.needs) {
+      if (has(other)) continue;
+      fail(other, fmt::format("missing, it is required beside {}", key.name));
+    }
+  }
+}
+
+void StrictTable::refuse(const std::vector<std::string>& keys, const std::string& problem) const {
+  for (const std::string& key : keys) {
+    if (has(key)) fail(key, problem);
+  }
 }
 
 std::vector<std::string> StrictTable::keys() const {

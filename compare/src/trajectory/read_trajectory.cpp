@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
@@ -26,9 +25,7 @@ namespace {
 /// Largest number of poses, more than a robot's program has; a pose takes about a hundred bytes.
 constexpr std::size_t most_poses = 1'000'000;
 
-constexpr std::array<const char*, 8> pose_columns = {"time", "x",  "y",  "z",
-                                                     "dx",   "dy", "dz", "roll"};
-constexpr std::size_t direction_columns = 4, roll_column = 7;  // index of the first column
+constexpr std::size_t first_of_direction = 4, roll_column = 7;  // index of the first column
 constexpr const char* pose_columns_allowed =
     "(allowed: a header of time,x,y,z with or without dx,dy,dz and roll, in any order)";
 constexpr const char* file_allowed =
@@ -43,79 +40,14 @@ std::string problem_in(const std::invalid_argument& error) {
   return std::string(message.substr(name == std::string_view::npos ? 0 : name + 2));
 }
 
-/// Position of each of pose_columns among a file's columns.
-struct PoseColumns {
-  std::size_t count = 0;
-  std::array<std::optional<std::size_t>, pose_columns.size()> of;
-
-  [[nodiscard]] bool has_direction() const { return of[4].has_value(); }
-};
-
-PoseColumns pose_columns_of(const std::vector<std::string_view>& fields, const std::string& where) {
-  PoseColumns columns{.count = fields.size(), .of = {}};
-  for (std::size_t i = 0; i < fields.size(); ++i) {
-    const auto* const found = std::find(pose_columns.begin(), pose_columns.end(), fields[i]);
-    if (found == pose_columns.end()) {
-      throw InputError(fmt::format("{}: unknown column {} {}", where, quoted_piece(fields[i]),
-                                   pose_columns_allowed));
-    }
-    auto& of = columns.of[static_cast<std::size_t>(found - pose_columns.begin())];
-    if (of) throw InputError(fmt::format("{}: column {} given twice", where, *found));
-    of = i;
-  }
-  const bool direction = columns.of[4] || columns.of[5] || columns.of[6];
-  for (std::size_t k = 0; k < (direction ? roll_column : direction_columns); ++k) {
-    if (columns.of[k]) continue;
-    throw InputError(
-        fmt::format("{}: column {} is missing {}", where, pose_columns[k], pose_columns_allowed));
-  }
-  return columns;
-}
-
-Dimension pose_dimension(std::size_t column) {
-  if (column == 0) return Dimension::time;
-  return column < 4 ? Dimension::length : Dimension::number;
-}
-
-Pose pose_of(const std::vector<std::string_view>& fields, const PoseColumns& columns,
-             const std::string& where) {
-  if (fields.size() != columns.count) {
-    throw InputError(fmt::format("{}: {} column{} (allowed: {}, as in the header)", where,
-                                 fields.size(), fields.size() == 1 ? "" : "s", columns.count));
-  }
-  std::array<double, pose_columns.size()> values{};
-  for (std::size_t k = 0; k < pose_columns.size(); ++k) {
-    if (!columns.of[k]) continue;
-    const std::string_view field = fields[*columns.of[k]];
-    const std::optional<double> value = as_number<double>(field);
-    if (!value || !std::isfinite(*value)) {
-      throw InputError(
-          fmt::format("{}: {} = {} is not a number (allowed: finite numbers in s, m, rad)", where,
-                      pose_columns[k], quoted_piece(field)));
-    }
-    const std::string problem = magnitude_problem(*value, pose_dimension(k));
-    if (!problem.empty()) {
-      throw InputError(fmt::format("{}: {} = {:g}: {}", where, pose_columns[k], *value, problem));
-    }
-    values[k] = *value;
-  }
-  Pose pose{values[0], {values[1], values[2], values[3]}, std::nullopt, std::nullopt};
-  if (columns.has_direction()) pose.direction = Eigen::Vector3d(values[4], values[5], values[6]);
-  if (columns.of[roll_column]) pose.roll = values[roll_column];
-  return pose;
-}
-
 Trajectory read_rows(StrictTable& table, std::vector<StrictTable>& rows, const PoseKeys& keys) {
   std::vector<Pose> poses;
-  std::vector<std::string> allowed{keys.position, "time"};
-  if (keys.direction) allowed.insert(allowed.end(), {"direction", "roll"});
   for (StrictTable& row : rows) {
-    row.only(allowed);
     Pose pose;
-    pose.time = row.number("time", Dimension::time, Range::any());
-    pose.position = row.vector(keys.position, Dimension::length);
+    pose.time = row.number("time");
+    pose.position = row.vector(keys.position);
     if (keys.direction && row.has("direction")) pose.direction = keys.direction(row);
-    if (keys.direction) pose.roll = row.optional_number("roll", Dimension::angle, Range::any());
+    if (keys.direction) row.read("roll", pose.roll);
     row.finish();
     const auto wrong = [&](const char* key, const char* problem) { row.fail(key, problem); };
     if (!poses.empty()) {
@@ -171,22 +103,81 @@ std::string read_beside(const StrictTable& table, std::string_view key, const st
   return read_file(path);
 }
 
+NumberColumns::NumberColumns(const CsvRow& header, std::vector<std::string_view> names,
+                             const char* allowed)
+    : names_(std::move(names)),
+      allowed_(allowed),
+      where_(header.where),
+      of_(names_.size()),
+      count_(header.fields.size()) {
+  for (std::size_t i = 0; i < count_; ++i) {
+    const auto found = std::ranges::find(names_, header.fields[i]);
+    if (found == names_.end()) {
+      throw InputError(fmt::format("{}: unknown column {} {}", where_,
+                                   quoted_piece(header.fields[i]), allowed_));
+    }
+    auto& of = of_[static_cast<std::size_t>(found - names_.begin())];
+    if (of) throw InputError(fmt::format("{}: column {} given twice", where_, *found));
+    of = i;
+  }
+}
+
+void NumberColumns::require(std::size_t count) const {
+  for (std::size_t k = 0; k < count; ++k) {
+    if (has(k)) continue;
+    throw InputError(fmt::format("{}: column {} is missing {}", where_, names_[k], allowed_));
+  }
+}
+
+std::vector<double> NumberColumns::numbers(const CsvRow& row) const {
+  if (row.fields.size() != count_) {
+    throw InputError(fmt::format("{}: {} column{} (allowed: {}, as in the header)", row.where,
+                                 row.fields.size(), row.fields.size() == 1 ? "" : "s", count_));
+  }
+  std::vector<double> values(names_.size());
+  for (std::size_t k = 0; k < names_.size(); ++k) {
+    if (!has(k)) continue;
+    const std::string_view field = row.fields[*of_[k]];
+    const std::optional<double> value = as_number<double>(field);
+    if (!value || !std::isfinite(*value)) {
+      throw InputError(
+          fmt::format("{}: {} = {} is not a number (allowed: finite numbers in s, m, rad)",
+                      row.where, names_[k], quoted_piece(field)));
+    }
+    const Dimension dimension = names_[k] == "time"     ? Dimension::time
+                                : names_[k].size() == 1 ? Dimension::length
+                                                        : Dimension::number;
+    if (const std::string problem = magnitude_problem(*value, dimension); !problem.empty()) {
+      throw InputError(fmt::format("{}: {} = {:g}: {}", row.where, names_[k], *value, problem));
+    }
+    values[k] = *value;
+  }
+  return values;
+}
+
 Trajectory parse_trajectory(std::string_view text, const std::string& file) {
-  std::optional<PoseColumns> columns;
+  std::optional<NumberColumns> columns;
   std::vector<Pose> poses;
   for_each_csv_row(text, file, {}, [&](const CsvRow& row) {
     if (!columns) {
-      columns = pose_columns_of(row.fields, row.where);
+      columns.emplace(
+          row, std::vector<std::string_view>{"time", "x", "y", "z", "dx", "dy", "dz", "roll"},
+          pose_columns_allowed);
+      const bool direction = columns->has(4) || columns->has(5) || columns->has(6);
+      columns->require(direction ? roll_column : first_of_direction);
       return;
     }
     if (poses.size() == most_poses) {
       throw InputError(fmt::format("{}: more than {} poses", row.where, most_poses));
     }
-    poses.push_back(pose_of(row.fields, *columns, row.where));
-    if (poses.size() > 1 && !(poses.back().time > poses[poses.size() - 2].time)) {
-      throw InputError(fmt::format("{}: time = {} is not above that of the row before", row.where,
-                                   poses.back().time));
+    const std::vector<double> v = columns->numbers(row);
+    if (!poses.empty() && !(v[0] > poses.back().time)) {
+      throw InputError(
+          fmt::format("{}: time = {} is not above that of the row before", row.where, v[0]));
     }
+    poses.push_back({v[0], {v[1], v[2], v[3]}, std::nullopt, std::nullopt});
+    if (columns->has(first_of_direction)) poses.back().direction = {v[4], v[5], v[6]};
+    if (columns->has(roll_column)) poses.back().roll = v[roll_column];
   });
   if (poses.empty()) throw InputError(fmt::format("{}: no poses {}", file, pose_columns_allowed));
   try {
@@ -200,14 +191,8 @@ Trajectory read_trajectory(StrictTable& table, const PoseKeys& keys,
                            const std::string& scene_file) {
   std::vector<StrictTable> rows = table.tables("pose");
   const std::optional<std::string> name = table.optional_text("trajectory");
-  if (name && !rows.empty()) {
-    table.fail("trajectory", "given besides poses (allowed: one of trajectory and [[..pose]])");
-  }
-  const std::optional<double> cutoff =
-      table.optional_number("cutoff", Dimension::frequency, Range::positive());
-  if (cutoff && !name) {
-    table.fail("cutoff", "given without a file of poses (allowed: beside trajectory)");
-  }
+  std::optional<double> cutoff;
+  table.read("cutoff", cutoff);
   if (!name) return rows.empty() ? Trajectory() : read_rows(table, rows, keys);
   Trajectory trajectory;
   try {

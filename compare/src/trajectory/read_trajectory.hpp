@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "decode/csv_rows.hpp"
 #include "dlo/compare/trajectory.hpp"
 #include "toml/strict_table.hpp"
 
@@ -96,6 +97,30 @@ struct PoseKeys {
 /// @param cutoff  [Hz], > 0, below half of their mean rate
 /// @throws std::invalid_argument if these conditions do not hold, or smoothing leaves no direction
 [[nodiscard]] std::vector<Pose> smooth_poses(std::vector<Pose> poses, double cutoff);
+
+/// Columns of numbers of a CSV file, which its header has in any order.
+class NumberColumns {
+ public:
+  /// @param names  columns that the file may have, in the order of numbers();  @param allowed
+  /// "(allowed: ..)"
+  /// @throws InputError that names file and line of another column, or of one that is given twice
+  NumberColumns(const CsvRow& header, std::vector<std::string_view> names, const char* allowed);
+
+  [[nodiscard]] bool has(std::size_t k) const { return of_[k].has_value(); }
+  /// Checks that the file has the first `count` columns. @throws InputError
+  void require(std::size_t count) const;
+  /// Reads a row; a column that the file does not have is 0. Times and lengths have the limits of
+  /// magnitude_problem().
+  /// @throws InputError that names file, line, column and value
+  [[nodiscard]] std::vector<double> numbers(const CsvRow& row) const;
+
+ private:
+  std::vector<std::string_view> names_;
+  const char* allowed_;
+  std::string where_;  // "file:line" of the header
+  std::vector<std::optional<std::size_t>> of_;
+  std::size_t count_;  // columns of the file
+};
 
 /// Reads a recording from CSV: a header with time, s, x, y, z in any order, then a row for each
 /// marker that was observed at a time, in s and m. Rows may be in any order.

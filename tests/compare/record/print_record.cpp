@@ -1,4 +1,4 @@
-// Prints the fields of a solution's record, for tests/record, as a JSON array.
+// Prints the fields of a solution's record and the keys of a scene file, for tests/record, as JSON.
 
 #include <cstdio>
 #include <exception>
@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "record/solution_fields.hpp"
+#include "toml/scene_keys.hpp"
 
 namespace {
 
@@ -29,6 +30,23 @@ void add(Json& list, std::span<const Field<SolvedShape>> fields, bool everywhere
   }
 }
 
+Json scene_keys() {
+  Json tables = Json::array();
+  for (const dlo::compare::SceneTable& table : dlo::compare::scene_tables()) {
+    Json keys = Json::array();
+    for (const dlo::compare::SceneKey& key : table.keys) {
+      keys.push_back({{"name", key.name},
+                      {"example", key.example},
+                      {"units", dlo::compare::known_units(key.dimension)},
+                      {"allowed", key.range.text},
+                      {"missing", key.missing},
+                      {"words", key.words}});
+    }
+    tables.push_back({{"header", table.header}, {"words", table.words}, {"keys", keys}});
+  }
+  return tables;
+}
+
 }  // namespace
 
 int main() {
@@ -36,7 +54,8 @@ int main() {
     Json list = Json::array();
     add(list, dlo::compare::solution_fields(), false);
     add(list, dlo::compare::shape_numbers(), true);
-    return std::puts(list.dump(1).c_str()) < 0 ? 1 : 0;
+    const Json record{{"fields", list}, {"tables", scene_keys()}};
+    return std::puts(record.dump(1).c_str()) < 0 ? 1 : 0;
   } catch (const std::exception& error) {
     std::fputs(error.what(), stderr);
     return 1;

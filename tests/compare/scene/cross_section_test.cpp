@@ -131,12 +131,12 @@ TEST(CrossSection, IsRefusedWhereItIsNone) {
   expect_refused("diameter = \"4 mm\"\ninner_diameter = -1", {"rod.inner_diameter"});
   expect_refused("inner_diameter = \"1 mm\"", {"rod.diameter", "missing"});
   expect_refused("diameter = \"4 mm\"\nwidth = \"8 mm\"\nthickness = \"1 mm\"",
-                 {"rod.diameter", "given besides width", "width along d1 and thickness along d2"});
+                 {"rod.diameter", "given besides width"});
   expect_refused("inner_diameter = \"4 mm\"\nthickness = \"1 mm\"",
                  {"rod.inner_diameter", "given besides thickness"});
-  expect_refused("width = \"8 mm\"", {"rod.thickness", "missing", "allowed: both"});
+  expect_refused("width = \"8 mm\"", {"rod.thickness", "missing", "beside width"});
   expect_refused("thickness = \"8 mm\"", {"rod.width", "missing"});
-  expect_refused("width = 0\nthickness = \"1 mm\"", {"rod.width", "1e-09"});
+  expect_refused("width = 0\nthickness = \"1 mm\"", {"rod.width", "1e-9"});
   const std::string strip = "width = \"8 mm\"\nthickness = \"1 mm\"";
   const std::string plane = "[[obstacle]]\npoint = [0, -0.2, 0]\nnormal = [0, 1, 0]\n";
   expect_refused(strip, {"obstacle.touches", "touches = \"axis\""}, flat_clamp + plane);

@@ -105,10 +105,11 @@ TEST(Layers, SayWhatIsWrong) {
   expect(
       "layers = [" + core + ", { strands = 7, strand_diameter = 1e-3, material = \"copper\" }]\n",
       "7 strands of 0.001 m do not fit side by side");
-  expect("layers = [" + core + "]\ndiameter = 1e-3\n", "rod.diameter");
+  expect("layers = [" + core + "]\ndiameter = 1e-3\n", "given besides diameter");
   expect("layers = [{ strands = 2, strand_diameter = 1e-3, material = \"copper\" }]\n",
          "2 strands do not bend alike");
-  expect("diameter = 1e-3\nmaterial = \"copper\"\nlayer_bound = \"free\"\n", "no layers");
+  expect("diameter = 1e-3\nmaterial = \"copper\"\nlayer_bound = \"free\"\n",
+         "rod.layers: missing, it is required beside layer_bound");
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ TEST(MovingScene, SaysWhatIsWrongWithAPose) {
   };
   const std::string first = "[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\n";
   expect_error(held_rod + "position = [0, 0, 0]\n" + two_poses,
-               "my.toml:7: gripper.position = [ 0, 0, 0 ]: given besides poses");
+               "my.toml:7: gripper.position = [ 0, 0, 0 ]: given besides pose");
   expect_error(held_rod + first, "gripper.direction: missing");
   expect_error(held_rod + two_poses + first,
                "gripper.pose.time = 0: not above that of the pose before");
@@ -89,7 +89,7 @@ TEST(MovingScene, SaysWhatIsWrongWithAPose) {
                "gripper.pose.roll: given for some poses only");
   expect_error(held_rod + "roll = 1\n" + rolls, "gripper.roll = 1: given besides poses with rolls");
   expect_error(held_rod + "trajectory = \"none.csv\"\n", "no such file beside the scene");
-  expect_error(held_rod + "trajectory = \"none.csv\"\n" + two_poses, "given besides poses");
+  expect_error(held_rod + "trajectory = \"none.csv\"\n" + two_poses, "given besides pose");
   expect_error(held_rod + two_poses + "[track]\nframe_rate = 0\n",
                "track.frame_rate = 0: out of range");
 }

@@ -100,13 +100,15 @@ TEST(ScenesRod, TakesTheJointsOfAChain) {
       scene_of(chain + "joint_stiffness = \"30 N mm/rad\"\njoint_spacing = \"4 cm\"\n" + clamp);
   EXPECT_DOUBLE_EQ(scene.bending_stiffness(), 1.2e-3);
   EXPECT_EQ(scene.stiffness().name, std::string("EI"));
-  expect_message(chain + "joint_stiffness = 1\n" + clamp, {"rod.joint_spacing: missing", "both"});
-  expect_message(chain + "joint_spacing = 1\n" + clamp, {"rod.joint_stiffness: missing", "both"});
+  expect_message(chain + "joint_stiffness = 1\n" + clamp,
+                 {"rod.joint_spacing: missing", "beside joint_stiffness"});
+  expect_message(chain + "joint_spacing = 1\n" + clamp,
+                 {"rod.joint_stiffness: missing", "beside joint_spacing"});
   expect_message(chain + "joint_spacing = \"3 m\"\njoint_stiffness = 1\n" + clamp,
                  {"rod.joint_spacing = ", "to 2 m"});
   expect_message(
       chain + "bending_stiffness = 1\njoint_spacing = 0.1\njoint_stiffness = 1\n" + clamp,
-      {"rod.bending_stiffness = 1", "EI is given twice"});
+      {"rod.bending_stiffness = 1", "given besides joint_stiffness"});
 }
 
 const std::string sections_text = R"([[section]]
@@ -320,7 +322,7 @@ TEST(ScenesLoad, MayBeAMassThatHangsThere) {
       (scene_of(rod + "mass = \"10 g\"\n").loads.at(0).force - Eigen::Vector3d(0, -0.0981, 0))
           .norm(),
       0, 1e-15);
-  expect_message(rod + "mass = 1\nforce = [0, 1, 0]\n", {"load.mass", "one of force and mass"});
+  expect_message(rod + "mass = 1\nforce = [0, 1, 0]\n", {"load.mass", "given besides force"});
   expect_message(rod + "mass = -1\n", {"load.mass = -1", "> 0"});
   expect_message(rod + "mass = \"1 lb\"\n", {"load.mass", "kg, g"});
   expect_message(rod, {"load.force: missing"});

@@ -5,6 +5,7 @@
 #include "../../says.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "scene_text.hpp"
+#include "toml/strict_table.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -78,7 +79,7 @@ TEST(Scene, ErrorsNameFileLineKeyValueAndWhatIsAllowed) {
   const std::vector<BadScene> cases = {
       {"colour = 1\n" + good_rod + good_gripper, {"my.toml:1", "colour", "unknown key", "gravity"}},
       {"[rod]\nlength = -1\ndiameter = 1\nmaterial = \"copper\"\n" + good_gripper,
-       {"my.toml:2", "rod.length", "-1", "1e-06 to"}},
+       {"my.toml:2", "rod.length", "-1", "1e-6 to"}},
       {"[rod]\nlength = \"50 cn\"\ndiameter = 1\nmaterial = \"copper\"\n" + good_gripper,
        {"my.toml:2", "rod.length", "50 cn", "m, cm, mm"}},
       {"[rod]\nlength = 1\ndiameter = 1\nmaterial = \"cooper\"\n" + good_gripper,
@@ -94,7 +95,7 @@ TEST(Scene, ErrorsNameFileLineKeyValueAndWhatIsAllowed) {
       {at_origin + "hold = \"pin\"\ndirection = 1\n", {"my.toml:9", "gripper.direction", "pin"}},
       {at_origin + "hold = \"glue\"\n", {"my.toml:8", "gripper.hold", "glue", "clamp, pin"}},
       {held + "[force_model]\npoints = 2\n", {"my.toml:10", "force_model.points", "2", "4 to"}},
-      {held + "[force_model]\nc_h = 1\n", {"my.toml:10", "force_model.c_h", "c_h < 1"}},
+      {held + "[force_model]\nc_h = 1\n", {"my.toml:10", "force_model.c_h", "0 to < 1"}},
       {"gravity = \"down\"\n" + good_rod + good_gripper, {"my.toml:1", "gravity", "three numbers"}},
       {at_origin + "direction = -175\n", {"my.toml:8", "gripper.direction", "-175", "deg"}},
       {held + "[[obstacle]]\npoint = [0, \"10 mm\", 0]\nnormal = [0, 1, 0]\n",
@@ -139,6 +140,41 @@ TEST(Scene, NamesAnUnknownKeyBeforeTheOneThatIsMissingForIt) {
   for (const auto& [text, key] : cases) {
     EXPECT_TRUE(says(scene_error(text), {key + ": unknown key"}));
   }
+}
+
+template <typename Value>
+void expect_choices(const char* key, Value standard) {
+  const SceneKey& row = scene_table("force_model").key(key);
+  EXPECT_EQ(row.choices(), names<Value>()) << key;
+  EXPECT_EQ(row.missing, to_string(standard)) << key;
+}
+
+TEST(SceneKeys, HaveTheNamesAndDefaultsOfTheSettings) {
+  const ForceModelSettings settings;
+  expect_choices("law", settings.law);
+  expect_choices("bookkeeping", settings.bookkeeping);
+  expect_choices("stepper", settings.stepper);
+  expect_choices("bending_rule", settings.bending_rule);
+  EXPECT_EQ(scene_table("force_model").key("joint_law").choices(), names<energy_model::JointLaw>());
+  EXPECT_EQ(scene_table("force_model").key("points").missing, std::to_string(settings.points));
+  EXPECT_EQ(std::stod(scene_table("track").key("frame_rate").missing), TrackRates{}.frames);
+  EXPECT_EQ(std::stod(scene_table("track").key("step_rate").missing), TrackRates{}.steps);
+}
+
+// The page and `dlo init` show each example; excludes and needs name keys of the same table.
+TEST(SceneKeys, HaveExamplesAndNameKeys) {
+  std::size_t keys = 0;
+  for (const SceneTable& table : scene_tables()) {
+    for (const SceneKey& key : table.keys) {
+      for (const std::string& other : key.excludes) EXPECT_NO_THROW((void)table.key(other));
+      for (const std::string& other : key.needs) EXPECT_NO_THROW((void)table.key(other));
+      if (key.words.empty()) continue;
+      EXPECT_EQ(parse_toml("x = " + key.example, key.name).size(), 1U) << key.name;
+      EXPECT_FALSE(key.missing.empty()) << key.name;
+      ++keys;
+    }
+  }
+  EXPECT_GT(keys, 80U);
 }
 
 }  // namespace

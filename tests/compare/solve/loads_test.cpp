@@ -180,7 +180,7 @@ tangential_drag = 0.02
         says(test::scene_error(thick_rod_held + "[medium]\ndensity = 1000\n" + medium), parts));
   };
   refused("velocity = [1, 0, 0]\n", {"medium.normal_drag", "missing"});
-  refused("normal_drag = 1\n", {"my.toml:11", "medium.normal_drag", "at rest"});
+  refused("normal_drag = 1\n", {"my.toml:9", "medium.velocity", "beside normal_drag"});
   refused("velocity = [1, 0, 0]\nnormal_drag = -1\n", {"medium.normal_drag", ">= 0"});
   refused("velocity = [\"1 m\", 0, 0]\nnormal_drag = 1\n", {"medium.velocity", "m/s"});
   refused(

@@ -156,7 +156,7 @@ TEST_F(MarkerPosesFile, IsRefusedWithKeyAndFile) {
   write_markers("2,0.4,0\n");
   expect_refused("cutoff = \"10 Hz\"\n", {"scene.toml:", "gripper.cutoff", "below"});
   write_markers("2,two,0\n");
-  expect_refused("", {"scene.toml:", "gripper.trajectory", "g.csv:7: y is no number"});
+  expect_refused("", {"scene.toml:", "gripper.trajectory", "g.csv:7: y = \"two\" is not a number"});
   write_markers("2,1.1,0\n");
   expect_refused("", {"gripper.trajectory", "opposite"});
   write_markers("2,0.9,0\n");

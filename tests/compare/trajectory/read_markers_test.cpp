@@ -25,10 +25,10 @@ TEST(ReadMarkers, SaysWhatIsWrongAndWhere) {
   const auto expect_refused = [](const std::string& text, const std::string& why) {
     EXPECT_TRUE(says(error_of<InputError>([&] { return parse_markers(text, "m.csv"); }), {why}));
   };
-  expect_refused("time,x,y,z\n0,1,2,3\n", "m.csv:1: not the columns");
+  expect_refused("time,x,y,z\n0,1,2,3\n", "m.csv:1: column s is missing");
   expect_refused("time,s,x,y,z\n", "m.csv: no rows");
   expect_refused("time,s,x,y,z\n0,1,2,3\n", "m.csv:2: ");
-  expect_refused("time,s,x,y,z\n0,1,2,3,nan\n", "m.csv:2: z is no number");
+  expect_refused("time,s,x,y,z\n0,1,2,3,nan\n", "m.csv:2: z = \"nan\" is not a number");
   expect_refused("time,s,x,y,z\n0,1,2,3,4\n0,2,1e200,3,4\n", "m.csv:3: x = 1e+200: out of range");
   expect_refused("time,s,x,y,z\n-1e13,1,2,3,4\n", "m.csv:2: time = -1e+13: out of range");
   expect_refused("time,s,x,y,z\n0,1,2,3,4\n0,1,2,3,5\n", "twice at time = 0 s");

@@ -11,9 +11,8 @@ extern const std::string_view tables_toml;
 extern const std::string_view spring_steel_135_toml;
 extern const std::string_view spring_steel_175_toml;
 extern const std::string_view spring_steel_215_toml;
-// Text of `dlo init`, for fmt: the required parts of a scene, then examples of optional ones.
-extern const std::string_view new_scene_toml;
-extern const std::string_view new_scene_optional_toml;
+/// Keys of a scene file (scene_tables()).
+extern const std::string_view scene_keys_txt;
 /// Style sheet of the pages of --report. gnuplot draws for a light page; on a dark page pictures
 /// are inverted and their hues rotated back.
 extern const std::string_view page_css;
