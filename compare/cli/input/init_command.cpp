@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <memory>
@@ -72,17 +73,14 @@ std::string text_of(const compare::SceneChoices& choices,
   try {
     return compare::scene_text(choices, known);
   } catch (const compare::InputError& error) {
-    constexpr std::pair<const char*, const char*> options[] = {
-        {"rod.length", "--length"},
-        {"rod.diameter", "--diameter"},
-        {"rod.material", "--material"},
-        {"rod.material.youngs_modulus", "--youngs-modulus"},
-        {"rod.material.density", "--density"},
-        {"gripper.direction", "--direction"}};
-    for (const auto& [key, option] : options) {
-      // A custom material has no name.
-      const bool is_given = option != std::string("--material") || choices.youngs_modulus.empty();
-      if (error.key() == key && is_given) throw compare::InputError(option + error.problem());
+    constexpr std::string_view options[] = {"--length",         "--diameter", "--material",
+                                            "--youngs-modulus", "--density",  "--direction"};
+    std::string option = "--" + error.key().substr(error.key().rfind('.') + 1);
+    std::ranges::replace(option, '_', '-');
+    // A custom material has no name.
+    const bool is_given = option != "--material" || choices.youngs_modulus.empty();
+    if (is_given && std::ranges::find(options, option) != std::end(options)) {
+      throw compare::InputError(option + error.problem());
     }
     throw;
   }

@@ -115,7 +115,7 @@ void require_clear(const Gripper& gripper, const Scene& scene, const StrictTable
 Gripper read_gripper(StrictTable& table, const Scene& scene) {
   Gripper gripper;
   gripper.at = read_arc_length(table, "at", scene.length);
-  const std::string hold = table.has("hold") ? table.choice("hold") : "clamp";
+  const std::string hold = table.choice("hold");
   PoseKeys keys{.direction = nullptr, .at = gripper.at};
   if (hold == "clamp") keys.direction = read_direction;
   gripper.trajectory = read_trajectory(table, keys, scene.file);

@@ -65,7 +65,7 @@ bool read_layers(StrictTable& rod, const std::vector<Material>& known_materials,
   } catch (const InputError& error) {
     rod.fail("layers", error.what());
   }
-  section.bonded = !rod.has("layer_bound") || rod.choice("layer_bound") == "bonded";
+  section.bonded = rod.choice("layer_bound") == "bonded";
   scene.diameter = section.outer_diameter;
   const double area = scene.cross_section();
   scene.material = {.name = "layers",

@@ -34,7 +34,7 @@ obstacle::Body read_box(StrictTable& table, const Eigen::Vector3d& centre) {
 }
 
 obstacle::Body read_body(StrictTable& table, const Eigen::Vector3d& point) {
-  const std::string shape = table.has("shape") ? table.choice("shape") : "plane";
+  const std::string shape = table.choice("shape");
   if (shape == "plane") {
     return obstacle::Body::half_space(point, unit_vector(table, "normal"));
   }
@@ -61,7 +61,7 @@ Obstacle read_obstacle(StrictTable& table, const Scene& scene) {
   obstacle.body = read_body(table, point);
   table.read("stiffness", obstacle.stiffness);
   table.read("friction", obstacle.friction);
-  const bool axis = table.has("touches") && table.choice("touches") == "axis";
+  const bool axis = table.choice("touches") == "axis";
   if (!axis && scene.width > 0) {
     table.fail("touches",
                "missing or \"surface\", which is not at one distance from the axis of a rod with "

@@ -72,7 +72,10 @@ class StrictTable {
   std::vector<Eigen::Vector2d> pairs(std::string_view key) {
     return pairs(key, row(key).dimension, static_cast<std::size_t>(row(key).range.high));
   }
-  std::string choice(std::string_view key) { return choice(key, row(key).choices()); }
+  /// Reads one of the names in a key's row; returns the default without the key.
+  std::string choice(std::string_view key) {
+    return find(key) == nullptr ? row(key).missing : choice(key, row(key).choices());
+  }
   /// Reads rows of three numbers; a single vector is one row.
   std::vector<Eigen::Vector3d> vectors(std::string_view key);
   /// Reads rows of three lengths, which become columns; or of six numbers in every row, a point and
