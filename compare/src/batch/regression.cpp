@@ -10,7 +10,6 @@
 #include <set>
 #include <stdexcept>
 #include <tuple>
-#include <type_traits>
 #include <utility>
 
 #include "base/quote.hpp"
@@ -23,7 +22,6 @@
 #include "dlo/compare/solve.hpp"
 #include "format/scene_document.hpp"
 #include "reading/read_scene.hpp"
-#include "scene/read_force_model.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -132,10 +130,10 @@ void add_force_model(ContentText& text, const ForceModelSettings& settings) {
   if (settings.joint_law) {
     text.add_words(fmt::format("joints {} ", to_string(*settings.joint_law)));
   }
-  each_member(settings, [&text](const char* /*key*/, const auto& value) {
-    using Value = std::remove_cvref_t<decltype(value)>;
-    if constexpr (std::is_same_v<Value, std::optional<double>>) text.add(value);
-  });
+  for (const auto& value : {settings.design_curvature, settings.point_weight, settings.c_b,
+                            settings.c_c, settings.c_F, settings.c_h, settings.l_s}) {
+    text.add(value);
+  }
 }
 
 /// Returns all content of a scene on which its shape depends and that the case's name does not
