@@ -221,9 +221,9 @@ TEST(TextLimits, OfThePartsOfAScene) {
     return input_error_of([&] { (void)dlo::compare::parse_scene(text, "s.toml"); });
   };
   EXPECT_EQ(scene(500, 10'000, 1'000), "no error");
-  EXPECT_EQ(scene(501, 0, 0), "s.toml:5: gripper: 501 given (allowed: up to 500)");
-  EXPECT_EQ(scene(1, 10'001, 0), "s.toml:9: load: 10001 given (allowed: up to 10000)");
-  EXPECT_EQ(scene(1, 0, 1'001), "s.toml:9: obstacle: 1001 given (allowed: up to 1000)");
+  EXPECT_EQ(scene(501, 0, 0), "s.toml:5: gripper: 501 given (allowed: 1 to 500)");
+  EXPECT_EQ(scene(1, 10'001, 0), "s.toml:9: load: 10001 given (allowed: 0 to 10000)");
+  EXPECT_EQ(scene(1, 0, 1'001), "s.toml:9: obstacle: 1001 given (allowed: 0 to 1000)");
 }
 
 TEST(TextLimits, OfVariedFields) {

@@ -157,7 +157,7 @@ TEST(SceneTemplate, TorsionKeepsItsRatioToBendingUnlessItIsVaried) {
 TEST(SceneTemplate, ErrorsNameFileFieldAndValue) {
   const SceneTemplate base(sweep_scene, "swept.toml");
   const std::pair<SceneField, const char*> cases[] = {{{"rod.lenght", "1"}, "unknown key"},
-                                                      {{"rod.length", "-1"}, "1e-06 to"},
+                                                      {{"rod.length", "-1"}, "1e-6 to"},
                                                       {{"gripper.1.at", "0"}, "0 to 0"},
                                                       {{"rod.length.x", "1"}, "has no parts"},
                                                       {{"rod..length", "1"}, "empty"},
