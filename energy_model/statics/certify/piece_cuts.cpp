@@ -40,18 +40,6 @@ double stiffness_at(const Span& span, double s) {
   return span.stiffness.head<2>().minCoeff();
 }
 
-/// Returns the arc lengths of ends, grips, loads and section changes, ascending, each once.
-std::vector<double> kinks_of(const Span& span) {
-  std::vector<double> kinks = {0, span.length, span.anchor};
-  for (const Span::Hold& hold : span.holds) kinks.push_back(hold.at);
-  for (const Span::Load& load : span.loads) kinks.push_back(load.at);
-  for (const Span::Part& part : span.parts) kinks.insert(kinks.end(), {part.begin, part.end});
-  std::sort(kinks.begin(), kinks.end());
-  const auto close = [](double a, double b) { return b - a < closest_cuts; };
-  kinks.erase(std::unique(kinks.begin(), kinks.end(), close), kinks.end());
-  return kinks;
-}
-
 /// Returns the boundary layer at a kink, on one side of it, with the length (EI / force)^(1/2).
 Feature kink_at(const SpanSolution& solution, double at, double sense) {
   const Span& span = solution.model->span();

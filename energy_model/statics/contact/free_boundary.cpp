@@ -9,12 +9,6 @@
 namespace dlo::energy_model {
 namespace {
 
-bool is_held(const Span& span, double at) {
-  const auto near = [at](double other) { return std::abs(at - other) < closest_cuts; };
-  return near(span.anchor) || std::any_of(span.holds.begin(), span.holds.end(),
-                                          [&](const Span::Hold& hold) { return near(hold.at); });
-}
-
 bool is_free(const Span& span, double at) {
   return at > closest_cuts && at < span.length - closest_cuts && !is_held(span, at);
 }

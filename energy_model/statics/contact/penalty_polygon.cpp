@@ -45,12 +45,6 @@ struct Mesh {
 };
 
 Mesh mesh_of(const Span& span, Segments segments) {
-  std::vector<double> cuts = {0, span.length, span.anchor};
-  for (const Span::Hold& hold : span.holds) cuts.push_back(hold.at);
-  for (const Span::Load& load : span.loads) cuts.push_back(load.at);
-  for (const LineLoad& load : span.line_loads) cuts.insert(cuts.end(), {load.begin, load.end});
-  for (const Span::Part& part : span.parts) cuts.insert(cuts.end(), {part.begin, part.end});
-  std::sort(cuts.begin(), cuts.end());
   const double load = std::max(1.0, span.total_load());
   const double count = std::clamp(24 * std::pow(load, 0.25), fewest_segments, most_segments);
   const double h = span.length / (segments == Segments::few ? few * count : count);
@@ -60,7 +54,7 @@ Mesh mesh_of(const Span& span, Segments segments) {
   if (mesh.before) mesh.s.push_back(-h);
   mesh.s.push_back(0);
   double begin = 0;
-  for (const double cut : cuts) {
+  for (const double cut : kinks_of(span)) {
     if (cut - begin < closest_cuts) continue;
     const double parts = std::max(1.0, std::ceil((cut - begin) / h));
     for (double i = 1; i <= parts; ++i) mesh.s.push_back(begin + (cut - begin) * i / parts);
@@ -209,12 +203,6 @@ class Resting {
     return span_.planar ? stiffness.x() : std::sqrt(stiffness.x() * stiffness.y());
   }
 
-  [[nodiscard]] bool is_gripped(double at) const {
-    const auto near = [at](double other) { return std::abs(at - other) < closest_cuts; };
-    return near(span_.anchor) || std::any_of(span_.holds.begin(), span_.holds.end(),
-                                             [&](const Span::Hold& hold) { return near(hold.at); });
-  }
-
   void add_obstacle(const Span::Obstacle& obstacle, double stiffness) {
     problem_.obstacles.push_back({founded(obstacle.body, span_), stiffness, samples_of(obstacle)});
   }
@@ -340,7 +328,7 @@ class Resting {
     // A grip may hold the rod on the surface; no spring force acts on a fixed point there.
     const auto on = [&](Eigen::Index k) {
       return at[k] >= 0 && at[k] <= span_.length &&
-             (clearance[k] <= 0 || (is_gripped(at[k]) && clearance[k] <= on_surface));
+             (clearance[k] <= 0 || (is_held(span_, at[k]) && clearance[k] <= on_surface));
     };
     for (Eigen::Index i = 0; i < count; ++i) {
       if (!on(i)) continue;
@@ -359,7 +347,7 @@ class Resting {
         if (!at_end) contact.begin = contact.end = depth > 0 ? moment / depth : at[first];
         if (at[i] == span_.length) contact.begin = contact.end = span_.length;
         if (at[first] == 0) contact.begin = contact.end = 0;
-        if (is_gripped(contact.begin)) continue;
+        if (is_held(span_, contact.begin)) continue;
       }
       result.contacts.push_back(contact);
     }

@@ -199,14 +199,20 @@ void cut_layers(const Span& span, std::vector<double>& cuts) {
 
 }  // namespace
 
+std::vector<double> kinks_of(const Span& span) {
+  std::vector<double> kinks = {0, span.length, span.anchor};
+  for (const Span::Hold& hold : span.holds) kinks.push_back(hold.at);
+  for (const Span::Load& load : span.loads) kinks.push_back(load.at);
+  for (const Span::Part& part : span.parts) kinks.insert(kinks.end(), {part.begin, part.end});
+  for (const LineLoad& on : span.line_loads) kinks.insert(kinks.end(), {on.begin, on.end});
+  std::sort(kinks.begin(), kinks.end());
+  const auto close = [](double a, double b) { return b - a < closest_cuts; };
+  kinks.erase(std::unique(kinks.begin(), kinks.end(), close), kinks.end());
+  return kinks;
+}
+
 std::vector<Piece> pieces_of(const Span& span) {
-  std::vector<double> cuts;
-  cuts.reserve(8 + span.holds.size() + span.loads.size() + 2 * span.parts.size());
-  cuts.insert(cuts.end(), {0, span.length, span.anchor});
-  for (const Span::Hold& hold : span.holds) cuts.push_back(hold.at);
-  for (const Span::Load& load : span.loads) cuts.push_back(load.at);
-  for (const Span::Part& part : span.parts) cuts.insert(cuts.end(), {part.begin, part.end});
-  for (const LineLoad& load : span.line_loads) cuts.insert(cuts.end(), {load.begin, load.end});
+  std::vector<double> cuts = kinks_of(span);
   for (const Span::Contact& contact : span.contacts) {
     cuts.insert(cuts.end(), {contact.begin, contact.end});
   }

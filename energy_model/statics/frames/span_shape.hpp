@@ -20,6 +20,15 @@ namespace dlo::energy_model {
 /// own.
 inline constexpr double closest_cuts = 1e-9;
 
+/// Whether a grip holds the span at s.
+[[nodiscard]] inline bool is_held(const Span& span, double s) {
+  return span.held_within(s, s, closest_cuts) != HeldBy::nothing;
+}
+
+/// Returns the arc lengths where strains may have kinks, ascending, each once: ends, grips, loads
+/// and section changes.
+[[nodiscard]] std::vector<double> kinks_of(const Span& span);
+
 /// Samples of a span's shape, in the span's units and frame.
 struct SpanSamples {
   Eigen::Matrix3Xd points;  ///< relative to the anchor

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdint>
 #include <string>
 #include <utility>
 
@@ -37,15 +38,15 @@ void check(const EnergyOptions& options) {
 }
 
 /// Assembles combinations of the spans' equilibria, stable ones first, by energy.
+/// @param each  number of equilibria of each span to combine, in their order
 std::vector<Equilibrium> combine(const Problem& problem, const std::vector<PlacedSpan>& placed,
                                  const std::vector<std::vector<SpanSolution>>& solutions,
-                                 SearchLog& log) {
+                                 std::size_t each, SearchLog& log) {
   std::vector<std::vector<SpanCandidate>> candidates;
   for (const std::vector<SpanSolution>& of_span : solutions) {
     std::vector<SpanCandidate> own;
-    own.reserve(of_span.size());
-    for (const SpanSolution& found : of_span) {
-      own.push_back({succeeded(found.status), found.energy});
+    for (std::size_t i = 0; i < std::min(each, of_span.size()); ++i) {
+      own.push_back({succeeded(of_span[i].status), of_span[i].energy});
     }
     candidates.push_back(std::move(own));
   }
@@ -71,14 +72,6 @@ std::vector<Equilibrium> combine(const Problem& problem, const std::vector<Place
                     std::to_string(most_combinations) + " lowest");
   }
   return result;
-}
-
-/// Returns only the first equilibrium of each span.
-std::vector<std::vector<SpanSolution>> firsts_of(
-    const std::vector<std::vector<SpanSolution>>& solutions) {
-  std::vector<std::vector<SpanSolution>> firsts;
-  for (const std::vector<SpanSolution>& of_span : solutions) firsts.push_back({of_span.front()});
-  return firsts;
 }
 
 /// Returns the total energies of the combinations of the spans' stable equilibria, lowest first
@@ -256,9 +249,8 @@ class EnergySolver::State {
       followed_ = followed_ && solutions.back().front().followed;
       if (only && !followed_) return undone();
     }
-    std::vector<Equilibrium> result = wanted == Wanted::all
-                                          ? combine(problem, placed, solutions, log_)
-                                          : combine(problem, placed, firsts_of(solutions), log_);
+    std::vector<Equilibrium> result =
+        combine(problem, placed, solutions, wanted == Wanted::all ? SIZE_MAX : 1, log_);
     if (from == From::nothing && options_.start == nullptr) {
       note_search(problem, solutions, passing_starts, result);
     }
@@ -342,7 +334,7 @@ EnergySearch EnergySolver::search(const Problem& problem) {
 }
 
 std::vector<Equilibrium> EnergySolver::solve_all(const Problem& problem) {
-  return state_->solve(problem, State::Wanted::all, State::From::nothing);
+  return search(problem).equilibria;
 }
 
 Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options) {

@@ -174,8 +174,7 @@ class TwistPath {
     // If no eigenvalue is near zero, the factor from the last stability test is reused.
     newton(next, stiff_ ? NewtonMethod::simplified : NewtonMethod::corrector);
     next = on_obstacles(std::move(next));
-    spent_ += next.evaluations;
-    next.evaluations = 0;
+    spent_ += std::exchange(next.evaluations, 0);
     if (!next.is_equilibrium()) return std::nullopt;
     // On the same branch the energy changes by the torque's work. The shape is no criterion: it may
     // rotate about a line without a change of energy.
@@ -233,8 +232,7 @@ class TwistPath {
     here_ = workspace_.with_terms(here_,
                                   std::min(max_terms, here_.terms + std::max(2, here_.terms / 4)));
     newton(here_, NewtonMethod::corrector);
-    spent_ += here_.evaluations;
-    here_.evaluations = 0;
+    spent_ += std::exchange(here_.evaluations, 0);
     slope_x_.resize(0);
     last_step_.resize(0);
     return true;
@@ -314,8 +312,7 @@ class TwistPath {
       }
       if (succeeded(next.status)) newton(next, NewtonMethod::newton);
       next = on_obstacles(std::move(next));
-      spent_ += next.evaluations;
-      next.evaluations = 0;
+      spent_ += std::exchange(next.evaluations, 0);
       if (next.is_equilibrium() && is_stable(next)) return next;
     }
     return from_polygon(from, way);

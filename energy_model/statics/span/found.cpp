@@ -96,8 +96,9 @@ bool is_same_shape(const SpanSolution& a, const SpanSolution& b, double toleranc
   return !planar && is_rotated_copy(span, of_a, of_b);
 }
 
-bool Found::add(SpanSolution solution) {
+bool Found::add(SpanSolution solution, const std::string& strategy) {
   evaluations_ += std::exchange(solution.evaluations, 0);
+  if (!strategy.empty()) note_tried(options_.log, strategy);
   if (!counts(solution, options_)) {
     if (found_.empty()) found_.push_back(std::move(solution));
     return false;
@@ -110,14 +111,8 @@ bool Found::add(SpanSolution solution) {
   // Keeping the factors of many equilibria would take much memory, and most are not used again.
   if (options_.wants_all()) solution.factor.reset();
   found_.push_back(std::move(solution));
+  if (!strategy.empty()) note_found(options_.log, strategy);
   return true;
-}
-
-bool Found::add(SpanSolution solution, const std::string& strategy) {
-  const bool is_new = add(std::move(solution));
-  note_tried(options_.log, strategy);
-  if (is_new) note_found(options_.log, strategy);
-  return is_new;
 }
 
 const SpanSolution& Found::best() const {

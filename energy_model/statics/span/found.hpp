@@ -84,10 +84,9 @@ class Found {
  public:
   explicit Found(const SpanOptions& options) : options_(options) {}
 
-  /// Adds the result of one start. @return whether it is an equilibrium that was not known
-  bool add(SpanSolution solution);
-  /// Adds the result of one start and records the strategy in the log.
-  bool add(SpanSolution solution, const std::string& strategy);
+  /// Adds the result of one start, and records the strategy in the log unless it is empty.
+  /// @return whether it is an equilibrium that was not known
+  bool add(SpanSolution solution, const std::string& strategy = {});
   /// Adds evaluations other than those of the added solutions.
   void spend(int evaluations) { evaluations_ += evaluations; }
 

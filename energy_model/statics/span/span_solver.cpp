@@ -225,11 +225,8 @@ class Search {
     for (const std::string& what : own.omitted()) options_.log->add_omitted(what);
   }
 
-  bool add(SpanSolution solution) {
-    if (!is_of_span_class(solution)) return false;
-    return found_.add(judged(std::move(solution), options_, workspace_));
-  }
-  bool add(SpanSolution solution, const std::string& strategy) {
+  /// Certifies and adds a refined solution. @param strategy  name in the log; empty: not logged
+  bool add(SpanSolution solution, const std::string& strategy = {}) {
     if (!is_of_span_class(solution)) return false;
     return found_.add(judged(std::move(solution), options_, workspace_), strategy);
   }

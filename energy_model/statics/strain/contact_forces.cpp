@@ -68,14 +68,13 @@ ContactForce force_of_series(const ContactSeries& rows, const Eigen::VectorXd& m
   return force;
 }
 
-Eigen::Vector3d moment_of(const ContactSeries& rows, const ContactPlace& place,
-                          const Eigen::MatrixX3d& tangents, const Eigen::VectorXd& multipliers) {
-  Eigen::VectorXd own = Eigen::VectorXd::Zero(multipliers.size());
-  if (rows.clearance >= 0) own[rows.clearance] = multipliers[rows.clearance];
-  for (const ContactSeries::Slope& slope : rows.slopes) {
-    own.segment(slope.first, slope.count) = multipliers.segment(slope.first, slope.count);
+Eigen::VectorXd ContactSeries::own(const Eigen::VectorXd& multipliers) const {
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(multipliers.size());
+  if (clearance >= 0) result[clearance] = multipliers[clearance];
+  for (const Slope& slope : slopes) {
+    result.segment(slope.first, slope.count) = multipliers.segment(slope.first, slope.count);
   }
-  return place.moment(own, tangents);
+  return result;
 }
 
 }  // namespace dlo::energy_model

@@ -38,6 +38,9 @@ struct ContactSeries {
   Eigen::Index clearance = -1;
   std::vector<Slope> slopes;
   bool held_at_begin = false, held_at_end = false;  ///< whether a grip is there
+
+  /// Returns the multipliers of all contacts with zeros for those of other contacts.
+  [[nodiscard]] Eigen::VectorXd own(const Eigen::VectorXd& multipliers) const;
 };
 
 /// Length of a part, divided by the rod length, below which a few moments of the slope describe it.
@@ -48,11 +51,5 @@ inline constexpr double short_part = 5e-3;
 /// direction of the resultant. @param multipliers  of the rows of all contacts
 [[nodiscard]] ContactForce force_of_series(const ContactSeries& rows,
                                            const Eigen::VectorXd& multipliers);
-
-/// Returns the moment of one contact's multipliers about the span's anchor.
-/// @param tangents  nodes x 3
-[[nodiscard]] Eigen::Vector3d moment_of(const ContactSeries& rows, const ContactPlace& place,
-                                        const Eigen::MatrixX3d& tangents,
-                                        const Eigen::VectorXd& multipliers);
 
 }  // namespace dlo::energy_model

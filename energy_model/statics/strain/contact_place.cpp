@@ -24,10 +24,8 @@ void ContactPlace::add(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
   }
 }
 
-Eigen::Vector3d ContactPlace::moment(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
-                                     const Eigen::MatrixX3d& tangents) const {
-  Eigen::MatrixX3d carried = Eigen::MatrixX3d::Zero(tangents.rows(), 3);
-  add(multipliers, carried);
+Eigen::Vector3d moment_about_anchor(const Eigen::MatrixX3d& tangents,
+                                    const Eigen::MatrixX3d& carried) {
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
   for (Eigen::Index q = 0; q < tangents.rows(); ++q) {
     moment += Eigen::Vector3d(tangents.row(q)).cross(Eigen::Vector3d(carried.row(q)));

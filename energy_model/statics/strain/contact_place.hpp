@@ -32,9 +32,11 @@ struct ContactPlace {
   [[nodiscard]] Eigen::MatrixX3d by_node(Eigen::Index row) const;
   /// Adds the sum of multipliers times by_node() to `carried`.
   void add(const Eigen::Ref<const Eigen::VectorXd>& multipliers, Eigen::MatrixX3d& carried) const;
-  /// Returns the moment of the multipliers' forces about the anchor. @param tangents  nodes x 3
-  [[nodiscard]] Eigen::Vector3d moment(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
-                                       const Eigen::MatrixX3d& tangents) const;
 };
+
+/// Returns the moment about the anchor of forces that act on all that lies beyond each node.
+/// @param carried  weight of the node times the force that the rod carries there, nodes x 3
+[[nodiscard]] Eigen::Vector3d moment_about_anchor(const Eigen::MatrixX3d& tangents,
+                                                  const Eigen::MatrixX3d& carried);
 
 }  // namespace dlo::energy_model

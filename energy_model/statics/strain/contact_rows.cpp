@@ -14,7 +14,7 @@ constexpr Eigen::Index most_of_short = 8;  // moments of the slope on a short pa
 /// Whether a grip, a load or a section change is at `at`, which could cause a concentrated force.
 bool may_concentrate(const Span& span, double at) {
   const auto is_there = [at](double other) { return std::abs(at - other) < closest_cuts; };
-  return span.held_within(at, at, closest_cuts) != HeldBy::nothing ||
+  return is_held(span, at) ||
          std::any_of(span.loads.begin(), span.loads.end(),
                      [&](const Span::Load& load) { return is_there(load.at); }) ||
          std::any_of(span.parts.begin(), span.parts.end(), [&](const Span::Part& part) {
@@ -153,10 +153,8 @@ void ContactRows::reset(const Span& span, const std::vector<Piece>& pieces, int 
     if (held == HeldBy::nothing) {
       add_clearance(span, i, pieces);
     } else {
-      contacts_[i].held_at_begin =
-          span.held_within(contact.begin, contact.begin, closest_cuts) != HeldBy::nothing;
-      contacts_[i].held_at_end =
-          span.held_within(contact.end, contact.end, closest_cuts) != HeldBy::nothing;
+      contacts_[i].held_at_begin = is_held(span, contact.begin);
+      contacts_[i].held_at_end = is_held(span, contact.end);
     }
     if (!contact.lies()) continue;
     // The slope is not prescribed unless a clamp holds the contact; it then has one more unknown
@@ -317,25 +315,6 @@ void ContactRows::subtract_hessian(const ContactPlace& place,
   }
 }
 
-void ContactRows::subtract_tilt_hessian(const ContactPlace& place,
-                                        const Eigen::Ref<const Eigen::VectorXd>& multipliers,
-                                        const Eigen::MatrixXd& tangents,
-                                        Eigen::Ref<Eigen::MatrixXd> hessian) const {
-  for (std::size_t i = 0; i < touches_.size(); ++i) {
-    const ContactPlace::Touch& touch = place.touches[i];
-    const Eigen::VectorXd moved = tangents.transpose() * touch.point.position;
-    hessian.noalias() -=
-        (multipliers[touches_[i].row] * touch.gap.hessian(2, 2)) * moved * moved.transpose();
-  }
-  for (std::size_t i = 0; i < curved_.size(); ++i) {
-    const Curved& curved = curved_[i];
-    const Eigen::VectorXd forces = curved.forces(multipliers);
-    const Eigen::VectorXd bent = stiffness(forces, place.gaps[i], 2, 2);
-    const Eigen::MatrixXd moved = curved.reach.sums(tangents);
-    hessian.noalias() -= moved.transpose() * (bent.asDiagonal() * moved);
-  }
-}
-
 Eigen::VectorXd ContactRows::prolong(const ContactRows& other,
                                      const Eigen::VectorXd& multipliers) const {
   Eigen::VectorXd prolonged = Eigen::VectorXd::Zero(count());
@@ -360,7 +339,9 @@ std::vector<ContactForce> ContactRows::forces(const ContactPlace& place,
   for (std::size_t i = 0; i < contacts_.size(); ++i) {
     result.push_back(force_of_series(contacts_[i], multipliers));
     result.back().force = result.back().total * normals_[i];
-    result.back().moment = moment_of(contacts_[i], place, tangents, multipliers);
+    Eigen::MatrixX3d carried = Eigen::MatrixX3d::Zero(tangents.rows(), 3);
+    place.add(contacts_[i].own(multipliers), carried);
+    result.back().moment = moment_about_anchor(tangents, carried);
   }
   for (std::size_t i = 0; i < touches_.size(); ++i) {
     result[touches_[i].contact].force =

@@ -10,7 +10,6 @@
 #include "frames/position_operator.hpp"
 #include "problem/span.hpp"
 #include "strain/contact_forces.hpp"
-#include "strain/contact_place.hpp"
 
 namespace dlo::energy_model {
 
@@ -50,11 +49,6 @@ class ContactRows {
                         const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                         const std::array<Eigen::MatrixXd, 3>& tangents,
                         Eigen::Ref<Eigen::MatrixXd> hessian) const;
-  /// Subtracts the multipliers times the rows' second derivatives along z, for a rod in the plane.
-  void subtract_tilt_hessian(const ContactPlace& place,
-                             const Eigen::Ref<const Eigen::VectorXd>& multipliers,
-                             const Eigen::MatrixXd& tangents,
-                             Eigen::Ref<Eigen::MatrixXd> hessian) const;
   /// Returns the multipliers of these rows from those of the same contacts with another number of
   /// coefficients.
   [[nodiscard]] Eigen::VectorXd prolong(const ContactRows& other,

@@ -1,52 +1,76 @@
 #include "strain/dead_loads.hpp"
 
-namespace dlo::energy_model {
+#include "frames/position_operator.hpp"
 
-void DeadLoads::reset(const Span& span, const Eigen::VectorXd& nodes,
-                      const Eigen::VectorXd& weights) {
-  couples_.resize(0);
-  force_.resize(nodes.size(), 3);
-  for (Eigen::Index q = 0; q < nodes.size(); ++q) {
-    const double s = nodes[q];
+namespace dlo::energy_model {
+namespace {
+
+/// Returns the energy of the loads' forces, without weight and couples [EI/l].
+double energy_of_forces(const TermSetup& setup, const Eigen::MatrixX3d& tangents) {
+  if (setup.span.loads.empty()) return 0;
+  const PositionOperator reach(setup.span, setup.pieces, setup.table);
+  double energy = 0;
+  for (const Span::Load& load : setup.span.loads) {
+    const Eigen::VectorXd at = reach.begin(pieces_before(setup.pieces, load.at));
+    energy -= load.force.dot(tangents.transpose() * at);
+  }
+  return energy;
+}
+
+/// Rotation of a planar span's tangent at a load from the zero of its couple (CoupleZero) [rad].
+double couple_angle(const TermSetup& setup, const Eigen::VectorXd& x, const Span::Load& load) {
+  const Span& span = setup.span;
+  const double start = span.start_direction ? angle_of(*span.start_direction) : 0;
+  const auto angle = [&](double at) {
+    return start + setup.plane.by_unknown_after(pieces_before(setup.pieces, at) - 1).dot(x) +
+           (span.natural.empty() ? 0 : span.natural.integral(at).x());
+  };
+  const double zero = angle(load.zero_at);
+  return angle(load.at) - zero + nearest_turn(zero - load.zero_angle, 0);
+}
+
+}  // namespace
+
+void DeadLoads::reset(const TermSetup& setup) {
+  const Span& span = setup.span;
+  force_.resize(setup.nodes.size(), 3);
+  for (Eigen::Index q = 0; q < setup.nodes.size(); ++q) {
+    const double s = setup.nodes[q];
     const bool after = s > span.anchor;
     Eigen::Vector3d n = span.weight_between(s, after ? span.length : 0);
     for (const Span::Load& load : span.loads) {
       if (after && load.at > s) n += load.force;
       if (!after && load.at < s) n -= load.force;
     }
-    force_.row(q) = weights[q] * n.transpose();
+    force_.row(q) = setup.weights[q] * n.transpose();
   }
-}
-
-void DeadLoads::tabulate_couples(const Span& span, const std::vector<Piece>& pieces,
-                                 const PlanarFrames& frames) {
-  if (!span.has_couples()) return;
-  couples_.setZero(frames.by_unknown().cols());
+  couples_.resize(0);
+  couple_ = 0;
+  for (const Span::Load& load : span.loads) couple_ += load.couple;
+  if (!span.planar || !span.has_couples()) return;
+  couples_.setZero(setup.plane.by_unknown().cols());
   for (const Span::Load& load : span.loads) {
-    const Eigen::Index last = pieces_before(pieces, load.at) - 1;
-    couples_ += load.couple * frames.by_unknown_after(last).transpose();
+    couples_ += load.couple *
+                setup.plane.by_unknown_after(pieces_before(setup.pieces, load.at) - 1).transpose();
   }
 }
 
-double energy_of_forces(const std::vector<Span::Load>& loads, const PositionOperator& reach,
-                        const Eigen::MatrixX3d& tangents) {
-  double energy = 0;
-  for (const Span::Load& load : loads) {
-    const Eigen::VectorXd at = reach.begin(pieces_before(reach.pieces(), load.at));
-    energy -= load.force.dot(tangents.transpose() * at);
-  }
-  return energy;
+void DeadLoads::evaluate(SpanPoint& at) const {
+  at.energy -= force_.cwiseProduct(at.t).sum();
+  at.force += force_;
+  if (couples_.size() == 0) return;
+  at.energy -= couples_.dot(at.x);
+  at.gradient -= couples_;
 }
 
-void DeadLoads::add_moment(const Span& span, const Eigen::MatrixX3d& tangents,
-                           Eigen::Vector3d& moment) const {
-  // sum t x force
-  const auto about = [&](Eigen::Index a, Eigen::Index b) {
-    return tangents.col(a).dot(force_.col(b)) - tangents.col(b).dot(force_.col(a));
-  };
-  moment.z() += about(0, 1);
-  for (const Span::Load& load : span.loads) moment.z() += load.couple;
-  if (!span.planar) moment.head<2>() += Eigen::Vector2d(about(1, 2), about(2, 0));
+void DeadLoads::add_energies(const TermSetup& setup, const SpanPoint& at,
+                             Energies& energies) const {
+  const double of_forces = energy_of_forces(setup, at.t);
+  energies.load += of_forces;
+  energies.gravity -= force_.cwiseProduct(at.t).sum() + of_forces;
+  for (const Span::Load& load : setup.span.loads) {
+    if (load.couple != 0) energies.load -= load.couple * couple_angle(setup, at.x, load);
+  }
 }
 
 }  // namespace dlo::energy_model

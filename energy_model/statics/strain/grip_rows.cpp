@@ -203,15 +203,4 @@ Eigen::Vector3d GripRows::torque(Eigen::Index hold, const Eigen::VectorXd& multi
   return torque;
 }
 
-Eigen::Vector3d GripRows::moment(const Eigen::VectorXd& multipliers, const SpatialPoint* at) const {
-  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  for (Eigen::Index j = 0; j < reach_.cols(); ++j) moment += torque(j, multipliers, at);
-  for (Eigen::Index j = 0; j < reach_.cols(); ++j) {
-    Eigen::Vector3d force = Eigen::Vector3d::Zero();
-    force.head(axes_) = multipliers.segment(j * axes_, axes_);
-    moment += holds_[static_cast<std::size_t>(j)].offset.cross(force);
-  }
-  return moment;
-}
-
 }  // namespace dlo::energy_model

@@ -80,11 +80,9 @@ class GripRows {
   /// Sets the direction and d1 of the clamp at the end.
   void turn_end_clamp(const Eigen::Vector3d& direction, const Eigen::Vector3d& d1);
 
-  /// Returns the torque of a grip. moment() returns the moment of all grips about the anchor.
+  /// Returns the torque of a grip.
   /// @param at  in space; null: in the plane
   [[nodiscard]] Eigen::Vector3d torque(Eigen::Index hold, const Eigen::VectorXd& multipliers,
-                                       const SpatialPoint* at) const;
-  [[nodiscard]] Eigen::Vector3d moment(const Eigen::VectorXd& multipliers,
                                        const SpatialPoint* at) const;
 
  private:

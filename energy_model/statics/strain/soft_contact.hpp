@@ -4,8 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "base/legendre.hpp"
-#include "frames/span_shape.hpp"
+#include "strain/term.hpp"
 
 namespace dlo::energy_model {
 
@@ -14,47 +13,35 @@ namespace dlo::energy_model {
 /// there.
 [[nodiscard]] bool is_on_ridge(const obstacle::Gap& gap);
 
-/// Contact of a span's quadrature nodes with its soft obstacles, which are one-sided springs.
-class SoftContact {
+/// Contact of a span's quadrature nodes with its soft obstacles, which are one-sided springs: with
+/// the clearance d of a node, p = max(0, -k d) and the energy p^2 / 2k.
+class SoftContact : public Term {
  public:
-  /// A node within an obstacle.
-  struct Pressed {
-    Eigen::Index node = 0;
-    obstacle::Gap gap;
-  };
-  /// Nodes within each obstacle, at one shape.
-  using Place = std::vector<std::vector<Pressed>>;
-
-  void reset(const Span& span, const std::vector<Piece>& pieces, const LegendreTable& table);
-
-  [[nodiscard]] bool any() const { return !obstacles_.empty(); }
-
-  /// Finds the nodes within obstacles for tangents (nodes x 3), and adds to `force` (nodes x 3) the
-  /// obstacles' forces, carried from beyond each node.
-  void look(const Eigen::MatrixX3d& tangents, Place& place, Eigen::MatrixX3d& force) const;
-  /// Adds the springs' second derivatives to `hessian`, except the part with second derivatives of
-  /// the tangents, which the force from look() covers.
-  /// @param tangents  derivatives of the tangents by the unknowns, one matrix per axis, nodes x
-  ///   unknowns
-  void add_hessian(const Place& place, const std::array<Eigen::MatrixXd, 3>& tangents,
+  void reset(const TermSetup& setup);
+  [[nodiscard]] bool is_curved() const { return !obstacles_.empty(); }
+  void evaluate(SpanPoint& at) const;
+  void add_hessian(const SpanPoint& at, const std::array<Eigen::MatrixXd, 3>& tangents,
                    Eigen::Ref<Eigen::MatrixXd> hessian) const;
-
-  /// Adds the springs' second derivatives out of the plane of a planar span. @param angle  tilt of
-  /// the tangents out of the plane by the unknowns, nodes x unknowns
-  void add_tilt_hessian(const Place& place, const Eigen::MatrixXd& angle,
-                        Eigen::MatrixXd& hessian) const;
-
-  /// Returns the energy of the springs.
-  [[nodiscard]] double energy(const Place& place) const;
+  void add_energies(const TermSetup& setup, const SpanPoint& at, Energies& energies) const;
   /// Returns the force of each obstacle on the span.
-  [[nodiscard]] std::vector<Eigen::Vector3d> forces(const Place& place) const;
-  /// Returns the moment of the obstacles' forces about the anchor.
-  [[nodiscard]] Eigen::Vector3d moment(const Place& place, const Eigen::MatrixX3d& tangents) const;
+  [[nodiscard]] std::vector<Eigen::Vector3d> forces(const SpanPoint& at) const;
 
  private:
-  [[nodiscard]] Eigen::Vector3d push(std::size_t obstacle, const Pressed& at) const;
+  /// A node within an obstacle.
+  struct Pressed {
+    std::size_t obstacle = 0;
+    Eigen::Index node = 0;
+    obstacle::Gap gap;
+    double stiffness = 0;  // stiffness of the obstacle times the node's quadrature weight
+
+    [[nodiscard]] double energy() const { return stiffness * gap.value * gap.value / 2; }
+    [[nodiscard]] Eigen::Vector3d push() const { return -stiffness * gap.value * gap.gradient; }
+  };
+  [[nodiscard]] std::vector<Pressed> pressed(const Eigen::MatrixX3d& tangents) const;
+  [[nodiscard]] Eigen::Matrix3d spring(const Pressed& at) const;
 
   std::vector<Span::SoftObstacle> obstacles_;
+  bool planar_ = true;
   Eigen::VectorXd weights_;
   Eigen::MatrixXd position_;  // positions of the nodes by tangents at the nodes
 };

@@ -22,16 +22,10 @@ Eigen::Vector3d first_tangent(const Span& span) {
   return before.norm() > 0 ? Eigen::Vector3d(-before.normalized()) : Eigen::Vector3d::UnitX();
 }
 
-/// Rotation of a planar span's tangent at a load from the zero of its couple (CoupleZero) [rad].
-double couple_angle(const Span& span, const std::vector<Piece>& pieces, const PlanarFrames& frames,
-                    const Eigen::VectorXd& x, const Span::Load& load) {
-  const double start = span.start_direction ? angle_of(*span.start_direction) : 0;
-  const auto angle = [&](double at) {
-    return start + frames.by_unknown_after(pieces_before(pieces, at) - 1).dot(x) +
-           (span.natural.empty() ? 0 : span.natural.integral(at).x());
-  };
-  const double zero = angle(load.zero_at);
-  return angle(load.at) - zero + nearest_turn(zero - load.zero_angle, 0);
+/// Calls a function with each term.
+template <typename Terms, typename Function>
+void for_each(Terms& terms, const Function& function) {
+  std::apply([&](auto&... term) { (function(term), ...); }, terms);
 }
 
 }  // namespace
@@ -41,17 +35,14 @@ void SpanEnergy::reset(const Span& span, int terms) {
   pieces_ = pieces_of(span);
   table_ = span.planar ? &legendre_table(terms) : &director_table(terms);
   tabulate_nodes(pieces_, *table_, s_, weights_);
-  loads_.reset(span, s_, weights_);
   grips_.reset(span, pieces_, *table_);
   if (span.twist) twist_root_ = std::sqrt(span.twist->stiffness / span.length);
   contacts_.reset(span, pieces_, terms, *table_);
-  soft_contact_.reset(span_, pieces_, *table_);
   unknowns_ = {1, std::ssize(pieces_), terms, span.start_direction ? 0 : 1, false};
   if (span.planar) {
     std::optional<double> start_theta;
     if (span.start_direction) start_theta = angle_of(*span.start_direction);
     plane_.reset(pieces_, terms, start_theta, span.natural);
-    loads_.tabulate_couples(span, pieces_, plane_);
     grips_.reset_in_plane(plane_);
   } else {
     const Eigen::Vector3d tangent = first_tangent(span);
@@ -60,6 +51,7 @@ void SpanEnergy::reset(const Span& span, int terms) {
     unknowns_.fields = frames_.fields();
     unknowns_.has_psi = span.twist && !span.has_material_directors();
   }
+  for_each(terms_, [this](auto& term) { term.reset(setup()); });
   revise();
 }
 
@@ -82,7 +74,6 @@ void SpanEnergy::resize(SpanPoint& point) const {
     point.curvatures.resize(pieces_.size());
   }
   contacts_.resize(point.contacts);
-  point.pressed.clear();
   point.revision = revision_;
 }
 
@@ -103,19 +94,12 @@ void SpanEnergy::evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, SpanPoint&
   }
   point.gradient = x;
   unknowns_.clear_start(point.gradient);
-  point.energy = point.gradient.dot(x) / 2 + loads_.force_energy(point.t);
-  point.force = loads_.force();
-  if (has_soft_obstacles()) {
-    soft_contact_.look(point.t, point.pressed, point.force);
-    point.energy += soft_contact_.energy(point.pressed);
-  }
+  point.energy = point.gradient.dot(x) / 2;
+  point.force.setZero();
+  for_each(terms_, [&](const auto& term) { term.evaluate(point); });
   if (span_.planar) {
     plane_.adjoint(point.force, point.plane);
     point.gradient -= point.plane.by_unknown;
-    if (loads_.couples().size() > 0) {
-      point.energy -= loads_.couples().dot(x);
-      point.gradient -= loads_.couples();
-    }
   } else {
     frames_.add_adjoint({&point.force}, -1, point.frames, point.gradient);
   }
@@ -202,11 +186,24 @@ void SpanEnergy::hessian(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>&
     at.frame_hessian.add(frames_, {&at.carried, at.couples}, at.curvatures, at.frames, result);
     if (has_psi()) grips_.add_twist_hessian(here, -multipliers[constraints() - 1], result);
   }
-  if (!has_soft_obstacles() && !contacts_.curved()) return;
-  const std::array<Eigen::MatrixXd, 3> tangents = tangent_jacobian(at);
-  auto by_strains = result.topLeftCorner(strains(), strains());
-  soft_contact_.add_hessian(at.pressed, tangents, by_strains);
-  contacts_.subtract_hessian(at.contacts, of_contacts(multipliers), tangents, by_strains);
+  if (!is_curved()) return;
+  add_curvature(at, multipliers, tangent_jacobian(at), result.topLeftCorner(strains(), strains()));
+}
+
+/// Whether terms or constraints are nonlinear in the tangents.
+bool SpanEnergy::is_curved() const {
+  bool curved = contacts_.curved();
+  for_each(terms_, [&](const auto& term) { curved = curved || term.is_curved(); });
+  return curved;
+}
+
+/// Adds the part of the Hessian that does not contain second derivatives of the tangents.
+void SpanEnergy::add_curvature(const SpanPoint& at,
+                               const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                               const std::array<Eigen::MatrixXd, 3>& tangents,
+                               Eigen::Ref<Eigen::MatrixXd> hessian) const {
+  for_each(terms_, [&](const auto& term) { term.add_hessian(at, tangents, hessian); });
+  contacts_.subtract_hessian(at.contacts, of_contacts(multipliers), tangents, hessian);
 }
 
 std::array<Eigen::MatrixXd, 3> SpanEnergy::tangent_jacobian(SpanPoint& at) const {
@@ -240,10 +237,10 @@ void SpanEnergy::tilt_hessian(SpanPoint& at, const Eigen::Ref<const Eigen::Vecto
   unknowns_.clear_start(stored);
   plane_.add_hessian(at.along, at.plane, hessian);
   const Eigen::MatrixXd& angle = plane_.by_unknown();
-  if (contacts_.curved()) {
-    contacts_.subtract_tilt_hessian(at.contacts, of_contacts(multipliers), angle, hessian);
+  if (is_curved()) {
+    const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(angle.rows(), angle.cols());
+    add_curvature(at, multipliers, {none, none, angle}, hessian);
   }
-  if (has_soft_obstacles()) soft_contact_.add_tilt_hessian(at.pressed, angle, hessian);
   grips_.tilt_jacobian(plane_, jacobian);
 }
 
@@ -256,7 +253,8 @@ SpanEnergy::Estimate SpanEnergy::estimate(const Eigen::Matrix3Xd& tangents) cons
     const double turned = (tangents.col(q + 1) - tangents.col(q)).squaredNorm();
     result.bending += turned / (2 * (s_[q + 1] - s_[q]));
   }
-  result.energy = result.bending - loads_.force().transpose().cwiseProduct(tangents).sum();
+  result.energy =
+      result.bending - std::get<DeadLoads>(terms_).force().transpose().cwiseProduct(tangents).sum();
   result.gap = grips_.gap(tangents);
   return result;
 }
@@ -364,15 +362,7 @@ Energies SpanEnergy::energies(const SpanPoint& at) const {
   const Eigen::Index bends = std::min<Eigen::Index>(unknowns_.fields, 2) * unknowns_.columns();
   energies.bending = stored.head(bends).squaredNorm() / 2;
   energies.twisting = stored.tail(stored.size() - bends).squaredNorm() / 2;
-  if (!span_.loads.empty()) {
-    energies.load = energy_of_forces(span_.loads, PositionOperator(span_, pieces_, *table_), at.t);
-  }
-  energies.gravity = loads_.force_energy(at.t) - energies.load;
-  for (const Span::Load& load : span_.loads) {
-    if (load.couple != 0)
-      energies.load -= load.couple * couple_angle(span_, pieces_, plane_, at.x, load);
-  }
-  if (has_soft_obstacles()) energies.contact = soft_contact_.energy(at.pressed);
+  for_each(terms_, [&](const auto& term) { term.add_energies(setup(), at, energies); });
   return energies;
 }
 
@@ -385,13 +375,14 @@ Eigen::Vector3d SpanEnergy::hold_torque(SpanPoint& at, Eigen::Index hold,
 
 Eigen::Vector3d SpanEnergy::start_torque(SpanPoint& at, const Eigen::VectorXd& multipliers) const {
   if (!span_.start_direction) return Eigen::Vector3d::Zero();
-  const SpatialPoint here = in_space(at);
-  Eigen::Vector3d moment = grips_.moment(multipliers, span_.planar ? nullptr : &here);
-  loads_.add_moment(span_, at.t, moment);
-  if (contacts_.count() > 0) {
-    moment += at.contacts.moment(of_contacts(multipliers), at.t);
+  carry(at, multipliers);
+  Eigen::Vector3d moment = moment_about_anchor(at.t, at.carried);
+  if (span_.planar) moment.head<2>().setZero();
+  for_each(terms_, [&](const auto& term) { term.add_couples(moment); });
+  for (Eigen::Index j = 0; j < std::ssize(span_.holds); ++j) {
+    moment += hold_torque(at, j, multipliers);
   }
-  return -(moment + soft_contact_.moment(at.pressed, at.t));
+  return -moment;
 }
 
 }  // namespace dlo::energy_model

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <tuple>
 #include <vector>
 
 #include "dlo/energy_model/problem.hpp"
@@ -32,6 +33,9 @@ namespace dlo::energy_model {
 /// once a point has its size.
 class SpanEnergy {
  public:
+  /// Terms of the energy besides that of strains.
+  using Terms = std::tuple<DeadLoads, SoftContact>;
+
   SpanEnergy() = default;
   SpanEnergy(const Span& span, int terms) { reset(span, terms); }
   /// Replaces the span; buffers of the same size are kept.
@@ -133,10 +137,10 @@ class SpanEnergy {
   /// components x, y and z, nodes x unknowns.
   [[nodiscard]] std::array<Eigen::MatrixXd, 3> tangent_jacobian(SpanPoint& at) const;
 
-  [[nodiscard]] bool has_soft_obstacles() const { return soft_contact_.any(); }
+  [[nodiscard]] bool has_soft_obstacles() const { return !span_.soft_obstacles.empty(); }
   /// Returns the force of each soft obstacle on the span.
   [[nodiscard]] std::vector<Eigen::Vector3d> soft_obstacle_forces(const SpanPoint& at) const {
-    return soft_contact_.forces(at.pressed);
+    return std::get<SoftContact>(terms_).forces(at);
   }
   /// Returns the forces of rigid obstacles on the rod for these multipliers.
   [[nodiscard]] std::vector<ContactForce> contact_forces(const SpanPoint& at,
@@ -171,7 +175,12 @@ class SpanEnergy {
       const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
     return multipliers.segment(grips_.positions(), contacts_.count());
   }
+  [[nodiscard]] TermSetup setup() const { return {span_, pieces_, *table_, s_, weights_, plane_}; }
   void constrain(SpanPoint& point) const;
+  [[nodiscard]] bool is_curved() const;
+  void add_curvature(const SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                     const std::array<Eigen::MatrixXd, 3>& tangents,
+                     Eigen::Ref<Eigen::MatrixXd> hessian) const;
   void carry(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
   void carry_tilts(SpanPoint& at, const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
   void revise();
@@ -183,11 +192,9 @@ class SpanEnergy {
   const LegendreTable* table_ = nullptr;
   Eigen::VectorXd s_, weights_;
 
-  // Energy terms and constraints
-  DeadLoads loads_;
+  Terms terms_;
   GripRows grips_;
   ContactRows contacts_;
-  SoftContact soft_contact_;
 
   PlanarFrames plane_;  // in the plane
   // In space

@@ -7,7 +7,6 @@
 #include "frames/planar_frames.hpp"
 #include "frames/rod_frames.hpp"
 #include "strain/contact_place.hpp"
-#include "strain/soft_contact.hpp"
 
 namespace dlo::energy_model {
 
@@ -26,7 +25,6 @@ struct SpanPoint {
   PlanarFrames::State plane;  ///< frames of a span in its plane
   RodFrames::State frames;    ///< frames of a span in space
   ContactPlace contacts;
-  SoftContact::Place pressed;
   /// SpanEnergy::revision() at the evaluation; 0: not evaluated.
   long revision = 0;
 
