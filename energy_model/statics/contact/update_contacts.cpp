@@ -106,7 +106,7 @@ class Contacts {
       Span::Contact& here = contacts_[i];
       const Span::Contact& next = contacts_[i + 1];
       const bool split = std::find(split_.begin(), split_.end(), next.begin) != split_.end();
-      if (split || !are_one(here, next, span_, shape_)) {
+      if (split || !are_one(here, next)) {
         ++i;
         continue;
       }
@@ -149,6 +149,16 @@ class Contacts {
               [](const auto& a, const auto& b) { return a.begin < b.begin; });
   }
 
+  /// Whether a contact and the next one should be joined: they are with the same feature of the
+  /// same obstacle, and between them the rod hardly leaves it or is within it.
+  [[nodiscard]] bool are_one(const Span::Contact& here, const Span::Contact& next) const {
+    if (here.obstacle.index != next.obstacle.index || here.feature != next.feature) return false;
+    const double gap = next.begin - here.end;
+    const double rise = highest(shape_, here.obstacle, here.end, next.begin);
+    // A shorter free part could not be resolved.
+    return rise < 0 || (gap < short_gap * span_.length && rise < least_rise * gap);
+  }
+
   const SpanSolution& solution_;
   const Span& span_;
   SpanShape shape_;
@@ -161,15 +171,6 @@ class Contacts {
 };
 
 }  // namespace
-
-bool are_one(const Span::Contact& here, const Span::Contact& next, const Span& span,
-             const SpanShape& shape) {
-  if (here.obstacle.index != next.obstacle.index || here.feature != next.feature) return false;
-  const double gap = next.begin - here.end;
-  const double rise = highest(shape, here.obstacle, here.end, next.begin);
-  // A shorter free part could not be resolved.
-  return rise < 0 || (gap < short_gap * span.length && rise < least_rise * gap);
-}
 
 std::optional<std::vector<Span::Contact>> updated_contacts(const SpanSolution& solution,
                                                            double load, Resolution resolution) {

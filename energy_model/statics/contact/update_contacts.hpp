@@ -32,9 +32,4 @@ enum class Resolution {
 [[nodiscard]] std::optional<std::vector<Span::Contact>> updated_contacts(
     const SpanSolution& solution, double load, Resolution resolution);
 
-/// Whether a contact and the next one should be joined: they are with the same feature of the same
-/// obstacle, and between them the rod hardly leaves it or is within it.
-[[nodiscard]] bool are_one(const Span::Contact& here, const Span::Contact& next, const Span& span,
-                           const SpanShape& shape);
-
 }  // namespace dlo::energy_model

@@ -18,9 +18,8 @@ constexpr double last_residual = 1e-8;
 /// Contraction rate of steps with a factor of another point up to which that factor is kept.
 constexpr double fast_contraction = 0.1;
 
-/// Maximum numbers of steps: in general, with soft obstacles, and for NewtonMethod::simplified.
+/// Maximum numbers of steps: in general, and for NewtonMethod::simplified.
 constexpr int most_newton_steps = 30;
-constexpr int most_steps_among_obstacles = 60;
 constexpr int most_simplified_steps = 10;
 /// Longest step of NewtonMethod::simplified with a factor of its own [rad].
 constexpr double longest_simplified = 10;
@@ -39,7 +38,6 @@ class NewtonIteration {
         options_(options),
         model_(*solution.model),
         buffers_(buffers),
-        among_obstacles_(model_.has_soft_obstacles()),
         step_(solution, options, buffers) {}
 
   void run() {
@@ -52,9 +50,8 @@ class NewtonIteration {
   enum class Outcome { goes_on, equilibrium, singular, diverged };
 
   void iterate() {
-    const int most = among_obstacles_                              ? most_steps_among_obstacles
-                     : options_.method == NewtonMethod::simplified ? most_simplified_steps
-                                                                   : most_newton_steps;
+    const int most =
+        options_.method == NewtonMethod::simplified ? most_simplified_steps : most_newton_steps;
     for (int step = 0; step < most && std::isfinite(size_); ++step) {
       if (options_.deadline != nullptr && options_.deadline->passed()) {
         solution_.residual = size_;
@@ -80,7 +77,6 @@ class NewtonIteration {
 
   void begin();
   [[nodiscard]] Outcome advance();
-  [[nodiscard]] Outcome advance_among_obstacles();
   [[nodiscard]] Outcome judge_standstill(double moved);
   [[nodiscard]] Outcome judge_move(double moved);
   void finish();
@@ -93,8 +89,6 @@ class NewtonIteration {
   }
   void move(double length);
   [[nodiscard]] bool natural_move();
-  [[nodiscard]] double step_length();
-  [[nodiscard]] double step_length_by_energy();
 
   [[nodiscard]] double scale() const { return scale_of_forces(solution_, options_.load); }
   /// Whether the residual may consist of rounding errors.
@@ -103,7 +97,6 @@ class NewtonIteration {
   const NewtonOptions& options_;
   const SpanEnergy& model_;
   NewtonBuffers& buffers_;
-  const bool among_obstacles_;
   NewtonStep step_;
   bool step_is_next_ = false;  // buffers_.step is already the step from the present point
   double size_ = 0;            // norm of the residual
@@ -129,8 +122,7 @@ void NewtonIteration::begin() {
     }
   }
   size_ = residual();
-  const bool can_borrow =
-      model_.constraints() > 0 && !among_obstacles_ && options_.method != NewtonMethod::corrector;
+  const bool can_borrow = model_.constraints() > 0 && options_.method != NewtonMethod::corrector;
   if (can_borrow) step_.borrow();
 }
 
@@ -165,20 +157,8 @@ NewtonIteration::Outcome NewtonIteration::advance() {
   if (!ends_on_own && !step_.is_borrowed() && !(moved <= longest_simplified)) {
     return Outcome::diverged;
   }
-  // The shape is accurate; the forces need not be.
-  if (moved <= finest_step && (is_at_rounding() || among_obstacles_)) return Outcome::equilibrium;
-  if (among_obstacles_) return advance_among_obstacles();
+  if (moved <= finest_step && is_at_rounding()) return Outcome::equilibrium;
   return natural_move() ? judge_move(moved) : judge_standstill(moved);
-}
-
-NewtonIteration::Outcome NewtonIteration::advance_among_obstacles() {
-  const double before = size_;
-  const double moved = solution_.next_step;
-  move(step_length());
-  size_ = evaluated_residual();
-  solution_.next_step = moved * size_ / before;
-  step_.give_up_factor();
-  return Outcome::goes_on;
 }
 
 /// Decides what to do after a step that no shortening made acceptable and that has been undone.
@@ -289,42 +269,12 @@ bool NewtonIteration::natural_move() {
   return false;
 }
 
-double NewtonIteration::step_length_by_energy() {
-  const double slope = buffers_.gradient.dot(buffers_.step);
-  const double rounding = 1e-14 * (1 + std::abs(solution_.energy));
-  for (double length = 1; length > 1e-4; length /= 2) {
-    ++solution_.evaluations;
-    buffers_.trial_x = solution_.x + length * buffers_.step;
-    model_.evaluate(buffers_.trial_x, *trial_);
-    if (trial_->energy <= solution_.energy + 1e-4 * length * slope + rounding) return length;
-  }
-  return 1e-4;
-}
-
-/// Returns the length of the step among soft obstacles, which make the second derivative of the
-/// energy jump: Newton's step is halved until the energy decreases or, between grips, until the
-/// residual does.
-double NewtonIteration::step_length() {
-  if (step_.is_minimum()) return step_length_by_energy();
-  buffers_.trial_x = solution_.x;
-  buffers_.trial_multipliers = solution_.multipliers;
-  for (double length = 1; length > 1e-3; length /= 2) {
-    move(length);
-    const double trial = evaluated_residual();
-    solution_.x = buffers_.trial_x;
-    solution_.multipliers = buffers_.trial_multipliers;
-    if (trial < (1 - 1e-4 * length) * size_) return length;
-  }
-  return 1e-3;
-}
-
 }  // namespace
 
 void newton_solve(SpanSolution& solution, const NewtonOptions& options, NewtonBuffers& buffers) {
-  const SpanEnergy& model = *solution.model;
-  const bool tries_twice = options.method == NewtonMethod::newton && model.constraints() > 0 &&
-                           !model.has_soft_obstacles();
-  if (!tries_twice) return NewtonIteration(solution, options, buffers).run();
+  if (options.method != NewtonMethod::newton || solution.model->constraints() == 0) {
+    return NewtonIteration(solution, options, buffers).run();
+  }
   const Eigen::VectorXd x = solution.x;
   const Eigen::VectorXd multipliers = solution.multipliers;
   NewtonIteration(solution, options, buffers).run();

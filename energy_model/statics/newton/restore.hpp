@@ -23,8 +23,6 @@ struct RestoreScratch {
 /// Reduces the constraint residual to |c| <= gap by steps that each have to decrease it:
 /// Levenberg-Marquardt steps, which become Gauss-Newton steps near the end,
 ///     -J^T (J J^T + mu)^-1 c.
-/// If the Jacobian loses rank (a straight rod that has to become shorter), the steps stagnate; a
-/// small bend in all unknowns is then added.
 /// @param[in,out] point  evaluated
 /// @param most_energy    energy above which the search is abandoned
 /// @return whether the residual was reduced to `gap`

@@ -64,11 +64,6 @@ SpanSolution ActiveSet::update(SpanSolution equilibrium) {
   return counted(run(std::move(span), {}, std::move(equilibrium), Resolution::coarse));
 }
 
-SpanSolution ActiveSet::update(Span span, TangentField near, int terms) {
-  least_terms_ = terms;
-  return counted(run(std::move(span), std::move(near), {}, Resolution::coarse));
-}
-
 /// Runs the rounds of the active-set method. @param solution  first iterate, with its contacts, if
 /// it is an equilibrium; otherwise `near` is used
 SpanSolution ActiveSet::run(Span span, TangentField near, SpanSolution solution,

@@ -32,7 +32,6 @@ class ActiveSet {
   /// Updates contacts with about the present number of coefficients and without a certificate, for
   /// steps of a continuation. The result is no equilibrium if the contacts do not converge.
   [[nodiscard]] SpanSolution update(SpanSolution equilibrium);
-  [[nodiscard]] SpanSolution update(Span span, TangentField near, int terms);
 
   /// Solves by Newton's method from a guess, or by descent, with fixed contacts.
   [[nodiscard]] SpanSolution newton_from(const Span& span, const TangentField& near);

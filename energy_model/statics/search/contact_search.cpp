@@ -22,8 +22,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Numbers of initial guesses for polygons, between grips and with one clamp. The latter includes
-/// shapes past two bodies on either side.
+/// Numbers of initial guesses for polygons, between grips and with one clamp.
 constexpr std::size_t most_starts = 3;
 constexpr std::size_t most_starts_of_one_clamp = 6;
 /// Maximum number of descents from an unstable shape.

@@ -42,10 +42,7 @@ class FreeBoundaryNewton {
         factor_(solution.factor),
         ends_(free_boundaries(solution.model->span())),
         residual_(residual_of(solution)),
-        jacobian_(residual_.size(), residual_.size()),
-        x_by_ends_(solution.x.size(), residual_.size()),
-        multipliers_by_ends_(solution.multipliers.size(), residual_.size()),
-        gaps_(gaps_of(solution)) {}
+        jacobian_(residual_.size(), residual_.size()) {}
 
   int run() {
     if (ends_.empty()) return spent_;
@@ -57,7 +54,7 @@ class FreeBoundaryNewton {
       before = size;
       if (step % updates_a_derivative == 0 && !differentiate()) break;
       Eigen::VectorXd way = bounded(-jacobian_.partialPivLu().solve(residual_));
-      if (!way.allFinite() || !move(way) || meet()) break;
+      if (!way.allFinite() || !move(way)) break;
       if (way.cwiseAbs().maxCoeff() < converged_step * solution_.model->span().length) break;
     }
     return spent_;
@@ -66,31 +63,6 @@ class FreeBoundaryNewton {
  private:
   [[nodiscard]] Eigen::VectorXd residual_of(const SpanSolution& solution) const {
     return free_boundary_residual(solution, ends_);
-  }
-
-  /// Returns the lengths between consecutive contacts.
-  [[nodiscard]] static std::vector<double> gaps_of(const SpanSolution& solution) {
-    const std::vector<Span::Contact>& contacts = solution.model->span().contacts;
-    std::vector<double> gaps;
-    for (std::size_t i = 0; i + 1 < contacts.size(); ++i) {
-      gaps.push_back(contacts[i + 1].begin - contacts[i].end);
-    }
-    return gaps;
-  }
-
-  /// Whether two contacts are so close that they should be joined; separate contacts would take
-  /// many steps to meet.
-  [[nodiscard]] bool meet() const {
-    constexpr double near = 0.5;  // fraction of the initial gap
-    const Span& span = solution_.model->span();
-    const std::vector<double> gaps = gaps_of(solution_);
-    for (std::size_t i = 0; i < gaps.size(); ++i) {
-      if (gaps[i] < near * gaps_[i] && are_one(span.contacts[i], span.contacts[i + 1], span,
-                                               solution_.model->shape(solution_.x))) {
-        return true;
-      }
-    }
-    return false;
   }
 
   [[nodiscard]] Eigen::VectorXd bounded(Eigen::VectorXd way) const {
@@ -108,7 +80,7 @@ class FreeBoundaryNewton {
     return way;
   }
 
-  /// Solves for the equilibrium with moved ends, from a first-order prediction.
+  /// Solves for the equilibrium with moved ends.
   [[nodiscard]] SpanSolution with_moved(const Eigen::VectorXd& way, NewtonMethod method) {
     Span span = solution_.model->span();
     for (std::size_t i = 0; i < ends_.size(); ++i) {
@@ -118,8 +90,7 @@ class FreeBoundaryNewton {
     NewtonOptions options = {.load = span.total_load(), .deadline = &deadline_};
     if (result.model->pieces() == solution_.model->pieces()) {
       result.x = result.model->prolong(*solution_.model, solution_.x);
-      result.x += x_by_ends_ * way;
-      result.multipliers = solution_.multipliers + multipliers_by_ends_ * way;
+      result.multipliers = solution_.multipliers;
       options.method = method;
       if (method == NewtonMethod::simplified) options.first_factor = factor_;
     } else {
@@ -151,29 +122,12 @@ class FreeBoundaryNewton {
     const Eigen::VectorXd residual = residual_of(trial);
     const Eigen::RowVectorXd along = way.transpose() / way.squaredNorm();
     jacobian_ += (residual - residual_ - jacobian_ * way) * along;
-    if (is_alike(trial)) {
-      x_by_ends_ += (trial.x - solution_.x - x_by_ends_ * way) * along;
-      multipliers_by_ends_ +=
-          (trial.multipliers - solution_.multipliers - multipliers_by_ends_ * way) * along;
-    } else {
-      x_by_ends_.setZero(trial.x.size(), residual_.size());
-      multipliers_by_ends_.setZero(trial.multipliers.size(), residual_.size());
-    }
     residual_ = residual;
     solution_ = std::move(trial);
     return true;
   }
 
-  /// Whether a solution has the same unknowns; the number of elements may change with their
-  /// lengths.
-  [[nodiscard]] bool is_alike(const SpanSolution& other) const {
-    return other.x.size() == solution_.x.size() &&
-           other.multipliers.size() == solution_.multipliers.size();
-  }
-
   [[nodiscard]] bool differentiate() {
-    x_by_ends_.setZero(solution_.x.size(), residual_.size());
-    multipliers_by_ends_.setZero(solution_.multipliers.size(), residual_.size());
     Eigen::VectorXd way = Eigen::VectorXd::Zero(residual_.size());
     for (Eigen::Index i = 0; i < residual_.size(); ++i) {
       const FreeBoundary& end = ends_[static_cast<std::size_t>(i)];
@@ -189,10 +143,6 @@ class FreeBoundaryNewton {
       if (!beside.is_equilibrium()) beside = with_moved(way, NewtonMethod::newton);
       if (!beside.is_equilibrium()) return false;
       jacobian_.col(i) = (residual_of(beside) - residual_) / way[i];
-      if (is_alike(beside)) {
-        x_by_ends_.col(i) = (beside.x - solution_.x) / way[i];
-        multipliers_by_ends_.col(i) = (beside.multipliers - solution_.multipliers) / way[i];
-      }
       way[i] = 0;
     }
     return true;
@@ -204,9 +154,7 @@ class FreeBoundaryNewton {
   std::shared_ptr<NewtonFactor> factor_;  // the last one, for nearly the same ends
   std::vector<FreeBoundary> ends_;
   Eigen::VectorXd residual_;
-  // Derivatives by the ends: of the residual, and of an equilibrium's unknowns and multipliers.
-  Eigen::MatrixXd jacobian_, x_by_ends_, multipliers_by_ends_;
-  std::vector<double> gaps_;  // at the begin
+  Eigen::MatrixXd jacobian_;  // derivatives of the residual by the ends
   int spent_ = 0;
 };
 

@@ -11,7 +11,6 @@
 
 #include "base/legendre.hpp"
 #include "certify/enough_terms.hpp"
-#include "contact/penalty_polygon.hpp"
 #include "linear/free_directions.hpp"
 #include "newton/augmented_lagrangian.hpp"
 #include "newton/trust_region.hpp"
@@ -49,9 +48,6 @@ constexpr double least_stiff_eigenvalue = 1e-2;
 
 /// Maximum number of branch jumps; without a limit each could lead to the next.
 constexpr int most_branch_jumps = 60;
-
-/// Maximum number of polygons relaxed after branch jumps; each may take a second.
-constexpr int most_polygons = 6;
 
 /// Displacement along the unstable direction, and number of times that it is increased.
 constexpr double first_push = 0.1;
@@ -315,24 +311,7 @@ class TwistPath {
       spent_ += std::exchange(next.evaluations, 0);
       if (next.is_equilibrium() && is_stable(next)) return next;
     }
-    return from_polygon(from, way);
-  }
-
-  /// Relaxes a polygon from the same shape to find contacts elsewhere.
-  [[nodiscard]] std::optional<SpanSolution> from_polygon(
-      const SpanSolution& from, const std::optional<Eigen::VectorXd>& way) {
-    Span span = from.model->span();
-    if (span.rigid_obstacles.empty() || span.has_material_directors()) return std::nullopt;
-    if (++polygons_ > most_polygons) return std::nullopt;
-    const Eigen::VectorXd x = way ? from.x + first_push * *way : from.x;
-    const PenaltyPolygon polygon =
-        rest_on_obstacles(span, from.model->field(x), Segments::all, options_.deadline);
-    spent_ += polygon.evaluations;
-    span.contacts = polygon.contacts;
-    SpanSolution next = active_set_.update(std::move(span), polygon.field(), from.terms);
-    spent_ += std::exchange(next.evaluations, 0);
-    if (!next.is_equilibrium() || !is_stable(next)) return std::nullopt;
-    return next;
+    return std::nullopt;
   }
 
   Span span_;  // without contacts and twist
@@ -346,7 +325,6 @@ class TwistPath {
   double angle_ = 0;
   int spent_ = 0;
   int branch_jumps_ = 0;
-  int polygons_ = 0;
   bool smooth_ = false;  // the last step was shorter than necessary
   bool aside_ = false;   // the last step has deviated from its prediction
   Eigen::VectorXd last_step_;

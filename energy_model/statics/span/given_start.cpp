@@ -6,6 +6,7 @@
 
 #include "base/legendre.hpp"
 #include "certify/certify.hpp"
+#include "newton/augmented_lagrangian.hpp"
 #include "span/local_solver.hpp"
 #include "span/nearby_equilibria.hpp"
 #include "span/refinement.hpp"
@@ -46,7 +47,10 @@ std::optional<SpanSolution> start_on_adapted_mesh(const LocalSolver& on) {
   if (!solution.is_equilibrium()) {
     solution = own.empty_solution(own.terms());
     solution.x = solution.model->fit(start.field(solution.model->nodes()));
-    own.by_augmented_lagrangian(solution);
+    descend_by_augmented_lagrangian(solution, {.load = own.traits().load,
+                                               .deadline = &on.options().deadline,
+                                               .stiffness = own.traits().stiffness});
+    if (succeeded(solution.status)) own.newton(solution);
     solution.evaluations += spent;
   }
   solution = refined(own, std::move(solution));

@@ -7,7 +7,6 @@
 #include "base/minimise.hpp"
 #include "certify/enough_terms.hpp"
 #include "frames/piece.hpp"
-#include "newton/augmented_lagrangian.hpp"
 #include "newton/trust_region.hpp"
 #include "span/span_traits.hpp"
 
@@ -71,17 +70,10 @@ SpanSolution LocalSolver::from_start(const Start& from) {
     // For a taut rod such a start is already close to the shape.
     const bool is_near = traits_.taut && !solution.model->has_soft_obstacles();
     if (is_near) newton(solution);
-    if (reaches_minimum_by_newton(solution)) return solution;
     if (!is_near || (!solution.is_equilibrium() && !out_of_time())) {
       solution.x = start;
       solution.multipliers.resize(0);
       descend(solution);
-    }
-    if (solution.model->constraints() > 0 && !solution.is_equilibrium() &&
-        !solution.model->has_soft_obstacles()) {
-      solution.x = start;
-      solution.multipliers.resize(0);
-      by_augmented_lagrangian(solution);
     }
     spent += solution.evaluations;
     solution.evaluations = spent;
@@ -90,35 +82,6 @@ SpanSolution LocalSolver::from_start(const Start& from) {
     const bool more = 2 * solution.model->size() <= most_descended && options_.terms == 0;
     if (!more || out_of_time()) return solution;
   }
-}
-
-/// Tries Newton's method at once for a rod that one clamp holds. @return whether it has converged
-/// to a nearby minimum with at most the energy of solution.x
-bool LocalSolver::reaches_minimum_by_newton(SpanSolution& solution) {
-  constexpr double far = 2;  // difference of strains that Newton's method may cover in one step
-  SpanEnergy& model = *solution.model;
-  if (options_.wants_all() || !span_.start_direction || span_.has_material_directors() ||
-      span_.is_plain_cantilever() || model.constraints() > 0 || model.has_soft_obstacles()) {
-    return false;
-  }
-  const Eigen::VectorXd start = solution.x;
-  solution.point = workspace_.newton().new_point(model);
-  solution.evaluate(start, *solution.point);
-  const double energy = solution.point->energy;
-  newton(solution, {.step_tolerance = solution.terms < terms() ? rough_step : finest_step});
-  if (succeeded(solution.status) && solution.energy <= energy &&
-      (solution.x - start).norm() < far && solution.evaluations <= options_.max_evaluations) {
-    return true;
-  }
-  solution.x = start;
-  return false;
-}
-
-void LocalSolver::by_augmented_lagrangian(SpanSolution& solution) {
-  descend_by_augmented_lagrangian(
-      solution,
-      {.load = traits_.load, .deadline = &options_.deadline, .stiffness = traits_.stiffness});
-  if (succeeded(solution.status)) newton(solution);
 }
 
 SpanSolution LocalSolver::newton_from(const TangentField& field) {

@@ -55,11 +55,8 @@ class LocalSolver {
   /// Descends from solution.x by NLopt or, between grips, in a trust region; then runs Newton's
   /// method.
   void descend(SpanSolution& solution);
-  /// Minimises by the augmented Lagrangian from solution.x; then runs Newton's method.
-  void by_augmented_lagrangian(SpanSolution& solution);
 
  private:
-  [[nodiscard]] bool reaches_minimum_by_newton(SpanSolution& solution);
   [[nodiscard]] bool prolong_known(const StartShape& wanted, SpanSolution& solution) const;
   void minimise(SpanSolution& solution) const;
 

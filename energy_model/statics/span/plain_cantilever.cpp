@@ -62,20 +62,8 @@ SpanSolution plain_cantilever(LocalSolver& on) {
       turns_to_load(on.span(), at_once.at_x()->tangents())) {
     return at_once;
   }
-  int spent = at_once.evaluations;
-  if (on.traits().load < soft_load) {
-    SpanSolution straight = on.empty_solution(on.coarse_terms());
-    straight.x.setZero(straight.model->size());
-    on.descend(straight);
-    SpanSolution solution = refined(on, std::move(straight));
-    if (solution.status != SolveStatus::saddle) {
-      solution.evaluations += spent;
-      return solution;
-    }
-    spent += solution.evaluations;
-  }
   SpanSolution solution = refined(on, on.from_start(Start{soft_field(on.span())}));
-  solution.evaluations += spent;
+  solution.evaluations += at_once.evaluations;
   return solution;
 }
 

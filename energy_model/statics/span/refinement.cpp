@@ -138,8 +138,6 @@ class Refinement {
   /// Solves with more coefficients. @param solution  its factor is used up
   [[nodiscard]] SpanSolution with_terms(SpanSolution& solution, int terms) {
     SpanSolution finer = on_.workspace().with_terms(solution, terms);
-    const Eigen::VectorXd x = finer.x;
-    const Eigen::VectorXd multipliers = finer.multipliers;
     if (solution.factor) {
       const Eigen::MatrixXd hessian =
           prolonged(solution.factor->system.hessian(), *solution.model, *finer.model);
@@ -151,11 +149,6 @@ class Refinement {
     const bool descends = finer.model->size() <= most_descended;
     if (descends && (!finer.is_equilibrium() || finer.model->has_soft_obstacles()))
       on_.descend(finer);
-    if (!finer.is_equilibrium() && !finer.model->has_soft_obstacles()) {
-      finer.x = x;
-      finer.multipliers = multipliers;
-      on_.by_augmented_lagrangian(finer);
-    }
     finer.evaluations += solution.evaluations;
     return finer;
   }

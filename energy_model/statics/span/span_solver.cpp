@@ -22,8 +22,6 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
-
 /// Number of initial guesses, in the order of their energy, that the search for the lowest minimum
 /// follows.
 constexpr std::size_t followed_starts = 2;
@@ -32,10 +30,6 @@ constexpr std::size_t followed_starts = 2;
 constexpr std::size_t followed_natural_starts = 6;
 /// Number of such guesses if there are soft obstacles, which a rod may pass on either side.
 constexpr std::size_t followed_starts_beside_obstacles = 6;
-
-/// Difference between the cost of a start and that of the last start that is followed in any case,
-/// divided by the energy decrease from starts to equilibria, up to which it is followed too.
-constexpr double near_tie = 0.1;
 
 /// Largest difference of points, divided by the length, up to which loosely converged shapes count
 /// as one.
@@ -103,7 +97,7 @@ class Search {
   /// the lowest. Other starts are used only if the first ones lead to no stable lowest shape.
   void descend_from_lowest_starts() {
     const std::vector<Start> starts = ranked_starts();
-    std::size_t first = std::min(followed(), starts.size());
+    const std::size_t first = std::min(followed(), starts.size());
     std::vector<SpanSolution> coarse;
     for (std::size_t i = 0; i < starts.size() && !on_.out_of_time(); ++i) {
       if (i >= first && found_.has_stable_lowest()) return;
@@ -115,7 +109,6 @@ class Search {
         return other.is_equilibrium() && is_same_shape(solution, other, same_coarse_points);
       });
       if (!known) coarse.push_back(std::move(solution));
-      if (i + 1 == first && may_lead_lower(starts, first, coarse)) ++first;
       if (i + 1 < first) continue;
       refine_lowest(std::exchange(coarse, {}));
       leave_saddles();
@@ -150,19 +143,6 @@ class Search {
     options_.log->add_omitted(std::to_string(not_left) + " unstable equilibria, beyond the first " +
                               std::to_string(most_saddles) +
                               " found, which were not followed downhill");
-  }
-
-  /// Whether the first of the other starts costs about as much as the last of those followed in any
-  /// case, compared with the energy decrease from the latter to their equilibria.
-  [[nodiscard]] bool may_lead_lower(const std::vector<Start>& starts, std::size_t next,
-                                    const std::vector<SpanSolution>& coarse) const {
-    if (traits_.taut || next >= starts.size() || !starts.front().model) return false;
-    double lowest = infinite;
-    for (const SpanSolution& solution : coarse) {
-      if (solution.is_equilibrium()) lowest = std::min(lowest, solution.energy);
-    }
-    const double last = starts[followed() - 1].cost;
-    return starts[next].cost - last <= near_tie * (last - lowest);
   }
 
   /// Number of starts that are followed in any case.
@@ -267,7 +247,7 @@ class Search {
   const SpanTraits& traits_;
   Found found_;
   // Coarse energy of the last equilibrium that was refined, and its decrease by refinement.
-  double lowest_coarse_ = infinite;
+  double lowest_coarse_ = std::numeric_limits<double>::infinity();
   double fall_ = 0;
   std::size_t left_ = 0;  // number of equilibria found from which a descent was tried or not needed
 };

@@ -222,67 +222,6 @@ std::optional<TangentField> lying_field(const Span& span, const Span::Obstacle& 
   });
 }
 
-/// Returns half of a body's extent along a unit direction.
-double half_extent(const obstacle::Body& body, const Eigen::Vector3d& direction) {
-  const Eigen::Vector3d half = (body.upper() - body.lower()) / 2;
-  double extent = body.radius();
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const double along = std::abs(body.axes().col(axis).dot(direction));
-    if (along > 0) extent += along * half[axis];
-  }
-  return extent;
-}
-
-/// Returns a shape from a clamp past one side of a body, then as a soft rod; std::nullopt for
-/// bodies that are endless or out of reach.
-std::optional<TangentField> passing_field(const Span& span, const obstacle::Body& body,
-                                          double sense) {
-  constexpr double room = 1.1;
-  constexpr double rounding = 1e-9;
-  const Eigen::Vector3d centre = body.centre() + body.axes() * (body.lower() + body.upper()) / 2;
-  if (!centre.allFinite() || !(centre.norm() > rounding * span.length)) return {};
-  const Eigen::Vector3d towards = centre.normalized();
-  Eigen::Vector3d side = across(span, towards);
-  if (!span.planar) {
-    const Eigen::Vector3d& start = *span.start_direction;
-    const Eigen::Vector3d force = total_force(span, 0);
-    const Eigen::Vector3d plane =
-        start.cross(force).norm() > rounding * force.norm() ? force : start;
-    const Eigen::Vector3d in_plane = plane - plane.dot(towards) * towards;
-    if (in_plane.norm() > rounding * plane.norm()) side = in_plane.normalized();
-  }
-  const Eigen::Vector3d beside = centre + sense * room * half_extent(body, side) * side;
-  const double begin = beside.norm();
-  const double end = begin + half_extent(body, towards);
-  if (!(begin > rounding * span.length && end < span.length)) return {};
-  return field([&span, aim = Eigen::Vector3d(beside / begin), begin, end](double s) {
-    if (s > end) return pendulum(span, aim, total_force(span, 0), s - end, 0);
-    if (s > begin) return aim;
-    const Eigen::Vector3d turning =
-        aim + std::pow(1 - s / begin, 4) * (*span.start_direction - aim);
-    return Eigen::Vector3d(turning.norm() > 0 ? turning.normalized() : aim);
-  });
-}
-
-/// Returns shapes past the bodies nearest to the clamp, on either side.
-std::vector<TangentField> passing_fields(const Span& span) {
-  constexpr std::size_t most_bodies = 4;
-  std::vector<obstacle::Body> bodies;
-  for (const Span::SoftObstacle& obstacle : span.soft_obstacles) bodies.push_back(obstacle.body);
-  for (const Span::Obstacle& obstacle : span.rigid_obstacles) bodies.push_back(obstacle.body);
-  std::stable_sort(bodies.begin(), bodies.end(), [](const auto& a, const auto& b) {
-    return a.clearance(Eigen::Vector3d::Zero()) < b.clearance(Eigen::Vector3d::Zero());
-  });
-  std::vector<TangentField> fields;
-  for (std::size_t i = 0; i < std::min(most_bodies, bodies.size()); ++i) {
-    for (const double sense : {1.0, -1.0}) {
-      std::optional<TangentField> passing = passing_field(span, bodies[i], sense);
-      if (passing) fields.push_back(std::move(*passing));
-    }
-  }
-  return fields;
-}
-
 /// Arc lengths at which a start is compared with the prescribed frame at the end.
 Eigen::VectorXd compared_at(const Span& span) {
   constexpr Eigen::Index points = 257;
@@ -382,7 +321,6 @@ std::vector<TangentField> start_fields(const Span& span) {
       if (std::optional<TangentField> lying = lying_field(span, obstacle)) fields.push_back(*lying);
     }
     fields.push_back(soft_field(span));
-    for (TangentField& passing : passing_fields(span)) fields.push_back(std::move(passing));
     fields.push_back(field([&span](double) { return *span.start_direction; }));
     fields.push_back(field([&span](double s) {
       return pendulum(span, *span.start_direction, total_force(span, 0), s, 1);

@@ -9,9 +9,9 @@ namespace dlo::energy_model {
 
 /// Returns initial guesses for a span's equilibria, chosen by physical limits. With one clamp they
 /// are the pendulum's profile from the clamp's direction to the load's, by the shorter and the
-/// longer way, shapes that come down onto an obstacle and lie along it, and shapes that pass bodies
-/// on either side. Between grips they are arches and S-shapes of the right slack to both sides, and
-/// loops. Of each pair the one that the load favours comes first.
+/// longer way, and shapes that come down onto an obstacle and lie along it. Between grips they are
+/// arches and S-shapes of the right slack to both sides, and loops. Of each pair the one that the
+/// load favours comes first.
 [[nodiscard]] std::vector<TangentField> start_fields(const Span& span);
 
 /// Returns the pendulum's profile 4 atan(tan(psi/4) exp(-sqrt(n) s)) from a clamp towards the sum n
