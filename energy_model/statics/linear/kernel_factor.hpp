@@ -1,35 +1,9 @@
 #pragma once
 
-#include "linear/kernel_lanes.hpp"
+#include "linear/kernel_products.hpp"
 
 // Cholesky factor and its solutions. A part of dense_kernel.cpp, whose rules apply here.
 namespace dlo::energy_model::DLO_KERNEL {
-
-/// Subtracts from a tile of A the contribution of the columns before j to L L^T. The tile has
-/// `registers` registers of rows from row i and `width` columns from column j.
-template <int registers, int width>
-inline void subtract_tile(const Columns& a, std::ptrdiff_t i, std::ptrdiff_t j) {
-  Lanes rest[registers][width];
-  for (int c = 0; c < width; ++c) {
-    for (int r = 0; r < registers; ++r) {
-      rest[r][c] = read_lanes(a.data + (j + c) * a.stride + i + r * lane_count);
-    }
-  }
-  const double* left = a.data + i;
-  const double* right = a.data + j;
-  for (std::ptrdiff_t k = 0; k < j; ++k, left += a.stride, right += a.stride) {
-    Lanes column[registers];
-    for (int r = 0; r < registers; ++r) column[r] = read_lanes(left + r * lane_count);
-    for (int c = 0; c < width; ++c) {
-      for (int r = 0; r < registers; ++r) rest[r][c] -= column[r] * right[c];
-    }
-  }
-  for (int c = 0; c < width; ++c) {
-    for (int r = 0; r < registers; ++r) {
-      write_lanes(a.data + (j + c) * a.stride + i + r * lane_count, rest[r][c]);
-    }
-  }
-}
 
 /// Returns the first row of the register that contains a row.
 inline std::ptrdiff_t register_of(std::ptrdiff_t row) { return row / lane_count * lane_count; }
@@ -38,9 +12,13 @@ inline std::ptrdiff_t register_of(std::ptrdiff_t row) { return row / lane_count 
 template <int width>
 inline bool factor_strip(const Columns& a, std::ptrdiff_t j) {
   const std::ptrdiff_t first = register_of(j);
+  const ConstColumns before = {a.data, a.rows, j, a.stride};
+  const Factors factors = {a.data, a.stride, 1};
   std::ptrdiff_t i = first;
-  for (; i + lane_count < a.rows; i += 2 * lane_count) subtract_tile<2, width>(a, i, j);
-  if (i < a.rows) subtract_tile<1, width>(a, i, j);
+  for (; i + lane_count < a.rows; i += 2 * lane_count) {
+    multiply_tile<2, width, true>(before, factors, a, i, j);
+  }
+  if (i < a.rows) multiply_tile<1, width, true>(before, factors, a, i, j);
   for (std::ptrdiff_t c = j; c < j + width; ++c) {
     double* column = a.data + c * a.stride;
     if (!(column[c] > 0)) return false;

@@ -23,24 +23,6 @@ inline Lanes read_lanes(const double* from) { return *reinterpret_cast<const Sto
 inline void write_lanes(double* to, Lanes value) { *reinterpret_cast<StoredLanes*>(to) = value; }
 inline std::ptrdiff_t smaller(std::ptrdiff_t a, std::ptrdiff_t b) { return a < b ? a : b; }
 
-inline double dot(const double* a, const double* b, std::ptrdiff_t size) {
-  double sum = 0;
-  for (std::ptrdiff_t k = 0; k < size; ++k) sum += a[k] * b[k];
-  return sum;
-}
-
-/// Overloads that process one row, or as many rows as a register has elements.
-inline void read(const double* from, double& value) { value = *from; }
-inline void read(const double* from, Lanes& value) { value = read_lanes(from); }
-inline void write(double* to, double value) { *to = value; }
-inline void write(double* to, Lanes value) { write_lanes(to, value); }
-inline double root(double a) { return __builtin_sqrt(a); }
-inline Lanes root(Lanes a) {
-  Lanes result{};
-  for (std::ptrdiff_t i = 0; i < lane_count; ++i) result[i] = __builtin_sqrt(a[i]);
-  return result;
-}
-
 /// to = to + factor from
 inline void add_multiple(const double* from, double factor, std::ptrdiff_t size, double* to) {
   std::ptrdiff_t i = 0;
@@ -50,11 +32,12 @@ inline void add_multiple(const double* from, double factor, std::ptrdiff_t size,
   for (; i < size; ++i) to[i] += factor * from[i];
 }
 
-inline double dot_of_lanes(const double* a, const double* b, std::ptrdiff_t size) {
+inline double dot(const double* a, const double* b, std::ptrdiff_t size) {
   Lanes sums{};
   std::ptrdiff_t i = 0;
   for (; i + lane_count <= size; i += lane_count) sums += read_lanes(a + i) * read_lanes(b + i);
-  double sum = dot(a + i, b + i, size - i);
+  double sum = 0;
+  for (; i < size; ++i) sum += a[i] * b[i];
   for (std::ptrdiff_t lane = 0; lane < lane_count; ++lane) sum += sums[lane];
   return sum;
 }

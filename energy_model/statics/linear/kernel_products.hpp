@@ -12,9 +12,9 @@ struct Factors {
   std::ptrdiff_t next, beside;
 };
 
-/// Computes a tile of A B: `registers` registers of rows from row i, and `width` columns from
-/// column j.
-template <int registers, int width>
+/// Computes a tile of A B, or subtracts it from the result: `registers` registers of rows from row
+/// i, and `width` columns from column j.
+template <int registers, int width, bool subtracts = false>
 inline void multiply_tile(const ConstColumns& a, const Factors& b, const Columns& result,
                           std::ptrdiff_t i, std::ptrdiff_t j) {
   Lanes sums[registers][width] = {};
@@ -30,27 +30,34 @@ inline void multiply_tile(const ConstColumns& a, const Factors& b, const Columns
   }
   for (int c = 0; c < width; ++c) {
     double* to = result.data + (j + c) * result.stride + i;
-    for (int r = 0; r < registers; ++r) write_lanes(to + r * lane_count, sums[r][c]);
+    for (int r = 0; r < registers; ++r, to += lane_count) {
+      write_lanes(to, subtracts ? read_lanes(to) - sums[r][c] : sums[r][c]);
+    }
   }
 }
 
-/// Computes `width` columns of A B from column j, rows from `first`. The last tile overlaps the one
-/// before it, so that every tile is full.
+/// Computes `width` columns of A B from column j, rows from i; A has at least as many rows as a
+/// register. The last tile overlaps the one before it, so that every tile is full.
+template <int registers, int width>
+inline void multiply_rows(const ConstColumns& a, const Factors& b, const Columns& result,
+                          std::ptrdiff_t i, std::ptrdiff_t j) {
+  for (; i + registers * lane_count <= a.rows; i += registers * lane_count) {
+    multiply_tile<registers, width>(a, b, result, i, j);
+  }
+  if constexpr (registers > 1) {
+    multiply_rows<registers / 2, width>(a, b, result, i, j);
+  } else if (i < a.rows) {
+    multiply_tile<1, width>(a, b, result, a.rows - lane_count, j);
+  }
+}
+
+/// Computes `width` columns of A B from column j, rows from `first`.
 template <int width>
 inline void multiply_strip(const ConstColumns& a, const Factors& b, const Columns& result,
                            std::ptrdiff_t first, std::ptrdiff_t j) {
-  constexpr int registers = 2;
-  constexpr std::ptrdiff_t tall = registers * lane_count;
-  if (a.rows >= lane_count) {
-    std::ptrdiff_t i = first;
-    for (; i + lane_count < a.rows && a.rows >= tall; i += tall) {
-      multiply_tile<registers, width>(a, b, result, smaller(i, a.rows - tall), j);
-    }
-    for (; i < a.rows; i += lane_count) {
-      multiply_tile<1, width>(a, b, result, smaller(i, a.rows - lane_count), j);
-    }
-    return;
-  }
+  // A single column needs many registers so that its sums do not wait for each other.
+  if (a.rows >= lane_count)
+    return multiply_rows < width == 1 ? 8 : 2, width > (a, b, result, first, j);
   for (std::ptrdiff_t c = j; c < j + width; ++c) {
     for (std::ptrdiff_t i = first; i < a.rows; ++i) {
       double sum = 0;
@@ -60,19 +67,6 @@ inline void multiply_strip(const ConstColumns& a, const Factors& b, const Column
       result.data[c * result.stride + i] = sum;
     }
   }
-}
-
-/// Computes A b for a single column, with enough registers that the sums do not wait for each
-/// other.
-inline void multiply_column(const ConstColumns& a, const Factors& b, const Columns& result) {
-  std::ptrdiff_t i = 0;
-  for (; i + 8 * lane_count <= a.rows; i += 8 * lane_count) {
-    multiply_tile<8, 1>(a, b, result, i, 0);
-  }
-  for (; i + 4 * lane_count <= a.rows; i += 4 * lane_count) {
-    multiply_tile<4, 1>(a, b, result, i, 0);
-  }
-  if (i < a.rows) multiply_strip<1>(a, b, result, i, 0);
 }
 
 inline void multiply(const ConstColumns& a, const ConstColumns& b, const Columns& result) {
@@ -86,7 +80,7 @@ inline void multiply(const ConstColumns& a, const ConstColumns& b, const Columns
   }
   if (b.columns == 3) multiply_strip<3>(a, factors, result, 0, 0);
   if (b.columns == 2) multiply_strip<2>(a, factors, result, 0, 0);
-  if (b.columns == 1) multiply_column(a, factors, result);
+  if (b.columns == 1) multiply_strip<1>(a, factors, result, 0, 0);
 }
 
 inline void multiply_symmetric(const ConstColumns& a, const ConstColumns& b,
@@ -108,7 +102,7 @@ inline void reflect(const Columns& a, const double* v, double tau, double* w) {
   const std::ptrdiff_t n = a.rows;
   // w = tau A v - (tau^2 v.A v / 2) v, so that P A P = A - v w^T - w v^T
   multiply({a.data, n, n, a.stride}, {v, n, 1, n}, {w, n, 1, n});
-  const double along = -tau / 2 * dot_of_lanes(v, w, n);
+  const double along = -tau / 2 * dot(v, w, n);
   for (std::ptrdiff_t i = 0; i < n; ++i) w[i] = tau * (w[i] + along * v[i]);
   for (std::ptrdiff_t j = 0; j < n; ++j) {
     double* column = a.data + j * a.stride;
@@ -117,37 +111,18 @@ inline void reflect(const Columns& a, const double* v, double tau, double* w) {
   }
 }
 
-/// Returns an element (or a register of elements) of weights o (left right^T). @param right  row of
-/// `right` that belongs to the column
-template <typename Real>
-inline Real weighed_row(const WeighedProduct& a, const double (&right)[3], std::ptrdiff_t column,
-                        std::ptrdiff_t row) {
-  const double* left = a.left.data + row;
-  Real weight, x, y, z;
-  read(a.weights.data + column * a.weights.stride + row, weight);
-  read(left, x);
-  read(left + a.left.stride, y);
-  read(left + 2 * a.left.stride, z);
-  return weight * (x * right[0] + y * right[1] + z * right[2]);
-}
-
 inline void add_weighed(const WeighedProduct& a, const WeighedProduct& b, const Columns& result) {
-  const auto right_of = [](const WeighedProduct& of, std::ptrdiff_t column, double(&right)[3]) {
-    for (std::ptrdiff_t i = 0; i < 3; ++i) right[i] = of.right.data[i * of.right.stride + column];
+  const auto element = [](const WeighedProduct& of, std::ptrdiff_t row, std::ptrdiff_t column) {
+    const double* left = of.left.data + row;
+    const double* right = of.right.data + column;
+    return of.weights.data[column * of.weights.stride + row] *
+           (left[0] * right[0] + left[of.left.stride] * right[of.right.stride] +
+            left[2 * of.left.stride] * right[2 * of.right.stride]);
   };
-  double of_a[3];
-  double of_b[3];
   for (std::ptrdiff_t j = 0; j < result.columns; ++j) {
-    right_of(a, j, of_a);
-    right_of(b, j, of_b);
     double* to = result.data + j * result.stride;
-    std::ptrdiff_t i = 0;
-    for (; i + lane_count <= result.rows; i += lane_count) {
-      write_lanes(to + i, weighed_row<Lanes>(a, of_a, j, i) + weighed_row<Lanes>(b, of_b, j, i));
-    }
-    for (; i < result.rows; ++i) {
-      to[i] = weighed_row<double>(a, of_a, j, i) + weighed_row<double>(b, of_b, j, i);
-    }
+#pragma omp simd
+    for (std::ptrdiff_t i = 0; i < result.rows; ++i) to[i] = element(a, i, j) + element(b, i, j);
   }
 }
 
